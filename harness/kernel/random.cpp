@@ -1,0 +1,112 @@
+#include "harness/kernel/random.hpp"
+
+#include <limits>
+
+#include "harness/kernel/check.hpp"
+
+// A fused multiply-add rounds once where the product and the sum round twice: results would differ between
+// machines with and without it.
+#if defined(__clang__)
+#pragma clang fp contract(off)
+#elif defined(__GNUC__)
+#pragma GCC optimize("fp-contract=off")
+#endif
+
+namespace fieldproof::kernel {
+namespace {
+
+// SplitMix64: a counter in steps of the golden ratio, each value scrambled.
+constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
+
+constexpr std::uint64_t scramble(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
+  return x ^ (x >> 31);
+}
+
+// The two ways to name a child start from different constants, so that no index meets a label by design.
+constexpr std::uint64_t kLabelled = 0x6C6162656C6C6564;
+constexpr std::uint64_t kIndexed = 0x696E646578656421;
+
+// FNV-1a, 64 bit.
+constexpr std::uint64_t hash_of(std::string_view text) {
+  std::uint64_t hash = 0xCBF29CE484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3;
+  return hash;
+}
+
+constexpr std::uint64_t child_seed(std::uint64_t parent, std::uint64_t kind, std::uint64_t name) {
+  return scramble(scramble(scramble(parent + kGolden) ^ kind) + scramble(name + kGolden));
+}
+
+// 2 * artanh(s) = ln((1 + s) / (1 - s)) for |s| <= 0.172: the first term left out is below 2^-56 of the sum.
+double twice_artanh(double s) {
+  const double square = s * s;
+  double sum = 1.0 / 21;
+  for (int odd = 19; odd >= 3; odd -= 2) sum = sum * square + 1.0 / odd;
+  return 2 * s + 2 * s * (square * sum);
+}
+
+}  // namespace
+
+Random::Random(std::uint64_t seed) : state_{}, seed_(seed) {
+  for (std::uint64_t& word : state_) {
+    seed += kGolden;
+    word = scramble(seed);
+  }
+}
+
+Random Random::split(std::string_view label) const {
+  return Random(child_seed(seed_, kLabelled, hash_of(label)));
+}
+
+Random Random::split(std::uint64_t index) const {
+  return Random(child_seed(seed_, kIndexed, index));
+}
+
+std::uint64_t Random::geometric(double p) {
+  return GeometricSkip(p)(*this);
+}
+
+double portable_log(double x) {
+  constexpr std::uint64_t kMantissa = 0x000F'FFFF'FFFF'FFFF;
+  constexpr std::uint64_t kExponentOfOne = 0x3FF0'0000'0000'0000;
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  auto exponent = static_cast<std::int64_t>(bits >> 52) - 1023;
+  auto mantissa = std::bit_cast<double>((bits & kMantissa) | kExponentOfOne);
+  // Between sqrt(1/2) and sqrt(2), where the series is short.
+  if (mantissa > 1.4142135623730951) {
+    mantissa *= 0.5;
+    ++exponent;
+  }
+  // ln 2 in two parts: the first has so few digits that its product with an exponent is exact.
+  constexpr double kLog2High = 0x1.62e42fefa3800p-1;
+  constexpr double kLog2Low = 0x1.ef35793c76730p-45;
+  const auto scale = static_cast<double>(exponent);
+  return scale * kLog2High + (twice_artanh((mantissa - 1) / (mantissa + 1)) + scale * kLog2Low);
+}
+
+double portable_log_of_complement(double p) {
+  return p < 0.25 ? -twice_artanh(p / (2 - p)) : portable_log(1 - p);
+}
+
+GeometricSkip::GeometricSkip(double p) {
+  FIELDPROOF_CHECK(p == p, "a probability is not a number");
+  if (p >= 1) {
+    inverse_log_of_miss_ = 0;
+  } else if (p <= 0) {
+    inverse_log_of_miss_ = -std::numeric_limits<double>::infinity();
+  } else {
+    inverse_log_of_miss_ = 1 / portable_log_of_complement(p);
+  }
+}
+
+std::uint64_t GeometricSkip::operator()(Random& random) const {
+  const double log_of_uniform = portable_log(static_cast<double>((random.next() >> 11) + 1) * 0x1p-53);
+  const double skip = log_of_uniform * inverse_log_of_miss_;
+  // Written so that also "0 * infinity" (the draw was exactly 1 and no hit ever comes) gives the largest
+  // number.
+  return skip < 0x1p64 ? static_cast<std::uint64_t>(skip) : std::numeric_limits<std::uint64_t>::max();
+}
+
+}  // namespace fieldproof::kernel
