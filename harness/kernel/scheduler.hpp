@@ -102,7 +102,7 @@ class Scheduler {
 inline Scheduler::Key Scheduler::earlier(Key a, Key b) {
   __extension__ using Wide = __int128;
   const auto wide = [](Key key) {
-    return static_cast<Wide>((static_cast<unsigned __int128>(key.time) << 64) | key.order);
+    return (static_cast<Wide>(key.time) << 64) | static_cast<Wide>(key.order);
   };
   // Masks instead of a conditional: which child wins is a coin toss, no predictor learns it.
   const std::uint64_t a_wins = 0 - static_cast<std::uint64_t>(wide(a) < wide(b));
