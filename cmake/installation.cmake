@@ -1,0 +1,13 @@
+# `cmake --install` puts the program, the schemas and the headers where a package would.
+include(GNUInstallDirs)
+if(TARGET fieldproof)
+  install(TARGETS fieldproof RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+endif()
+foreach(folder IN ITEMS harness protocols conformance reports)
+  if(IS_DIRECTORY "${CMAKE_SOURCE_DIR}/${folder}")
+    install(DIRECTORY ${folder} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/fieldproof" FILES_MATCHING PATTERN "*.hpp"
+      PATTERN node_modules EXCLUDE)
+    install(DIRECTORY ${folder} DESTINATION "${CMAKE_INSTALL_DATADIR}/fieldproof" FILES_MATCHING PATTERN "*.schema.json"
+      PATTERN node_modules EXCLUDE)
+  endif()
+endforeach()

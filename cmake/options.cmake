@@ -1,0 +1,67 @@
+# Language, warnings, instrumentation and tools: all that holds for every target.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_VERIFY_INTERFACE_HEADER_SETS ON)
+
+option(FIELDPROOF_TESTS "Build the tests and the replay of the fuzz corpora" ON)
+option(FIELDPROOF_BENCHMARKS "Build the benchmarks where Google Benchmark is installed" ON)
+option(FIELDPROOF_FUZZ "Build the libFuzzer programs (clang only)" OFF)
+option(FIELDPROOF_COVERAGE "Count executed lines and branches (g++ only)" OFF)
+option(FIELDPROOF_PRECOMPILE "Precompile GoogleTest and RapidCheck once for all test programs" ON)
+set(FIELDPROOF_SANITIZE "" CACHE STRING "Sanitizers for everything, e.g. address,undefined or thread")
+
+add_library(fieldproof_warnings INTERFACE)
+target_compile_options(fieldproof_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wnon-virtual-dtor -Werror)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # g++ 12 sees overlapping copies inside std::string's operator+ from -O2 on (GCC bug 105651).
+  target_compile_options(fieldproof_warnings INTERFACE -Wno-restrict)
+endif()
+
+# Code that is under test in a fuzz build. The frame check stays outside: its inner loop would be counted, not tested.
+add_library(fieldproof_instrumented INTERFACE)
+if(FIELDPROOF_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "FIELDPROOF_FUZZ needs clang (libFuzzer is part of it): use the preset 'fuzz'.")
+  endif()
+  set(fuzz_sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
+  target_compile_options(fieldproof_instrumented INTERFACE -fsanitize=fuzzer-no-link ${fuzz_sanitizers} -fno-omit-frame-pointer)
+  add_link_options(${fuzz_sanitizers})
+endif()
+
+if(FIELDPROOF_SANITIZE)
+  add_compile_options(-fsanitize=${FIELDPROOF_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${FIELDPROOF_SANITIZE})
+endif()
+
+if(FIELDPROOF_COVERAGE)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    message(FATAL_ERROR "FIELDPROOF_COVERAGE needs g++ (gcovr reads its counters): use the preset 'coverage'.")
+  endif()
+  add_compile_options(--coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
+endif()
+
+find_program(ccache_program ccache)
+if(ccache_program AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  # A precompiled header can only be cached when ccache does not mistrust its time stamps and __TIME__.
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env
+    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime "${ccache_program}")
+endif()
+
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  string(REGEX MATCH "^[0-9]+" clang_major "${CMAKE_CXX_COMPILER_VERSION}")
+  find_program(lld_program NAMES ld.lld-${clang_major} ld.lld)
+else()
+  find_program(lld_program NAMES ld.lld)
+endif()
+if(lld_program)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    add_link_options(--ld-path=${lld_program})
+  else()
+    add_link_options(-fuse-ld=lld)
+  endif()
+endif()

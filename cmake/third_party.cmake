@@ -1,0 +1,28 @@
+# Libraries of others come from the system's packages; nothing of them lies in this repository.
+
+macro(fieldproof_require package)
+  find_package(${package} ${ARGN} QUIET)
+  if(NOT ${package}_FOUND)
+    message(FATAL_ERROR
+      "${package} (${ARGN}) was not found. Run script/setup, which installs every library that fieldproof needs, and configure again.")
+  endif()
+endmacro()
+
+set(THREADS_PREFER_PTHREAD_FLAG ON)
+fieldproof_require(Threads)
+fieldproof_require(fmt 9 CONFIG)
+fieldproof_require(nlohmann_json 3.11 CONFIG)
+fieldproof_require(CLI11 2 CONFIG)
+# libboost1.81-dev and libboost1.74-dev replace each other silently: asking for the version tells.
+fieldproof_require(Boost 1.81 CONFIG COMPONENTS headers)
+
+if(FIELDPROOF_TESTS)
+  fieldproof_require(GTest 1.12 CONFIG)
+  fieldproof_require(rapidcheck CONFIG)  # its package has no version file
+  include(GoogleTest)
+endif()
+if(FIELDPROOF_BENCHMARKS)
+  find_package(benchmark CONFIG QUIET)
+  find_path(ns3_include_folder ns3/simulator.h)
+  find_library(ns3_core_library NAMES ns3-core ns3.37-core)
+endif()
