@@ -1,0 +1,17 @@
+#include "harness/kernel/error.hpp"
+
+namespace fieldproof::kernel {
+
+int Error::exit_code() const noexcept {
+  switch (kind_) {
+    case ErrorKind::usage:
+      return 64;
+    case ErrorKind::configuration:
+      return 65;
+    case ErrorKind::implementation:
+      return 5;
+  }
+  return 70;
+}
+
+}  // namespace fieldproof::kernel
