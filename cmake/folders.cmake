@@ -54,6 +54,11 @@ function(fieldproof_library name folder)
   endif()
 endfunction()
 
+# fieldproof_harness_library(name ...): a folder of the harness, with the arguments of fieldproof_library.
+function(fieldproof_harness_library name)
+  fieldproof_library(fieldproof_${name} harness/${name} ${ARGN} PRIVATE ${third_party_libraries})
+endfunction()
+
 # What every test program shares, and the precompiled headers that they take over from it.
 function(fieldproof_test_ground)
   if(TARGET fieldproof_test_ground)
