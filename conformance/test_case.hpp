@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/judge/finding.hpp"
+#include "harness/judge/pics.hpp"
+
+// One test case, one deviation, and the suite of a protocol that runs a case against an implementation.
+// There is one definition of a case: the command line, GoogleTest and the matrix all use it.
+namespace fieldproof::conformance {
+
+// A deviation that a case must catch, and the reason code of the finding that proves that it was caught for
+// the right cause.
+struct Catch {
+  std::string deviation;
+  std::string reason;
+};
+
+struct TestCase {
+  std::string id;       // "interbus/slave/data_cycle/weight_four_codeword_is_accepted"; never reused
+  std::string purpose;  // the label of the test purpose, "IS-14"
+  std::string requirement;
+  judge::Reference reference;
+  std::string stimulus;
+  std::string expected;
+  std::vector<std::string> tags;  // "must", "timing", "long", "canary" ...
+  std::vector<Catch> catches;
+  // Nothing, or the sentence that says why the case does not apply to such an implementation.
+  std::function<std::optional<std::string>(const judge::Pics&)> not_applicable;
+
+  std::string role() const;  // second part of the id
+};
+
+// The reference station with one decision, or one number, changed.
+struct Deviation {
+  std::string name;    // "crc_preset_zero"
+  std::string mutant;  // the label of the mutant, "MS1"
+  std::string role;    // "slave"
+  std::string description;
+};
+
+// Who plays a role: "slave@3=deviant:crc_preset_zero".
+struct Assignment {
+  std::string role;  // empty: the role of the case
+  int position = 0;  // 1 is next to the master; 0: the protocol's default
+  std::string uri = "ref";
+};
+
+// How many repetitions a case makes: `full` is what the test purpose prints; `quick` keeps every kind of
+// stimulus and shortens the long repetitions (used by the matrix and under sanitizers).
+enum class Volume { quick, full };
+
+// Everything that decides the outcome of a case, besides the case itself.
+struct Setup {
+  std::uint64_t seed = 1;
+  std::vector<Assignment> implementations;
+  std::string network_file;  // empty: the suite's own network
+  std::string plan_file;     // additional declared faults; empty: none
+  std::optional<judge::Pics> pics;
+  Volume volume = Volume::full;
+  bool record = false;  // keep the trace (bounded) in the outcome
+};
+
+// A record of everything on the line and at the upper tester, for replay and for people.
+struct Recording {
+  std::vector<std::string> lines;  // one notation for people and programs, in order of time
+  std::string playback;            // what the implementation drove, for judging again without it
+  bool truncated = false;          // the bound was reached
+};
+
+struct Outcome {
+  judge::CaseResult result;
+  Recording recording;
+};
+
+// A protocol's suite. `run` never throws for a misbehaving implementation: that is a verdict. It throws
+// kernel::Error for a setup that cannot be served, naming what would be right.
+class Suite {
+ public:
+  Suite() = default;
+  Suite(const Suite&) = delete;
+  Suite& operator=(const Suite&) = delete;
+  virtual ~Suite() = default;
+
+  virtual std::string_view protocol() const = 0;
+  virtual std::vector<std::string> roles() const = 0;
+  virtual const std::vector<TestCase>& cases() const = 0;
+  virtual const std::vector<Deviation>& deviations() const = 0;
+  virtual Outcome run(const TestCase& test_case, const Setup& setup) const = 0;
+};
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,29 @@
+#include "harness/judge/pics.hpp"
+
+namespace fieldproof::judge {
+namespace {
+
+template <typename T>
+const T* answer(const std::map<std::string, Pics::Answer, std::less<>>& items, std::string_view item) {
+  const auto found = items.find(item);
+  return found == items.end() ? nullptr : std::get_if<T>(&found->second);
+}
+
+}  // namespace
+
+bool Pics::supports(std::string_view item) const {
+  const bool* declared = answer<bool>(items_, item);
+  return declared != nullptr && *declared;
+}
+
+std::int64_t Pics::number(std::string_view item, std::int64_t absent) const {
+  const std::int64_t* declared = answer<std::int64_t>(items_, item);
+  return declared == nullptr ? absent : *declared;
+}
+
+std::string Pics::text(std::string_view item, std::string_view absent) const {
+  const std::string* declared = answer<std::string>(items_, item);
+  return declared == nullptr ? std::string(absent) : *declared;
+}
+
+}  // namespace fieldproof::judge

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/kernel/time.hpp"
+
+// The unit on the wire: a start time, the rate of the levels and the packed levels of one transmission (a
+// character, a telegram, a train of telegrams, a whole frame). One event per transmission, not one per edge.
+//
+// Level n lasts from level_time(start, n, rate) to level_time(start, n + 1, rate); positions are computed
+// from the start and rounded once, never accumulated. Outside the packed levels the line is idle (level 1). A
+// waveform may be finer than the bits that it carries (rate a multiple of the bit rate): glitches and jitter
+// are written that way.
+namespace fieldproof::line {
+
+// Packed levels; level n is bit n % 64 of word n / 64. Reading past the end gives the idle level 1.
+class Levels {
+ public:
+  Levels() { reserve(kInitialLevels); }
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+
+  bool operator[](std::size_t n) const { return n >= size_ || ((words_[n / 64] >> (n % 64)) & 1U) != 0; }
+
+  // The 64 levels from `first` on, the first in bit 0. `first` may be at most size().
+  std::uint64_t window(std::size_t first) const {
+    const std::size_t word = first / 64;
+    const unsigned shift = first % 64;
+    // Two shifts, because a shift by 64 is undefined and a branch is slower.
+    return (words_[word] >> shift) | ((words_[word + 1] << 1) << (63 - shift));
+  }
+
+  // The packed words that hold size() levels; levels beyond the end are 1.
+  const std::uint64_t* words() const { return words_.data(); }
+  std::size_t word_count() const { return (size_ + 63) / 64; }
+
+  // Appends the lowest `count` (0..64) bits, the lowest first.
+  void append(std::uint64_t bits, unsigned count) {
+    reserve(size_ + count);
+    const std::uint64_t zeros = ~bits & mask(count);
+    const unsigned shift = size_ % 64;
+    words_[size_ / 64] &= ~(zeros << shift);
+    words_[size_ / 64 + 1] &= ~((zeros >> 1) >> (63 - shift));
+    size_ += count;
+  }
+
+  void append_idle(std::size_t count) {
+    reserve(size_ + count);
+    size_ += count;
+  }
+
+  void append_fill(bool level, std::size_t count);
+  void append(const Levels& other);
+
+  // Positions at or beyond the end are a broken invariant.
+  void flip(std::size_t n);
+  void set(std::size_t n, bool level);
+
+  void clear();
+  void resize(std::size_t size);  // new levels are idle
+
+  // Levels [first, first + count), idle beyond the end.
+  Levels slice(std::size_t first, std::size_t count) const;
+
+  std::string text() const;  // "0101…", the first level first
+
+  friend bool operator==(const Levels& a, const Levels& b);
+
+ private:
+  static constexpr std::size_t kInitialLevels = 256;
+
+  static constexpr std::uint64_t mask(unsigned count) {
+    return count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+  }
+
+  // Room for `levels` levels and one guard word of idle levels behind them.
+  void reserve(std::size_t levels) {
+    if (levels + 64 > capacity_) grow(levels);
+  }
+  void grow(std::size_t levels);
+
+  std::vector<std::uint64_t> words_;
+  std::size_t capacity_ = 0;  // in levels, without the guard
+  std::size_t size_ = 0;
+};
+
+struct Waveform {
+  kernel::Time start{};
+  std::int64_t rate = 1;  // levels per second
+  Levels levels;
+
+  kernel::Time time_of(std::size_t n) const {
+    return kernel::level_time(start, static_cast<std::int64_t>(n), rate);
+  }
+  kernel::Time end() const { return time_of(levels.size()); }
+  // The level at an instant; idle outside.
+  bool at(kernel::Time time) const;
+  // The first level whose start is at or after `time`, in 0..size().
+  std::size_t first_level_at(kernel::Time time) const;
+};
+
+}  // namespace fieldproof::line
