@@ -1,5 +1,3 @@
-#pragma once
-
 // The strict, typed reader of every configuration file (networks, fault plans, PICS, baselines, case files).
 //
 // A Document is one JSON text with comments. Values are read from it by what they must be: each `as_x`
@@ -22,6 +20,7 @@
 // Limits: text of at most Limits::size octets and Limits::depth nested containers, valid UTF-8, no NUL octet,
 // no duplicate key, nothing but space and comments after the value. The parser does not recurse. A Value is
 // a view: its Document must outlive it. Documents are immutable and may be read from several threads.
+#pragma once
 
 #include <concepts>
 #include <cstddef>
@@ -45,6 +44,10 @@ namespace fieldproof::config {
 
 struct Source;  // the parsed text, see source.hpp
 struct Member;
+class Value;
+
+// Refuses a value for a reason that its type does not show: "the ring has no station 7; it has 0 to 5".
+[[noreturn]] void fail(const Value& value, std::string_view sentence);
 
 enum class ValueKind : std::uint8_t { null, boolean, integer, number, string, array, object };
 
@@ -115,7 +118,7 @@ class Value {
   double as_length_m(double min = 0.0, double max = std::numeric_limits<double>::max()) const;  // mm cm m km
 
  private:
-  friend class ObjectReader;
+  friend void fail(const Value& value, std::string_view sentence);
   std::int64_t signed_between(std::int64_t min, std::int64_t max) const;
   std::uint64_t unsigned_between(std::uint64_t min, std::uint64_t max) const;
   std::uint64_t hex_or_unsigned(std::uint64_t max) const;
@@ -128,9 +131,6 @@ struct Member {
   std::string_view key;
   Value value;
 };
-
-// Refuses a value for a reason that its type does not show: "the ring has no station 7; it has 0 to 5".
-[[noreturn]] void fail(const Value& value, std::string_view sentence);
 
 // Reads the members of one object by key. Every key that is asked for is a known key; `finish` refuses the
 // other ones and is called by read_object, so it cannot be forgotten. "$schema" of the top-level object is
@@ -150,7 +150,7 @@ class ObjectReader {
 
   explicit ObjectReader(const Value& value);
   void finish() const;
-  std::optional<std::string> nearest_unread(std::string_view key) const;
+  const Member* nearest_unread(std::string_view key) const;
 
   Value value_;
   std::vector<Member> members_;

@@ -1,10 +1,9 @@
-#pragma once
-
 // Finds what a misspelled word was meant to be: keys, names, units, selectors.
 //
 // The distance is the optimal string alignment distance (Damerau with adjacent transpositions, each
 // substring edited at most once) over octets: insert, delete, replace, swap of two neighbours cost 1 each.
 // Only the first 256 octets of a word count, so that hostile input cannot make the search slow.
+#pragma once
 
 #include <cstddef>
 #include <optional>
