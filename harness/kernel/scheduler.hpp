@@ -104,12 +104,13 @@ inline Scheduler::Key Scheduler::earlier(Key a, Key b) {
   const auto wide = [](Key key) {
     return (static_cast<Wide>(key.time) << 64) | static_cast<Wide>(key.order);
   };
-  // Masks instead of a conditional: which child wins is a coin toss, no predictor learns it.
-  const std::uint64_t a_wins = 0 - static_cast<std::uint64_t>(wide(a) < wide(b));
-  const auto time_a = static_cast<std::uint64_t>(a.time);
-  const auto time_b = static_cast<std::uint64_t>(b.time);
-  return {static_cast<std::int64_t>(time_b ^ ((time_a ^ time_b) & a_wins)),
-          b.order ^ ((a.order ^ b.order) & a_wins)};
+  // Which child wins is a coin toss that no predictor learns: conditional moves, not a jump.
+#if defined(__clang__)
+  const bool a_wins = __builtin_unpredictable(wide(a) < wide(b));
+#else
+  const bool a_wins = wide(a) < wide(b);
+#endif
+  return {a_wins ? a.time : b.time, a_wins ? a.order : b.order};
 }
 
 inline void Scheduler::set_key(std::size_t slot, Key key) {
