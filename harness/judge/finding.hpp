@@ -47,6 +47,7 @@ struct CaseResult {
   kernel::Duration virtual_time{};
   std::uint64_t wall_time_us = 0;  // the only field that differs between two equal runs
   std::string log;                 // of the implementation, bounded
+  std::string purpose{};           // label of the test purpose, "IS-14"; may be empty
 };
 
 }  // namespace fieldproof::judge

@@ -1,0 +1,86 @@
+// What a run was and what came out of it: the model that every report is written from.
+//
+// Two halves, so that equal runs are equal bytes: RunIdentity and the results hold only what seed, suite and
+// configuration decide (results.json; the same for any number of jobs); Manifest adds what the occasion
+// decided: when, where, by which build, for how long (manifest.json, timings.json).
+//
+// Every text may come from an implementation under test; the writers escape.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/judge/finding.hpp"
+
+namespace fieldproof::reports {
+
+// Who played which role. `position` 1 is next to the master; 0 is the protocol's default.
+struct Implementation {
+  std::string role;
+  int position = 0;
+  std::string uri;
+};
+
+// What decides the outcome of a run.
+struct RunIdentity {
+  std::string tool_version;
+  std::string suite_version;
+  std::uint64_t seed = 1;
+  std::string plan_hash;     // of the declared faults; empty: none
+  std::string network_hash;  // of the network file; empty: the suites' own networks
+  std::vector<std::string> selectors;
+  std::vector<Implementation> implementations;
+  // Every option of the command line that decides the outcome, quoted for a shell, without the selector:
+  // "--seed 7 --iut slave=deviant:crc_preset_zero".
+  std::string reproduce_options;
+  std::size_t selected = 0;        // cases selected, also those that an interrupted run never judged
+  std::string incomplete_because;  // empty: complete; "interrupted by SIGINT"
+  int exit_code = 0;
+};
+
+struct Run {
+  RunIdentity identity;
+  std::vector<judge::CaseResult> cases;  // in the order of the catalogue
+
+  bool is_complete() const { return identity.incomplete_because.empty(); }
+};
+
+// What the occasion decided.
+struct Manifest {
+  std::string build_type;
+  std::string compiler;
+  std::string host;
+  std::vector<std::string> arguments;  // the command line as it was typed, program first
+  std::string started;                 // UTC, "2026-11-21T05:18:28Z"
+  std::string finished;                // UTC; empty while the run goes on, and for ever after a kill
+  std::uint64_t wall_time_us = 0;
+  unsigned jobs = 1;
+};
+
+inline constexpr std::size_t kVerdicts = 7;
+
+// Counts by verdict with their denominators.
+struct Counts {
+  std::size_t selected = 0;
+  std::size_t judged = 0;  // a verdict from pass to error: not "none", not "not-applicable"
+  std::array<std::size_t, kVerdicts> by_verdict{};
+
+  std::size_t of(judge::Verdict verdict) const { return by_verdict.at(static_cast<std::size_t>(verdict)); }
+  std::size_t not_run() const;  // selected cases without a result, and those whose verdict is none
+};
+
+Counts count(const Run& run);
+
+// The heaviest verdict of the run; none when there are no results.
+judge::Verdict headline(const Run& run);
+
+// The command that runs this case again: "fieldproof run interbus/slave/x --seed 7".
+std::string reproduce_command(const RunIdentity& identity, const std::string& case_id);
+
+// `word` as one word of a POSIX shell, quoted only where it must be.
+std::string shell_quoted(const std::string& word);
+
+}  // namespace fieldproof::reports
