@@ -17,8 +17,10 @@ add_library(fieldproof_warnings INTERFACE)
 target_compile_options(fieldproof_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wnon-virtual-dtor -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # g++ 12 sees overlapping copies inside std::string's operator+ from -O2 on (GCC bug 105651).
-  target_compile_options(fieldproof_warnings INTERFACE -Wno-restrict)
+  # g++ 12 reports overlaps and overruns inside std::string that are not there (GCC bugs 105651 and 105329).
+  # AddressSanitizer runs over the whole suite and sees the real ones.
+  target_compile_options(fieldproof_warnings INTERFACE
+    -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 
 # Code that is under test in a fuzz build. The frame check stays outside: its inner loop would be counted, not tested.
