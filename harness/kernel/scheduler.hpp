@@ -104,13 +104,19 @@ inline Scheduler::Key Scheduler::earlier(Key a, Key b) {
   const auto wide = [](Key key) {
     return (static_cast<Wide>(key.time) << 64) | static_cast<Wide>(key.order);
   };
-  // Which child wins is a coin toss that no predictor learns: conditional moves, not a jump.
-#if defined(__clang__)
-  const bool a_wins = __builtin_unpredictable(wide(a) < wide(b));
-#else
   const bool a_wins = wide(a) < wide(b);
-#endif
+  // Which child wins is a coin toss that no predictor learns, so it must not become a jump. g++ makes two
+  // conditional moves of the conditional; clang would make a jump, also of masks that it can see through.
+#if defined(__clang__)
+  std::uint64_t mask = 0 - static_cast<std::uint64_t>(a_wins);
+  __asm__("" : "+r"(mask));
+  const auto pick = [mask](std::uint64_t x, std::uint64_t y) { return y ^ ((x ^ y) & mask); };
+  return {
+      static_cast<std::int64_t>(pick(static_cast<std::uint64_t>(a.time), static_cast<std::uint64_t>(b.time))),
+      pick(a.order, b.order)};
+#else
   return {a_wins ? a.time : b.time, a_wins ? a.order : b.order};
+#endif
 }
 
 inline void Scheduler::set_key(std::size_t slot, Key key) {
