@@ -1,6 +1,8 @@
 #include "harness/judge/verdict.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace fieldproof::judge {
 namespace {
@@ -9,6 +11,13 @@ constexpr std::array<std::string_view, 7> kVerdictNames = {"none",         "not-
                                                            "inconclusive", "fail",           "error"};
 constexpr std::array<std::string_view, 7> kStandingNames = {"seed",    "sure",   "searched", "calc",
                                                             "derived", "memory", "own"};
+
+template <typename T>
+std::optional<T> value_named(const std::array<std::string_view, 7>& names, std::string_view name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<T>(found - names.begin());
+}
 
 }  // namespace
 
@@ -25,10 +34,11 @@ std::string_view name(Standing standing) {
 }
 
 std::optional<Verdict> verdict_from(std::string_view name) {
-  for (std::size_t i = 0; i < kVerdictNames.size(); ++i) {
-    if (kVerdictNames.at(i) == name) return static_cast<Verdict>(i);
-  }
-  return std::nullopt;
+  return value_named<Verdict>(kVerdictNames, name);
+}
+
+std::optional<Standing> standing_from(std::string_view name) {
+  return value_named<Standing>(kStandingNames, name);
 }
 
 }  // namespace fieldproof::judge

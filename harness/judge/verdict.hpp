@@ -27,6 +27,7 @@ bool is_verified(Standing standing);
 std::string_view name(Verdict verdict);
 std::string_view name(Standing standing);
 std::optional<Verdict> verdict_from(std::string_view name);
+std::optional<Standing> standing_from(std::string_view name);
 
 // Source and place of a requirement, in own words; a clause number appears only where it was read.
 struct Reference {
