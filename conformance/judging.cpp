@@ -1,0 +1,75 @@
+#include "conformance/judging.hpp"
+
+#include <algorithm>
+
+namespace fieldproof::conformance {
+
+void CaseJudge::add(judge::Verdict verdict, std::string_view reason, Sighting sighting) {
+  judge::Finding finding;
+  finding.verdict = verdict;
+  finding.reason = reason;
+  finding.requirement = test_case_.requirement;
+  finding.reference = test_case_.reference;
+  finding.expected = std::move(sighting.expected);
+  finding.actual = std::move(sighting.actual);
+  if (sighting.time) {
+    finding.time = *sighting.time;
+  } else if (clock_) {
+    finding.time = clock_();
+  }
+  finding.first_difference = std::move(sighting.first_difference);
+  finding.decode = std::move(sighting.decode);
+  if (finding.decode.empty() && decode_) finding.decode = decode_();
+  findings_.push_back(std::move(finding));
+}
+
+void CaseJudge::fail(std::string_view reason, Sighting sighting) {
+  add(judge::Verdict::fail, reason, std::move(sighting));
+  throw CaseEnded{};
+}
+
+void CaseJudge::inconclusive(std::string_view reason, Sighting sighting) {
+  add(judge::Verdict::inconclusive, reason, std::move(sighting));
+  throw CaseEnded{};
+}
+
+void CaseJudge::warn(std::string_view reason, Sighting sighting) {
+  add(judge::Verdict::warn, reason, std::move(sighting));
+}
+
+void CaseJudge::measure(std::string_view name, std::string_view unit, double value) {
+  measurements_.push_back({std::string(name), std::string(unit), value, value, value});
+}
+
+void CaseJudge::expect_between(std::string_view name, std::string_view unit, double value, double low,
+                               double high, std::string_view reason) {
+  measurements_.push_back({std::string(name), std::string(unit), value, low, high});
+  // Written so that a value that is no number fails.
+  if (value >= low && value <= high) return;
+  fail(reason, {{fmt::format("{} between {:.6g} and {:.6g} {}", name, low, high, unit)},
+                fmt::format("{:.6g} {}", value, unit)});
+}
+
+judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>& procedure) {
+  try {
+    procedure(*this);
+  } catch (const CaseEnded&) {
+    // The finding that ended it is kept.
+  }
+  judge::CaseResult result;
+  result.id = test_case_.id;
+  result.purpose = test_case_.purpose;
+  result.requirement = test_case_.requirement;
+  result.reference = test_case_.reference;
+  result.verdict = judge::Verdict::pass;
+  for (const judge::Finding& finding : findings_) {
+    if (finding.verdict <= result.verdict) continue;
+    result.verdict = finding.verdict;
+    result.reason = finding.reason;
+  }
+  result.findings = std::move(findings_);
+  result.measurements = std::move(measurements_);
+  return result;
+}
+
+}  // namespace fieldproof::conformance
