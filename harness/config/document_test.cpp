@@ -1,6 +1,7 @@
 #include "harness/config/document.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -130,7 +131,10 @@ TEST(Document, KeepsHostileNamesPrintable) {
 
 class Files : public testing::Test {
  protected:
-  Files() : folder_(std::filesystem::path(testing::TempDir()) / "fieldproof_document_test") {
+  Files()
+      : folder_(std::filesystem::path(testing::TempDir()) /
+                (std::string("fieldproof_") + testing::UnitTest::GetInstance()->current_test_info()->name() +
+                 std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
   }
   ~Files() override { std::filesystem::remove_all(folder_); }
