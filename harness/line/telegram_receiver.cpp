@@ -1,0 +1,96 @@
+#include "harness/line/telegram_receiver.hpp"
+
+#include <algorithm>
+
+namespace fieldproof::line {
+namespace {
+
+// The number of whole levels from `from` to `to` when both lie on one grid, -1 otherwise.
+std::int64_t levels_between(kernel::Time from, kernel::Time to, std::int64_t rate) {
+  __extension__ using Wide = __int128;
+  const auto count = static_cast<std::int64_t>(
+      (static_cast<Wide>((to - from).count()) * rate + kernel::kSecond.count() / 2) /
+      kernel::kSecond.count());
+  return kernel::level_time(from, count, rate) == to ? count : -1;
+}
+
+void append_sampled(Levels& levels, const Waveform& wave, kernel::Time start, std::int64_t rate,
+                    std::size_t until) {
+  for (std::size_t n = levels.size(); n < until; ++n) {
+    const auto middle = kernel::level_time(start, 2 * static_cast<std::int64_t>(n) + 1, 2 * rate);
+    levels.append(wave.at(middle) ? 1 : 0, 1);
+  }
+}
+
+std::size_t levels_until(kernel::Time start, kernel::Time end, std::int64_t rate) {
+  __extension__ using Wide = __int128;
+  return static_cast<std::size_t>(
+      (static_cast<Wide>((end - start).count()) * rate + kernel::kSecond.count() - 1) /
+      kernel::kSecond.count());
+}
+
+}  // namespace
+
+TelegramReceiver::TelegramReceiver(const TelegramCode& code, std::int64_t bit_rate,
+                                   TelegramReceiverOptions options)
+    : code_(code), bit_rate_(bit_rate), options_(options) {}
+
+bool TelegramReceiver::sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram) const {
+  while ((at = falling_edge(wave.levels, at)) < wave.levels.size()) {
+    const kernel::Time edge = wave.time_of(at);
+    std::uint64_t sampled = 0;
+    for (unsigned bit = 0; bit < kDataTelegramLevels; ++bit) {
+      if (options_.sampling.sample(wave, edge, bit, bit_rate_)) sampled |= std::uint64_t{1} << bit;
+    }
+    if ((sampled & 1) != 0) {
+      if (options_.validates_start) {
+        at = falling_edge_at(wave, options_.sampling.idle_seen_at(wave, edge, bit_rate_));
+        continue;
+      }
+      sampled &= ~std::uint64_t{1};
+    }
+    telegram = code_.from_levels(sampled);
+    telegram.level = static_cast<std::uint32_t>(at);
+    const kernel::Time decided = options_.sampling.decided_at(edge, telegram.levels() - 1, bit_rate_);
+    if (decided > wave.end()) return false;
+    at = wave.first_level_at(decided);
+    while (telegram.is_stop_missing() && at < wave.levels.size() && !wave.levels[at]) ++at;
+    return true;
+  }
+  return false;
+}
+
+void TelegramReceiver::keep(const Waveform& wave, std::size_t from) {
+  pending_.start = wave.time_of(from);
+  pending_.rate = wave.rate;
+  pending_.levels = wave.levels.slice(from, wave.levels.size() - from);
+  pending_until_ = kernel::level_time(pending_.start, kDataTelegramLevels, bit_rate_);
+  has_pending_ = true;
+}
+
+std::size_t TelegramReceiver::idle_levels(const Waveform& wave) const {
+  return static_cast<std::size_t>((kDataTelegramLevels + 1) * wave.rate / bit_rate_ + 1);
+}
+
+Waveform TelegramReceiver::join(const Waveform& first, const Waveform& second) const {
+  Waveform joined;
+  joined.start = first.start;
+  joined.rate = first.rate;
+  const std::int64_t offset =
+      first.rate == second.rate ? levels_between(first.start, second.start, first.rate) : -1;
+  if (offset >= static_cast<std::int64_t>(first.levels.size())) {
+    joined.levels = first.levels;
+    joined.levels.append_idle(static_cast<std::size_t>(offset) - first.levels.size());
+    joined.levels.append(second.levels);
+    return joined;
+  }
+  // No common grid: both are written at a rate fine enough for every sampling instant of a bit.
+  joined.rate = std::max({first.rate, second.rate, bit_rate_}) * 16;
+  append_sampled(joined.levels, first, joined.start, joined.rate,
+                 levels_until(joined.start, second.start, joined.rate));
+  append_sampled(joined.levels, second, joined.start, joined.rate,
+                 levels_until(joined.start, second.end(), joined.rate));
+  return joined;
+}
+
+}  // namespace fieldproof::line

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+
+#include "harness/kernel/time.hpp"
+#include "harness/line/sampling.hpp"
+#include "harness/line/telegram.hpp"
+#include "harness/line/waveform.hpp"
+
+// The receiver of telegrams at one station: levels in, telegrams out, at any rate of the waveform.
+//
+// A waveform of the receiver's own bit rate is decoded level by level (a sample in the middle of an aligned
+// bit is that level); any other is sampled as a receiver does: the start bit is validated, each bit is
+// sampled where `Sampling` says, and after the stop bit the next falling edge begins a telegram. A telegram
+// that the end of a waveform cuts is kept: it is completed by the next reception or, when none comes in time,
+// by the idle line
+// (`flush` at `pending_until`). So it makes no difference how a sender divides its telegrams into waveforms.
+namespace fieldproof::line {
+
+struct TelegramReceiverOptions {
+  Sampling sampling;
+  // A receiver that does not validate takes each falling edge for a start bit.
+  bool validates_start = true;
+};
+
+class TelegramReceiver {
+ public:
+  TelegramReceiver(const TelegramCode& code, std::int64_t bit_rate, TelegramReceiverOptions options = {});
+
+  // Calls sink(wave, telegram) for each telegram that is complete; `telegram.level` counts in the levels of
+  // the `wave` that the sink is given (not always the one that was received).
+  template <typename Sink>
+  void receive(const Waveform& wave, Sink&& sink) {
+    if (!has_pending_ && wave.rate == bit_rate_) {
+      const std::size_t end = code_.decode(wave.levels, 0, [&](const Telegram& t) { sink(wave, t); });
+      if (end < wave.levels.size()) keep(wave, end);
+      return;
+    }
+    receive_slowly(wave, sink);
+  }
+
+  // The end of a telegram that is not complete, kNever when there is none.
+  kernel::Time pending_until() const { return has_pending_ ? pending_until_ : kernel::kNever; }
+
+  // Completes a pending telegram with the idle line.
+  template <typename Sink>
+  void flush(Sink&& sink) {
+    if (!has_pending_) return;
+    has_pending_ = false;
+    Waveform rest;
+    std::swap(rest, pending_);
+    rest.levels.append_idle(idle_levels(rest));
+    decode_all(rest, sink);
+    has_pending_ = false;  // what a flushed rest leaves behind is shorter than a telegram of the idle line
+  }
+
+ private:
+  template <typename Sink>
+  void receive_slowly(const Waveform& wave, Sink& sink) {
+    if (has_pending_ && wave.start >= pending_until_) flush(sink);
+    if (!has_pending_) return decode_all(wave, sink);
+    has_pending_ = false;
+    const Waveform joined = join(pending_, wave);
+    decode_all(joined, sink);
+  }
+
+  template <typename Sink>
+  void decode_all(const Waveform& wave, Sink& sink) {
+    if (wave.rate == bit_rate_) {
+      const std::size_t end = code_.decode(wave.levels, 0, [&](const Telegram& t) { sink(wave, t); });
+      if (end < wave.levels.size()) keep(wave, end);
+      return;
+    }
+    Telegram telegram;
+    std::size_t at = 0;
+    while (at < wave.levels.size() && sample_telegram(wave, at, telegram)) sink(wave, telegram);
+    if (at < wave.levels.size()) keep(wave, at);
+  }
+
+  // Finds and samples the next telegram from level `at` on; false when there is none or when the end of the
+  // waveform cuts it (`at` is then its first level), else `at` is where the search goes on.
+  bool sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram) const;
+  void keep(const Waveform& wave, std::size_t from);
+  // Idle levels behind a cut telegram that complete it whatever it is.
+  std::size_t idle_levels(const Waveform& wave) const;
+  Waveform join(const Waveform& first, const Waveform& second) const;
+
+  const TelegramCode& code_;
+  std::int64_t bit_rate_;
+  TelegramReceiverOptions options_;
+  bool has_pending_ = false;
+  kernel::Time pending_until_{};
+  Waveform pending_;
+};
+
+}  // namespace fieldproof::line

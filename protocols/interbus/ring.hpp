@@ -1,0 +1,81 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/segment/segment.hpp"
+#include "protocols/interbus/device.hpp"
+#include "protocols/interbus/network.hpp"
+#include "protocols/interbus/terminal_block.hpp"
+
+// The stations of a network, wired to a ring: for each station a forward link to it and a return link from
+// it, both as long as its cable. What sits at the master's place (a master, or a lower tester that plays one)
+// is attached to the segment by the caller and wired with `out()`.
+//
+// Receivers, and so the links to them, are named "slave@3/in", "slave@3/return" (from behind OUT1),
+// "slave@3/branch_return" (from behind OUT2) and "master/in"; positions count from 1 in ring order.
+namespace fieldproof::interbus {
+
+class Ring {
+ public:
+  // Makes the slave at a position (from 1); null means the reference.
+  using MakeSlave = std::function<std::unique_ptr<SlaveDevice>(int position, const SlaveConfiguration&)>;
+
+  Ring(segment::Segment& segment, const NetworkDescription& network, std::size_t master_seat,
+       const MakeSlave& make_slave = nullptr);
+
+  segment::Port& out() { return *links_.front().forward; }
+
+  std::size_t size() const { return slaves_.size(); }
+  SlaveDevice& slave(int position) { return *slaves_.at(index(position)).device; }
+  TerminalBlock& terminals(int position) { return slaves_.at(index(position)).terminals; }
+  const SlaveConfiguration& configuration(int position) const {
+    return slaves_.at(index(position)).configuration;
+  }
+  std::size_t seat(int position) const { return slaves_.at(index(position)).seat; }
+
+  segment::Link& link_to(int position) { return *links_.at(index(position)).forward; }
+  segment::Link& link_from(int position) { return *links_.at(index(position)).back; }
+  // A receiver's link by its name, null when there is none.
+  segment::Link* find_link(std::string_view receiver);
+  std::vector<segment::Link*> links();
+
+  // Positions of the image words: first word of a station in the master's images.
+  unsigned first_word(int position) const { return slaves_.at(index(position)).first_word; }
+  unsigned word_count() const { return word_count_; }
+
+  // The cable to the station is cut, both directions, or mended.
+  void set_cable(int position, bool connected);
+
+ private:
+  struct Place {
+    std::unique_ptr<SlaveDevice> device;
+    SlaveConfiguration configuration;
+    TerminalBlock terminals;
+    SlavePorts ports;
+    std::size_t seat;
+    unsigned first_word;
+  };
+  struct Cable {
+    segment::Link* forward = nullptr;
+    segment::Link* back = nullptr;
+  };
+
+  static std::size_t index(int position) { return static_cast<std::size_t>(position - 1); }
+  void add_station(const NetworkDescription& network, const RingPlace& place, const MakeSlave& make_slave);
+  void lay_cable(const NetworkDescription& network, const RingPlace& place, std::size_t n);
+
+  segment::Segment& segment_;
+  std::size_t master_seat_;
+  std::deque<Place> slaves_;
+  std::vector<Cable> links_;
+  unsigned word_count_ = 0;
+};
+
+// The master's configuration for a network: expected stations, requested cycle time, copy task.
+MasterConfiguration master_configuration(const NetworkDescription& network);
+
+}  // namespace fieldproof::interbus

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "protocols/interbus/device.hpp"
+
+// The terminals of a simulated slave: inputs that are constant or a signal in time, outputs with the instants
+// at which they changed.
+namespace fieldproof::interbus {
+
+class TerminalBlock : public Terminals {
+ public:
+  using Signal = std::function<std::uint16_t(kernel::Time)>;
+  using Condition = std::function<bool(kernel::Time)>;
+
+  struct Change {
+    kernel::Time when;
+    unsigned word;
+    std::uint16_t before;
+    std::uint16_t after;
+  };
+
+  explicit TerminalBlock(unsigned words) : inputs_(words), signals_(words), outputs_(words) {}
+
+  void set_input(unsigned word, std::uint16_t value) { inputs_.at(word) = value; }
+  void set_signal(unsigned word, Signal signal) { signals_.at(word) = std::move(signal); }
+  void set_peripheral_fault(Condition condition) { peripheral_fault_ = std::move(condition); }
+  void set_reconfiguration(Condition condition) { reconfiguration_ = std::move(condition); }
+
+  std::uint16_t output(unsigned word) const { return outputs_.at(word); }
+  const std::vector<std::uint16_t>& outputs() const { return outputs_; }
+
+  // Changes of outputs since `forget_changes`, at most kMostChanges of them; and how often any output was
+  // written, changed or not.
+  static constexpr std::size_t kMostChanges = 65'536;
+  const std::vector<Change>& changes() const { return changes_; }
+  void forget_changes() { changes_.clear(); }
+  std::uint64_t write_count() const { return write_count_; }
+  kernel::Time last_write() const { return last_write_; }
+
+  std::uint16_t input(unsigned word, kernel::Time when) override {
+    return signals_[word] ? signals_[word](when) : inputs_[word];
+  }
+  void output(unsigned word, std::uint16_t value, kernel::Time when) override {
+    ++write_count_;
+    last_write_ = when;
+    std::uint16_t& held = outputs_.at(word);
+    if (held == value) return;
+    if (changes_.size() < kMostChanges) changes_.push_back({when, word, held, value});
+    held = value;
+  }
+  bool has_peripheral_fault(kernel::Time when) override {
+    return peripheral_fault_ && peripheral_fault_(when);
+  }
+  bool wants_reconfiguration(kernel::Time when) override {
+    return reconfiguration_ && reconfiguration_(when);
+  }
+
+ private:
+  std::vector<std::uint16_t> inputs_;
+  std::vector<Signal> signals_;
+  std::vector<std::uint16_t> outputs_;
+  Condition peripheral_fault_;
+  Condition reconfiguration_;
+  std::vector<Change> changes_;
+  std::uint64_t write_count_ = 0;
+  kernel::Time last_write_{};
+};
+
+}  // namespace fieldproof::interbus
