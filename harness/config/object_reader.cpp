@@ -9,7 +9,7 @@ namespace fieldproof::config {
 
 ObjectReader::ObjectReader(const Value& value)
     : value_(value), members_(value.as_members()), read_(members_.size(), false) {
-  if (value_.pointer().empty()) (void)optional("$schema");
+  if (value_.node_ == 0) (void)optional("$schema");  // the top level
   known_.clear();  // nobody misspells it, and errors list keys of the file's own language
 }
 
@@ -33,8 +33,10 @@ Value ObjectReader::required(std::string_view key) {
 }
 
 const Member* ObjectReader::nearest_unread(std::string_view key) const {
+  constexpr std::size_t kMost =
+      1000;  // a person's file has fewer; a hostile one must not make the search slow
   std::vector<std::string_view> unread;
-  for (std::size_t n = 0; n < members_.size(); ++n) {
+  for (std::size_t n = 0; n < std::min(members_.size(), kMost); ++n) {
     if (!read_[n]) unread.push_back(members_[n].key);
   }
   const auto near = misspelled(key, unread);

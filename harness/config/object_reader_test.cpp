@@ -55,6 +55,13 @@ TEST(ObjectReader, NamesTheNearestWrittenKeyWhenOneIsMissing) {
             "x.json:1: the top level: key \"name\" is missing; \"Name\" on line 3 is near to it");
 }
 
+TEST(ObjectReader, NamesTheFirstOfManyUnknownKeys) {
+  std::string text = "{\"name\": \"a\"";
+  for (int n = 0; n < 20'000; ++n) text += ",\n\"" + std::to_string(n) + std::string(300, 'n') + "\": 0";
+  EXPECT_TRUE(error_of(text + "}").starts_with("x.json:2: /0nnn"));
+  EXPECT_NE(error_of("{\"nome\": 1, " + text.substr(14) + "}").find("\"nome\" on line 1"), std::string::npos);
+}
+
 TEST(ObjectReader, RefusesWhatIsNoObject) {
   EXPECT_EQ(error_of("[]"), "x.json:1: the top level: this is an array; write an object");
 }
