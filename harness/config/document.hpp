@@ -119,6 +119,7 @@ class Value {
 
  private:
   friend void fail(const Value& value, std::string_view sentence);
+  friend class ObjectReader;
   std::int64_t signed_between(std::int64_t min, std::int64_t max) const;
   std::uint64_t unsigned_between(std::uint64_t min, std::uint64_t max) const;
   std::uint64_t hex_or_unsigned(std::uint64_t max) const;
