@@ -23,7 +23,7 @@ const std::map<std::string, Names, std::less<>>& directions() {
       {"line", {"kernel"}},
       {"config", {"kernel"}},
       {"trace", {"line", "kernel"}},
-      {"fault", {"line", "kernel", "config"}},
+      {"fault", {"trace", "line", "kernel", "config"}},
       {"segment", {"fault", "trace", "line", "kernel", "config"}},
       {"judge", {"trace", "line", "kernel", "config"}},
       {"measure", {"trace", "line", "kernel"}},
