@@ -17,16 +17,19 @@
 //
 // What could not be verified without IEC 61158-3-8/-4-8 at hand (order and polarity of the header levels, the
 // loopback word, the coding of status word, control word and message bits, the final XOR of the frame check)
-// stands in this one table and can be exchanged as a whole. Wire compatibility with real INTERBUS is therefore
-// not claimed.
+// stands in this one table and can be exchanged as a whole. Wire compatibility with real INTERBUS is
+// therefore not claimed.
 namespace fieldproof::interbus {
 
-// Length code of an ID code: not the binary number of words.
+// Length code of an ID code (its bits 8..12): not the binary number of words.
 struct LengthCode {
   std::uint8_t code;
   std::uint8_t words;
 };
 
+// The codes with a whole number of words, by rising words; 00h is "no data". The codes 08h..0Dh, 10h and
+// 18h..1Fh stay undefined: the first seven are said to mean lengths below or between whole words, but their
+// values could not be verified.
 std::span<const LengthCode> published_length_codes();
 
 struct Rules {
@@ -65,7 +68,9 @@ struct Rules {
   // Limits.
   unsigned max_stations = 512;
   unsigned max_io_points = 4096;
-  unsigned max_levels = 16;
+  unsigned max_levels = 16;       // the main line is the first
+  unsigned max_distance_m = 400;  // of cable between two remote-bus stations; 150 at 2 Mbit/s
+  unsigned max_cable_m = 12'800;  // of remote bus in a network
 
   // Control word, master to slave in the ID cycle.
   std::uint16_t control_remote_off = 0x0001;   // OUT1
@@ -83,12 +88,16 @@ struct Rules {
 
 // One line of the table of sources that README and reports print.
 struct Fact {
-  std::string_view rule;
-  std::string value;
-  std::string_view source;
+  std::string_view rule;    // the member of Rules; a part of it in brackets where parts differ in standing
+  std::string value;        // as a person reads it, with unit
+  std::string_view source;  // in own words
   judge::Standing standing;
+
+  bool is_about(std::string_view member) const { return rule.substr(0, rule.find('[')) == member; }
 };
 
+// Every member of Rules in the order above. A value that no source names (set by a network file or by a
+// deviation) has the standing `own`, whatever stands behind the reference's value.
 std::vector<Fact> facts(const Rules& rules);
 
 }  // namespace fieldproof::interbus
