@@ -19,9 +19,14 @@ void Levels::append_fill(bool level, std::size_t count) {
 }
 
 void Levels::append(const Levels& other) {
-  std::size_t n = 0;
-  for (; n + 64 <= other.size(); n += 64) append(other.window(n), 64);
-  append(other.window(n), static_cast<unsigned>(other.size() - n));
+  append(other, 0, other.size());
+}
+
+void Levels::append(const Levels& other, std::size_t first, std::size_t count) {
+  for (std::size_t n = 0; n < count; n += 64) {
+    const auto take = static_cast<unsigned>(std::min<std::size_t>(64, count - n));
+    append(first + n <= other.size() ? other.window(first + n) : ~std::uint64_t{0}, take);
+  }
 }
 
 void Levels::flip(std::size_t n) {
@@ -48,10 +53,7 @@ void Levels::resize(std::size_t size) {
 
 Levels Levels::slice(std::size_t first, std::size_t count) const {
   Levels part;
-  for (std::size_t n = 0; n < count; n += 64) {
-    const auto take = static_cast<unsigned>(std::min<std::size_t>(64, count - n));
-    part.append(first + n <= size_ ? window(first + n) : ~std::uint64_t{0}, take);
-  }
+  part.append(*this, first, count);
   return part;
 }
 

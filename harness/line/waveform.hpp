@@ -55,6 +55,8 @@ class Levels {
 
   void append_fill(bool level, std::size_t count);
   void append(const Levels& other);
+  // Levels [first, first + count) of the other, idle beyond its end.
+  void append(const Levels& other, std::size_t first, std::size_t count);
 
   // Positions at or beyond the end are a broken invariant.
   void flip(std::size_t n);

@@ -60,6 +60,7 @@ void Trace::observe(Channel channel, kernel::Time time, std::string_view what, s
   mix(what);
   mix(value);
   if (recorder_ != nullptr) recorder_->on_observation(channel, time, what, value);
+  for (Observer* observer : observers_) observer->on_observation(channel, time, what, value);
 }
 
 }  // namespace fieldproof::trace

@@ -26,6 +26,17 @@ class Recorder {
                               std::uint64_t value) = 0;
 };
 
+// Is told every observation as it is made: how a fault rule waits for one. It changes nothing of the trace.
+class Observer {
+ public:
+  Observer() = default;
+  Observer(const Observer&) = delete;
+  Observer& operator=(const Observer&) = delete;
+  virtual ~Observer() = default;
+  virtual void on_observation(Channel channel, kernel::Time time, std::string_view what,
+                              std::uint64_t value) = 0;
+};
+
 class Trace {
  public:
   Channel add_channel(std::string name);
@@ -42,12 +53,17 @@ class Trace {
   // The recorder must outlive its use; null stops recording.
   void set_recorder(Recorder* recorder) { recorder_ = recorder; }
 
+  // Observers are told in the order in which they were added, and must be removed before they die.
+  void add_observer(Observer& observer) { observers_.push_back(&observer); }
+  void remove_observer(Observer& observer) { std::erase(observers_, &observer); }
+
  private:
   void mix(std::uint64_t word);
   void mix(std::string_view text);
 
   std::vector<std::string> names_;
   Recorder* recorder_ = nullptr;
+  std::vector<Observer*> observers_;
   std::uint64_t fingerprint_ = 0x6669656C64707266;  // any constant but zero
   std::uint64_t record_count_ = 0;
 };

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/fault/channel.hpp"
+#include "harness/fault/fields.hpp"
+#include "harness/fault/rule.hpp"
+#include "harness/kernel/random.hpp"
+#include "harness/trace/trace.hpp"
+
+// A fault plan is a list of rules. As a value it can be read from a file (plan_file.hpp), written and hashed;
+// installed on the trace of a segment it makes one channel per receiver and keeps what the rules remember:
+// hits, observations, random streams.
+namespace fieldproof::fault {
+
+class RuleChannel;
+
+class Plan {
+ public:
+  Plan() = default;
+  explicit Plan(std::vector<Rule> rules) : rules_(std::move(rules)) {}
+
+  // Rules are asked in the order in which they were added.
+  Plan& add(Rule rule) {
+    rules_.push_back(std::move(rule));
+    return *this;
+  }
+  const std::vector<Rule>& rules() const { return rules_; }
+  bool empty() const { return rules_.empty(); }
+
+  friend bool operator==(const Plan&, const Plan&) = default;
+
+ private:
+  std::vector<Rule> rules_;
+};
+
+// What all receivers share about one condition on observations.
+struct AfterState {
+  const After* after = nullptr;
+  std::uint64_t seen = 0;
+  kernel::Time since = kernel::kNever;  // of the nth observation
+
+  bool holds(kernel::Time at) const {
+    return at >= since && (after->lasting == kernel::Duration::max() || at - since < after->lasting);
+  }
+};
+
+// What all receivers share about one rule.
+struct RuleState {
+  const Rule* rule = nullptr;
+  std::uint64_t hits = 0;
+  std::vector<AfterState> afters;  // of the conditions of `when`, in the order of its tree
+
+  bool is_spent() const { return hits >= rule->times; }
+};
+
+// Rules with their memory, for one segment and one run. Deterministic: the random stream of a rule at a
+// receiver depends on the seed, the name of the receiver and the place of the rule, not on what other rules
+// and receivers draw.
+class InstalledPlan final : private trace::Observer {
+ public:
+  // `random` is split, not drawn from. The trace must outlive the plan.
+  InstalledPlan(Plan plan, trace::Trace& trace, const kernel::Random& random);
+  ~InstalledPlan() override;
+
+  // The channel of a receiver, for `Link::set_channel`; null when no rule can ever mean this receiver. Hits
+  // are told to the trace at `place`. Without a map each transmission is a frame (see TransmissionFields).
+  // The channel lives as long as the plan.
+  Channel* channel_for(std::string_view receiver, trace::Channel place,
+                       std::unique_ptr<FieldMap> fields = nullptr);
+
+  const Plan& plan() const { return plan_; }
+  // How often rule number `rule` has hit.
+  std::uint64_t hits(std::size_t rule) const { return states_.at(rule).hits; }
+
+ private:
+  void on_observation(trace::Channel channel, kernel::Time time, std::string_view what,
+                      std::uint64_t value) override;
+
+  const Plan plan_;
+  trace::Trace& trace_;
+  kernel::Random random_;
+  std::vector<RuleState> states_;
+  std::vector<std::unique_ptr<RuleChannel>> channels_;
+};
+
+}  // namespace fieldproof::fault
