@@ -37,6 +37,11 @@ struct TestCase {
   std::string role() const;  // second part of the id
 };
 
+bool has_tag(const TestCase& test_case, std::string_view tag);
+
+// A case that must fail on every implementation, to show that a failure is seen at all.
+bool is_canary(const TestCase& test_case);
+
 // The reference station with one decision, or one number, changed.
 struct Deviation {
   std::string name;    // "crc_preset_zero"
@@ -55,6 +60,8 @@ struct Assignment {
 // How many repetitions a case makes: `full` is what the test purpose prints; `quick` keeps every kind of
 // stimulus and shortens the long repetitions (used by the matrix and under sanitizers).
 enum class Volume { quick, full };
+
+std::string_view name(Volume volume);
 
 // Everything that decides the outcome of a case, besides the case itself.
 struct Setup {

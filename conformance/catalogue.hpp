@@ -1,0 +1,60 @@
+// Every test case and every deviation of every protocol's suite, in one order: suites as they were given,
+// cases as the suite lists them.
+//
+// Contract: ids are unique, begin with protocol and role, and each deviation that a case declares exists in
+// the role of the case; a suite that breaks this is a broken invariant, found when the catalogue is made. The
+// catalogue owns the suites; entries point into them and live as long as the catalogue.
+// A selector or a name that matches nothing throws kernel::Error(usage) with the three nearest ones.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/test_case.hpp"
+
+namespace fieldproof::conformance {
+
+struct Entry {
+  const Suite* suite = nullptr;
+  const TestCase* test_case = nullptr;
+};
+
+struct DeviationEntry {
+  const Suite* suite = nullptr;
+  const Deviation* deviation = nullptr;
+
+  std::string path() const;  // "interbus/slave/crc_preset_zero"
+};
+
+class Catalogue {
+ public:
+  explicit Catalogue(std::vector<std::unique_ptr<Suite>> suites);
+
+  const std::vector<std::unique_ptr<Suite>>& suites() const { return suites_; }
+  const std::vector<Entry>& entries() const { return entries_; }
+  const std::vector<DeviationEntry>& deviations() const { return deviations_; }
+
+  // The union of what the selectors match, without what the exclusions match, in catalogue order. Without a
+  // selector that includes, everything but the canaries is included.
+  std::vector<Entry> select(std::span<const std::string> selectors) const;
+
+  const Entry& at(std::string_view id) const;
+  const Suite& suite(std::string_view protocol) const;
+
+  // By path ("interbus/slave/crc_preset_zero"), or by the part of the path that is unique ("crc_preset_zero"
+  // among `among`, or among all when that is empty). Several that fit are an error that names them.
+  const DeviationEntry& deviation(std::string_view name, std::span<const Entry> among = {}) const;
+
+ private:
+  void add(const Suite& suite);
+  void check_case(const Suite& suite, const TestCase& test_case) const;
+
+  std::vector<std::unique_ptr<Suite>> suites_;
+  std::vector<Entry> entries_;
+  std::vector<DeviationEntry> deviations_;
+};
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,194 @@
+#include "conformance/matrix.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "conformance/ordered_work.hpp"
+#include "conformance/runner.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using judge::Verdict;
+
+// One run: a case on the reference (no deviation) or on a deviation.
+struct Run {
+  std::size_t role = 0;
+  std::size_t row = 0;
+  const Deviation* deviation = nullptr;
+  Cell* cell = nullptr;
+};
+
+RoleMatrix blank_role(const Suite& suite, const std::string& role) {
+  RoleMatrix matrix;
+  matrix.role = role;
+  for (const TestCase& test_case : suite.cases()) {
+    if (test_case.role() == role && !is_canary(test_case)) matrix.cases.push_back(&test_case);
+  }
+  for (const Deviation& deviation : suite.deviations()) {
+    if (deviation.role == role) matrix.deviations.push_back(&deviation);
+  }
+  matrix.reference.resize(matrix.cases.size());
+  matrix.cells.assign(matrix.cases.size(), std::vector<Cell>(matrix.deviations.size()));
+  return matrix;
+}
+
+std::vector<Run> planned_runs(Matrix& matrix) {
+  std::vector<Run> runs;
+  for (std::size_t role = 0; role < matrix.roles.size(); ++role) {
+    RoleMatrix& block = matrix.roles[role];
+    for (std::size_t row = 0; row < block.cases.size(); ++row) {
+      runs.push_back({role, row, nullptr, &block.reference[row]});
+      for (std::size_t column = 0; column < block.deviations.size(); ++column) {
+        runs.push_back({role, row, block.deviations[column], &block.cells[row][column]});
+      }
+    }
+  }
+  return runs;
+}
+
+std::string declared_reason(const TestCase& test_case, const Deviation* deviation) {
+  if (deviation == nullptr) return {};
+  const auto found = std::find_if(test_case.catches.begin(), test_case.catches.end(),
+                                  [&](const Catch& caught) { return caught.deviation == deviation->name; });
+  return found == test_case.catches.end() ? std::string{} : found->reason;
+}
+
+bool has_failing_finding(const judge::CaseResult& result, const std::string& reason) {
+  return result.reason == reason ||
+         std::any_of(result.findings.begin(), result.findings.end(), [&](const judge::Finding& finding) {
+           return finding.verdict == Verdict::fail && finding.reason == reason;
+         });
+}
+
+CellKind kind_of(const judge::CaseResult& result, const std::string& declared) {
+  const bool is_declared = !declared.empty();
+  switch (result.verdict) {
+    case Verdict::error:
+      return CellKind::wrong_cause;
+    case Verdict::fail:
+      if (!is_declared) return CellKind::caught_undeclared;
+      return has_failing_finding(result, declared) ? CellKind::caught : CellKind::wrong_cause;
+    case Verdict::not_applicable:
+      return is_declared ? CellKind::missed : CellKind::not_applicable;
+    default:
+      return is_declared ? CellKind::missed : CellKind::passed;
+  }
+}
+
+Cell run_cell(const Suite& suite, const TestCase& test_case, const Deviation* deviation, std::uint64_t seed) {
+  Setup setup;
+  setup.seed = seed;
+  setup.volume = Volume::quick;
+  const std::string uri = deviation == nullptr ? "ref" : "deviant:" + deviation->name;
+  setup.implementations.push_back({.role = test_case.role(), .position = 0, .uri = uri});
+  const CaseRun done = run_case({&suite, &test_case}, setup);
+  const judge::CaseResult& result = done.outcome.result;
+  Cell cell;
+  cell.declared = declared_reason(test_case, deviation);
+  cell.verdict = result.verdict;
+  cell.reason = result.reason;
+  cell.kind = kind_of(result, cell.declared);
+  return cell;
+}
+
+// "fails with 'x'" or "is inconclusive (y)".
+std::string told(const Cell& cell) {
+  const std::string reason = cell.reason.empty() ? "" : fmt::format(" ('{}')", cell.reason);
+  return fmt::format("ends with {}{}", judge::name(cell.verdict), reason);
+}
+
+void find_cell_holes(const TestCase& test_case, const Deviation& deviation, const Cell& cell,
+                     std::vector<Hole>& holes) {
+  if (cell.kind == CellKind::missed) {
+    holes.push_back({HoleKind::missed, test_case.id, deviation.name,
+                     fmt::format("{} declares to catch '{}' with '{}' but {}", test_case.id, deviation.name,
+                                 cell.declared, told(cell))});
+  } else if (cell.kind == CellKind::wrong_cause) {
+    const std::string declared =
+        cell.declared.empty() ? "declares nothing about it" : fmt::format("declares '{}'", cell.declared);
+    holes.push_back(
+        {HoleKind::wrong_cause, test_case.id, deviation.name,
+         fmt::format("{} on '{}' {}; the case {}", test_case.id, deviation.name, told(cell), declared)});
+  }
+}
+
+void find_row_holes(const RoleMatrix& matrix, std::size_t row, std::vector<Hole>& holes) {
+  const TestCase& test_case = *matrix.cases[row];
+  const Cell& reference = matrix.reference[row];
+  const bool is_quiet = reference.verdict == Verdict::pass || reference.kind == CellKind::not_applicable;
+  if (!is_quiet && reference.kind != CellKind::not_run) {
+    holes.push_back({HoleKind::false_alarm, test_case.id, "",
+                     fmt::format("{} on the reference {}", test_case.id, told(reference))});
+  }
+  const std::vector<Cell>& cells = matrix.cells[row];
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    find_cell_holes(test_case, *matrix.deviations[i], cells[i], holes);
+  const bool catches =
+      std::any_of(cells.begin(), cells.end(), [](const Cell& cell) { return cell.kind == CellKind::caught; });
+  if (!catches) {
+    holes.push_back({HoleKind::idle_case, test_case.id, "",
+                     fmt::format("{} catches no deviation that it declares", test_case.id)});
+  }
+}
+
+std::vector<Hole> find_holes(const Matrix& matrix) {
+  std::vector<Hole> holes;
+  for (const RoleMatrix& role : matrix.roles) {
+    for (std::size_t column = 0; column < role.deviations.size(); ++column) {
+      const bool is_caught =
+          std::any_of(role.cells.begin(), role.cells.end(),
+                      [&](const std::vector<Cell>& row) { return row[column].kind == CellKind::caught; });
+      if (is_caught) continue;
+      const Deviation& deviation = *role.deviations[column];
+      holes.push_back({HoleKind::uncaught_deviation, "", deviation.name,
+                       fmt::format("no case catches the {} deviation '{}' for a declared reason ({})",
+                                   role.role, deviation.name, deviation.description)});
+    }
+    for (std::size_t row = 0; row < role.cases.size(); ++row) find_row_holes(role, row, holes);
+  }
+  return holes;
+}
+
+}  // namespace
+
+std::string_view name(CellKind kind) {
+  constexpr std::array<std::string_view, 7> kNames = {
+      "not-run", "not-applicable", "passed", "caught", "caught-undeclared", "missed", "wrong-cause"};
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
+std::string_view name(HoleKind kind) {
+  constexpr std::array<std::string_view, 5> kNames = {"uncaught-deviation", "idle-case", "missed",
+                                                      "wrong-cause", "false-alarm"};
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
+Matrix make_matrix(const Suite& suite, const MatrixPlan& plan) {
+  Matrix matrix;
+  matrix.protocol = suite.protocol();
+  matrix.seed = plan.seed;
+  for (const std::string& role : suite.roles()) matrix.roles.push_back(blank_role(suite, role));
+  const std::vector<Run> runs = planned_runs(matrix);
+
+  OrderedWork<Cell> work;
+  work.count = runs.size();
+  work.threads = plan.jobs;
+  work.stop = plan.stop;
+  work.work = [&](std::size_t i) {
+    const Run& run = runs[i];
+    return run_cell(suite, *matrix.roles[run.role].cases[run.row], run.deviation, plan.seed);
+  };
+  work.deliver = [&](std::size_t i, Cell&& cell) {
+    *runs[i].cell = std::move(cell);
+    return true;
+  };
+  if (plan.on_progress) work.idle = [&](std::size_t finished) { plan.on_progress(finished, runs.size()); };
+  matrix.is_complete = work.run() == runs.size();
+  if (matrix.is_complete) matrix.holes = find_holes(matrix);
+  return matrix;
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,134 @@
+#include "conformance/runner.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <set>
+
+#include "conformance/ordered_work.hpp"
+#include "harness/kernel/check.hpp"
+#include "harness/kernel/error.hpp"
+#include "harness/kernel/random.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using judge::Verdict;
+
+judge::CaseResult blank_result(const TestCase& test_case, Verdict verdict, std::string reason) {
+  judge::CaseResult result;
+  result.id = test_case.id;
+  result.verdict = verdict;
+  result.reason = std::move(reason);
+  result.requirement = test_case.requirement;
+  result.reference = test_case.reference;
+  return result;
+}
+
+// The sentence why nothing is to be judged, if so.
+std::optional<std::string> excluded_by_setup(const TestCase& test_case, const Setup& setup) {
+  const std::string role = test_case.role();
+  std::set<std::string> assigned;
+  for (const Assignment& assignment : setup.implementations) {
+    if (assignment.role.empty() || assignment.role == role) return std::nullopt;
+    assigned.insert(assignment.role);
+  }
+  if (assigned.empty()) return std::nullopt;
+  return fmt::format("the implementation under test is a {}, this case judges a {}",
+                     fmt::join(assigned, " and a "), role);
+}
+
+std::optional<std::string> not_applicable(const TestCase& test_case, const Setup& setup) {
+  if (setup.pics && test_case.not_applicable) {
+    if (auto reason = test_case.not_applicable(*setup.pics)) return reason;
+  }
+  return excluded_by_setup(test_case, setup);
+}
+
+Outcome internal_error(const TestCase& test_case, std::string_view what) {
+  Outcome outcome;
+  outcome.result = blank_result(test_case, Verdict::error, std::string(kInternalError));
+  judge::Finding finding;
+  finding.verdict = Verdict::error;
+  finding.reason = kInternalError;
+  finding.requirement = "the bench runs a case to its end";
+  finding.reference = {.source = "fieldproof itself", .clause = "", .standing = judge::Standing::own};
+  finding.expected = {"a verdict about the implementation"};
+  finding.actual = what;
+  outcome.result.findings.push_back(std::move(finding));
+  return outcome;
+}
+
+Outcome guarded_run(const Entry& entry, const Setup& setup) {
+  const kernel::CheckContext context(
+      [&] { return fmt::format("case {}, seed {}", entry.test_case->id, setup.seed); });
+  try {
+    return entry.suite->run(*entry.test_case, setup);
+  } catch (const kernel::Error&) {
+    throw;
+  } catch (const std::exception& failure) {
+    return internal_error(*entry.test_case, failure.what());
+  } catch (...) {
+    return internal_error(*entry.test_case, "something that is no std::exception was thrown");
+  }
+}
+
+bool needs_recording(Verdict verdict) {
+  return verdict != Verdict::pass && verdict != Verdict::not_applicable && verdict != Verdict::none;
+}
+
+std::uint64_t microseconds_since(std::chrono::steady_clock::time_point begin) {
+  const auto passed = std::chrono::steady_clock::now() - begin;
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(passed).count());
+}
+
+// The second run of a case, this time with its trace: keeping the trace of every passing case would cost more
+// than running the few others twice.
+void record_again(CaseRun& done) {
+  Setup recording = done.setup;
+  recording.record = true;
+  Outcome again = guarded_run(done.entry, recording);
+  done.is_repeatable = again.result.fingerprint == done.outcome.result.fingerprint &&
+                       again.result.verdict == done.outcome.result.verdict &&
+                       again.result.reason == done.outcome.result.reason;
+  done.outcome.recording = std::move(again.recording);
+}
+
+}  // namespace
+
+std::uint64_t case_seed(std::uint64_t run_seed, std::string_view id) {
+  return kernel::Random(run_seed).split(id).seed();
+}
+
+CaseRun run_case(const Entry& entry, const Setup& run_setup, KeptRecordings keeps_recordings) {
+  CaseRun done{entry, run_setup, {}, true};
+  done.setup.seed = case_seed(run_setup.seed, entry.test_case->id);
+  done.setup.record = keeps_recordings == KeptRecordings::all;
+  const auto begin = std::chrono::steady_clock::now();
+  if (auto reason = not_applicable(*entry.test_case, done.setup)) {
+    done.outcome.result = blank_result(*entry.test_case, Verdict::not_applicable, std::move(*reason));
+  } else {
+    done.outcome = guarded_run(entry, done.setup);
+    if (keeps_recordings == KeptRecordings::failed && needs_recording(done.outcome.result.verdict))
+      record_again(done);
+  }
+  done.outcome.result.seed = done.setup.seed;
+  done.outcome.result.wall_time_us = microseconds_since(begin);
+  return done;
+}
+
+std::size_t run(const Plan& plan) {
+  OrderedWork<CaseRun> work;
+  work.count = plan.entries.size();
+  work.threads = plan.jobs;
+  work.stop = plan.stop;
+  work.work = [&](std::size_t i) { return run_case(plan.entries[i], plan.setup, plan.keeps_recordings); };
+  work.deliver = [&](std::size_t, CaseRun&& done) { return plan.on_case(std::move(done)); };
+  work.idle = plan.on_progress;
+  return work.run();
+}
+
+}  // namespace fieldproof::conformance

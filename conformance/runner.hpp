@@ -1,0 +1,56 @@
+// Runs a selection of test cases and hands over one result per case, in catalogue order whatever the number
+// of threads.
+//
+// Contract: the seed of a case depends on the run's seed and the id only, so a case repeats alone as it ran
+// in the whole. A case that does not pass is run a second time with its trace kept when `keeps_recordings` is
+// `failed`; the two fingerprints must agree, and `is_repeatable` says whether they did. kernel::Error of a
+// suite (a setup that cannot be served) ends the run; any other exception, a broken invariant too, is the
+// verdict `error` with the reason `internal_error` of that case and the run goes on: one defect of the bench
+// must not cost the results of a night.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <stop_token>
+#include <string_view>
+
+#include "conformance/catalogue.hpp"
+#include "conformance/test_case.hpp"
+
+namespace fieldproof::conformance {
+
+inline constexpr std::string_view kInternalError = "internal_error";
+
+std::uint64_t case_seed(std::uint64_t run_seed, std::string_view id);
+
+enum class KeptRecordings { none, failed, all };
+
+struct CaseRun {
+  Entry entry;
+  Setup setup;  // with the seed of the case
+  Outcome outcome;
+  bool is_repeatable = true;
+};
+
+struct Plan {
+  std::vector<Entry> entries;
+  Setup setup;  // `seed` is the seed of the run
+  unsigned jobs = 1;
+  KeptRecordings keeps_recordings = KeptRecordings::none;
+  std::stop_token stop;
+  // Receives each case in its turn; false ends the run after it.
+  std::function<bool(CaseRun&&)> on_case;
+  // The number of finished cases, a few times a second.
+  std::function<void(std::size_t)> on_progress;
+};
+
+// One case, never throwing anything but kernel::Error. The verdict is not-applicable without running anything
+// when the PICS of the setup exclude the case, or when implementations are assigned to other roles only.
+CaseRun run_case(const Entry& entry, const Setup& run_setup,
+                 KeptRecordings keeps_recordings = KeptRecordings::none);
+
+// The number of cases that were handed over; fewer than planned after a stop.
+std::size_t run(const Plan& plan);
+
+}  // namespace fieldproof::conformance

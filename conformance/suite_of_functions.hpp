@@ -1,0 +1,49 @@
+// A suite whose cases are functions: what the tests of the bench itself run, and a protocol's suite before it
+// has a network. Deviations are names only; a function looks at the setup and decides.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/test_case.hpp"
+
+namespace fieldproof::conformance {
+
+class SuiteOfFunctions : public Suite {
+ public:
+  using Function = std::function<Outcome(const TestCase&, const Setup&)>;
+
+  SuiteOfFunctions(std::string protocol, std::vector<std::string> roles)
+      : protocol_(std::move(protocol)), roles_(std::move(roles)) {}
+
+  void add(TestCase test_case, Function function) {
+    functions_[test_case.id] = std::move(function);
+    cases_.push_back(std::move(test_case));
+  }
+  void add(Deviation deviation) { deviations_.push_back(std::move(deviation)); }
+
+  std::string_view protocol() const override { return protocol_; }
+  std::vector<std::string> roles() const override { return roles_; }
+  const std::vector<TestCase>& cases() const override { return cases_; }
+  const std::vector<Deviation>& deviations() const override { return deviations_; }
+
+  Outcome run(const TestCase& test_case, const Setup& setup) const override {
+    Outcome outcome = functions_.at(test_case.id)(test_case, setup);
+    outcome.result.id = test_case.id;
+    outcome.result.requirement = test_case.requirement;
+    outcome.result.reference = test_case.reference;
+    return outcome;
+  }
+
+ private:
+  std::string protocol_;
+  std::vector<std::string> roles_;
+  std::vector<TestCase> cases_;
+  std::vector<Deviation> deviations_;
+  std::map<std::string, Function, std::less<>> functions_;
+};
+
+}  // namespace fieldproof::conformance
