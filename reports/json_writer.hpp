@@ -23,6 +23,6 @@ std::string timings_json(const Manifest& manifest, const Run& run);  // wall tim
 Run run_from_json(std::string_view text, const std::string& place);
 Manifest manifest_from_json(std::string_view text, const std::string& place);
 // Fills in the wall times of the cases that the text names.
-void add_timings(std::string_view text, const std::string& place, Manifest& manifest, Run& run);
+void add_timings(std::string_view text, const std::string& place, Run& run);
 
 }  // namespace fieldproof::reports

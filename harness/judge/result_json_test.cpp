@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
+
 #include "harness/judge/arbitrary_result.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -43,7 +45,7 @@ RC_GTEST_PROP(ResultJson, ReadsBackWhatItWrote, ()) {
   for (std::size_t i = 0; i < result.measurements.size(); ++i) {
     const double wrote = result.measurements.at(i).value;
     const double reread = read.measurements.at(i).value;
-    RC_ASSERT(wrote != wrote ? reread != reread : wrote == reread);
+    RC_ASSERT((std::isnan(wrote) ? std::isnan(reread) : reread == wrote));
   }
 }
 

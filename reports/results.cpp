@@ -1,0 +1,45 @@
+#include "reports/results.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+namespace fieldproof::reports {
+
+std::size_t Counts::not_run() const {
+  const std::size_t decided = judged + of(judge::Verdict::not_applicable);
+  return selected > decided ? selected - decided : 0;
+}
+
+Counts count(const Run& run) {
+  Counts counts;
+  // An interrupted run knows of more cases than it judged, a partial model of fewer than it holds.
+  counts.selected = std::max(run.identity.selected, run.cases.size());
+  for (const judge::CaseResult& result : run.cases) {
+    ++counts.by_verdict.at(static_cast<std::size_t>(result.verdict));
+    if (result.verdict >= judge::Verdict::pass) ++counts.judged;
+  }
+  return counts;
+}
+
+judge::Verdict headline(const Run& run) {
+  judge::Verdict heaviest = judge::Verdict::none;
+  for (const judge::CaseResult& result : run.cases) heaviest = std::max(heaviest, result.verdict);
+  return heaviest;
+}
+
+std::string reproduce_command(const RunIdentity& identity, const std::string& case_id) {
+  std::string command = "fieldproof run " + shell_quoted(case_id);
+  if (!identity.reproduce_options.empty()) command += " " + identity.reproduce_options;
+  return command;
+}
+
+std::string shell_quoted(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string(R"('\'')") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace fieldproof::reports

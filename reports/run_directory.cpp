@@ -1,0 +1,196 @@
+#include "reports/run_directory.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <system_error>
+
+#include "harness/judge/journal.hpp"
+#include "harness/kernel/error.hpp"
+#include "reports/json_writer.hpp"
+
+namespace fieldproof::reports {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kNotEnded = "the run did not end";
+
+[[noreturn]] void refuse(const fs::path& path, std::string_view sentence) {
+  throw kernel::Error(kernel::ErrorKind::configuration, fmt::format("{}: {}", path.string(), sentence));
+}
+
+void check(const fs::path& path, const std::error_code& failure, std::string_view what) {
+  if (failure) refuse(path, fmt::format("{}: {}", what, failure.message()));
+}
+
+void create_folders(const fs::path& path) {
+  std::error_code failure;
+  fs::create_directories(path, failure);
+  check(path, failure, "the directory cannot be created");
+}
+
+// "2026-11-21T05:18:28Z" as part of a name: no colons, they are not allowed everywhere.
+std::string stamp_of(const std::string& utc) {
+  std::string stamp;
+  for (const char c : utc) {
+    if ((c >= '0' && c <= '9') || c == 'T' || c == 'Z') stamp += c;
+  }
+  return stamp.empty() ? "run" : stamp;
+}
+
+// The first free name; creating it is what claims it, so two programs never share one.
+fs::path claim_folder(const fs::path& parent, const std::string& stem) {
+  for (int attempt = 1;; ++attempt) {
+    fs::path path = parent / (attempt == 1 ? stem : fmt::format("{}-{}", stem, attempt));
+    std::error_code failure;
+    if (fs::create_directory(path, failure)) return path;
+    check(path, failure, "the directory of the run cannot be created");
+  }
+}
+
+void point_latest_at(const fs::path& parent, const fs::path& run) {
+  const fs::path beside = parent / fmt::format(".latest.{}", ::getpid());
+  std::error_code failure;
+  fs::remove(beside, failure);
+  fs::create_directory_symlink(run.filename(), beside, failure);
+  check(beside, failure, "the link to the latest run cannot be created");
+  fs::rename(beside, parent / "latest", failure);
+  check(parent / "latest", failure, "the link to the latest run cannot be replaced");
+}
+
+}  // namespace
+
+std::string case_directory_name(std::string_view case_id) {
+  constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
+  std::string name;
+  for (const char c : case_id) {
+    if (c == '/') {
+      name += '+';
+    } else if (kPlain.find(c) == std::string_view::npos || (c == '.' && name.empty())) {
+      name += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    } else {
+      name += c;
+    }
+  }
+  return name.empty() ? "%" : name;
+}
+
+std::string read_text_file(const fs::path& path) {
+  std::error_code failure;
+  std::ifstream file(path, std::ios::binary);
+  if (!file || fs::is_directory(path, failure)) {
+    refuse(path, fmt::format("the file cannot be read: {}", std::strerror(file ? EISDIR : errno)));
+  }
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_text_file(const fs::path& path, std::string_view content) {
+  if (path.has_parent_path()) create_folders(path.parent_path());
+  fs::path beside = path;
+  beside += fmt::format(".{}.part", ::getpid());
+  std::error_code failure;
+  {
+    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
+    file.write(content.data(), static_cast<std::streamsize>(content.size()));
+    file.flush();
+    if (!file) {
+      const int cause = errno;
+      fs::remove(beside, failure);
+      refuse(path, fmt::format("the file cannot be written: {}", std::strerror(cause)));
+    }
+  }
+  fs::rename(beside, path, failure);
+  if (failure) {
+    std::error_code ignored;
+    fs::remove(beside, ignored);
+  }
+  check(path, failure, "the file cannot be written");
+}
+
+RunDirectory RunDirectory::create(const fs::path& parent, const Manifest& manifest,
+                                  const RunIdentity& identity) {
+  create_folders(parent);
+  const RunDirectory run(
+      claim_folder(parent, fmt::format("{}-{}", stamp_of(manifest.started), identity.seed)));
+  run.begin(manifest, identity);
+  point_latest_at(parent, run.path());
+  return run;
+}
+
+RunDirectory RunDirectory::create_at(const fs::path& path, const Manifest& manifest,
+                                     const RunIdentity& identity) {
+  std::error_code failure;
+  if (fs::exists(path, failure) && !(fs::is_directory(path, failure) && fs::is_empty(path, failure))) {
+    refuse(path, "the path is taken; name one that does not exist, or an empty directory");
+  }
+  create_folders(path);
+  const RunDirectory run(path);
+  run.begin(manifest, identity);
+  return run;
+}
+
+RunDirectory RunDirectory::open(const fs::path& path) {
+  std::error_code failure;
+  if (!fs::is_directory(path, failure)) refuse(path, "there is no such directory of a run");
+  if (fs::exists(path / "manifest.json", failure)) return RunDirectory(path);
+  if (fs::exists(path / "latest" / "manifest.json", failure)) return RunDirectory(path / "latest");
+  refuse(path, "this is no directory of a run: it has no manifest.json");
+}
+
+fs::path RunDirectory::case_directory(std::string_view case_id) const {
+  return path_ / "cases" / case_directory_name(case_id);
+}
+
+void RunDirectory::begin(const Manifest& manifest, const RunIdentity& identity) const {
+  Run run{identity, {}};
+  if (run.is_complete()) run.identity.incomplete_because = kNotEnded;
+  store(manifest, run);
+}
+
+void RunDirectory::store(const Manifest& manifest, const Run& run) const {
+  write("results.json", results_json(run));
+  write("timings.json", timings_json(manifest, run));
+  write("manifest.json", manifest_json(manifest, run));
+}
+
+void RunDirectory::write(std::string_view name, std::string_view content) const {
+  write_text_file(path_ / name, content);
+}
+
+void RunDirectory::write_case(std::string_view case_id, std::string_view name,
+                              std::string_view content) const {
+  write_text_file(case_directory(case_id) / name, content);
+}
+
+std::string RunDirectory::read_case(std::string_view case_id, std::string_view name) const {
+  return read_text_file(case_directory(case_id) / name);
+}
+
+StoredRun RunDirectory::load() const {
+  const auto text = [this](const char* name) { return read_text_file(path_ / name); };
+  const auto place = [this](const char* name) { return (path_ / name).string(); };
+  StoredRun stored;
+  stored.manifest = manifest_from_json(text("manifest.json"), place("manifest.json"));
+  stored.run = run_from_json(text("results.json"), place("results.json"));
+  std::error_code failure;
+  if (fs::exists(path_ / "timings.json", failure)) {
+    add_timings(text("timings.json"), place("timings.json"), stored.run);
+  }
+  if (stored.run.is_complete() || !fs::exists(journal(), failure)) return stored;
+  judge::JournalContent content = judge::read_journal(journal());
+  stored.journal_was_torn = content.is_torn;
+  std::set<std::string> known;
+  for (const judge::CaseResult& result : stored.run.cases) known.insert(result.id);
+  for (judge::CaseResult& result : content.results) {
+    if (known.insert(result.id).second) stored.run.cases.push_back(std::move(result));
+  }
+  return stored;
+}
+
+}  // namespace fieldproof::reports
