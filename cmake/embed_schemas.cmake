@@ -26,6 +26,17 @@ function(fieldproof_raw_string file result)
   set(${result} "${pieces}" PARENT_SCOPE)
 endfunction()
 
+# A file that does not change keeps its time: nothing is compiled again.
+function(fieldproof_write file text)
+  set(present "")
+  if(EXISTS "${file}")
+    file(READ "${file}" present)
+  endif()
+  if(NOT present STREQUAL text)
+    file(WRITE "${file}" "${text}")
+  endif()
+endfunction()
+
 function(fieldproof_embed_schemas target top)
   file(GLOB_RECURSE schemas CONFIGURE_DEPENDS RELATIVE "${CMAKE_SOURCE_DIR}" "${CMAKE_SOURCE_DIR}/${top}/*.schema.json")
   list(FILTER schemas EXCLUDE REGEX "/node_modules/")
@@ -48,10 +59,10 @@ function(fieldproof_embed_schemas target top)
     string(MAKE_C_IDENTIFIER "${folder}" key)
     fieldproof_namespace("${folder}" space)
     set(stem "${CMAKE_BINARY_DIR}/generated/${folder}/embedded_schemas")
-    file(CONFIGURE OUTPUT "${stem}.hpp" @ONLY CONTENT
-      "#pragma once\n\n#include <string_view>\n\nnamespace @space@ {\n${declarations_${key}}}  // namespace @space@\n")
-    file(CONFIGURE OUTPUT "${stem}.cpp" @ONLY CONTENT
-      "#include \"@folder@/embedded_schemas.hpp\"\n\nnamespace @space@ {\n${definitions_${key}}}  // namespace @space@\n")
+    fieldproof_write("${stem}.hpp"
+      "#pragma once\n\n#include <string_view>\n\nnamespace ${space} {\n${declarations_${key}}}  // namespace ${space}\n")
+    fieldproof_write("${stem}.cpp"
+      "#include \"${folder}/embedded_schemas.hpp\"\n\nnamespace ${space} {\n${definitions_${key}}}  // namespace ${space}\n")
     target_sources(${target} PRIVATE "${stem}.cpp")
   endforeach()
 endfunction()
