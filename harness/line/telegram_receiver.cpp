@@ -5,6 +5,8 @@
 namespace fieldproof::line {
 namespace {
 
+constexpr std::int64_t kJoinedLevelsPerBit = 240;
+
 // The number of whole levels from `from` to `to` when both lie on one grid, -1 otherwise.
 std::int64_t levels_between(kernel::Time from, kernel::Time to, std::int64_t rate) {
   __extension__ using Wide = __int128;
@@ -60,6 +62,12 @@ bool TelegramReceiver::sample_telegram(const Waveform& wave, std::size_t& at, Te
   return false;
 }
 
+std::size_t TelegramReceiver::first_idle(const Levels& levels) {
+  std::size_t n = 0;
+  while (n < levels.size() && !levels[n]) ++n;
+  return n;
+}
+
 void TelegramReceiver::keep(const Waveform& wave, std::size_t from) {
   pending_.start = wave.time_of(from);
   pending_.rate = wave.rate;
@@ -84,8 +92,9 @@ Waveform TelegramReceiver::join(const Waveform& first, const Waveform& second) c
     joined.levels.append(second.levels);
     return joined;
   }
-  // No common grid: both are written at a rate fine enough for every sampling instant of a bit.
-  joined.rate = std::max({first.rate, second.rate, bit_rate_}) * 16;
+  // No common grid: both are written at one rate, a multiple of the sixteenths at which bits are sampled and
+  // of the tenths and twentieths in which people write glitches. It does not grow when joins follow joins.
+  joined.rate = std::max({first.rate, second.rate, bit_rate_ * kJoinedLevelsPerBit});
   append_sampled(joined.levels, first, joined.start, joined.rate,
                  levels_until(joined.start, second.start, joined.rate));
   append_sampled(joined.levels, second, joined.start, joined.rate,

@@ -31,12 +31,14 @@ class TelegramReceiver {
   // the `wave` that the sink is given (not always the one that was received).
   template <typename Sink>
   void receive(const Waveform& wave, Sink&& sink) {
-    if (!has_pending_ && wave.rate == bit_rate_) {
-      const std::size_t end = code_.decode(wave.levels, 0, [&](const Telegram& t) { sink(wave, t); });
-      if (end < wave.levels.size()) keep(wave, end);
-      return;
+    if (!has_pending_) return decode(wave, sink);
+    if (wave.start >= pending_until_) {
+      flush(sink);
+      return decode(wave, sink);
     }
-    receive_slowly(wave, sink);
+    has_pending_ = false;
+    const Waveform joined = join(pending_, wave);
+    decode(joined, sink);
   }
 
   // The end of a telegram that is not complete, kNever when there is none.
@@ -50,33 +52,31 @@ class TelegramReceiver {
     Waveform rest;
     std::swap(rest, pending_);
     rest.levels.append_idle(idle_levels(rest));
-    decode_all(rest, sink);
+    decode(rest, sink);
     has_pending_ = false;  // what a flushed rest leaves behind is shorter than a telegram of the idle line
   }
 
  private:
   template <typename Sink>
-  void receive_slowly(const Waveform& wave, Sink& sink) {
-    if (has_pending_ && wave.start >= pending_until_) flush(sink);
-    if (!has_pending_) return decode_all(wave, sink);
-    has_pending_ = false;
-    const Waveform joined = join(pending_, wave);
-    decode_all(joined, sink);
-  }
-
-  template <typename Sink>
-  void decode_all(const Waveform& wave, Sink& sink) {
+  void decode(const Waveform& wave, Sink& sink) {
+    const std::size_t size = wave.levels.size();
+    if (size == 0) return;
+    std::size_t at = wave.start == low_until_ ? first_idle(wave.levels) : 0;
     if (wave.rate == bit_rate_) {
-      const std::size_t end = code_.decode(wave.levels, 0, [&](const Telegram& t) { sink(wave, t); });
-      if (end < wave.levels.size()) keep(wave, end);
-      return;
+      at = code_.decode(wave.levels, at, [&](const Telegram& telegram) { sink(wave, telegram); });
+    } else {
+      Telegram telegram;
+      while (at < size && sample_telegram(wave, at, telegram)) sink(wave, telegram);
     }
-    Telegram telegram;
-    std::size_t at = 0;
-    while (at < wave.levels.size() && sample_telegram(wave, at, telegram)) sink(wave, telegram);
-    if (at < wave.levels.size()) keep(wave, at);
+    if (at < size) {
+      keep(wave, at);
+    } else if (!wave.levels[size - 1]) {
+      // Behind a missing stop bit: a start bit needs an edge, so the next reception may have to rise first.
+      low_until_ = wave.end();
+    }
   }
 
+  static std::size_t first_idle(const Levels& levels);
   // Finds and samples the next telegram from level `at` on; false when there is none or when the end of the
   // waveform cuts it (`at` is then its first level), else `at` is where the search goes on.
   bool sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram) const;
@@ -91,6 +91,7 @@ class TelegramReceiver {
   bool has_pending_ = false;
   kernel::Time pending_until_{};
   Waveform pending_;
+  kernel::Time low_until_ = kernel::kNever;  // end of a reception that left the line low
 };
 
 }  // namespace fieldproof::line
