@@ -13,7 +13,8 @@
 //
 // Contract: a map is stateful. It follows the frames on its line, so it is told every transmission exactly
 // once, in order, with either `locate` or `follow`. It looks at what was sent, not at what a fault makes of
-// it. It never fails: levels that are no frame of the protocol are in no span.
+// it. It never fails: levels that are no frame of the
+// protocol are in no span; a transmission without any span is one nameless field of a nameless frame 0.
 namespace fieldproof::fault {
 
 struct Span {

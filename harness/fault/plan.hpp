@@ -10,6 +10,7 @@
 #include "harness/fault/channel.hpp"
 #include "harness/fault/fields.hpp"
 #include "harness/fault/rule.hpp"
+#include "harness/fault/rule_channel.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -17,8 +18,6 @@
 // installed on the trace of a segment it makes one channel per receiver and keeps what the rules remember:
 // hits, observations, random streams.
 namespace fieldproof::fault {
-
-class RuleChannel;
 
 class Plan {
  public:
@@ -39,26 +38,6 @@ class Plan {
   std::vector<Rule> rules_;
 };
 
-// What all receivers share about one condition on observations.
-struct AfterState {
-  const After* after = nullptr;
-  std::uint64_t seen = 0;
-  kernel::Time since = kernel::kNever;  // of the nth observation
-
-  bool holds(kernel::Time at) const {
-    return at >= since && (after->lasting == kernel::Duration::max() || at - since < after->lasting);
-  }
-};
-
-// What all receivers share about one rule.
-struct RuleState {
-  const Rule* rule = nullptr;
-  std::uint64_t hits = 0;
-  std::vector<AfterState> afters;  // of the conditions of `when`, in the order of its tree
-
-  bool is_spent() const { return hits >= rule->times; }
-};
-
 // Rules with their memory, for one segment and one run. Deterministic: the random stream of a rule at a
 // receiver depends on the seed, the name of the receiver and the place of the rule, not on what other rules
 // and receivers draw.
@@ -76,7 +55,7 @@ class InstalledPlan final : private trace::Observer {
 
   const Plan& plan() const { return plan_; }
   // How often rule number `rule` has hit.
-  std::uint64_t hits(std::size_t rule) const { return states_.at(rule).hits; }
+  std::uint64_t hits(std::size_t rule) const;
 
  private:
   void on_observation(trace::Channel channel, kernel::Time time, std::string_view what,
@@ -85,7 +64,8 @@ class InstalledPlan final : private trace::Observer {
   const Plan plan_;
   trace::Trace& trace_;
   kernel::Random random_;
-  std::vector<RuleState> states_;
+  std::deque<RuleState> states_;  // channels point into it
+  bool waits_ = false;            // some rule waits for an observation
   std::vector<std::unique_ptr<RuleChannel>> channels_;
 };
 

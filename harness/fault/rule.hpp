@@ -30,6 +30,9 @@
 // after `times` hits it does not answer any more.
 namespace fieldproof::fault {
 
+// The longest duration of an effect: eleven days.
+inline constexpr kernel::Duration kLongestDuration{1'000'000'000'000'000'000};
+
 // Inverts levels, counted from the first level of the part; without a list all levels of the part. Positions
 // behind the end of the part but inside the transmission are legal; behind the transmission they do nothing.
 struct Flip {
@@ -37,9 +40,9 @@ struct Flip {
   friend bool operator==(const Flip&, const Flip&) = default;
 };
 
-// Sets levels from the first level of the part on: `count` of them, or those that begin within `duration`, or
-// (both zero) all levels of the part. Ends with the transmission at the latest: the idle line between
-// transmissions is not forced.
+// Sets levels from the first level of the part on: `count` of them, or those that begin within `duration` (it
+// wins), or (both zero) all levels of the part. Ends with the transmission at the latest: the idle line
+// between transmissions is not forced.
 struct Force {
   bool level = false;
   std::uint32_t count = 0;

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "harness/fault/arrivals.hpp"
@@ -28,7 +27,7 @@ class ScriptedChannel final : public Channel {
   // The telegram operations need the code by which telegrams are found; it must outlive the channel.
   explicit ScriptedChannel(const line::TelegramCode* code = nullptr) : code_(code) {}
 
-  // Which transmission the following orders mean: 0 is the next one from now.
+  // Which transmission the following orders mean: 0 is the next one from now (also when nothing is said).
   ScriptedChannel& on(std::uint64_t transmission) {
     meant_ = passed_ + transmission;
     return *this;
@@ -63,7 +62,7 @@ class ScriptedChannel final : public Channel {
   // The transmission arrives later, or at another rate from its start on.
   ScriptedChannel& delay(kernel::Duration duration);
   ScriptedChannel& rate(std::int64_t levels_per_second);
-  // Other levels arrive instead, at the start and rate of the transmission.
+  // Other levels arrive instead, at the start and rate of the transmission; positions then mean the new ones.
   ScriptedChannel& replace(const line::Levels& levels);
 
   // Forgets what has not been applied yet.
@@ -99,11 +98,19 @@ class ScriptedChannel final : public Channel {
     std::int64_t value;  // picoseconds, levels per second, or the first of the stored levels
   };
 
+  // What takes the levels apart or makes more of them.
+  struct Cut {
+    Kind kind;
+    Piece part;
+    std::int64_t stored;
+  };
+
   ScriptedChannel& order(Kind kind, std::size_t first, std::size_t count, std::int64_t value = 0);
-  void apply(const Order& order, line::Levels& levels);
-  std::optional<std::size_t> telegram(std::size_t k) const;  // index into telegrams_
+  static bool is_cut(Kind kind) { return kind >= Kind::drop && kind <= Kind::insert; }
+  void change(const Order& order);
+  void add_cut(const Order& order);
+  void write(std::vector<line::Waveform>& arrivals);
   void find_telegrams(const line::Levels& levels);
-  void forget_applied();
 
   const line::TelegramCode* code_;
   std::uint64_t passed_ = 0;
@@ -112,7 +119,7 @@ class ScriptedChannel final : public Channel {
   line::Levels stored_;  // what is inserted or put in place
   line::Waveform changed_;
   std::vector<line::Telegram> telegrams_;
-  std::vector<Piece> pieces_;
+  std::vector<Cut> cuts_;  // ordered by part
 };
 
 }  // namespace fieldproof::fault

@@ -1,0 +1,31 @@
+#include "harness/fault/channel_chain.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace fieldproof::fault {
+
+bool ChannelChain::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+  bool is_changed = false;
+  for (Channel* channel : channels_) {
+    if (!is_changed) {
+      before_.clear();
+      is_changed = channel->pass(sent, before_);
+      continue;
+    }
+    behind_.clear();
+    for (line::Waveform& wave : before_) {
+      if (!channel->pass(wave, behind_)) behind_.push_back(std::move(wave));
+    }
+    std::swap(before_, behind_);
+  }
+  if (!is_changed) return false;
+  std::stable_sort(before_.begin(), before_.end(),
+                   [](const auto& a, const auto& b) { return a.start < b.start; });
+  std::move(before_.begin(), before_.end(), std::back_inserter(arrivals));
+  before_.clear();
+  return true;
+}
+
+}  // namespace fieldproof::fault
