@@ -100,22 +100,23 @@ class Scheduler {
 };
 
 inline Scheduler::Key Scheduler::earlier(Key a, Key b) {
-  __extension__ using Wide = __int128;
-  const auto wide = [](Key key) {
-    return (static_cast<Wide>(key.time) << 64) | static_cast<Wide>(key.order);
-  };
-  const bool a_wins = wide(a) < wide(b);
-  // Which child wins is a coin toss that no predictor learns, so it must not become a jump. g++ makes two
-  // conditional moves of the conditional; clang would make a jump, also of masks that it can see through.
-#if defined(__clang__)
-  std::uint64_t mask = 0 - static_cast<std::uint64_t>(a_wins);
-  __asm__("" : "+r"(mask));
-  const auto pick = [mask](std::uint64_t x, std::uint64_t y) { return y ^ ((x ^ y) & mask); };
-  return {
-      static_cast<std::int64_t>(pick(static_cast<std::uint64_t>(a.time), static_cast<std::uint64_t>(b.time))),
-      pick(a.order, b.order)};
+  // Which child wins is a coin toss that no predictor learns, so it must not become a jump; compilers make
+  // one of every form in C++, depending on version and level. Hence the four instructions by hand where we
+  // can: a 128-bit comparison by subtraction with borrow, and two conditional moves.
+#if defined(__x86_64__)
+  std::int64_t difference = a.time;
+  __asm__(
+      "cmp %[order_b], %[order_a]\n\t"
+      "sbb %[time_b], %[difference]\n\t"
+      "cmovge %[time_b], %[time_a]\n\t"
+      "cmovge %[order_b], %[order_a]"
+      : [time_a] "+&r"(a.time), [order_a] "+&r"(a.order), [difference] "+&r"(difference)
+      : [time_b] "r"(b.time), [order_b] "r"(b.order)
+      : "cc");
+  return a;
 #else
-  return {a_wins ? a.time : b.time, a_wins ? a.order : b.order};
+  const bool a_wins = a.time != b.time ? a.time < b.time : a.order < b.order;
+  return a_wins ? a : b;
 #endif
 }
 
