@@ -1,0 +1,93 @@
+#include "reports/diff.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "reports/approved_text.hpp"
+#include "reports/sample_run.hpp"
+
+namespace fieldproof::reports {
+namespace {
+
+using judge::Verdict;
+
+Run run_of(std::vector<judge::CaseResult> cases) {
+  Run run;
+  run.cases = std::move(cases);
+  return run;
+}
+
+judge::CaseResult measured(double value) {
+  judge::CaseResult result = sample_case("a/measured", Verdict::pass);
+  result.measurements = {{"cycle_time", "us", value, value, value}};
+  return result;
+}
+
+Difference drift(double before, double after, const DriftLimits& limits) {
+  return compare(run_of({measured(before)}), run_of({measured(after)}), limits);
+}
+
+TEST(Diff, FindsNothingBetweenEqualRuns) {
+  Run again = sample_run();
+  for (judge::CaseResult& result : again.cases) result.wall_time_us = 1;
+  EXPECT_TRUE(compare(sample_run(), again).is_empty());
+  EXPECT_EQ(diff_text(compare(sample_run(), again)), "no difference\n");
+}
+
+TEST(Diff, TellsEveryKindOfChangeAsApproved) {
+  Run before =
+      run_of({sample_case("a/broken", Verdict::pass), sample_case("a/fixed", Verdict::fail, "bad"),
+              sample_case("a/other", Verdict::pass), sample_case("a/gone", Verdict::pass), measured(755)});
+  Run after = run_of({sample_case("a/broken", Verdict::error, "died"), sample_case("a/fixed", Verdict::pass),
+                      sample_case("a/other", Verdict::inconclusive, "near"),
+                      sample_case("a/new", Verdict::fail, "r"), measured(814.8)});
+  after.identity.seed = 2;
+  after.cases.back().fingerprint = 1;
+  expect_approved("diff.txt", diff_text(compare(before, after)));
+  expect_approved("diff.json", diff_json(compare(before, after)));
+}
+
+TEST(Diff, AFailureThatIsNoLongerJudgedIsNotFixed) {
+  const Difference difference = compare(run_of({sample_case("a", Verdict::fail)}),
+                                        run_of({sample_case("a", Verdict::not_applicable, "not declared")}));
+  EXPECT_TRUE(difference.fixed.empty());
+  EXPECT_EQ(difference.changed.size(), 1U);
+}
+
+TEST(Diff, AFailureThatGetsHeavierIsAChange) {
+  const Difference difference =
+      compare(run_of({sample_case("a", Verdict::fail)}), run_of({sample_case("a", Verdict::error)}));
+  EXPECT_TRUE(difference.new_failures.empty());
+  EXPECT_EQ(difference.changed.size(), 1U);
+}
+
+TEST(Diff, DriftsPastBothLimits) {
+  EXPECT_TRUE(drift(100, 101, {1, 0}).drifts.empty());
+  EXPECT_EQ(drift(100, 101.5, {1, 0}).drifts.size(), 1U);
+  EXPECT_TRUE(drift(100, 101, {0, 0.01}).drifts.empty());
+  EXPECT_EQ(drift(100, 98.5, {0, 0.01}).drifts.size(), 1U);
+  EXPECT_TRUE(drift(100, 101.5, {1, 0.02}).drifts.empty());
+}
+
+TEST(Diff, DriftsFromZeroAndToNoNumber) {
+  const Difference difference = drift(0, 3, {1, 0.5});
+  ASSERT_EQ(difference.drifts.size(), 1U);
+  EXPECT_TRUE(std::isinf(difference.drifts.front().relative()));
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(drift(1, kNan, {1e9, 1}).drifts.size(), 1U);
+  EXPECT_TRUE(drift(kNan, kNan, {0, 0}).drifts.empty());
+}
+
+TEST(Diff, ListsOtherFingerprintsOfEqualSeedsOnly) {
+  judge::CaseResult before = sample_case("a", Verdict::pass);
+  judge::CaseResult after = before;
+  after.fingerprint = 1;
+  EXPECT_EQ(compare(run_of({before}), run_of({after})).fingerprints.size(), 1U);
+  after.seed = 12;
+  EXPECT_TRUE(compare(run_of({before}), run_of({after})).fingerprints.empty());
+}
+
+}  // namespace
+}  // namespace fieldproof::reports

@@ -1,0 +1,72 @@
+#include "reports/text_summary.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+
+#include "harness/judge/arbitrary_result.hpp"
+#include "reports/approved_text.hpp"
+#include "reports/sample_run.hpp"
+
+namespace fieldproof::reports {
+namespace {
+
+TEST(TextSummary, WritesTheApprovedTexts) {
+  const Run run = sample_run();
+  expect_approved("summary.txt", run_header(run.identity, sample_manifest()) + summary_text(run));
+  expect_approved("finding.txt", finding_text(run.identity, sample_failure()));
+}
+
+TEST(TextSummary, EndsAFailureWithTheCommandThatReproducesTheHeaviestCase) {
+  const std::string text = summary_text(sample_run());
+  EXPECT_TRUE(
+      text.ends_with("reproduce: fieldproof run interbus/master/stop/bus_is_left --seed 7 --iut "
+                     "slave@3=deviant:accepts_bad_check\n"));
+}
+
+TEST(TextSummary, SaysNothingMoreWhenAllPass) {
+  Run run;
+  run.cases = {sample_case("a/b", judge::Verdict::pass)};
+  EXPECT_EQ(summary_text(run), "pass: 1 of 1 selected cases judged: 1 pass, 0 fail\n");
+}
+
+TEST(TextSummary, ShowsAtMostTheFindingsAskedFor) {
+  Run run;
+  for (const char* id : {"a/1", "a/2", "a/3"})
+    run.cases.push_back(sample_case(id, judge::Verdict::fail, "r"));
+  const std::string text = summary_text(run, {false, 1});
+  EXPECT_NE(text.find("2 more cases with findings are in results.json"), std::string::npos);
+  EXPECT_EQ(text.find("a/2"), std::string::npos);
+}
+
+TEST(TextSummary, PaintsOnlyWhenAsked) {
+  EXPECT_EQ(case_line(sample_case("a/b", judge::Verdict::pass)), "pass           a/b\n");
+  EXPECT_EQ(case_line(sample_case("a/b", judge::Verdict::fail, "r"), {true, 1}),
+            "\x1b[31mfail          \x1b[0m a/b  (r)\n");
+}
+
+TEST(TextSummary, EscapesWhatChangesATerminal) {
+  EXPECT_EQ(escaped_line("\x1b[2J\r\n\t\x7f"), "\\x1B[2J\\x0D\\x0A\\x09\\x7F");
+  EXPECT_EQ(escaped_line("\xc2\x9b\xe2\x80\xae\xef\xbb\xbf"), "\\u{009B}\\u{202E}\\u{FEFF}");
+  EXPECT_EQ(escaped_line("\x9b\xff"), "\\x9B\\xFF");
+  EXPECT_EQ(escaped_line("gr\xc3\xbc\xc3\x9f"), "gr\xc3\xbc\xc3\x9f");
+  EXPECT_EQ(escaped_block("a\n\tb\r"), "a\n\tb\\x0D");
+}
+
+RC_GTEST_PROP(TextSummary, LetsNoControlCharacterPass, ()) {
+  Run run = sample_run();
+  run.cases.push_back(*judge::arbitrary_result());
+  run.cases.back().verdict = judge::Verdict::fail;
+  run.identity.incomplete_because = *judge::arbitrary_text();
+  run.identity.reproduce_options = *judge::arbitrary_text();
+  const std::string text = summary_text(run, {false, 100});
+  RC_ASSERT(std::none_of(text.begin(), text.end(),
+                         [](char c) { return (c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7F; }));
+  RC_ASSERT(text.find("\xc2\x9b") == std::string::npos);
+  RC_ASSERT(text.find("\xe2\x80\xae") == std::string::npos);
+  RC_ASSERT(text.back() == '\n');
+}
+
+}  // namespace
+}  // namespace fieldproof::reports
