@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "harness/config/nearest.hpp"
+#include "harness/line/frame_check.hpp"
 #include "protocols/interbus/network.hpp"
 
 namespace fieldproof::interbus {
@@ -89,6 +91,23 @@ std::vector<LengthCode> read_length_codes(const Value& value) {
   return table;
 }
 
+std::string read_frame_check(const Value& value) {
+  const std::string_view name = value.as_string();
+  const line::FrameCheckParameters* parameters = line::find_frame_check(name);
+  if (parameters == nullptr) {
+    const auto names = line::frame_check_names();
+    const auto near = config::nearest(name, names, 3);
+    config::fail(value,
+                 fmt::format("no frame check has this name; near to it are {}", fmt::join(near, ", ")));
+  }
+  if (parameters->width != 16 || parameters->refin != parameters->refout) {
+    config::fail(value, fmt::format("{} does not fill the 16 bit of a check word; write for example "
+                                    "\"CRC-16/IBM-3740\" or \"CRC-16/GENIBUS\"",
+                                    parameters->name));
+  }
+  return std::string(parameters->name);
+}
+
 void read_line_rules(ObjectReader& object, Rules& rules) {
   if (const auto telegram = object.optional("telegram")) rules.telegram = read_telegram(*telegram);
   set_count(object, "telegram_gap_millibits", rules.telegram_gap_millibits, 0, 1'000'000);
@@ -103,11 +122,7 @@ void read_line_rules(ObjectReader& object, Rules& rules) {
 
 void read_cycle_rules(ObjectReader& object, Rules& rules) {
   set_word(object, "loopback_word", rules.loopback_word);
-  if (const auto frame_check = object.optional("frame_check")) {
-    rules.frame_check = frame_check->as_string();
-    if (rules.frame_check.empty())
-      config::fail(*frame_check, "a frame check has a name; write \"CRC-16/IBM-3740\"");
-  }
+  if (const auto name = object.optional("frame_check")) rules.frame_check = read_frame_check(*name);
   set_word(object, "status_clean", rules.status_clean);
   set_word(object, "status_marked", rules.status_marked);
   set_count(object, "end_telegrams", rules.end_telegrams, 0, 1'000);
