@@ -25,14 +25,13 @@ void Link::drive(line::Waveform& wave) {
   driven_until_ = std::max(driven_until_, wave.end());
   segment_.trace().driven(trace_channel_, wave);
   for (Tap* tap : driven_taps_) tap->on_wave(wave);
-  wave.start += delay_;
-  launch(wave, false);
+  launch(wave, wave.start + delay_, false);
   wave.levels.clear();
 }
 
 // Takes the levels of `wave` by exchange with a buffer that has already arrived, so nothing is allocated once
 // a link is warm.
-void Link::launch(line::Waveform& wave, bool passed) {
+void Link::launch(line::Waveform& wave, kernel::Time arrival, bool passed) {
   if (head_ == tail_) head_ = tail_ = 0;
   if (tail_ == queue_.size()) {
     if (head_ > 0) {
@@ -44,7 +43,9 @@ void Link::launch(line::Waveform& wave, bool passed) {
     }
   }
   InFlight& flight = queue_[tail_++];
-  std::swap(flight.wave, wave);
+  flight.wave.start = arrival;
+  flight.wave.rate = wave.rate;
+  std::swap(flight.wave.levels, wave.levels);
   flight.passed = passed;
   // Only delayed and repeated transmissions overtake.
   for (std::size_t i = tail_ - 1; i > head_ && queue_[i].wave.start < queue_[i - 1].wave.start; --i) {
@@ -74,7 +75,7 @@ void Link::arrive(InFlight& flight) {
     if (arrival.start == segment_.now()) {
       deliver(arrival);
     } else {
-      launch(arrival, true);
+      launch(arrival, arrival.start, true);
     }
   }
 }

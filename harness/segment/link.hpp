@@ -48,7 +48,7 @@ class Link final : public Port, private kernel::Timer {
 
   void on_time(kernel::Time now) override;
   void arrive(InFlight& flight);
-  void launch(line::Waveform& wave, bool passed);
+  void launch(line::Waveform& wave, kernel::Time arrival, bool passed);
   void deliver(const line::Waveform& wave);
   void arm();
 
