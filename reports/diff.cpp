@@ -113,7 +113,7 @@ std::string drift_lines(const std::vector<Drift>& drifts) {
   if (drifts.empty()) return "";
   std::string out = fmt::format("timing drift ({})\n", drifts.size());
   for (const Drift& drift : drifts) {
-    out += fmt::format("  {} {}: {} -> {} {} ({:+} {}, {:+.3f} %)\n", escaped_line(drift.id),
+    out += fmt::format("  {} {}: {} -> {} {} ({:+.6g} {}, {:+.3f} %)\n", escaped_line(drift.id),
                        escaped_line(drift.measurement), drift.before, drift.after, escaped_line(drift.unit),
                        drift.absolute(), escaped_line(drift.unit), 100 * drift.relative());
   }

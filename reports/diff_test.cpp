@@ -14,7 +14,7 @@ namespace {
 using judge::Verdict;
 
 Run run_of(std::vector<judge::CaseResult> cases) {
-  Run run;
+  reports::Run run;
   run.cases = std::move(cases);
   return run;
 }
@@ -30,19 +30,20 @@ Difference drift(double before, double after, const DriftLimits& limits) {
 }
 
 TEST(Diff, FindsNothingBetweenEqualRuns) {
-  Run again = sample_run();
+  reports::Run again = sample_run();
   for (judge::CaseResult& result : again.cases) result.wall_time_us = 1;
   EXPECT_TRUE(compare(sample_run(), again).is_empty());
   EXPECT_EQ(diff_text(compare(sample_run(), again)), "no difference\n");
 }
 
 TEST(Diff, TellsEveryKindOfChangeAsApproved) {
-  Run before =
+  reports::Run before =
       run_of({sample_case("a/broken", Verdict::pass), sample_case("a/fixed", Verdict::fail, "bad"),
               sample_case("a/other", Verdict::pass), sample_case("a/gone", Verdict::pass), measured(755)});
-  Run after = run_of({sample_case("a/broken", Verdict::error, "died"), sample_case("a/fixed", Verdict::pass),
-                      sample_case("a/other", Verdict::inconclusive, "near"),
-                      sample_case("a/new", Verdict::fail, "r"), measured(814.8)});
+  reports::Run after =
+      run_of({sample_case("a/broken", Verdict::error, "died"), sample_case("a/fixed", Verdict::pass),
+              sample_case("a/other", Verdict::inconclusive, "near"), sample_case("a/new", Verdict::fail, "r"),
+              measured(814.8)});
   after.identity.seed = 2;
   after.cases.back().fingerprint = 1;
   expect_approved("diff.txt", diff_text(compare(before, after)));

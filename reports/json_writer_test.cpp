@@ -78,8 +78,8 @@ struct Written {
 };
 
 std::vector<Written> every_document() {
-  const Run run = sample_run();
-  Run later = run;
+  const reports::Run run = sample_run();
+  reports::Run later = run;
   later.cases.erase(later.cases.begin() + 2);
   later.cases.at(0).verdict = judge::Verdict::fail;
   later.cases.at(0).fingerprint = 1;
@@ -129,31 +129,31 @@ TEST(JsonWriter, WritesTheApprovedDocuments) {
 }
 
 TEST(JsonWriter, ResultsDoNotKnowTheOccasion) {
-  const Run run = sample_run();
-  Run again = run;
+  const reports::Run run = sample_run();
+  reports::Run again = run;
   for (judge::CaseResult& result : again.cases) result.wall_time_us += 77;
   EXPECT_EQ(results_json(run), results_json(again));
   EXPECT_NE(timings_json(sample_manifest(), run), timings_json(sample_manifest(), again));
 }
 
 RC_GTEST_PROP(JsonWriter, ReadsBackWhatItWrote, ()) {
-  Run run = sample_run();
+  reports::Run run = sample_run();
   run.cases.push_back(*judge::arbitrary_result());
   run.identity.incomplete_because = *judge::arbitrary_text();
   run.identity.reproduce_options = *judge::arbitrary_text();
   run.identity.seed = *judge::arbitrary_word();
   const std::string text = results_json(run);
-  const Run read = run_from_json(text, "test");
+  const reports::Run read = run_from_json(text, "test");
   RC_ASSERT(results_json(read) == text);
   RC_ASSERT(read.identity.seed == run.identity.seed);
   RC_ASSERT(KeyCheck("results").wrong(Json::parse(text)).empty());
 }
 
 TEST(JsonWriter, ReadsBackManifestAndTimings) {
-  const Run run = sample_run();
+  const reports::Run run = sample_run();
   const Manifest read = manifest_from_json(manifest_json(sample_manifest(), run), "test");
   EXPECT_EQ(manifest_json(read, run), manifest_json(sample_manifest(), run));
-  Run without = run_from_json(results_json(run), "test");
+  reports::Run without = run_from_json(results_json(run), "test");
   EXPECT_EQ(without.cases.at(0).wall_time_us, 0U);
   add_timings(timings_json(sample_manifest(), run), "test", without);
   EXPECT_EQ(without.cases.at(0).wall_time_us, 1'250U);

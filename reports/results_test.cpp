@@ -19,9 +19,9 @@ TEST(Results, CountsHaveDenominators) {
 }
 
 TEST(Results, HeadlineIsTheHeaviestVerdict) {
-  EXPECT_EQ(headline(Run{}), Verdict::none);
+  EXPECT_EQ(headline(reports::Run{}), Verdict::none);
   EXPECT_EQ(headline(sample_run()), Verdict::error);
-  Run run;
+  reports::Run run;
   run.cases = {sample_case("a", Verdict::pass), sample_case("b", Verdict::not_applicable)};
   EXPECT_EQ(headline(run), Verdict::pass);
 }

@@ -29,7 +29,7 @@ std::string sentence_of(Action action) {
 TEST(RunDirectory, IsNamedByTimeAndSeedAndNeverShared) {
   const TemporaryFolder folder;
   const fs::path runs = folder.path() / "runs";
-  const Run run = sample_run();
+  const reports::Run run = sample_run();
   const auto first = RunDirectory::create(runs, sample_manifest(), run.identity);
   const auto second = RunDirectory::create(runs, sample_manifest(), run.identity);
   EXPECT_EQ(first.path().filename(), "20260102T030405Z-7");
@@ -40,7 +40,7 @@ TEST(RunDirectory, IsNamedByTimeAndSeedAndNeverShared) {
 
 TEST(RunDirectory, KeepsARun) {
   const TemporaryFolder folder;
-  const Run run = sample_run();
+  const reports::Run run = sample_run();
   const auto directory = RunDirectory::create_at(folder.path() / "x", sample_manifest(), run.identity);
   directory.store(sample_manifest(), run);
   const StoredRun stored = RunDirectory::open(folder.path() / "x").load();
@@ -54,7 +54,7 @@ TEST(RunDirectory, KeepsARun) {
 
 TEST(RunDirectory, OfAKilledRunHasEveryJournaledVerdict) {
   const TemporaryFolder folder;
-  Run run = sample_run();
+  reports::Run run = sample_run();
   run.identity.incomplete_because.clear();
   const auto directory = RunDirectory::create(folder.path(), sample_manifest(), run.identity);
   {

@@ -13,7 +13,7 @@ namespace fieldproof::reports {
 namespace {
 
 TEST(TextSummary, WritesTheApprovedTexts) {
-  const Run run = sample_run();
+  const reports::Run run = sample_run();
   expect_approved("summary.txt", run_header(run.identity, sample_manifest()) + summary_text(run));
   expect_approved("finding.txt", finding_text(run.identity, sample_failure()));
 }
@@ -26,13 +26,13 @@ TEST(TextSummary, EndsAFailureWithTheCommandThatReproducesTheHeaviestCase) {
 }
 
 TEST(TextSummary, SaysNothingMoreWhenAllPass) {
-  Run run;
+  reports::Run run;
   run.cases = {sample_case("a/b", judge::Verdict::pass)};
   EXPECT_EQ(summary_text(run), "pass: 1 of 1 selected cases judged: 1 pass, 0 fail\n");
 }
 
 TEST(TextSummary, ShowsAtMostTheFindingsAskedFor) {
-  Run run;
+  reports::Run run;
   for (const char* id : {"a/1", "a/2", "a/3"})
     run.cases.push_back(sample_case(id, judge::Verdict::fail, "r"));
   const std::string text = summary_text(run, {false, 1});
@@ -55,7 +55,7 @@ TEST(TextSummary, EscapesWhatChangesATerminal) {
 }
 
 RC_GTEST_PROP(TextSummary, LetsNoControlCharacterPass, ()) {
-  Run run = sample_run();
+  reports::Run run = sample_run();
   run.cases.push_back(*judge::arbitrary_result());
   run.cases.back().verdict = judge::Verdict::fail;
   run.identity.incomplete_because = *judge::arbitrary_text();
