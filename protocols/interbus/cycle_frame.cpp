@@ -1,0 +1,69 @@
+#include "protocols/interbus/cycle_frame.hpp"
+
+#include <algorithm>
+
+namespace fieldproof::interbus {
+
+namespace {
+constexpr unsigned kRunTelegrams = 32;
+}  // namespace
+
+CycleWriter::CycleWriter(const Rules& rules)
+    : code_(rules.telegram),
+      gap_(rules.telegram_gap_millibits),
+      status_clean_(rules.status_clean),
+      end_telegrams_(rules.end_telegrams),
+      status_pitch_(std::max(rules.status_pitch_bits, line::kStatusTelegramLevels + 1)),
+      bit_rate_(rules.bit_rate),
+      status_levels_(code_.levels_of(0, 0)) {
+  for (unsigned n = 0; n < kRunTelegrams; ++n) {
+    code_.append(status_run_, 0, 0);
+    status_run_.append_idle(status_pitch_ - line::kStatusTelegramLevels);
+  }
+}
+
+kernel::Duration CycleWriter::frame_time(std::size_t telegrams) const {
+  const auto millibits = telegrams * (line::kDataTelegramLevels * 1000 + gap_);
+  return kernel::levels_duration(static_cast<std::int64_t>(millibits), bit_rate_ * 1000);
+}
+
+void CycleWriter::append_frame(line::Levels& levels, std::span<const std::uint8_t> octets,
+                               std::uint16_t check, CycleHeaders headers) const {
+  std::size_t k = 0;
+  std::uint64_t gaps = 0;  // k * gap_
+  // Telegram and gap are one piece as long as they fit a word.
+  const auto put = [&](std::uint8_t header, std::uint8_t octet) {
+    const std::uint64_t before = gaps / 1000;
+    gaps += gap_;
+    const auto idle = static_cast<std::size_t>(gaps / 1000 - before);
+    const std::uint64_t piece = code_.levels_of(header, octet) | ~std::uint64_t{0}
+                                                                     << line::kDataTelegramLevels;
+    const auto together = static_cast<unsigned>(std::min<std::size_t>(idle, 64 - line::kDataTelegramLevels));
+    levels.append(piece, line::kDataTelegramLevels + together);
+    if (idle > together) levels.append_idle(idle - together);
+    ++k;
+  };
+  for (const std::uint8_t octet : octets) put(headers.transfer, octet);
+  put(headers.check, static_cast<std::uint8_t>(check >> 8));
+  put(headers.check, static_cast<std::uint8_t>(check & 0xFF));
+  put(headers.check, static_cast<std::uint8_t>(status_clean_ >> 8));
+  put(headers.check, static_cast<std::uint8_t>(status_clean_ & 0xFF));
+  for (unsigned n = 0; n < end_telegrams_; ++n) put(headers.check, 0);
+}
+
+std::size_t CycleWriter::first_status_level(std::size_t telegrams) const {
+  return (telegrams * (line::kDataTelegramLevels * 1000 + static_cast<std::size_t>(gap_)) + 999) / 1000;
+}
+
+void CycleWriter::append_status(line::Levels& levels, std::size_t end) const {
+  const std::size_t from = levels.size();
+  if (from + line::kStatusTelegramLevels > end) return;
+  std::size_t left = (end - from - line::kStatusTelegramLevels) / status_pitch_ + 1;
+  for (; left >= kRunTelegrams; left -= kRunTelegrams) levels.append(status_run_);
+  for (; left > 0; --left) {
+    levels.append(status_levels_, line::kStatusTelegramLevels);
+    levels.append_idle(status_pitch_ - line::kStatusTelegramLevels);
+  }
+}
+
+}  // namespace fieldproof::interbus
