@@ -2,13 +2,14 @@
 // without it Google Benchmark runs with its own options.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <charconv>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bench/ratio_table.hpp"
@@ -84,8 +85,10 @@ Rows::Rows(std::vector<Row> rows) {
 }
 
 std::vector<Row> all_rows() {
-  std::vector<Row> rows = table();
-  std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.group < b.group; });
+  std::multimap<std::string, Row> by_group;  // keeps the order of equal keys
+  for (const Row& row : table()) by_group.emplace(row.group, row);
+  std::vector<Row> rows;
+  for (auto& [group, row] : by_group) rows.push_back(std::move(row));
   return rows;
 }
 
