@@ -21,6 +21,7 @@ using judge::Verdict;
 judge::CaseResult blank_result(const TestCase& test_case, Verdict verdict, std::string reason) {
   judge::CaseResult result;
   result.id = test_case.id;
+  result.purpose = test_case.purpose;
   result.verdict = verdict;
   result.reason = std::move(reason);
   result.requirement = test_case.requirement;

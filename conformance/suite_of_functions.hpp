@@ -33,6 +33,7 @@ class SuiteOfFunctions : public Suite {
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
     Outcome outcome = functions_.at(test_case.id)(test_case, setup);
     outcome.result.id = test_case.id;
+    outcome.result.purpose = test_case.purpose;
     outcome.result.requirement = test_case.requirement;
     outcome.result.reference = test_case.reference;
     return outcome;

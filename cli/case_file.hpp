@@ -1,0 +1,35 @@
+// case.json: everything that is needed to run one case again as it ran, and what came out of it.
+//
+// Beside it lie the files of the case: trace.txt (the recording, one line each), playback.txt (what the
+// implementation drove), log.txt. Paths of a network or plan are those of copies inside the run's directory,
+// so that a directory that is moved or sent still replays. Reading is strict: kernel::Error(configuration)
+// names line and pointer. 64-bit numbers are texts.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "conformance/runner.hpp"
+#include "reports/run_directory.hpp"
+
+namespace fieldproof::cli {
+
+struct CaseFile {
+  std::string id;
+  std::uint64_t case_seed = 0;
+  conformance::Setup setup;  // with the seed of the run
+  judge::Verdict verdict = judge::Verdict::none;
+  std::string reason;
+  std::uint64_t fingerprint = 0;
+  bool is_truncated = false;
+  std::filesystem::path playback;  // empty: the implementation's part was not recorded
+};
+
+// Stores the case with its recording and log.
+void store_case(const reports::RunDirectory& directory, const conformance::CaseRun& done,
+                std::uint64_t run_seed);
+
+CaseFile load_case(const std::filesystem::path& file);
+
+}  // namespace fieldproof::cli

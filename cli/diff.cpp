@@ -1,0 +1,21 @@
+#include "reports/diff.hpp"
+
+#include "cli/exit_code.hpp"
+#include "cli/verbs.hpp"
+#include "reports/run_directory.hpp"
+
+// `fieldproof diff`: what changed from one run to another; 1 when a case fails that did not.
+namespace fieldproof::cli {
+
+int diff(Session& session) {
+  const reports::Run before = reports::RunDirectory::open(session.operands.at(0)).load().run;
+  const reports::Run after = reports::RunDirectory::open(session.operands.at(1)).load().run;
+  const reports::Difference difference = reports::compare(before, after);
+  if (session.settings.is_set("json")) {
+    reports::write_text_file(session.settings.text("json"), reports::diff_json(difference));
+  }
+  session.terminal.print(reports::diff_text(difference, {.colour = session.terminal.has_colour()}));
+  return difference.new_failures.empty() ? kAllAsExpected : kFailed;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/case_file.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/run_setup.hpp"
+#include "cli/verbs.hpp"
+#include "reports/run_directory.hpp"
+#include "reports/text_summary.hpp"
+
+// `fieldproof judge`: judges a stored run again from its recordings, without the implementation.
+namespace fieldproof::cli {
+namespace {
+
+// The recording plays the part of the implementation: in its place when that was said, else in the role of
+// the case.
+void play_back(CaseFile& stored, const std::string& role) {
+  const std::string uri = fmt::format("recorded:{}", stored.playback.string());
+  bool is_placed = false;
+  for (conformance::Assignment& assignment : stored.setup.implementations) {
+    if (!assignment.role.empty() && assignment.role != role) continue;
+    assignment.uri = uri;
+    is_placed = true;
+  }
+  if (!is_placed) stored.setup.implementations.push_back({role, 0, uri});
+}
+
+// Why a case of the run cannot be judged again, or nothing.
+std::string obstacle(const CaseFile& stored) {
+  if (stored.playback.empty()) return "no recording of the implementation is stored";
+  if (stored.is_truncated) return "its recording reached the bound";
+  return {};
+}
+
+}  // namespace
+
+int judge_again(Session& session) {
+  const auto directory = reports::RunDirectory::open(session.operands.front());
+  const reports::StoredRun stored_run = directory.load();
+  session.terminal.print(reports::run_header(stored_run.run.identity, stored_run.manifest));
+  reports::Run again{stored_run.run.identity, {}};
+  std::size_t changed = 0;
+  for (const judge::CaseResult& before : stored_run.run.cases) {
+    const std::filesystem::path file = directory.case_directory(before.id) / "case.json";
+    if (!std::filesystem::exists(file)) continue;
+    CaseFile stored = load_case(file);
+    if (const std::string why = obstacle(stored); !why.empty()) {
+      session.terminal.log(fmt::format("{} is not judged again: {}", before.id, why));
+      continue;
+    }
+    const conformance::Entry& entry = session.catalogue.at(before.id);
+    play_back(stored, entry.test_case->role());
+    const judge::CaseResult result = conformance::run_case(entry, stored.setup).outcome.result;
+    if (!session.terminal.is_quiet()) {
+      session.terminal.print(reports::case_line(result, {.colour = session.terminal.has_colour()}));
+    }
+    if (result.verdict != before.verdict || result.reason != before.reason) {
+      ++changed;
+      session.terminal.print(fmt::format("changed: {} was {} '{}', is {} '{}'\n", before.id,
+                                         judge::name(before.verdict), before.reason,
+                                         judge::name(result.verdict), result.reason));
+    }
+    again.cases.push_back(result);
+  }
+  again.identity.selected = again.cases.size();
+  session.terminal.print(fmt::format("{} of {} cases were judged again, {} of them otherwise than before\n",
+                                     again.cases.size(), stored_run.run.cases.size(), changed));
+  ExitRules rules;
+  rules.allows_inconclusive = session.settings.is_set("allow-inconclusive");
+  rules.differs = changed > 0;
+  return exit_code(again, rules);
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/pics_file.hpp"
+#include "cli/verbs.hpp"
+#include "reports/text_summary.hpp"
+
+// `fieldproof list`: the cases, or the deviations, or the protocols.
+namespace fieldproof::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+// One row as JSON and as text; `list` prints either.
+struct Row {
+  ordered_json json;
+  std::string text;
+};
+
+Row row_of(const conformance::TestCase& test_case, const std::optional<judge::Pics>& pics) {
+  std::optional<std::string> excluded;
+  if (pics && test_case.not_applicable) excluded = test_case.not_applicable(*pics);
+  Row row;
+  row.json["id"] = test_case.id;
+  row.json["purpose"] = test_case.purpose;
+  row.json["requirement"] = test_case.requirement;
+  row.json["verified"] = judge::is_verified(test_case.reference.standing);
+  row.json["tags"] = test_case.tags;
+  row.json["catches"] = ordered_json::array();
+  for (const conformance::Catch& caught : test_case.catches) row.json["catches"].push_back(caught.deviation);
+  if (excluded) row.json["not_applicable"] = *excluded;
+  row.text = fmt::format("{}  {}", test_case.id, test_case.purpose);
+  if (!test_case.tags.empty()) row.text += fmt::format("  +{}", fmt::join(test_case.tags, " +"));
+  if (excluded) row.text += fmt::format("  not applicable: {}", *excluded);
+  return row;
+}
+
+Row row_of(const conformance::DeviationEntry& entry) {
+  Row row;
+  row.json["path"] = entry.path();
+  row.json["mutant"] = entry.deviation->mutant;
+  row.json["description"] = entry.deviation->description;
+  row.text = fmt::format("{}  {}  {}", entry.path(), entry.deviation->mutant, entry.deviation->description);
+  return row;
+}
+
+Row row_of(const conformance::Suite& suite) {
+  Row row;
+  row.json["protocol"] = suite.protocol();
+  row.json["roles"] = suite.roles();
+  row.json["cases"] = suite.cases().size();
+  row.json["deviations"] = suite.deviations().size();
+  row.text = fmt::format("{}  roles {}, {} cases, {} deviations", suite.protocol(),
+                         fmt::join(suite.roles(), " "), suite.cases().size(), suite.deviations().size());
+  return row;
+}
+
+std::vector<Row> rows_of(Session& session) {
+  std::vector<Row> rows;
+  const bool is_single = session.operands.size() == 1;
+  if (is_single && session.operands.front() == "protocols") {
+    for (const auto& suite : session.catalogue.suites()) rows.push_back(row_of(*suite));
+    return rows;
+  }
+  if (is_single && session.operands.front() == "deviations") {
+    for (const conformance::DeviationEntry& entry : session.catalogue.deviations())
+      rows.push_back(row_of(entry));
+    return rows;
+  }
+  std::optional<judge::Pics> pics;
+  if (session.settings.is_set("pics")) pics = load_pics(session.settings.text("pics"));
+  for (const conformance::Entry& entry : session.catalogue.select(session.operands)) {
+    rows.push_back(row_of(*entry.test_case, pics));
+  }
+  return rows;
+}
+
+}  // namespace
+
+int list(Session& session) {
+  const std::vector<Row> rows = rows_of(session);
+  if (session.settings.is_set("json")) {
+    ordered_json all = ordered_json::array();
+    for (const Row& row : rows) all.push_back(row.json);
+    const ordered_json answer = session.settings.is_set("count") ? ordered_json(rows.size()) : all;
+    session.terminal.print(answer.dump(2) + "\n");
+  } else if (session.settings.is_set("count")) {
+    session.terminal.print(fmt::format("{}\n", rows.size()));
+  } else {
+    for (const Row& row : rows) session.terminal.print(reports::escaped_line(row.text) + "\n");
+  }
+  return 0;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,80 @@
+#include "cli/options.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace fieldproof::cli {
+namespace {
+
+using enum OptionKind;
+
+// clang-format off
+constexpr std::array kOptions = {
+    Option{"iut", list, "[ROLE[@POSITION]=]URI", "ref", "run verify replay",
+           "implementation under test: ref, deviant:NAME; 'slave@3=deviant:NAME' places it", false, true},
+    Option{"seed", value, "N", "1", "run verify matrix", "seed of the run, 0 to 2^64-1", false, true},
+    Option{"volume", value, "quick|full", "full", "run verify", "how many repetitions a case makes", false, true},
+    Option{"network", value, "FILE", "", "run verify", "network description instead of the suite's own", false, true},
+    Option{"plan", value, "FILE", "", "run verify", "plan of declared faults", false, true},
+    Option{"pics", value, "FILE", "", "run verify list", "what the implementation declares about itself", false, true},
+    Option{"jobs", value, "N", "all cores", "run verify matrix", "threads; the results are the same for any number"},
+    Option{"out", value, "DIR", "runs/<utc>-<seed>", "run", "directory of the run"},
+    Option{"record", value, "none|failed|all", "failed", "run", "which cases keep their trace"},
+    Option{"junit", value, "FILE", "", "run", "also write the JUnit report here"},
+    Option{"json", value, "FILE", "", "run matrix diff", "also write the result as JSON here"},
+    Option{"json", flag, "", "", "list", "print JSON", true},
+    Option{"strict", flag, "", "", "run", "warn and inconclusive count as fail"},
+    Option{"allow-inconclusive", flag, "", "", "run replay judge", "an inconclusive verdict ends with 0, not 2"},
+    Option{"fail-fast", flag, "", "", "run", "stop after the first case that fails"},
+    Option{"max-time", value, "T", "", "run matrix", "stop after this time: 90s, 15min, 2h"},
+    Option{"quiet", flag, "", "", "run matrix verify judge", "no line per case and no progress"},
+    Option{"failed", optional_value, "RUNDIR", "", "run", "only the cases that failed in that run (runs/latest)", true},
+    Option{"resume", value, "RUNDIR", "", "run", "finish a run that was stopped or killed", true},
+    Option{"count", flag, "", "", "list", "print the number only", true},
+    Option{"bits", flag, "", "", "replay", "print the whole recording", true},
+    Option{"runs", value, "N", "2", "verify", "how often each case is run (also -n)", true},
+    Option{"config", value, "FILE", "", "run verify matrix list", "configuration file (JSON, comments allowed)"},
+    Option{"print-config", flag, "", "", "run verify matrix list", "print every value with its origin and stop", true},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const Option> options() {
+  return kOptions;
+}
+
+bool is_known_to(const Option& option, std::string_view verb) {
+  std::string_view rest = option.verbs;
+  while (!rest.empty()) {
+    const std::size_t space = rest.find(' ');
+    if (rest.substr(0, space) == verb) return true;
+    if (space == std::string_view::npos) return false;
+    rest.remove_prefix(space + 1);
+  }
+  return false;
+}
+
+const Option* find_option(std::string_view name, std::string_view verb) {
+  const auto found = std::find_if(kOptions.begin(), kOptions.end(), [&](const Option& option) {
+    return option.name == name && is_known_to(option, verb);
+  });
+  return found == kOptions.end() ? nullptr : &*found;
+}
+
+std::string environment_name(const Option& option) {
+  std::string name = "FIELDPROOF_";
+  for (const char c : option.name) {
+    name += c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  return name;
+}
+
+std::string file_key(const Option& option) {
+  std::string key(option.name);
+  std::replace(key.begin(), key.end(), '-', '_');
+  return key;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,10 @@
+#include "cli/probe/probe_suite.hpp"
+#include "cli/program.hpp"
+
+int main(int argc, char** argv) {
+  return fieldproof::cli::run_program(argc, argv, [] {
+    fieldproof::cli::Suites suites;
+    suites.push_back(fieldproof::cli::probe_suite());
+    return suites;
+  });
+}

@@ -1,0 +1,161 @@
+#include "cli/probe/probe_suite.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "conformance/suite_of_functions.hpp"
+#include "harness/config/document.hpp"
+#include "harness/kernel/check.hpp"
+#include "harness/kernel/error.hpp"
+#include "harness/kernel/random.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+using conformance::Outcome;
+using conformance::Setup;
+using conformance::SuiteOfFunctions;
+using conformance::TestCase;
+using judge::Verdict;
+
+// Who plays the role of the case.
+std::string implementation_of(const TestCase& test_case, const Setup& setup) {
+  for (const conformance::Assignment& assignment : setup.implementations) {
+    if (assignment.role.empty() || assignment.role == test_case.role()) return assignment.uri;
+  }
+  return "ref";
+}
+
+void read_plan(const std::string& file) {
+  if (file.empty()) return;
+  const config::Document document = config::Document::load(file);
+  config::read_object(document.root(), [](config::ObjectReader& reader) {
+    for (const config::Value& rule : reader.required("rules").as_array()) rule.as_integer<int>(0, 9);
+  });
+}
+
+Outcome judged(const Setup& setup, Verdict verdict, const std::string& reason = {}) {
+  Outcome outcome;
+  outcome.result.verdict = verdict;
+  outcome.result.reason = reason;
+  kernel::Random random(setup.seed);
+  outcome.result.fingerprint = random.next();
+  outcome.result.virtual_time = kernel::kMillisecond;
+  outcome.result.measurements = {{"delay", "us", static_cast<double>(random.below(100)), 0, 100}};
+  if (verdict != Verdict::pass && verdict != Verdict::not_applicable) {
+    judge::Finding finding;
+    finding.verdict = verdict;
+    finding.reason = reason;
+    finding.requirement = "what the probe asks for";
+    finding.reference = {"the probe", "", judge::Standing::own};
+    finding.expected = {"0x0001"};
+    finding.actual = "0x0002";
+    finding.time = kernel::kStart + 3 * kernel::kMicrosecond;
+    outcome.result.findings = {finding};
+  }
+  if (setup.record) {
+    outcome.recording.lines = {"0 s begins",
+                               fmt::format("1.000 us drives {:016x}", outcome.result.fingerprint)};
+    outcome.recording.playback = fmt::format("{} {}", judge::name(verdict), reason);
+  }
+  return outcome;
+}
+
+// The recording says the verdict that it was made with.
+Outcome judged_from_recording(const Setup& setup, const std::string& uri) {
+  std::ifstream file(uri.substr(std::string_view("recorded:").size()));
+  std::string verdict;
+  std::string reason;
+  file >> verdict >> reason;
+  const auto known = judge::verdict_from(verdict);
+  FIELDPROOF_CHECK(known.has_value(), "the probe plays back what is no recording of its own");
+  return judged(setup, *known, reason);
+}
+
+// Passes, but fails for `reason` on the deviation.
+SuiteOfFunctions::Function failing_on(std::string deviation, std::string reason) {
+  return [uri = "deviant:" + deviation, reason = std::move(reason)](const TestCase& test_case,
+                                                                    const Setup& setup) {
+    read_plan(setup.plan_file);
+    const std::string implementation = implementation_of(test_case, setup);
+    if (implementation.starts_with("recorded:")) return judged_from_recording(setup, implementation);
+    if (implementation == "deviant:unreachable") {
+      throw kernel::Error(kernel::ErrorKind::implementation,
+                          "the station does not answer; connect it and start again");
+    }
+    return implementation == uri ? judged(setup, Verdict::fail, reason) : judged(setup, Verdict::pass);
+  };
+}
+
+SuiteOfFunctions::Function answering(Verdict verdict, std::string reason) {
+  return [verdict, reason = std::move(reason)](const TestCase& test_case, const Setup& setup) {
+    const std::string implementation = implementation_of(test_case, setup);
+    if (implementation.starts_with("recorded:")) return judged_from_recording(setup, implementation);
+    return judged(setup, verdict, reason);
+  };
+}
+
+TestCase named(std::string id, std::vector<std::string> tags = {},
+               std::vector<conformance::Catch> catches = {}) {
+  TestCase test_case;
+  test_case.id = "probe/" + id;
+  test_case.purpose = fmt::format("P-{}", id.substr(id.rfind('/') + 1));
+  test_case.requirement = "what the probe asks for";
+  test_case.reference = {"the probe", "", judge::Standing::own};
+  test_case.stimulus = "none";
+  test_case.expected = "0x0001";
+  test_case.tags = std::move(tags);
+  test_case.catches = std::move(catches);
+  return test_case;
+}
+
+void add_ends(SuiteOfFunctions& suite) {
+  suite.add(named("end/fails", {"odd"}), answering(Verdict::fail, "always"));
+  suite.add(named("end/warns", {"odd"}), answering(Verdict::warn, "odd_but_allowed"));
+  suite.add(named("end/is_inconclusive", {"odd"}), answering(Verdict::inconclusive, "too_close"));
+  suite.add(named("end/does_not_apply", {"odd"}), answering(Verdict::not_applicable, "no such option"));
+  suite.add(named("end/breaks", {"odd"}), [](const TestCase&, const Setup&) -> Outcome {
+    FIELDPROOF_CHECK(false, "the probe breaks as it promised");
+    return {};
+  });
+  suite.add(named("end/never_repeats", {"odd"}), [](const TestCase&, const Setup& setup) {
+    static std::atomic<std::uint64_t> calls{0};
+    Outcome outcome = judged(setup, Verdict::pass);
+    outcome.result.fingerprint = ++calls;
+    if (setup.record) outcome.recording.lines.push_back(fmt::format("call {}", calls.load()));
+    return outcome;
+  });
+}
+
+}  // namespace
+
+std::unique_ptr<conformance::Suite> probe_suite() {
+  auto suite = std::make_unique<SuiteOfFunctions>(
+      "probe", std::vector<std::string>{"station", "other", "end", "slow"});
+  suite->add({"swapped", "M1", "station", "swaps the octets of a word"});
+  suite->add({"late", "M2", "station", "answers late"});
+  suite->add({"unreachable", "M3", "other", "does not answer at all"});
+  for (const char* name : {"word_is_latched", "word_is_held", "word_is_cleared"}) {
+    suite->add(named(fmt::format("station/data/{}", name), {"must"}, {{"swapped", "wrong_word"}}),
+               failing_on("swapped", "wrong_word"));
+  }
+  suite->add(named("station/time/answer_is_in_time", {"must", "timing"}, {{"late", "late_answer"}}),
+             failing_on("late", "late_answer"));
+  suite->add(named("station/canary", {"canary"}), answering(Verdict::fail, "canary"));
+  suite->add(named("other/poll/is_first"), failing_on("unreachable", "unreachable"));
+  add_ends(*suite);
+  for (int i = 0; i < 40; ++i) {
+    suite->add(named(fmt::format("slow/case_{:02}", i), {"slow"}), [i](const TestCase&, const Setup& setup) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      return i % 4 == 1 ? judged(setup, Verdict::fail, "each_fourth") : judged(setup, Verdict::pass);
+    });
+  }
+  return suite;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include "cli/case_file.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/implementations.hpp"
+#include "cli/run_setup.hpp"
+#include "cli/verbs.hpp"
+#include "harness/judge/result_json.hpp"
+#include "reports/text_summary.hpp"
+
+// `fieldproof replay`: runs a stored case again and holds verdict, reason and fingerprint against the stored
+// ones.
+namespace fieldproof::cli {
+namespace {
+
+// What is not as it was, one line each.
+std::string differences(const CaseFile& stored, const judge::CaseResult& now) {
+  std::string text;
+  const auto differ = [&text](std::string_view what, std::string_view before, std::string_view after) {
+    if (before != after) text += fmt::format("differs: {} was '{}', is '{}'\n", what, before, after);
+  };
+  differ("verdict", judge::name(stored.verdict), judge::name(now.verdict));
+  differ("reason", stored.reason, now.reason);
+  differ("fingerprint", judge::fingerprint_text(stored.fingerprint),
+         judge::fingerprint_text(now.fingerprint));
+  return text;
+}
+
+reports::RunIdentity identity_for(Session& session, const CaseFile& stored) {
+  reports::RunIdentity identity = identity_of(session, stored.setup, 1);
+  identity.reproduce_options = fmt::format("--seed {}", stored.setup.seed);
+  for (const conformance::Assignment& assignment : stored.setup.implementations) {
+    const std::string position = assignment.position > 0 ? fmt::format("@{}", assignment.position) : "";
+    const std::string role = assignment.role.empty() ? "" : fmt::format("{}{}=", assignment.role, position);
+    identity.reproduce_options += fmt::format(" --iut {}", reports::shell_quoted(role + assignment.uri));
+  }
+  if (stored.setup.volume == conformance::Volume::quick) identity.reproduce_options += " --volume quick";
+  for (const auto& [option, file] :
+       {std::pair{"network", stored.setup.network_file}, {"plan", stored.setup.plan_file}}) {
+    if (!file.empty())
+      identity.reproduce_options += fmt::format(" --{} {}", option, reports::shell_quoted(file));
+  }
+  return identity;
+}
+
+}  // namespace
+
+int replay(Session& session) {
+  CaseFile stored = load_case(session.operands.front());
+  const conformance::Entry& entry = session.catalogue.at(stored.id);
+  const bool is_other = session.settings.origin("iut") != Origin::fallback;
+  if (is_other) {
+    stored.setup.implementations.clear();
+    for (const std::string& text : session.settings.list("iut")) {
+      stored.setup.implementations.push_back(
+          parse_implementation(text, session.catalogue, std::span(&entry, 1)));
+    }
+  }
+  reports::Run run{identity_for(session, stored), {}};
+  session.terminal.print(reports::run_header(run.identity, manifest_of(session, 1)));
+  const conformance::CaseRun done =
+      conformance::run_case(entry, stored.setup, conformance::KeptRecordings::all);
+  if (session.settings.is_set("bits")) {
+    for (const std::string& line : done.outcome.recording.lines)
+      session.terminal.print(reports::escaped_line(line) + "\n");
+    if (done.outcome.recording.truncated)
+      session.terminal.log("the recording reached its bound and ends here");
+  }
+  const judge::CaseResult& result = done.outcome.result;
+  run.cases = {result};
+  session.terminal.print(
+      reports::finding_text(run.identity, result, {.colour = session.terminal.has_colour()}));
+  ExitRules rules;
+  rules.allows_inconclusive = session.settings.is_set("allow-inconclusive");
+  const std::string different = differences(stored, result);
+  if (is_other) {
+    session.terminal.print("another implementation than the stored one: not compared\n");
+  } else if (!different.empty()) {
+    session.terminal.print(different);
+    return exit_code(run, rules) == kInternal ? kInternal : kDiffers;
+  } else {
+    session.terminal.print("equal: verdict, reason and fingerprint are those of the stored run\n");
+  }
+  return exit_code(run, rules);
+}
+
+}  // namespace fieldproof::cli

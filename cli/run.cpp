@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "cli/exit_code.hpp"
+#include "cli/interruption.hpp"
+#include "cli/run_book.hpp"
+#include "cli/run_setup.hpp"
+#include "cli/verbs.hpp"
+#include "harness/kernel/error.hpp"
+#include "reports/json_writer.hpp"
+#include "reports/junit_writer.hpp"
+#include "reports/text_summary.hpp"
+
+// `fieldproof run`: judges an implementation by the selected cases and stores the result.
+namespace fieldproof::cli {
+namespace {
+
+using judge::Verdict;
+
+constexpr const char* kConfiguration = "configuration.json";
+
+bool is_failure(Verdict verdict) {
+  return verdict == Verdict::fail || verdict == Verdict::error;
+}
+
+// Gives what the stored run was configured with to the options that were not given now.
+void take_over_configuration(Session& session, const reports::RunDirectory& directory) {
+  session.settings.add_file(directory.path() / kConfiguration, Origin::stored_run);
+}
+
+// `--failed` may swallow a selector: what is no directory of a run is one.
+std::string failed_directory(Session& session) {
+  const std::string given = session.settings.text("failed");
+  if (given.empty()) return "runs";
+  if (std::filesystem::is_directory(given)) return given;
+  session.operands.insert(session.operands.begin(), given);
+  return "runs";
+}
+
+// Narrows the selection to what did not pass in a stored run.
+std::vector<conformance::Entry> failed_entries(Session& session) {
+  const auto directory = reports::RunDirectory::open(failed_directory(session));
+  take_over_configuration(session, directory);
+  std::vector<std::string> failed;
+  for (const judge::CaseResult& result : directory.load().run.cases) {
+    if (is_failure(result.verdict) || result.verdict == Verdict::inconclusive) failed.push_back(result.id);
+  }
+  session.terminal.log(
+      fmt::format("{} of the cases of {} did not pass", failed.size(), directory.path().string()));
+  if (failed.empty()) return {};
+  std::vector<conformance::Entry> entries = session.catalogue.select(failed);
+  if (!session.operands.empty()) {
+    const std::vector<conformance::Entry> chosen = session.catalogue.select(session.operands);
+    std::erase_if(entries, [&](const conformance::Entry& entry) {
+      return std::none_of(chosen.begin(), chosen.end(), [&](const conformance::Entry& other) {
+        return other.test_case == entry.test_case;
+      });
+    });
+  }
+  session.operands.clear();
+  for (const conformance::Entry& entry : entries) session.operands.push_back(entry.test_case->id);
+  return entries;
+}
+
+struct Prepared {
+  conformance::Setup setup;
+  std::unique_ptr<RunBook> book;
+};
+
+void refuse_resume(const reports::RunDirectory& directory, const std::string& sentence) {
+  throw kernel::Error(kernel::ErrorKind::usage,
+                      fmt::format("--resume {}: {}; start a new run", directory.path().string(), sentence));
+}
+
+// A resumed run must be the same run: nothing that decides its outcome may have changed.
+void check_same_run(const reports::RunDirectory& directory, const reports::RunIdentity& stored,
+                    const reports::RunIdentity& now) {
+  if (stored.suite_version != now.suite_version) {
+    refuse_resume(directory,
+                  fmt::format("the suite was {} and is {}", stored.suite_version, now.suite_version));
+  }
+  if (stored.reproduce_options != now.reproduce_options) {
+    refuse_resume(directory, fmt::format("its options were '{}', not '{}'", stored.reproduce_options,
+                                         now.reproduce_options));
+  }
+  if (stored.plan_hash != now.plan_hash) refuse_resume(directory, "the plan of faults has changed since");
+  if (stored.network_hash != now.network_hash) refuse_resume(directory, "the network has changed since");
+}
+
+Prepared prepare_resumed(Session& session) {
+  auto directory = reports::RunDirectory::open(session.settings.text("resume"));
+  reports::StoredRun stored = directory.load();
+  if (!session.operands.empty())
+    refuse_resume(directory, "it has its selection already, leave out the selectors");
+  take_over_configuration(session, directory);
+  session.operands = stored.run.identity.selectors;
+  const std::vector<conformance::Entry> selected = session.catalogue.select(session.operands);
+  Prepared prepared{setup_from(session.settings, session.catalogue, selected), nullptr};
+  const reports::RunIdentity now = identity_of(session, prepared.setup, selected.size());
+  check_same_run(directory, stored.run.identity, now);
+  session.terminal.log(
+      fmt::format("{} of {} cases are judged already", stored.run.cases.size(), selected.size()));
+  prepared.book = std::make_unique<RunBook>(std::move(directory), std::move(stored), selected);
+  return prepared;
+}
+
+Prepared prepare(Session& session) {
+  const bool is_failed_only = session.settings.is_set("failed");
+  if (session.settings.is_set("resume")) {
+    if (is_failed_only) session.settings.refuse("failed", "goes not with --resume; give one of them");
+    return prepare_resumed(session);
+  }
+  const std::vector<conformance::Entry> selected =
+      is_failed_only ? failed_entries(session) : session.catalogue.select(session.operands);
+  Prepared prepared{setup_from(session.settings, session.catalogue, selected), nullptr};
+  reports::RunIdentity identity = identity_of(session, prepared.setup, selected.size());
+  prepared.book = std::make_unique<RunBook>(session.settings.text("out"),
+                                            manifest_of(session, jobs_from(session.settings)),
+                                            std::move(identity), selected, session.settings.as_file());
+  return prepared;
+}
+
+conformance::KeptRecordings kept_recordings(const Settings& settings) {
+  return static_cast<conformance::KeptRecordings>(settings.choice("record"));
+}
+
+// Judges what is open and tells each verdict after it is stored. Answers why the run is not complete.
+class Judging {
+ public:
+  Judging(Session& session, Prepared& prepared) : session_(session), prepared_(prepared) {}
+
+  std::string run(const Interruption& interruption) {
+    conformance::Plan plan;
+    plan.entries = prepared_.book->open_cases();
+    plan.setup = prepared_.setup;
+    plan.jobs = jobs_from(session_.settings);
+    plan.keeps_recordings = kept_recordings(session_.settings);
+    plan.stop = interruption.token();
+    plan.on_case = [this](conformance::CaseRun&& done) { return on_case(done); };
+    plan.on_progress = [this](std::size_t finished) { session_.terminal.progress(finished); };
+    session_.terminal.begin_progress(plan.entries.size(), "cases");
+    const std::size_t delivered = conformance::run(plan);
+    session_.terminal.end_progress();
+    if (delivered == plan.entries.size()) return {};
+    return stopped_by_.empty() ? interruption.reason()
+                               : fmt::format("--fail-fast: {} did not pass", stopped_by_);
+  }
+
+  bool has_differed() const { return has_differed_; }
+
+ private:
+  bool on_case(const conformance::CaseRun& done) {
+    const judge::CaseResult& result = done.outcome.result;
+    prepared_.book->add(done);
+    if (!session_.terminal.is_quiet()) {
+      session_.terminal.print(reports::case_line(result, {.colour = session_.terminal.has_colour()}));
+    }
+    if (!done.is_repeatable) {
+      has_differed_ = true;
+      session_.terminal.log(
+          fmt::format("{} did not repeat: its second run has another fingerprint", result.id));
+    }
+    if (!session_.settings.is_set("fail-fast") || !is_failure(result.verdict)) return true;
+    stopped_by_ = result.id;
+    return false;
+  }
+
+  Session& session_;
+  Prepared& prepared_;
+  std::string stopped_by_;
+  bool has_differed_ = false;
+};
+
+void write_copies(const Settings& settings, const RunBook& book) {
+  if (settings.is_set("json"))
+    reports::write_text_file(settings.text("json"), reports::results_json(book.run()));
+  if (settings.is_set("junit")) {
+    reports::write_text_file(settings.text("junit"), reports::junit_xml(book.run(), book.manifest()));
+  }
+}
+
+}  // namespace
+
+int run(Session& session) {
+  kept_recordings(session.settings);  // refuses before anything is stored
+  const Interruption interruption(session.settings.duration("max-time"));
+  Prepared prepared = prepare(session);
+  RunBook& book = *prepared.book;
+  session.terminal.print(reports::run_header(book.run().identity, book.manifest()));
+  Judging judging(session, prepared);
+  std::string incomplete_because;
+  try {
+    incomplete_because = judging.run(interruption);
+  } catch (const kernel::Error& error) {
+    session.terminal.end_progress();
+    book.close(error.what(), error.exit_code());
+    throw;
+  }
+  ExitRules rules;
+  rules.is_strict = session.settings.is_set("strict");
+  rules.allows_inconclusive = session.settings.is_set("allow-inconclusive");
+  rules.differs = judging.has_differed();
+  rules.signal = interruption.signal();
+  const int code = exit_code(book.run(), rules);
+  book.close(incomplete_because, code);
+  write_copies(session.settings, book);
+  session.terminal.log(fmt::format("the result is in {}", book.directory().path().string()));
+  session.terminal.print(reports::summary_text(book.run(), {.colour = session.terminal.has_colour()}));
+  return code;
+}
+
+}  // namespace fieldproof::cli

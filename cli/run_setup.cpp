@@ -1,0 +1,115 @@
+#include "cli/run_setup.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <ctime>
+#include <limits>
+
+#include "cli/build_info.hpp"
+#include "cli/implementations.hpp"
+#include "cli/pics_file.hpp"
+#include "reports/run_directory.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+constexpr std::uint64_t kMostJobs = 1024;
+
+// FNV-1a, 64 bit.
+class Hash {
+ public:
+  void add(std::string_view text) {
+    for (const char c : text) value_ = (value_ ^ static_cast<unsigned char>(c)) * 0x100000001B3;
+    value_ = (value_ ^ 0xFF) * 0x100000001B3;  // "a", "bc" is not "ab", "c"
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xCBF29CE484222325;
+};
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+}  // namespace
+
+conformance::Setup setup_from(const Settings& settings, const conformance::Catalogue& catalogue,
+                              std::span<const conformance::Entry> selected) {
+  conformance::Setup setup;
+  setup.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
+  setup.volume = settings.choice("volume") == 0 ? conformance::Volume::quick : conformance::Volume::full;
+  setup.network_file = settings.text("network");
+  setup.plan_file = settings.text("plan");
+  if (settings.is_set("pics")) setup.pics = load_pics(settings.text("pics"));
+  for (const std::string& text : settings.list("iut")) {
+    setup.implementations.push_back(parse_implementation(text, catalogue, selected));
+  }
+  return setup;
+}
+
+unsigned jobs_from(const Settings& settings) {
+  return static_cast<unsigned>(settings.number("jobs", 1, kMostJobs));
+}
+
+std::string suite_version(const conformance::Catalogue& catalogue) {
+  Hash hash;
+  for (const conformance::Entry& entry : catalogue.entries()) {
+    const conformance::TestCase& test_case = *entry.test_case;
+    for (const std::string* text :
+         {&test_case.id, &test_case.purpose, &test_case.requirement, &test_case.stimulus, &test_case.expected,
+          &test_case.reference.source, &test_case.reference.clause}) {
+      hash.add(*text);
+    }
+    for (const conformance::Catch& caught : test_case.catches)
+      hash.add(caught.deviation + "=" + caught.reason);
+  }
+  for (const conformance::DeviationEntry& deviation : catalogue.deviations()) hash.add(deviation.path());
+  return fmt::format("{}+{:08x}", tool_version(),
+                     static_cast<std::uint32_t>(hash.value() ^ (hash.value() >> 32)));
+}
+
+std::string file_hash(const std::string& file) {
+  if (file.empty()) return {};
+  Hash hash;
+  hash.add(reports::read_text_file(file));
+  return fmt::format("{:016x}", hash.value());
+}
+
+reports::RunIdentity identity_of(const Session& session, const conformance::Setup& setup,
+                                 std::size_t selected) {
+  reports::RunIdentity identity;
+  identity.tool_version = tool_version();
+  identity.suite_version = suite_version(session.catalogue);
+  identity.seed = setup.seed;
+  identity.plan_hash = file_hash(setup.plan_file);
+  identity.network_hash = file_hash(setup.network_file);
+  identity.selectors = session.operands;
+  for (const conformance::Assignment& assignment : setup.implementations) {
+    identity.implementations.push_back({assignment.role, assignment.position, assignment.uri});
+  }
+  identity.reproduce_options = session.settings.reproduce_options();
+  identity.selected = selected;
+  return identity;
+}
+
+reports::Manifest manifest_of(const Session& session, unsigned jobs) {
+  reports::Manifest manifest;
+  manifest.build_type = build_type();
+  manifest.compiler = compiler();
+  manifest.host = host_name();
+  manifest.arguments = session.arguments;
+  manifest.started = utc_now();
+  manifest.jobs = jobs;
+  return manifest;
+}
+
+std::string utc_now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+}  // namespace fieldproof::cli

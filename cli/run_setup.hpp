@@ -1,0 +1,32 @@
+// From the settings of a call to what the suites are given and what the reports say about it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/verbs.hpp"
+#include "conformance/runner.hpp"
+#include "reports/results.hpp"
+
+namespace fieldproof::cli {
+
+// Seed, implementations, network, plan, PICS and volume of `run` and `verify`. Throws kernel::Error.
+conformance::Setup setup_from(const Settings& settings, const conformance::Catalogue& catalogue,
+                              std::span<const conformance::Entry> selected);
+
+unsigned jobs_from(const Settings& settings);
+
+reports::RunIdentity identity_of(const Session& session, const conformance::Setup& setup,
+                                 std::size_t selected);
+reports::Manifest manifest_of(const Session& session, unsigned jobs);
+
+// Version of the tool and a hash over everything that the cases declare: "0.1.0+1f2e3d4c".
+std::string suite_version(const conformance::Catalogue& catalogue);
+
+// 16 hexadecimal digits over the content; empty for an empty name.
+std::string file_hash(const std::string& file);
+
+std::string utc_now();  // "2026-11-21T05:18:28Z"
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,10 @@
+#include "cli/suites.hpp"
+
+namespace fieldproof::cli {
+
+Suites suites() {
+  Suites all;
+  return all;
+}
+
+}  // namespace fieldproof::cli

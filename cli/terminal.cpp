@@ -1,0 +1,94 @@
+#include "cli/terminal.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace fieldproof::cli {
+namespace {
+
+bool is_dumb() {
+  const char* kind = std::getenv("TERM");
+  return kind == nullptr || std::string_view(kind) == "dumb";
+}
+
+bool refuses_colour() {
+  const char* value = std::getenv("NO_COLOR");
+  return value != nullptr && *value != '\0';
+}
+
+std::string time_left(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole < 100) return fmt::format("{} s left", whole);
+  return fmt::format("{}:{:02} min left", whole / 60, whole % 60);
+}
+
+}  // namespace
+
+Terminal::Terminal()
+    : has_colour_(isatty(STDOUT_FILENO) == 1 && !is_dumb() && !refuses_colour()),
+      has_bar_(isatty(STDERR_FILENO) == 1 && !is_dumb()) {}
+
+void Terminal::print(std::string_view text) {
+  clear_progress();
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);
+}
+
+void Terminal::log(std::string_view text) {
+  clear_progress();
+  fmt::print(stderr, "fieldproof: {}\n", text);
+}
+
+void Terminal::begin_progress(std::size_t total, std::string_view what) {
+  total_ = total;
+  done_ = 0;
+  what_ = what;
+  begin_ = std::chrono::steady_clock::now();
+  last_draw_ = {};
+}
+
+void Terminal::progress(std::size_t done) {
+  done_ = done;
+  if (!has_bar_ || is_quiet_ || total_ == 0) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_draw_ < std::chrono::milliseconds(100)) return;
+  last_draw_ = now;
+  draw();
+}
+
+void Terminal::end_progress() {
+  clear_progress();
+  total_ = 0;
+}
+
+void Terminal::draw() {
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  fmt::print(stderr, "\r\033[K{}", progress_text(done_, total_, seconds, what_));
+  std::fflush(stderr);
+  is_drawn_ = true;
+}
+
+void Terminal::clear_progress() {
+  if (!is_drawn_) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+  is_drawn_ = false;
+}
+
+std::string progress_text(std::size_t done, std::size_t total, double seconds, std::string_view what) {
+  constexpr std::size_t kWidth = 24;
+  const std::size_t filled = total == 0 ? kWidth : done * kWidth / total;
+  const std::size_t percent = total == 0 ? 100 : done * 100 / total;
+  std::string text = fmt::format("[{:#<{}}{:-<{}}]  {}/{} {}  {} %", "", filled, "", kWidth - filled, done,
+                                 total, what, percent);
+  if (done > 0 && seconds > 0) {
+    const double rate = static_cast<double>(done) / seconds;
+    text += fmt::format("  {:.1f} {}/s  {}", rate, what, time_left(static_cast<double>(total - done) / rate));
+  }
+  return text;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,30 @@
+#include "cli/verbs.hpp"
+
+#include <array>
+
+namespace fieldproof::cli {
+namespace {
+
+constexpr std::size_t kAny = 100'000;
+
+// clang-format off
+constexpr std::array kVerbs = {
+    Verb{"list", "[SELECTOR...|protocols|deviations]", 0, kAny,
+         "cases, deviations or protocols; why a case does not apply", &list},
+    Verb{"run", "[SELECTOR...]", 0, kAny, "judge an implementation by the selected cases", &run},
+    Verb{"explain", "CASE-ID", 1, 1, "requirement, source, stimulus, expected and what the case catches", &explain},
+    Verb{"matrix", "PROTOCOL", 1, 1, "cases x deviations; 1 on a hole", &matrix},
+    Verb{"replay", "CASEFILE", 1, 1, "run a stored case again and compare it bit for bit", &replay},
+    Verb{"verify", "SELECTOR...|CASEFILE", 1, kAny, "run cases several times; equal seeds must give equal fingerprints", &verify},
+    Verb{"judge", "RUNDIR", 1, 1, "judge a stored run again, without the implementation", &judge_again},
+    Verb{"diff", "RUN_A RUN_B", 2, 2, "new failures, fixed ones and drifted measurements", &diff},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const Verb> verbs() {
+  return kVerbs;
+}
+
+}  // namespace fieldproof::cli

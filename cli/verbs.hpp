@@ -1,0 +1,44 @@
+// The verbs of the program, one file each, and what they are given.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/settings.hpp"
+#include "cli/terminal.hpp"
+#include "conformance/catalogue.hpp"
+
+namespace fieldproof::cli {
+
+struct Session {
+  const conformance::Catalogue& catalogue;
+  Settings& settings;
+  Terminal& terminal;
+  std::vector<std::string> operands;   // selectors, case id, run directories
+  std::vector<std::string> arguments;  // the command line as it was typed, program first
+};
+
+// Each answers with the exit code of the program.
+int list(Session& session);
+int run(Session& session);
+int explain(Session& session);
+int matrix(Session& session);
+int replay(Session& session);
+int verify(Session& session);
+int judge_again(Session& session);
+int diff(Session& session);
+
+struct Verb {
+  std::string_view name;
+  std::string_view operands;  // as the help shows them
+  std::size_t min_operands = 0;
+  std::size_t max_operands = 0;
+  std::string_view help;
+  int (*serve)(Session&) = nullptr;
+};
+
+std::span<const Verb> verbs();
+
+}  // namespace fieldproof::cli
