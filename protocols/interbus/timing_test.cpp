@@ -37,7 +37,8 @@ TEST(CycleTimeTest, FormulasGiveThePublishedTable) {
   EXPECT_EQ(one_station(Formula::f2, 4), 463 * kMicrosecond);
   EXPECT_EQ(one_station(Formula::f3, 4), 478'050 * kNanosecond);
   EXPECT_EQ(one_station(Formula::f4, 4), 755 * kMicrosecond);
-  // (13 * 10 + 4) bit * 2 us + 450 us, by hand.
+  // (13 * 8 + 4) and (13 * 10 + 4) bit * 2 us + 450 us, by hand.
+  EXPECT_EQ(one_station(Formula::f5, 2), 666 * kMicrosecond);
   EXPECT_EQ(one_station(Formula::f5, 4), 718 * kMicrosecond);
 }
 
