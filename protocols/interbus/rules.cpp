@@ -34,7 +34,6 @@ constexpr std::array<LengthCode, 17> kPublishedLengthCodes{{
 }};
 constexpr std::uint8_t kLengthCodeFromMemory = 0x14;
 
-constexpr std::string_view kPaper = "Park 2004, section 2.2";
 constexpr std::string_view kOwn = "this project's choice; the standard was not at hand";
 constexpr std::string_view kChanged = "set for this network or deviation; not from a source";
 
