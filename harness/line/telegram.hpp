@@ -85,19 +85,30 @@ class TelegramCode {
     const std::size_t size = levels.size();
     while (at < size) {
       std::uint64_t window = levels.window(at);
-      if ((window & 1) != 0) {  // idle in front of the start level
-        const auto idle = static_cast<unsigned>(std::countr_one(window));
-        at += idle;
-        if (idle > 64 - kDataTelegramLevels) continue;
-        window >>= idle;
-      }
-      Telegram telegram = from_levels(window);
-      const unsigned length = telegram.levels();
-      if (at + length > size) return at < size ? at : size;
-      telegram.level = static_cast<std::uint32_t>(at);
-      sink(telegram);
-      at += length;
-      if (telegram.is_stop_missing()) at = next_idle(levels, at - 1);
+      unsigned left = 64;  // levels of the line in the window
+      // As many telegrams as the window holds are taken out of it: what one telegram costs is then a few
+      // shifts of a register and not a look-up that waits for the one before it.
+      do {
+        if ((window & 1) != 0) {  // idle in front of the start level
+          const auto idle = static_cast<unsigned>(std::countr_one(window));
+          at += idle;
+          left -= idle;
+          if (left < kDataTelegramLevels) break;
+          window >>= idle;
+        }
+        Telegram telegram = from_levels(window);
+        const unsigned length = telegram.is_data() ? kDataTelegramLevels : kStatusTelegramLevels;
+        if (at + length > size) return at < size ? at : size;
+        telegram.level = static_cast<std::uint32_t>(at);
+        sink(telegram);
+        at += length;
+        if (telegram.is_stop_missing()) {
+          at = next_idle(levels, at - 1);
+          break;
+        }
+        window >>= length;
+        left -= length;
+      } while (left >= kDataTelegramLevels);
     }
     return size;
   }

@@ -53,6 +53,20 @@ class Levels {
     size_ += count;
   }
 
+  // Room for `count` levels in all, for `place`.
+  void make_room(std::size_t count) { reserve(count); }
+
+  // Like append of the idle levels up to level `at` and then of `count` (1..64) levels, without asking for
+  // room: for loops that have made it before.
+  void place(std::size_t at, std::uint64_t bits, unsigned count) {
+    const std::uint64_t zeros = ~bits & mask(count);
+    const unsigned shift = at % 64;
+    std::uint64_t* const word = words_.data() + at / 64;
+    word[0] &= ~(zeros << shift);
+    word[1] &= ~((zeros >> 1) >> (63 - shift));
+    size_ = at + count;
+  }
+
   void append_fill(bool level, std::size_t count);
   void append(const Levels& other);
   // Levels [first, first + count) of the other, idle beyond its end.

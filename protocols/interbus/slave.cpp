@@ -130,7 +130,7 @@ void Slave::on_upstream(const line::Waveform& wave, const line::Telegram& telegr
     if (shifts_status_ && phase_ == Phase::data_transfer) shift_.shift(0xFF, check_);
     return;
   }
-  if (!is_telegram_valid(telegram)) own_error_ = true;
+  if (telegram.is_stop_missing() && !is_telegram_valid(telegram)) own_error_ = true;
   const std::uint8_t out = on_data(wave, telegram);
   relays_[kFromUpstream].put(wave, telegram.level, code_.levels_of(header, out), line::kDataTelegramLevels);
   if (telegram.is_stop_missing() && !resynchronises()) is_deaf_ = true;
@@ -156,7 +156,7 @@ std::uint8_t Slave::on_transfer(bool id_cycle, const line::Waveform& wave, const
     // A transfer that breaks into a cycle abandons it; the new one begins here, and with it a new error.
     if (phase_ != Phase::pause) abandon_cycle(when);
     enter_transfer(id_cycle, when);
-    if (!is_telegram_valid(telegram)) own_error_ = true;
+    if (telegram.is_stop_missing() && !is_telegram_valid(telegram)) own_error_ = true;
   }
   const std::uint8_t out = shift_.shift(telegram.data, check_);
   if (id_cycle) on_control_octet(wave.time_of(telegram.level));
@@ -182,13 +182,12 @@ void Slave::enter_transfer(bool id_cycle, kernel::Time when) {
 }
 
 std::uint8_t Slave::on_check(bool id_cycle, const line::Waveform& wave, const line::Telegram& telegram) {
-  const kernel::Time when = wave.time_of(telegram.level);
   if (phase_ == (id_cycle ? Phase::id_transfer : Phase::data_transfer)) {
-    enter_check(when);
+    enter_check(wave.time_of(telegram.level));
   } else if (phase_ != (id_cycle ? Phase::id_check : Phase::data_check)) {
     // Check telegrams without their transfer phase are passed on as they are; in the pause they are the end
     // telegrams behind a cycle.
-    if (phase_ != Phase::pause) abandon_cycle(when);
+    if (phase_ != Phase::pause) abandon_cycle(wave.time_of(telegram.level));
     return telegram.data;
   }
   const unsigned n = check_octets_seen_++;

@@ -27,12 +27,11 @@ class TelegramRelay {
   void put(const line::Waveform& reception, std::uint32_t level, std::uint64_t levels, unsigned count) {
     if (out_.levels.empty()) {
       begin(reception, level);
-    } else if (reception.rate != out_.rate || level < base_ + out_.levels.size()) {
+    } else if (&reception != reception_ || reception.rate != out_.rate) {
       close();
       begin(reception, level);
     }
-    out_.levels.append_idle(level - base_ - out_.levels.size());
-    out_.levels.append(levels, count);
+    out_.levels.place(level - base_, levels, count);
   }
 
   void close() {
@@ -45,6 +44,8 @@ class TelegramRelay {
  private:
   void begin(const line::Waveform& reception, std::uint32_t level) {
     base_ = level;
+    reception_ = &reception;
+    out_.levels.make_room(reception.levels.size() - level + line::kDataTelegramLevels);
     // A telegram that only a later reception completed would have left before now.
     out_.start = std::max({reception.time_of(level) + delay_, now_, driven_until_});
   }
@@ -54,7 +55,8 @@ class TelegramRelay {
   kernel::Duration delay_{};
   kernel::Time now_{};
   kernel::Time driven_until_{kernel::Duration::min()};
-  std::uint32_t base_ = 0;  // level of the reception with which out_ begins
+  const line::Waveform* reception_ = nullptr;  // what out_ was begun for
+  std::uint32_t base_ = 0;                     // level of the reception with which out_ begins
 };
 
 }  // namespace fieldproof::interbus
