@@ -1,0 +1,97 @@
+#include "harness/line/character.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "harness/kernel/check.hpp"
+
+namespace fieldproof::line {
+namespace {
+
+bool parity_of(Parity parity, unsigned data) {
+  switch (parity) {
+    case Parity::none:
+    case Parity::space:
+      return false;
+    case Parity::mark:
+      return true;
+    case Parity::even:
+      return std::popcount(data) % 2 != 0;
+    case Parity::odd:
+      return std::popcount(data) % 2 == 0;
+  }
+  return false;
+}
+
+// Each bit twice.
+std::uint64_t doubled(std::uint64_t bits) {
+  std::uint64_t result = 0;
+  for (unsigned n = 0; n < 32; ++n) result |= ((bits >> n) & 1) * (std::uint64_t{3} << (2 * n));
+  return result;
+}
+
+}  // namespace
+
+std::string CharacterFormat::text() const {
+  constexpr std::array<char, 5> kParities{'n', 'e', 'o', 'm', 's'};
+  constexpr std::array<const char*, 3> kStops{"1", "1.5", "2"};
+  return std::to_string(data_bits) + kParities.at(static_cast<std::size_t>(parity)) +
+         kStops.at(static_cast<std::size_t>(stop_bits));
+}
+
+CharacterCode::CharacterCode(const CharacterFormat& format)
+    : format_(format), data_mask_((1U << format.data_bits) - 1) {
+  FIELDPROOF_CHECK(format.data_bits >= 5 && format.data_bits <= 9, "a character has 5 to 9 data bits");
+  for (unsigned data = 0; data <= data_mask_; ++data) parity_bits_.at(data) = parity_of(format.parity, data);
+}
+
+void CharacterCode::append(Levels& levels, unsigned data) const {
+  const unsigned front = format_.bits_before_stop();
+  std::uint64_t bits = std::uint64_t{data & data_mask_} << 1;
+  if (format_.parity != Parity::none) bits |= std::uint64_t{parity_bit(data)} << (front - 1);
+  bits |= ~std::uint64_t{0} << front;
+  levels.append(levels_per_bit() == 2 ? doubled(bits) : bits, levels_per_character());
+}
+
+Character CharacterCode::from_bits(std::uint32_t bits) const {
+  Character character;
+  const unsigned front = format_.bits_before_stop();
+  character.data = static_cast<std::uint16_t>((bits >> 1) & data_mask_);
+  if (format_.parity != Parity::none) {
+    character.is_parity_wrong = (((bits >> (front - 1)) & 1) != 0) != parity_bit(character.data);
+  }
+  character.is_stop_missing = ((bits >> front) & 1) == 0;
+  character.is_break = (bits & ((2U << front) - 1)) == 0;
+  return character;
+}
+
+void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& received) const {
+  const std::size_t size = wave.levels.size();
+  std::size_t edge = falling_edge(wave.levels, 0);
+  while (edge < size) {
+    const kernel::Time start = wave.time_of(edge);
+    if (sampling_.sample(wave, start, 0, bit_rate_)) {
+      const kernel::Time idle = sampling_.idle_seen_at(wave, start, bit_rate_);
+      edge = falling_edge(wave.levels, std::max(wave.first_level_at(idle), edge + 1));
+      continue;
+    }
+    received.push_back(sampled(wave, edge));
+    const Received& last = received.back();
+    // With the stop bit missing the line is low: the next falling edge lies behind an idle level anyhow.
+    edge = falling_edge(wave.levels, std::max(wave.first_level_at(last.end), edge + 1));
+  }
+}
+
+CharacterReceiver::Received CharacterReceiver::sampled(const Waveform& wave, std::size_t edge) const {
+  const unsigned length = code_.format().bits_before_stop() + 1;
+  const kernel::Time start = wave.time_of(edge);
+  std::uint32_t bits = 0;
+  for (unsigned bit = 0; bit < length; ++bit) {
+    bits |= std::uint32_t{sampling_.sample(wave, start, bit, bit_rate_)} << bit;
+  }
+  Received received{code_.from_bits(bits), start, sampling_.decided_at(start, length - 1, bit_rate_)};
+  received.character.level = static_cast<std::uint32_t>(edge);
+  return received;
+}
+
+}  // namespace fieldproof::line

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/kernel/time.hpp"
+#include "harness/line/sampling.hpp"
+#include "harness/line/waveform.hpp"
+
+// Start-stop characters (UART), shared by the protocols that are built on them: a start bit (0), 5 to 9 data
+// bits, the lowest first, perhaps a parity bit, one, one and a half or two stop bits (1).
+//
+// Decoding never fails: a wrong parity bit, a missing stop bit (framing error) and a break are values. Two
+// decoders are here. `decode` takes levels that are exactly bit-wide (so not one and a half stop bits, which
+// are written in half bits). `CharacterReceiver` takes a waveform of any rate and samples it as a real
+// receiver does; on bit-wide waveforms it finds the same.
+//
+// A receiver looks at one stop bit, however many are sent, and looks for the next start as soon as it has
+// sampled it. After a framing error it waits until the line has been idle before it takes an edge for a
+// start; a character that is all zero with its stop bit is a break.
+namespace fieldproof::line {
+
+enum class Parity : std::uint8_t { none, even, odd, mark, space };
+enum class StopBits : std::uint8_t { one, one_and_a_half, two };
+
+struct CharacterFormat {
+  unsigned data_bits = 8;  // 5..9
+  Parity parity = Parity::none;
+  StopBits stop_bits = StopBits::one;
+
+  // In half bits, because of the one and a half stop bits.
+  unsigned half_bits() const {
+    const unsigned stop = stop_bits == StopBits::one ? 2 : stop_bits == StopBits::two ? 4 : 3;
+    return 2 * bits_before_stop() + stop;
+  }
+  unsigned bits_before_stop() const { return 1 + data_bits + (parity == Parity::none ? 0U : 1U); }
+  // "8e1", "7o2", "9n1.5"
+  std::string text() const;
+
+  friend bool operator==(const CharacterFormat&, const CharacterFormat&) = default;
+};
+
+struct Character {
+  std::uint32_t level = 0;  // the level at which its start bit begins
+  std::uint16_t data = 0;
+  bool is_parity_wrong = false;
+  bool is_stop_missing = false;
+  bool is_break = false;  // all of it is 0; then is_stop_missing too
+
+  bool is_good() const { return !is_parity_wrong && !is_stop_missing; }
+  friend bool operator==(const Character&, const Character&) = default;
+};
+
+class CharacterCode {
+ public:
+  // A format with data bits out of 5..9 is a broken invariant.
+  explicit CharacterCode(const CharacterFormat& format);
+
+  const CharacterFormat& format() const { return format_; }
+  // Levels per bit that `append` writes: 1, with one and a half stop bits 2.
+  unsigned levels_per_bit() const { return format_.stop_bits == StopBits::one_and_a_half ? 2 : 1; }
+  unsigned levels_per_character() const { return format_.half_bits() * levels_per_bit() / 2; }
+
+  // Bits of `data` above the data bits are ignored.
+  void append(Levels& levels, unsigned data) const;
+  bool parity_bit(unsigned data) const { return parity_bits_.at(data & data_mask_); }
+
+  // The character in sampled bits, the start bit in bit 0.
+  Character from_bits(std::uint32_t bits) const;
+
+  // Calls sink(character) for each character in levels that are exactly bit-wide, from level `at` on; gives
+  // the start of a character that is cut by the end of the levels, or size().
+  template <typename Sink>
+  std::size_t decode(const Levels& levels, std::size_t at, Sink&& sink) const {
+    const std::size_t size = levels.size();
+    const unsigned length = format_.bits_before_stop() + 1;
+    while (at < size) {
+      const std::uint64_t window = levels.window(at);
+      if ((window & 1) != 0) {
+        at += static_cast<unsigned>(std::countr_one(window));
+        continue;
+      }
+      if (at + length > size) return at;
+      Character character = from_bits(static_cast<std::uint32_t>(window));
+      character.level = static_cast<std::uint32_t>(at);
+      sink(character);
+      at += length;
+      if (character.is_stop_missing) {
+        while (at < size && !levels[at]) ++at;
+      }
+    }
+    return size;
+  }
+
+ private:
+  CharacterFormat format_;
+  unsigned data_mask_;
+  std::array<bool, 512> parity_bits_{};
+};
+
+// A receiver for waveforms of any rate. It starts idle with each waveform: a character does not go on from
+// one waveform into the next.
+class CharacterReceiver {
+ public:
+  struct Received {
+    Character character;
+    kernel::Time start;  // the edge of its start bit
+    kernel::Time end;    // when its stop bit has been sampled: before that nobody knows it
+  };
+
+  CharacterReceiver(const CharacterFormat& format, std::int64_t bit_rate, Sampling sampling = {})
+      : code_(format), bit_rate_(bit_rate), sampling_(sampling) {}
+
+  // Appends the characters in order. One that is cut by the end of the waveform is completed with idle line.
+  void receive(const Waveform& wave, std::vector<Received>& received) const;
+
+ private:
+  Received sampled(const Waveform& wave, std::size_t edge) const;
+
+  CharacterCode code_;
+  std::int64_t bit_rate_;
+  Sampling sampling_;
+};
+
+}  // namespace fieldproof::line
