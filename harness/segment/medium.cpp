@@ -1,0 +1,226 @@
+#include "harness/segment/medium.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "harness/kernel/check.hpp"
+
+namespace fieldproof::segment {
+namespace {
+
+// Levels per level of the fastest member, when the members of a group are not on one grid.
+constexpr std::int64_t kFiner = 16;
+
+kernel::Duration between(kernel::Duration a, kernel::Duration b) {
+  return a < b ? b - a : a - b;
+}
+
+}  // namespace
+
+MediumPort::MediumPort(Medium& medium, std::string_view name, std::size_t station, PortIndex port,
+                       kernel::Duration position, bool hears_itself)
+    : medium_(medium),
+      trace_channel_(medium.segment_.trace().add_channel(std::string(name))),
+      station_(station),
+      port_(port),
+      position_(position),
+      hears_itself_(hears_itself),
+      random_(medium.random_.split(name)) {}
+
+const std::string& MediumPort::name() const {
+  return medium_.segment_.trace().channel_name(trace_channel_);
+}
+
+void MediumPort::drive(line::Waveform& wave) {
+  medium_.drive(*this, wave);
+}
+
+bool MediumPort::is_busy(kernel::Time now) const {
+  const auto covers = [&](const Flight& flight) { return flight.start <= now && now < flight.end; };
+  return std::any_of(flights_.begin(), flights_.end(), covers) ||
+         std::any_of(own_.begin(), own_.end(), covers);
+}
+
+void MediumPort::expect(const Flight& flight) {
+  const auto behind = std::find_if(flights_.begin(), flights_.end(),
+                                   [&](const Flight& other) { return other.start > flight.start; });
+  flights_.insert(behind, flight);
+}
+
+// How many flights, from the first on, hang together by overlapping, and when the last of them ends.
+std::size_t MediumPort::first_group(kernel::Time& end) const {
+  end = flights_.front().end;
+  std::size_t count = 1;
+  for (; count < flights_.size() && flights_[count].start < end; ++count) {
+    end = std::max(end, flights_[count].end);
+  }
+  return count;
+}
+
+kernel::Time MediumPort::next() const {
+  kernel::Time at = late_.empty() ? kernel::kNever : late_.front().end();
+  if (flights_.empty()) return at;
+  kernel::Time end;
+  first_group(end);
+  return std::min(at, end);
+}
+
+void MediumPort::tell_due(kernel::Time now) {
+  while (!late_.empty() && late_.front().end() <= now) {
+    const line::Waveform wave = std::move(late_.front());
+    late_.erase(late_.begin());
+    tell(wave);
+  }
+  kernel::Time end;
+  while (!flights_.empty()) {
+    const std::size_t count = first_group(end);
+    if (end > now) return;
+    tell_group(count, end);
+  }
+}
+
+void MediumPort::tell_group(std::size_t count, kernel::Time end) {
+  const auto last = flights_.begin() + static_cast<std::ptrdiff_t>(count);
+  std::vector<Flight> group = std::exchange(group_, {});
+  group.assign(flights_.begin(), last);
+  flights_.erase(flights_.begin(), last);
+  if (count == 1) {
+    line::Waveform& wave = group.front().transmission->wave;
+    wave.start = group.front().start;
+    pass(wave, end);
+  } else {
+    line::Waveform resolved;
+    medium_.contend(*this, group, end, resolved);
+    pass(resolved, end);
+  }
+  for (const Flight& flight : group) medium_.release(*flight.transmission);
+  group.clear();
+  group_ = std::move(group);
+}
+
+void MediumPort::pass(const line::Waveform& wave, kernel::Time now) {
+  std::vector<line::Waveform> arrivals = std::exchange(arrivals_, {});
+  if (channel_ == nullptr || !channel_->pass(wave, arrivals)) {
+    tell(wave);
+  } else {
+    for (line::Waveform& arrival : arrivals) {
+      if (arrival.end() <= now) {
+        tell(arrival);
+        continue;
+      }
+      const auto behind = std::find_if(late_.begin(), late_.end(), [&](const line::Waveform& other) {
+        return other.end() > arrival.end();
+      });
+      late_.insert(behind, std::move(arrival));
+    }
+  }
+  arrivals.clear();
+  arrivals_ = std::move(arrivals);
+}
+
+void MediumPort::tell(const line::Waveform& wave) {
+  for (Tap* tap : taps_) tap->on_wave(wave);
+  if (station_ != kNobody) medium_.segment_.deliver(station_, port_, wave);
+}
+
+Medium::Medium(Segment& segment, std::string name, ContentionRule rule, const kernel::Random& random)
+    : segment_(segment),
+      name_(std::move(name)),
+      rule_(rule),
+      random_(random.split("medium").split(name_)),
+      slot_(segment.scheduler().add(*this)) {}
+
+Medium::~Medium() {
+  segment_.scheduler().remove(slot_);
+}
+
+MediumPort& Medium::attach(std::string_view name, std::size_t station, PortIndex port,
+                           kernel::Duration position, bool hears_itself) {
+  return ports_.emplace_back(*this, name, station, port, position, hears_itself);
+}
+
+MediumPort& Medium::listen(std::string_view name, kernel::Duration position) {
+  return attach(name, MediumPort::kNobody, 0, position, true);
+}
+
+void Medium::drive(MediumPort& from, line::Waveform& wave) {
+  FIELDPROOF_CHECK(wave.start >= segment_.now(), "nobody drives a line in the past");
+  segment_.trace().driven(from.trace_channel_, wave);
+  for (Tap* tap : driven_taps_) tap->on_wave(wave);
+  if (wave.levels.empty()) return;
+  if (free_.empty()) free_.push_back(&transmissions_.emplace_back());
+  MediumPort::Transmission& transmission = *free_.back();
+  free_.pop_back();
+  std::swap(transmission.wave, wave);
+  wave.levels.clear();
+  transmission.places = ports_.size();
+  const kernel::Time start = transmission.wave.start;
+  const kernel::Time end = transmission.wave.end();
+  for (MediumPort& port : ports_) {
+    const kernel::Duration delay = between(port.position_, from.position_);
+    const MediumPort::Flight flight{&transmission, start + delay, end + delay};
+    if (&port != &from || from.hears_itself_) {
+      port.expect(flight);
+      continue;
+    }
+    const kernel::Time now = segment_.now();
+    std::erase_if(port.own_, [&](const MediumPort::Flight& own) { return own.end <= now; });
+    port.own_.push_back(flight);
+    release(transmission);
+  }
+  arm();
+}
+
+void Medium::release(MediumPort::Transmission& transmission) {
+  if (--transmission.places > 0) return;
+  transmission.wave.levels.clear();
+  free_.push_back(&transmission);
+}
+
+void Medium::on_time(kernel::Time now) {
+  for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].tell_due(now);
+  arm();
+}
+
+void Medium::arm() {
+  kernel::Time at = kernel::kNever;
+  for (const MediumPort& port : ports_) at = std::min(at, port.next());
+  if (at != segment_.scheduler().armed(slot_)) segment_.scheduler().arm(slot_, at);
+}
+
+void Medium::contend(MediumPort& at, const std::vector<MediumPort::Flight>& group, kernel::Time end,
+                     line::Waveform& resolved) {
+  resolved.start = group.front().start;
+  resolved.rate = 0;
+  for (const auto& flight : group) resolved.rate = std::max(resolved.rate, flight.transmission->wave.rate);
+  const bool is_one_grid = std::all_of(group.begin(), group.end(), [&](const MediumPort::Flight& flight) {
+    const line::Waveform& wave = flight.transmission->wave;
+    if (wave.rate != resolved.rate || kernel::kSecond.count() % wave.rate != 0) return false;
+    return (flight.start - resolved.start).count() % (kernel::kSecond.count() / wave.rate) == 0;
+  });
+  if (!is_one_grid) resolved.rate *= kFiner;
+  // Every flight is asked at its own place in time.
+  for (const auto& flight : group) flight.transmission->wave.start = flight.start;
+  for (std::int64_t n = 0; kernel::level_time(resolved.start, n, resolved.rate) < end; ++n) {
+    const kernel::Time middle = kernel::level_time(resolved.start, 2 * n + 1, 2 * resolved.rate);
+    resolved.levels.append(resolve(group, middle, at.random_) ? 1 : 0, 1);
+  }
+  segment_.trace().observe(at.trace_channel_, resolved.start, "contention", group.size());
+  const Contention contention{at.trace_channel_, resolved.start, end, group.size()};
+  for (ContentionWatcher* watcher : watchers_) watcher->on_contention(contention);
+}
+
+bool Medium::resolve(const std::vector<MediumPort::Flight>& group, kernel::Time instant,
+                     kernel::Random& random) const {
+  unsigned ones = 0;
+  unsigned zeros = 0;
+  for (const MediumPort::Flight& flight : group) {
+    if (instant < flight.start || instant >= flight.end) continue;
+    ++(flight.transmission->wave.at(instant) ? ones : zeros);
+  }
+  if (ones == 0 || zeros == 0) return zeros == 0;
+  if (rule_ == ContentionRule::noise) return (random.next() >> 63) != 0;
+  return rule_ == ContentionRule::one_wins;
+}
+
+}  // namespace fieldproof::segment
