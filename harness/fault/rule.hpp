@@ -36,7 +36,7 @@ inline constexpr kernel::Duration kLongestDuration{1'000'000'000'000'000'000};
 // Inverts levels, counted from the first level of the part; without a list all levels of the part. Positions
 // behind the end of the part but inside the transmission are legal; behind the transmission they do nothing.
 struct Flip {
-  std::vector<std::uint32_t> levels;
+  std::vector<std::uint32_t> levels{};
   friend bool operator==(const Flip&, const Flip&) = default;
 };
 
@@ -119,17 +119,17 @@ struct When {
   std::string receiver = "*";
   std::string frame_kind = "*";
   std::string field = "*";
-  Numbers frame;  // its number among those of its kind on this receiver, from 1
-  Numbers unit;   // its place within the frame, from 0
-  Numbers bit;    // levels within the field, from 0: the part is from the first to the last of them
+  Numbers frame{};  // its number among those of its kind on this receiver, from 1
+  Numbers unit{};   // its place within the frame, from 0
+  Numbers bit{};    // levels within the field, from 0: the part is from the first to the last of them
   kernel::Time from = kernel::Time{-kernel::Duration::max()};
   kernel::Time to = kernel::kNever;
   double chance = 1.0;
-  std::optional<After> after;
+  std::optional<After> after{};
 
-  std::vector<When> all_of;
-  std::vector<When> any_of;  // when there are any, at least one holds
-  std::vector<When> none_of;
+  std::vector<When> all_of{};
+  std::vector<When> any_of{};  // when there are any, at least one holds
+  std::vector<When> none_of{};
 
   friend bool operator==(const When&, const When&) = default;
 };

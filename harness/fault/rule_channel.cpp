@@ -48,6 +48,7 @@ void RuleChannel::add(RuleState& state, std::string_view receiver, const kernel:
 bool RuleChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
   claims_.clear();
   is_edited_ = false;
+  forget_before(sent.start);
   if (sent.start < closes_) {
     if (can_answer(sent)) {
       spans_.clear();
@@ -154,7 +155,7 @@ void RuleChannel::enter(BoundRule& bound, const Span& span, Piece part, const li
   if (changes_levels(rule.effect)) {
     change_levels(rule, part, sent);
   } else if (const Mute* mute = std::get_if<Mute>(&rule.effect)) {
-    mutes_.push_back({start, start + mute->duration});
+    if (mute->duration > kernel::Duration{}) mutes_.push_back({start, start + mute->duration});
   } else {
     const auto behind = std::find_if(claims_.begin(), claims_.end(),
                                      [&](const Claim& claim) { return claim.part.first > part.first; });
@@ -216,12 +217,15 @@ void RuleChannel::write(const line::Waveform& sent, std::vector<line::Waveform>&
   writer.finish();
 }
 
+void RuleChannel::forget_before(kernel::Time time) {
+  const auto is_over = [&](const Interval& interval) { return interval.to <= time; };
+  std::erase_if(mutes_, is_over);
+  std::erase_if(promised_, is_over);
+}
+
 // Holds the new arrivals against the mutes and against what was promised by earlier transmissions.
 void RuleChannel::settle(const line::Waveform& sent, std::vector<line::Waveform>& arrivals,
                          std::size_t first) {
-  const auto is_over = [&](const Interval& interval) { return interval.to <= sent.start; };
-  std::erase_if(mutes_, is_over);
-  std::erase_if(promised_, is_over);
   if (!mutes_.empty()) silence(arrivals, first);
   const kernel::Time end = sent.end();
   const std::size_t known = promised_.size();

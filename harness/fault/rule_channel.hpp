@@ -65,6 +65,7 @@ class RuleChannel final : public Channel {
   void change_levels(const Rule& rule, Piece part, const line::Waveform& sent);
   line::Levels& levels_to_change(const line::Waveform& sent);
   void write(const line::Waveform& sent, std::vector<line::Waveform>& arrivals);
+  void forget_before(kernel::Time time);
   void settle(const line::Waveform& sent, std::vector<line::Waveform>& arrivals, std::size_t first);
   void silence(std::vector<line::Waveform>& arrivals, std::size_t first) const;
 
