@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -33,7 +34,10 @@ class ArrivalWriter {
 
   // What is written from now on arrives later (or earlier) than it was sent, in addition to what holds.
   void shift(std::int64_t levels) { shift_levels_ += levels; }
-  void shift(kernel::Duration duration) { shift_time_ += duration; }
+  void shift(kernel::Duration duration) {
+    // Many long gaps end where times are still far from their range.
+    shift_time_ = std::min(shift_time_ + duration, kFarthest);
+  }
 
   // Levels of the transmission at their shifted time, and `late` behind it.
   void write(Piece piece, kernel::Duration late = {});
@@ -45,6 +49,8 @@ class ArrivalWriter {
   void finish();
 
  private:
+  static constexpr kernel::Duration kFarthest{4'000'000'000'000'000'000};
+
   const line::Waveform& sent_;
   std::vector<line::Waveform>& arrivals_;
   std::size_t first_arrival_;
