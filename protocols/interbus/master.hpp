@@ -74,6 +74,7 @@ class Master : public MasterDevice, private TopologyDecisions {
   virtual bool accepts_check(const ReturnedCycle& returned) const;
   virtual bool accepts_status(std::uint16_t status) const { return status == rules().status_clean; }
   virtual bool accepts_inputs(std::span<const std::uint16_t>) const { return true; }
+  virtual bool accepts_silence() const { return false; }
   virtual bool hears(const line::Waveform&) const { return true; }
 
   // ---- decisions about what is sent ----
@@ -83,7 +84,6 @@ class Master : public MasterDevice, private TopologyDecisions {
   virtual std::vector<unsigned> output_order() const { return shift_order(); }
   virtual void take_outputs(std::span<const std::uint16_t> image, std::span<std::uint16_t> sent) const;
   virtual bool fills_pause(kernel::Duration) const { return true; }
-  virtual bool sends_status_when_ready() const { return true; }
   virtual kernel::Duration shortest_cycle_time() const;
   virtual kernel::Duration cycle_time_in_force(kernel::Duration shortest) const;
   virtual kernel::Duration lateness(std::uint64_t) const { return {}; }  // of the start of a cycle

@@ -45,7 +45,6 @@ void Master::act(kernel::Time now) {
 void Master::drive_status(kernel::Time now) {
   const kernel::Time end = std::min(now + kStatusRun, recognise_at_);
   action_at_ = end;
-  if (!sends_status_when_ready()) return;
   wave_.start = now;
   wave_.rate = rules().bit_rate;
   wave_.levels.clear();

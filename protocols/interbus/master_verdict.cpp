@@ -60,13 +60,15 @@ void Master::finish_data_cycle(kernel::Time now) {
   const std::size_t words = inputs_.size();
   read_inputs();
   const std::span<const std::uint16_t> brought(returned_words_.data(), words);
-  const bool accepted =
-      accepts_loopback(returned_, 2 * words) && accepts_trailer() && accepts_inputs(brought);
+  const bool is_silent = returned_.count() == 0;
+  const bool accepted = is_silent ? accepts_silence()
+                                  : accepts_loopback(returned_, 2 * words) && accepts_trailer() &&
+                                        accepts_inputs(brought);
   supervision_.count_data_cycle(accepted);
   if (is_stopping_) {
     enter_off();
   } else if (accepted) {
-    std::ranges::copy(brought, inputs_.begin());
+    if (!is_silent) std::ranges::copy(brought, inputs_.begin());
     if (clears_consecutive()) supervision_.clear_consecutive();
     run_copy_task();
   } else {

@@ -1,0 +1,168 @@
+#include "conformance/interbus/master_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace fieldproof::conformance {
+
+using interbus::CycleFaults;
+using interbus::MasterState;
+using interbus::RingEmulator;
+using interbus::VirtualStation;
+
+std::vector<VirtualStation> paper_ring() {
+  return {{0x0008, 0, -1, false}, {0x01BE, 1, 0, true}, {0x01BD, 1, 1, false}};
+}
+
+MasterBench::MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume)
+    : make_master_(std::move(make_master)), volume_(volume), random_(seed) {}
+
+MasterBench::~MasterBench() = default;
+
+void MasterBench::power_up(std::vector<VirtualStation> ring) {
+  if (master_ != nullptr) {
+    stop();
+    // What is still on its way arrives; no station of the old ring is driven any more.
+    back_->set_connected(false);
+    master_->on_cycle_end({});
+    run_for(10 * kernel::kMillisecond);
+  }
+  configuration_.rules = rules_;
+  places_.push_back({make_master_(configuration_), std::make_unique<RingEmulator>(rules_, std::move(ring))});
+  master_ = places_.back().master.get();
+  ring_ = places_.back().ring.get();
+  const std::string number = places_.size() == 1 ? "" : fmt::format("#{}", places_.size());
+  master_seat_ = segment_.attach(*master_, "master" + number);
+  const std::size_t ring_seat = segment_.attach(*ring_, "ring" + number);
+  master_->wire(segment_.connect("ring/in" + number, ring_seat, 0, kernel::Duration{}));
+  back_ = &segment_.connect("master/in" + number, master_seat_, 0, kernel::Duration{});
+  ring_->wire(*back_);
+  ring_->set_script(
+      [this](const RingEmulator::CycleInfo& info, CycleFaults& faults) { ask_script(info, faults); });
+  master_->on_cycle_end(
+      [this](kernel::Time now, bool data, bool accepted) { on_cycle_end(now, data, accepted); });
+  finished_ = {};
+  armed_.reset();
+  faulted_number_.reset();
+  start();
+}
+
+void MasterBench::start() {
+  master_->start(now());
+  segment_.refresh(master_seat_);
+}
+
+void MasterBench::stop() {
+  master_->stop(now());
+  segment_.refresh(master_seat_);
+}
+
+void MasterBench::bring_up(CaseJudge& judge, std::vector<VirtualStation> ring) {
+  power_up(std::move(ring));
+  judge.use_clock([this] { return now(); });
+  judge.use_decode([this] { return ring_->describe_last(6); });
+  judge.expect(wait_for_run(), "not_in_run", [this] {
+    return Sighting{{"the master recognises the ring and runs"},
+                    fmt::format("state {}, {} stations found, error \"{}\"", static_cast<int>(status().state),
+                                status().stations.size(), status().configuration_error)};
+  });
+}
+
+// A cycle with every octet that the ring can need, with time for all delays.
+kernel::Duration MasterBench::longest_cycle() const {
+  const auto octets =
+      static_cast<std::int64_t>(16 + 2 * std::max(ring_->stations().size() + 1, ring_->word_count()));
+  return kernel::levels_duration(octets * 18, rules_.bit_rate) + rules_.software_time +
+         kernel::levels_duration(static_cast<std::int64_t>(ring_->stations().size()) * 3, rules_.bit_rate) +
+         kernel::kMillisecond + configuration_.cycle_time;
+}
+
+bool MasterBench::wait_for_run() {
+  const auto cycles = static_cast<std::int64_t>(8 + 5 * ring_->stations().size());
+  bool is_running = false;
+  run_until(
+      [&] {
+        const MasterState state = status().state;
+        is_running = state == MasterState::run && finished_.data_count > 0;
+        return is_running || state == MasterState::bus_stop;
+      },
+      200 * kernel::kMillisecond + cycles * longest_cycle());
+  return is_running;
+}
+
+bool MasterBench::run_until(const std::function<bool()>& condition, kernel::Duration at_most) {
+  const kernel::Time end = now() + at_most;
+  // The condition can only change with a finished cycle or with the state of a waiting master; both are
+  // looked at once a step of the scheduler would be too dear for what they cost.
+  std::uint64_t seen = finished_.count;
+  kernel::Time look = now();
+  while (true) {
+    if (finished_.count != seen || now() >= look) {
+      if (condition()) return true;
+      seen = finished_.count;
+      look = now() + 5 * kernel::kMillisecond;
+    }
+    if (segment_.scheduler().next() > end) break;
+    segment_.step();
+  }
+  segment_.run_until(end);
+  return condition();
+}
+
+void MasterBench::on_cycle_end(kernel::Time now, bool data_cycle, bool accepted) {
+  ++finished_.count;
+  if (data_cycle) ++finished_.data_count;
+  if (!accepted) ++finished_.rejected_count;
+  finished_.is_data = data_cycle;
+  finished_.is_accepted = accepted;
+  finished_.end = now;
+  if (on_cycle_) on_cycle_();
+}
+
+bool MasterBench::run_cycle() {
+  const std::uint64_t before = finished_.count;
+  const kernel::Time end = now() + 2 * longest_cycle();
+  while (finished_.count == before) {
+    if (segment_.scheduler().next() > end) return false;
+    segment_.step();
+  }
+  return true;
+}
+
+void MasterBench::run_data_cycles(CaseJudge& judge, std::uint64_t count) {
+  const std::uint64_t until = finished_.data_count + count;
+  while (finished_.data_count < until) {
+    judge.expect(run_cycle(), "no_data_cycle", "the master goes on with data cycles",
+                 "no cycle ends any more");
+    judge.expect(finished_.is_data || is_in_run(), "no_data_cycle", "the master goes on with data cycles",
+                 "it has left the state run");
+  }
+}
+
+void MasterBench::ask_script(const RingEmulator::CycleInfo& info, CycleFaults& faults) {
+  if (armed_ && !info.is_id_cycle) {
+    faults = *std::exchange(armed_, std::nullopt);
+    faulted_number_ = info.number;
+    return;
+  }
+  if (script_) script_(info, faults);
+}
+
+bool MasterBench::is_accepted_with(CaseJudge& judge, CycleFaults faults) {
+  armed_ = std::move(faults);
+  faulted_number_.reset();
+  const auto finish = [&](const std::function<bool()>& is_done) {
+    for (int n = 0; n < 8 && !is_done(); ++n) {
+      judge.expect(run_cycle(), "no_data_cycle", "the master goes on with cycles", "no cycle ends any more");
+    }
+    judge.expect(is_done(), "no_data_cycle", "a data cycle within 8 cycles", "none");
+  };
+  finish([&] { return faulted_number_.has_value(); });
+  const bool accepted = finished_.is_accepted;
+  finish([&] { return finished_.is_data && finished_.is_accepted; });
+  return accepted;
+}
+
+}  // namespace fieldproof::conformance

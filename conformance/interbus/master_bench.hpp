@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "conformance/interbus/ring_emulator.hpp"
+#include "conformance/judging.hpp"
+#include "harness/kernel/random.hpp"
+#include "harness/segment/segment.hpp"
+#include "protocols/interbus/device.hpp"
+
+// The bench of one case for a master: a segment, the master under test and the ring emulator that is its
+// lower tester. The master's application interface is the upper tester.
+//
+// A procedure sets `rules()`, `configuration()` and then powers up with a ring; afterwards it runs cycles.
+// The reasons that a master does not get as far as the case needs are the bench's: `not_in_run`,
+// `no_data_cycle`.
+namespace fieldproof::conformance {
+
+class MasterBench {
+ public:
+  using MakeMaster =
+      std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)>;
+
+  MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume);
+  ~MasterBench();
+  MasterBench(const MasterBench&) = delete;
+  MasterBench& operator=(const MasterBench&) = delete;
+
+  // What the next power-up uses. The rules also hold for the emulated ring.
+  interbus::Rules& rules() { return rules_; }
+  interbus::MasterConfiguration& configuration() { return configuration_; }
+
+  // `quick` or `full` repetitions.
+  template <typename Count>
+  Count volume(Count quick, Count full) const {
+    return volume_ == Volume::quick ? quick : full;
+  }
+  kernel::Random& random() { return random_; }
+
+  // A fresh master on a fresh ring; starts it. Everything from an earlier power-up is gone, but time goes on.
+  void power_up(std::vector<interbus::VirtualStation> ring);
+  // The same, and waits for run.
+  void bring_up(CaseJudge& judge, std::vector<interbus::VirtualStation> ring);
+  bool wait_for_run();
+
+  interbus::MasterDevice& master() { return *master_; }
+  interbus::RingEmulator& ring() { return *ring_; }
+  segment::Segment& segment() { return segment_; }
+  kernel::Time now() const { return segment_.now(); }
+
+  // From outside of the segment's run.
+  void start();
+  void stop();
+
+  void run_for(kernel::Duration duration) { segment_.run_for(duration); }
+  // False when the duration has passed without the condition.
+  bool run_until(const std::function<bool()>& condition, kernel::Duration at_most);
+
+  // ---- cycles, as the application is told of them ----
+  struct FinishedCycle {
+    std::uint64_t count = 0;  // finished cycles of either kind
+    std::uint64_t data_count = 0;
+    std::uint64_t rejected_count = 0;
+    bool is_data = false;  // the last one
+    bool is_accepted = false;
+    kernel::Time end{};
+  };
+  const FinishedCycle& finished() const { return finished_; }
+  // Called after each finished cycle; the application of the case.
+  void on_cycle(std::function<void()> hook) { on_cycle_ = std::move(hook); }
+  void run_data_cycles(CaseJudge& judge, std::uint64_t count);
+  // Any cycle that the master finishes next. False when it finishes none any more.
+  bool run_cycle();
+
+  // The next data cycle suffers the faults; gives whether the application was told of a good cycle. Then the
+  // master is given the time to finish a good data cycle again.
+  bool is_accepted_with(CaseJudge& judge, interbus::CycleFaults faults);
+  // Faults of every cycle from now on, until cleared with nothing.
+  void set_script(interbus::RingEmulator::Script script) { script_ = std::move(script); }
+
+  interbus::MasterStatus status() const { return master_->status(); }
+  bool is_in_run() const { return status().state == interbus::MasterState::run; }
+
+ private:
+  void on_cycle_end(kernel::Time now, bool data_cycle, bool accepted);
+  void ask_script(const interbus::RingEmulator::CycleInfo& info, interbus::CycleFaults& faults);
+  kernel::Duration longest_cycle() const;
+
+  // Masters and rings of earlier power-ups stay in the segment, with nothing to do.
+  struct Place {
+    std::unique_ptr<interbus::MasterDevice> master;
+    std::unique_ptr<interbus::RingEmulator> ring;
+  };
+
+  MakeMaster make_master_;
+  Volume volume_;
+  kernel::Random random_;
+  interbus::Rules rules_;
+  interbus::MasterConfiguration configuration_;
+  std::vector<Place> places_;
+  segment::Segment segment_;
+  interbus::MasterDevice* master_ = nullptr;
+  interbus::RingEmulator* ring_ = nullptr;
+  segment::Link* back_ = nullptr;
+  std::size_t master_seat_ = 0;
+  FinishedCycle finished_;
+  std::function<void()> on_cycle_;
+  interbus::RingEmulator::Script script_;
+  std::optional<interbus::CycleFaults> armed_;
+  std::optional<std::uint64_t> faulted_number_;  // of the data cycle that suffered them
+};
+
+// The ring of the cycle-time paper: a coupler, behind its second interface 16 inputs and 16 outputs.
+std::vector<interbus::VirtualStation> paper_ring();
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "conformance/interbus/master_bench.hpp"
+#include "conformance/test_case.hpp"
+
+// Masters that misbehave: each is the reference with one decision overridden or with one number of its rules
+// changed. The suite's cases say which of them they catch.
+namespace fieldproof::conformance {
+
+const std::vector<Deviation>& master_deviations();
+
+// A deviating master by name, null for an unknown one.
+MasterBench::MakeMaster deviating_master(std::string_view name);
+
+// What makes the master of a URI: "ref" or "deviant:NAME". Throws kernel::Error(usage) for anything else,
+// with the nearest names.
+MasterBench::MakeMaster make_master(std::string_view uri);
+
+}  // namespace fieldproof::conformance

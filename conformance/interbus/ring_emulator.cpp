@@ -1,0 +1,222 @@
+#include "conformance/interbus/ring_emulator.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "harness/kernel/check.hpp"
+
+namespace fieldproof::interbus {
+
+namespace {
+
+constexpr std::uint16_t kPolynomial = 0x1021;
+constexpr std::uint16_t kPreset = 0xFFFF;
+
+// What eight steps of the division do to a register whose upper octet is `octet`.
+constexpr std::array<std::uint16_t, 256> make_steps() {
+  std::array<std::uint16_t, 256> steps{};
+  for (unsigned octet = 0; octet < 256; ++octet) {
+    unsigned bits = octet << 8;
+    for (int bit = 0; bit < 8; ++bit) bits = (bits & 0x8000) != 0 ? (bits << 1) ^ kPolynomial : bits << 1;
+    steps[octet] = static_cast<std::uint16_t>(bits);
+  }
+  return steps;
+}
+constexpr std::array<std::uint16_t, 256> kSteps = make_steps();
+
+std::uint16_t divide(std::uint16_t check, std::uint8_t octet) {
+  return static_cast<std::uint16_t>((check << 8) ^ kSteps[static_cast<std::size_t>((check >> 8) ^ octet)]);
+}
+
+}  // namespace
+
+std::vector<VirtualStation> line_of(std::size_t count, std::uint16_t id_code, unsigned words) {
+  std::vector<VirtualStation> stations;
+  for (std::size_t n = 0; n < count; ++n)
+    stations.push_back({id_code, words, static_cast<int>(n) - 1, false});
+  return stations;
+}
+
+bool CycleFaults::is_none() const {
+  return flips.empty() && longer_bits == 0 && dropped < 0 && duplicated < 0 && inserted < 0 &&
+         stop_missing < 0 && flag_flipped < 0 && header_flipped < 0 && !status_flag_flipped &&
+         !trailing_telegram && marked_by < 0 && !stuck;
+}
+
+RingEmulator::RingEmulator(const Rules& rules, std::vector<VirtualStation> stations)
+    : rules_(rules), code_(rules_.telegram), receiver_(code_, rules_.bit_rate) {
+  for (unsigned n = 0; n < 3; ++n) {
+    if (rules_.telegram.header.at(n) == line::HeaderLevel::flag) flag_level_ = n + 1;
+  }
+  replace_ring(std::move(stations));
+  reset_stations();
+}
+
+std::uint16_t RingEmulator::check_of(std::span<const std::uint8_t> octets) {
+  std::uint16_t check = kPreset;
+  for (const std::uint8_t octet : octets) check = divide(check, octet);
+  return check;
+}
+
+// ---- the ring ----
+
+void RingEmulator::replace_ring(std::vector<VirtualStation> stations) {
+  stations_ = std::move(stations);
+  first_words_.clear();
+  unsigned words = 0;
+  for (const VirtualStation& station : stations_) {
+    first_words_.push_back(words);
+    words += station.words;
+  }
+  inputs_.resize(words);
+  outputs_.assign(words, 0);
+  steady_messages_.assign(stations_.size(), 0);
+  error_messages_.assign(stations_.size(), 0);
+  interfaces_.assign(stations_.size(), 0);
+  close_ring();
+}
+
+void RingEmulator::reset_stations() {
+  std::ranges::fill(outputs_, std::uint16_t{0});
+  std::ranges::fill(error_messages_, std::uint16_t{0});
+  std::ranges::fill(interfaces_,
+                    static_cast<std::uint16_t>(rules_.control_remote_off | rules_.control_local_off));
+  close_ring();
+  if (on_outputs_) on_outputs_(outputs_, last_end_ + rules_.silence_limit);
+}
+
+// Which stations the interfaces that are switched on make a ring of. A station that drops out of it comes
+// back in reset.
+void RingEmulator::close_ring() {
+  active_.clear();
+  word_order_.clear();
+  std::vector<bool> in_ring(stations_.size());
+  for (std::size_t n = 0; n < stations_.size(); ++n) {
+    const VirtualStation& station = stations_[n];
+    if (station.before >= 0) {
+      const auto before = static_cast<std::size_t>(station.before);
+      const std::uint16_t off = station.on_branch ? rules_.control_local_off : rules_.control_remote_off;
+      if (!in_ring[before] || (interfaces_[before] & off) != 0) {
+        interfaces_[n] = static_cast<std::uint16_t>(rules_.control_remote_off | rules_.control_local_off);
+        continue;
+      }
+    }
+    in_ring[n] = true;
+    active_.push_back(n);
+  }
+  for (auto n = active_.rbegin(); n != active_.rend(); ++n) {
+    for (unsigned word = 0; word < stations_[*n].words; ++word)
+      word_order_.push_back(first_words_[*n] + word);
+  }
+}
+
+bool RingEmulator::is_open() const {
+  if (active_.empty()) return true;
+  if (!cut_after_) return false;
+  return std::ranges::any_of(active_, [this](std::size_t n) { return stations_[n].before == *cut_after_; });
+}
+
+kernel::Duration RingEmulator::delay() const {
+  const auto half_bits = static_cast<std::int64_t>(active_.size()) *
+                         (rules_.forward_delay_half_bits + rules_.return_delay_half_bits);
+  return extra_delay_ + kernel::levels_duration(half_bits, 2 * rules_.bit_rate);
+}
+
+// ---- the line ----
+
+void RingEmulator::receive(segment::PortIndex, const line::Waveform& reception) {
+  if (reception.start - last_end_ > rules_.silence_limit && statistics_.first_telegram != kernel::kNever) {
+    reset_stations();
+  }
+  const bool was_open = is_open();
+  out_.start = reception.start + delay();
+  out_.rate = reception.rate * rate_per_mille_ / 1000;
+  out_.levels.clear();
+  wave_end_level_ = 0;
+  receiver_.receive(reception,
+                    [this](const line::Waveform& wave, const line::Telegram& t) { on_telegram(wave, t); });
+  if (wave_end_level_ > 0) last_end_ = reception.time_of(wave_end_level_);
+  if (is_faulted_ && faults_.stuck) {
+    const std::size_t size = reception.levels.size();
+    out_.levels.clear();
+    if (!*faults_.stuck) out_.levels.append_fill(false, size);
+  }
+  if (!was_open && !out_.levels.empty()) back_->drive(out_);
+}
+
+void RingEmulator::on_time(kernel::Time now) {
+  out_.start = now + delay();
+  out_.levels.clear();
+  receiver_.flush([this](const line::Waveform& wave, line::Telegram t) {
+    last_end_ = wave.time_of(t.level + t.levels());
+    t.level = 0;
+    on_telegram(wave, t);
+  });
+  if (!is_open() && !out_.levels.empty()) back_->drive(out_);
+}
+
+void RingEmulator::note_gap(kernel::Time start, kernel::Time last_end) {
+  if (statistics_.first_telegram == kernel::kNever) {
+    statistics_.first_telegram = start;
+  } else if (last_end != kernel::Time{kernel::Duration::min()}) {
+    statistics_.longest_silence = std::max(statistics_.longest_silence, start - last_end);
+  }
+}
+
+kernel::Duration RingEmulator::silence_until(kernel::Time now) const {
+  if (statistics_.first_telegram == kernel::kNever) return now - kernel::kStart;
+  return std::max(now - last_end_, kernel::Duration::zero());
+}
+
+void RingEmulator::on_telegram(const line::Waveform& wave, const line::Telegram& telegram) {
+  if (wave_end_level_ == 0) {
+    note_gap(wave.time_of(telegram.level), last_end_);
+  } else if (telegram.level - wave_end_level_ > 4 * line::kDataTelegramLevels) {
+    note_gap(wave.time_of(telegram.level), wave.time_of(wave_end_level_));
+  }
+  wave_end_level_ = telegram.level + telegram.levels();
+  if (!telegram.is_data()) return on_status(telegram);
+  const bool is_check = (telegram.header & line::kControl) != 0;
+  const bool is_id = (telegram.header & line::kSelect) != 0;
+  if (!is_check && (phase_ != Phase::transfer || is_id != is_id_cycle_)) begin_cycle(wave, telegram);
+  if (cycle_count_ == 0) return;  // a check phase without a cycle
+  SeenCycle& seen = open_cycle();
+  seen.octets.push_back(telegram.data);
+  seen.headers.push_back(telegram.header);
+  seen.levels.push_back(telegram.level);
+  if (is_check) {
+    if (is_id != is_id_cycle_) {
+      seen.in_phase = false;
+      ++statistics_.wrong_phases;
+    }
+    on_check(wave, telegram);
+  } else {
+    on_transfer(telegram);
+  }
+}
+
+void RingEmulator::on_status(const line::Telegram& telegram) {
+  ++statistics_.status_telegrams;
+  std::uint64_t levels = code_.levels_of(0, 0);
+  unsigned count = line::kStatusTelegramLevels;
+  if (std::exchange(expects_status_, false) && is_faulted_) {
+    if (faults_.status_flag_flipped) {
+      // The receiver takes the idle line behind it for data.
+      levels = (levels | ~std::uint64_t{0} << count) ^ (std::uint64_t{1} << flag_level_);
+      count = line::kDataTelegramLevels;
+    }
+    if (faults_.trailing_telegram) {
+      emit_levels(telegram.level, code_.levels_of(line::kDataTelegram | line::kControl, 0),
+                  line::kDataTelegramLevels);
+    }
+  }
+  emit_levels(telegram.level, levels, count);
+}
+
+void RingEmulator::emit_levels(std::size_t level, std::uint64_t levels, unsigned count) {
+  const std::size_t size = out_.levels.size();
+  if (level > size) out_.levels.append_idle(level - size);
+  out_.levels.append(levels, count);
+}
+
+}  // namespace fieldproof::interbus
