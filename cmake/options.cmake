@@ -22,6 +22,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   target_compile_options(fieldproof_warnings INTERFACE
     -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  # std::stable_sort of libstdc++ 12 calls a function that libstdc++ itself marks as deprecated.
+  target_compile_options(fieldproof_warnings INTERFACE -Wno-deprecated-declarations)
+endif()
 
 # Code that is under test in a fuzz build. The frame check stays outside: its inner loop would be counted, not tested.
 add_library(fieldproof_instrumented INTERFACE)
