@@ -45,11 +45,8 @@ void add_option(CLI::App& app, const Option& option, Collected::Value& value) {
   }
   value.parsed = app.add_option(name, value.words, help_of(option));
   value.parsed->type_name(std::string(option.value_name));
-  if (option.kind == OptionKind::optional_value) {
-    value.parsed->expected(0, 1);
-  } else {
-    value.parsed->allow_extra_args(false);
-  }
+  if (option.kind == OptionKind::optional_value) value.parsed->expected(0, 1);
+  value.parsed->allow_extra_args(false);
 }
 
 void add_verb(CLI::App& program, const Verb& verb, Collected& collected) {

@@ -156,6 +156,8 @@ void Settings::add_file(const std::filesystem::path& file, Origin origin) {
       const auto own = settings_.find(option.name);
       if (!value || own == settings_.end() || !is_known_to(option, verb_)) continue;
       if (own->second.origin != Origin::fallback) continue;
+      // Where the stored run went and how it was shown is no matter of this one.
+      if (origin == Origin::stored_run && !option.decides_outcome) continue;
       own->second = from_file(option, *value, file.string(), origin);
     }
   });

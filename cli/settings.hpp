@@ -44,7 +44,8 @@ class Settings {
  public:
   Settings(const Command& command, const Environment& environment);
 
-  // Takes over from a configuration file what has only a default until now.
+  // Takes over from a configuration file what has only a default until now; from a stored run only what
+  // decides the outcome.
   void add_file(const std::filesystem::path& file, Origin origin);
 
   bool is_set(std::string_view name) const;  // a flag that is on, a value that is given

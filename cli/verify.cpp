@@ -39,6 +39,14 @@ bool is_equal(const judge::CaseResult& a, const judge::CaseResult& b) {
   return a.fingerprint == b.fingerprint && a.verdict == b.verdict && a.reason == b.reason;
 }
 
+// "fail 0123456789abcdef (late_answer)"
+std::string told(const judge::CaseResult& result) {
+  const std::string reason =
+      result.reason.empty() ? "" : fmt::format(" ({})", reports::escaped_line(result.reason));
+  return fmt::format("{} {}{}", judge::name(result.verdict), judge::fingerprint_text(result.fingerprint),
+                     reason);
+}
+
 // The first line in which two recordings differ, or where the shorter one ends.
 std::string first_divergence(const conformance::Entry& entry, const conformance::Setup& setup) {
   const auto once =
@@ -89,10 +97,7 @@ class Comparison {
         std::find(differing_.begin(), differing_.end(), index) != differing_.end())
       return;
     differing_.push_back(index);
-    session_.terminal.print(
-        fmt::format("differs: {}: {} {} {}, then {} {} {}\n", result.id, judge::name(before.verdict),
-                    judge::fingerprint_text(before.fingerprint), before.reason, judge::name(result.verdict),
-                    judge::fingerprint_text(result.fingerprint), result.reason));
+    session_.terminal.print(fmt::format("differs: {}: {}, then {}\n", result.id, told(before), told(result)));
     session_.terminal.print(first_divergence(target_.entries[index], target_.setup));
   }
 

@@ -2,9 +2,5 @@
 #include "cli/program.hpp"
 
 int main(int argc, char** argv) {
-  return fieldproof::cli::run_program(argc, argv, [] {
-    fieldproof::cli::Suites suites;
-    suites.push_back(fieldproof::cli::probe_suite());
-    return suites;
-  });
+  return fieldproof::cli::run_program(argc, argv, &fieldproof::cli::probe_suites);
 }

@@ -103,7 +103,7 @@ SuiteOfFunctions::Function answering(Verdict verdict, std::string reason) {
 TestCase named(std::string id, std::vector<std::string> tags = {},
                std::vector<conformance::Catch> catches = {}) {
   TestCase test_case;
-  test_case.id = "probe/" + id;
+  test_case.id = id;
   test_case.purpose = fmt::format("P-{}", id.substr(id.rfind('/') + 1));
   test_case.requirement = "what the probe asks for";
   test_case.reference = {"the probe", "", judge::Standing::own};
@@ -115,15 +115,15 @@ TestCase named(std::string id, std::vector<std::string> tags = {},
 }
 
 void add_ends(SuiteOfFunctions& suite) {
-  suite.add(named("end/fails", {"odd"}), answering(Verdict::fail, "always"));
-  suite.add(named("end/warns", {"odd"}), answering(Verdict::warn, "odd_but_allowed"));
-  suite.add(named("end/is_inconclusive", {"odd"}), answering(Verdict::inconclusive, "too_close"));
-  suite.add(named("end/does_not_apply", {"odd"}), answering(Verdict::not_applicable, "no such option"));
-  suite.add(named("end/breaks", {"odd"}), [](const TestCase&, const Setup&) -> Outcome {
+  suite.add(named("odd/end/fails", {"odd"}), answering(Verdict::fail, "always"));
+  suite.add(named("odd/end/warns", {"odd"}), answering(Verdict::warn, "odd_but_allowed"));
+  suite.add(named("odd/end/is_inconclusive", {"odd"}), answering(Verdict::inconclusive, "too_close"));
+  suite.add(named("odd/end/does_not_apply", {"odd"}), answering(Verdict::not_applicable, "no such option"));
+  suite.add(named("odd/end/breaks", {"odd"}), [](const TestCase&, const Setup&) -> Outcome {
     FIELDPROOF_CHECK(false, "the probe breaks as it promised");
     return {};
   });
-  suite.add(named("end/never_repeats", {"odd"}), [](const TestCase&, const Setup& setup) {
+  suite.add(named("odd/end/never_repeats", {"odd"}), [](const TestCase&, const Setup& setup) {
     static std::atomic<std::uint64_t> calls{0};
     Outcome outcome = judged(setup, Verdict::pass);
     outcome.result.fingerprint = ++calls;
@@ -132,30 +132,53 @@ void add_ends(SuiteOfFunctions& suite) {
   });
 }
 
-}  // namespace
+void add_slow(SuiteOfFunctions& suite) {
+  for (int i = 0; i < 40; ++i) {
+    suite.add(
+        named(fmt::format("odd/slow/case_{:02}", i), {"slow"}), [i](const TestCase&, const Setup& setup) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(50));
+          return i % 4 == 1 ? judged(setup, Verdict::fail, "each_fourth") : judged(setup, Verdict::pass);
+        });
+  }
+}
 
-std::unique_ptr<conformance::Suite> probe_suite() {
-  auto suite = std::make_unique<SuiteOfFunctions>(
-      "probe", std::vector<std::string>{"station", "other", "end", "slow"});
+std::unique_ptr<SuiteOfFunctions> good_suite() {
+  auto suite = std::make_unique<SuiteOfFunctions>("probe", std::vector<std::string>{"station"});
   suite->add({"swapped", "M1", "station", "swaps the octets of a word"});
   suite->add({"late", "M2", "station", "answers late"});
-  suite->add({"unreachable", "M3", "other", "does not answer at all"});
   for (const char* name : {"word_is_latched", "word_is_held", "word_is_cleared"}) {
-    suite->add(named(fmt::format("station/data/{}", name), {"must"}, {{"swapped", "wrong_word"}}),
+    suite->add(named(fmt::format("probe/station/data/{}", name), {"must"}, {{"swapped", "wrong_word"}}),
                failing_on("swapped", "wrong_word"));
   }
-  suite->add(named("station/time/answer_is_in_time", {"must", "timing"}, {{"late", "late_answer"}}),
+  suite->add(named("probe/station/time/answer_is_in_time", {"must", "timing"}, {{"late", "late_answer"}}),
              failing_on("late", "late_answer"));
-  suite->add(named("station/canary", {"canary"}), answering(Verdict::fail, "canary"));
-  suite->add(named("other/poll/is_first"), failing_on("unreachable", "unreachable"));
-  add_ends(*suite);
-  for (int i = 0; i < 40; ++i) {
-    suite->add(named(fmt::format("slow/case_{:02}", i), {"slow"}), [i](const TestCase&, const Setup& setup) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      return i % 4 == 1 ? judged(setup, Verdict::fail, "each_fourth") : judged(setup, Verdict::pass);
-    });
-  }
+  suite->add(named("probe/station/canary", {"canary"}), answering(Verdict::fail, "canary"));
   return suite;
+}
+
+std::unique_ptr<SuiteOfFunctions> odd_suite() {
+  auto suite = std::make_unique<SuiteOfFunctions>("odd", std::vector<std::string>{"end", "slow"});
+  suite->add({"unseen", "M1", "end", "nothing catches it"});
+  add_ends(*suite);
+  add_slow(*suite);
+  return suite;
+}
+
+std::unique_ptr<SuiteOfFunctions> gone_suite() {
+  auto suite = std::make_unique<SuiteOfFunctions>("gone", std::vector<std::string>{"station"});
+  suite->add({"unreachable", "M1", "station", "does not answer at all"});
+  suite->add(named("gone/station/is_there"), failing_on("unreachable", "unreachable"));
+  return suite;
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<conformance::Suite>> probe_suites() {
+  std::vector<std::unique_ptr<conformance::Suite>> suites;
+  suites.push_back(good_suite());
+  suites.push_back(odd_suite());
+  suites.push_back(gone_suite());
+  return suites;
 }
 
 }  // namespace fieldproof::cli

@@ -1,0 +1,417 @@
+// Subject: the program as its user meets it. Every exit code is shown on fieldproof_probe, whose suites end
+// as their names say, and on fieldproof itself where no suite is needed.
+#include "cli/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "cli/probe/called_program.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Program : public testing::Test {
+ protected:
+  Program() {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / ("fieldproof_" + std::to_string(getpid())) / test.name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Program() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+
+  Call call(std::vector<std::string> arguments) const {
+    Call made;
+    made.program = FIELDPROOF_PROBE;
+    made.arguments = std::move(arguments);
+    made.folder = folder_;
+    return made;
+  }
+  Called probe(std::vector<std::string> arguments) const { return call(std::move(arguments)).run(); }
+  int code(std::vector<std::string> arguments) const { return probe(std::move(arguments)).exit_code; }
+
+  std::string read(const fs::path& file) const {
+    std::ifstream input(folder_ / file);
+    std::stringstream text;
+    text << input.rdbuf();
+    return text.str();
+  }
+  void write(const fs::path& file, const std::string& text) const { std::ofstream(folder_ / file) << text; }
+
+  fs::path case_file(const fs::path& run) const {
+    for (const auto& file : fs::recursive_directory_iterator(folder_ / run)) {
+      if (file.path().filename() == "case.json") return file.path();
+    }
+    return {};
+  }
+
+  fs::path folder_;
+};
+
+std::string last_line(const std::string& text) {
+  std::stringstream lines(text);
+  std::string line;
+  std::string last;
+  while (std::getline(lines, line)) {
+    if (!line.empty()) last = line;
+  }
+  return last;
+}
+
+#define EXPECT_HOLDS(text, part) EXPECT_NE((text).find(part), std::string::npos) << "in\n" << (text)
+
+using ExitCode = Program;
+
+TEST_F(ExitCode, ZeroWhenAllPass) {
+  const Called called = probe({"run", "probe/**"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_EQ(called.out.rfind("fieldproof ", 0), 0U) << called.out;
+  for (const char* part : {"seed 1,", "suite 0.", "build ", "plan none"}) EXPECT_HOLDS(called.out, part);
+  EXPECT_EQ(code({"run", "odd/end/warns"}), 0);
+}
+
+TEST_F(ExitCode, OneWhenACaseFailsAndTheLastLineReproducesIt) {
+  const Called called = probe({"run", "probe/**", "--iut", "deviant:swapped", "--seed", "77"});
+  EXPECT_EQ(called.exit_code, 1) << called.err;
+  const std::string command =
+      "fieldproof run probe/station/data/word_is_latched --iut deviant:swapped --seed 77";
+  EXPECT_EQ(last_line(called.out), "reproduce: " + command);
+  EXPECT_EQ(code({"run", "odd/end/warns", "--strict"}), 1);
+}
+
+TEST_F(ExitCode, TwoWhenACaseIsInconclusive) {
+  EXPECT_EQ(code({"run", "odd/end/is_inconclusive", "probe/**"}), 2);
+  EXPECT_EQ(code({"run", "odd/end/is_inconclusive", "--allow-inconclusive"}), 0);
+  EXPECT_EQ(code({"run", "odd/end/is_inconclusive", "--strict"}), 1);
+}
+
+TEST_F(ExitCode, ThreeWhenAFingerprintDiffers) {
+  const Called called = probe({"verify", "odd/end/never_repeats"});
+  EXPECT_EQ(called.exit_code, 3);
+  EXPECT_HOLDS(called.out, "first difference in line 3 of the recording");
+  EXPECT_EQ(code({"verify", "probe/**", "-n", "3"}), 0);
+}
+
+TEST_F(ExitCode, FourWhenNothingIsJudged) {
+  EXPECT_EQ(code({"run", "odd/end/does_not_apply"}), 4);
+  EXPECT_EQ(code({"run", "probe/**", "!probe/**"}), 4);
+  EXPECT_EQ(code({"run", "odd/end/*", "--iut", "station=ref"}), 4);
+}
+
+TEST_F(ExitCode, FiveWhenTheImplementationIsNotUsable) {
+  const Called called = probe({"run", "gone/**", "--iut", "deviant:unreachable"});
+  EXPECT_EQ(called.exit_code, 5);
+  EXPECT_HOLDS(called.err, "the station does not answer");
+  EXPECT_EQ(code({"matrix", "gone"}), 5);
+}
+
+TEST_F(ExitCode, SixtyFourForAWrongCommandLine) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{},
+                                             {"rum"},
+                                             {"run", "--sed", "1"},
+                                             {"run", "--seed", "x"},
+                                             {"run", "--seed", "1", "--seed", "2"},
+                                             {"run", "--volume", "loud"},
+                                             {"run", "--max-time", "soon"},
+                                             {"run", "--jobs", "0"},
+                                             {"run", "nothing/**"},
+                                             {"run", "--iut", "deviant:unknown"},
+                                             {"run", "--iut", "station@0=ref"},
+                                             {"run", "--iut", "driver=ref"},
+                                             {"run", "--iut", "carrier:pigeon"},
+                                             {"explain", "probe/x"},
+                                             {"explain"},
+                                             {"matrix", "prob"},
+                                             {"diff", "a"}}) {
+    const Called called = probe(arguments);
+    EXPECT_EQ(called.exit_code, 64) << testing::PrintToString(arguments) << called.err;
+    EXPECT_EQ(called.err.rfind("fieldproof: ", 0), 0U) << called.err;
+    EXPECT_EQ(std::count(called.err.begin(), called.err.end(), '\n'), 1) << called.err;
+  }
+}
+
+TEST_F(ExitCode, SixtyFourNamesTheNeighboursOfAnUnmatchedSelector) {
+  const Called called = probe({"run", "probe/station/data/word_is_heald"});
+  EXPECT_EQ(called.exit_code, 64);
+  EXPECT_HOLDS(called.err, "the nearest are 'probe/station/data/word_is_held'");
+}
+
+TEST_F(ExitCode, SixtyFiveNamesLineAndPointerOfABadFile) {
+  write("plan.json", "{\n  \"rules\": [\n    1,\n    77\n  ]\n}\n");
+  const Called plan = probe({"run", "probe/**", "--plan", "plan.json"});
+  EXPECT_EQ(plan.exit_code, 65);
+  EXPECT_HOLDS(plan.err, "plan.json:4: /rules/1: ");
+  write("lab.json", "{\n  \"sed\": 4\n}\n");
+  const Called lab = probe({"run", "probe/**", "--config", "lab.json"});
+  EXPECT_EQ(lab.exit_code, 65);
+  EXPECT_HOLDS(lab.err, "lab.json:2: ");
+  EXPECT_HOLDS(lab.err, "\"seed\"");
+  write("pics.json", "{\"items\": {\"x\": [1]}}");
+  EXPECT_EQ(code({"run", "probe/**", "--pics", "pics.json"}), 65);
+  EXPECT_EQ(code({"replay", "nowhere.json"}), 65);
+  EXPECT_EQ(code({"judge", "nowhere"}), 65);
+}
+
+TEST_F(ExitCode, SeventyForABrokenInvariant) {
+  const Called called = probe({"run", "odd/end/breaks", "probe/**"});
+  EXPECT_EQ(called.exit_code, 70);
+  EXPECT_HOLDS(called.out, "the probe breaks as it promised");
+  EXPECT_HOLDS(called.out, "internal_error");
+}
+
+TEST_F(ExitCode, OfTheRealProgramForWordsAndFiles) {
+  Call real = call({"explain", "no/such/case"});
+  real.program = FIELDPROOF_EXE;
+  EXPECT_EQ(real.run().exit_code, 64);
+  real.arguments = {"replay", "nowhere.json"};
+  EXPECT_EQ(real.run().exit_code, 65);
+  real.arguments = {"--version"};
+  const Called version = real.run();
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.out.rfind("fieldproof ", 0), 0U);
+}
+
+using Interrupted = Program;
+
+TEST_F(Interrupted, BySigintWritesThePartialResult) {
+  Call interrupted = call({"run", "odd/slow/**", "--out", "stopped", "--jobs", "1"});
+  interrupted.signal = SIGINT;
+  interrupted.signal_after = "case_02";
+  const Called called = interrupted.run();
+  EXPECT_EQ(called.exit_code, 130);
+  EXPECT_HOLDS(called.out, "the result is incomplete: interrupted by SIGINT");
+  EXPECT_HOLDS(read("stopped/results.json"), "interrupted by SIGINT");
+  EXPECT_HOLDS(read("stopped/results.json"), "odd/slow/case_02");
+}
+
+TEST_F(Interrupted, BySigtermWritesThePartialResult) {
+  Call interrupted = call({"run", "odd/slow/**", "--out", "stopped", "--jobs", "2"});
+  interrupted.signal = SIGTERM;
+  interrupted.signal_after = "case_02";
+  EXPECT_EQ(interrupted.run().exit_code, 143);
+  EXPECT_HOLDS(read("stopped/results.json"), "interrupted by SIGTERM");
+}
+
+TEST_F(Interrupted, BySigkillKeepsEveryVerdictThatWasPrinted) {
+  Call killed = call({"run", "odd/slow/**", "--out", "killed", "--jobs", "2", "--seed", "5"});
+  killed.signal = SIGKILL;
+  killed.signal_after = "case_09";
+  const Called called = killed.run();
+  EXPECT_EQ(called.exit_code, 137);
+  const std::string journal = read("killed/journal.jsonl");
+  std::stringstream lines(called.out);
+  std::size_t printed = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t begin = line.find("odd/slow/");
+    if (begin == std::string::npos) continue;
+    ++printed;
+    EXPECT_HOLDS(journal, "\"" + line.substr(begin, 16) + "\"");
+  }
+  EXPECT_GE(printed, 10U);
+  EXPECT_EQ(code({"diff", "killed", "killed"}), 0);
+
+  const Called failed = probe({"run", "--failed", "killed", "--jobs", "2"});
+  EXPECT_EQ(failed.exit_code, 1) << failed.err;
+  EXPECT_HOLDS(failed.out, "seed 5,");
+  EXPECT_HOLDS(failed.out, "fail           odd/slow/case_09");
+  EXPECT_EQ(failed.out.find("odd/slow/case_02"), std::string::npos);
+
+  const Called resumed = probe({"run", "--resume", "killed", "--jobs", "2"});
+  EXPECT_EQ(resumed.exit_code, 1) << resumed.err;
+  EXPECT_HOLDS(resumed.out, "40 of 40 selected cases judged: 30 pass, 10 fail");
+  EXPECT_EQ(resumed.out.find("pass           odd/slow/case_00"), std::string::npos);
+
+  // What was interrupted and finished is the same as what was never interrupted.
+  EXPECT_EQ(code({"run", "odd/slow/**", "--out", "whole", "--jobs", "2", "--seed", "5", "--quiet"}), 1);
+  EXPECT_EQ(read("killed/results.json"), read("whole/results.json"));
+}
+
+TEST_F(Interrupted, ByMaxTimeIsMarkedIncomplete) {
+  const Called called = probe({"run", "odd/slow/**", "--max-time", "600ms", "--jobs", "1", "--out", "short"});
+  EXPECT_EQ(called.exit_code, 1);
+  EXPECT_HOLDS(called.out, "the result is incomplete: the time of --max-time was over");
+}
+
+TEST_F(Interrupted, RunIsOnlyResumedAsItWas) {
+  EXPECT_EQ(code({"run", "odd/slow/**", "--fail-fast", "--out", "short"}), 1);
+  EXPECT_EQ(code({"run", "--resume", "short", "--seed", "2"}), 64);
+  EXPECT_EQ(code({"run", "--resume", "short", "probe/**"}), 64);
+  EXPECT_EQ(code({"run", "--resume", "short", "--failed"}), 64);
+}
+
+using Stored = Program;
+
+TEST_F(Stored, ResultsAreTheSameBytesForAnyNumberOfJobs) {
+  const std::vector<std::string> all = {"run", "probe/**", "odd/slow/**", "+odd", "!odd/end/never_repeats"};
+  std::vector<std::string> outputs;
+  for (const char* jobs : {"1", "2", "4"}) {
+    std::vector<std::string> arguments = all;
+    arguments.insert(arguments.end(), {"--jobs", jobs, "--out", std::string("jobs") + jobs});
+    outputs.push_back(probe(arguments).out);
+  }
+  EXPECT_EQ(outputs[0], outputs[1]);
+  EXPECT_EQ(outputs[0], outputs[2]);
+  EXPECT_FALSE(read("jobs1/results.json").empty());
+  EXPECT_EQ(read("jobs1/results.json"), read("jobs2/results.json"));
+  EXPECT_EQ(read("jobs1/results.json"), read("jobs4/results.json"));
+}
+
+TEST_F(Stored, RunsLieBelowRunsWithALinkToTheLatest) {
+  EXPECT_EQ(code({"run", "probe/**"}), 0);
+  for (const char* file :
+       {"manifest.json", "results.json", "junit.xml", "journal.jsonl", "configuration.json"}) {
+    EXPECT_TRUE(fs::exists(folder_ / "runs/latest" / file)) << file;
+  }
+  EXPECT_EQ(code({"run", "probe/**", "--out", "runs/latest"}), 65);
+}
+
+TEST_F(Stored, FailingCaseReplaysBitForBit) {
+  EXPECT_EQ(code({"run", "probe/station/data/word_is_held", "--iut", "deviant:swapped", "--out", "a"}), 1);
+  const fs::path file = case_file("a");
+  const Called called = probe({"replay", file.string(), "--bits"});
+  EXPECT_EQ(called.exit_code, 1) << called.err;
+  EXPECT_HOLDS(called.out, "equal: verdict, reason and fingerprint are those of the stored run");
+  EXPECT_HOLDS(called.out, read(fs::relative(file.parent_path() / "trace.txt", folder_)));
+  EXPECT_EQ(code({"replay", file.string(), "--iut", "ref"}), 0);
+  EXPECT_EQ(code({"verify", file.string()}), 0);
+}
+
+TEST_F(Stored, ReplayTellsWhatDiffers) {
+  EXPECT_EQ(code({"run", "probe/station/data/word_is_held", "--iut", "deviant:swapped", "--out", "a"}), 1);
+  const fs::path file = fs::relative(case_file("a"), folder_);
+  std::string text = read(file);
+  text.replace(text.find("wrong_word"), 10, "other_word");
+  write(file, text);
+  const Called called = probe({"replay", file.string()});
+  EXPECT_EQ(called.exit_code, 3);
+  EXPECT_HOLDS(called.out, "differs: reason was 'other_word', is 'wrong_word'");
+  text.replace(text.find("\"case_seed\": \""), 14, "\"case_seed\": \"1");
+  write(file, text);
+  const Called bad = probe({"replay", file.string()});
+  EXPECT_EQ(bad.exit_code, 65);
+  EXPECT_HOLDS(bad.err, "case.json:5: /case_seed: ");
+}
+
+TEST_F(Stored, PlanAndPicsTravelWithTheCase) {
+  write("plan.json", "{\"rules\": [3]}");
+  write("pics.json", "{\"items\": {\"x\": true, \"n\": 4, \"s\": \"zero\"}}");
+  EXPECT_EQ(code({"run", "odd/end/fails", "--plan", "plan.json", "--pics", "pics.json", "--out", "a"}), 1);
+  fs::remove(folder_ / "plan.json");
+  fs::remove(folder_ / "pics.json");
+  fs::rename(folder_ / "a", folder_ / "moved");
+  EXPECT_EQ(code({"replay", case_file("moved").string()}), 1);
+  EXPECT_EQ(read("moved/plan.json"), "{\"rules\": [3]}");
+}
+
+TEST_F(Stored, RunIsJudgedAgainFromItsRecordings) {
+  EXPECT_EQ(code({"run", "probe/**", "--iut", "deviant:swapped", "--record", "all", "--out", "a"}), 1);
+  const Called called = probe({"judge", "a"});
+  EXPECT_EQ(called.exit_code, 1) << called.err;
+  EXPECT_HOLDS(called.out, "4 of 4 cases were judged again, 0 of them otherwise than before");
+  EXPECT_EQ(code({"run", "probe/**", "--out", "b"}), 0);
+  EXPECT_EQ(code({"judge", "b"}), 4);
+}
+
+TEST_F(Stored, DifferenceNamesNewFailuresAndFixedOnes) {
+  probe({"run", "probe/**", "--iut", "deviant:swapped", "--out", "a"});
+  probe({"run", "probe/**", "--iut", "deviant:late", "--out", "b"});
+  const Called called = probe({"diff", "a", "b", "--json", "diff.json"});
+  EXPECT_EQ(called.exit_code, 1);
+  EXPECT_HOLDS(called.out, "new failures (1)");
+  EXPECT_HOLDS(called.out, "fixed (3)");
+  EXPECT_HOLDS(read("diff.json"), "answer_is_in_time");
+  EXPECT_EQ(code({"diff", "a", "a"}), 0);
+}
+
+TEST_F(Stored, FailedIsNarrowedBySelectorsAndBySettings) {
+  probe({"run", "probe/**", "--iut", "deviant:swapped", "--seed", "9"});
+  const Called narrowed = probe({"run", "--failed", "probe/station/data/word_is_h*"});
+  EXPECT_EQ(narrowed.exit_code, 1) << narrowed.err;
+  EXPECT_HOLDS(narrowed.out, "1 of 1 selected cases judged");
+  EXPECT_HOLDS(narrowed.out, "seed 9,");
+  EXPECT_EQ(code({"run", "--failed", "--iut", "ref"}), 0);
+  EXPECT_EQ(code({"run", "--failed"}), 4);
+}
+
+TEST_F(Stored, FailFastEndsAfterTheFirstFailure) {
+  const Called called = probe({"run", "probe/**", "--iut", "deviant:swapped", "--fail-fast", "--jobs", "3"});
+  EXPECT_EQ(called.exit_code, 1);
+  EXPECT_HOLDS(called.out, "1 of 4 selected cases judged: 0 pass, 1 fail; 3 not run");
+}
+
+using Shown = Program;
+
+TEST_F(Shown, ColourAndBarOnATerminalOnly) {
+  Call on_terminal = call({"run", "odd/slow/case_0*"});
+  on_terminal.on_terminal = true;
+  const std::string seen = on_terminal.run().out;
+  EXPECT_HOLDS(seen, "\x1b[32m");
+  EXPECT_HOLDS(seen, "10 cases");
+  on_terminal.environment["NO_COLOR"] = "1";
+  const std::string plain = on_terminal.run().out;
+  EXPECT_EQ(plain.find("\x1b[3"), std::string::npos) << plain;
+  const Called piped = probe({"run", "odd/slow/case_0*"});
+  EXPECT_EQ(piped.out.find('\x1b'), std::string::npos);
+  EXPECT_EQ(piped.err.find('\r'), std::string::npos);
+}
+
+TEST_F(Shown, MatrixWithAndWithoutAHole) {
+  const Called good = probe({"matrix", "probe", "--json", "matrix.json", "--jobs", "2"});
+  EXPECT_EQ(good.exit_code, 0) << good.out << good.err;
+  EXPECT_EQ(last_line(good.out), "no hole");
+  EXPECT_HOLDS(read("matrix.json"), "fieldproof/matrix/1");
+  const Called holes = probe({"matrix", "odd"});
+  EXPECT_EQ(holes.exit_code, 1);
+  EXPECT_HOLDS(holes.out, "hole (uncaught-deviation): no case catches the end deviation 'unseen'");
+  EXPECT_HOLDS(holes.out, "hole (false-alarm): odd/end/fails on the reference ends with fail ('always')");
+  EXPECT_TRUE(fs::exists(folder_ / "runs/matrix/odd.json"));
+}
+
+TEST_F(Shown, CasesDeviationsAndProtocols) {
+  EXPECT_EQ(probe({"list", "probe/**", "--count"}).out, "4\n");
+  EXPECT_HOLDS(probe({"list", "deviations"}).out, "probe/station/late  M2  answers late");
+  EXPECT_HOLDS(probe({"list", "protocols"}).out, "probe  roles station, 5 cases, 2 deviations");
+  EXPECT_HOLDS(probe({"list", "+canary", "--json"}).out, "\"id\": \"probe/station/canary\"");
+  const std::string explained = probe({"explain", "probe/station/data/word_is_held"}).out;
+  for (const char* part : {"unverified", "swapped (M1): swaps the octets of a word", "wrong_word",
+                           "fieldproof run probe/station/data/word_is_held --iut station=deviant:swapped"}) {
+    EXPECT_HOLDS(explained, part);
+  }
+}
+
+TEST_F(Shown, EverySettingWithItsOrigin) {
+  write("lab.json", "{\"seed\": 3, \"jobs\": 2, \"volume\": \"quick\", \"strict\": true} // of the lab\n");
+  Call printed = call({"run", "--config", "lab.json", "--seed", "5", "--print-config"});
+  printed.environment = {{"FIELDPROOF_JOBS", "4"}, {"FIELDPROOF_IUT", "deviant:late;ref"}};
+  const std::string config = printed.run().out;
+  const auto expect_setting = [&](const std::string& name, const std::string& value,
+                                  const std::string& origin) {
+    std::stringstream lines(config);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.rfind(name + " ", 0) != 0) continue;
+      EXPECT_HOLDS(line, " " + value + " ");
+      EXPECT_HOLDS(line, origin);
+      return;
+    }
+    ADD_FAILURE() << name << " is not in\n" << config;
+  };
+  expect_setting("seed", "5", "command line");
+  expect_setting("jobs", "4", "environment, FIELDPROOF_JOBS");
+  expect_setting("iut", "deviant:late ; ref", "environment, FIELDPROOF_IUT");
+  expect_setting("volume", "quick", "file, lab.json:1: /volume");
+  expect_setting("strict", "true", "file, lab.json:1: /strict");
+  expect_setting("record", "failed", "default");
+}
+
+}  // namespace
+}  // namespace fieldproof::cli
