@@ -1,5 +1,9 @@
 #include "harness/line/telegram.hpp"
 
+#include <list>
+#include <mutex>
+#include <utility>
+
 namespace fieldproof::line {
 namespace {
 
@@ -43,6 +47,16 @@ TelegramCode::TelegramCode(const TelegramLayout& layout) {
 std::size_t TelegramCode::next_idle(const Levels& levels, std::size_t at) {
   while (at < levels.size() && !levels[at]) ++at;
   return at;
+}
+
+const TelegramCode& shared_telegram_code(const TelegramLayout& layout) {
+  static std::mutex mutex;
+  static std::list<std::pair<TelegramLayout, TelegramCode>> codes;
+  const std::lock_guard lock(mutex);
+  for (const auto& [known, code] : codes) {
+    if (known == layout) return code;
+  }
+  return codes.emplace_back(layout, TelegramCode(layout)).second;
 }
 
 }  // namespace fieldproof::line

@@ -39,7 +39,8 @@ inline constexpr std::uint8_t kStopMissing = 8;
 struct Telegram {
   std::uint32_t level = 0;  // index of its start level in the waveform that carries it
   std::uint8_t header = 0;
-  std::uint8_t data = 0;  // of a data telegram
+  std::uint8_t data = 0;      // of a data telegram
+  std::uint16_t sampled = 0;  // its levels as they were read, the start level in bit 0
 
   bool is_data() const { return (header & kDataTelegram) != 0; }
   bool is_stop_missing() const { return (header & kStopMissing) != 0; }
@@ -69,12 +70,14 @@ class TelegramCode {
   Telegram from_levels(std::uint64_t sampled) const {
     Telegram telegram;
     telegram.header = headers_[(sampled >> 1) & 7];
-    unsigned stop = 4;
     if (telegram.is_data()) {
       telegram.data = octets_[(sampled >> 4) & 0xFF];
-      stop = 12;
+      telegram.sampled = static_cast<std::uint16_t>(sampled & 0x1FFF);
+      if ((sampled & 0x1000) == 0) telegram.header |= kStopMissing;
+    } else {
+      telegram.sampled = static_cast<std::uint16_t>(sampled & 0x1F);
+      if ((sampled & 0x10) == 0) telegram.header |= kStopMissing;
     }
-    if (((sampled >> stop) & 1) == 0) telegram.header |= kStopMissing;
     return telegram;
   }
 
@@ -83,37 +86,64 @@ class TelegramCode {
   template <typename Sink>
   std::size_t decode(const Levels& levels, std::size_t at, Sink&& sink) const {
     const std::size_t size = levels.size();
-    while (at < size) {
+    // As many telegrams as a window holds are taken out of it: what one telegram costs is then a few shifts
+    // of a register and not a look-up that waits for the one before it.
+    while (at + kDataTelegramLevels <= size) {
       std::uint64_t window = levels.window(at);
-      unsigned left = 64;  // levels of the line in the window
-      // As many telegrams as the window holds are taken out of it: what one telegram costs is then a few
-      // shifts of a register and not a look-up that waits for the one before it.
-      do {
-        if ((window & 1) != 0) {  // idle in front of the start level
-          const auto idle = static_cast<unsigned>(std::countr_one(window));
-          at += idle;
-          left -= idle;
-          if (left < kDataTelegramLevels) break;
-          window >>= idle;
-        }
+      auto left = static_cast<unsigned>(size - at < 64 ? size - at : 64);  // levels of the line in the window
+      while (true) {
+        const unsigned idle = idle_in_front(window);
+        at += idle;
+        if (left < kDataTelegramLevels + idle) break;
+        left -= idle;
+        window >>= idle;
         Telegram telegram = from_levels(window);
-        const unsigned length = telegram.is_data() ? kDataTelegramLevels : kStatusTelegramLevels;
-        if (at + length > size) return at < size ? at : size;
         telegram.level = static_cast<std::uint32_t>(at);
         sink(telegram);
-        at += length;
         if (telegram.is_stop_missing()) {
-          at = next_idle(levels, at - 1);
+          at = next_idle(levels, at + telegram.levels() - 1);
           break;
         }
-        window >>= length;
+        const unsigned length = telegram.is_data() ? kDataTelegramLevels : kStatusTelegramLevels;
+        at += length;
         left -= length;
-      } while (left >= kDataTelegramLevels);
+        window >>= length;
+      }
+    }
+    return decode_end(levels, at, sink);
+  }
+
+ private:
+  // The last levels, in which a telegram may be cut.
+  template <typename Sink>
+  std::size_t decode_end(const Levels& levels, std::size_t at, Sink& sink) const {
+    const std::size_t size = levels.size();
+    while (at < size) {
+      const std::uint64_t window = levels.window(at);
+      const unsigned idle = idle_in_front(window);
+      if (idle > 0) {
+        at += idle;
+        continue;
+      }
+      Telegram telegram = from_levels(window);
+      if (at + telegram.levels() > size) return at;
+      telegram.level = static_cast<std::uint32_t>(at);
+      sink(telegram);
+      at += telegram.levels();
+      if (telegram.is_stop_missing()) at = next_idle(levels, at - 1);
     }
     return size;
   }
 
- private:
+  // Idle levels in front of the start level. One or two, as they stand within a cycle, are left to the branch
+  // predictor; to count them takes several times as long.
+  static unsigned idle_in_front(std::uint64_t window) {
+    if ((window & 1) == 0) return 0;
+    if ((window & 7) == 3) return 2;
+    if ((window & 3) == 1) return 1;
+    return static_cast<unsigned>(std::countr_one(window));
+  }
+
   // The first idle level at or after `at`: a start level needs an edge.
   static std::size_t next_idle(const Levels& levels, std::size_t at);
 
@@ -122,5 +152,8 @@ class TelegramCode {
   std::array<std::uint8_t, 256> data_levels_{};  // octet -> levels
   std::array<std::uint8_t, 256> octets_{};       // levels -> octet
 };
+
+// One code per layout, shared by all stations of the program: its tables stay in the cache of the processor.
+const TelegramCode& shared_telegram_code(const TelegramLayout& layout);
 
 }  // namespace fieldproof::line

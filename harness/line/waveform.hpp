@@ -63,7 +63,8 @@ class Levels {
     const unsigned shift = at % 64;
     std::uint64_t* const word = words_.data() + at / 64;
     word[0] &= ~(zeros << shift);
-    word[1] &= ~((zeros >> 1) >> (63 - shift));
+    // The branch is cheaper than a second word each time: telegrams come at a pitch that a predictor learns.
+    if (shift + count > 64) word[1] &= ~(zeros >> (64 - shift));
     size_ = at + count;
   }
 

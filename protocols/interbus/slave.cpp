@@ -37,7 +37,7 @@ Slave::Slave(const SlaveConfiguration& configuration)
 
 Slave::Slave(const SlaveConfiguration& configuration, line::TelegramReceiverOptions receiver)
     : configuration_(configuration),
-      code_(configuration.rules.telegram),
+      code_(line::shared_telegram_code(configuration.rules.telegram)),
       check_(line::shared_frame_check_16(configuration.rules.frame_check)),
       receivers_{line::TelegramReceiver{code_, configuration.rules.bit_rate, receiver},
                  line::TelegramReceiver{code_, configuration.rules.bit_rate, receiver},
@@ -91,12 +91,22 @@ void Slave::receive(segment::PortIndex port, const line::Waveform& reception) {
   // The ends of the last telegrams are counted in levels and become times once for a whole reception.
   std::size_t status_end = 0;
   std::size_t data_end = 0;
-  receivers_[kFromUpstream].receive(
-      reception, [&](const line::Waveform& wave, const line::Telegram& telegram) {
-        on_upstream(wave, telegram);
-        if (&wave != &reception) return note_life(wave, telegram);
-        (telegram.is_data() ? data_end : status_end) = telegram.level + telegram.levels();
-      });
+  TelegramRelay& relay = relays_[kFromUpstream];
+  const bool is_plain = !is_deaf_ && !shifts_status_ && resynchronises();
+  receivers_[kFromUpstream].receive(reception, [&](const line::Waveform& wave,
+                                                   const line::Telegram& telegram) {
+    if (is_plain && telegram.header == line::kDataTelegram && phase_ == Phase::data_transfer) {
+      // In the middle of a transfer: most of what a slave ever does.
+      const std::uint8_t out = shift_.shift(telegram.data, check_);
+      relay.put(wave, telegram.level, code_.levels_of(line::kDataTelegram, out), line::kDataTelegramLevels);
+    } else if (is_plain && !telegram.is_data()) {
+      relay.put(wave, telegram);
+    } else {
+      on_upstream(wave, telegram);
+    }
+    if (&wave != &reception) return note_life(wave, telegram);
+    (telegram.is_data() ? data_end : status_end) = telegram.level + telegram.levels();
+  });
   relays_[kFromUpstream].close();
   if (data_end > 0) last_data_ = reception.time_of(data_end);
   if (status_end + data_end > 0) last_telegram_ = reception.time_of(std::max(status_end, data_end));
@@ -116,8 +126,7 @@ void Slave::relay_only(segment::PortIndex from, const line::Waveform& reception)
   segment::Port* port = next_after(from);
   relay.open(port, delay_to(port, from), now_);
   receivers_[from].receive(reception, [&](const line::Waveform& wave, const line::Telegram& telegram) {
-    const auto header = static_cast<std::uint8_t>(telegram.header & ~line::kStopMissing);
-    relay.put(wave, telegram.level, code_.levels_of(header, telegram.data), telegram.levels());
+    relay.put(wave, telegram);
   });
   relay.close();
 }
@@ -126,7 +135,7 @@ void Slave::on_upstream(const line::Waveform& wave, const line::Telegram& telegr
   if (is_deaf_) return;
   const auto header = static_cast<std::uint8_t>(telegram.header & ~line::kStopMissing);
   if (!telegram.is_data()) {
-    relays_[kFromUpstream].put(wave, telegram.level, code_.levels_of(header, 0), line::kStatusTelegramLevels);
+    relays_[kFromUpstream].put(wave, telegram);
     if (shifts_status_ && phase_ == Phase::data_transfer) shift_.shift(0xFF, check_);
     return;
   }
@@ -270,8 +279,7 @@ void Slave::flush_receivers(kernel::Time now) {
         on_upstream(wave, telegram);
         note_life(wave, telegram);
       } else {
-        relays_[from].put(wave, telegram.level, code_.levels_of(telegram.header & 7U, telegram.data),
-                          telegram.levels());
+        relays_[from].put(wave, telegram);
       }
     });
     relays_[from].close();

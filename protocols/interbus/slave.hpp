@@ -112,7 +112,7 @@ class Slave : public SlaveDevice {
   segment::Port* next_after(segment::PortIndex from) const;
 
   SlaveConfiguration configuration_;
-  line::TelegramCode code_;
+  const line::TelegramCode& code_;
   const line::FrameCheck16& check_;
   std::array<line::TelegramReceiver, 3> receivers_;  // by PortIndex
   std::array<TelegramRelay, 3> relays_;

@@ -25,16 +25,21 @@ class TelegramRelay {
   }
 
   void put(const line::Waveform& reception, std::uint32_t level, std::uint64_t levels, unsigned count) {
-    if (out_.levels.empty()) {
-      begin(reception, level);
-    } else if (&reception != reception_ || reception.rate != out_.rate) {
-      close();
-      begin(reception, level);
-    }
+    if (&reception != reception_) begin(reception, level);
     out_.levels.place(level - base_, levels, count);
   }
 
+  // The telegram as it came, with a stop bit.
+  void put(const line::Waveform& reception, const line::Telegram& telegram) {
+    if (telegram.is_data()) {
+      put(reception, telegram.level, telegram.sampled | 0x1000U, line::kDataTelegramLevels);
+    } else {
+      put(reception, telegram.level, telegram.sampled | 0x10U, line::kStatusTelegramLevels);
+    }
+  }
+
   void close() {
+    reception_ = nullptr;
     if (out_.levels.empty()) return;
     if (port_ == nullptr) return out_.levels.clear();
     driven_until_ = out_.end();
@@ -43,8 +48,10 @@ class TelegramRelay {
 
  private:
   void begin(const line::Waveform& reception, std::uint32_t level) {
+    close();
+    // Off the grid the next telegram begins a waveform of its own.
+    if (reception.rate == out_.rate) reception_ = &reception;
     base_ = level;
-    reception_ = &reception;
     out_.levels.make_room(reception.levels.size() - level + line::kDataTelegramLevels);
     // A telegram that only a later reception completed would have left before now.
     out_.start = std::max({reception.time_of(level) + delay_, now_, driven_until_});
@@ -55,8 +62,9 @@ class TelegramRelay {
   kernel::Duration delay_{};
   kernel::Time now_{};
   kernel::Time driven_until_{kernel::Duration::min()};
-  const line::Waveform* reception_ = nullptr;  // what out_ was begun for
-  std::uint32_t base_ = 0;                     // level of the reception with which out_ begins
+  const line::Waveform* reception_ =
+      nullptr;              // what is collected now; null when the next telegram begins anew
+  std::uint32_t base_ = 0;  // level of the reception with which out_ begins
 };
 
 }  // namespace fieldproof::interbus
