@@ -40,29 +40,19 @@ std::string CharacterFormat::text() const {
 }
 
 CharacterCode::CharacterCode(const CharacterFormat& format)
-    : format_(format), data_mask_((1U << format.data_bits) - 1) {
+    : format_(format),
+      front_(format.bits_before_stop()),
+      data_mask_((1U << format.data_bits) - 1),
+      parity_mask_(format.parity == Parity::none ? 0 : 1) {
   FIELDPROOF_CHECK(format.data_bits >= 5 && format.data_bits <= 9, "a character has 5 to 9 data bits");
   for (unsigned data = 0; data <= data_mask_; ++data) parity_bits_.at(data) = parity_of(format.parity, data);
 }
 
 void CharacterCode::append(Levels& levels, unsigned data) const {
-  const unsigned front = format_.bits_before_stop();
   std::uint64_t bits = std::uint64_t{data & data_mask_} << 1;
-  if (format_.parity != Parity::none) bits |= std::uint64_t{parity_bit(data)} << (front - 1);
-  bits |= ~std::uint64_t{0} << front;
+  if (format_.parity != Parity::none) bits |= std::uint64_t{parity_bit(data)} << (front_ - 1);
+  bits |= ~std::uint64_t{0} << front_;
   levels.append(levels_per_bit() == 2 ? doubled(bits) : bits, levels_per_character());
-}
-
-Character CharacterCode::from_bits(std::uint32_t bits) const {
-  Character character;
-  const unsigned front = format_.bits_before_stop();
-  character.data = static_cast<std::uint16_t>((bits >> 1) & data_mask_);
-  if (format_.parity != Parity::none) {
-    character.is_parity_wrong = (((bits >> (front - 1)) & 1) != 0) != parity_bit(character.data);
-  }
-  character.is_stop_missing = ((bits >> front) & 1) == 0;
-  character.is_break = (bits & ((2U << front) - 1)) == 0;
-  return character;
 }
 
 void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& received) const {

@@ -70,21 +70,31 @@ class CharacterCode {
   bool parity_bit(unsigned data) const { return parity_bits_.at(data & data_mask_); }
 
   // The character in sampled bits, the start bit in bit 0.
-  Character from_bits(std::uint32_t bits) const;
+  Character from_bits(std::uint32_t bits) const {
+    Character character;
+    character.data = static_cast<std::uint16_t>((bits >> 1) & data_mask_);
+    const std::uint32_t parity = parity_bits_[character.data] ? 1 : 0;
+    character.is_parity_wrong = (((bits >> (front_ - 1)) ^ parity) & parity_mask_) != 0;
+    character.is_stop_missing = ((bits >> front_) & 1) == 0;
+    character.is_break = (bits & ((2U << front_) - 1)) == 0;
+    return character;
+  }
 
   // Calls sink(character) for each character in levels that are exactly bit-wide, from level `at` on; gives
   // the start of a character that is cut by the end of the levels, or size().
   template <typename Sink>
   std::size_t decode(const Levels& levels, std::size_t at, Sink&& sink) const {
     const std::size_t size = levels.size();
-    const unsigned length = format_.bits_before_stop() + 1;
+    const unsigned length = front_ + 1;
     while (at < size) {
-      const std::uint64_t window = levels.window(at);
-      if ((window & 1) != 0) {
-        at += static_cast<unsigned>(std::countr_one(window));
-        continue;
+      std::uint64_t window = levels.window(at);
+      if ((window & 1) != 0) {  // idle in front of the start bit
+        const auto idle = static_cast<unsigned>(std::countr_one(window));
+        at += idle;
+        if (idle > 64 - length) continue;
+        window >>= idle;
       }
-      if (at + length > size) return at;
+      if (at + length > size) return at < size ? at : size;
       Character character = from_bits(static_cast<std::uint32_t>(window));
       character.level = static_cast<std::uint32_t>(at);
       sink(character);
@@ -98,7 +108,9 @@ class CharacterCode {
 
  private:
   CharacterFormat format_;
+  unsigned front_;  // bits in front of the stop bit
   unsigned data_mask_;
+  unsigned parity_mask_;  // 0 without parity, else 1
   std::array<bool, 512> parity_bits_{};
 };
 
