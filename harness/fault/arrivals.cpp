@@ -1,6 +1,7 @@
 #include "harness/fault/arrivals.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace fieldproof::fault {
 
@@ -27,12 +28,20 @@ void ArrivalWriter::write(const line::Levels& levels, Piece part, std::size_t at
 }
 
 void ArrivalWriter::finish() {
-  const auto begin = arrivals_.begin() + static_cast<std::ptrdiff_t>(first_arrival_);
-  std::stable_sort(begin, arrivals_.end(), [](const auto& a, const auto& b) { return a.start < b.start; });
+  order_by_start(arrivals_, first_arrival_);
   for (std::size_t i = first_arrival_; i + 1 < arrivals_.size(); ++i) {
     cut_back(arrivals_[i], arrivals_[i + 1].start);
   }
   std::erase_if(arrivals_, [](const line::Waveform& arrival) { return arrival.levels.empty(); });
+}
+
+void order_by_start(std::vector<line::Waveform>& waves, std::size_t first) {
+  // By exchange: they are few and mostly in order, and their buffers stay where they are needed.
+  for (std::size_t i = first + 1; i < waves.size(); ++i) {
+    for (std::size_t k = i; k > first && waves[k].start < waves[k - 1].start; --k) {
+      std::swap(waves[k], waves[k - 1]);
+    }
+  }
 }
 
 void cut_front(line::Waveform& wave, kernel::Time from) {

@@ -58,6 +58,9 @@ class ArrivalWriter {
   kernel::Duration shift_time_{};
 };
 
+// Orders the waveforms from index `first` on by their start; equal starts stay in order.
+void order_by_start(std::vector<line::Waveform>& waves, std::size_t first);
+
 // Takes away the levels that begin before `from`; the start moves to the first level that is left.
 void cut_front(line::Waveform& wave, kernel::Time from);
 // Takes away the levels that end after `to`.

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "harness/fault/arrivals.hpp"
+
 namespace fieldproof::fault {
 
 bool ChannelChain::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
@@ -21,8 +23,7 @@ bool ChannelChain::pass(const line::Waveform& sent, std::vector<line::Waveform>&
     std::swap(before_, behind_);
   }
   if (!is_changed) return false;
-  std::stable_sort(before_.begin(), before_.end(),
-                   [](const auto& a, const auto& b) { return a.start < b.start; });
+  order_by_start(before_, 0);
   std::move(before_.begin(), before_.end(), std::back_inserter(arrivals));
   before_.clear();
   return true;

@@ -40,10 +40,13 @@ TEST(PlanFile, ReadsEveryMember) {
     // comments are allowed
     "rules": [
       { "name": "all", "scope": "unit", "times": 3,
-        "when": { "receiver": "slave ?", "frame": "data_cycle", "frame_number": {"from": 3, "to": 9, "every": 2},
-                  "unit": 4, "field": "data", "bit": {"from": 1}, "from": "1 ms", "to": "2 ms", "chance": 0.25,
+        "when": { "receiver": "slave ?", "frame": "data_cycle", "frame_number": {"from": 3, "to": 9,
+                  "every": 2},
+                  "unit": 4, "field": "data", "bit": {"from": 1},
+                  "from": "1 ms", "to": "2 ms", "chance": 0.25,
                   "after": {"observation": "bus stop", "channel": "master", "nth": 2, "for": "5 us"},
-                  "all_of": [{"field": "a"}], "any_of": [{"field": "b"}, {"field": "c"}], "none_of": [{"unit": 0}] },
+                  "all_of": [{"field": "a"}], "any_of": [{"field": "b"}, {"field": "c"}],
+                  "none_of": [{"unit": 0}] },
         "effect": {"force": {"level": 1, "count": 3}} },
       { "effect": {"flip": {"levels": [0, 7]}} },
       { "effect": {"repeat": {"count": 2, "gap": "3 us"}} },
@@ -175,7 +178,8 @@ TEST(PlanFile, TheSameRulesHaveTheSameTextAndHash) {
   const Plan a =
       plan_of(R"({"rules": [{"when": {"field": "x", "from": "1000 us"}, "effect": {"drop": {}}}]})");
   const Plan b = plan_of(R"({"rules": [ // other order, other unit, defaults written out
-      {"effect": {"drop": {}}, "scope": "field", "when": {"from": "1 ms", "chance": 1, "field": "x", "receiver": "*"}}]})");
+      {"effect": {"drop": {}}, "scope": "field", 
+       "when": {"from": "1 ms", "chance": 1, "field": "x", "receiver": "*"}}]})");
   EXPECT_EQ(canonical_text(a), canonical_text(b));
   EXPECT_EQ(hash_of(a), hash_of(b));
   EXPECT_EQ(canonical_text(Plan{}), "{\n  \"rules\": []\n}\n");

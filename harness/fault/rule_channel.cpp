@@ -257,8 +257,7 @@ void RuleChannel::silence(std::vector<line::Waveform>& arrivals, std::size_t fir
       if (!behind.levels.empty()) arrivals.push_back(std::move(behind));
     }
   }
-  std::stable_sort(arrivals.begin() + static_cast<std::ptrdiff_t>(first), arrivals.end(),
-                   [](const auto& a, const auto& b) { return a.start < b.start; });
+  order_by_start(arrivals, first);
 }
 
 }  // namespace fieldproof::fault
