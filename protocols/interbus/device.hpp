@@ -106,6 +106,8 @@ struct MasterStatus {
   std::vector<int> peripheral_faults;  // ring positions, as read in the last good ID cycle
   std::vector<int> reconfigurations;
   kernel::Duration cycle_time{};  // in force
+
+  friend bool operator==(const MasterStatus&, const MasterStatus&) = default;
 };
 
 // The image of the process data in words: station by station in the order of the ring, as many words for each
