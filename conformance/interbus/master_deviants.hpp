@@ -27,8 +27,6 @@ struct LoopbackPositionNotCompared final : Master {
   using Master::Master;
   bool accepts_loopback(const ReturnedCycle& returned, std::size_t octet) const override {
     if (Master::accepts_loopback(returned, octet)) return true;
-    // In an ID cycle its position is the length of the ring; it is the data cycles that do not compare.
-    if (!is_data_cycle(returned)) return false;
     std::uint32_t bits = 0;
     for (const std::uint8_t next : returned.transfer()) {
       bits = bits << 8 | next;
@@ -37,9 +35,6 @@ struct LoopbackPositionNotCompared final : Master {
       }
     }
     return false;
-  }
-  bool is_data_cycle(const ReturnedCycle& returned) const {
-    return returned.transfer().size() == 2 * output_order().size() + interbus::kLoopbackOctets;
   }
 };
 

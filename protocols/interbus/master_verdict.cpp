@@ -118,10 +118,10 @@ std::optional<std::size_t> Master::loopback_position() const {
   const std::size_t known = state_ == MasterState::run ? stations_.size() : topology_.stations().size();
   const std::size_t words = returned_.transfer().size() / 2;
   for (const std::size_t likely : {known, known + 1}) {
-    if (accepts_loopback(returned_, 2 * likely)) return likely;
+    if (returned_.word(2 * likely) == rules().loopback_word) return likely;
   }
   for (std::size_t n = 0; n < words; ++n) {
-    if (accepts_loopback(returned_, 2 * n)) return n;
+    if (returned_.word(2 * n) == rules().loopback_word) return n;
   }
   return std::nullopt;
 }
