@@ -70,7 +70,8 @@ void Link::arrive(InFlight& flight) {
   if (channel_ == nullptr || flight.passed || !channel_->pass(flight.wave, arrivals_)) {
     return deliver(flight.wave);
   }
-  std::vector<line::Waveform> arrivals = std::exchange(arrivals_, {});
+  // Taken out while the receiver is told, because what it drives may come through this link again.
+  std::vector<line::Waveform> arrivals = std::move(arrivals_);
   for (line::Waveform& arrival : arrivals) {
     if (arrival.start == segment_.now()) {
       deliver(arrival);
@@ -78,6 +79,8 @@ void Link::arrive(InFlight& flight) {
       launch(arrival, arrival.start, true);
     }
   }
+  arrivals.clear();
+  arrivals_ = std::move(arrivals);
 }
 
 void Link::deliver(const line::Waveform& wave) {

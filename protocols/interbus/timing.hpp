@@ -25,9 +25,8 @@
 //    The same paper's text gives 6 octets of frame information, not 8, and F4, which has 6 + n, yields the
 //    same 755.0 us with n = 4. The printed "(8 + n), n = 2" and "(6 + n), n = 4" are the same number of
 //    telegrams, so 755.0 us cannot tell them apart.
-// 2. F1 with n = 4 gives 814.8 us, and 0.814 ms is the shortest setting that the paper found to work best.
-// The
-//    difference of 59.8 us between the calculated and the best time is exactly two data telegrams
+// 2. F1 with n = 4 gives 814.8 us, and 0.814 ms is the shortest setting that the paper found to work
+//    best. The difference of 59.8 us between the calculated and the best time is exactly two data telegrams
 //    (2 * 1.15 * 13 bit * 2 us). The paper does not say so and calls the two times nearly equal, while they
 //    are 7.9 % apart. Both are conformance values here; which reading a master follows is a parameter
 //    (formula, n, Rules::end_telegrams), not a fact.
