@@ -1,0 +1,155 @@
+#include "harness/segment/segment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace fieldproof::segment {
+namespace {
+
+using kernel::kMicrosecond;
+using kernel::kStart;
+
+// Notes what it is told, and when; answers as a test says.
+class Listener final : public Station {
+ public:
+  explicit Listener(Segment& segment) : segment_(segment) {}
+
+  void receive(PortIndex port, const line::Waveform& wave) override {
+    told.push_back(kernel::describe(segment_.now()) + " port " + std::to_string(port) + " " +
+                   wave.levels.text());
+    if (answer) answer(wave);
+  }
+  void on_time(kernel::Time now) override {
+    told.push_back(kernel::describe(now) + " time");
+    wanted = kernel::kNever;
+  }
+  kernel::Time next_time() const override { return wanted; }
+
+  std::vector<std::string> told;
+  kernel::Time wanted = kernel::kNever;
+  std::function<void(const line::Waveform&)> answer;
+
+ private:
+  Segment& segment_;
+};
+
+line::Waveform wave_at(kernel::Time start, const std::string& levels) {
+  line::Waveform wave{start, 1'000'000, {}};
+  for (const char level : levels) wave.levels.append(level == '1' ? 1 : 0, 1);
+  return wave;
+}
+
+// Gives each transmission twice, the second one later; loses those that are longer than four levels.
+class Echo final : public fault::Channel {
+ public:
+  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+    if (sent.levels.size() > 4) return true;
+    arrivals.push_back(sent);
+    arrivals.push_back(sent);
+    arrivals.back().start += 50 * kMicrosecond;
+    return true;
+  }
+};
+
+class SegmentTest : public ::testing::Test {
+ protected:
+  Segment segment;
+  Listener a{segment};
+  std::size_t seat = segment.attach(a, "a");
+  Link& link = segment.connect("a/in", seat, 3, 5 * kMicrosecond);
+
+  void drive(kernel::Time start, const std::string& levels) {
+    line::Waveform wave = wave_at(start, levels);
+    link.drive(wave);
+    EXPECT_TRUE(wave.levels.empty());
+    EXPECT_EQ(wave.rate, 1'000'000);
+  }
+};
+
+TEST_F(SegmentTest, ATransmissionArrivesAfterTheDelay) {
+  drive(kStart + 10 * kMicrosecond, "01");
+  segment.run_until(kStart + 15 * kMicrosecond - kernel::kPicosecond);
+  EXPECT_TRUE(a.told.empty());
+  segment.run_until(kStart + 15 * kMicrosecond);
+  EXPECT_EQ(a.told, (std::vector<std::string>{"15.000 us port 3 01"}));
+}
+
+TEST_F(SegmentTest, SeveralTransmissionsAreOnTheirWayInOrder) {
+  for (int n = 0; n < 20; ++n) drive(kStart + n * kMicrosecond, n % 2 == 0 ? "0" : "1");
+  segment.run_until(kStart + 100 * kMicrosecond);
+  ASSERT_EQ(a.told.size(), 20U);
+  EXPECT_EQ(a.told.front(), "5.000 us port 3 0");
+  EXPECT_EQ(a.told.back(), "24.000 us port 3 1");
+}
+
+TEST_F(SegmentTest, AChannelMayRepeatAndLose) {
+  Echo echo;
+  link.set_channel(&echo);
+  drive(kStart, "01");
+  drive(kStart + 20 * kMicrosecond, "010101");
+  drive(kStart + 40 * kMicrosecond, "0");
+  segment.run_until(kStart + 200 * kMicrosecond);
+  EXPECT_EQ(a.told, (std::vector<std::string>{"5.000 us port 3 01", "45.000 us port 3 0",
+                                              "55.000 us port 3 01", "95.000 us port 3 0"}));
+}
+
+TEST_F(SegmentTest, ALinkThatIsNotConnectedCarriesNothing) {
+  link.set_connected(false);
+  drive(kStart, "01");
+  segment.run_until(kStart + 20 * kMicrosecond);
+  link.set_connected(true);
+  drive(kStart + 20 * kMicrosecond, "00");
+  segment.run_until(kStart + 40 * kMicrosecond);
+  EXPECT_EQ(a.told, (std::vector<std::string>{"25.000 us port 3 00"}));
+}
+
+TEST_F(SegmentTest, OverlapsAreCounted) {
+  drive(kStart, "0000");
+  drive(kStart + 4 * kMicrosecond, "0000");
+  EXPECT_EQ(link.overlap_count(), 0U);
+  drive(kStart + 7 * kMicrosecond, "0");
+  EXPECT_EQ(link.overlap_count(), 1U);
+}
+
+TEST_F(SegmentTest, NobodyDrivesInThePast) {
+  segment.run_until(kStart + kMicrosecond);
+  line::Waveform wave = wave_at(kStart, "0");
+  EXPECT_ANY_THROW(link.drive(wave));
+}
+
+TEST_F(SegmentTest, AStationIsToldTheTimeThatItWants) {
+  a.wanted = kStart + 7 * kMicrosecond;
+  segment.refresh(seat);
+  segment.run_until(kStart + 20 * kMicrosecond);
+  EXPECT_EQ(a.told, (std::vector<std::string>{"7.000 us time"}));
+}
+
+TEST_F(SegmentTest, AWantedTimeThatMovesLaterIsNotToldEarly) {
+  a.wanted = kStart + 10 * kMicrosecond;
+  segment.refresh(seat);
+  a.answer = [&](const line::Waveform&) { a.wanted = kStart + 30 * kMicrosecond; };
+  drive(kStart, "0");
+  segment.run_until(kStart + 50 * kMicrosecond);
+  EXPECT_EQ(a.told, (std::vector<std::string>{"5.000 us port 3 0", "30.000 us time"}));
+}
+
+TEST_F(SegmentTest, EqualHistoriesHaveEqualFingerprintsAndOthersHaveNot) {
+  const auto fingerprint = [](kernel::Duration shift, const std::string& levels) {
+    Segment other;
+    Listener station(other);
+    Link& to = other.connect("x", other.attach(station, "x"), 0, {});
+    line::Waveform wave = wave_at(kStart + shift, levels);
+    to.drive(wave);
+    return other.trace().fingerprint();
+  };
+  EXPECT_EQ(fingerprint({}, "0101"), fingerprint({}, "0101"));
+  EXPECT_NE(fingerprint({}, "0101"), fingerprint({}, "0111"));
+  EXPECT_NE(fingerprint({}, "0101"), fingerprint({}, "01011"));
+  EXPECT_NE(fingerprint({}, "0101"), fingerprint(kernel::kPicosecond, "0101"));
+}
+
+}  // namespace
+}  // namespace fieldproof::segment
