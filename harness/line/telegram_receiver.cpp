@@ -40,6 +40,8 @@ TelegramReceiver::TelegramReceiver(const TelegramCode& code, std::int64_t bit_ra
 bool TelegramReceiver::sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram) const {
   while ((at = falling_edge(wave.levels, at)) < wave.levels.size()) {
     const kernel::Time edge = wave.time_of(at);
+    // Whether it is a start bit is not known yet: the next reception may go on with it.
+    if (options_.sampling.decided_at(edge, 0, bit_rate_) > wave.end()) return false;
     std::uint64_t sampled = 0;
     for (unsigned bit = 0; bit < kDataTelegramLevels; ++bit) {
       if (options_.sampling.sample(wave, edge, bit, bit_rate_)) sampled |= std::uint64_t{1} << bit;

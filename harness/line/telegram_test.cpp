@@ -159,6 +159,17 @@ RC_GTEST_PROP(TelegramProperty, ItMakesNoDifferenceHowASenderDividesItsLevels, (
   RC_ASSERT(hear(parts) == hear({wave}));
 }
 
+TEST(TelegramReceiver, AWaveformMayEndInTheMiddleOfAStartBit) {
+  Waveform bits{kernel::kStart, kBitRate, {}};
+  code().append(bits.levels, kDataTelegram, 0x0F);
+  const Waveform wave = refined(bits, 20);
+  for (std::size_t cut = 1; cut < 20; ++cut) {
+    const Waveform first{wave.start, wave.rate, wave.levels.slice(0, cut)};
+    const Waveform second{wave.time_of(cut), wave.rate, wave.levels.slice(cut, wave.levels.size() - cut)};
+    EXPECT_EQ(hear({first, second}), hear({wave})) << cut;
+  }
+}
+
 TEST(TelegramReceiver, GlitchesShorterThanHalfABitAreNoStart) {
   for (unsigned width = 1; width < 20; ++width) {  // twentieths of a bit
     Waveform wave{kernel::kStart, kBitRate * 20, {}};
