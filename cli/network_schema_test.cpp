@@ -1,3 +1,4 @@
+// Subject: the network schema and the network reader, which must judge alike.
 // Holds the schema of network files and their reader together: both take every good file, both refuse every
 // bad one, and what only the reader can refuse is kept apart. Lies here because it joins a protocol and a
 // report.

@@ -1,3 +1,4 @@
+// Subject: documents that are written and read again.
 // The reader held against the library it is built on, over random values and random texts.
 
 #include <fmt/format.h>
