@@ -254,7 +254,10 @@ void Slave::abandon_cycle(kernel::Time when) {
 
 void Slave::supervise() {
   const kernel::Time life = sign_of_life(last_telegram_, last_data_);
-  if (life != kNoTelegram) silence_end_ = life + rules().silence_limit;
+  // What brings no new sign of life must not wake a supervision that has run out.
+  if (life == supervised_life_) return;
+  supervised_life_ = life;
+  silence_end_ = life + rules().silence_limit;
 }
 
 void Slave::on_time(kernel::Time now) {

@@ -143,6 +143,7 @@ class Slave : public SlaveDevice {
   kernel::Time now_{};    // of the reception in work
   kernel::Time last_telegram_ = kNoTelegram;
   kernel::Time last_data_ = kNoTelegram;
+  kernel::Time supervised_life_ = kNoTelegram;  // the sign of life that silence_end_ was reckoned from
   kernel::Time silence_end_ = kernel::kNever;
 };
 

@@ -153,6 +153,19 @@ TEST_F(SlaveTest, SilenceResetsJustAfterTheLimitAndNotBefore) {
   EXPECT_EQ(slave.mode(), Slave::Mode::reset);
 }
 
+TEST_F(SlaveTest, NoiseBehindASilenceResetsNothingAnew) {
+  send(id_cycle());
+  segment.run_for(30 * kMillisecond);
+  ASSERT_EQ(slave.mode(), Slave::Mode::reset);
+  const std::uint64_t writes = terminals.write_count();
+  line::Waveform noise{segment.now(), 500'000, {}};
+  noise.levels.append_idle(6);
+  noise.levels.append(0, 2);  // no telegram yet
+  forward->drive(noise);
+  segment.run_for(18 * kernel::kMicrosecond);
+  EXPECT_EQ(terminals.write_count(), writes);
+}
+
 TEST_F(SlaveTest, AWrongBitIsMarkedNotLatchedAndToldInTheNextIdCycle) {
   send(id_cycle());
   std::vector<Sent> bad = data_cycle(0xCAFE, 0xBEEF);
@@ -210,7 +223,7 @@ reset pause + ID telegram -> reset id_transfer
 reset pause + check of ID -> reset pause
 reset pause + good ID cycle -> active pause
 reset pause + good data cycle -> reset pause
-reset pause + silence -> reset pause, outputs 0
+reset pause + silence -> reset pause
 reset data_transfer + status telegram -> reset data_transfer
 reset data_transfer + data telegram -> reset data_transfer
 reset data_transfer + check of data -> reset data_check
