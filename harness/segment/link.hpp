@@ -28,6 +28,7 @@ class Link final : public Port, private kernel::Timer {
   kernel::Duration delay() const { return delay_; }
 
   void set_channel(fault::Channel* channel) { channel_ = channel; }
+  fault::Channel* channel() const { return channel_; }
   void tap_driven(Tap& tap) { driven_taps_.push_back(&tap); }
   void tap_arrived(Tap& tap) { arrived_taps_.push_back(&tap); }
 

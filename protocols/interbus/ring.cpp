@@ -1,5 +1,6 @@
 #include "protocols/interbus/ring.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "harness/kernel/check.hpp"
@@ -22,6 +23,7 @@ Ring::Ring(segment::Segment& segment, const NetworkDescription& network, std::si
   FIELDPROOF_CHECK(!places.empty(), "a ring has at least one station");
   for (const RingPlace& place : places) add_station(network, place, make_slave);
   for (std::size_t n = 0; n < places.size(); ++n) lay_cable(network, places[n], n);
+  find_last_behind(places);
   for (Place& place : slaves_) place.device->wire(place.ports, place.terminals);
 }
 
@@ -61,20 +63,53 @@ void Ring::lay_cable(const NetworkDescription& network, const RingPlace& place, 
   links_.push_back(cable);
 }
 
+// What hangs behind a station follows it in the ring without a break.
+void Ring::find_last_behind(const std::vector<RingPlace>& places) {
+  last_behind_.resize(places.size());
+  for (std::size_t n = places.size(); n-- > 0;) {
+    last_behind_[n] = std::max(last_behind_[n], n);
+    if (places[n].before >= 0) {
+      std::size_t& last = last_behind_[static_cast<std::size_t>(places[n].before)];
+      last = std::max(last, last_behind_[n]);
+    }
+  }
+}
+
 segment::Link* Ring::find_link(std::string_view receiver) {
-  for (segment::Link* link : links()) {
-    if (link->name() == receiver) return link;
+  for (const Receiver& candidate : receivers()) {
+    if (candidate.link->name() == receiver) return candidate.link;
   }
   return nullptr;
 }
 
-std::vector<segment::Link*> Ring::links() {
-  std::vector<segment::Link*> all;
-  for (const Cable& cable : links_) {
-    all.push_back(cable.forward);
-    all.push_back(cable.back);
+// A return link carries what has passed its station and everything behind it; behind a station with a branch
+// that is not a run of neighbours, so the ring is followed from each station to the last one behind it.
+std::vector<Ring::Receiver> Ring::receivers() {
+  std::vector<Receiver> all;
+  for (std::size_t n = 0; n < slaves_.size(); ++n) {
+    all.push_back({links_[n].forward, in_front_of(n)});
+    all.push_back({links_[n].back, in_front_of(last_behind_[n] + 1)});
   }
   return all;
+}
+
+std::vector<segment::Link*> Ring::links() {
+  std::vector<segment::Link*> all;
+  for (const Receiver& receiver : receivers()) all.push_back(receiver.link);
+  return all;
+}
+
+void Ring::install(fault::InstalledPlan& plan) {
+  const Rules& rules = slaves_.front().configuration.rules;
+  for (const Receiver& receiver : receivers()) {
+    receiver.link->set_channel(plan.channel_for(receiver.link->name(), receiver.link->trace_channel(),
+                                                std::make_unique<CycleFields>(rules, receiver.in_front)));
+  }
+}
+
+CycleFields::InFront Ring::in_front_of(std::size_t station) const {
+  const unsigned words = station < slaves_.size() ? slaves_[station].first_word : word_count_;
+  return {2 * words, 2 * static_cast<unsigned>(station)};
 }
 
 void Ring::set_cable(int position, bool connected) {

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "harness/fault/plan.hpp"
 #include "harness/segment/segment.hpp"
+#include "protocols/interbus/cycle_fields.hpp"
 #include "protocols/interbus/device.hpp"
 #include "protocols/interbus/network.hpp"
 #include "protocols/interbus/terminal_block.hpp"
@@ -41,7 +43,17 @@ class Ring {
   segment::Link& link_from(int position) { return *links_.at(index(position)).back; }
   // A receiver's link by its name, null when there is none.
   segment::Link* find_link(std::string_view receiver);
+  // All receivers in ring order, each with the octets that reach it in front of the loopback word.
+  struct Receiver {
+    segment::Link* link;
+    CycleFields::InFront in_front;
+  };
+  std::vector<Receiver> receivers();
   std::vector<segment::Link*> links();
+
+  // Puts the channels of a fault plan on the receivers that its rules can mean. The plan must outlive the
+  // ring.
+  void install(fault::InstalledPlan& plan);
 
   // Positions of the image words: first word of a station in the master's images.
   unsigned first_word(int position) const { return slaves_.at(index(position)).first_word; }
@@ -66,12 +78,15 @@ class Ring {
 
   static std::size_t index(int position) { return static_cast<std::size_t>(position - 1); }
   void add_station(const NetworkDescription& network, const RingPlace& place, const MakeSlave& make_slave);
+  void find_last_behind(const std::vector<RingPlace>& places);
+  CycleFields::InFront in_front_of(std::size_t station) const;
   void lay_cable(const NetworkDescription& network, const RingPlace& place, std::size_t n);
 
   segment::Segment& segment_;
   std::size_t master_seat_;
   std::deque<Place> slaves_;
   std::vector<Cable> links_;
+  std::vector<std::size_t> last_behind_;  // index of the last station that hangs behind this one, or its own
   unsigned word_count_ = 0;
 };
 
