@@ -65,8 +65,9 @@ void Slave::set_next_present(bool on_branch, bool present) {
 // ---- the way of a telegram through the station ----
 
 segment::Port* Slave::next_after(segment::PortIndex from) const {
-  if (from == kFromUpstream && branch_on_) return ports_.branch;
-  if (from != kFromRemote && remote_on_) return ports_.remote;
+  if (from == kFromUpstream && forward_branch_on_) return ports_.branch;
+  const bool remote = from == kFromUpstream ? forward_remote_on_ : return_remote_on_;
+  if (from != kFromRemote && remote) return ports_.remote;
   return ports_.upstream;
 }
 
@@ -120,7 +121,7 @@ void Slave::note_life(const line::Waveform& wave, const line::Telegram& telegram
 
 // Regenerates what comes back from behind an interface.
 void Slave::relay_only(segment::PortIndex from, const line::Waveform& reception) {
-  const bool is_on = from == kFromBranch ? branch_on_ : remote_on_;
+  const bool is_on = from == kFromBranch ? return_branch_on_ : return_remote_on_;
   if (!is_on) return;
   TelegramRelay& relay = relays_[from];
   segment::Port* port = next_after(from);
@@ -133,6 +134,7 @@ void Slave::relay_only(segment::PortIndex from, const line::Waveform& reception)
 
 void Slave::on_upstream(const line::Waveform& wave, const line::Telegram& telegram) {
   if (is_deaf_) return;
+  if (route_changed_) switch_forward_ways(telegram);
   const auto header = static_cast<std::uint8_t>(telegram.header & ~line::kStopMissing);
   if (!telegram.is_data()) {
     relays_[kFromUpstream].put(wave, telegram);
@@ -143,12 +145,17 @@ void Slave::on_upstream(const line::Waveform& wave, const line::Telegram& telegr
   const std::uint8_t out = on_data(wave, telegram);
   relays_[kFromUpstream].put(wave, telegram.level, code_.levels_of(header, out), line::kDataTelegramLevels);
   if (telegram.is_stop_missing() && !resynchronises()) is_deaf_ = true;
-  // The interfaces have switched at the end of this telegram: what follows goes another way.
-  if (route_changed_) {
-    route_changed_ = false;
-    relays_[kFromUpstream].close();
-    open_forward();
-  }
+}
+
+// The interfaces have switched at the end of an ID cycle. Its end telegrams still go the old way, what
+// follows them goes the new one.
+void Slave::switch_forward_ways(const line::Telegram& telegram) {
+  if (telegram.is_data() && (telegram.header & line::kControl) != 0) return;
+  route_changed_ = false;
+  forward_branch_on_ = branch_on_;
+  forward_remote_on_ = remote_on_;
+  relays_[kFromUpstream].close();
+  open_forward();
 }
 
 // ---- the cycle ----
@@ -173,6 +180,7 @@ std::uint8_t Slave::on_transfer(bool id_cycle, const line::Waveform& wave, const
 }
 
 void Slave::enter_transfer(bool id_cycle, kernel::Time when) {
+  switch_return_ways();
   own_error_ = false;
   upstream_clean_ = true;
   check_octets_seen_ = 0;
@@ -197,11 +205,12 @@ std::uint8_t Slave::on_check(bool id_cycle, const line::Waveform& wave, const li
     // Check telegrams without their transfer phase are passed on as they are; in the pause they are the end
     // telegrams behind a cycle.
     if (phase_ != Phase::pause) abandon_cycle(wave.time_of(telegram.level));
+    on_stray_check();
     return telegram.data;
   }
   const unsigned n = check_octets_seen_++;
   if (n < kCheckOctets) {
-    if (telegram.data != check_expected_.at(n)) own_error_ = true;
+    if (!check_octet_fits(n, telegram.data, check_expected_.at(n))) own_error_ = true;
     return check_sent_.at(n);
   }
   const auto mark = n == kCheckOctets ? high(rules().status_marked) : low(rules().status_marked);
@@ -233,7 +242,7 @@ void Slave::finish_cycle(kernel::Time end) {
 void Slave::finish_data_cycle(bool good, kernel::Time end) {
   if (!good) return on_cycle_rejected(end, own_error_);
   // Until an ID cycle has told the master what is here, outputs stay safe.
-  if (mode_ == Mode::active) latch_outputs(end);
+  if (may_drive_outputs(mode_)) latch_outputs(end);
 }
 
 void Slave::finish_id_cycle(bool good, kernel::Time end) {
@@ -290,11 +299,20 @@ void Slave::flush_receivers(kernel::Time now) {
   }
 }
 
+// What an ID cycle has switched holds for what comes back from the next cycle on: the end of that ID cycle is
+// still on its way through the branch when its last telegram has passed here.
+void Slave::switch_return_ways() {
+  return_branch_on_ = branch_on_;
+  return_remote_on_ = remote_on_;
+}
+
 void Slave::enter_reset(kernel::Time now) {
   silence_end_ = kernel::kNever;
   mode_ = Mode::reset;
   phase_ = Phase::pause;
   branch_on_ = remote_on_ = false;
+  forward_branch_on_ = forward_remote_on_ = route_changed_ = false;
+  switch_return_ways();
   is_deaf_ = false;
   on_reset(now);
 }
@@ -312,6 +330,10 @@ line::FrameCheck16::State Slave::check_to_send(line::FrameCheck16::State,
 
 std::uint8_t Slave::status_octet_to_send(std::uint8_t received, std::uint8_t mark, bool own_error) const {
   return own_error ? received | mark : received;
+}
+
+bool Slave::check_octet_fits(unsigned, std::uint8_t received, std::uint8_t expected) const {
+  return received == expected;
 }
 
 bool Slave::accepts_cycle(bool own_check_good, bool upstream_clean) const {

@@ -71,11 +71,15 @@ class Slave : public SlaveDevice {
   virtual line::FrameCheck16::State check_to_send(line::FrameCheck16::State received,
                                                   line::FrameCheck16::State sent) const;
   virtual std::uint8_t status_octet_to_send(std::uint8_t received, std::uint8_t mark, bool own_error) const;
+  virtual bool check_octet_fits(unsigned n, std::uint8_t received, std::uint8_t expected) const;
   virtual bool accepts_cycle(bool own_check_good, bool upstream_clean) const;
+  virtual bool may_drive_outputs(Mode mode) const { return mode == Mode::active; }
   virtual void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets);
   virtual std::uint16_t word_of(std::uint8_t first, std::uint8_t second) const;
   virtual std::uint16_t id_register(kernel::Time when);
   virtual void on_transfer_end(kernel::Time) {}
+  // A check telegram outside of a cycle, which is passed on.
+  virtual void on_stray_check() {}
   virtual void on_cycle_rejected(kernel::Time, bool own_error);
   virtual void on_id_read(std::uint16_t messages_read) {
     messages_ &= static_cast<std::uint16_t>(~messages_read);
@@ -105,6 +109,8 @@ class Slave : public SlaveDevice {
   void relay_only(segment::PortIndex port, const line::Waveform& reception);
   void open_forward();
   void enter_reset(kernel::Time now);
+  void switch_forward_ways(const line::Telegram& telegram);
+  void switch_return_ways();
   void supervise();
   void flush_receivers(kernel::Time now);
   void note_life(const line::Waveform& wave, const line::Telegram& telegram);
@@ -135,9 +141,13 @@ class Slave : public SlaveDevice {
   bool remote_present_ = true;
   bool branch_on_ = false;
   bool remote_on_ = false;
+  bool forward_branch_on_ = false;  // the same for the ways out, see switch_forward_ways
+  bool forward_remote_on_ = false;
+  bool return_branch_on_ = false;  // and for the ways back, see switch_return_ways
+  bool return_remote_on_ = false;
   kernel::Time outgoing_reset_until_{kernel::Duration::min()};
 
-  bool route_changed_ = false;  // a control word took effect within the reception in work
+  bool route_changed_ = false;  // a control word has taken effect, nothing has gone the new way yet
   bool shifts_status_ = false;
   bool is_deaf_ = false;  // a deviating receiver that does not resynchronise
   kernel::Time now_{};    // of the reception in work
