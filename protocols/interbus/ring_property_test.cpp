@@ -124,7 +124,7 @@ class TelegramCounter final : public segment::Tap {
  public:
   void on_wave(const line::Waveform& wave) override {
     count = 0;
-    code_.decode(wave.levels, 0, [this](const line::Telegram& t) { count += t.is_data() ? 1 : 0; });
+    code_.decode(wave.levels, 0, [this](const line::Telegram& t) { count += t.is_data() ? 1U : 0U; });
   }
   std::size_t count = 0;
 
