@@ -1,0 +1,331 @@
+#include "conformance/interbus/slave_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/kernel/error.hpp"
+#include "protocols/interbus/cycle_fields.hpp"
+#include "protocols/interbus/network.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::uint16_t kTwoWordsBothWays = 0x0203;
+constexpr std::uint16_t kOneWordBothWays = 0x0103;
+constexpr std::size_t kMostLines = 24;
+
+interbus::StationDescription station(std::string name, std::uint16_t id_code) {
+  interbus::StationDescription description;
+  description.name = std::move(name);
+  description.id_code = id_code;
+  return description;
+}
+
+}  // namespace
+
+interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveSetting& setting) {
+  const int stations = std::max(setting.stations, setting.position);
+  interbus::NetworkDescription network;
+  if (setting.network) network = *setting.network;
+  const int available = setting.network ? static_cast<int>(ring_order(network).size()) : stations;
+  if (setting.position < 1 || setting.position > available) {
+    throw kernel::Error(
+        kernel::ErrorKind::usage,
+        fmt::format("there is no slave at position {}: the network has {}", setting.position, available));
+  }
+  if (setting.network) return network;
+  network.name = "slave bench";
+  for (int position = 1; position <= stations; ++position) {
+    const bool is_iut = position == setting.position;
+    network.stations.push_back(station(fmt::format("station {}", position),
+                                       is_iut ? needs.id_code.value_or(kTwoWordsBothWays)
+                                              : (position % 2 == 0 ? kTwoWordsBothWays : kOneWordBothWays)));
+    if (!is_iut) continue;
+    if (needs.branch_neighbour) {
+      network.stations.back().branch.push_back(station("local neighbour", kOneWordBothWays));
+      network.stations.back().branch.back().is_local = true;
+    }
+    if (needs.remote_neighbour) network.stations.push_back(station("neighbour", kOneWordBothWays));
+  }
+  return network;
+}
+
+judge::Pics declared_slave(const interbus::SlaveConfiguration& configuration) {
+  judge::Pics pics;
+  const bool has_words = configuration.words > 0;
+  pics.declare("words", std::int64_t{configuration.words});
+  pics.declare("inputs", has_words && interbus::has_inputs(configuration.id_code));
+  pics.declare("outputs", has_words && interbus::has_outputs(configuration.id_code));
+  pics.declare("id_code", std::int64_t{configuration.id_code});
+  pics.declare("remote_interface", !configuration.is_local);
+  pics.declare("branch_interface", configuration.has_branch);
+  pics.declare("reconfiguration_button", true);
+  pics.declare("peripheral_fault_input", true);
+  pics.declare("any_length_code", true);
+  pics.declare("outputs_while_outgoing_bus_is_reset", "held");
+  return pics;
+}
+
+SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
+    : network_(slave_network(needs, setting)),
+      position_(setting.position),
+      volume_(setting.volume),
+      random_(setting.seed),
+      seat_(segment_.attach(*this, "tester")),
+      ring_(segment_, network_, seat_,
+            [&](int position,
+                const interbus::SlaveConfiguration& configuration) -> std::unique_ptr<interbus::SlaveDevice> {
+              if (position != setting.position || !setting.make_slave) return nullptr;
+              return setting.make_slave(configuration);
+            }),
+      pics_(setting.pics ? *setting.pics : declared_slave(ring_.configuration(position_))),
+      train_(network_.rules),
+      model_(network_.rules),
+      channel_(&train_.code()),
+      in_(train_.code(), network_.rules.bit_rate),
+      out_(train_.code(), network_.rules.bit_rate),
+      remote_(train_.code(), network_.rules.bit_rate),
+      branch_(train_.code(), network_.rules.bit_rate),
+      loopback_word_(network_.rules.loopback_word),
+      inputs_(words()) {
+  if (setting.make_recorder) {
+    segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), network_.rules));
+  }
+  find_way();
+  install(setting.plan);
+}
+
+// The chain of stations from the master to the IUT, each with the interface that leads on.
+void SlaveBench::find_way() {
+  const std::vector<interbus::RingPlace> places = ring_order(network_);
+  int at = position_ - 1;
+  while (at >= 0) {
+    const interbus::RingPlace& place = places[static_cast<std::size_t>(at)];
+    if (place.before >= 0) way_.push_back({place.before + 1, place.on_branch});
+    at = place.before;
+  }
+  std::reverse(way_.begin(), way_.end());
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    if (places[n].before != position_ - 1) continue;
+    const int position = static_cast<int>(n) + 1;
+    ring_.link_to(position).tap_driven(places[n].on_branch ? branch_ : remote_);
+  }
+}
+
+void SlaveBench::install(const fault::Plan& plan) {
+  channels_.add(channel_);
+  if (!plan.empty()) {
+    plan_ = std::make_unique<fault::InstalledPlan>(plan, segment_.trace(), random_.split("plan"));
+    ring_.install(*plan_);
+    if (fault::Channel* planned = ring_.link_to(position_).channel()) channels_.add(*planned);
+  }
+  ring_.link_to(position_).set_channel(plan.empty() ? static_cast<fault::Channel*>(&channel_) : &channels_);
+  ring_.link_to(position_).tap_arrived(in_);
+  ring_.link_from(position_).tap_driven(out_);
+  kernel::Duration cables{};
+  for (segment::Link* link : ring_.links()) cables += link->delay();
+  // What went out comes back after the delays of all stations and cables; a cut telegram ends one later.
+  settling_ = cables + bits(4 * static_cast<std::int64_t>(ring_.size()) + 4 * line::kDataTelegramLevels);
+}
+
+void SlaveBench::set_inputs(std::span<const std::uint16_t> words) {
+  for (unsigned word = 0; word < words.size(); ++word) {
+    inputs_.at(word) = words[word];
+    terminals().set_input(word, words[word]);
+  }
+}
+
+void SlaveBench::set_bridge(bool on_branch, bool present) {
+  ring_.slave(position_).set_next_present(on_branch, present);
+  segment_.refresh(ring_.seat(position_));
+}
+
+std::vector<std::uint16_t> SlaveBench::random_words() {
+  std::vector<std::uint16_t> drawn(words());
+  for (std::uint16_t& word : drawn) word = static_cast<std::uint16_t>(random_.next());
+  return drawn;
+}
+
+// ---- cycles ----
+
+void SlaveBench::put_word(std::uint16_t word) {
+  octets_.push_back(static_cast<std::uint8_t>(word >> 8));
+  octets_.push_back(static_cast<std::uint8_t>(word & 0xFF));
+}
+
+std::span<const std::uint8_t> SlaveBench::data_octets(std::span<const std::uint16_t> words,
+                                                      std::span<const std::uint16_t> behind) {
+  octets_.clear();
+  put_word(loopback_word_);
+  for (const std::uint16_t word : behind) put_word(word);
+  for (const std::uint16_t word : words) put_word(word);
+  for (auto place = way_.rbegin(); place != way_.rend(); ++place) {
+    const unsigned count = ring_.configuration(place->position).words;
+    for (unsigned word = 0; word < count; ++word) put_word(static_cast<std::uint16_t>(0x1100 + word));
+  }
+  return octets_;
+}
+
+void SlaveBench::append_cycle(bool is_id_cycle) {
+  train_.cycle(is_id_cycle, octets_, model_.check().of(octets_), rules().status_clean);
+}
+
+const CyclePlace& SlaveBench::append_data_cycle(std::span<const std::uint16_t> words,
+                                                std::span<const std::uint16_t> behind) {
+  data_octets(words, behind);
+  append_cycle(false);
+  return train_.cycles().back();
+}
+
+const CyclePlace& SlaveBench::append_id_cycle(std::uint16_t control, std::span<const std::uint16_t> behind) {
+  octets_.clear();
+  put_word(loopback_word_);
+  for (const std::uint16_t word : behind) put_word(word);
+  put_word(control);
+  for (auto place = way_.rbegin(); place != way_.rend(); ++place)
+    put_word(place->next_on_branch ? rules().control_remote_off : rules().control_local_off);
+  append_cycle(true);
+  return train_.cycles().back();
+}
+
+// An ID cycle that reaches the first `stations` of the way and lets them through to the next one.
+void SlaveBench::open_way(std::size_t stations) {
+  begin();
+  octets_.clear();
+  put_word(loopback_word_);
+  for (std::size_t n = stations; n > 0; --n)
+    put_word(way_[n - 1].next_on_branch ? rules().control_remote_off : rules().control_local_off);
+  append_cycle(true);
+  send();
+}
+
+void SlaveBench::bring_up() {
+  status_telegrams(4);
+  for (std::size_t n = 1; n <= way_.size(); ++n) open_way(n);
+  id_cycle(interfaces_off());
+  clear_views();
+  terminals().forget_changes();
+}
+
+void SlaveBench::id_cycle(std::uint16_t control, std::span<const std::uint16_t> behind) {
+  begin();
+  append_id_cycle(control, behind);
+  send();
+}
+
+void SlaveBench::data_cycle(std::span<const std::uint16_t> words, std::span<const std::uint16_t> behind) {
+  begin();
+  append_data_cycle(words, behind);
+  send();
+}
+
+void SlaveBench::status_telegrams(std::size_t count) {
+  begin();
+  train_.status(count);
+  send();
+}
+
+void SlaveBench::silence(kernel::Duration duration) {
+  segment_.run_for(duration);
+}
+
+void SlaveBench::send() {
+  clear_views();
+  sent_at_ = now();
+  line::Waveform wave{now(), rules().bit_rate, {}};
+  std::swap(wave.levels, train_.levels());
+  const kernel::Time end = wave.end();
+  ring_.out().drive(wave);
+  std::swap(wave.levels, train_.levels());
+  segment_.run_until(end + settling_);
+}
+
+void SlaveBench::clear_views() {
+  for (LineView* view : {&in_, &out_, &remote_, &branch_}) view->clear();
+}
+
+// ---- faults ----
+
+std::size_t SlaveBench::code_word_level(const CyclePlace& cycle, std::size_t bit) const {
+  const std::size_t first = cycle.octets + 2 - code_word_bits() / 8;
+  return cycle.level_of(first + bit / 8, train_.data_level(static_cast<unsigned>(bit % 8)));
+}
+
+void SlaveBench::drive_at_receiver(line::Waveform& wave) {
+  clear_views();
+  sent_at_ = wave.start = now();
+  const kernel::Time end = wave.end();
+  ring_.link_to(position_).drive(wave);
+  segment_.run_until(end + settling_);
+}
+
+line::Levels SlaveBench::direct_data_cycle(std::span<const std::uint16_t> words, unsigned gap_bits) {
+  TrainWriter writer(rules());
+  writer.set_gap(gap_bits);
+  octets_.clear();
+  put_word(loopback_word_);
+  for (const std::uint16_t word : words) put_word(word);
+  writer.cycle(false, octets_, model_.check().of(octets_), rules().status_clean);
+  return writer.levels();
+}
+
+// ---- views ----
+
+std::optional<CycleOnLine> SlaveBench::cycle_on(LineView& view, std::size_t n) {
+  const CyclePlace& place = train_.cycles()[n];
+  const std::span<const SeenTelegram> telegrams = view.data_telegrams();
+  if (telegrams.size() < place.first + place.telegrams()) return std::nullopt;
+  return CycleOnLine{telegrams.subspan(place.first, place.telegrams()), place.octets, place.is_id_cycle};
+}
+
+std::vector<std::uint8_t> SlaveBench::data_load() const {
+  std::vector<std::uint8_t> load;
+  for (const std::uint16_t word : inputs_) {
+    load.push_back(static_cast<std::uint8_t>(word >> 8));
+    load.push_back(static_cast<std::uint8_t>(word & 0xFF));
+  }
+  return load;
+}
+
+std::vector<std::uint8_t> SlaveBench::id_load(std::uint16_t messages) const {
+  const auto id = static_cast<unsigned>(id_code() | messages);
+  return {static_cast<std::uint8_t>(id >> 8), static_cast<std::uint8_t>(id & 0xFF)};
+}
+
+void SlaveBench::add_lines(std::vector<std::string>& lines, std::string_view name, LineView& view) const {
+  for (const line::Waveform& wave : view.waves()) {
+    if (lines.size() >= kMostLines) return;
+    lines.push_back(fmt::format(
+        "{} levels at {}, {} per bit: {}", name, kernel::describe(wave.start),
+        fmt::format("{:.4g}", static_cast<double>(wave.rate) / static_cast<double>(rules().bit_rate)),
+        wave.levels.slice(0, std::min<std::size_t>(wave.levels.size(), 160)).text()));
+  }
+  const std::span<const SeenTelegram> telegrams = view.telegrams();
+  const std::size_t shown = std::min(telegrams.size(), kMostLines);
+  for (std::size_t n = 0; n < shown; ++n)
+    lines.push_back(fmt::format("{} {}", name, describe(view, telegrams[n], sent_at_)));
+  if (shown < telegrams.size())
+    lines.push_back(fmt::format("{} and {} telegrams more", name, telegrams.size() - shown));
+  FoundCycle cycle;
+  find_last_cycle(view.data_telegrams(), cycle);
+  if (!cycle.is_found) return;
+  std::string octets;
+  for (const std::uint8_t octet : cycle.octets) octets += fmt::format(" {:02X}", octet);
+  lines.push_back(fmt::format("{} fields of its last cycle: {} transfer{}, check {:04X}, status word {:04X}",
+                              name, cycle.is_id_cycle ? "ID" : "data", octets, cycle.check, cycle.status));
+}
+
+std::vector<std::string> SlaveBench::decode_lines() {
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format("last stimulus at {}", kernel::describe(sent_at_)));
+  add_lines(lines, "in", in_);
+  std::vector<std::string> driven;
+  add_lines(driven, "out", out_);
+  add_lines(driven, "OUT1", remote_);
+  add_lines(driven, "OUT2", branch_);
+  lines.insert(lines.end(), driven.begin(), driven.end());
+  return lines;
+}
+
+}  // namespace fieldproof::conformance

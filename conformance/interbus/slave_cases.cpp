@@ -1,0 +1,144 @@
+#include "conformance/interbus/slave_cases.hpp"
+
+#include <iterator>
+#include <utility>
+
+namespace fieldproof::conformance {
+namespace {
+
+SlaveCase canary() {
+  TestCase test_case;
+  test_case.id = "interbus/slave/canary/a_failure_is_seen";
+  test_case.purpose = "canary";
+  test_case.requirement = "a failure of this suite is seen";
+  test_case.reference = sources::own("rules of the suite");
+  test_case.stimulus = "An ID cycle and a valid data cycle with random words.";
+  test_case.expected =
+      "The verdict is fail: the case asks for a returned loopback word that differs from the one sent.";
+  test_case.tags = {"canary"};
+  return {test_case, [](SlaveBench& bench, CaseJudge& judge) {
+            bench.bring_up();
+            bench.data_cycle(bench.random_words());
+            const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
+            judge.expect(out && out->word(out->octets - 2) == 0xFFFF && out->word(0) == 0x1234, "canary",
+                         "a slave that answers with what nobody sent", "it answered with what was sent");
+          }};
+}
+
+// Why a network of the user's does not have what the case needs.
+std::optional<std::string> missing_in_network(const SlaveNeeds& needs,
+                                              const interbus::NetworkDescription& network, int position) {
+  const std::vector<interbus::RingPlace> places = ring_order(network);
+  const auto has_neighbour = [&](bool on_branch) {
+    for (const interbus::RingPlace& place : places) {
+      if (place.before == position - 1 && place.on_branch == on_branch) return true;
+    }
+    return false;
+  };
+  const interbus::RingPlace& own = places[static_cast<std::size_t>(position - 1)];
+  if (needs.id_code && own.station->id_code != *needs.id_code)
+    return "the station of the network has another ID code than the case asks for";
+  if (needs.remote_neighbour && !has_neighbour(false))
+    return "no station is behind the remote-bus interface (OUT1) of the slave";
+  if (needs.branch_neighbour && !has_neighbour(true))
+    return "no station is behind the second interface (OUT2) of the slave";
+  return std::nullopt;
+}
+
+judge::CaseResult not_applicable(const TestCase& test_case, std::string sentence) {
+  judge::CaseResult result;
+  result.id = test_case.id;
+  result.purpose = test_case.purpose;
+  result.requirement = test_case.requirement;
+  result.reference = test_case.reference;
+  result.verdict = judge::Verdict::not_applicable;
+  result.reason = std::move(sentence);
+  return result;
+}
+
+}  // namespace
+
+const std::vector<SlaveCase>& slave_cases() {
+  static const std::vector<SlaveCase> cases = [] {
+    std::vector<SlaveCase> all;
+    for (auto chapter : {slave_power_up_cases, slave_id_cycle_cases, slave_data_cycle_cases,
+                         slave_length_code_cases, slave_frame_check_cases, slave_telegram_cases,
+                         slave_timing_cases, slave_supervision_cases, slave_interface_cases,
+                         slave_message_cases, slave_immunity_cases}) {
+      std::vector<SlaveCase> cases_of_chapter = chapter();
+      std::move(cases_of_chapter.begin(), cases_of_chapter.end(), std::back_inserter(all));
+    }
+    all.push_back(canary());
+    return all;
+  }();
+  return cases;
+}
+
+judge::CaseResult run_slave_case(const SlaveCase& slave_case, const SlaveSetting& setting) {
+  const TestCase& test_case = slave_case.test_case;
+  SlaveBench bench(slave_case.needs, setting);
+  if (setting.network) {
+    if (auto sentence = missing_in_network(slave_case.needs, *setting.network, setting.position))
+      return not_applicable(test_case, *sentence);
+  }
+  if (test_case.not_applicable) {
+    if (auto sentence = test_case.not_applicable(bench.pics())) return not_applicable(test_case, *sentence);
+  }
+  CaseJudge judge(test_case);
+  judge.use_clock([&] { return bench.now(); });
+  judge.use_decode([&] { return bench.decode_lines(); });
+  judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) { slave_case.procedure(bench, j); });
+  result.seed = setting.seed;
+  result.fingerprint = bench.segment().trace().fingerprint();
+  result.virtual_time = bench.now() - kernel::kStart;
+  return result;
+}
+
+Applicability for_every_slave() {
+  return nullptr;
+}
+Applicability for_item(std::string item, std::string sentence) {
+  return [item, sentence](const judge::Pics& pics) -> std::optional<std::string> {
+    if (pics.supports(item)) return std::nullopt;
+    return sentence;
+  };
+}
+Applicability for_outputs() {
+  return for_item("outputs", "the slave has no outputs");
+}
+Applicability for_inputs() {
+  return for_item("inputs", "the slave has no inputs");
+}
+Applicability for_inputs_and_outputs() {
+  return [](const judge::Pics& pics) -> std::optional<std::string> {
+    if (pics.supports("outputs") && pics.supports("inputs")) return std::nullopt;
+    return "the slave does not have both inputs and outputs";
+  };
+}
+
+namespace sources {
+judge::Reference park(std::string place) {
+  return {"Park 2004", std::move(place), judge::Standing::seed};
+}
+judge::Reference practical_guide(std::string place) {
+  return {"Buesing and Meyer, INTERBUS Practical Guide", std::move(place), judge::Standing::searched};
+}
+judge::Reference phoenix_maintenance(std::string place) {
+  return {"Phoenix Contact UK, operation and maintenance of INTERBUS", std::move(place),
+          judge::Standing::searched};
+}
+judge::Reference calculated(std::string place) {
+  return {"computed from the polynomial", std::move(place), judge::Standing::calc};
+}
+judge::Reference derived(std::string place) {
+  return {"follows from Park 2004 and the Practical Guide", std::move(place), judge::Standing::derived};
+}
+judge::Reference from_memory(std::string place) {
+  return {"INTERBUS literature from memory", std::move(place), judge::Standing::memory};
+}
+judge::Reference own(std::string place) {
+  return {"this project's choice", std::move(place), judge::Standing::own};
+}
+}  // namespace sources
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "conformance/interbus/slave_bench.hpp"
+#include "conformance/judging.hpp"
+#include "conformance/test_case.hpp"
+
+// The test cases for an INTERBUS slave, IS-01 to IS-42 of the catalogue of test purposes, and a canary.
+namespace fieldproof::conformance {
+
+struct SlaveCase {
+  TestCase test_case;
+  std::function<void(SlaveBench&, CaseJudge&)> procedure;
+  SlaveNeeds needs{};
+};
+
+const std::vector<SlaveCase>& slave_cases();
+
+// One run on a bench of its own. The result has verdict, findings, measurements, seed, fingerprint and
+// virtual time; wall time is the caller's to fill. Throws kernel::Error for a position that is not there.
+judge::CaseResult run_slave_case(const SlaveCase& slave_case, const SlaveSetting& setting);
+
+// The chapters, each in its own file.
+std::vector<SlaveCase> slave_power_up_cases();
+std::vector<SlaveCase> slave_id_cycle_cases();
+std::vector<SlaveCase> slave_data_cycle_cases();
+std::vector<SlaveCase> slave_length_code_cases();
+std::vector<SlaveCase> slave_frame_check_cases();
+std::vector<SlaveCase> slave_telegram_cases();
+std::vector<SlaveCase> slave_timing_cases();
+std::vector<SlaveCase> slave_supervision_cases();
+std::vector<SlaveCase> slave_interface_cases();
+std::vector<SlaveCase> slave_message_cases();
+std::vector<SlaveCase> slave_immunity_cases();
+
+// ---- what chapters share ----
+
+using Applicability = std::function<std::optional<std::string>(const judge::Pics&)>;
+Applicability for_every_slave();
+// With outputs, with inputs, with both; or with a PICS item, `sentence` says why it does not apply without.
+Applicability for_outputs();
+Applicability for_inputs();
+Applicability for_inputs_and_outputs();
+Applicability for_item(std::string item, std::string sentence);
+
+namespace sources {
+judge::Reference park(std::string place);         // the paper whose cycle time the project reproduces
+judge::Reference practical_guide(std::string place);
+judge::Reference phoenix_maintenance(std::string place);
+judge::Reference calculated(std::string place);
+judge::Reference derived(std::string place);
+judge::Reference from_memory(std::string place);
+judge::Reference own(std::string place);
+}  // namespace sources
+
+}  // namespace fieldproof::conformance

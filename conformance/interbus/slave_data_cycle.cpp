@@ -1,0 +1,273 @@
+#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_expect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+// IS-05 to IS-08 and IS-39: what a valid data cycle does.
+namespace fieldproof::conformance {
+namespace {
+
+void outputs_change_after_the_check(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  kernel::Duration latest{};
+  for (unsigned n = 0; n < bench.volume(20U, 200U); ++n) {
+    const std::vector<std::uint16_t> words = bench.random_words();
+    bench.data_cycle(words);
+    if (!bench.changes().empty() && !bench.in().data_telegrams().empty()) {
+      latest = std::max(latest, bench.changes().back().when -
+                                    bench.in().end_of(bench.in().data_telegrams().back()));
+    }
+    expect_latched_in_order(bench, judge, words);
+  }
+  judge.measure("latest output change after the last check telegram", "us",
+                static_cast<double>(latest.count()) / 1e6);
+}
+
+// Inputs that jump between 0000h and FFFFh at instants that have nothing to do with the cycle.
+std::uint16_t jumping(kernel::Time when, std::uint64_t seed) {
+  constexpr std::int64_t kPiece = 7'300'000;  // ps
+  std::uint64_t mixed = static_cast<std::uint64_t>(when.time_since_epoch().count() / kPiece) + seed;
+  mixed = (mixed ^ mixed >> 31) * 0x9E3779B97F4A7C15U;
+  return (mixed >> 40 & 1U) != 0 ? 0xFFFF : 0x0000;
+}
+
+// A clock at the terminals: tells when it was looked at, in microseconds.
+std::uint16_t clock_word(kernel::Time when) {
+  return static_cast<std::uint16_t>(when.time_since_epoch().count() / 1'000'000 & 0xFFFF);
+}
+
+void check_snapshots(SlaveBench& bench, CaseJudge& judge) {
+  constexpr unsigned kTrain = 32;
+  const std::vector<std::uint16_t> nothing(bench.words());
+  const unsigned cycles = bench.volume(800U, 100'000U);
+  for (unsigned done = 0; done < cycles; done += kTrain) {
+    bench.begin();
+    for (unsigned n = 0; n < kTrain; ++n) bench.append_data_cycle(nothing);
+    bench.send();
+    expect_all_telegrams(bench, judge);
+    for (unsigned n = 0; n < kTrain; ++n) {
+      const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), n);
+      if (!out) continue;
+      for (unsigned word = 0; word < bench.words(); ++word) {
+        const std::uint16_t seen = out->word(2 * word);
+        judge.expect(seen == 0x0000 || seen == 0xFFFF, "input_word_torn", [&] {
+          return Sighting{.expected = {"0000h", "FFFFh"},
+                          .actual = fmt::format("{:04X}h", seen),
+                          .time = bench.out().start_of(out->telegrams[2 * word]),
+                          .first_difference = fmt::format("input word {}", word)};
+        });
+      }
+    }
+  }
+}
+
+// The sample's offset from the start of the cycle, in microseconds, from the clock that came back.
+int sample_offset(SlaveBench& bench, std::uint16_t clock) {
+  const std::uint16_t begin = clock_word(bench.in().start_of(bench.in().data_telegrams()[0]));
+  return static_cast<std::int16_t>(static_cast<std::uint16_t>(clock - begin));
+}
+
+void check_sample_instant(SlaveBench& bench, CaseJudge& judge) {
+  int least = std::numeric_limits<int>::max();
+  int most = std::numeric_limits<int>::min();
+  for (unsigned n = 0; n < bench.volume(40U, 1'000U); ++n) {
+    bench.silence(bench.bits(static_cast<std::int64_t>(bench.random().below(300))));
+    bench.data_cycle(bench.random_words());
+    const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
+    if (!out) continue;
+    const int offset = sample_offset(bench, out->word(0));
+    least = std::min(least, offset);
+    most = std::max(most, offset);
+  }
+  judge.measure("sample instant after the start of the cycle", "us", least);
+  // One bit to either side, and the resolution of the clock.
+  const double spread = static_cast<double>(bench.bits(2).count()) / 1e6 + 1;
+  judge.expect_between("spread of the sample instant", "us", most - least, 0, spread,
+                       "sample_instant_not_constant");
+}
+
+void inputs_are_a_snapshot(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  const std::uint64_t seed = bench.random().next();
+  for (unsigned word = 0; word < bench.words(); ++word)
+    bench.terminals().set_signal(word, [seed](kernel::Time when) { return jumping(when, seed); });
+  check_snapshots(bench, judge);
+  for (unsigned word = 0; word < bench.words(); ++word)
+    bench.terminals().set_signal(word, [](kernel::Time when) { return clock_word(when); });
+  check_sample_instant(bench, judge);
+}
+
+// ---- loopback words ----
+
+std::vector<std::uint16_t> loopback_words(SlaveBench& bench) {
+  std::vector<std::uint16_t> words = {0x0000, 0xFFFF, 0xA55A, 0x5AA5};
+  for (unsigned bit = 0; bit < 16; ++bit) {
+    words.push_back(static_cast<std::uint16_t>(1U << bit));
+    words.push_back(static_cast<std::uint16_t>(~(1U << bit)));
+  }
+  if (bench.volume(false, true)) {
+    words.clear();
+    for (unsigned word = 0; word < 65'536; ++word) words.push_back(static_cast<std::uint16_t>(word));
+  } else {
+    while (words.size() < 512) words.push_back(static_cast<std::uint16_t>(bench.random().next()));
+  }
+  return words;
+}
+
+void loopback_word_returns_unchanged(SlaveBench& bench, CaseJudge& judge) {
+  constexpr std::size_t kTrain = 64;
+  bench.bring_up();
+  bench.set_inputs(bench.random_words());
+  const std::vector<std::uint8_t> load = bench.data_load();
+  const std::vector<std::uint16_t> sent = bench.random_words();
+  const std::vector<std::uint16_t> loopbacks = loopback_words(bench);
+  for (std::size_t done = 0; done < loopbacks.size(); done += kTrain) {
+    const std::size_t count = std::min(kTrain, loopbacks.size() - done);
+    bench.begin();
+    for (std::size_t n = 0; n < count; ++n) {
+      bench.set_loopback_word(loopbacks[done + n]);
+      bench.append_data_cycle(sent);
+    }
+    bench.send();
+    expect_all_telegrams(bench, judge);
+    for (std::size_t n = 0; n < count; ++n) expect_answer(bench, judge, n, load);
+    expect_outputs(bench, judge, sent, "valid_cycle_rejected");
+  }
+}
+
+// ---- process data ----
+
+// The next of a pseudo-random sequence of 2^15 - 1 words.
+std::uint16_t prbs15(std::uint16_t word) {
+  for (unsigned n = 0; n < 15; ++n)
+    word = static_cast<std::uint16_t>((word << 1 | ((word >> 14 ^ word >> 13) & 1)) & 0x7FFF);
+  return word;
+}
+
+std::vector<std::uint16_t> patterns(unsigned random_count) {
+  std::vector<std::uint16_t> list = {0x0000, 0xFFFF, 0x0000, 0x00FF, 0xFF00, 0x5555, 0xAAAA};
+  for (unsigned bit = 0; bit < 16; ++bit) list.push_back(static_cast<std::uint16_t>(1U << bit));
+  for (unsigned bit = 0; bit < 16; ++bit) list.push_back(static_cast<std::uint16_t>(~(1U << bit)));
+  std::uint16_t word = 1;
+  for (unsigned n = 0; n < random_count; ++n) list.push_back(word = prbs15(word));
+  return list;
+}
+
+void process_data_is_exact(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  std::vector<std::uint16_t> outputs(bench.words());
+  std::vector<std::uint16_t> inputs(bench.words());
+  const std::vector<std::uint16_t> list = patterns(bench.volume(300U, 32'767U));
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    for (unsigned word = 0; word < bench.words(); ++word) {
+      outputs[word] = list[(n + word) % list.size()];
+      inputs[word] = list[list.size() - 1 - (n + 5 * word) % list.size()];
+    }
+    bench.set_inputs(inputs);
+    bench.data_cycle(outputs);
+    expect_answer(bench, judge, 0, bench.data_load());
+    expect_outputs(bench, judge, outputs, "output_word_wrong");
+  }
+}
+
+// ---- endurance ----
+
+void cycles_back_to_back(SlaveBench& bench, CaseJudge& judge) {
+  constexpr unsigned kTrain = 64;
+  const unsigned words = bench.words();
+  bench.bring_up();
+  bench.train().set_gap(0);
+  std::vector<std::uint16_t> sent(std::size_t{kTrain} * words);
+  for (unsigned done = 0; done < bench.volume(1'024U, 1'000'000U); done += kTrain) {
+    for (std::uint16_t& word : sent) word = static_cast<std::uint16_t>(bench.random().next());
+    bench.set_inputs(bench.random_words());
+    const std::vector<std::uint8_t> load = bench.data_load();
+    bench.begin();
+    for (std::size_t n = 0; n < kTrain; ++n)
+      bench.append_data_cycle(std::span<const std::uint16_t>(sent).subspan(n * words, words));
+    bench.send();
+    expect_all_telegrams(bench, judge);
+    for (std::size_t n = 0; n < kTrain; ++n) expect_answer(bench, judge, n, load);
+    expect_latched_in_order(bench, judge, sent);
+  }
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_data_cycle_cases() {
+  std::vector<SlaveCase> cases;
+  cases.push_back(
+      {{.id = "interbus/slave/data_cycle/outputs_change_after_the_check_phase",
+        .purpose = "IS-05",
+        .requirement = "The outputs take over the words of a valid data cycle at the end of its check phase: "
+                       "not before, and within 50 us after its last check telegram.",
+        .reference = sources::own("the limit of 50 us; that data count only after the check: Practical Guide"),
+        .stimulus = "Valid data cycles with random words.",
+        .expected = "Each output changes between the last bit of the last check telegram and 50 us after that "
+                    "telegram's end, to the words of the cycle.",
+        .tags = {"must", "timing"},
+        .catches = {{"latches_at_end_of_data_phase", "outputs_changed_before_check"},
+                    {"latches_late", "outputs_latched_late"}},
+        .not_applicable = for_outputs()},
+       outputs_change_after_the_check});
+  cases.push_back(
+      {{.id = "interbus/slave/data_cycle/inputs_are_one_snapshot",
+        .purpose = "IS-06",
+        .requirement = "The inputs that a cycle carries are sampled at one instant, which has a fixed place in "
+                       "the cycle.",
+        .reference = sources::own("sampling at the start of the cycle"),
+        .stimulus = "All inputs jump between 0000h and FFFFh at instants unrelated to the cycle, for 100 000 "
+                    "cycles; then the inputs carry a clock.",
+        .expected = "A returned word is 0000h or FFFFh, never a mixture; the instant that the clock tells "
+                    "stays at its place in the cycle within one bit to either side.",
+        .tags = {"must", "timing"},
+        .catches = {{"tears_inputs", "input_word_torn"},
+                    {"samples_with_previous_cycle", "sample_instant_not_constant"}},
+        .not_applicable = for_inputs()},
+       inputs_are_a_snapshot});
+  cases.push_back(
+      {{.id = "interbus/slave/data_cycle/loopback_word_returns_unchanged",
+        .purpose = "IS-07",
+        .requirement = "The loopback word is data for a slave: whatever its value, it passes unchanged behind "
+                       "the slave's own register.",
+        .reference = sources::park("section 2.2: the cycle ends when the loopback word has returned"),
+        .stimulus = "Valid data cycles with each of the 65 536 loopback words.",
+        .expected = "Each loopback word leaves as it came, with the register in front of it and a right check.",
+        .tags = {"must"},
+        .catches = {{"loopback_word_of_ones_changed", "passed_octet_changed"}},
+        .not_applicable = for_every_slave()},
+       loopback_word_returns_unchanged});
+  cases.push_back(
+      {{.id = "interbus/slave/data_cycle/process_data_is_exact",
+        .purpose = "IS-08",
+        .requirement = "Outputs show exactly the words of the cycle, and the cycle carries exactly the words "
+                       "at the inputs, in both cases with the octets in order.",
+        .reference = sources::park("section 2.2: full duplex exchange of process data"),
+        .stimulus = "Valid data cycles with walking ones and zeros, 0000h, FFFFh and a pseudo-random sequence "
+                    "of 32 767 words, other words in each direction.",
+        .expected = "Outputs and returned inputs equal the words that were sent and set.",
+        .tags = {"must"},
+        .catches = {{"output_octets_swapped", "output_word_wrong"},
+                    {"input_bit_stuck", "register_content_wrong"}},
+        .not_applicable = for_inputs_and_outputs()},
+       process_data_is_exact});
+  cases.push_back(
+      {{.id = "interbus/slave/data_cycle/cycles_back_to_back_are_all_accepted",
+        .purpose = "IS-39",
+        .requirement = "Cycles that follow each other without any pause are each accepted and answered.",
+        .reference = sources::derived("one cycle is independent of the one before it"),
+        .stimulus = "1 000 000 valid data cycles with pseudo-random words, no idle bit between telegrams or "
+                    "cycles.",
+        .expected = "No cycle is rejected or answered wrongly, and the outputs show each cycle's words in turn.",
+        .tags = {"must", "long"},
+        .catches = {{"loses_every_200th_cycle", "valid_cycle_rejected"},
+                    {"check_not_reset_between_cycles", "check_wrong"}},
+        .not_applicable = for_every_slave()},
+       cycles_back_to_back});
+  return cases;
+}
+
+}  // namespace fieldproof::conformance

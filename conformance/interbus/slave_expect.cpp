@@ -1,0 +1,184 @@
+#include "conformance/interbus/slave_expect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fieldproof::conformance {
+namespace {
+
+bool has_outputs(const SlaveBench& bench) {
+  return bench.pics().supports("outputs") && bench.words() > 0;
+}
+
+std::string text_of(const interbus::TerminalBlock::Change& change) {
+  return fmt::format("word {} went from {:04X}h to {:04X}h at {}", change.word, change.before, change.after,
+                     kernel::describe(change.when));
+}
+
+// From when on the outputs may show a cycle, and until when they must.
+struct LatchWindow {
+  kernel::Time first;
+  kernel::Time last;
+};
+
+LatchWindow latch_window(SlaveBench& bench, const CycleOnLine& in) {
+  const SeenTelegram& last = in.telegrams.back();
+  const kernel::Time start = bench.in().start_of(last);
+  return {start + bench.bits(TrainWriter::kStopLevel),
+          start + bench.bits(line::kDataTelegramLevels) + bench.rules().latch_limit};
+}
+
+}  // namespace
+
+std::vector<std::uint16_t> words_held(std::span<const SeenTelegram> transfer, unsigned words) {
+  std::vector<std::uint16_t> held;
+  const std::size_t first = transfer.size() - std::min<std::size_t>(transfer.size(), 2 * words);
+  for (std::size_t n = first; n + 1 < transfer.size(); n += 2)
+    held.push_back(static_cast<std::uint16_t>(transfer[n].data << 8 | transfer[n + 1].data));
+  return held;
+}
+
+std::string text_of(std::span<const std::uint16_t> words) {
+  std::string text;
+  for (const std::uint16_t word : words) text += fmt::format("{}{:04X}h", text.empty() ? "" : " ", word);
+  return text.empty() ? "no words" : text;
+}
+
+void expect_all_telegrams(SlaveBench& bench, CaseJudge& judge) {
+  const std::size_t arrived = bench.in().data_telegrams().size();
+  const std::size_t left = bench.out().data_telegrams().size();
+  judge.expect(left == arrived, left < arrived ? "telegram_lost" : "telegram_added", [&] {
+    return Sighting{.expected = {fmt::format("{} data telegrams leave, as many as arrived", arrived)},
+                    .actual = fmt::format("{} data telegrams left", left)};
+  });
+}
+
+void expect_answer(SlaveBench& bench, CaseJudge& judge, std::size_t n, std::span<const std::uint8_t> load) {
+  const std::optional<CycleOnLine> in = bench.cycle_on(bench.in(), n);
+  const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), n);
+  if (!in || !out) {
+    expect_all_telegrams(bench, judge);
+    judge.fail("telegram_lost", {{"the cycle passes the slave"}, "it did not arrive there whole"});
+  }
+  SlaveModel& model = bench.model();
+  model.answer(*in, load);
+  if (model.is_right(*out)) return;
+  const AnswerDifference difference = model.difference(*out, load.size());
+  judge.fail(difference.reason, {.expected = {difference.expected},
+                                 .actual = difference.actual,
+                                 .time = bench.out().start_of(out->telegrams[0]),
+                                 .first_difference = difference.place});
+}
+
+void expect_outputs(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words,
+                    std::string_view reason) {
+  if (!has_outputs(bench)) return;
+  judge.expect(std::ranges::equal(bench.outputs(), words), reason, [&] {
+    return Sighting{.expected = {fmt::format("outputs {}", text_of(words))},
+                    .actual = fmt::format("outputs {}", text_of(bench.outputs()))};
+  });
+}
+
+void expect_no_change(SlaveBench& bench, CaseJudge& judge, std::string_view reason,
+                      std::string_view why_not) {
+  judge.expect(bench.changes().empty(), reason, [&] {
+    const auto& change = bench.changes().front();
+    return Sighting{.expected = {fmt::format("no output changes: {}", why_not)},
+                    .actual = text_of(change),
+                    .time = change.when};
+  });
+}
+
+void expect_marked(SlaveBench& bench, CaseJudge& judge, std::size_t n) {
+  const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), n);
+  if (!out) {
+    expect_all_telegrams(bench, judge);
+    judge.fail("telegram_lost", {{"the cycle passes the slave"}, "it did not arrive there whole"});
+  }
+  const std::uint16_t marked = bench.rules().status_marked;
+  judge.expect((out->status() & marked) == marked, "error_not_marked", [&] {
+    return Sighting{.expected = {fmt::format("status word {:04X}h, marked", marked)},
+                    .actual = fmt::format("status word {:04X}h", out->status()),
+                    .time = bench.out().start_of(out->telegrams[out->octets + 2]),
+                    .first_difference = fmt::format("status word of cycle {}", n)};
+  });
+}
+
+void expect_rejected(SlaveBench& bench, CaseJudge& judge, std::size_t n) {
+  expect_marked(bench, judge, n);
+  expect_no_change(bench, judge, "output_changed_by_rejected_cycle", "the cycle does not pass its check");
+}
+
+void expect_good_cycle(SlaveBench& bench, CaseJudge& judge, std::string_view reason) {
+  std::vector<std::uint16_t> words = bench.random_words();
+  if (!words.empty()) words[0] = static_cast<std::uint16_t>(~bench.outputs()[0]);
+  bench.data_cycle(words);
+  const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
+  judge.expect(out.has_value() && out->status() == bench.rules().status_clean, reason, [&] {
+    return Sighting{
+        .expected = {"a clean cycle passes with a clean status word"},
+        .actual = out ? fmt::format("status word {:04X}h", out->status()) : "its telegrams did not pass"};
+  });
+  expect_outputs(bench, judge, words, reason);
+  bench.terminals().forget_changes();
+}
+
+void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words) {
+  if (!has_outputs(bench)) return;
+  const auto& changes = bench.changes();
+  const std::size_t per_cycle = bench.words();
+  std::vector<std::uint16_t> held = bench.outputs();
+  for (auto change = changes.rbegin(); change != changes.rend(); ++change) held[change->word] = change->before;
+  std::size_t next = 0;
+  for (std::size_t n = 0; n * per_cycle < words.size(); ++n) {
+    const std::optional<CycleOnLine> in = bench.cycle_on(bench.in(), n);
+    if (!in) judge.fail("telegram_lost", {{"the cycle arrives at the slave"}, "it did not"});
+    const LatchWindow window = latch_window(bench, *in);
+    const auto wanted = words.subspan(n * per_cycle, per_cycle);
+    const auto shows = [&] { return std::ranges::equal(held, wanted); };
+    for (; next < changes.size() && changes[next].when <= window.last; ++next) {
+      const auto& change = changes[next];
+      judge.expect(change.when >= window.first, "outputs_changed_before_check", [&] {
+        return Sighting{.expected = {fmt::format("outputs change at or after {}, the end of the check phase",
+                                                 kernel::describe(window.first))},
+                        .actual = text_of(change),
+                        .time = change.when};
+      });
+      held[change.word] = change.after;
+    }
+    if (shows()) continue;
+    const std::optional<CycleOnLine> following =
+        (n + 1) * per_cycle < words.size() ? bench.cycle_on(bench.in(), n + 1) : std::nullopt;
+    const kernel::Time until = following ? latch_window(bench, *following).first : kernel::kNever;
+    std::vector<std::uint16_t> later = held;
+    for (std::size_t k = next; k < changes.size() && changes[k].when < until; ++k)
+      later[changes[k].word] = changes[k].after;
+    const bool comes_late = std::ranges::equal(later, wanted);
+    judge.fail(comes_late ? "outputs_latched_late" : "valid_cycle_rejected",
+               {.expected = {fmt::format("outputs {} until {}", text_of(wanted),
+                                         kernel::describe(window.last))},
+                .actual = comes_late && next < changes.size()
+                              ? text_of(changes[next])
+                              : fmt::format("outputs {}", text_of(held)),
+                .time = window.last,
+                .first_difference = fmt::format("data cycle {} of the train", n)});
+  }
+  judge.expect(next == changes.size(), "outputs_changed_without_cycle", [&] {
+    return Sighting{.expected = {"no output changes behind the last cycle"},
+                    .actual = text_of(changes[next]),
+                    .time = changes[next].when};
+  });
+  bench.terminals().forget_changes();
+}
+
+std::uint16_t id_register(SlaveBench& bench, CaseJudge& judge) {
+  const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
+  if (!out) {
+    expect_all_telegrams(bench, judge);
+    judge.fail("telegram_lost", {{"the ID cycle passes the slave"}, "it did not arrive there whole"});
+  }
+  return out->word(0);
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/interbus/slave_bench.hpp"
+#include "conformance/judging.hpp"
+
+// What the cases for a slave require again and again, each with its reason codes.
+namespace fieldproof::conformance {
+
+// The words as the slave would hold them from these transfer octets: the last ones.
+std::vector<std::uint16_t> words_held(std::span<const SeenTelegram> transfer, unsigned words);
+std::string text_of(std::span<const std::uint16_t> words);
+
+// As many data telegrams left as arrived; `telegram_lost`, `telegram_added`.
+void expect_all_telegrams(SlaveBench& bench, CaseJudge& judge);
+
+// Cycle n of the last train left as a right slave with this register sends it; the reasons of the model.
+void expect_answer(SlaveBench& bench, CaseJudge& judge, std::size_t n, std::span<const std::uint8_t> load);
+
+// The outputs have these values now. Holds for a slave without outputs.
+void expect_outputs(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words,
+                    std::string_view reason);
+// No output has changed since the changes were last forgotten.
+void expect_no_change(SlaveBench& bench, CaseJudge& judge, std::string_view reason,
+                      std::string_view why_not);
+// The status word of cycle n left marked: `error_not_marked`.
+void expect_marked(SlaveBench& bench, CaseJudge& judge, std::size_t n);
+// Cycle n was rejected: left marked, no output has changed (`output_changed_by_rejected_cycle`).
+void expect_rejected(SlaveBench& bench, CaseJudge& judge, std::size_t n);
+// Sends a clean cycle with words that differ from the outputs in each bit of one word, and requires its
+// answer and its words at the outputs.
+void expect_good_cycle(SlaveBench& bench, CaseJudge& judge, std::string_view reason);
+
+// The data cycles of the last train were each latched, in order and in time; `words` are theirs, one behind
+// the other. `valid_cycle_rejected`, `outputs_changed_before_check`, `outputs_latched_late`. Forgets changes.
+void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words);
+
+// The ID register that came back in the last ID cycle.
+std::uint16_t id_register(SlaveBench& bench, CaseJudge& judge);
+
+}  // namespace fieldproof::conformance

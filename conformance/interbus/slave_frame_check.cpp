@@ -1,0 +1,435 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_expect.hpp"
+#include "harness/line/code_words.hpp"
+
+// IS-09 to IS-16: the frame check of both sides and the status word.
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::size_t kTrain = 32;
+
+// Positions in the code word of loopback word, register and check.
+using Pattern = std::span<const std::uint32_t>;
+
+std::string text_of(Pattern pattern) {
+  return fmt::format("bits {} of the code word flipped", fmt::join(pattern, ", "));
+}
+
+// Lets the message bits of earlier cycles be read.
+void read_messages(SlaveBench& bench) {
+  bench.id_cycle(bench.interfaces_off());
+  bench.terminals().forget_changes();
+}
+
+void check_leaves_for_what_was_sent(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  for (unsigned n = 0; n < bench.volume(30U, 1'000U); ++n) {
+    bench.set_inputs(bench.random_words());
+    const bool is_id_cycle = n % 4 == 3;
+    is_id_cycle ? bench.id_cycle(bench.interfaces_off()) : bench.data_cycle(bench.random_words());
+    expect_all_telegrams(bench, judge);
+    const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
+    if (!out) continue;
+    const BitwiseCheck& check = bench.model().check();
+    std::uint16_t state = check.start();
+    for (std::size_t k = 0; k < out->octets; ++k) state = check.next(state, out->telegrams[k].data);
+    judge.expect(out->check() == check.word(state), "check_wrong", [&] {
+      return Sighting{
+          .expected = {fmt::format("{:04X}h, the check of the octets that left", check.word(state))},
+          .actual = fmt::format("{:04X}h", out->check()),
+          .time = bench.out().start_of(out->telegrams[out->octets]),
+          .first_difference = fmt::format("check of {} cycle {}", is_id_cycle ? "ID" : "data", n)};
+    });
+  }
+}
+
+// One flipped bit: rejected, marked, told in the next ID cycle.
+void reject_single_bit(SlaveBench& bench, CaseJudge& judge, std::size_t bit) {
+  bench.begin();
+  const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
+  bench.channel().on_next().flip(bench.code_word_level(cycle, bit));
+  bench.send();
+  expect_rejected(bench, judge, 0);
+  bench.id_cycle(bench.interfaces_off());
+  const std::uint16_t message = bench.rules().message_check_error;
+  judge.expect((id_register(bench, judge) & message) != 0, "message_missing", [&] {
+    return Sighting{.expected = {fmt::format("message bit {:04X}h in the ID cycle behind it", message)},
+                    .actual = fmt::format("ID register {:04X}h", id_register(bench, judge)),
+                    .first_difference = fmt::format("bit {} of the code word was flipped", bit)};
+  });
+}
+
+void reject_single_bits(SlaveBench& bench, CaseJudge& judge, std::size_t first, std::size_t last) {
+  bench.bring_up();
+  expect_good_cycle(bench, judge, "valid_cycle_rejected");
+  for (unsigned round = 0; round < bench.volume(1U, 20U); ++round) {
+    for (std::size_t bit = first; bit < last; ++bit) reject_single_bit(bench, judge, bit);
+    expect_good_cycle(bench, judge, "no_recovery");
+  }
+}
+
+void data_bit_flipped(SlaveBench& bench, CaseJudge& judge) {
+  reject_single_bits(bench, judge, 0, bench.code_word_bits() - 16);
+}
+void check_bit_flipped(SlaveBench& bench, CaseJudge& judge) {
+  reject_single_bits(bench, judge, bench.code_word_bits() - 16, bench.code_word_bits());
+}
+
+// ---- many error patterns ----
+
+// Collects patterns and sends them in trains of cycles; each must be rejected.
+class Rejections {
+ public:
+  Rejections(SlaveBench& bench, CaseJudge& judge, std::string_view reason)
+      : bench_(bench), judge_(judge), reason_(reason) {
+    bench_.bring_up();
+    expect_good_cycle(bench_, judge_, "valid_cycle_rejected");
+    bench_.train().set_gap(1);
+    bench_.begin();
+    words_ = bench_.random_words();
+    if (!words_.empty()) words_[0] = static_cast<std::uint16_t>(~bench_.outputs()[0]);
+  }
+
+  void add(Pattern pattern) {
+    const CyclePlace& cycle = bench_.append_data_cycle(words_);
+    if (ends_.empty()) bench_.channel().on_next();
+    for (const std::uint32_t bit : pattern) bench_.channel().flip(bench_.code_word_level(cycle, bit));
+    flipped_.insert(flipped_.end(), pattern.begin(), pattern.end());
+    ends_.push_back(flipped_.size());
+    ++count_;
+    if (ends_.size() == kTrain) send();
+  }
+
+  // Sends what is left, and a good cycle.
+  void finish() {
+    if (!ends_.empty()) send();
+    bench_.train().set_gap(2);
+    expect_good_cycle(bench_, judge_, "no_recovery");
+    judge_.measure("error patterns", "", static_cast<double>(count_));
+  }
+
+ private:
+  void send() {
+    bench_.send();
+    expect_all_telegrams(bench_, judge_);
+    const std::uint16_t marked = bench_.rules().status_marked;
+    std::size_t first = 0;
+    for (std::size_t n = 0; n < ends_.size(); first = ends_[n++]) {
+      const std::optional<CycleOnLine> out = bench_.cycle_on(bench_.out(), n);
+      const bool is_marked = out && (out->status() & marked) == marked;
+      judge_.expect(is_marked, reason_, [&] {
+        return Sighting{.expected = {"the cycle is rejected: its status word leaves marked"},
+                        .actual = "the cycle was accepted: its status word left unmarked",
+                        .time = out ? bench_.out().start_of(out->telegrams[out->octets + 2]) : bench_.now(),
+                        .first_difference = text_of(Pattern(flipped_).subspan(first, ends_[n] - first))};
+      });
+    }
+    expect_no_change(bench_, judge_, "output_changed_by_rejected_cycle", "no cycle passes its check");
+    flipped_.clear();
+    ends_.clear();
+    bench_.begin();
+  }
+
+  SlaveBench& bench_;
+  CaseJudge& judge_;
+  std::string_view reason_;
+  std::vector<std::uint16_t> words_;
+  std::vector<std::uint32_t> flipped_;
+  std::vector<std::size_t> ends_;
+  std::uint64_t count_ = 0;
+};
+
+std::uint32_t random_bit(SlaveBench& bench) {
+  return static_cast<std::uint32_t>(bench.random().below(bench.code_word_bits()));
+}
+
+void two_and_three_bits_flipped(SlaveBench& bench, CaseJudge& judge) {
+  Rejections rejections(bench, judge, "double_or_triple_error_accepted");
+  const auto bits = static_cast<std::uint32_t>(bench.code_word_bits());
+  // Every pair of a two-word register; a longer one is sampled at the same number.
+  constexpr std::uint32_t kExhaustive = 64;
+  const std::uint32_t step = bench.volume(7U, 1U);
+  std::uint32_t pair = 0;
+  for (std::uint32_t a = 0; a < bits; ++a) {
+    for (std::uint32_t b = a + 1; b < bits; ++b, ++pair) {
+      const bool is_due = bits <= kExhaustive ? pair % step == 0 || a + 8 >= bits
+                                              : bench.random().below(std::uint64_t{bits} * bits) < 4'000 / step;
+      if (is_due) rejections.add(std::array{a, b});
+    }
+  }
+  for (unsigned n = 0; n < bench.volume(300U, 100'000U); ++n) {
+    const std::uint32_t a = random_bit(bench);
+    std::uint32_t b = random_bit(bench);
+    std::uint32_t c = random_bit(bench);
+    while (b == a) b = random_bit(bench);
+    while (c == a || c == b) c = random_bit(bench);
+    rejections.add(std::array{a, b, c});
+  }
+  rejections.finish();
+}
+
+void add_burst(Rejections& rejections, std::uint32_t at, unsigned length, std::uint32_t inner) {
+  std::array<std::uint32_t, 16> bits{};
+  std::size_t count = 0;
+  bits[count++] = at;
+  for (unsigned n = 0; n + 2 < length; ++n) {
+    if ((inner >> n & 1U) != 0) bits[count++] = at + 1 + n;
+  }
+  bits[count++] = at + length - 1;
+  rejections.add(Pattern(bits.data(), count));
+}
+
+void bursts_are_rejected(SlaveBench& bench, CaseJudge& judge) {
+  Rejections rejections(bench, judge, "burst_accepted");
+  const auto bits = static_cast<std::uint32_t>(bench.code_word_bits());
+  // Up to this length every burst; of the longer ones as many at each position, drawn.
+  const unsigned exhaustive = bench.volume(2U, 9U);
+  const std::uint32_t drawn = bench.volume(1U, 1U << 7);
+  const std::uint32_t step = bench.volume(3U, 1U);
+  for (unsigned length = 2; length <= 16; ++length) {
+    for (std::uint32_t at = length % step; at + length <= bits; at += step) {
+      const std::uint32_t all = 1U << (length - 2);
+      const std::uint32_t count = length <= exhaustive ? all : std::min(all, drawn);
+      for (std::uint32_t n = 0; n < count; ++n) {
+        const auto inner = count == all ? n : static_cast<std::uint32_t>(bench.random().below(all));
+        add_burst(rejections, at, length, inner);
+      }
+    }
+  }
+  // The longest and densest one at each position, whatever was drawn.
+  for (std::uint32_t at = 0; at + 16 <= bits; at += step) add_burst(rejections, at, 16, 0x3FFF);
+  rejections.finish();
+}
+
+// ---- code words ----
+
+void weight_four_code_words_are_accepted(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  const auto span = static_cast<unsigned>(std::min<std::size_t>(64, bench.code_word_bits()));
+  const auto offset = static_cast<std::uint32_t>(bench.code_word_bits() - span);
+  const auto patterns =
+      line::weight_four_code_words(*line::find_frame_check(bench.rules().frame_check), span);
+  judge.measure("code words of weight four", "", static_cast<double>(patterns.size()));
+  for (const line::FourBits& pattern : patterns) {
+    bench.begin();
+    const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
+    bench.channel().on_next();
+    for (const std::uint32_t bit : pattern) bench.channel().flip(bench.code_word_level(cycle, offset + bit));
+    bench.send();
+    expect_all_telegrams(bench, judge);
+    const std::optional<CycleOnLine> in = bench.cycle_on(bench.in(), 0);
+    const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
+    if (!in || !out) continue;
+    const std::vector<std::uint16_t> arrived = words_held(in->telegrams.first(in->octets), bench.words());
+    judge.expect(out->status() == bench.rules().status_clean, "weight_four_code_word_rejected", [&] {
+      return Sighting{.expected = {"the cycle is accepted: what arrived is a code word"},
+                      .actual = fmt::format("status word {:04X}h", out->status()),
+                      .time = bench.out().start_of(out->telegrams[out->octets + 2]),
+                      .first_difference = text_of(Pattern(pattern))};
+    });
+    expect_outputs(bench, judge, arrived, "weight_four_code_word_rejected");
+  }
+}
+
+// A cycle of zeros as the station in front of the slave would send it.
+void drive_zeros(SlaveBench& bench, std::size_t octets, std::uint16_t check) {
+  TrainWriter writer(bench.rules());
+  const std::vector<std::uint8_t> zeros(octets);
+  writer.cycle(false, zeros, check, bench.rules().status_clean);
+  line::Waveform wave{bench.now(), bench.rules().bit_rate, writer.levels()};
+  bench.drive_at_receiver(wave);
+}
+
+std::uint16_t check_of_zeros(SlaveBench& bench, std::size_t octets) {
+  return bench.model().check().of(std::vector<std::uint8_t>(octets));
+}
+
+bool left_clean(SlaveBench& bench) {
+  FoundCycle cycle;
+  find_last_cycle(bench.out().data_telegrams(), cycle);
+  return cycle.is_found && cycle.status == bench.rules().status_clean;
+}
+
+void zeros_do_not_hide_a_lost_octet(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  const std::size_t octets = 2 + 2 * bench.words();
+  expect_good_cycle(bench, judge, "valid_cycle_rejected");
+  const auto expect_zeros = [&](std::size_t sent, std::size_t checked, std::string_view reason) {
+    drive_zeros(bench, sent, checked == 0 ? 0 : check_of_zeros(bench, checked));
+    judge.expect(!left_clean(bench), reason, [&] {
+      return Sighting{
+          .expected = {fmt::format("{} octets of zeros are rejected: their check is that of {} octets", sent,
+                                   checked)},
+          .actual = "the status word left unmarked"};
+    });
+    expect_no_change(bench, judge, "output_changed_by_rejected_cycle", "the cycle does not pass its check");
+  };
+  expect_zeros(octets, 0, "zero_preset_check_accepted");
+  expect_zeros(octets - 1, octets, "lost_zero_octet_accepted");
+  expect_zeros(octets + 1, octets, "added_zero_octet_accepted");
+  drive_zeros(bench, octets, check_of_zeros(bench, octets));
+  judge.expect(left_clean(bench), "valid_cycle_rejected", "a cycle of zeros with its own check is accepted",
+               "its status word did not leave clean");
+  expect_outputs(bench, judge, std::vector<std::uint16_t>(bench.words()), "valid_cycle_rejected");
+}
+
+// ---- status word ----
+
+void mark_of_others_is_kept(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  expect_good_cycle(bench, judge, "valid_cycle_rejected");
+  const std::uint16_t marked = bench.rules().status_marked;
+  const auto flips = static_cast<std::uint16_t>(~bench.rules().status_clean & marked);
+  for (unsigned n = 0; n < bench.volume(3U, 30U); ++n) {
+    bench.begin();
+    const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
+    bench.channel().on_next();
+    for (unsigned bit = 0; bit < 16; ++bit) {
+      if ((flips << bit & 0x8000) == 0) continue;
+      bench.channel().flip(
+          cycle.level_of(cycle.octets + 2 + bit / 8, bench.train().data_level(bit % 8)));
+    }
+    bench.send();
+    const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
+    expect_all_telegrams(bench, judge);
+    if (!out) continue;
+    judge.expect((out->status() & marked) == marked, "mark_of_others_cleared", [&] {
+      return Sighting{.expected = {fmt::format("status word {:04X}h, as it came", marked)},
+                      .actual = fmt::format("status word {:04X}h", out->status()),
+                      .time = bench.out().start_of(out->telegrams[out->octets + 2])};
+    });
+    expect_no_change(bench, judge, "marked_cycle_latched", "a station before the slave saw an error");
+    read_messages(bench);
+    expect_good_cycle(bench, judge, "no_recovery");
+  }
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_frame_check_cases() {
+  std::vector<SlaveCase> cases;
+  const judge::Reference per_segment =
+      sources::practical_guide("a check generator at the receive side and one at the send side of each device");
+  cases.push_back(
+      {{.id = "interbus/slave/frame_check/leaves_for_what_the_slave_itself_sent",
+        .purpose = "IS-09",
+        .requirement = "In the check phase a slave sends the check of the bits that it sent itself, not of those "
+                       "that it received: polynomial x^16 + x^12 + x^5 + 1, register preset with ones.",
+        .reference = per_segment,
+        .stimulus = "Valid data and ID cycles with random inputs and words, one after the other.",
+        .expected = "The check that leaves equals the check, computed bit by bit, of the octets that left.",
+        .tags = {"must"},
+        .catches = {{"crc_preset_zero", "check_wrong"},
+                    {"crc_polynomial_8005", "check_wrong"},
+                    {"sends_check_of_received_bits", "check_wrong"},
+                    {"check_not_reset_between_cycles", "check_wrong"}},
+        .not_applicable = for_every_slave()},
+       check_leaves_for_what_was_sent});
+  cases.push_back(
+      {{.id = "interbus/slave/frame_check/flipped_data_bit_is_rejected_marked_and_told",
+        .purpose = "IS-10",
+        .requirement = "A slave whose received check does not fit what it received marks the status word that "
+                       "passes, takes nothing over, and tells the error in the next ID cycle.",
+        .reference = sources::practical_guide("comparison with the checksum of the previous device; the "
+                                              "message bit: literature from memory"),
+        .stimulus = "Data cycles in which one bit of loopback word or process data is flipped at the slave's "
+                    "receiver, each bit in turn; an ID cycle behind each.",
+        .expected = "The status word leaves marked, no output changes, the message bit stands in the ID "
+                    "register; a clean cycle afterwards is accepted.",
+        .tags = {"must"},
+        .catches = {{"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"},
+                    {"does_not_mark_status", "error_not_marked"},
+                    {"tells_no_check_error", "message_missing"}},
+        .not_applicable = for_every_slave()},
+       data_bit_flipped});
+  cases.push_back(
+      {{.id = "interbus/slave/frame_check/flipped_check_bit_is_rejected_marked_and_told",
+        .purpose = "IS-11",
+        .requirement = "An error in the check itself is an error like one in the data: each of its 16 bits is "
+                       "compared.",
+        .reference = per_segment,
+        .stimulus = "Data cycles in which one bit of the check is flipped at the slave's receiver, each bit in "
+                    "turn; an ID cycle behind each.",
+        .expected = "The status word leaves marked, no output changes, the message bit stands in the ID "
+                    "register; a clean cycle afterwards is accepted.",
+        .tags = {"must"},
+        .catches = {{"compares_first_check_octet_only", "error_not_marked"},
+                    {"does_not_mark_status", "error_not_marked"}},
+        .not_applicable = for_every_slave()},
+       check_bit_flipped});
+  cases.push_back(
+      {{.id = "interbus/slave/frame_check/two_and_three_flipped_bits_are_rejected",
+        .purpose = "IS-12",
+        .requirement = "The frame check detects every error of two or three bits in a code word of 64 bits.",
+        .reference = sources::calculated("Hamming distance 4 of 1021h at these lengths"),
+        .stimulus = "All 2016 pairs of bits of the code word (loopback word, two words, check) and 100 000 "
+                    "random triples, flipped at the slave's receiver.",
+        .expected = "The status word of each cycle leaves marked, and no output changes.",
+        .tags = {"must"},
+        .catches = {{"compares_first_check_octet_only", "double_or_triple_error_accepted"}},
+        .not_applicable = for_every_slave()},
+       two_and_three_bits_flipped});
+  cases.push_back(
+      {{.id = "interbus/slave/frame_check/bursts_up_to_16_bits_are_rejected",
+        .purpose = "IS-13",
+        .requirement = "The frame check detects every burst of at most 16 bits, at any position.",
+        .reference = sources::calculated("a polynomial of degree 16 with a constant term"),
+        .stimulus = "Bursts of 2 to 16 bits at every position of the code word, first and last bit flipped: "
+                    "every inner pattern up to length 9, 128 drawn ones for each longer length and position, "
+                    "and the burst of 16 flipped bits.",
+        .expected = "The status word of each cycle leaves marked, and no output changes.",
+        .tags = {"must"},
+        .catches = {{"compares_first_check_octet_only", "burst_accepted"}},
+        .not_applicable = for_every_slave()},
+       bursts_are_rejected});
+  cases.push_back(
+      {{.id = "interbus/slave/frame_check/weight_four_code_word_is_accepted",
+        .purpose = "IS-14",
+        .requirement = "Four flipped bits that form a code word of the polynomial cannot be seen: the slave must "
+                       "accept such a cycle. A rejection proves another polynomial, another span or a stricter "
+                       "check than the other stations have.",
+        .reference = sources::calculated("84 code words of weight four in 64 bits"),
+        .stimulus = "Data cycles with each of the 84 patterns flipped at the slave's receiver, in loopback word, "
+                    "data and check.",
+        .expected = "The status word leaves clean, and the outputs show the words as they arrived.",
+        .tags = {"must"},
+        .catches = {{"expects_the_usual_loopback_word", "weight_four_code_word_rejected"},
+                    {"crc_polynomial_8005", "weight_four_code_word_rejected"}},
+        .not_applicable = for_every_slave()},
+       weight_four_code_words_are_accepted});
+  cases.push_back(
+      {{.id = "interbus/slave/frame_check/zeros_do_not_hide_a_lost_octet",
+        .purpose = "IS-15",
+        .requirement = "The registers of the frame check are preset with ones, so that leading zeros count: a "
+                       "frame of zeros that lost or gained an octet does not pass.",
+        .reference = sources::practical_guide("registers preset with 1 to improve detection"),
+        .stimulus = "Cycles of zeros, loopback word included: with the check of a register that was preset with "
+                    "zeros; one octet short and one octet long with the check of the right length; and one with "
+                    "its own check.",
+        .expected = "The first three are rejected, no output changes; the last one is accepted.",
+        .tags = {"must"},
+        .catches = {{"crc_preset_zero", "valid_cycle_rejected"},
+                    {"accepts_check_of_zero", "zero_preset_check_accepted"}},
+        .not_applicable = for_every_slave()},
+       zeros_do_not_hide_a_lost_octet});
+  cases.push_back(
+      {{.id = "interbus/slave/frame_check/mark_of_others_is_kept_and_obeyed",
+        .purpose = "IS-16",
+        .requirement = "A status word that another station has marked passes marked, and its cycle is not taken "
+                       "over even though the slave's own check fits (the slave-local rule).",
+        .reference = sources::from_memory("the status word tells later stations and the master"),
+        .stimulus = "Data cycles whose data and check are right and whose status word arrives marked.",
+        .expected = "The status word leaves marked, no output changes; a clean cycle afterwards is accepted.",
+        .tags = {"must"},
+        .catches = {{"ignores_upstream_status", "marked_cycle_latched"},
+                    {"clears_mark_of_others", "mark_of_others_cleared"}},
+        .not_applicable = for_every_slave()},
+       mark_of_others_is_kept});
+  return cases;
+}
+
+}  // namespace fieldproof::conformance

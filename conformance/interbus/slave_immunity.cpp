@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_expect.hpp"
+
+// IS-40 and IS-42: outputs while cycles are rejected, and under random faults.
+namespace fieldproof::conformance {
+namespace {
+
+void expect_outputs_held(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words) {
+  expect_outputs(bench, judge, words, "output_changed_by_rejected_cycle");
+  // A change that was taken back is a glitch; one of up to a microsecond is not seen by anything connected.
+  const auto& changes = bench.changes();
+  for (std::size_t n = 0; n < changes.size(); ++n) {
+    const auto back = std::find_if(
+        changes.begin() + static_cast<std::ptrdiff_t>(n) + 1, changes.end(), [&](const auto& later) {
+          return later.word == changes[n].word && later.after == changes[n].before;
+        });
+    const bool is_short =
+        back != changes.end() && back->when - changes[n].when <= 1 * kernel::kMicrosecond;
+    if (is_short || changes[n].before != words[changes[n].word]) continue;
+    judge.fail("output_glitch",
+               {.expected = {"outputs hold their value; a deviation of up to 1 us is not counted"},
+                .actual = back == changes.end()
+                              ? fmt::format("word {} went to {:04X}h", changes[n].word, changes[n].after)
+                              : fmt::format("word {} was {:04X}h for {}", changes[n].word, changes[n].after,
+                                            kernel::describe(back->when - changes[n].when)),
+                .time = changes[n].when});
+  }
+}
+
+void rejected_cycle_between_good_ones(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  for (unsigned round = 0; round < bench.volume(10U, 500U); ++round) {
+    std::vector<std::uint16_t> words = bench.random_words();
+    for (std::uint16_t& word : words) word |= 0x0101;
+    bench.data_cycle(words);
+    expect_outputs(bench, judge, words, "valid_cycle_rejected");
+    bench.terminals().forget_changes();
+    bench.begin();
+    const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
+    const auto bit = static_cast<std::size_t>(bench.random().below(bench.code_word_bits()));
+    bench.channel().on_next().flip(bench.code_word_level(cycle, bit));
+    bench.send();
+    expect_outputs_held(bench, judge, words);
+    expect_good_cycle(bench, judge, "no_recovery");
+  }
+}
+
+// ---- random faults ----
+
+// Draws flips at the slave's receiver over the next train.
+unsigned flip_at_random(SlaveBench& bench, const kernel::GeometricSkip& skip) {
+  const std::size_t levels = bench.train().levels().size();
+  unsigned flips = 0;
+  bench.channel().on_next();
+  for (std::uint64_t at = skip(bench.random()); at < levels; at += 1 + skip(bench.random())) {
+    bench.channel().flip(at);
+    ++flips;
+  }
+  return flips;
+}
+
+// What the outputs may show after a cycle: the words that arrived, when what arrived is a cycle with a right
+// check and a clean status word; nothing else.
+bool may_show(SlaveBench& bench, FoundCycle& arrived) {
+  find_last_cycle(bench.in().data_telegrams(), arrived);
+  return arrived.is_found && !arrived.is_id_cycle && arrived.status == bench.rules().status_clean &&
+         arrived.check == bench.model().check().of(arrived.octets);
+}
+
+void check_outputs_under_faults(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> before) {
+  if (bench.changes().empty()) return;
+  FoundCycle arrived;
+  const bool may_change = may_show(bench, arrived) && arrived.octets.size() >= 2 * bench.words();
+  std::vector<std::uint16_t> allowed(before.begin(), before.end());
+  if (may_change) {
+    const std::size_t first = arrived.octets.size() - 2 * bench.words();
+    for (std::size_t word = 0; word < bench.words(); ++word)
+      allowed[word] = static_cast<std::uint16_t>(arrived.octets[first + 2 * word] << 8 |
+                                                 arrived.octets[first + 2 * word + 1]);
+  }
+  judge.expect(std::ranges::equal(bench.outputs(), allowed), "wrong_value_latched", [&] {
+    return Sighting{.expected = {fmt::format("outputs {}: {}", text_of(allowed),
+                                             may_change ? "the words that arrived with a right check"
+                                                        : "what arrived has no right check")},
+                    .actual = fmt::format("outputs {}", text_of(bench.outputs()))};
+  });
+}
+
+void random_faults(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  unsigned cycles = 0;
+  unsigned struck = 0;
+  unsigned longest = 0;
+  const unsigned rounds = bench.volume(60U, 4'000U);
+  for (const double chance : {0.001, 0.01, 0.05}) {
+    const kernel::GeometricSkip skip(chance);
+    for (unsigned round = 0; round < rounds; ++round, ++cycles) {
+      const std::vector<std::uint16_t> before = bench.outputs();
+      bench.terminals().forget_changes();
+      bench.begin();
+      bench.train().status(2);
+      bench.append_data_cycle(bench.random_words());
+      bench.train().status(2);
+      if (flip_at_random(bench, skip) > 0) ++struck;
+      bench.send();
+      check_outputs_under_faults(bench, judge, before);
+      if (round % 16 != 15) continue;
+      // The faults end; within the published number of cycles everything works again.
+      unsigned lost = 0;
+      for (; lost < bench.rules().published_recovery_cycles; ++lost) {
+        std::vector<std::uint16_t> words = bench.random_words();
+        bench.data_cycle(words);
+        if (!bench.pics().supports("outputs") || std::ranges::equal(bench.outputs(), words)) break;
+      }
+      longest = std::max(longest, lost);
+      bench.id_cycle(bench.interfaces_off());
+      expect_good_cycle(bench, judge, "no_recovery");
+    }
+  }
+  judge.measure("cycles struck by a flip", "", struck);
+  judge.measure("cycles in all", "", cycles);
+  judge.measure("clean cycles lost behind the faults", "", longest);
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_immunity_cases() {
+  std::vector<SlaveCase> cases;
+  cases.push_back(
+      {{.id = "interbus/slave/immunity/rejected_cycle_leaves_outputs_alone",
+        .purpose = "IS-40",
+        .requirement = "While a cycle is rejected, the outputs hold the words of the last valid one, without a "
+                       "glitch longer than 1 us.",
+        .reference = sources::derived("the previous data stay valid when a cycle is rejected"),
+        .stimulus = "A valid data cycle, one with a bit flipped at the slave's receiver, a valid one; again and "
+                    "again with other words.",
+        .expected = "No output leaves its value between the valid cycles for more than 1 us.",
+        .tags = {"must"},
+        .catches = {{"clears_outputs_on_rejected_cycle", "output_changed_by_rejected_cycle"},
+                    {"glitches_outputs_on_rejected_cycle", "output_glitch"}},
+        .not_applicable = for_outputs()},
+       rejected_cycle_between_good_ones});
+  cases.push_back(
+      {{.id = "interbus/slave/immunity/random_faults_latch_no_wrong_value",
+        .purpose = "IS-42",
+        .requirement = "Whatever strikes the slave's receiver, outputs change only by a cycle whose check fits, and "
+                       "after the faults clean cycles are accepted again within the published five. Judged here "
+                       "under independent random flips; completed with pulses of IEC 61000-4-4 by the burst "
+                       "campaigns.",
+        .reference = {"Beckhoff BC4000 documentation", "five cycle times until valid data are exchanged again",
+                      judge::Standing::searched},
+        .stimulus = "Data cycles between status telegrams, each level flipped with a chance of 0.1, 1 and 5 % at "
+                    "the slave's receiver; every 16 cycles the faults pause.",
+        .expected = "After each cycle the outputs show the words before it, or the words that arrived when these "
+                    "have a right check; in the pauses clean cycles are accepted.",
+        .tags = {"must", "long"},
+        .catches = {{"latches_in_spite_of_own_error", "wrong_value_latched"},
+                    {"locks_up_after_rejected_cycle", "no_recovery"}},
+        .not_applicable = for_outputs()},
+       random_faults});
+  return cases;
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_expect.hpp"
+
+// IS-34, IS-35 and IS-41: what a slave has to tell, in the message bits of its ID register.
+namespace fieldproof::conformance {
+namespace {
+
+std::uint16_t read_messages(SlaveBench& bench, CaseJudge& judge) {
+  const interbus::Rules& r = bench.rules();
+  bench.id_cycle(bench.interfaces_off());
+  return id_register(bench, judge) &
+         (r.message_check_error | r.message_peripheral_fault | r.message_reconfiguration);
+}
+
+void expect_messages(SlaveBench& bench, CaseJudge& judge, std::uint16_t expected, std::string_view reason,
+                     std::string_view why) {
+  const std::uint16_t found = read_messages(bench, judge);
+  judge.expect(found == expected, reason, [&] {
+    return Sighting{.expected = {fmt::format("message bits {:04X}h: {}", expected, why)},
+                    .actual = fmt::format("message bits {:04X}h", found),
+                    .time = bench.out().start_of(bench.out().data_telegrams()[0]),
+                    .first_difference = "bits 13 to 15 of the ID register"};
+  });
+}
+
+void expect_undisturbed_data_cycles(SlaveBench& bench, CaseJudge& judge) {
+  for (unsigned n = 0; n < 3; ++n) {
+    const std::vector<std::uint16_t> words = bench.random_words();
+    bench.set_inputs(bench.random_words());
+    bench.data_cycle(words);
+    const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
+    judge.expect(out && out->status() == bench.rules().status_clean, "data_cycle_disturbed",
+                 "a data cycle with a clean status word", "its status word did not leave clean");
+    expect_answer(bench, judge, 0, bench.data_load());
+    expect_outputs(bench, judge, words, "data_cycle_disturbed");
+  }
+}
+
+// A condition at the terminals that is to show as one message bit as long as it lasts.
+void check_condition(SlaveBench& bench, CaseJudge& judge, std::uint16_t message, std::string_view reason,
+                     const std::function<void(bool)>& set) {
+  bench.bring_up();
+  expect_messages(bench, judge, 0, "message_without_cause", "nothing is to be told");
+  for (unsigned round = 0; round < bench.volume(2U, 20U); ++round) {
+    set(true);
+    expect_undisturbed_data_cycles(bench, judge);
+    expect_messages(bench, judge, message, reason, "told in the next ID cycle");
+    expect_undisturbed_data_cycles(bench, judge);
+    set(false);
+    expect_undisturbed_data_cycles(bench, judge);
+    // What was pending when it ended may still be read once.
+    read_messages(bench, judge);
+    expect_messages(bench, judge, 0, "message_not_cleared", "it has ended and was read");
+  }
+}
+
+void peripheral_fault_is_told(SlaveBench& bench, CaseJudge& judge) {
+  check_condition(bench, judge, bench.rules().message_peripheral_fault, "peripheral_fault_not_told",
+                  [&](bool on) { bench.terminals().set_peripheral_fault([on](kernel::Time) { return on; }); });
+}
+
+void reconfiguration_is_told(SlaveBench& bench, CaseJudge& judge) {
+  check_condition(bench, judge, bench.rules().message_reconfiguration, "reconfiguration_not_told",
+                  [&](bool on) { bench.terminals().set_reconfiguration([on](kernel::Time) { return on; }); });
+}
+
+void send_flipped(SlaveBench& bench) {
+  bench.begin();
+  const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
+  const auto bit = static_cast<std::size_t>(bench.random().below(bench.code_word_bits()));
+  bench.channel().on_next().flip(bench.code_word_level(cycle, bit));
+  bench.send();
+}
+
+void check_error_is_told_once(SlaveBench& bench, CaseJudge& judge) {
+  const std::uint16_t message = bench.rules().message_check_error;
+  bench.bring_up();
+  for (unsigned round = 0; round < bench.volume(2U, 20U); ++round) {
+    expect_good_cycle(bench, judge, "valid_cycle_rejected");
+    expect_messages(bench, judge, 0, "message_without_error", "no cycle was rejected");
+    for (unsigned n = 0; n < 2; ++n) {
+      send_flipped(bench);
+      expect_rejected(bench, judge, 0);
+    }
+    expect_messages(bench, judge, message, "message_missing", "two cycles were rejected");
+    expect_messages(bench, judge, 0, "message_not_cleared", "the message has been read");
+  }
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_message_cases() {
+  std::vector<SlaveCase> cases;
+  cases.push_back(
+      {{.id = "interbus/slave/messages/peripheral_fault_shows_in_the_next_id_cycle",
+        .purpose = "IS-34",
+        .requirement = "A fault at the periphery is told by its message bit in the next ID cycle and by nothing "
+                       "else: data cycles go on undisturbed.",
+        .reference = sources::from_memory("messages become visible only in an ID cycle"),
+        .stimulus = "The fault input is set; data cycles, an ID cycle, data cycles; it is cleared; ID cycles.",
+        .expected = "Data cycles are answered with clean status words; the ID register has the message bit and no "
+                    "other, and none after the fault has ended and was read.",
+        .tags = {"must"},
+        .catches = {{"peripheral_fault_not_told", "peripheral_fault_not_told"},
+                    {"peripheral_fault_marks_data_cycles", "data_cycle_disturbed"}},
+        .not_applicable = for_item("peripheral_fault_input", "the slave has no peripheral fault to tell")},
+       peripheral_fault_is_told});
+  cases.push_back(
+      {{.id = "interbus/slave/messages/reconfiguration_button_shows_in_the_next_id_cycle",
+        .purpose = "IS-35",
+        .requirement = "A request for reconfiguration is told by its own message bit in the next ID cycle.",
+        .reference = sources::from_memory("messages become visible only in an ID cycle"),
+        .stimulus = "The button is pressed; data cycles, an ID cycle, data cycles; it is released; ID cycles.",
+        .expected = "The ID register has the message bit of reconfiguration and no other while the button is "
+                    "pressed, and none after its release was read; data cycles go on undisturbed.",
+        .tags = {"must"},
+        .catches = {{"messages_confused", "reconfiguration_not_told"}},
+        .not_applicable = for_item("reconfiguration_button", "the slave has no reconfiguration button")},
+       reconfiguration_is_told});
+  cases.push_back(
+      {{.id = "interbus/slave/messages/check_error_is_told_once",
+        .purpose = "IS-41",
+        .requirement = "The message of a check error stands in the ID register from the first rejected cycle until "
+                       "an ID cycle has read it, and only then.",
+        .reference = sources::from_memory("dynamic messages in bits 13 to 15, read in the next ID cycle"),
+        .stimulus = "A clean cycle and an ID cycle; two data cycles with one bit flipped at the slave's receiver; "
+                    "two ID cycles.",
+        .expected = "No message behind the clean cycle; the message in the first ID cycle behind the rejected "
+                    "ones; none in the second.",
+        .tags = {"must"},
+        .catches = {{"message_never_cleared", "message_not_cleared"},
+                    {"message_without_error", "message_without_error"},
+                    {"tells_no_check_error", "message_missing"}},
+        .not_applicable = for_every_slave()},
+       check_error_is_told_once});
+  return cases;
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_expect.hpp"
+
+// IS-27 to IS-29: silence on the line.
+namespace fieldproof::conformance {
+namespace {
+
+// Brings outputs that are not 0 and gives the end of the last telegram at the slave's receiver.
+kernel::Time last_sign_of_life(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  std::vector<std::uint16_t> words = bench.random_words();
+  for (std::uint16_t& word : words) word |= 0x8001;
+  bench.data_cycle(words);
+  expect_outputs(bench, judge, words, "valid_cycle_rejected");
+  bench.status_telegrams(3);
+  bench.terminals().forget_changes();
+  return bench.in().telegrams().empty() ? bench.now() : bench.in().end_of(bench.in().telegrams().back());
+}
+
+void short_silence_holds_outputs(SlaveBench& bench, CaseJudge& judge) {
+  const kernel::Time last = last_sign_of_life(bench, judge);
+  const kernel::Duration silence = bench.rules().silence_limit - bench.rules().silence_tolerance;
+  bench.segment().run_until(last + silence);
+  expect_no_change(bench, judge, "outputs_lost_before_limit",
+                   fmt::format("the line was silent for {} only", kernel::describe(silence)));
+  expect_good_cycle(bench, judge, "cycle_after_short_silence_rejected");
+}
+
+void long_silence_clears_outputs(SlaveBench& bench, CaseJudge& judge) {
+  const kernel::Time last = last_sign_of_life(bench, judge);
+  const kernel::Duration limit = bench.rules().silence_limit;
+  const kernel::Duration latest = limit + bench.rules().silence_tolerance;
+  bench.segment().run_until(last + latest);
+  expect_outputs(bench, judge, std::vector<std::uint16_t>(bench.words()), "outputs_not_safe_after_limit");
+  for (const auto& change : bench.changes()) {
+    judge.expect(change.when - last >= limit, "outputs_lost_before_limit", [&] {
+      return Sighting{.expected = {fmt::format("outputs change {} to {} after the last telegram",
+                                               kernel::describe(limit), kernel::describe(latest))},
+                      .actual = fmt::format("after {}", kernel::describe(change.when - last)),
+                      .time = change.when};
+    });
+  }
+  if (!bench.changes().empty()) {
+    judge.measure("silence until the safe state", "ms",
+                  static_cast<double>((bench.changes().back().when - last).count()) / 1e9);
+  }
+}
+
+void drive_data_cycle(SlaveBench& bench) {
+  std::vector<std::uint16_t> words = bench.random_words();
+  for (std::uint16_t& word : words) word |= 1;
+  line::Waveform wave{bench.now(), bench.rules().bit_rate, bench.direct_data_cycle(words, 2)};
+  bench.drive_at_receiver(wave);
+}
+
+void outputs_stay_safe_without_identification(SlaveBench& bench, CaseJudge& judge) {
+  const std::string_view reason = "outputs_driven_before_identification";
+  for (unsigned n = 0; n < 3; ++n) drive_data_cycle(bench);
+  expect_no_change(bench, judge, reason, "no ID cycle has been since power-up");
+  for (unsigned round = 0; round < bench.volume(2U, 10U); ++round) {
+    last_sign_of_life(bench, judge);
+    bench.silence(bench.rules().silence_limit + bench.rules().silence_tolerance);
+    expect_outputs(bench, judge, std::vector<std::uint16_t>(bench.words()), "outputs_not_safe_after_limit");
+    bench.terminals().forget_changes();
+    for (unsigned n = 0; n < 3; ++n) drive_data_cycle(bench);
+    expect_no_change(bench, judge, reason, "no ID cycle has been since the silence");
+  }
+  bench.bring_up();
+  expect_good_cycle(bench, judge, "no_recovery");
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_supervision_cases() {
+  std::vector<SlaveCase> cases;
+  cases.push_back(
+      {{.id = "interbus/slave/supervision/silence_of_24_ms_holds_outputs",
+        .purpose = "IS-27",
+        .requirement = "Silence shorter than the supervision time of 25 ms changes nothing: outputs hold, and the "
+                       "cycle behind it is a normal one.",
+        .reference = sources::phoenix_maintenance("status telegrams away for more than 25 ms"),
+        .stimulus = "A valid data cycle, status telegrams, 24.0 ms of silence, a data cycle.",
+        .expected = "No output changes in the silence, and the data cycle is taken over without an ID cycle.",
+        .tags = {"must", "timing"},
+        .catches = {{"silence_limit_20_ms", "outputs_lost_before_limit"}},
+        .not_applicable = for_outputs()},
+       short_silence_holds_outputs});
+  cases.push_back(
+      {{.id = "interbus/slave/supervision/silence_of_26_ms_clears_outputs",
+        .purpose = "IS-28",
+        .requirement = "When telegrams stay away for more than 25 ms, the slave takes the interruption for a reset "
+                       "and its outputs go to the safe state. The tolerance of 1 ms is this project's.",
+        .reference = sources::phoenix_maintenance("status telegrams away for more than 25 ms"),
+        .stimulus = "A valid data cycle, status telegrams, then silence.",
+        .expected = "All outputs are 0 between 25.0 ms and 26.0 ms after the end of the last telegram.",
+        .tags = {"must", "timing"},
+        .catches = {{"silence_limit_250_ms", "outputs_not_safe_after_limit"},
+                    {"silence_limit_20_ms", "outputs_lost_before_limit"}},
+        .not_applicable = for_outputs()},
+       long_silence_clears_outputs});
+  cases.push_back(
+      {{.id = "interbus/slave/supervision/outputs_stay_safe_until_an_id_cycle",
+        .purpose = "IS-29",
+        .requirement = "After power-up and after a reset, outputs stay in the safe state until an ID cycle has "
+                       "told the master what is in the ring.",
+        .reference = sources::own("data cycles count only after identification"),
+        .stimulus = "Valid data cycles right after power-up, and after a silence of 26 ms; then an ID cycle and a "
+                    "data cycle.",
+        .expected = "No output changes by the data cycles without ID cycle; the one behind it is taken over.",
+        .tags = {"must"},
+        .catches = {{"outputs_without_identification", "outputs_driven_before_identification"}},
+        .not_applicable = for_outputs()},
+       outputs_stay_safe_without_identification});
+  return cases;
+}
+
+}  // namespace fieldproof::conformance

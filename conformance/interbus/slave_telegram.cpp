@@ -1,0 +1,253 @@
+#include <fmt/format.h>
+
+#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_expect.hpp"
+
+// IS-17 to IS-22 and IS-26: headers, stop bits, glitches and status telegrams inside a cycle.
+namespace fieldproof::conformance {
+namespace {
+
+// Sends a data cycle whose telegram k arrives with one level flipped; then requires that no output changed
+// and that the next clean cycle is accepted.
+void reject_flipped_level(SlaveBench& bench, CaseJudge& judge, std::size_t k, unsigned level,
+                          std::string_view recovery_reason, unsigned status_between = 2) {
+  bench.begin();
+  std::vector<std::uint16_t> words = bench.random_words();
+  for (unsigned word = 0; word < bench.words(); ++word)
+    words[word] = static_cast<std::uint16_t>(~bench.outputs()[word]);
+  const CyclePlace& cycle = bench.append_data_cycle(words);
+  bench.channel().on_next().flip(cycle.level_of(k, level));
+  bench.send();
+  expect_no_change(bench, judge, "output_changed_by_rejected_cycle",
+                   fmt::format("telegram {} of the cycle arrived with level {} flipped", k, level));
+  bench.status_telegrams(status_between);
+  expect_good_cycle(bench, judge, recovery_reason);
+}
+
+std::size_t transfer_telegrams(SlaveBench& bench) {
+  bench.begin();
+  return bench.append_data_cycle(bench.random_words()).octets;
+}
+
+void flip_everywhere(SlaveBench& bench, CaseJudge& judge, line::HeaderLevel which, std::size_t telegrams) {
+  const unsigned level = bench.train().header_level(which);
+  for (unsigned round = 0; round < bench.volume(1U, 20U); ++round) {
+    for (std::size_t k = 0; k < telegrams; ++k) reject_flipped_level(bench, judge, k, level, "no_recovery");
+  }
+}
+
+void start(SlaveBench& bench, CaseJudge& judge) {
+  bench.bring_up();
+  expect_good_cycle(bench, judge, "valid_cycle_rejected");
+}
+
+void select_flipped(SlaveBench& bench, CaseJudge& judge) {
+  start(bench, judge);
+  flip_everywhere(bench, judge, line::HeaderLevel::select, transfer_telegrams(bench));
+}
+
+void flag_flipped(SlaveBench& bench, CaseJudge& judge) {
+  start(bench, judge);
+  flip_everywhere(bench, judge, line::HeaderLevel::flag, transfer_telegrams(bench) + 4);
+}
+
+void check_phase_early_or_late(SlaveBench& bench, CaseJudge& judge) {
+  start(bench, judge);
+  const std::size_t transfer = transfer_telegrams(bench);
+  const unsigned level = bench.train().header_level(line::HeaderLevel::control);
+  for (unsigned round = 0; round < bench.volume(4U, 100U); ++round)
+    reject_flipped_level(bench, judge, transfer - 1, level, "no_recovery");
+  // One telegram late: the slave takes the first check telegram for data and cannot know better. What it does
+  // is told; only that it goes on is required.
+  unsigned changed = 0;
+  const unsigned rounds = bench.volume(4U, 100U);
+  for (unsigned round = 0; round < rounds; ++round) {
+    bench.begin();
+    const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
+    bench.channel().on_next().flip(cycle.level_of(transfer, level));
+    bench.send();
+    if (!bench.changes().empty()) ++changed;
+    bench.status_telegrams(2);
+    expect_good_cycle(bench, judge, "no_recovery");
+  }
+  judge.measure("cycles with a late check phase that changed outputs", "of the rounds", changed);
+}
+
+void stop_level_missing(SlaveBench& bench, CaseJudge& judge) {
+  start(bench, judge);
+  const std::size_t telegrams = transfer_telegrams(bench) + 4;
+  for (const unsigned gap : {2U, 0U, 13U}) {
+    for (std::size_t k = 0; k < telegrams; ++k) {
+      bench.train().set_gap(gap);
+      reject_flipped_level(bench, judge, k, TrainWriter::kStopLevel, "no_resynchronisation");
+    }
+  }
+  bench.train().set_gap(2);
+}
+
+// ---- glitches on the idle line ----
+
+constexpr std::int64_t kPerBit = 20;  // levels of a glitch's waveform
+
+// One low pulse of so many twentieths of a bit, with idle around it.
+void drive_glitch(SlaveBench& bench, unsigned low, unsigned idle_bits_behind) {
+  line::Waveform wave{bench.now(), bench.rules().bit_rate * kPerBit, {}};
+  wave.levels.append_idle(4 * kPerBit);
+  wave.levels.append_fill(false, low);
+  wave.levels.append_idle(static_cast<std::size_t>(idle_bits_behind * kPerBit));
+  bench.drive_at_receiver(wave);
+}
+
+void short_glitch_is_ignored(SlaveBench& bench, CaseJudge& judge) {
+  start(bench, judge);
+  for (unsigned round = 0; round < bench.volume(2U, 50U); ++round) {
+    for (unsigned low = 2; low <= 8; ++low) {
+      drive_glitch(bench, low, 1 + round % 14);
+      judge.expect(bench.out().telegrams().empty(), "glitch_taken_for_telegram", [&] {
+        return Sighting{.expected = {"nothing leaves"},
+                        .actual = describe(bench.out(), bench.out().telegrams()[0], bench.now()),
+                        .time = bench.out().start_of(bench.out().telegrams()[0]),
+                        .first_difference = fmt::format("low pulse of {}/20 of a bit", low)};
+      });
+      expect_no_change(bench, judge, "output_changed_by_glitch", "a glitch is no telegram");
+      expect_good_cycle(bench, judge, "cycle_after_glitch_rejected");
+    }
+  }
+}
+
+void long_glitch_costs_no_cycle(SlaveBench& bench, CaseJudge& judge) {
+  start(bench, judge);
+  for (unsigned round = 0; round < bench.volume(10U, 200U); ++round) {
+    // 0.6 of a bit is a start bit; the false telegram ends 13 bits behind its edge.
+    drive_glitch(bench, 12, line::kDataTelegramLevels + static_cast<unsigned>(bench.random().below(40)));
+    expect_no_change(bench, judge, "output_changed_by_glitch", "a single false telegram is no cycle");
+    expect_good_cycle(bench, judge, "cycle_after_glitch_rejected");
+  }
+}
+
+// ---- status telegrams inside a cycle ----
+
+void status_inside_a_cycle(SlaveBench& bench, CaseJudge& judge) {
+  start(bench, judge);
+  for (const unsigned between : {1U, 2U, 5U}) {
+    for (unsigned round = 0; round < bench.volume(2U, 50U); ++round) {
+      bench.set_inputs(bench.random_words());
+      const std::vector<std::uint16_t> words = bench.random_words();
+      bench.begin();
+      bench.train().set_status_between(between);
+      bench.append_data_cycle(words);
+      bench.train().set_status_between(0);
+      bench.send();
+      expect_answer(bench, judge, 0, bench.data_load());
+      expect_outputs(bench, judge, words, "valid_cycle_rejected");
+      judge.expect_equal(bench.out().status_count(), bench.in().status_count(), "status_telegram_lost",
+                         "status telegrams that left");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_telegram_cases() {
+  std::vector<SlaveCase> cases;
+  cases.push_back(
+      {{.id = "interbus/slave/telegram/flipped_select_bit_rejects_the_cycle",
+        .purpose = "IS-17",
+        .requirement = "The select bit (SL) of a telegram is not inside the frame check. A telegram whose SL says "
+                       "ID cycle inside the data phase breaks the data cycle, which must not be taken over.",
+        .reference = sources::practical_guide("SL is FALSE while the data phase runs"),
+        .stimulus = "Data cycles in which the SL bit of one telegram of the data phase is flipped at the slave's "
+                    "receiver, each telegram in turn; two status telegrams, then a clean cycle.",
+        .expected = "No output changes; the clean cycle is accepted.",
+        .tags = {"must"},
+        .catches = {{"ignores_select_inside_a_cycle", "output_changed_by_rejected_cycle"}},
+        .not_applicable = for_outputs()},
+       select_flipped});
+  cases.push_back(
+      {{.id = "interbus/slave/telegram/early_check_phase_rejects_the_cycle",
+        .purpose = "IS-18",
+        .requirement = "A check phase that begins one telegram early makes the slave compare other octets than "
+                       "the check: the cycle must not be taken over. One that begins late shifts the data, "
+                       "which the slave cannot see; the master sees it.",
+        .reference = sources::practical_guide("CR is TRUE in the check phase"),
+        .stimulus = "Data cycles in which the CR bit of the last data telegram is set at the slave's receiver; "
+                    "then cycles in which that of the first check telegram is cleared. A clean cycle behind each.",
+        .expected = "No output changes by the early check phase; the clean cycles are accepted. Whether a late "
+                    "check phase changed outputs is recorded.",
+        .tags = {"must"},
+        .catches = {{"latches_at_end_of_data_phase", "output_changed_by_rejected_cycle"},
+                    {"locks_up_after_rejected_cycle", "no_recovery"}},
+        .not_applicable = for_outputs()},
+       check_phase_early_or_late});
+  cases.push_back(
+      {{.id = "interbus/slave/telegram/flipped_flag_rejects_the_cycle",
+        .purpose = "IS-19",
+        .requirement = "The flag bit (FL) is not inside the frame check. A data telegram that arrives as a status "
+                       "telegram makes the ring eight bits short and leaves data levels that may look like other "
+                       "telegrams: the cycle must not be taken over.",
+        .reference = sources::derived("five header bits, outside the checksum"),
+        .stimulus = "Data cycles in which the FL bit of one telegram is flipped at the slave's receiver, each "
+                    "telegram of data and check phase in turn; two status telegrams, then a clean cycle.",
+        .expected = "No output changes; the clean cycle is accepted.",
+        .tags = {"must"},
+        .catches = {{"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"},
+                    {"locks_up_after_rejected_cycle", "no_recovery"}},
+        .not_applicable = for_outputs()},
+       flag_flipped});
+  cases.push_back(
+      {{.id = "interbus/slave/telegram/missing_stop_bit_rejects_the_cycle",
+        .purpose = "IS-20",
+        .requirement = "A telegram without its stop bit is broken, whatever its octet says: its cycle is not taken "
+                       "over. The receiver finds the telegrams behind it again within two status telegrams.",
+        .reference = sources::own("resynchronisation within two status telegrams"),
+        .stimulus = "Data cycles in which the stop bit of one telegram arrives as 0, each telegram in turn, with "
+                    "gaps of 2, 0 and 13 bits; two status telegrams, then a clean cycle.",
+        .expected = "No output changes; the clean cycle is accepted.",
+        .tags = {"must"},
+        .catches = {{"stop_bit_not_checked", "output_changed_by_rejected_cycle"},
+                    {"does_not_resynchronise", "no_resynchronisation"}},
+        .not_applicable = for_outputs()},
+       stop_level_missing});
+  cases.push_back(
+      {{.id = "interbus/slave/telegram/short_glitch_is_ignored",
+        .purpose = "IS-21",
+        .requirement = "A start bit is validated in its middle: a low pulse of less than half a bit on the idle "
+                       "line is no telegram.",
+        .reference = sources::own("receiver samples in the middle of the bit, majority of three"),
+        .stimulus = "Low pulses of 0.10 to 0.40 bit on the idle line at the slave's receiver, with 1 to 14 bits of "
+                    "idle line behind them; then a clean cycle.",
+        .expected = "Nothing leaves, no output changes, the clean cycle is accepted.",
+        .tags = {"must"},
+        .catches = {{"start_bit_not_validated", "glitch_taken_for_telegram"}},
+        .not_applicable = for_every_slave()},
+       short_glitch_is_ignored});
+  cases.push_back(
+      {{.id = "interbus/slave/telegram/long_glitch_costs_no_cycle",
+        .purpose = "IS-22",
+        .requirement = "A low pulse that passes for a start bit makes one false telegram. It has no effect, and a "
+                       "telegram that begins after its 13 bits is received.",
+        .reference = sources::own("a false telegram outside of a cycle is discarded"),
+        .stimulus = "Low pulses of 0.60 bit on the idle line at the slave's receiver, at least 13 bits of idle "
+                    "line, then a clean cycle.",
+        .expected = "No output changes by the pulse, and the clean cycle is accepted.",
+        .tags = {"must"},
+        .catches = {{"stray_telegram_spoils_next_cycle", "cycle_after_glitch_rejected"}},
+        .not_applicable = for_every_slave()},
+       long_glitch_costs_no_cycle});
+  cases.push_back(
+      {{.id = "interbus/slave/telegram/status_telegrams_inside_a_cycle_have_no_effect",
+        .purpose = "IS-26",
+        .requirement = "Status telegrams between the data telegrams of a cycle fill pauses of the master; they "
+                       "shift nothing and do not enter the frame check.",
+        .reference = sources::phoenix_maintenance("status telegrams in every pause"),
+        .stimulus = "Valid data cycles with 1, 2 and 5 status telegrams behind each data telegram.",
+        .expected = "The data telegrams leave as without them, the status telegrams leave, the outputs take over "
+                    "the words.",
+        .tags = {"must"},
+        .catches = {{"status_telegram_shifts", "register_content_wrong"}},
+        .not_applicable = for_inputs()},
+       status_inside_a_cycle});
+  return cases;
+}
+
+}  // namespace fieldproof::conformance
