@@ -100,7 +100,7 @@ void Slave::receive(segment::PortIndex port, const line::Waveform& reception) {
       // In the middle of a transfer: most of what a slave ever does.
       const std::uint8_t out = shift_.shift(telegram.data, check_);
       relay.put(wave, telegram.level, code_.levels_of(line::kDataTelegram, out), line::kDataTelegramLevels);
-    } else if (is_plain && !telegram.is_data()) {
+    } else if (is_plain && !route_changed_ && !telegram.is_data()) {
       relay.put(wave, telegram);
     } else {
       on_upstream(wave, telegram);
