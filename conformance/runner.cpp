@@ -35,6 +35,7 @@ std::optional<std::string> excluded_by_setup(const TestCase& test_case, const Se
   std::set<std::string> assigned;
   for (const Assignment& assignment : setup.implementations) {
     if (assignment.role.empty() || assignment.role == role) return std::nullopt;
+    if (std::ranges::find(test_case.parts, assignment.role) != test_case.parts.end()) return std::nullopt;
     assigned.insert(assignment.role);
   }
   if (assigned.empty()) return std::nullopt;

@@ -31,6 +31,8 @@ struct TestCase {
   std::string expected;
   std::vector<std::string> tags;  // "must", "timing", "long", "canary" ...
   std::vector<Catch> catches;
+  // Roles of implementations that the case judges besides its own: those of the parts of a network.
+  std::vector<std::string> parts{};
   // Nothing, or the sentence that says why the case does not apply to such an implementation.
   std::function<std::optional<std::string>(const judge::Pics&)> not_applicable;
 

@@ -232,7 +232,7 @@ void SlaveBench::silence(kernel::Duration duration) {
 
 void SlaveBench::send() {
   clear_views();
-  sent_at_ = now();
+  sent_at_ = last_sent_ = now();
   line::Waveform wave{now(), rules().bit_rate, {}};
   std::swap(wave.levels, train_.levels());
   const kernel::Time end = wave.end();
@@ -252,7 +252,14 @@ std::size_t SlaveBench::code_word_level(const CyclePlace& cycle, std::size_t bit
   return cycle.level_of(first + bit / 8, train_.data_level(static_cast<unsigned>(bit % 8)));
 }
 
+// The stations in front hear nothing of what is driven directly.
+void SlaveBench::keep_way_alive() {
+  if (way_.empty() || now() - last_sent_ < rules().silence_limit / 4) return;
+  status_telegrams(2);
+}
+
 void SlaveBench::drive_at_receiver(line::Waveform& wave) {
+  keep_way_alive();
   clear_views();
   sent_at_ = wave.start = now();
   const kernel::Time end = wave.end();

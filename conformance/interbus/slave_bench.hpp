@@ -128,7 +128,7 @@ class SlaveBench final : private segment::Station {
   std::size_t code_word_bits() const { return 8 * (2 + 2 * words() + 2); }
   std::size_t code_word_level(const CyclePlace& cycle, std::size_t bit) const;
   // Drives the IUT's incoming line itself and runs until it has answered. Clears the views before; the start
-  // is set to now.
+  // is set to now. Behind other stations it may send status telegrams through the ring first.
   void drive_at_receiver(line::Waveform& wave);
   // A whole data cycle as the station in front of the IUT would send it, alone in the ring.
   line::Levels direct_data_cycle(std::span<const std::uint16_t> words, unsigned gap_bits);
@@ -159,6 +159,7 @@ class SlaveBench final : private segment::Station {
   void find_way();
   void install(const fault::Plan& plan);
   void open_way(std::size_t stations);
+  void keep_way_alive();
   void append_cycle(bool is_id_cycle);
   void put_word(std::uint16_t word);
   void add_lines(std::vector<std::string>& lines, std::string_view name, LineView& view) const;
@@ -186,6 +187,7 @@ class SlaveBench final : private segment::Station {
   std::vector<std::uint16_t> inputs_;
   std::vector<std::uint8_t> octets_;
   kernel::Time sent_at_{};
+  kernel::Time last_sent_{};  // through the ring
 };
 
 }  // namespace fieldproof::conformance

@@ -10,7 +10,7 @@
 #include "protocols/interbus/slave.hpp"
 
 // The deviating slaves, one class each; the table of their names is in slave_deviations.cpp.
-namespace fieldproof::conformance::deviants {
+namespace fieldproof::conformance::slave_deviants {
 
 using interbus::Slave;
 using interbus::SlaveConfiguration;
@@ -350,8 +350,12 @@ class ChangingPort final : public segment::Port {
   }
   segment::Port* port() { return behind_ == nullptr ? nullptr : this; }
   void drive(line::Waveform& wave) override {
+    const std::int64_t rate = wave.rate;
+    const std::int64_t rate = wave.rate;
     change_(wave);
     behind_->drive(wave);
+    wave.rate = rate;  // the slave uses its waveform again
+    wave.rate = rate;  // the station's waveform is used again
   }
 
  private:
@@ -510,4 +514,4 @@ class TellsNoCheckError : public Slave {
   void on_cycle_rejected(kernel::Time, bool) override {}
 };
 
-}  // namespace fieldproof::conformance::deviants
+}  // namespace fieldproof::conformance::slave_deviants

@@ -21,6 +21,7 @@ const std::string& Link::name() const {
 
 void Link::drive(line::Waveform& wave) {
   FIELDPROOF_CHECK(wave.start >= segment_.now(), "nobody drives a line in the past");
+  FIELDPROOF_CHECK(wave.rate > 0, "a waveform has a rate");
   if (wave.start < driven_until_) ++overlap_count_;
   driven_until_ = std::max(driven_until_, wave.end());
   segment_.trace().driven(trace_channel_, wave);

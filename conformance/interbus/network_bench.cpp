@@ -1,0 +1,75 @@
+#include "conformance/interbus/network_bench.hpp"
+
+#include <utility>
+
+#include "protocols/interbus/master.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using kernel::kMillisecond;
+
+interbus::NetworkDescription built_from(const interbus::NetworkDescription& network,
+                                        const NetworkParts& parts) {
+  interbus::NetworkDescription built = network;
+  if (parts.change_network) parts.change_network(built);
+  return built;
+}
+
+}  // namespace
+
+void NetworkBench::Listener::on_wave(const line::Waveform& wave) {
+  code.decode(wave.levels, 0, [&](const line::Telegram& telegram) {
+    if (!telegram.is_data()) return;
+    const bool is_transfer = (telegram.header & (line::kSelect | line::kControl)) == 0;
+    if (is_transfer && !is_in_transfer) starts.push_back(wave.time_of(telegram.level));
+    is_in_transfer = is_transfer;
+  });
+}
+
+NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkParts& parts,
+                           const fault::Plan& plan, std::uint64_t seed, Volume volume)
+    : network_(std::move(network)),
+      built_(built_from(network_, parts)),
+      places_(interbus::ring_order(network_)),
+      volume_(volume),
+      random_(seed),
+      listener_(network_.rules) {
+  interbus::MasterConfiguration configuration = interbus::master_configuration(network_);
+  configuration.rules = built_.rules;
+  if (parts.make_master) {
+    master_ = parts.make_master(configuration);
+  } else {
+    master_ = std::make_unique<interbus::Master>(configuration);
+  }
+  master_seat_ = segment_.attach(*master_, "master");
+  ring_ = std::make_unique<interbus::Ring>(segment_, built_, master_seat_, parts.make_slave);
+  master_->wire(ring_->out());
+  ring_->link_to(1).tap_driven(listener_);
+  install(plan);
+}
+
+void NetworkBench::install(const fault::Plan& plan) {
+  if (plan.empty()) return;
+  plan_ = std::make_unique<fault::InstalledPlan>(plan, segment_.trace(), random_.split("plan"));
+  ring_->install(*plan_);
+}
+
+void NetworkBench::run_behind_sampling() {
+  forget_starts();
+  run_cycles(2);
+  if (listener_.starts.empty()) return;
+  segment_.run_until(listener_.starts.back() + status().cycle_time + 200 * kernel::kMicrosecond);
+}
+
+bool NetworkBench::bring_up() {
+  master_->start(segment_.now());
+  segment_.refresh(master_seat_);
+  for (int tries = 0; tries < 1000; ++tries) {
+    if (status().state == interbus::MasterState::run) return true;
+    segment_.run_for(10 * kMillisecond);
+  }
+  return false;
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/interbus/master_bench.hpp"
+#include "conformance/judging.hpp"
+#include "conformance/test_case.hpp"
+#include "harness/fault/plan.hpp"
+#include "harness/segment/segment.hpp"
+#include "protocols/interbus/network.hpp"
+#include "protocols/interbus/ring.hpp"
+
+// A whole network under test: the master and the slaves of a network description on their cables, with the
+// declared faults of a plan on every receiver. The lower tester listens to the master's output; the upper
+// tester is at the terminals of all slaves and at the master's application interface.
+namespace fieldproof::conformance {
+
+// What a deviation changes of a network of references.
+struct NetworkParts {
+  MasterBench::MakeMaster make_master;   // null: the reference
+  interbus::Ring::MakeSlave make_slave;  // null: references
+  // Changes the network that is built, not the one that the cases hold it against.
+  std::function<void(interbus::NetworkDescription&)> change_network;
+};
+
+class NetworkBench {
+ public:
+  NetworkBench(interbus::NetworkDescription network, const NetworkParts& parts, const fault::Plan& plan,
+               std::uint64_t seed, Volume volume);
+  NetworkBench(const NetworkBench&) = delete;
+  NetworkBench& operator=(const NetworkBench&) = delete;
+
+  // As the description says, whatever a deviation built.
+  const interbus::NetworkDescription& network() const { return network_; }
+  const std::vector<interbus::RingPlace>& places() const { return places_; }
+  template <typename Count>
+  Count volume(Count quick, Count full) const {
+    return volume_ == Volume::quick ? quick : full;
+  }
+  kernel::Random& random() { return random_; }
+  segment::Segment& segment() { return segment_; }
+  interbus::MasterDevice& master() { return *master_; }
+  interbus::Ring& ring() { return *ring_; }
+  interbus::MasterStatus status() const { return master_->status(); }
+
+  // Powers up and waits until data cycles run; false when the network does not get there in ten seconds.
+  bool bring_up();
+  void run_cycles(std::int64_t count) { segment_.run_for(status().cycle_time * count); }
+
+  // To 200 us behind the start of a data cycle, when every station has sampled its inputs: what changes then
+  // has just missed the cycle.
+  void run_behind_sampling();
+
+  // Starts of the data cycles on the master's output since `forget_starts`, as the lower tester decoded them.
+  const std::vector<kernel::Time>& data_cycle_starts() const { return listener_.starts; }
+  void forget_starts() { listener_.starts.clear(); }
+
+ private:
+  struct Listener final : segment::Tap {
+    explicit Listener(const interbus::Rules& rules) : code(line::shared_telegram_code(rules.telegram)) {}
+    void on_wave(const line::Waveform& wave) override;
+
+    const line::TelegramCode& code;
+    bool is_in_transfer = false;
+    std::vector<kernel::Time> starts;
+  };
+
+  void install(const fault::Plan& plan);
+
+  interbus::NetworkDescription network_;
+  interbus::NetworkDescription built_;
+  std::vector<interbus::RingPlace> places_;
+  Volume volume_;
+  kernel::Random random_;
+  segment::Segment segment_;
+  std::unique_ptr<interbus::MasterDevice> master_;
+  std::size_t master_seat_ = 0;
+  std::unique_ptr<interbus::Ring> ring_;
+  std::unique_ptr<fault::InstalledPlan> plan_;
+  Listener listener_;
+};
+
+struct NetworkCase {
+  TestCase test_case;
+  std::function<void(NetworkBench&, CaseJudge&)> procedure;
+};
+
+const std::vector<NetworkCase>& network_cases();
+
+const std::vector<Deviation>& network_deviations();
+// The parts of a deviation by name; throws kernel::Error(usage) with the nearest names for an unknown one.
+NetworkParts deviating_network(std::string_view name, std::size_t stations);
+
+}  // namespace fieldproof::conformance

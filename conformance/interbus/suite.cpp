@@ -1,0 +1,258 @@
+#include "conformance/interbus/suite.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "conformance/interbus/line_recorder.hpp"
+#include "conformance/interbus/master_cases.hpp"
+#include "conformance/interbus/master_deviations.hpp"
+#include "conformance/interbus/network_bench.hpp"
+#include "conformance/interbus/playback.hpp"
+#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_deviations.hpp"
+#include "harness/fault/plan_file.hpp"
+#include "harness/kernel/error.hpp"
+#include "protocols/interbus/master.hpp"
+#include "protocols/interbus/slave.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::string_view kRecorded = "recorded:";
+constexpr std::string_view kDeviant = "deviant:";
+constexpr std::string_view kOwn = "own";
+
+[[noreturn]] void refuse(const std::string& sentence) {
+  throw kernel::Error(kernel::ErrorKind::usage, sentence);
+}
+
+std::string deviation_of(const std::string& uri, std::string_view role) {
+  if (!uri.starts_with(kDeviant)) {
+    refuse(fmt::format("\"{}\" is no INTERBUS {}; use ref or deviant:NAME", uri, role));
+  }
+  return uri.substr(kDeviant.size());
+}
+
+// What a run needs besides its case: the assignment of the case's role, the files that are named, and the two
+// recorders. Made anew for each run, so runs share nothing.
+class Run {
+ public:
+  Run(const TestCase& test_case, const Setup& setup, const OwnStations& own)
+      : test_case_(test_case), setup_(setup), own_(own) {
+    if (!setup.network_file.empty()) network_ = interbus::NetworkDescription::load(setup.network_file);
+    if (!setup.plan_file.empty()) {
+      plan_ = fault::load_plan(setup.plan_file,
+                               {.telegrams = &line::shared_telegram_code(interbus::Rules{}.telegram)});
+    }
+    const std::string role = test_case.role();
+    for (const Assignment& assignment : setup.implementations) {
+      if (assignment.role.empty() || assignment.role == role) assigned_ = assignment;
+    }
+    if (assigned_.uri.starts_with(kRecorded)) {
+      played_back_ = DeviceRecording::load(assigned_.uri.substr(kRecorded.size()));
+    }
+  }
+
+  Outcome run(const SlaveCase& slave_case);
+  Outcome run(const MasterCase& master_case);
+  Outcome run(const NetworkCase& network_case);
+
+ private:
+  std::unique_ptr<interbus::SlaveDevice> make_slave(const interbus::SlaveConfiguration& configuration);
+  std::unique_ptr<interbus::MasterDevice> make_master(const interbus::MasterConfiguration& configuration);
+  NetworkParts network_parts(std::size_t stations);
+  void finish(Outcome& outcome, const trace::Trace& trace, kernel::Time now) const;
+  void keep(Outcome& outcome, LineRecorder& lines);
+
+  const TestCase& test_case_;
+  const Setup& setup_;
+  const OwnStations& own_;
+  Assignment assigned_;
+  std::optional<interbus::NetworkDescription> network_;
+  fault::Plan plan_;
+  std::optional<DeviceRecording> played_back_;
+  std::size_t played_back_devices_ = 0;
+  DeviceRecording recording_;
+};
+
+std::unique_ptr<interbus::SlaveDevice> Run::make_slave(const interbus::SlaveConfiguration& configuration) {
+  if (played_back_) return played_back_slave(*played_back_, played_back_devices_++);
+  std::unique_ptr<interbus::SlaveDevice> device;
+  if (assigned_.uri == "ref") {
+    device = std::make_unique<interbus::Slave>(configuration);
+  } else if (assigned_.uri == kOwn && own_.make_slave) {
+    device = own_.make_slave(configuration);
+  } else {
+    device = make_slave_deviation(deviation_of(assigned_.uri, "slave"), configuration);
+  }
+  return setup_.record ? recorded(std::move(device), recording_) : std::move(device);
+}
+
+std::unique_ptr<interbus::MasterDevice> Run::make_master(const interbus::MasterConfiguration& configuration) {
+  if (played_back_) return played_back_master(*played_back_, played_back_devices_++);
+  auto device = assigned_.uri == kOwn && own_.make_master
+                    ? own_.make_master(configuration)
+                    : conformance::make_master(assigned_.uri)(configuration);
+  return setup_.record ? recorded(std::move(device), recording_) : std::move(device);
+}
+
+void Run::finish(Outcome& outcome, const trace::Trace& trace, kernel::Time now) const {
+  outcome.result.purpose = test_case_.purpose;
+  outcome.result.seed = setup_.seed;
+  outcome.result.fingerprint = trace.fingerprint();
+  outcome.result.virtual_time = now - kernel::kStart;
+}
+
+void Run::keep(Outcome& outcome, LineRecorder& lines) {
+  outcome.recording.truncated = lines.is_truncated() || recording_.is_truncated();
+  outcome.recording.lines = lines.take_lines();
+  if (recording_.device_count() > 0) outcome.recording.playback = recording_.text();
+}
+
+Outcome Run::run(const SlaveCase& slave_case) {
+  SlaveSetting setting;
+  setting.make_slave = [this](const interbus::SlaveConfiguration& c) { return make_slave(c); };
+  setting.position = assigned_.position == 0 ? 1 : assigned_.position;
+  setting.stations = setting.position;
+  setting.network = network_;
+  setting.plan = plan_;
+  setting.seed = setup_.seed;
+  setting.volume = setup_.volume;
+  setting.pics = setup_.pics;
+  std::optional<LineRecorder> lines;
+  if (setup_.record) {
+    setting.make_recorder = [&](const trace::Trace& trace, const interbus::Rules& rules) {
+      return &lines.emplace(trace, rules);
+    };
+  }
+  Outcome outcome;
+  outcome.result = run_slave_case(slave_case, setting);
+  outcome.result.purpose = test_case_.purpose;
+  if (lines) keep(outcome, *lines);
+  return outcome;
+}
+
+Outcome Run::run(const MasterCase& master_case) {
+  if (network_) refuse("cases for a master make the rings that they need; leave out the network");
+  if (!plan_.empty()) refuse("cases for a master bring their own faults; leave out the plan");
+  MasterBench bench([this](const auto& configuration) { return make_master(configuration); }, setup_.seed,
+                    setup_.volume);
+  std::optional<LineRecorder> lines;
+  if (setup_.record) {
+    bench.segment().trace().set_recorder(&lines.emplace(bench.segment().trace(), bench.rules()));
+  }
+  CaseJudge judge(test_case_);
+  judge.use_clock([&] { return bench.now(); });
+  Outcome outcome;
+  outcome.result = judge.run_procedure([&](CaseJudge& j) { master_case.procedure(bench, j); });
+  finish(outcome, bench.segment().trace(), bench.now());
+  if (lines) keep(outcome, *lines);
+  return outcome;
+}
+
+NetworkParts Run::network_parts(std::size_t stations) {
+  NetworkParts parts;
+  std::map<int, std::string> slaves;
+  for (const Assignment& assignment : setup_.implementations) {
+    if (assignment.uri == "ref") continue;
+    if (assignment.role == "slave") {
+      slaves[assignment.position == 0 ? 1 : assignment.position] = deviation_of(assignment.uri, "slave");
+    } else if (assignment.role == "master") {
+      parts.make_master = conformance::make_master(assignment.uri);
+    } else {
+      parts = deviating_network(deviation_of(assignment.uri, "network"), stations);
+    }
+  }
+  if (slaves.empty()) return parts;
+  if (slaves.rbegin()->first > static_cast<int>(stations)) {
+    refuse(fmt::format("there is no slave at position {}; the network has {}", slaves.rbegin()->first,
+                       stations));
+  }
+  parts.make_slave = [slaves](int position, const interbus::SlaveConfiguration& configuration) {
+    const auto assigned = slaves.find(position);
+    return assigned == slaves.end() ? nullptr : make_slave_deviation(assigned->second, configuration);
+  };
+  return parts;
+}
+
+// A coupler with an input and an output terminal behind it, and a station of two words: the least network
+// that has everything.
+interbus::NetworkDescription small_network() {
+  using interbus::StationDescription;
+  interbus::NetworkDescription network;
+  network.name = "coupler, two terminals, station of two words";
+  StationDescription coupler{
+      .name = "coupler", .id_code = 0x0008, .cable_m = 0, .is_local = false, .branch = {}};
+  coupler.branch.push_back(
+      {.name = "inputs", .id_code = 0x01BE, .cable_m = 0, .is_local = true, .branch = {}});
+  coupler.branch.push_back(
+      {.name = "outputs", .id_code = 0x01BD, .cable_m = 0, .is_local = true, .branch = {}});
+  network.stations.push_back(coupler);
+  network.stations.push_back(
+      {.name = "station", .id_code = 0x0203, .cable_m = 0, .is_local = false, .branch = {}});
+  network.copy.push_back({.from = "inputs", .input_word = 0, .to = "outputs", .output_word = 0});
+  return network;
+}
+
+Outcome Run::run(const NetworkCase& network_case) {
+  const interbus::NetworkDescription network = network_ ? *network_ : small_network();
+  if (played_back_) refuse("a network is not judged again from a recording; run it again");
+  NetworkBench bench(network, network_parts(interbus::ring_order(network).size()), plan_, setup_.seed,
+                     setup_.volume);
+  std::optional<LineRecorder> lines;
+  if (setup_.record) {
+    bench.segment().trace().set_recorder(&lines.emplace(bench.segment().trace(), network.rules));
+  }
+  CaseJudge judge(test_case_);
+  judge.use_clock([&] { return bench.segment().now(); });
+  Outcome outcome;
+  outcome.result = judge.run_procedure([&](CaseJudge& j) { network_case.procedure(bench, j); });
+  finish(outcome, bench.segment().trace(), bench.segment().now());
+  if (lines) keep(outcome, *lines);
+  return outcome;
+}
+
+class InterbusSuite final : public Suite {
+ public:
+  explicit InterbusSuite(OwnStations own) : own_(std::move(own)) {
+    const auto add = [&](const auto& cases) {
+      for (const auto& one : cases) {
+        cases_.push_back(one.test_case);
+        runs_[one.test_case.id] = [&one](Run& run) { return run.run(one); };
+      }
+    };
+    add(slave_cases());
+    add(master_cases());
+    add(network_cases());
+    for (const auto* list : {&slave_deviations(), &master_deviations(), &network_deviations()}) {
+      deviations_.insert(deviations_.end(), list->begin(), list->end());
+    }
+  }
+
+  std::string_view protocol() const override { return "interbus"; }
+  std::vector<std::string> roles() const override { return {"slave", "master", "network"}; }
+  const std::vector<TestCase>& cases() const override { return cases_; }
+  const std::vector<Deviation>& deviations() const override { return deviations_; }
+
+  Outcome run(const TestCase& test_case, const Setup& setup) const override {
+    Run one(test_case, setup, own_);
+    return runs_.at(test_case.id)(one);
+  }
+
+ private:
+  OwnStations own_;
+  std::vector<TestCase> cases_;
+  std::vector<Deviation> deviations_;
+  std::map<std::string, std::function<Outcome(Run&)>, std::less<>> runs_;
+};
+
+}  // namespace
+
+std::unique_ptr<Suite> interbus_suite(OwnStations own) {
+  return std::make_unique<InterbusSuite>(std::move(own));
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "conformance/test_case.hpp"
+#include "protocols/interbus/device.hpp"
+
+// The INTERBUS suite: the cases for slaves, for masters and for whole networks, and their deviations.
+//
+// Implementations of a role: `ref`, `deviant:NAME`, `recorded:FILE` (a device that does again what a stored
+// run recorded). Cases for a slave and for a network take the network of the setup; cases for a master make
+// the rings that they need.
+namespace fieldproof::conformance {
+
+// What makes the stations that the URI `own` means; null where there is none.
+struct OwnStations {
+  std::function<std::unique_ptr<interbus::SlaveDevice>(const interbus::SlaveConfiguration&)> make_slave{};
+  std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)> make_master{};
+};
+
+std::unique_ptr<Suite> interbus_suite(OwnStations own = {});
+
+}  // namespace fieldproof::conformance
