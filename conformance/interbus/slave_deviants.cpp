@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace fieldproof::conformance::deviants {
+namespace fieldproof::conformance::slave_deviants {
 
 void ExpectsTheUsualLoopbackWord::receive(segment::PortIndex port, const line::Waveform& reception) {
   if (port == interbus::kFromUpstream && reception.rate == rules().bit_rate) {
@@ -186,4 +186,4 @@ void SwitchesWithTheBridge::set_next_present(bool on_branch, bool present) {
   apply_control(present ? rules().control_local_off : rules().control_remote_off, kernel::kStart);
 }
 
-}  // namespace fieldproof::conformance::deviants
+}  // namespace fieldproof::conformance::slave_deviants

@@ -351,11 +351,9 @@ class ChangingPort final : public segment::Port {
   segment::Port* port() { return behind_ == nullptr ? nullptr : this; }
   void drive(line::Waveform& wave) override {
     const std::int64_t rate = wave.rate;
-    const std::int64_t rate = wave.rate;
     change_(wave);
     behind_->drive(wave);
     wave.rate = rate;  // the slave uses its waveform again
-    wave.rate = rate;  // the station's waveform is used again
   }
 
  private:

@@ -37,7 +37,7 @@ Make with_rules(Change change) {
 
 Make without_control(std::uint16_t Rules::* bit) {
   return [bit](const SlaveConfiguration& configuration) {
-    return std::make_unique<deviants::IgnoresControlBit>(configuration, configuration.rules.*bit);
+    return std::make_unique<slave_deviants::IgnoresControlBit>(configuration, configuration.rules.*bit);
   };
 }
 
@@ -49,7 +49,7 @@ struct Row {
 };
 
 std::vector<Row> check_rows() {
-  using namespace deviants;
+  using namespace slave_deviants;
   return {
       {"crc_preset_zero", "MS1", "presets its frame checks with zeros",
        with_rules([](Rules& rules) { rules.frame_check = "CRC-16/XMODEM"; })},
@@ -79,7 +79,7 @@ std::vector<Row> check_rows() {
 }
 
 std::vector<Row> telegram_rows() {
-  using namespace deviants;
+  using namespace slave_deviants;
   return {
       {"stop_bit_not_checked", "MS16", "takes telegrams without a stop bit", make<StopBitNotChecked>},
       {"does_not_resynchronise", "MS18", "hears nothing behind a missing stop bit until it is reset",
@@ -108,7 +108,7 @@ std::vector<Row> telegram_rows() {
 }
 
 std::vector<Row> register_rows() {
-  using namespace deviants;
+  using namespace slave_deviants;
   return {
       {"length_code_binary", "MS12", "takes its length code for a binary number of words",
        make<LengthCodeBinary>},
@@ -140,7 +140,7 @@ std::vector<Row> register_rows() {
 }
 
 std::vector<Row> management_rows() {
-  using namespace deviants;
+  using namespace slave_deviants;
   return {
       {"silence_limit_250_ms", "MS9", "takes silence for a reset only after 250 ms",
        with_rules([](Rules& rules) { rules.silence_limit *= 10; })},
