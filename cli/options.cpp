@@ -31,6 +31,7 @@ constexpr std::array kOptions = {
     Option{"quiet", flag, "", "", "run matrix verify judge", "no line per case and no progress"},
     Option{"failed", optional_value, "RUNDIR", "", "run", "only the cases that failed in that run (runs/latest)", true},
     Option{"resume", value, "RUNDIR", "", "run", "finish a run that was stopped or killed", true},
+    Option{"measurements", flag, "", "", "run", "print what each case measured, with its limits"},
     Option{"count", flag, "", "", "list", "print the number only", true},
     Option{"bits", flag, "", "", "replay", "print the whole recording", true},
     Option{"runs", value, "N", "2", "verify", "how often each case is run (also -n)", true},

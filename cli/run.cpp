@@ -156,6 +156,9 @@ class Judging {
     prepared_.book->add(done);
     if (!session_.terminal.is_quiet()) {
       session_.terminal.print(reports::case_line(result, {.colour = session_.terminal.has_colour()}));
+      if (session_.settings.is_set("measurements")) {
+        session_.terminal.print(reports::measurement_lines(result));
+      }
     }
     if (!done.is_repeatable) {
       has_differed_ = true;

@@ -166,6 +166,19 @@ std::string case_line(const CaseResult& result, const TextOptions& options) {
   return out + "\n";
 }
 
+std::string measurement_lines(const CaseResult& result) {
+  std::string out;
+  for (const judge::Measurement& measured : result.measurements) {
+    out += field("", fmt::format("{}: {:.10g} {}", escaped_line(measured.name), measured.value,
+                                 escaped_line(measured.unit)));
+    if (measured.low != measured.value || measured.high != measured.value) {
+      out.pop_back();
+      out += fmt::format("  (limits {:.10g} to {:.10g})\n", measured.low, measured.high);
+    }
+  }
+  return out;
+}
+
 std::string finding_text(const RunIdentity& identity, const CaseResult& result, const TextOptions& options) {
   std::string out = case_line(result, options);
   if (!result.purpose.empty()) out += field("purpose", result.purpose);

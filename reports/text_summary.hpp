@@ -25,6 +25,9 @@ std::string run_header(const RunIdentity& identity, const Manifest& manifest);
 // One line: verdict, id, reason.
 std::string case_line(const judge::CaseResult& result, const TextOptions& options = {});
 
+// What the case measured, a line each with its limits; empty when it measured nothing.
+std::string measurement_lines(const judge::CaseResult& result);
+
 // Every finding of a case in full: requirement and its source, expected set, actual, time, first difference,
 // layered decode, and the command that reproduces it.
 std::string finding_text(const RunIdentity& identity, const judge::CaseResult& result,
