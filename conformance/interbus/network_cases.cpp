@@ -114,7 +114,7 @@ void every_word_is_exchanged(NetworkBench& bench, CaseJudge& judge) {
         return rule.to == bench.places()[static_cast<std::size_t>(position - 1)].station->name &&
                rule.output_word == k;
       });
-      const std::uint16_t seen = bench.ring().terminals(position).output(k);
+      const std::uint16_t seen = bench.ring().terminals(position).output_at(k, bench.segment().now());
       judge.expect(is_copied || seen == outputs[word], "wrong_output", [&] {
         return Sighting{{fmt::format("station {} output word {}: {:04X}h", position, k, outputs[word])},
                         fmt::format("{:04X}h", seen)};
@@ -160,7 +160,8 @@ void inputs_reach_their_outputs(NetworkBench& bench, CaseJudge& judge) {
     // M2).
     bench.run_cycles(3);
     for (const CopiedWord& word : copied_words(bench)) {
-      const std::uint16_t seen = bench.ring().terminals(word.to).output(word.rule->output_word);
+      const std::uint16_t seen =
+          bench.ring().terminals(word.to).output_at(word.rule->output_word, bench.segment().now());
       judge.expect(seen == value, "input_not_at_output", [&] {
         return Sighting{{fmt::format("{} word {} at {} word {} within three cycles: {:04X}h", word.rule->from,
                                      word.rule->input_word, word.rule->to, word.rule->output_word, value)},

@@ -49,7 +49,7 @@ ordered_json to_json(const interbus::MasterStatus& s) {
 }
 
 ordered_json to_json(const DeviceEvent& event) {
-  ordered_json json = {{"at", ticks(event.at)}};
+  ordered_json json = {{"at", ticks(event.at)}, {"call", event.call}};
   if (const auto* drive = std::get_if<DriveEvent>(&event.what)) {
     json["drive"] = {{"port", drive->port},
                      {"start", ticks(drive->wave.start)},
@@ -146,6 +146,7 @@ DeviceEvent read_event(const config::Value& value) {
   return config::read_object(value, [&](config::ObjectReader& o) {
     DeviceEvent event;
     event.at = time_of(o.required("at").as_integer());
+    event.call = o.required("call").as_integer<std::uint64_t>();
     if (const auto drive = o.optional("drive")) {
       event.what = read_drive(*drive);
     } else if (const auto output = o.optional("output")) {

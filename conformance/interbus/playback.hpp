@@ -40,7 +40,8 @@ struct ViewEvent {
 };
 
 struct DeviceEvent {
-  kernel::Time at{};  // when the device acted
+  kernel::Time at{};       // when the device acted
+  std::uint64_t call = 0;  // within which call of the bench, counted from 1; 0: because a time had come
   std::variant<DriveEvent, OutputEvent, HookEvent, ViewEvent> what;
 };
 

@@ -12,16 +12,33 @@ using interbus::SlaveDevice;
 
 // ---- recording ----
 
-// Where one device's events go, and what time it is for the device.
-struct Log {
-  DeviceRecording& recording;
-  std::size_t device;
-  kernel::Time now = kernel::kStart;
+// Where one device's events go, what time it is for the device, and why it acts: within a call of the bench,
+// or because a time has come.
+class Log {
+ public:
+  Log(DeviceRecording& recording, std::size_t device) : recording_(recording), device_(device) {}
 
+  void begin_call() { call_ = ++calls_; }
+  void begin_call(kernel::Time now) {
+    now_ = now;
+    begin_call();
+  }
+  void begin_time(kernel::Time now) {
+    now_ = now;
+    call_ = 0;
+  }
   template <typename Event>
   void add(Event event) {
-    recording.add(device, {now, std::move(event)});
+    recording_.add(device_, {now_, call_, std::move(event)});
   }
+  bool is_full() const { return recording_.is_truncated(); }
+
+ private:
+  DeviceRecording& recording_;
+  std::size_t device_;
+  kernel::Time now_ = kernel::kStart;
+  std::uint64_t calls_ = 0;
+  std::uint64_t call_ = 0;
 };
 
 class RecordingPort final : public segment::Port {
@@ -44,9 +61,10 @@ class RecordingPort final : public segment::Port {
 class RecordedSlave final : public SlaveDevice, private interbus::Terminals {
  public:
   RecordedSlave(std::unique_ptr<SlaveDevice> device, DeviceRecording& recording)
-      : device_(std::move(device)), log_{recording, recording.add_device()} {}
+      : device_(std::move(device)), log_(recording, recording.add_device()) {}
 
   void wire(const interbus::SlavePorts& ports, interbus::Terminals& terminals) override {
+    log_.begin_call();
     terminals_ = &terminals;
     ports_[0].connect(ports.upstream);
     ports_[1].connect(ports.branch);
@@ -57,11 +75,11 @@ class RecordedSlave final : public SlaveDevice, private interbus::Terminals {
     device_->set_next_present(on_branch, present);
   }
   void receive(segment::PortIndex port, const line::Waveform& reception) override {
-    log_.now = reception.start;
+    log_.begin_call(reception.start);
     device_->receive(port, reception);
   }
   void on_time(kernel::Time now) override {
-    log_.now = now;
+    log_.begin_time(now);
     device_->on_time(now);
   }
   kernel::Time next_time() const override { return device_->next_time(); }
@@ -90,9 +108,8 @@ std::size_t word_count(const MasterStatus& status) {
 class RecordedMaster final : public MasterDevice {
  public:
   RecordedMaster(std::unique_ptr<MasterDevice> device, DeviceRecording& recording)
-      : device_(std::move(device)), log_{recording, recording.add_device()} {
+      : device_(std::move(device)), log_(recording, recording.add_device()) {
     device_->on_cycle_end([this](kernel::Time now, bool data_cycle, bool accepted) {
-      log_.now = now;
       look();
       log_.add(HookEvent{data_cycle, accepted});
       if (hook_) hook_(now, data_cycle, accepted);
@@ -104,17 +121,23 @@ class RecordedMaster final : public MasterDevice {
     device_->wire(port_);
   }
   void start(kernel::Time now) override {
-    log_.now = now;
+    log_.begin_call(now);
     device_->start(now);
     look();
   }
   void stop(kernel::Time now) override {
-    log_.now = now;
+    log_.begin_call(now);
     device_->stop(now);
     look();
   }
-  void request_id_cycle() override { device_->request_id_cycle(); }
+  void request_id_cycle() override {
+    log_.begin_call();
+    device_->request_id_cycle();
+    look();
+  }
   void write_output(unsigned word, std::uint16_t value) override {
+    // Also from within the hook, whose events come before and after.
+    log_.begin_call();
     device_->write_output(word, value);
     look();
   }
@@ -124,12 +147,12 @@ class RecordedMaster final : public MasterDevice {
   void on_cycle_end(CycleHook hook) override { hook_ = std::move(hook); }
 
   void receive(segment::PortIndex port, const line::Waveform& reception) override {
-    log_.now = reception.start;
+    log_.begin_call(reception.start);
     device_->receive(port, reception);
     look();
   }
   void on_time(kernel::Time now) override {
-    log_.now = now;
+    log_.begin_time(now);
     device_->on_time(now);
     look();
   }
@@ -137,7 +160,7 @@ class RecordedMaster final : public MasterDevice {
 
  private:
   void look() {
-    if (log_.recording.is_truncated()) return;
+    if (log_.is_full()) return;
     ViewEvent view{device_->status(), {}, {}};
     const std::size_t words = word_count(view.status);
     for (unsigned word = 0; word < words; ++word) {
@@ -163,24 +186,32 @@ class RecordedMaster final : public MasterDevice {
 
 // ---- playing back ----
 
-// The events of one device and how far they have been played.
+// The events of one device and how far they have been played. What the device did within a call is played
+// within the call of the same number: the bench may have done something at that very instant, before it.
 class Reel {
  public:
   Reel(const DeviceRecording& recording, std::size_t device)
       : events_(device < recording.device_count() ? &recording.events(device) : nullptr) {}
 
-  kernel::Time next_time() const { return is_over() ? kernel::kNever : (*events_)[next_].at; }
+  kernel::Time next_time() const { return is_over() || next().call != 0 ? kernel::kNever : next().at; }
 
   template <typename Play>
+  void play_call(Play&& play) {
+    ++calls_;
+    while (!is_over() && next().call == calls_) play((*events_)[next_++]);
+  }
+  template <typename Play>
   void play_until(kernel::Time now, Play&& play) {
-    while (!is_over() && (*events_)[next_].at <= now) play((*events_)[next_++].what);
+    while (!is_over() && next().call == 0 && next().at <= now) play((*events_)[next_++]);
   }
 
  private:
   bool is_over() const { return events_ == nullptr || next_ == events_->size(); }
+  const DeviceEvent& next() const { return (*events_)[next_]; }
 
   const std::vector<DeviceEvent>* events_;
   std::size_t next_ = 0;
+  std::uint64_t calls_ = 0;
 };
 
 void drive_again(segment::Port* port, const DriveEvent& event) {
@@ -196,21 +227,25 @@ class PlayedBackSlave final : public SlaveDevice {
   void wire(const interbus::SlavePorts& ports, interbus::Terminals& terminals) override {
     ports_ = {ports.upstream, ports.branch, ports.remote};
     terminals_ = &terminals;
+    play_call();
   }
   void set_next_present(bool, bool) override {}
-  void receive(segment::PortIndex, const line::Waveform& reception) override { play(reception.start); }
-  void on_time(kernel::Time now) override { play(now); }
+  void receive(segment::PortIndex, const line::Waveform&) override { play_call(); }
+  void on_time(kernel::Time now) override {
+    reel_.play_until(now, [this](const DeviceEvent& event) { play(event); });
+  }
   kernel::Time next_time() const override { return reel_.next_time(); }
 
  private:
-  void play(kernel::Time now) {
-    reel_.play_until(now, [&](const auto& what) {
-      if (const auto* drive = std::get_if<DriveEvent>(&what)) {
-        drive_again(ports_.at(drive->port), *drive);
-      } else if (const auto* output = std::get_if<OutputEvent>(&what)) {
-        terminals_->output(output->word, output->value, output->when);
-      }
-    });
+  void play_call() {
+    reel_.play_call([this](const DeviceEvent& event) { play(event); });
+  }
+  void play(const DeviceEvent& event) {
+    if (const auto* drive = std::get_if<DriveEvent>(&event.what)) {
+      drive_again(ports_.at(drive->port), *drive);
+    } else if (const auto* output = std::get_if<OutputEvent>(&event.what)) {
+      terminals_->output(output->word, output->value, output->when);
+    }
   }
 
   Reel reel_;
@@ -223,10 +258,10 @@ class PlayedBackMaster final : public MasterDevice {
   PlayedBackMaster(const DeviceRecording& recording, std::size_t device) : reel_(recording, device) {}
 
   void wire(segment::Port& out) override { out_ = &out; }
-  void start(kernel::Time now) override { play(now); }
-  void stop(kernel::Time now) override { play(now); }
-  void request_id_cycle() override {}
-  void write_output(unsigned, std::uint16_t) override {}
+  void start(kernel::Time) override { play_call(); }
+  void stop(kernel::Time) override { play_call(); }
+  void request_id_cycle() override { play_call(); }
+  void write_output(unsigned, std::uint16_t) override { play_call(); }
   std::uint16_t output(unsigned word) const override {
     return word < view_.outputs.size() ? view_.outputs[word] : 0;
   }
@@ -236,21 +271,24 @@ class PlayedBackMaster final : public MasterDevice {
   MasterStatus status() const override { return view_.status; }
   void on_cycle_end(CycleHook hook) override { hook_ = std::move(hook); }
 
-  void receive(segment::PortIndex, const line::Waveform& reception) override { play(reception.start); }
-  void on_time(kernel::Time now) override { play(now); }
+  void receive(segment::PortIndex, const line::Waveform&) override { play_call(); }
+  void on_time(kernel::Time now) override {
+    reel_.play_until(now, [this](const DeviceEvent& event) { play(event); });
+  }
   kernel::Time next_time() const override { return reel_.next_time(); }
 
  private:
-  void play(kernel::Time now) {
-    reel_.play_until(now, [&](const auto& what) {
-      if (const auto* drive = std::get_if<DriveEvent>(&what)) {
-        drive_again(out_, *drive);
-      } else if (const auto* view = std::get_if<ViewEvent>(&what)) {
-        view_ = *view;
-      } else if (const auto* hook = std::get_if<HookEvent>(&what)) {
-        if (hook_) hook_(now, hook->data_cycle, hook->accepted);
-      }
-    });
+  void play_call() {
+    reel_.play_call([this](const DeviceEvent& event) { play(event); });
+  }
+  void play(const DeviceEvent& event) {
+    if (const auto* drive = std::get_if<DriveEvent>(&event.what)) {
+      drive_again(out_, *drive);
+    } else if (const auto* view = std::get_if<ViewEvent>(&event.what)) {
+      view_ = *view;
+    } else if (const auto* hook = std::get_if<HookEvent>(&event.what)) {
+      if (hook_) hook_(event.at, hook->data_cycle, hook->accepted);
+    }
   }
 
   Reel reel_;

@@ -23,14 +23,20 @@ class TerminalBlock : public Terminals {
     std::uint16_t after;
   };
 
-  explicit TerminalBlock(unsigned words) : inputs_(words), signals_(words), outputs_(words) {}
+  explicit TerminalBlock(unsigned words) : inputs_(words), signals_(words), outputs_(words), writes_(words) {}
 
   void set_input(unsigned word, std::uint16_t value) { inputs_.at(word) = value; }
   void set_signal(unsigned word, Signal signal) { signals_.at(word) = std::move(signal); }
   void set_peripheral_fault(Condition condition) { peripheral_fault_ = std::move(condition); }
   void set_reconfiguration(Condition condition) { reconfiguration_ = std::move(condition); }
 
+  // What was written last; its instant may lie ahead, because a station works through a whole reception when
+  // it begins.
   std::uint16_t output(unsigned word) const { return outputs_.at(word); }
+  // What stands at the terminals at `now`, which is not before the write that came before the last one.
+  std::uint16_t output_at(unsigned word, kernel::Time now) const {
+    return writes_.at(word).when <= now ? outputs_[word] : writes_[word].before;
+  }
   const std::vector<std::uint16_t>& outputs() const { return outputs_; }
 
   // Changes of outputs since `forget_changes`, at most kMostChanges of them; and how often any output was
@@ -48,6 +54,7 @@ class TerminalBlock : public Terminals {
     ++write_count_;
     last_write_ = when;
     std::uint16_t& held = outputs_.at(word);
+    writes_[word] = {when, held};
     if (held == value) return;
     if (changes_.size() < kMostChanges) changes_.push_back({when, word, held, value});
     held = value;
@@ -62,7 +69,13 @@ class TerminalBlock : public Terminals {
  private:
   std::vector<std::uint16_t> inputs_;
   std::vector<Signal> signals_;
+  struct Write {
+    kernel::Time when{};
+    std::uint16_t before = 0;
+  };
+
   std::vector<std::uint16_t> outputs_;
+  std::vector<Write> writes_;  // the last one of each word
   Condition peripheral_fault_;
   Condition reconfiguration_;
   std::vector<Change> changes_;
