@@ -110,6 +110,7 @@ void SlaveBench::find_way() {
     if (places[n].before != position_ - 1) continue;
     const int position = static_cast<int>(n) + 1;
     ring_.link_to(position).tap_driven(places[n].on_branch ? branch_ : remote_);
+    neighbour_words_.at(places[n].on_branch ? 1 : 0) = places[n].words;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -12,8 +13,6 @@
 #include "conformance/interbus/slave_line.hpp"
 #include "conformance/interbus/slave_model.hpp"
 #include "conformance/test_case.hpp"
-#include "harness/fault/channel_chain.hpp"
-#include "harness/fault/plan.hpp"
 #include "harness/fault/channel_chain.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/fault/scripted_channel.hpp"
@@ -84,6 +83,8 @@ class SlaveBench final : private segment::Station {
   segment::Segment& segment() { return segment_; }
   interbus::Ring& ring() { return ring_; }
   int position() const { return position_; }
+  // Register length of the station behind OUT1 or OUT2; 0 without one.
+  unsigned neighbour_words(bool on_branch) const { return neighbour_words_[on_branch ? 1 : 0]; }
   SlaveModel& model() { return model_; }
 
   // ---- upper tester ----
@@ -172,6 +173,7 @@ class SlaveBench final : private segment::Station {
   std::size_t seat_;
   interbus::Ring ring_;
   judge::Pics pics_;
+  std::array<unsigned, 2> neighbour_words_{};
   std::vector<OnTheWay> way_;  // stations in front of the IUT, from the master on
   TrainWriter train_;
   SlaveModel model_;

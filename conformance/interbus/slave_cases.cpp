@@ -61,10 +61,10 @@ judge::CaseResult not_applicable(const TestCase& test_case, std::string sentence
 const std::vector<SlaveCase>& slave_cases() {
   static const std::vector<SlaveCase> cases = [] {
     std::vector<SlaveCase> all;
-    for (auto chapter : {slave_power_up_cases, slave_id_cycle_cases, slave_data_cycle_cases,
-                         slave_length_code_cases, slave_frame_check_cases, slave_telegram_cases,
-                         slave_timing_cases, slave_supervision_cases, slave_interface_cases,
-                         slave_message_cases, slave_immunity_cases}) {
+    for (auto chapter :
+         {slave_power_up_cases, slave_id_cycle_cases, slave_data_cycle_cases, slave_length_code_cases,
+          slave_frame_check_cases, slave_telegram_cases, slave_timing_cases, slave_supervision_cases,
+          slave_interface_cases, slave_message_cases, slave_immunity_cases}) {
       std::vector<SlaveCase> cases_of_chapter = chapter();
       std::move(cases_of_chapter.begin(), cases_of_chapter.end(), std::back_inserter(all));
     }

@@ -48,7 +48,7 @@ Applicability for_inputs_and_outputs();
 Applicability for_item(std::string item, std::string sentence);
 
 namespace sources {
-judge::Reference park(std::string place);         // the paper whose cycle time the project reproduces
+judge::Reference park(std::string place);  // the paper whose cycle time the project reproduces
 judge::Reference practical_guide(std::string place);
 judge::Reference phoenix_maintenance(std::string place);
 judge::Reference calculated(std::string place);

@@ -17,8 +17,8 @@ void outputs_change_after_the_check(SlaveBench& bench, CaseJudge& judge) {
     const std::vector<std::uint16_t> words = bench.random_words();
     bench.data_cycle(words);
     if (!bench.changes().empty() && !bench.in().data_telegrams().empty()) {
-      latest = std::max(latest, bench.changes().back().when -
-                                    bench.in().end_of(bench.in().data_telegrams().back()));
+      latest = std::max(latest,
+                        bench.changes().back().when - bench.in().end_of(bench.in().data_telegrams().back()));
     }
     expect_latched_in_order(bench, judge, words);
   }
@@ -204,10 +204,12 @@ std::vector<SlaveCase> slave_data_cycle_cases() {
         .purpose = "IS-05",
         .requirement = "The outputs take over the words of a valid data cycle at the end of its check phase: "
                        "not before, and within 50 us after its last check telegram.",
-        .reference = sources::own("the limit of 50 us; that data count only after the check: Practical Guide"),
+        .reference =
+            sources::own("the limit of 50 us; that data count only after the check: Practical Guide"),
         .stimulus = "Valid data cycles with random words.",
-        .expected = "Each output changes between the last bit of the last check telegram and 50 us after that "
-                    "telegram's end, to the words of the cycle.",
+        .expected =
+            "Each output changes between the last bit of the last check telegram and 50 us after that "
+            "telegram's end, to the words of the cycle.",
         .tags = {"must", "timing"},
         .catches = {{"latches_at_end_of_data_phase", "outputs_changed_before_check"},
                     {"latches_late", "outputs_latched_late"}},
@@ -216,8 +218,9 @@ std::vector<SlaveCase> slave_data_cycle_cases() {
   cases.push_back(
       {{.id = "interbus/slave/data_cycle/inputs_are_one_snapshot",
         .purpose = "IS-06",
-        .requirement = "The inputs that a cycle carries are sampled at one instant, which has a fixed place in "
-                       "the cycle.",
+        .requirement =
+            "The inputs that a cycle carries are sampled at one instant, which has a fixed place in "
+            "the cycle.",
         .reference = sources::own("sampling at the start of the cycle"),
         .stimulus = "All inputs jump between 0000h and FFFFh at instants unrelated to the cycle, for 100 000 "
                     "cycles; then the inputs carry a clock.",
@@ -231,11 +234,13 @@ std::vector<SlaveCase> slave_data_cycle_cases() {
   cases.push_back(
       {{.id = "interbus/slave/data_cycle/loopback_word_returns_unchanged",
         .purpose = "IS-07",
-        .requirement = "The loopback word is data for a slave: whatever its value, it passes unchanged behind "
-                       "the slave's own register.",
+        .requirement =
+            "The loopback word is data for a slave: whatever its value, it passes unchanged behind "
+            "the slave's own register.",
         .reference = sources::park("section 2.2: the cycle ends when the loopback word has returned"),
         .stimulus = "Valid data cycles with each of the 65 536 loopback words.",
-        .expected = "Each loopback word leaves as it came, with the register in front of it and a right check.",
+        .expected =
+            "Each loopback word leaves as it came, with the register in front of it and a right check.",
         .tags = {"must"},
         .catches = {{"loopback_word_of_ones_changed", "passed_octet_changed"}},
         .not_applicable = for_every_slave()},
@@ -246,8 +251,9 @@ std::vector<SlaveCase> slave_data_cycle_cases() {
         .requirement = "Outputs show exactly the words of the cycle, and the cycle carries exactly the words "
                        "at the inputs, in both cases with the octets in order.",
         .reference = sources::park("section 2.2: full duplex exchange of process data"),
-        .stimulus = "Valid data cycles with walking ones and zeros, 0000h, FFFFh and a pseudo-random sequence "
-                    "of 32 767 words, other words in each direction.",
+        .stimulus =
+            "Valid data cycles with walking ones and zeros, 0000h, FFFFh and a pseudo-random sequence "
+            "of 32 767 words, other words in each direction.",
         .expected = "Outputs and returned inputs equal the words that were sent and set.",
         .tags = {"must"},
         .catches = {{"output_octets_swapped", "output_word_wrong"},
@@ -261,7 +267,8 @@ std::vector<SlaveCase> slave_data_cycle_cases() {
         .reference = sources::derived("one cycle is independent of the one before it"),
         .stimulus = "1 000 000 valid data cycles with pseudo-random words, no idle bit between telegrams or "
                     "cycles.",
-        .expected = "No cycle is rejected or answered wrongly, and the outputs show each cycle's words in turn.",
+        .expected =
+            "No cycle is rejected or answered wrongly, and the outputs show each cycle's words in turn.",
         .tags = {"must", "long"},
         .catches = {{"loses_every_200th_cycle", "valid_cycle_rejected"},
                     {"check_not_reset_between_cycles", "check_wrong"}},

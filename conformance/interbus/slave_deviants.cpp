@@ -107,9 +107,8 @@ void ChangesWhatItDrives::wire(const SlavePorts& ports, Terminals& terminals) {
   changing_[0].attach(ports.upstream, changing);
   changing_[1].attach(ports.branch, changing);
   changing_[2].attach(ports.remote, changing);
-  Slave::wire(
-      {.upstream = changing_[0].port(), .branch = changing_[1].port(), .remote = changing_[2].port()},
-      terminals);
+  Slave::wire({.upstream = changing_[0].port(), .branch = changing_[1].port(), .remote = changing_[2].port()},
+              terminals);
 }
 
 void SwallowsStatusTelegrams::change(line::Waveform& wave) {
@@ -124,7 +123,8 @@ void SwallowsStatusTelegrams::change(line::Waveform& wave) {
 void ChangesAnOctet::change(line::Waveform& wave) {
   const line::Levels before = wave.levels;
   // The level of the least significant bit, found by encoding it.
-  const std::uint64_t bit = code().levels_of(line::kDataTelegram, 0) ^ code().levels_of(line::kDataTelegram, 1);
+  const std::uint64_t bit =
+      code().levels_of(line::kDataTelegram, 0) ^ code().levels_of(line::kDataTelegram, 1);
   code().decode(before, 0, [&](const line::Telegram& telegram) {
     if (!telegram.is_data()) return;
     if ((telegram.header & line::kControl) != 0) {

@@ -457,6 +457,7 @@ class IgnoresControlBit : public Slave {
 class InterfaceSwitchesInsideCycle : public Slave {
   using Slave::Slave;
   void on_control_octet(kernel::Time when) override;
+  bool goes_new_way(const line::Telegram&) const override { return true; }
 };
 
 class OutgoingResetClearsOutputs : public Slave {

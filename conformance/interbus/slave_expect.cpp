@@ -45,6 +45,12 @@ std::string text_of(std::span<const std::uint16_t> words) {
   return text.empty() ? "no words" : text;
 }
 
+bool holds_right_data_cycle(SlaveBench& bench, std::span<const SeenTelegram> telegrams, FoundCycle& found) {
+  find_last_cycle(telegrams, found);
+  return found.is_found && !found.is_id_cycle && found.status == bench.rules().status_clean &&
+         found.check == bench.model().check().of(found.octets);
+}
+
 void expect_all_telegrams(SlaveBench& bench, CaseJudge& judge) {
   const std::size_t arrived = bench.in().data_telegrams().size();
   const std::size_t left = bench.out().data_telegrams().size();
@@ -129,7 +135,8 @@ void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<cons
   const auto& changes = bench.changes();
   const std::size_t per_cycle = bench.words();
   std::vector<std::uint16_t> held = bench.outputs();
-  for (auto change = changes.rbegin(); change != changes.rend(); ++change) held[change->word] = change->before;
+  for (auto change = changes.rbegin(); change != changes.rend(); ++change)
+    held[change->word] = change->before;
   std::size_t next = 0;
   for (std::size_t n = 0; n * per_cycle < words.size(); ++n) {
     const std::optional<CycleOnLine> in = bench.cycle_on(bench.in(), n);
@@ -155,14 +162,13 @@ void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<cons
     for (std::size_t k = next; k < changes.size() && changes[k].when < until; ++k)
       later[changes[k].word] = changes[k].after;
     const bool comes_late = std::ranges::equal(later, wanted);
-    judge.fail(comes_late ? "outputs_latched_late" : "valid_cycle_rejected",
-               {.expected = {fmt::format("outputs {} until {}", text_of(wanted),
-                                         kernel::describe(window.last))},
-                .actual = comes_late && next < changes.size()
-                              ? text_of(changes[next])
-                              : fmt::format("outputs {}", text_of(held)),
-                .time = window.last,
-                .first_difference = fmt::format("data cycle {} of the train", n)});
+    judge.fail(
+        comes_late ? "outputs_latched_late" : "valid_cycle_rejected",
+        {.expected = {fmt::format("outputs {} until {}", text_of(wanted), kernel::describe(window.last))},
+         .actual = comes_late && next < changes.size() ? text_of(changes[next])
+                                                       : fmt::format("outputs {}", text_of(held)),
+         .time = window.last,
+         .first_difference = fmt::format("data cycle {} of the train", n)});
   }
   judge.expect(next == changes.size(), "outputs_changed_without_cycle", [&] {
     return Sighting{.expected = {"no output changes behind the last cycle"},

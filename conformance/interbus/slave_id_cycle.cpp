@@ -34,13 +34,15 @@ std::vector<SlaveCase> slave_id_cycle_cases() {
         .requirement = "In an ID cycle the 16-bit ID register of the slave is in the ring: its own ID code "
                        "leaves first, bits 0 to 12 as declared, and behind it everything that came in.",
         .reference = sources::park("section 2.2: identification cycle and loopback word"),
-        .stimulus = "ID cycles with a loopback word that differs from cycle to cycle and one control word for "
-                    "the slave.",
-        .expected = "The first 16 bits that leave are the ID code; then the loopback word unchanged; then the "
-                    "check of what left and a clean status word.",
+        .stimulus =
+            "ID cycles with a loopback word that differs from cycle to cycle and one control word for "
+            "the slave.",
+        .expected =
+            "The first 16 bits that leave are the ID code; then the loopback word unchanged; then the "
+            "check of what left and a clean status word.",
         .tags = {"must"},
-        .catches = {{"id_octets_swapped", "id_code_wrong"}, {"loopback_word_changed_in_id_cycle",
-                     "passed_octet_changed"}},
+        .catches = {{"id_octets_swapped", "id_code_wrong"},
+                    {"loopback_word_changed_in_id_cycle", "passed_octet_changed"}},
         .not_applicable = for_every_slave()},
        returns_its_id_code});
   return cases;

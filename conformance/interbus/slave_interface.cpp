@@ -9,13 +9,11 @@
 namespace fieldproof::conformance {
 namespace {
 
-constexpr std::array<std::uint16_t, 1> kNeighbourWord = {0x7E57};
-
 // One of the two outgoing interfaces, and how it is switched.
 struct Interface {
   bool is_branch;
   std::string_view name;
-  std::uint16_t on;   // control word: this one on, the other off
+  std::uint16_t on;  // control word: this one on, the other off
   LineView& line;
 };
 
@@ -31,6 +29,11 @@ void id_cycle_with_neighbour(SlaveBench& bench, std::uint16_t control) {
   bench.id_cycle(control, off);
 }
 
+// Words for the neighbour's register.
+std::vector<std::uint16_t> neighbour_words(SlaveBench& bench, bool is_branch) {
+  return std::vector<std::uint16_t>(bench.neighbour_words(is_branch), 0x7E57);
+}
+
 // Everything of the last train went out on the interface and came back.
 void expect_neighbour_in_ring(SlaveBench& bench, CaseJudge& judge, const Interface& interface,
                               std::string_view reason) {
@@ -38,9 +41,9 @@ void expect_neighbour_in_ring(SlaveBench& bench, CaseJudge& judge, const Interfa
   const std::size_t went = interface.line.data_telegrams().size();
   const std::size_t returned = bench.out().data_telegrams().size();
   judge.expect(went == arrived && returned == arrived, reason, [&] {
-    return Sighting{.expected = {fmt::format("{} telegrams go out on {} and come back", arrived,
-                                             interface.name)},
-                    .actual = fmt::format("{} went out on {}, {} came back", went, interface.name, returned)};
+    return Sighting{
+        .expected = {fmt::format("{} telegrams go out on {} and come back", arrived, interface.name)},
+        .actual = fmt::format("{} went out on {}, {} came back", went, interface.name, returned)};
   });
 }
 
@@ -48,10 +51,10 @@ void expect_neighbour_in_ring(SlaveBench& bench, CaseJudge& judge, const Interfa
 void expect_closed_here(SlaveBench& bench, CaseJudge& judge, const Interface& interface,
                         std::string_view reason) {
   judge.expect(interface.line.waves().empty(), reason, [&] {
-    return Sighting{.expected = {fmt::format("nothing leaves on {}", interface.name)},
-                    .actual = fmt::format("{} telegrams left on {}", interface.line.telegrams().size(),
-                                          interface.name),
-                    .time = interface.line.waves().front().start};
+    return Sighting{
+        .expected = {fmt::format("nothing leaves on {}", interface.name)},
+        .actual = fmt::format("{} telegrams left on {}", interface.line.telegrams().size(), interface.name),
+        .time = interface.line.waves().front().start};
   });
   const std::size_t arrived = bench.in().data_telegrams().size();
   const std::size_t returned = bench.out().data_telegrams().size();
@@ -65,15 +68,16 @@ void expect_closed_here(SlaveBench& bench, CaseJudge& judge, const Interface& in
 void expect_register_of_neighbour(SlaveBench& bench, CaseJudge& judge, const Interface& interface) {
   std::vector<std::uint16_t> words = bench.random_words();
   const std::vector<std::uint8_t> load = bench.data_load();
-  bench.data_cycle(words, kNeighbourWord);
+  const std::vector<std::uint16_t> behind = neighbour_words(bench, interface.is_branch);
+  bench.data_cycle(words, behind);
   expect_neighbour_in_ring(bench, judge, interface, "interface_not_opened");
-  // The neighbour has a register of two octets: the slave's own leaves behind it.
+  // The slave's own register leaves behind that of the neighbour.
   const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
   if (!out) return;
   for (std::size_t n = 0; n < load.size(); ++n) {
-    judge.expect(out->telegrams[2 + n].data == load[n], "register_content_wrong", [&] {
+    judge.expect(out->telegrams[2 * behind.size() + n].data == load[n], "register_content_wrong", [&] {
       return Sighting{.expected = {fmt::format("{:02X}h, input octet {} of the slave", load[n], n)},
-                      .actual = fmt::format("{:02X}h", out->telegrams[2 + n].data)};
+                      .actual = fmt::format("{:02X}h", out->telegrams[2 * behind.size() + n].data)};
     });
   }
   expect_outputs(bench, judge, words, "valid_cycle_rejected");
@@ -117,15 +121,15 @@ void reserved_bits_are_ignored(SlaveBench& bench, CaseJudge& judge) {
   const Interface interface = interface_of(bench, false);
   switch_on(bench, judge, interface);
   const interbus::Rules& r = bench.rules();
-  const auto known = static_cast<std::uint16_t>(r.control_remote_off | r.control_local_off |
-                                                r.control_reset | r.control_acknowledge);
+  const auto known = static_cast<std::uint16_t>(r.control_remote_off | r.control_local_off | r.control_reset |
+                                                r.control_acknowledge);
   for (unsigned bit = 0; bit <= 16; ++bit) {
     // Each alone, and all together.
     const auto reserved = static_cast<std::uint16_t>((bit < 16 ? 1U << bit : 0xFFFFU) & ~unsigned{known});
     if (reserved == 0) continue;
     const std::vector<std::uint16_t> words = bench.random_words();
     id_cycle_with_neighbour(bench, interface.on | reserved);
-    bench.data_cycle(words, kNeighbourWord);
+    bench.data_cycle(words, neighbour_words(bench, false));
     expect_neighbour_in_ring(bench, judge, interface, "reserved_control_bit_obeyed");
     expect_outputs(bench, judge, words, "reserved_control_bit_obeyed");
   }
@@ -138,12 +142,12 @@ void outgoing_bus_is_reset(SlaveBench& bench, CaseJudge& judge) {
   const Interface interface = interface_of(bench, false);
   switch_on(bench, judge, interface);
   const std::vector<std::uint16_t> words = bench.random_words();
-  bench.data_cycle(words, kNeighbourWord);
+  bench.data_cycle(words, neighbour_words(bench, false));
   expect_outputs(bench, judge, words, "valid_cycle_rejected");
   id_cycle_with_neighbour(bench, static_cast<std::uint16_t>(interface.on | bench.rules().control_reset));
-  const kernel::Time silent_from =
-      interface.line.telegrams().empty() ? bench.now()
-                                         : interface.line.end_of(interface.line.telegrams().back());
+  const kernel::Time silent_from = interface.line.telegrams().empty()
+                                       ? bench.now()
+                                       : interface.line.end_of(interface.line.telegrams().back());
   // The interface is asked for all the time.
   while (bench.now() + bench.bits(600) < silent_from + bench.rules().silence_limit) {
     bench.status_telegrams(40);
@@ -175,7 +179,7 @@ void bridge_counts_in_id_cycles_only(SlaveBench& bench, CaseJudge& judge) {
   switch_on(bench, judge, interface);
   for (unsigned round = 0; round < bench.volume(2U, 10U); ++round) {
     bench.set_bridge(false, false);
-    bench.data_cycle(bench.random_words(), kNeighbourWord);
+    bench.data_cycle(bench.random_words(), neighbour_words(bench, false));
     expect_neighbour_in_ring(bench, judge, interface, reason);
     id_cycle_with_neighbour(bench, interface.on);
     expect_neighbour_in_ring(bench, judge, interface, reason);
@@ -186,7 +190,7 @@ void bridge_counts_in_id_cycles_only(SlaveBench& bench, CaseJudge& judge) {
     expect_closed_here(bench, judge, interface, reason);
     bench.id_cycle(interface.on);
     expect_closed_here(bench, judge, interface, reason);
-    bench.data_cycle(bench.random_words(), kNeighbourWord);
+    bench.data_cycle(bench.random_words(), neighbour_words(bench, false));
     expect_neighbour_in_ring(bench, judge, interface, "bridge_not_followed");
   }
 }
@@ -202,14 +206,17 @@ std::vector<SlaveCase> slave_interface_cases() {
   cases.push_back(
       {{.id = "interbus/slave/interfaces/remote_interface_follows_its_control_bit",
         .purpose = "IS-30",
-        .requirement = "The control word of an ID cycle switches the outgoing remote bus (OUT1) at the end of that "
-                       "cycle. Off, the ring is closed in this slave and has its registers only; on, the station "
-                       "behind it is in the ring.",
+        .requirement =
+            "The control word of an ID cycle switches the outgoing remote bus (OUT1) at the end of that "
+            "cycle. Off, the ring is closed in this slave and has its registers only; on, the station "
+            "behind it is in the ring.",
         .reference = sources::from_memory("outgoing remote bus on and off; the coding is this project's"),
-        .stimulus = "ID cycles with OUT1 off, on and off again, data cycles between them; a station of one word is "
-                    "behind OUT1.",
-        .expected = "Telegrams leave on OUT1 only from the cycle after the one that ordered it, until the end of "
-                    "the one that ended it; the ring is longer by the neighbour's register in between.",
+        .stimulus =
+            "ID cycles with OUT1 off, on and off again, data cycles between them; a station of one word is "
+            "behind OUT1.",
+        .expected =
+            "Telegrams leave on OUT1 only from the cycle after the one that ordered it, until the end of "
+            "the one that ended it; the ring is longer by the neighbour's register in between.",
         .tags = {"must"},
         .catches = {{"remote_interface_stays_open", "interface_not_closed"},
                     {"interface_switches_inside_cycle", "interface_switched_inside_cycle"}},
@@ -219,13 +226,16 @@ std::vector<SlaveCase> slave_interface_cases() {
   cases.push_back(
       {{.id = "interbus/slave/interfaces/branch_interface_follows_its_control_bit",
         .purpose = "IS-31",
-        .requirement = "The control word of an ID cycle switches the second outgoing interface (OUT2) at the end of "
-                       "that cycle: the stations behind it are added to the ring or removed.",
+        .requirement =
+            "The control word of an ID cycle switches the second outgoing interface (OUT2) at the end of "
+            "that cycle: the stations behind it are added to the ring or removed.",
         .reference = sources::from_memory("local bus on and off; the coding is this project's"),
-        .stimulus = "ID cycles with OUT2 off, on and off again, data cycles between them; a station of one word is "
-                    "behind OUT2.",
-        .expected = "Telegrams leave on OUT2 only from the cycle after the one that ordered it, until the end of "
-                    "the one that ended it; the ring is longer by the neighbour's register in between.",
+        .stimulus =
+            "ID cycles with OUT2 off, on and off again, data cycles between them; a station of one word is "
+            "behind OUT2.",
+        .expected =
+            "Telegrams leave on OUT2 only from the cycle after the one that ordered it, until the end of "
+            "the one that ended it; the ring is longer by the neighbour's register in between.",
         .tags = {"must"},
         .catches = {{"branch_interface_stays_open", "interface_not_closed"},
                     {"interface_switches_inside_cycle", "interface_switched_inside_cycle"}},
@@ -237,8 +247,9 @@ std::vector<SlaveCase> slave_interface_cases() {
         .purpose = "IS-32",
         .requirement = "Bits of the control word without a meaning are ignored.",
         .reference = sources::own("the control word's coding; reserved bits are 0"),
-        .stimulus = "ID cycles with each reserved bit of the control word set alone and all of them set, OUT1 on; a "
-                    "data cycle behind each.",
+        .stimulus =
+            "ID cycles with each reserved bit of the control word set alone and all of them set, OUT1 on; a "
+            "data cycle behind each.",
         .expected = "OUT1 stays on, and the data cycles are taken over.",
         .tags = {"must"},
         .catches = {{"reserved_control_bit_closes_remote", "reserved_control_bit_obeyed"}},
@@ -248,11 +259,13 @@ std::vector<SlaveCase> slave_interface_cases() {
   cases.push_back(
       {{.id = "interbus/slave/interfaces/reset_bit_silences_the_outgoing_bus",
         .purpose = "IS-33",
-        .requirement = "The reset bit of the control word makes the outgoing bus silent for at least 25 ms, so that "
-                       "every station behind the slave resets. The slave's own outputs do what it declares.",
+        .requirement =
+            "The reset bit of the control word makes the outgoing bus silent for at least 25 ms, so that "
+            "every station behind the slave resets. The slave's own outputs do what it declares.",
         .reference = sources::from_memory("reset of the outgoing bus; the coding is this project's"),
-        .stimulus = "An ID cycle with the reset bit; for 25 ms status telegrams and ID cycles that ask for OUT1; "
-                    "then ID cycles again.",
+        .stimulus =
+            "An ID cycle with the reset bit; for 25 ms status telegrams and ID cycles that ask for OUT1; "
+            "then ID cycles again.",
         .expected = "Nothing leaves on OUT1 for 25 ms; outputs as declared; afterwards OUT1 opens again.",
         .tags = {"must", "timing"},
         .catches = {{"ignores_outgoing_reset", "downstream_not_silent"},
@@ -263,12 +276,15 @@ std::vector<SlaveCase> slave_interface_cases() {
   cases.push_back(
       {{.id = "interbus/slave/interfaces/bridge_counts_in_id_cycles_only",
         .purpose = "IS-36",
-        .requirement = "The bridge in the outgoing plug tells that a next device is there. Opened or closed while "
-                       "data cycles run, it changes the ring only at the end of the next ID cycle.",
+        .requirement =
+            "The bridge in the outgoing plug tells that a next device is there. Opened or closed while "
+            "data cycles run, it changes the ring only at the end of the next ID cycle.",
         .reference = sources::from_memory("meaning of the bridge between pins 5 and 9"),
-        .stimulus = "The bridge at OUT1 is opened, then closed, while data cycles run; an ID cycle after each.",
-        .expected = "The data cycle after the change runs on the old way; the one after the ID cycle on the new "
-                    "one.",
+        .stimulus =
+            "The bridge at OUT1 is opened, then closed, while data cycles run; an ID cycle after each.",
+        .expected =
+            "The data cycle after the change runs on the old way; the one after the ID cycle on the new "
+            "one.",
         .tags = {"must"},
         .catches = {{"switches_with_the_bridge", "ring_changed_without_id_cycle"},
                     {"ignores_the_bridge", "bridge_not_followed"}},

@@ -16,9 +16,23 @@ struct Length {
 };
 
 // The tester's own copy of the table: the one of the rules is what the slave under test may use.
-constexpr std::array<Length, 17> kLengths{{{0x00, 0}, {0x01, 1}, {0x02, 2},  {0x03, 3},  {0x04, 4},  {0x05, 5},
-                                           {0x0E, 6}, {0x0F, 7}, {0x06, 8},  {0x07, 9},  {0x15, 10}, {0x16, 12},
-                                           {0x17, 14}, {0x12, 16}, {0x13, 24}, {0x11, 26}, {0x14, 32}}};
+constexpr std::array<Length, 17> kLengths{{{0x00, 0},
+                                           {0x01, 1},
+                                           {0x02, 2},
+                                           {0x03, 3},
+                                           {0x04, 4},
+                                           {0x05, 5},
+                                           {0x0E, 6},
+                                           {0x0F, 7},
+                                           {0x06, 8},
+                                           {0x07, 9},
+                                           {0x15, 10},
+                                           {0x16, 12},
+                                           {0x17, 14},
+                                           {0x12, 16},
+                                           {0x13, 24},
+                                           {0x11, 26},
+                                           {0x14, 32}}};
 constexpr unsigned kFromMemory = 0x14;
 
 // After how many octets what came in leaves again; nothing when it does not come.
@@ -65,9 +79,10 @@ SlaveCase length_case(const Length& length) {
   SlaveCase result{
       {.id = fmt::format("interbus/slave/length_code/code_{:02x}h_is_{}_words", length.code, length.words),
        .purpose = "IS-04",
-       .requirement = fmt::format("A slave whose ID code has the length code {:02X}h has a data register of {} "
-                                  "words. The code is an entry of a table, not a number of words.",
-                                  length.code, length.words),
+       .requirement =
+           fmt::format("A slave whose ID code has the length code {:02X}h has a data register of {} "
+                       "words. The code is an entry of a table, not a number of words.",
+                       length.code, length.words),
        .reference = length.code == kFromMemory
                         ? sources::from_memory("table of length codes, entry 14h")
                         : judge::Reference{"Schneider 890USE196", "page 37, table of length codes",
@@ -80,7 +95,8 @@ SlaveCase length_case(const Length& length) {
                                2 * length.words, length.words),
        .tags = {"must"},
        .catches = catches,
-       .not_applicable = for_item("any_length_code", "the slave has one length code and cannot be given others")},
+       .not_applicable =
+           for_item("any_length_code", "the slave has one length code and cannot be given others")},
       [words = length.words](SlaveBench& bench, CaseJudge& judge) { has_register_of(bench, judge, words); }};
   result.needs.id_code = id_code;
   return result;

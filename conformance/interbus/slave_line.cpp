@@ -100,8 +100,7 @@ void TrainWriter::status(std::size_t count) {
 
 const CyclePlace& TrainWriter::cycle(bool is_id_cycle, std::span<const std::uint8_t> octets,
                                      std::uint16_t check, std::uint16_t status_word) {
-  const auto transfer =
-      static_cast<std::uint8_t>(line::kDataTelegram | (is_id_cycle ? line::kSelect : 0));
+  const auto transfer = static_cast<std::uint8_t>(line::kDataTelegram | (is_id_cycle ? line::kSelect : 0));
   const auto trailer = static_cast<std::uint8_t>(transfer | line::kControl);
   const std::size_t pitch = line::kDataTelegramLevels + gap_ + status_between_ * status_pitch_;
   cycles_.push_back({levels_.size(), pitch, octets.size(), data_telegrams_, is_id_cycle});
@@ -124,8 +123,7 @@ unsigned TrainWriter::header_level(line::HeaderLevel which) const {
 
 std::string describe(const LineView& view, const SeenTelegram& telegram, kernel::Time from) {
   const kernel::Duration offset = view.start_of(telegram) - from;
-  std::string text =
-      fmt::format("{}{}: ", offset < kernel::Duration{} ? "" : "+", kernel::describe(offset));
+  std::string text = fmt::format("{}{}: ", offset < kernel::Duration{} ? "" : "+", kernel::describe(offset));
   if (!telegram.is_data()) {
     text += fmt::format("status telegram SL={} CR={}", telegram.header & 1, telegram.header >> 1 & 1);
   } else {

@@ -57,8 +57,9 @@ void check_condition(SlaveBench& bench, CaseJudge& judge, std::uint16_t message,
 }
 
 void peripheral_fault_is_told(SlaveBench& bench, CaseJudge& judge) {
-  check_condition(bench, judge, bench.rules().message_peripheral_fault, "peripheral_fault_not_told",
-                  [&](bool on) { bench.terminals().set_peripheral_fault([on](kernel::Time) { return on; }); });
+  check_condition(
+      bench, judge, bench.rules().message_peripheral_fault, "peripheral_fault_not_told",
+      [&](bool on) { bench.terminals().set_peripheral_fault([on](kernel::Time) { return on; }); });
 }
 
 void reconfiguration_is_told(SlaveBench& bench, CaseJudge& judge) {
@@ -96,12 +97,15 @@ std::vector<SlaveCase> slave_message_cases() {
   cases.push_back(
       {{.id = "interbus/slave/messages/peripheral_fault_shows_in_the_next_id_cycle",
         .purpose = "IS-34",
-        .requirement = "A fault at the periphery is told by its message bit in the next ID cycle and by nothing "
-                       "else: data cycles go on undisturbed.",
+        .requirement =
+            "A fault at the periphery is told by its message bit in the next ID cycle and by nothing "
+            "else: data cycles go on undisturbed.",
         .reference = sources::from_memory("messages become visible only in an ID cycle"),
-        .stimulus = "The fault input is set; data cycles, an ID cycle, data cycles; it is cleared; ID cycles.",
-        .expected = "Data cycles are answered with clean status words; the ID register has the message bit and no "
-                    "other, and none after the fault has ended and was read.",
+        .stimulus =
+            "The fault input is set; data cycles, an ID cycle, data cycles; it is cleared; ID cycles.",
+        .expected =
+            "Data cycles are answered with clean status words; the ID register has the message bit and no "
+            "other, and none after the fault has ended and was read.",
         .tags = {"must"},
         .catches = {{"peripheral_fault_not_told", "peripheral_fault_not_told"},
                     {"peripheral_fault_marks_data_cycles", "data_cycle_disturbed"}},
@@ -112,7 +116,8 @@ std::vector<SlaveCase> slave_message_cases() {
         .purpose = "IS-35",
         .requirement = "A request for reconfiguration is told by its own message bit in the next ID cycle.",
         .reference = sources::from_memory("messages become visible only in an ID cycle"),
-        .stimulus = "The button is pressed; data cycles, an ID cycle, data cycles; it is released; ID cycles.",
+        .stimulus =
+            "The button is pressed; data cycles, an ID cycle, data cycles; it is released; ID cycles.",
         .expected = "The ID register has the message bit of reconfiguration and no other while the button is "
                     "pressed, and none after its release was read; data cycles go on undisturbed.",
         .tags = {"must"},
@@ -122,13 +127,16 @@ std::vector<SlaveCase> slave_message_cases() {
   cases.push_back(
       {{.id = "interbus/slave/messages/check_error_is_told_once",
         .purpose = "IS-41",
-        .requirement = "The message of a check error stands in the ID register from the first rejected cycle until "
-                       "an ID cycle has read it, and only then.",
+        .requirement =
+            "The message of a check error stands in the ID register from the first rejected cycle until "
+            "an ID cycle has read it, and only then.",
         .reference = sources::from_memory("dynamic messages in bits 13 to 15, read in the next ID cycle"),
-        .stimulus = "A clean cycle and an ID cycle; two data cycles with one bit flipped at the slave's receiver; "
-                    "two ID cycles.",
-        .expected = "No message behind the clean cycle; the message in the first ID cycle behind the rejected "
-                    "ones; none in the second.",
+        .stimulus =
+            "A clean cycle and an ID cycle; two data cycles with one bit flipped at the slave's receiver; "
+            "two ID cycles.",
+        .expected =
+            "No message behind the clean cycle; the message in the first ID cycle behind the rejected "
+            "ones; none in the second.",
         .tags = {"must"},
         .catches = {{"message_never_cleared", "message_not_cleared"},
                     {"message_without_error", "message_without_error"},

@@ -54,6 +54,7 @@ std::uint16_t BitwiseCheck::of(std::span<const std::uint8_t> octets) const {
 
 void find_last_cycle(std::span<const SeenTelegram> telegrams, FoundCycle& found) {
   found.is_found = false;
+  found.end = 0;
   std::size_t transfer_end = 0;  // of the run of transfer telegrams that lies behind
   std::size_t transfer_begin = 0;
   std::size_t checks = 0;
@@ -77,6 +78,7 @@ void find_last_cycle(std::span<const SeenTelegram> telegrams, FoundCycle& found)
     if (++checks != 4) continue;
     found.is_found = true;
     found.is_id_cycle = (telegram.header & line::kSelect) != 0;
+    found.end = n + 1;
     found.octets.clear();
     for (std::size_t k = transfer_begin; k < transfer_end; ++k) found.octets.push_back(telegrams[k].data);
     found.check = static_cast<std::uint16_t>(telegrams[n - 3].data << 8 | telegrams[n - 2].data);
@@ -142,7 +144,8 @@ AnswerDifference SlaveModel::difference(const CycleOnLine& out, std::size_t regi
             fmt::format("{:02X}h", right_.octets[n]), fmt::format("{:02X}h", octet)};
   }
   if (out.check() != right_.check) {
-    return {"check_wrong", "check", fmt::format("{:04X}h", right_.check), fmt::format("{:04X}h", out.check())};
+    return {"check_wrong", "check", fmt::format("{:04X}h", right_.check),
+            fmt::format("{:04X}h", out.check())};
   }
   if (out.status() != right_.status) {
     return {"status_word_wrong", "status word", fmt::format("{:04X}h", right_.status),

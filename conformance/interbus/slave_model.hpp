@@ -60,6 +60,7 @@ struct FoundCycle {
   std::vector<std::uint8_t> octets;
   std::uint16_t check = 0;
   std::uint16_t status = 0;
+  std::size_t end = 0;  // telegrams up to its end
 };
 void find_last_cycle(std::span<const SeenTelegram> telegrams, FoundCycle& found);
 

@@ -55,8 +55,9 @@ std::vector<SlaveCase> slave_power_up_cases() {
   cases.push_back(
       {{.id = "interbus/slave/power_up/is_silent_and_safe",
         .purpose = "IS-01",
-        .requirement = "After power-up, before it has received anything, a slave holds its outputs in the safe "
-                       "state (0) and sends no data telegram.",
+        .requirement =
+            "After power-up, before it has received anything, a slave holds its outputs in the safe "
+            "state (0) and sends no data telegram.",
         .reference = sources::own("safe state after power-up"),
         .stimulus = "Power is switched on; for 100 ms nothing is sent to the slave.",
         .expected = "No output leaves 0, and no data telegram leaves on any interface.",
@@ -71,10 +72,12 @@ std::vector<SlaveCase> slave_power_up_cases() {
         .requirement = "Status telegrams fill the pauses. A slave passes each of them on, shifts nothing, "
                        "leaves its outputs as they are, and takes them for a sign of life.",
         .reference = sources::phoenix_maintenance("status telegrams in every pause"),
-        .stimulus = "One second of status telegrams after power-up; then an ID cycle, a valid data cycle, and "
-                    "again one second of status telegrams; then a data cycle.",
-        .expected = "As many status telegrams leave as arrive, no data telegram leaves, no output changes, and "
-                    "the data cycle behind them is accepted without another ID cycle.",
+        .stimulus =
+            "One second of status telegrams after power-up; then an ID cycle, a valid data cycle, and "
+            "again one second of status telegrams; then a data cycle.",
+        .expected =
+            "As many status telegrams leave as arrive, no data telegram leaves, no output changes, and "
+            "the data cycle behind them is accepted without another ID cycle.",
         .tags = {"must"},
         .catches = {{"swallows_status_telegrams", "status_telegram_lost"},
                     {"silence_counts_data_only", "output_changed_by_status_telegram"}},

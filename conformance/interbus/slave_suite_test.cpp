@@ -1,3 +1,4 @@
+// Subject: the slave suite on the reference, on every deviation and at other positions of the ring.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -19,7 +20,8 @@ SlaveSetting setting_for(const conformance::Setup& setup) {
   setting.volume = setup.volume;
   for (const Assignment& assignment : setup.implementations) {
     if (!assignment.uri.starts_with("deviant:")) continue;
-    setting.make_slave = [name = assignment.uri.substr(8)](const interbus::SlaveConfiguration& configuration) {
+    setting.make_slave = [name =
+                              assignment.uri.substr(8)](const interbus::SlaveConfiguration& configuration) {
       return make_slave_deviation(name, configuration);
     };
   }
@@ -143,7 +145,8 @@ TEST(SlaveSuite, TheSameSeedRepeatsBitForBit) {
   for (const SlaveCase& slave_case : slave_cases()) {
     SlaveSetting setting;
     setting.volume = Volume::quick;
-    EXPECT_EQ(run_slave_case(slave_case, setting).fingerprint, run_slave_case(slave_case, setting).fingerprint)
+    EXPECT_EQ(run_slave_case(slave_case, setting).fingerprint,
+              run_slave_case(slave_case, setting).fingerprint)
         << slave_case.test_case.id;
   }
 }

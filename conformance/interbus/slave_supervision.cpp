@@ -78,8 +78,9 @@ std::vector<SlaveCase> slave_supervision_cases() {
   cases.push_back(
       {{.id = "interbus/slave/supervision/silence_of_24_ms_holds_outputs",
         .purpose = "IS-27",
-        .requirement = "Silence shorter than the supervision time of 25 ms changes nothing: outputs hold, and the "
-                       "cycle behind it is a normal one.",
+        .requirement =
+            "Silence shorter than the supervision time of 25 ms changes nothing: outputs hold, and the "
+            "cycle behind it is a normal one.",
         .reference = sources::phoenix_maintenance("status telegrams away for more than 25 ms"),
         .stimulus = "A valid data cycle, status telegrams, 24.0 ms of silence, a data cycle.",
         .expected = "No output changes in the silence, and the data cycle is taken over without an ID cycle.",
@@ -90,8 +91,9 @@ std::vector<SlaveCase> slave_supervision_cases() {
   cases.push_back(
       {{.id = "interbus/slave/supervision/silence_of_26_ms_clears_outputs",
         .purpose = "IS-28",
-        .requirement = "When telegrams stay away for more than 25 ms, the slave takes the interruption for a reset "
-                       "and its outputs go to the safe state. The tolerance of 1 ms is this project's.",
+        .requirement =
+            "When telegrams stay away for more than 25 ms, the slave takes the interruption for a reset "
+            "and its outputs go to the safe state. The tolerance of 1 ms is this project's.",
         .reference = sources::phoenix_maintenance("status telegrams away for more than 25 ms"),
         .stimulus = "A valid data cycle, status telegrams, then silence.",
         .expected = "All outputs are 0 between 25.0 ms and 26.0 ms after the end of the last telegram.",
@@ -103,11 +105,13 @@ std::vector<SlaveCase> slave_supervision_cases() {
   cases.push_back(
       {{.id = "interbus/slave/supervision/outputs_stay_safe_until_an_id_cycle",
         .purpose = "IS-29",
-        .requirement = "After power-up and after a reset, outputs stay in the safe state until an ID cycle has "
-                       "told the master what is in the ring.",
+        .requirement =
+            "After power-up and after a reset, outputs stay in the safe state until an ID cycle has "
+            "told the master what is in the ring.",
         .reference = sources::own("data cycles count only after identification"),
-        .stimulus = "Valid data cycles right after power-up, and after a silence of 26 ms; then an ID cycle and a "
-                    "data cycle.",
+        .stimulus =
+            "Valid data cycles right after power-up, and after a silence of 26 ms; then an ID cycle and a "
+            "data cycle.",
         .expected = "No output changes by the data cycles without ID cycle; the one behind it is taken over.",
         .tags = {"must"},
         .catches = {{"outputs_without_identification", "outputs_driven_before_identification"}},

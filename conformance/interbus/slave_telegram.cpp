@@ -18,8 +18,14 @@ void reject_flipped_level(SlaveBench& bench, CaseJudge& judge, std::size_t k, un
   const CyclePlace& cycle = bench.append_data_cycle(words);
   bench.channel().on_next().flip(cycle.level_of(k, level));
   bench.send();
-  expect_no_change(bench, judge, "output_changed_by_rejected_cycle",
-                   fmt::format("telegram {} of the cycle arrived with level {} flipped", k, level));
+  // One early check phase in 256, and few other faults in headers, leave a cycle whose check fits by chance:
+  // no slave can know, so it is not judged.
+  FoundCycle arrived;
+  if (!holds_right_data_cycle(bench, bench.in().data_telegrams(), arrived)) {
+    expect_no_change(bench, judge, "output_changed_by_rejected_cycle",
+                     fmt::format("telegram {} of the cycle arrived with level {} flipped", k, level));
+  }
+  bench.terminals().forget_changes();
   bench.status_telegrams(status_between);
   expect_good_cycle(bench, judge, recovery_reason);
 }
@@ -153,11 +159,13 @@ std::vector<SlaveCase> slave_telegram_cases() {
   cases.push_back(
       {{.id = "interbus/slave/telegram/flipped_select_bit_rejects_the_cycle",
         .purpose = "IS-17",
-        .requirement = "The select bit (SL) of a telegram is not inside the frame check. A telegram whose SL says "
-                       "ID cycle inside the data phase breaks the data cycle, which must not be taken over.",
+        .requirement =
+            "The select bit (SL) of a telegram is not inside the frame check. A telegram whose SL says "
+            "ID cycle inside the data phase breaks the data cycle, which must not be taken over.",
         .reference = sources::practical_guide("SL is FALSE while the data phase runs"),
-        .stimulus = "Data cycles in which the SL bit of one telegram of the data phase is flipped at the slave's "
-                    "receiver, each telegram in turn; two status telegrams, then a clean cycle.",
+        .stimulus =
+            "Data cycles in which the SL bit of one telegram of the data phase is flipped at the slave's "
+            "receiver, each telegram in turn; two status telegrams, then a clean cycle.",
         .expected = "No output changes; the clean cycle is accepted.",
         .tags = {"must"},
         .catches = {{"ignores_select_inside_a_cycle", "output_changed_by_rejected_cycle"}},
@@ -166,13 +174,17 @@ std::vector<SlaveCase> slave_telegram_cases() {
   cases.push_back(
       {{.id = "interbus/slave/telegram/early_check_phase_rejects_the_cycle",
         .purpose = "IS-18",
-        .requirement = "A check phase that begins one telegram early makes the slave compare other octets than "
-                       "the check: the cycle must not be taken over. One that begins late shifts the data, "
-                       "which the slave cannot see; the master sees it.",
+        .requirement =
+            "A check phase that begins one telegram early makes the slave compare other octets than "
+            "the check: the cycle must not be taken over, except where they fit by chance (one cycle "
+            "in 256, whose last data octet equals the first check octet of those before it). One that "
+            "begins late shifts the data, which the slave cannot see; the master sees it.",
         .reference = sources::practical_guide("CR is TRUE in the check phase"),
-        .stimulus = "Data cycles in which the CR bit of the last data telegram is set at the slave's receiver; "
-                    "then cycles in which that of the first check telegram is cleared. A clean cycle behind each.",
-        .expected = "No output changes by the early check phase; the clean cycles are accepted. Whether a late "
+        .stimulus =
+            "Data cycles in which the CR bit of the last data telegram is set at the slave's receiver; "
+            "then cycles in which that of the first check telegram is cleared. A clean cycle behind each.",
+        .expected = "No output changes by an early check phase that does not fit; the clean cycles are "
+                    "accepted. Whether a late "
                     "check phase changed outputs is recorded.",
         .tags = {"must"},
         .catches = {{"latches_at_end_of_data_phase", "output_changed_by_rejected_cycle"},
@@ -182,12 +194,14 @@ std::vector<SlaveCase> slave_telegram_cases() {
   cases.push_back(
       {{.id = "interbus/slave/telegram/flipped_flag_rejects_the_cycle",
         .purpose = "IS-19",
-        .requirement = "The flag bit (FL) is not inside the frame check. A data telegram that arrives as a status "
-                       "telegram makes the ring eight bits short and leaves data levels that may look like other "
-                       "telegrams: the cycle must not be taken over.",
+        .requirement =
+            "The flag bit (FL) is not inside the frame check. A data telegram that arrives as a status "
+            "telegram makes the ring eight bits short and leaves data levels that may look like other "
+            "telegrams: the cycle must not be taken over.",
         .reference = sources::derived("five header bits, outside the checksum"),
-        .stimulus = "Data cycles in which the FL bit of one telegram is flipped at the slave's receiver, each "
-                    "telegram of data and check phase in turn; two status telegrams, then a clean cycle.",
+        .stimulus =
+            "Data cycles in which the FL bit of one telegram is flipped at the slave's receiver, each "
+            "telegram of data and check phase in turn; two status telegrams, then a clean cycle.",
         .expected = "No output changes; the clean cycle is accepted.",
         .tags = {"must"},
         .catches = {{"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"},
@@ -197,11 +211,13 @@ std::vector<SlaveCase> slave_telegram_cases() {
   cases.push_back(
       {{.id = "interbus/slave/telegram/missing_stop_bit_rejects_the_cycle",
         .purpose = "IS-20",
-        .requirement = "A telegram without its stop bit is broken, whatever its octet says: its cycle is not taken "
-                       "over. The receiver finds the telegrams behind it again within two status telegrams.",
+        .requirement =
+            "A telegram without its stop bit is broken, whatever its octet says: its cycle is not taken "
+            "over. The receiver finds the telegrams behind it again within two status telegrams.",
         .reference = sources::own("resynchronisation within two status telegrams"),
-        .stimulus = "Data cycles in which the stop bit of one telegram arrives as 0, each telegram in turn, with "
-                    "gaps of 2, 0 and 13 bits; two status telegrams, then a clean cycle.",
+        .stimulus =
+            "Data cycles in which the stop bit of one telegram arrives as 0, each telegram in turn, with "
+            "gaps of 2, 0 and 13 bits; two status telegrams, then a clean cycle.",
         .expected = "No output changes; the clean cycle is accepted.",
         .tags = {"must"},
         .catches = {{"stop_bit_not_checked", "output_changed_by_rejected_cycle"},
@@ -211,11 +227,13 @@ std::vector<SlaveCase> slave_telegram_cases() {
   cases.push_back(
       {{.id = "interbus/slave/telegram/short_glitch_is_ignored",
         .purpose = "IS-21",
-        .requirement = "A start bit is validated in its middle: a low pulse of less than half a bit on the idle "
-                       "line is no telegram.",
+        .requirement =
+            "A start bit is validated in its middle: a low pulse of less than half a bit on the idle "
+            "line is no telegram.",
         .reference = sources::own("receiver samples in the middle of the bit, majority of three"),
-        .stimulus = "Low pulses of 0.10 to 0.40 bit on the idle line at the slave's receiver, with 1 to 14 bits of "
-                    "idle line behind them; then a clean cycle.",
+        .stimulus =
+            "Low pulses of 0.10 to 0.40 bit on the idle line at the slave's receiver, with 1 to 14 bits of "
+            "idle line behind them; then a clean cycle.",
         .expected = "Nothing leaves, no output changes, the clean cycle is accepted.",
         .tags = {"must"},
         .catches = {{"start_bit_not_validated", "glitch_taken_for_telegram"}},
@@ -224,11 +242,13 @@ std::vector<SlaveCase> slave_telegram_cases() {
   cases.push_back(
       {{.id = "interbus/slave/telegram/long_glitch_costs_no_cycle",
         .purpose = "IS-22",
-        .requirement = "A low pulse that passes for a start bit makes one false telegram. It has no effect, and a "
-                       "telegram that begins after its 13 bits is received.",
+        .requirement =
+            "A low pulse that passes for a start bit makes one false telegram. It has no effect, and a "
+            "telegram that begins after its 13 bits is received.",
         .reference = sources::own("a false telegram outside of a cycle is discarded"),
-        .stimulus = "Low pulses of 0.60 bit on the idle line at the slave's receiver, at least 13 bits of idle "
-                    "line, then a clean cycle.",
+        .stimulus =
+            "Low pulses of 0.60 bit on the idle line at the slave's receiver, at least 13 bits of idle "
+            "line, then a clean cycle.",
         .expected = "No output changes by the pulse, and the clean cycle is accepted.",
         .tags = {"must"},
         .catches = {{"stray_telegram_spoils_next_cycle", "cycle_after_glitch_rejected"}},
@@ -237,12 +257,14 @@ std::vector<SlaveCase> slave_telegram_cases() {
   cases.push_back(
       {{.id = "interbus/slave/telegram/status_telegrams_inside_a_cycle_have_no_effect",
         .purpose = "IS-26",
-        .requirement = "Status telegrams between the data telegrams of a cycle fill pauses of the master; they "
-                       "shift nothing and do not enter the frame check.",
+        .requirement =
+            "Status telegrams between the data telegrams of a cycle fill pauses of the master; they "
+            "shift nothing and do not enter the frame check.",
         .reference = sources::phoenix_maintenance("status telegrams in every pause"),
         .stimulus = "Valid data cycles with 1, 2 and 5 status telegrams behind each data telegram.",
-        .expected = "The data telegrams leave as without them, the status telegrams leave, the outputs take over "
-                    "the words.",
+        .expected =
+            "The data telegrams leave as without them, the status telegrams leave, the outputs take over "
+            "the words.",
         .tags = {"must"},
         .catches = {{"status_telegram_shifts", "register_content_wrong"}},
         .not_applicable = for_inputs()},

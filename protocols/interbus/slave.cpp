@@ -150,7 +150,7 @@ void Slave::on_upstream(const line::Waveform& wave, const line::Telegram& telegr
 // The interfaces have switched at the end of an ID cycle. Its end telegrams still go the old way, what
 // follows them goes the new one.
 void Slave::switch_forward_ways(const line::Telegram& telegram) {
-  if (telegram.is_data() && (telegram.header & line::kControl) != 0) return;
+  if (!goes_new_way(telegram)) return;
   route_changed_ = false;
   forward_branch_on_ = branch_on_;
   forward_remote_on_ = remote_on_;

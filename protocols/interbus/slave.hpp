@@ -86,6 +86,10 @@ class Slave : public SlaveDevice {
   }
   // Called for each octet of a transfer phase of an ID cycle: a slave that acts on its control word early.
   virtual void on_control_octet(kernel::Time) {}
+  // Whether `next`, behind a control word that took effect, goes the new way already.
+  virtual bool goes_new_way(const line::Telegram& next) const {
+    return !next.is_data() || (next.header & line::kControl) == 0;
+  }
   virtual void on_reset(kernel::Time now);
   virtual std::uint16_t heeded_control_bits() const;
 
