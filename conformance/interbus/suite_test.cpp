@@ -1,6 +1,7 @@
 #include "conformance/interbus/suite.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -81,8 +82,8 @@ void expect_same_verdict_from_recording(const std::string& id, const std::string
   ASSERT_FALSE(first.recording.truncated);
   ASSERT_FALSE(first.recording.playback.empty());
   EXPECT_FALSE(first.recording.lines.empty());
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("fieldproof_playback_" + std::to_string(std::hash<std::string>{}(id + uri)) + ".json");
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) /
+                                     ("playback_of_" + role + "_" + std::to_string(getpid()) + ".json");
   std::ofstream(path) << first.recording.playback;
   const Outcome again = suite().run(case_of(id), setup_of(role, "recorded:" + path.string()));
   std::filesystem::remove(path);
