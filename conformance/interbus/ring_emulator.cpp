@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::uint16_t kPolynomial = 0x1021;
 constexpr std::uint16_t kPreset = 0xFFFF;
+// Telegrams that are nearer to one another than this many levels leave no silence worth noting.
+constexpr std::size_t kStatusLongest = 4 * line::kDataTelegramLevels;
 
 // What eight steps of the division do to a register whose upper octet is `octet`.
 constexpr std::array<std::uint16_t, 256> make_steps() {
@@ -44,7 +46,10 @@ bool CycleFaults::is_none() const {
 }
 
 RingEmulator::RingEmulator(const Rules& rules, std::vector<VirtualStation> stations)
-    : rules_(rules), code_(rules_.telegram), receiver_(code_, rules_.bit_rate) {
+    : rules_(rules),
+      code_(line::shared_telegram_code(rules_.telegram)),
+      receiver_(code_, rules_.bit_rate),
+      status_levels_(code_.levels_of(0, 0)) {
   for (unsigned n = 0; n < 3; ++n) {
     if (rules_.telegram.header.at(n) == line::HeaderLevel::flag) flag_level_ = n + 1;
   }
@@ -133,8 +138,17 @@ void RingEmulator::receive(segment::PortIndex, const line::Waveform& reception) 
   out_.rate = reception.rate * rate_per_mille_ / 1000;
   out_.levels.clear();
   wave_end_level_ = 0;
-  receiver_.receive(reception,
-                    [this](const line::Waveform& wave, const line::Telegram& t) { on_telegram(wave, t); });
+  // A fault lengthens what comes back by a few telegrams at most.
+  out_.levels.make_room(reception.levels.size() + 4 * kStatusLongest);
+  receiver_.receive(reception, [this](const line::Waveform& wave, const line::Telegram& telegram) {
+    // Most telegrams are those of the pauses.
+    const bool is_plain = !telegram.is_data() && !expects_status_ && wave_end_level_ > 0 &&
+                          telegram.level - wave_end_level_ < kStatusLongest;
+    if (!is_plain) return on_telegram(wave, telegram);
+    wave_end_level_ = telegram.level + line::kStatusTelegramLevels;
+    ++statistics_.status_telegrams;
+    emit_levels(telegram.level, status_levels_, line::kStatusTelegramLevels);
+  });
   if (wave_end_level_ > 0) last_end_ = reception.time_of(wave_end_level_);
   if (is_faulted_ && faults_.stuck) {
     const std::size_t size = reception.levels.size();
@@ -147,6 +161,7 @@ void RingEmulator::receive(segment::PortIndex, const line::Waveform& reception) 
 void RingEmulator::on_time(kernel::Time now) {
   out_.start = now + delay();
   out_.levels.clear();
+  out_.levels.make_room(4 * kStatusLongest);
   receiver_.flush([this](const line::Waveform& wave, line::Telegram t) {
     last_end_ = wave.time_of(t.level + t.levels());
     t.level = 0;
@@ -171,7 +186,7 @@ kernel::Duration RingEmulator::silence_until(kernel::Time now) const {
 void RingEmulator::on_telegram(const line::Waveform& wave, const line::Telegram& telegram) {
   if (wave_end_level_ == 0) {
     note_gap(wave.time_of(telegram.level), last_end_);
-  } else if (telegram.level - wave_end_level_ > 4 * line::kDataTelegramLevels) {
+  } else if (telegram.level - wave_end_level_ >= kStatusLongest) {
     note_gap(wave.time_of(telegram.level), wave.time_of(wave_end_level_));
   }
   wave_end_level_ = telegram.level + telegram.levels();
@@ -197,7 +212,7 @@ void RingEmulator::on_telegram(const line::Waveform& wave, const line::Telegram&
 
 void RingEmulator::on_status(const line::Telegram& telegram) {
   ++statistics_.status_telegrams;
-  std::uint64_t levels = code_.levels_of(0, 0);
+  std::uint64_t levels = status_levels_;
   unsigned count = line::kStatusTelegramLevels;
   if (std::exchange(expects_status_, false) && is_faulted_) {
     if (faults_.status_flag_flipped) {
@@ -211,12 +226,6 @@ void RingEmulator::on_status(const line::Telegram& telegram) {
     }
   }
   emit_levels(telegram.level, levels, count);
-}
-
-void RingEmulator::emit_levels(std::size_t level, std::uint64_t levels, unsigned count) {
-  const std::size_t size = out_.levels.size();
-  if (level > size) out_.levels.append_idle(level - size);
-  out_.levels.append(levels, count);
 }
 
 }  // namespace fieldproof::interbus

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -164,7 +165,10 @@ class RingEmulator : public segment::Station {
   void latch(kernel::Time when);
   void apply_control_words();
   void emit(const line::Telegram& telegram, std::uint8_t octet);
-  void emit_levels(std::size_t level, std::uint64_t levels, unsigned count);
+  // At a level of the reception, or right behind what was sent before.
+  void emit_levels(std::size_t level, std::uint64_t levels, unsigned count) {
+    out_.levels.place(std::max(level, out_.levels.size()), levels, count);
+  }
   std::uint8_t shifted_octet(std::size_t index) const;
   void note_gap(kernel::Time start, kernel::Time last_end);
   void reset_stations();
@@ -174,8 +178,9 @@ class RingEmulator : public segment::Station {
   SeenCycle& open_cycle() { return kept_[(cycle_count_ - 1) % kKept]; }
 
   Rules rules_;
-  line::TelegramCode code_;
+  const line::TelegramCode& code_;
   line::TelegramReceiver receiver_;
+  std::uint64_t status_levels_;
   unsigned flag_level_ = 3;
   segment::Port* back_ = nullptr;
   std::vector<VirtualStation> stations_;

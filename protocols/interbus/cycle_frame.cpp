@@ -9,7 +9,7 @@ constexpr unsigned kRunTelegrams = 32;
 }  // namespace
 
 CycleWriter::CycleWriter(const Rules& rules)
-    : code_(rules.telegram),
+    : code_(line::shared_telegram_code(rules.telegram)),
       gap_(rules.telegram_gap_millibits),
       status_clean_(rules.status_clean),
       end_telegrams_(rules.end_telegrams),
@@ -29,19 +29,15 @@ kernel::Duration CycleWriter::frame_time(std::size_t telegrams) const {
 
 void CycleWriter::append_frame(line::Levels& levels, std::span<const std::uint8_t> octets,
                                std::uint16_t check, CycleHeaders headers) const {
-  std::size_t k = 0;
-  std::uint64_t gaps = 0;  // k * gap_
-  // Telegram and gap are one piece as long as they fit a word.
+  std::size_t at = levels.size();
+  std::uint64_t thousandths = 0;  // of the gaps so far, beyond whole levels
+  levels.make_room(at + first_status_level(telegram_count(octets.size())));
   const auto put = [&](std::uint8_t header, std::uint8_t octet) {
-    const std::uint64_t before = gaps / 1000;
-    gaps += gap_;
-    const auto idle = static_cast<std::size_t>(gaps / 1000 - before);
-    const std::uint64_t piece = code_.levels_of(header, octet) | ~std::uint64_t{0}
-                                                                     << line::kDataTelegramLevels;
-    const auto together = static_cast<unsigned>(std::min<std::size_t>(idle, 64 - line::kDataTelegramLevels));
-    levels.append(piece, line::kDataTelegramLevels + together);
-    if (idle > together) levels.append_idle(idle - together);
-    ++k;
+    levels.place(at, code_.levels_of(header, octet), line::kDataTelegramLevels);
+    thousandths += gap_;
+    const std::uint64_t idle = thousandths / 1000;
+    thousandths -= idle * 1000;
+    at += line::kDataTelegramLevels + idle;
   };
   for (const std::uint8_t octet : octets) put(headers.transfer, octet);
   put(headers.check, static_cast<std::uint8_t>(check >> 8));
@@ -49,6 +45,7 @@ void CycleWriter::append_frame(line::Levels& levels, std::span<const std::uint8_
   put(headers.check, static_cast<std::uint8_t>(status_clean_ >> 8));
   put(headers.check, static_cast<std::uint8_t>(status_clean_ & 0xFF));
   for (unsigned n = 0; n < end_telegrams_; ++n) put(headers.check, 0);
+  levels.resize(at);
 }
 
 std::size_t CycleWriter::first_status_level(std::size_t telegrams) const {
@@ -59,10 +56,11 @@ void CycleWriter::append_status(line::Levels& levels, std::size_t end) const {
   const std::size_t from = levels.size();
   if (from + line::kStatusTelegramLevels > end) return;
   std::size_t left = (end - from - line::kStatusTelegramLevels) / status_pitch_ + 1;
-  for (; left >= kRunTelegrams; left -= kRunTelegrams) levels.append(status_run_);
-  for (; left > 0; --left) {
-    levels.append(status_levels_, line::kStatusTelegramLevels);
-    levels.append_idle(status_pitch_ - line::kStatusTelegramLevels);
+  levels.make_room(end);
+  for (; left > kRunTelegrams; left -= kRunTelegrams) levels.append(status_run_);
+  std::size_t at = levels.size();
+  for (; left > 0; --left, at += status_pitch_) {
+    levels.place(at, status_levels_, line::kStatusTelegramLevels);
   }
 }
 

@@ -49,7 +49,7 @@ class CycleWriter {
   void append_frame(line::Levels& levels, std::span<const std::uint8_t> octets, std::uint16_t check,
                     CycleHeaders headers) const;
 
-  // Appends idle and status telegrams such that the last ends at or before `end` levels.
+  // Appends status telegrams up to the last one that ends at or before level `end`.
   void append_status(line::Levels& levels, std::size_t end) const;
   // The first whole level behind a frame.
   std::size_t first_status_level(std::size_t telegrams) const;
@@ -60,7 +60,7 @@ class CycleWriter {
   // Start level of telegram k and the idle levels between it and the next.
   std::size_t start_level(std::size_t k) const { return line::kDataTelegramLevels * k + k * gap_ / 1000; }
 
-  line::TelegramCode code_;
+  const line::TelegramCode& code_;
   std::uint64_t gap_;  // thousandths of a bit
   std::uint16_t status_clean_;
   unsigned end_telegrams_;

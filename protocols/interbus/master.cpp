@@ -110,6 +110,7 @@ void Master::enter_run() {
   data_frame_ = writer_.frame_time(data_telegrams_);
   cycle_time_ = cycle_time_in_force(shortest_cycle_time());
   data_end_level_ = levels_within(cycle_time_);
+  data_pause_.clear();
 }
 
 // Stays stopped, with status telegrams, until a start.

@@ -121,6 +121,7 @@ class Master : public MasterDevice, private TopologyDecisions {
   void start_cycle(kernel::Time now);
   void write_data_cycle();
   void write_id_cycle();
+  void append_pause(std::size_t end_level);
   void drive_cycle(kernel::Time now, kernel::Duration span, std::size_t end_level);
   kernel::Duration return_time(kernel::Duration frame) const;
   kernel::Duration id_cycle_span(kernel::Duration frame) const;
@@ -204,6 +205,7 @@ class Master : public MasterDevice, private TopologyDecisions {
   kernel::Duration data_frame_{};
   kernel::Duration cycle_time_{};
   std::size_t data_end_level_ = 0;
+  line::Levels data_pause_;  // empty before the first data cycle
   kernel::Duration ring_delay_{};
   kernel::Time verdict_at_ = kernel::kNever;
   kernel::Time deadline_ = kernel::kNever;

@@ -30,7 +30,9 @@ kernel::Time Master::next_time() const {
 
 void Master::on_time(kernel::Time now) {
   if (receiver_.pending_until() <= now) {
-    receiver_.flush([this](const line::Waveform& wave, const line::Telegram& t) { on_telegram(wave, t); });
+    receiver_.flush([this](const line::Waveform& wave, const line::Telegram& telegram) {
+      if (is_collecting_) on_telegram(wave, telegram);
+    });
   }
   if (verdict_at_ <= now) finish_cycle(now);
   if (action_at_ <= now) act(now);
@@ -48,7 +50,10 @@ void Master::drive_status(kernel::Time now) {
   wave_.start = now;
   wave_.rate = rules().bit_rate;
   wave_.levels.clear();
-  writer_.append_status(wave_.levels, levels_within(end - now));
+  const std::size_t end_level = levels_within(end - now);
+  writer_.append_status(wave_.levels, end_level);
+  // The idle time behind the last telegram belongs to the next run.
+  wave_.levels.resize(std::min(wave_.levels.size(), end_level));
   if (wave_.levels.empty()) return;
   driven_until_ = wave_.end();
   out_->drive(wave_);
@@ -144,9 +149,7 @@ kernel::Duration Master::id_cycle_span(kernel::Duration frame) const {
 
 void Master::drive_cycle(kernel::Time now, kernel::Duration span, std::size_t end_level) {
   wave_.levels.resize(writer_.first_status_level(returned_.expected()));
-  const std::size_t frame_end = wave_.levels.size();
-  if (fills_pause(span)) writer_.append_status(wave_.levels, end_level);
-  wave_.levels.resize(std::max(frame_end, std::min(wave_.levels.size(), end_level)));
+  if (fills_pause(span)) append_pause(end_level);
   wave_.start = now;
   wave_.rate = rules().bit_rate;
   verdict_at_ = deadline_;
@@ -155,6 +158,16 @@ void Master::drive_cycle(kernel::Time now, kernel::Duration span, std::size_t en
   ++run_cycles_;
   action_at_ = now + span + lateness(run_cycles_) - lateness(run_cycles_ - 1);
   out_->drive(wave_);
+}
+
+// The pause of every data cycle is the same.
+void Master::append_pause(std::size_t end_level) {
+  if (is_id_cycle_) return writer_.append_status(wave_.levels, end_level);
+  if (data_pause_.empty()) {
+    const std::size_t frame_end = wave_.levels.size();
+    if (end_level > frame_end) writer_.append_status(data_pause_, end_level - frame_end);
+  }
+  wave_.levels.append(data_pause_);
 }
 
 kernel::Duration Master::shortest_cycle_time() const {
@@ -178,21 +191,19 @@ std::uint16_t Master::check_of(std::span<const std::uint8_t> sent, CycleHeaders)
 
 void Master::receive(segment::PortIndex, const line::Waveform& reception) {
   if (!hears(reception)) return;
-  receiver_.receive(reception,
-                    [this](const line::Waveform& wave, const line::Telegram& t) { on_telegram(wave, t); });
+  receiver_.receive(reception, [this](const line::Waveform& wave, const line::Telegram& telegram) {
+    if (is_collecting_ && (telegram.is_data() || telegram.is_stop_missing())) on_telegram(wave, telegram);
+  });
 }
 
 void Master::on_telegram(const line::Waveform& wave, const line::Telegram& telegram) {
-  if (!is_collecting_) return;
+  const std::size_t before = returned_.count();
   if (!telegram.is_data()) {
     // A pause's status telegram says nothing about the cycle; within the frame it is what is left of a
     // telegram.
-    if (telegram.is_stop_missing() && returned_.count() > 0 && returned_.count() < returned_.expected()) {
-      returned_.add_broken();
-    }
+    if (telegram.is_stop_missing() && before > 0 && before < returned_.expected()) returned_.add_broken();
     return;
   }
-  const std::size_t before = returned_.count();
   if (before == 0) first_returned_ = wave.time_of(telegram.level);
   if (before + 1 < returned_.expected()) {
     returned_.add(telegram);

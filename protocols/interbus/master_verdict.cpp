@@ -61,9 +61,9 @@ void Master::finish_data_cycle(kernel::Time now) {
   read_inputs();
   const std::span<const std::uint16_t> brought(returned_words_.data(), words);
   const bool is_silent = returned_.count() == 0;
-  const bool accepted = is_silent ? accepts_silence()
-                                  : accepts_loopback(returned_, 2 * words) && accepts_trailer() &&
-                                        accepts_inputs(brought);
+  const bool accepted =
+      is_silent ? accepts_silence()
+                : accepts_loopback(returned_, 2 * words) && accepts_trailer() && accepts_inputs(brought);
   supervision_.count_data_cycle(accepted);
   if (is_stopping_) {
     enter_off();
