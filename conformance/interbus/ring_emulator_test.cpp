@@ -1,0 +1,138 @@
+#include "conformance/interbus/ring_emulator.hpp"
+
+#include <gtest/gtest.h>
+
+#include "conformance/interbus/master_bench.hpp"
+#include "conformance/interbus/master_deviations.hpp"
+#include "harness/line/frame_check_16.hpp"
+
+namespace fieldproof::interbus {
+namespace {
+
+// Drives a frame as a master would and keeps what comes back.
+class Line : public segment::Port {
+ public:
+  explicit Line(std::vector<VirtualStation> stations)
+      : ring(Rules{}, std::move(stations)), code_(Rules{}.telegram) {
+    ring.wire(*this);
+  }
+
+  // The octets that come back of a cycle with this transfer phase.
+  std::vector<std::uint8_t> cycle(std::vector<std::uint8_t> octets, bool is_id = false) {
+    const std::size_t transfer = octets.size();
+    const std::uint16_t check = line::shared_frame_check_16("CRC-16/IBM-3740").compute(octets);
+    octets.insert(octets.end(),
+                  {static_cast<std::uint8_t>(check >> 8), static_cast<std::uint8_t>(check), 0, 0});
+    line::Waveform wave;
+    wave.start = now_;
+    wave.rate = 500'000;
+    for (std::size_t n = 0; n < octets.size(); ++n) {
+      const unsigned header =
+          line::kDataTelegram | (is_id ? line::kSelect : 0U) | (n >= transfer ? line::kControl : 0U);
+      code_.append(wave.levels, static_cast<std::uint8_t>(header), octets[n]);
+      wave.levels.append_idle(2);
+    }
+    now_ += kernel::kMillisecond;
+    returned.clear();
+    ring.receive(0, wave);
+    return returned;
+  }
+
+  void drive(line::Waveform& wave) override {
+    start = wave.start;
+    code_.decode(wave.levels, 0, [this](const line::Telegram& t) {
+      if (t.is_data()) returned.push_back(t.data);
+    });
+    wave.levels.clear();
+  }
+
+  RingEmulator ring;
+  kernel::Time start{};
+  std::vector<std::uint8_t> returned;
+
+ private:
+  line::TelegramCode code_;
+  kernel::Time now_ = kernel::kStart;
+};
+
+using Octets = std::vector<std::uint8_t>;
+
+TEST(RingEmulator, computes_the_published_check_value) {
+  const Octets digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  EXPECT_EQ(RingEmulator::check_of(digits), 0x29B1);
+}
+
+TEST(RingEmulator, one_station_closes_the_ring_until_its_interface_is_switched_on) {
+  Line line(line_of(2, 0x0103, 1));
+  Octets seen = line.cycle({0xA5, 0x5A, 0x00, 0x03}, true);
+  ASSERT_EQ(seen.size(), 8U);
+  EXPECT_EQ(Octets(seen.begin(), seen.begin() + 4), (Octets{0x01, 0x03, 0xA5, 0x5A}));
+  EXPECT_EQ(line.start, kernel::kStart + 6 * kernel::kMicrosecond);
+  EXPECT_EQ(line.ring.closed_stations(), 1U);
+  line.cycle({0xA5, 0x5A, 0x00, 0x02}, true);
+  EXPECT_EQ(line.ring.closed_stations(), 2U);
+  line.ring.set_input(0, 0x1111);
+  line.ring.set_input(1, 0x2222);
+  seen = line.cycle({0xA5, 0x5A, 0xBB, 0xBB, 0xAA, 0xAA});
+  // The last station's input comes first, the last station's output was sent first.
+  EXPECT_EQ(Octets(seen.begin(), seen.begin() + 6), (Octets{0x22, 0x22, 0x11, 0x11, 0xA5, 0x5A}));
+  EXPECT_EQ(line.ring.output(0), 0xAAAA);
+  EXPECT_EQ(line.ring.output(1), 0xBBBB);
+  EXPECT_EQ(RingEmulator::check_of({seen.data(), 6}), seen[6] << 8 | seen[7]);
+}
+
+TEST(RingEmulator, shifts_by_single_bits_and_keeps_the_check) {
+  for (const int bits : {1, 2, 8, -1, -2, -8}) {
+    Line line(line_of(1, 0x0103, 1));
+    line.ring.set_script([bits](const auto&, CycleFaults& faults) { faults.longer_bits = bits; });
+    line.ring.set_input(0, 0x1234);
+    const Octets seen = line.cycle({0xA5, 0x5A, 0x00, 0x00});
+    EXPECT_EQ(RingEmulator::check_of({seen.data(), 4}), seen[4] << 8 | seen[5]);
+    std::uint64_t stream = 0x1234A55A;  // what a ring of the right length gives
+    stream = bits > 0 ? (stream >> bits | ((1ULL << bits) - 1) << (32 - bits)) : stream << -bits;
+    const std::uint32_t got = static_cast<std::uint32_t>(seen[0]) << 24 |
+                              static_cast<std::uint32_t>(seen[1]) << 16 |
+                              static_cast<std::uint32_t>(seen[2]) << 8 | seen[3];
+    EXPECT_EQ(got, static_cast<std::uint32_t>(stream)) << bits;
+  }
+}
+
+TEST(RingEmulator, suffers_what_the_script_says) {
+  const auto with = [](auto change) {
+    Line line(line_of(1, 0x0103, 1));
+    line.ring.set_script([change](const auto&, CycleFaults& faults) { change(faults); });
+    return line.cycle({0xA5, 0x5A, 0x00, 0x00});
+  };
+  const Octets clean = with([](CycleFaults&) {});
+  ASSERT_EQ(clean.size(), 8U);
+  EXPECT_EQ(with([](CycleFaults& f) { f.dropped = 3; }).size(), 7U);
+  EXPECT_EQ(with([](CycleFaults& f) { f.duplicated = 7; }).size(), 9U);
+  EXPECT_EQ(with([](CycleFaults& f) { f.inserted = 0; }).at(1), clean[0]);
+  EXPECT_EQ(with([](CycleFaults& f) { f.flips = {{2, 0x10, false}}; }).at(2), clean[2] ^ 0x10);
+  EXPECT_EQ(with([](CycleFaults& f) { f.marked_by = 0; }).at(7), 0xFF);
+  EXPECT_TRUE(with([](CycleFaults& f) { f.stuck = true; }).empty());
+  EXPECT_TRUE(with([](CycleFaults& f) { f.stuck = false; }).empty());
+}
+
+TEST(RingEmulator, is_silent_when_the_ring_is_open_and_marks_a_bad_check) {
+  Line line(line_of(1, 0x0103, 1));
+  line.ring.cut_after(-1);
+  EXPECT_TRUE(line.cycle({0xA5, 0x5A, 0x00, 0x00}).empty());
+  line.ring.mend();
+  EXPECT_EQ(line.cycle({0xA5, 0x5A, 0x00, 0x00}).size(), 8U);
+  EXPECT_EQ(line.ring.statistics().bad_checks, 0U);
+  EXPECT_TRUE(line.ring.last_cycle().check_good);
+}
+
+TEST(MasterDeviations, an_unknown_name_is_told_with_the_nearest) {
+  EXPECT_NO_THROW(conformance::make_master("ref"));
+  try {
+    conformance::make_master("deviant:outputs_tron");
+    FAIL();
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("outputs_torn"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace fieldproof::interbus
