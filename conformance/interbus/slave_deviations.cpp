@@ -98,7 +98,7 @@ std::vector<Row> telegram_rows() {
       {"needs_idle_between_telegrams", "", "misses a start bit right behind a stop bit",
        make<NeedsIdleBetweenTelegrams>},
       {"follows_any_rate", "", "adapts its clock to any bit rate within 10 %", make<FollowsAnyRate>},
-      {"clock_three_percent_fast", "", "has a clock that runs 3.5 % fast",
+      {"clock_too_fast", "", "has a clock that runs 3.5 % fast",
        with_rules([](Rules& rules) { rules.bit_rate += rules.bit_rate * 35 / 1000; })},
       {"delays_four_bits", "", "delays by two bits on each way",
        with_rules([](Rules& rules) { rules.forward_delay_half_bits = rules.return_delay_half_bits = 4; })},

@@ -21,23 +21,24 @@ void LineView::clear() {
   origins_.clear();
   telegrams_.clear();
   data_telegrams_.clear();
+  status_count_ = sorted_ = 0;
 }
 
 void LineView::decode() {
   const auto sink = [this](const line::Waveform& wave, const line::Telegram& telegram) {
     keep(wave, telegram);
   };
-  for (; decoded_ < wave_count_; ++decoded_) receiver_.receive(waves_[decoded_], sink);
+  for (; decoded_ < wave_count_; ++decoded_) {
+    origin_of_ = nullptr;
+    receiver_.receive(waves_[decoded_], sink);
+  }
+  origin_of_ = nullptr;
   if (receiver_.pending_until() != kernel::kNever) receiver_.flush(sink);
 }
 
-void LineView::keep(const line::Waveform& wave, const line::Telegram& telegram) {
-  if (origins_.empty() || origins_.back().start != wave.start || origins_.back().rate != wave.rate)
-    origins_.push_back({wave.start, wave.rate});
-  const auto origin = static_cast<std::uint32_t>(origins_.size() - 1);
-  const SeenTelegram seen{origin, telegram.level, telegram.header, telegram.data};
-  telegrams_.push_back(seen);
-  if (seen.is_data()) data_telegrams_.push_back(seen);
+void LineView::add_origin(const line::Waveform& wave) {
+  origins_.push_back({wave.start, wave.rate});
+  origin_of_ = &wave;
 }
 
 std::span<const SeenTelegram> LineView::telegrams() {
@@ -47,6 +48,10 @@ std::span<const SeenTelegram> LineView::telegrams() {
 
 std::span<const SeenTelegram> LineView::data_telegrams() {
   decode();
+  if (status_count_ == 0) return telegrams_;
+  for (; sorted_ < telegrams_.size(); ++sorted_) {
+    if (telegrams_[sorted_].is_data()) data_telegrams_.push_back(telegrams_[sorted_]);
+  }
   return data_telegrams_;
 }
 

@@ -40,7 +40,10 @@ class LineView final : public segment::Tap {
   std::span<const line::Waveform> waves() const { return {waves_.data(), wave_count_}; }
   std::span<const SeenTelegram> telegrams();
   std::span<const SeenTelegram> data_telegrams();
-  std::size_t status_count() { return telegrams().size() - data_telegrams().size(); }
+  std::size_t status_count() {
+    decode();
+    return status_count_;
+  }
 
   kernel::Time start_of(const SeenTelegram& telegram) const;
   kernel::Time end_of(const SeenTelegram& telegram) const;
@@ -53,7 +56,13 @@ class LineView final : public segment::Tap {
     std::int64_t rate;
   };
   void decode();
-  void keep(const line::Waveform& wave, const line::Telegram& telegram);
+  void keep(const line::Waveform& wave, const line::Telegram& telegram) {
+    if (&wave != origin_of_) add_origin(wave);
+    telegrams_.push_back(
+        {static_cast<std::uint32_t>(origins_.size() - 1), telegram.level, telegram.header, telegram.data});
+    if (!telegram.is_data()) ++status_count_;
+  }
+  void add_origin(const line::Waveform& wave);
 
   const line::TelegramCode& code_;
   std::int64_t bit_rate_;
@@ -62,8 +71,11 @@ class LineView final : public segment::Tap {
   std::size_t wave_count_ = 0;
   std::size_t decoded_ = 0;
   std::vector<Origin> origins_;
+  const line::Waveform* origin_of_ = nullptr;  // of the last origin, while it is decoded
   std::vector<SeenTelegram> telegrams_;
-  std::vector<SeenTelegram> data_telegrams_;
+  std::size_t status_count_ = 0;
+  std::vector<SeenTelegram> data_telegrams_;  // of telegrams_, when there are others among them
+  std::size_t sorted_ = 0;                    // of telegrams_, into data_telegrams_
 };
 
 // Where a cycle lies in a train.
