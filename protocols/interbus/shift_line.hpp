@@ -23,6 +23,7 @@ class ShiftLine {
   std::span<std::uint8_t> load(std::size_t length, line::FrameCheck16::State preset) {
     length_ = length;
     count_ = 0;
+    is_folded_ = false;
     received_ = sent_ = preset;
     return {octets_.data(), length};
   }
@@ -34,6 +35,8 @@ class ShiftLine {
   }
 
   std::size_t count() const { return count_; }  // octets shifted since load() or the last folding
+  // Whether at least `octets` (at most kRoom) have been shifted since load().
+  bool has_shifted(std::size_t octets) const { return is_folded_ || count_ >= octets; }
   std::span<const std::uint8_t> held() const { return {octets_.data() + count_, length_}; }
 
   line::FrameCheck16::State received_check(const line::FrameCheck16& check) const {
@@ -50,6 +53,7 @@ class ShiftLine {
   void fold(const line::FrameCheck16& check) {
     received_ = received_check(check);
     sent_ = sent_check(check);
+    is_folded_ = true;
     std::memmove(octets_.data(), octets_.data() + count_, length_);
     count_ = 0;
   }
@@ -57,6 +61,7 @@ class ShiftLine {
   std::vector<std::uint8_t> octets_;
   std::size_t length_ = 0;
   std::size_t count_ = 0;
+  bool is_folded_ = false;
   line::FrameCheck16::State received_ = 0;
   line::FrameCheck16::State sent_ = 0;
 };

@@ -8,6 +8,7 @@ namespace {
 constexpr unsigned kCheckOctets = 2;
 constexpr unsigned kStatusOctets = 2;
 constexpr std::size_t kIdOctets = 2;
+constexpr std::size_t kLoopbackOctets = 2;
 
 std::uint8_t high(unsigned word) {
   return static_cast<std::uint8_t>(word >> 8);
@@ -224,6 +225,8 @@ std::uint8_t Slave::on_check(bool id_cycle, const line::Waveform& wave, const li
 void Slave::enter_check(kernel::Time when) {
   if (phase_ == Phase::data_transfer) on_transfer_end(when);
   phase_ = phase_ == Phase::data_transfer ? Phase::data_check : Phase::id_check;
+  // A ring is never shorter than this register and the loopback word, whatever the check of a fragment says.
+  if (!shift_.has_shifted(shift_.held().size() + kLoopbackOctets)) own_error_ = true;
   const auto received = shift_.received_check(check_);
   check_expected_ = check_.check_octets(received);
   check_sent_ = check_.check_octets(check_to_send(received, shift_.sent_check(check_)));

@@ -181,6 +181,20 @@ TEST_F(SlaveTest, AWrongBitIsMarkedNotLatchedAndToldInTheNextIdCycle) {
   EXPECT_EQ(octets_heard()[0], 0x02);
 }
 
+// A fragment whose check fits by chance: one octet and its own check, as a flipped SL bit can leave it.
+TEST_F(SlaveTest, ATransferShorterThanTheRegisterIsAnError) {
+  send(id_cycle());
+  send(data_cycle(0xCAFE, 0xBEEF));
+  send(cycle({0x83}, kTransfer, kCheck));
+  EXPECT_EQ(terminals.output(0), 0xCAFE);
+  EXPECT_EQ(terminals.output(1), 0xBEEF);
+  EXPECT_EQ(octets_heard().back(), 0xFF);
+  send(cycle({0xA5, 0x5A, 0x00, 0x11, 0x22}, kTransfer, kCheck));
+  EXPECT_EQ(terminals.output(0), 0xCAFE);
+  send(cycle({0xA5, 0x5A, 0x00, 0x11, 0x22, 0x33}, kTransfer, kCheck));
+  EXPECT_EQ(terminals.output(0), 0x0011);
+}
+
 // Every state with every event: the table is the state diagram of the README, printed by the station itself.
 TEST_F(SlaveTest, EveryStateWithEveryEvent) {
   using Event = std::pair<std::string, std::vector<Sent>>;
