@@ -1,3 +1,4 @@
+// Subject: master.
 // Every state of the master with every event, as a table that a person approves.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -127,7 +128,7 @@ std::unique_ptr<OneStation> in_state(MasterState state) {
 
 using Event = void (*)(OneStation&);
 
-struct Column {
+struct Row {
   const char* name;
   Event event;
 };
@@ -141,7 +142,7 @@ void cycles(OneStation& line, Answer answer, unsigned count) {
 
 constexpr unsigned kMany = 8;  // more than a recognition of one station and more than the limit of bad cycles
 
-const Column kColumns[] = {
+const Row kRows[] = {
     {"start", [](OneStation& line) { line.master().start(line.now()); }},
     {"stop", [](OneStation& line) { line.master().stop(line.now()); }},
     {"stop, then cycle",
@@ -168,31 +169,37 @@ void end_row(std::string& table) {
   table += '\n';
 }
 
+constexpr MasterState kStates[] = {MasterState::off, MasterState::ready,    MasterState::identification,
+                                   MasterState::run, MasterState::locating, MasterState::bus_stop};
+
 TEST(MasterStates, every_state_with_every_event) {
-  std::string table = fmt::format("{:<15}", "");
-  for (const Column& column : kColumns) table += fmt::format("| {:<17}", column.name);
+  std::string table = fmt::format("{:<16}", "");
+  for (const MasterState state : kStates) table += fmt::format("| {:<14}", name(state));
   end_row(table);
-  for (const MasterState state : {MasterState::off, MasterState::ready, MasterState::identification,
-                                  MasterState::run, MasterState::locating, MasterState::bus_stop}) {
-    table += fmt::format("{:<15}", name(state));
-    for (const Column& column : kColumns) {
+  for (const Row& row : kRows) {
+    table += fmt::format("{:<16}", row.name);
+    for (const MasterState state : kStates) {
       const auto line = in_state(state);
       ASSERT_EQ(line->state(), state);
-      column.event(*line);
-      table += fmt::format("| {:<17}", name(line->state()));
+      row.event(*line);
+      table += fmt::format("| {:<14}", name(line->state()));
     }
     end_row(table);
   }
   // A cell is the state behind the event, or the first other state that the cycles led to. Ready, off and
   // bus_stop have no cycles of their own: ready ends with the first ID cycle of the recognition.
-  const std::string approved =
-      R"(               | start            | stop             | stop, then cycle | good cycle       | good cycles      | bad cycle        | bad cycles       | no return        | never a return   | ID requested     | other station
-off            | ready            | off              | off              | off              | off              | off              | off              | off              | off              | off              | off
-ready          | ready            | off              | off              | identification   | identification   | identification   | identification   | ready            | ready            | identification   | identification
-identification | identification   | off              | off              | identification   | run              | identification   | bus_stop         | identification   | bus_stop         | identification   | identification
-run            | run              | run              | off              | run              | run              | run              | bus_stop         | run              | bus_stop         | run              | bus_stop
-locating       | locating         | off              | off              | locating         | bus_stop         | locating         | bus_stop         | locating         | bus_stop         | locating         | locating
-bus_stop       | ready            | off              | off              | bus_stop         | bus_stop         | bus_stop         | bus_stop         | bus_stop         | bus_stop         | bus_stop         | bus_stop
+  const std::string approved = R"(                | off           | ready         | identification| run           | locating      | bus_stop
+start           | ready         | ready         | identification| run           | locating      | ready
+stop            | off           | off           | off           | run           | off           | off
+stop, then cycle| off           | off           | off           | off           | off           | off
+good cycle      | off           | identification| identification| run           | locating      | bus_stop
+good cycles     | off           | identification| run           | run           | bus_stop      | bus_stop
+bad cycle       | off           | identification| identification| run           | locating      | bus_stop
+bad cycles      | off           | identification| bus_stop      | bus_stop      | bus_stop      | bus_stop
+no return       | off           | ready         | identification| run           | locating      | bus_stop
+never a return  | off           | ready         | bus_stop      | bus_stop      | bus_stop      | bus_stop
+ID requested    | off           | identification| identification| run           | locating      | bus_stop
+other station   | off           | identification| identification| bus_stop      | locating      | bus_stop
 )";
   EXPECT_EQ(table, approved) << table;
 }
