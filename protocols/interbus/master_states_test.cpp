@@ -173,7 +173,7 @@ constexpr MasterState kStates[] = {MasterState::off, MasterState::ready,    Mast
                                    MasterState::run, MasterState::locating, MasterState::bus_stop};
 
 TEST(MasterStates, every_state_with_every_event) {
-  std::string table = fmt::format("{:<16}", "");
+  std::string table = fmt::format("\n{:<16}", "");
   for (const MasterState state : kStates) table += fmt::format("| {:<14}", name(state));
   end_row(table);
   for (const Row& row : kRows) {
@@ -188,7 +188,8 @@ TEST(MasterStates, every_state_with_every_event) {
   }
   // A cell is the state behind the event, or the first other state that the cycles led to. Ready, off and
   // bus_stop have no cycles of their own: ready ends with the first ID cycle of the recognition.
-  const std::string approved = R"(                | off           | ready         | identification| run           | locating      | bus_stop
+  const std::string approved = R"(
+                | off           | ready         | identification| run           | locating      | bus_stop
 start           | ready         | ready         | identification| run           | locating      | ready
 stop            | off           | off           | off           | run           | off           | off
 stop, then cycle| off           | off           | off           | off           | off           | off
