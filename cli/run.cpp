@@ -32,7 +32,7 @@ void take_over_configuration(Session& session, const reports::RunDirectory& dire
 
 // `--failed` may swallow a selector: what is no directory of a run is one.
 std::string failed_directory(Session& session) {
-  const std::string given = session.settings.text("failed");
+  std::string given = session.settings.text("failed");
   if (given.empty()) return "runs";
   if (std::filesystem::is_directory(given)) return given;
   session.operands.insert(session.operands.begin(), given);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -20,7 +21,7 @@ bool refuses_colour() {
 }
 
 std::string time_left(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
+  const long whole = std::lround(seconds);
   if (whole < 100) return fmt::format("{} s left", whole);
   return fmt::format("{}:{:02} min left", whole / 60, whole % 60);
 }

@@ -78,7 +78,7 @@ Outcome judged_from_recording(const Setup& setup, const std::string& uri) {
 }
 
 // Passes, but fails for `reason` on the deviation.
-SuiteOfFunctions::Function failing_on(std::string deviation, std::string reason) {
+SuiteOfFunctions::Function failing_on(const std::string& deviation, std::string reason) {
   return [uri = "deviant:" + deviation, reason = std::move(reason)](const TestCase& test_case,
                                                                     const Setup& setup) {
     read_plan(setup.plan_file);
@@ -100,7 +100,7 @@ SuiteOfFunctions::Function answering(Verdict verdict, std::string reason) {
   };
 }
 
-TestCase named(std::string id, std::vector<std::string> tags = {},
+TestCase named(const std::string& id, std::vector<std::string> tags = {},
                std::vector<conformance::Catch> catches = {}) {
   TestCase test_case;
   test_case.id = id;

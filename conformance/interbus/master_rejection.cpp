@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "conformance/interbus/master_cases.hpp"
+#include "harness/line/code_words.hpp"
+#include "harness/line/frame_check.hpp"
 
 namespace fieldproof::conformance {
 
@@ -106,37 +108,21 @@ void marked_status(MasterBench& bench, CaseJudge& judge) {
   }
 }
 
-// All patterns of four bits within the user octets that the generator polynomial divides.
-std::vector<std::vector<CycleFaults::Flip>> weight_four_code_words() {
-  constexpr unsigned kBits = 8 * kUserOctets;
-  std::vector<unsigned> remainder(kBits);
-  unsigned power = 1;
-  for (unsigned n = 0; n < kBits; ++n) {
-    remainder[n] = power;
-    power <<= 1;
-    if ((power & 0x10000U) != 0) power ^= 0x11021U;
-  }
-  std::vector<std::vector<CycleFaults::Flip>> words;
-  for (unsigned a = 0; a < kBits; ++a) {
-    for (unsigned b = a + 1; b < kBits; ++b) {
-      for (unsigned c = b + 1; c < kBits; ++c) {
-        for (unsigned d = c + 1; d < kBits; ++d) {
-          if ((remainder[a] ^ remainder[b] ^ remainder[c] ^ remainder[d]) != 0) continue;
-          std::vector<CycleFaults::Flip> flips;
-          // The highest power is the first bit on the line.
-          for (const unsigned bit : {a, b, c, d}) {
-            flips.push_back({kUserOctets - 1 - bit / 8, static_cast<std::uint8_t>(1U << bit % 8), false});
-          }
-          words.push_back(std::move(flips));
-        }
-      }
+// All patterns of four bits within the user octets that the frame check cannot see.
+std::vector<std::vector<CycleFaults::Flip>> weight_four_patterns() {
+  std::vector<std::vector<CycleFaults::Flip>> patterns;
+  const line::FrameCheckParameters* check = line::find_frame_check(interbus::Rules{}.frame_check);
+  for (const line::FourBits& bits : line::weight_four_code_words(*check, 8 * kUserOctets)) {
+    std::vector<CycleFaults::Flip>& flips = patterns.emplace_back();
+    for (const unsigned bit : bits) {
+      flips.push_back({bit / 8, static_cast<std::uint8_t>(0x80U >> bit % 8), false});
     }
   }
-  return words;
+  return patterns;
 }
 
 void weight_four(MasterBench& bench, CaseJudge& judge) {
-  static const auto words = weight_four_code_words();
+  static const auto words = weight_four_patterns();
   judge.expect(!words.empty(), "no_code_word", "code words of weight 4 within 32 bits", "none");
   judge.measure("code words of weight 4 within the user octets", "", static_cast<double>(words.size()));
   bench.bring_up(judge, paper_ring());
