@@ -97,7 +97,7 @@ judge::CaseResult run_slave_case(const SlaveCase& slave_case, const SlaveSetting
 Applicability for_every_slave() {
   return nullptr;
 }
-Applicability for_item(std::string item, std::string sentence) {
+Applicability for_item(const std::string& item, const std::string& sentence) {
   return [item, sentence](const judge::Pics& pics) -> std::optional<std::string> {
     if (pics.supports(item)) return std::nullopt;
     return sentence;

@@ -45,7 +45,7 @@ Applicability for_every_slave();
 Applicability for_outputs();
 Applicability for_inputs();
 Applicability for_inputs_and_outputs();
-Applicability for_item(std::string item, std::string sentence);
+Applicability for_item(const std::string& item, const std::string& sentence);
 
 namespace sources {
 judge::Reference park(std::string place);  // the paper whose cycle time the project reproduces
