@@ -45,8 +45,7 @@ std::string text_of(std::span<const std::uint16_t> words) {
   return text.empty() ? "no words" : text;
 }
 
-bool holds_right_data_cycle(SlaveBench& bench, std::span<const SeenTelegram> telegrams, FoundCycle& found) {
-  find_last_cycle(telegrams, found);
+bool is_right_data_cycle(SlaveBench& bench, const FoundCycle& found) {
   return found.is_found && !found.is_id_cycle && found.status == bench.rules().status_clean &&
          found.check == bench.model().check().of(found.octets);
 }

@@ -16,9 +16,9 @@ namespace fieldproof::conformance {
 std::vector<std::uint16_t> words_held(std::span<const SeenTelegram> transfer, unsigned words);
 std::string text_of(std::span<const std::uint16_t> words);
 
-// Whether the last cycle in these telegrams is a data cycle that a right slave takes over: its check fits and
-// its status word is clean. Faults in headers can, by chance, leave such a cycle of other octets.
-bool holds_right_data_cycle(SlaveBench& bench, std::span<const SeenTelegram> telegrams, FoundCycle& found);
+// Whether a found cycle is a data cycle that a right slave takes over: its check fits and its status word is
+// clean. Faults in headers can, by chance, leave such a cycle of other octets.
+bool is_right_data_cycle(SlaveBench& bench, const FoundCycle& found);
 
 // As many data telegrams left as arrived; `telegram_lost`, `telegram_added`.
 void expect_all_telegrams(SlaveBench& bench, CaseJudge& judge);

@@ -398,7 +398,7 @@ std::vector<SlaveCase> slave_frame_check_cases() {
         .reference = sources::calculated("a polynomial of degree 16 with a constant term"),
         .stimulus =
             "Bursts of 2 to 16 bits, first and last bit flipped, at every position of the code word of 64 "
-            "bits with every pattern between: 1 638 381 of them. A longer register: every burst up to 10 "
+            "bits with every pattern between: 1 638 335 of them. A longer register: every burst up to 10 "
             "bits, drawn ones and the densest for longer ones.",
         .expected = "The status word of each cycle leaves marked, and no output changes.",
         .tags = {"must", "long"},

@@ -71,23 +71,30 @@ class Arrivals {
   bool take() {
     const std::span<const SeenTelegram> telegrams = bench_.in().data_telegrams();
     open_.insert(open_.end(), telegrams.begin(), telegrams.end());
-    const bool is_right = holds_right_data_cycle(bench_, open_, last_);
-    open_.erase(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(last_.end));
-    return is_right && last_.octets.size() >= 2 * bench_.words();
+    bool has_words = false;
+    for (find_first_cycle(open_, cycle_); cycle_.is_found; find_first_cycle(open_, cycle_)) {
+      if (is_right_data_cycle(bench_, cycle_) && cycle_.octets.size() >= 2 * bench_.words()) {
+        has_words = true;
+        keep_words();
+      }
+      open_.erase(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(cycle_.end));
+    }
+    return has_words;
   }
 
-  std::vector<std::uint16_t> words() const {
-    std::vector<std::uint16_t> words(bench_.words());
-    const std::size_t first = last_.octets.size() - 2 * words.size();
-    for (std::size_t word = 0; word < words.size(); ++word)
-      words[word] = static_cast<std::uint16_t>(last_.octets[first + 2 * word] << 8 |
-                                               last_.octets[first + 2 * word + 1]);
-    return words;
-  }
+  // Of the last of these cycles.
+  const std::vector<std::uint16_t>& words() const { return words_; }
 
  private:
+  void keep_words() {
+    words_.clear();
+    for (std::size_t n = cycle_.octets.size() - 2 * bench_.words(); n < cycle_.octets.size(); n += 2)
+      words_.push_back(static_cast<std::uint16_t>(cycle_.octets[n] << 8 | cycle_.octets[n + 1]));
+  }
+
   SlaveBench& bench_;
-  FoundCycle last_;
+  FoundCycle cycle_;
+  std::vector<std::uint16_t> words_;
   std::vector<SeenTelegram> open_;
 };
 

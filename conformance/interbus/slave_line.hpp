@@ -31,7 +31,7 @@ struct SeenTelegram {
 class LineView final : public segment::Tap {
  public:
   LineView(const line::TelegramCode& code, std::int64_t bit_rate)
-      : code_(code), bit_rate_(bit_rate), receiver_(code, bit_rate) {}
+      : bit_rate_(bit_rate), receiver_(code, bit_rate) {}
 
   void on_wave(const line::Waveform& wave) override;
   void clear();
@@ -64,7 +64,6 @@ class LineView final : public segment::Tap {
   }
   void add_origin(const line::Waveform& wave);
 
-  const line::TelegramCode& code_;
   std::int64_t bit_rate_;
   line::TelegramReceiver receiver_;
   std::vector<line::Waveform> waves_;  // buffers beyond wave_count_ are kept

@@ -52,7 +52,7 @@ std::uint16_t BitwiseCheck::of(std::span<const std::uint8_t> octets) const {
   return word(state);
 }
 
-void find_last_cycle(std::span<const SeenTelegram> telegrams, FoundCycle& found) {
+void find_first_cycle(std::span<const SeenTelegram> telegrams, FoundCycle& found) {
   found.is_found = false;
   found.end = 0;
   std::size_t transfer_end = 0;  // of the run of transfer telegrams that lies behind
@@ -83,8 +83,21 @@ void find_last_cycle(std::span<const SeenTelegram> telegrams, FoundCycle& found)
     for (std::size_t k = transfer_begin; k < transfer_end; ++k) found.octets.push_back(telegrams[k].data);
     found.check = static_cast<std::uint16_t>(telegrams[n - 3].data << 8 | telegrams[n - 2].data);
     found.status = static_cast<std::uint16_t>(telegrams[n - 1].data << 8 | telegram.data);
-    transfer_begin = transfer_end = n + 1;
-    checks = 0;
+    return;
+  }
+}
+
+void find_last_cycle(std::span<const SeenTelegram> telegrams, FoundCycle& found) {
+  FoundCycle next;
+  std::size_t end = 0;
+  found.is_found = false;
+  found.end = 0;
+  for (;;) {
+    find_first_cycle(telegrams.subspan(end), next);
+    if (!next.is_found) return;
+    end += next.end;
+    found = next;
+    found.end = end;
   }
 }
 

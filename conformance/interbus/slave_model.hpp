@@ -16,7 +16,7 @@
 // the shift register of the textbook, bit by bit, put into one table.
 //
 // Contract: speaks about whole cycles only (transfer telegrams of one kind, then four check telegrams);
-// whether a sequence of telegrams is one, `last_cycle` says.
+// whether a sequence of telegrams is one, `find_first_cycle` says.
 namespace fieldproof::conformance {
 
 class BitwiseCheck {
@@ -52,8 +52,8 @@ struct CycleOnLine {
   std::uint16_t status() const { return word(octets + 2); }
 };
 
-// The last whole cycle in a sequence of telegrams: the last run of transfer telegrams of one kind that four
-// check telegrams of that kind follow, nothing but status telegrams between them, no stop level missing.
+// A whole cycle in a sequence of telegrams: a run of transfer telegrams of one kind that four check telegrams
+// of that kind follow, nothing but status telegrams between them, no stop level missing.
 struct FoundCycle {
   bool is_found = false;
   bool is_id_cycle = false;
@@ -62,6 +62,8 @@ struct FoundCycle {
   std::uint16_t status = 0;
   std::size_t end = 0;  // telegrams up to its end
 };
+// The first one and the last one; `is_found` says whether there is any.
+void find_first_cycle(std::span<const SeenTelegram> telegrams, FoundCycle& found);
 void find_last_cycle(std::span<const SeenTelegram> telegrams, FoundCycle& found);
 
 struct RightAnswer {
