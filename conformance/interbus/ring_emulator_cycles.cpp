@@ -85,7 +85,8 @@ std::uint8_t RingEmulator::shifted_octet(std::size_t index) const {
   for (std::int64_t n = bit; n < bit + 8; ++n) {
     unsigned value = 1;
     if (n >= 0 && static_cast<std::size_t>(n / 8) < stream_.size()) {
-      value = (stream_[static_cast<std::size_t>(n / 8)] >> (7 - n % 8)) & 1U;
+      const unsigned source = stream_[static_cast<std::size_t>(n / 8)];
+      value = (source >> (7 - n % 8)) & 1U;
     }
     octet = octet << 1 | value;
   }
