@@ -130,7 +130,7 @@ kernel::Duration RingEmulator::delay() const {
 // ---- the line ----
 
 void RingEmulator::receive(segment::PortIndex, const line::Waveform& reception) {
-  if (reception.start - last_end_ > rules_.silence_limit && statistics_.first_telegram != kernel::kNever) {
+  if (statistics_.first_telegram != kernel::kNever && reception.start - last_end_ > rules_.silence_limit) {
     reset_stations();
   }
   const bool was_open = is_open();

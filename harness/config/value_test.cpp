@@ -218,8 +218,8 @@ TEST(Value, ChoicesGiveTheirMeaning) {
 }
 
 TEST(Value, QuantitiesAreExact) {
-  const Document document = in_array(
-      R"("25 ms", "0.1us", "13.33 us", "9223372.036854775807 s", "0 s", "500 kbit/s", "31.25 kbit/s", "0.0115 km", "12.7 cm")");
+  const Document document = in_array(R"("25 ms", "0.1us", "13.33 us", "9223372.036854775807 s", "0 s", )"
+                                     R"("500 kbit/s", "31.25 kbit/s", "0.0115 km", "12.7 cm")");
   const auto values = document.root().as_array();
   EXPECT_EQ(values[0].as_duration(), 25ms);
   EXPECT_EQ(values[1].as_duration(), 100ns);

@@ -109,8 +109,9 @@ TEST(NetworkExamplesTest, MixedLineHasItsStationsInRingOrder) {
 }
 
 TEST(RingOrderTest, EachStationHangsOnTheInterfaceThatTheFileSays) {
-  const auto network = read_text(with_stations(
-      R"({"name": "a", "id_code": 8, "branch": [{"name": "b", "id_code": "0x0103"}, {"name": "c", "id_code": 8}]},
+  const auto network =
+      read_text(with_stations(R"({"name": "a", "id_code": 8, "branch": [)"
+                              R"({"name": "b", "id_code": "0x0103"}, {"name": "c", "id_code": 8}]},
          {"name": "d", "id_code": "0x0603"})"));
   const auto ring = ring_order(network);
   ASSERT_EQ(ring.size(), 4U);
