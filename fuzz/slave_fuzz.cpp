@@ -91,7 +91,7 @@ class World {
   explicit World(std::uint8_t choice)
       : configuration_(configuration(choice)),
         slave_(configuration_),
-        model_(configuration_.words, kInput, rules().bit_rate, rules().silence_limit),
+        model_(configuration_.words, rules().bit_rate, rules().silence_limit),
         code_(rules().telegram) {
     const std::size_t listener = segment_.attach(listener_, "listener");
     const std::size_t seat = segment_.attach(slave_, "slave@1");

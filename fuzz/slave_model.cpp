@@ -7,9 +7,8 @@ namespace {
 constexpr std::size_t kTrailer = 4;
 }  // namespace
 
-SlaveModel::SlaveModel(unsigned words, std::uint16_t input, std::int64_t bit_rate,
-                       kernel::Duration silence_limit)
-    : words_(words), input_(input), silence_limit_(silence_limit), receiver_(code_, bit_rate) {}
+SlaveModel::SlaveModel(unsigned words, std::int64_t bit_rate, kernel::Duration silence_limit)
+    : words_(words), silence_limit_(silence_limit), receiver_(code_, bit_rate) {}
 
 void SlaveModel::on_wave(const line::Waveform& wave) {
   run_until(wave.start);
@@ -56,8 +55,10 @@ FIELDPROOF_UNINSTRUMENTED void SlaveModel::on_data(Class kind, const line::Teleg
 
 FIELDPROOF_UNINSTRUMENTED bool SlaveModel::is_cycle_good() const {
   const std::uint16_t check = check_bit_by_bit(transfer_);
-  return !is_broken_ && trailer_[0] == check >> 8 && trailer_[1] == (check & 0xFF) && trailer_[2] == 0 &&
-         trailer_[3] == 0;
+  // A ring is never shorter than the slave's own register and the loopback word.
+  const std::size_t shortest = (is_id_cycle_ ? 2U : 2U * words_) + 2U;
+  return !is_broken_ && transfer_.size() >= shortest && trailer_[0] == check >> 8 &&
+         trailer_[1] == (check & 0xFF) && trailer_[2] == 0 && trailer_[3] == 0;
 }
 
 FIELDPROOF_UNINSTRUMENTED void SlaveModel::finish_cycle(kernel::Time end) {
@@ -70,14 +71,11 @@ FIELDPROOF_UNINSTRUMENTED void SlaveModel::finish_cycle(kernel::Time end) {
   trailer_.clear();
 }
 
-// The register holds the last words of what it was loaded with, followed by what came.
+// The register holds the last words of what was shifted in.
 FIELDPROOF_UNINSTRUMENTED void SlaveModel::write_outputs(kernel::Time end) {
-  const std::size_t length = std::size_t{words_} * 2;
-  const auto octet = [&](std::size_t n) FIELDPROOF_UNINSTRUMENTED {
-    const std::size_t at = transfer_.size() + n;
-    if (at >= length) return static_cast<unsigned>(transfer_[at - length]);
-    return at % 2 == 0 ? static_cast<unsigned>(input_ >> 8) : static_cast<unsigned>(input_ & 0xFF);
-  };
+  const std::size_t first = transfer_.size() - std::size_t{words_} * 2;
+  const auto octet = [&](std::size_t n)
+                         FIELDPROOF_UNINSTRUMENTED { return static_cast<unsigned>(transfer_[first + n]); };
   for (unsigned word = 0; word < words_; ++word) {
     writes_.push_back({end, word, static_cast<std::uint16_t>(octet(2U * word) << 8 | octet(2U * word + 1))});
   }

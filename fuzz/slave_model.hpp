@@ -29,8 +29,7 @@ struct OutputWrite {
 
 class SlaveModel final : public segment::Tap {
  public:
-  // `inputs` are what the register of a data cycle is loaded with.
-  SlaveModel(unsigned words, std::uint16_t input, std::int64_t bit_rate, kernel::Duration silence_limit);
+  SlaveModel(unsigned words, std::int64_t bit_rate, kernel::Duration silence_limit);
 
   void on_wave(const line::Waveform& wave) override;
   // Time has passed without a reception.
@@ -51,7 +50,6 @@ class SlaveModel final : public segment::Tap {
   void silence(kernel::Time now);
 
   unsigned words_;
-  std::uint16_t input_;
   kernel::Duration silence_limit_;
   line::TelegramCode code_{line::TelegramLayout{}};
   line::TelegramReceiver receiver_;
