@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/kernel/time.hpp"
+#include "harness/measure/comparison.hpp"
+#include "harness/measure/phase.hpp"
+
+// All of a measurement as whoever writes it down needs it: comparisons with the theory, distributions and
+// counts, in words and numbers without any protocol.
+namespace fieldproof::measure {
+
+// Values of one quantity. They are kept as whole numbers; `per_unit` of them are one `unit`.
+struct Curve {
+  std::string quantity;
+  std::string unit;
+  double per_unit = 1;
+  PhasedDistribution values;
+};
+
+struct Count {
+  std::string what;  // "lost pulses"
+  std::uint64_t count = 0;
+  std::uint64_t of = 0;  // 0: not a part of anything
+};
+
+// A signal and what followed it, as an oscilloscope shows both.
+struct Trace {
+  struct Edge {
+    kernel::Duration when;  // since the begin of the trace
+    bool level = false;     // from then on
+  };
+  std::vector<Edge> input;
+  std::vector<Edge> output;
+  kernel::Duration length{};
+};
+
+struct Series {
+  std::string name;  // "50 Hz from di16 word 0 to do16 word 0"
+  std::vector<Comparison> comparisons;
+  std::vector<Curve> curves;
+  std::vector<Count> counts;
+  Trace trace;
+};
+
+struct Condition {
+  std::string name;  // "latch model"
+  std::string value;
+};
+
+struct Measurement {
+  std::string protocol;
+  std::string network;
+  std::uint64_t seed = 0;
+  double tolerance_percent = 0;
+  std::vector<Condition> conditions;
+  std::vector<Series> series;
+};
+
+// Over everything that was compared.
+Agreement agreement(const Measurement& measurement);
+
+}  // namespace fieldproof::measure

@@ -1,0 +1,20 @@
+#include "harness/measure/phase.hpp"
+
+namespace fieldproof::measure {
+
+std::string_view name(Phase phase) {
+  constexpr std::array<std::string_view, kPhases.size()> kNames = {"quiet", "burst", "recovery"};
+  return kNames.at(static_cast<std::size_t>(phase));
+}
+
+Phase phase_during(const PhaseDuring& phase_during, kernel::Time from, kernel::Time to) {
+  return phase_during ? phase_during(from, to) : Phase::quiet;
+}
+
+Distribution PhasedDistribution::total() const {
+  Distribution all;
+  for (const Distribution& part : parts_) all.add(part);
+  return all;
+}
+
+}  // namespace fieldproof::measure
