@@ -13,7 +13,7 @@ using enum OptionKind;
 constexpr std::array kOptions = {
     Option{"iut", list, "[ROLE[@POSITION]=]URI", "ref", "run verify replay",
            "implementation under test: ref, deviant:NAME; 'slave@3=deviant:NAME' places it", false, true},
-    Option{"seed", value, "N", "1", "run verify matrix", "seed of the run, 0 to 2^64-1", false, true},
+    Option{"seed", value, "N", "1", "run verify matrix residual", "seed of the run, 0 to 2^64-1", false, true},
     Option{"volume", value, "quick|full", "full", "run verify", "how many repetitions a case makes", false, true},
     Option{"network", value, "FILE", "", "run verify", "network description instead of the suite's own", false, true},
     Option{"plan", value, "FILE", "", "run verify", "plan of declared faults", false, true},
@@ -22,7 +22,7 @@ constexpr std::array kOptions = {
     Option{"out", value, "DIR", "runs/<utc>-<seed>", "run", "directory of the run"},
     Option{"record", value, "none|failed|all", "failed", "run", "which cases keep their trace"},
     Option{"junit", value, "FILE", "", "run", "also write the JUnit report here"},
-    Option{"json", value, "FILE", "", "run matrix diff", "also write the result as JSON here"},
+    Option{"json", value, "FILE", "", "run matrix diff residual", "also write the result as JSON here"},
     Option{"json", flag, "", "", "list", "print JSON", true},
     Option{"strict", flag, "", "", "run", "warn and inconclusive count as fail"},
     Option{"allow-inconclusive", flag, "", "", "run replay judge", "an inconclusive verdict ends with 0, not 2"},
@@ -35,8 +35,14 @@ constexpr std::array kOptions = {
     Option{"count", flag, "", "", "list", "print the number only", true},
     Option{"bits", flag, "", "", "replay", "print the whole recording", true},
     Option{"runs", value, "N", "2", "verify", "how often each case is run (also -n)", true},
-    Option{"config", value, "FILE", "", "run verify matrix list", "configuration file (JSON, comments allowed)"},
-    Option{"print-config", flag, "", "", "run verify matrix list", "print every value with its origin and stop", true},
+    Option{"fcs", value, "NAME", "", "residual", "frame check by its catalogue name: CRC-16/IBM-3740, CRC-32"},
+    Option{"bits", value, "N", "", "residual", "length of message and check"},
+    Option{"ber", list, "P", "<1e-6 to 1e-2 and 0.5>", "residual", "bit-error rate"},
+    Option{"samples", value, "N", "0", "residual", "also simulate: so many telegrams counted, and patterns of flips drawn"},
+    Option{"messages", value, "N", "3600", "residual", "messages per hour, for the rate per hour"},
+    Option{"receivers", value, "N", "1", "residual", "receivers of each message, for the rate per hour"},
+    Option{"config", value, "FILE", "", "run verify matrix list residual", "configuration file (JSON, comments allowed)"},
+    Option{"print-config", flag, "", "", "run verify matrix list residual", "print every value with its origin and stop", true},
 };
 // clang-format on
 

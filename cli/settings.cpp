@@ -196,6 +196,20 @@ std::uint64_t Settings::number(std::string_view name, std::uint64_t min, std::ui
   return *value;
 }
 
+std::vector<double> Settings::reals(std::string_view name) const {
+  std::vector<double> values;
+  for (const std::string& written : list(name)) {
+    double value = 0;
+    const char* end = written.data() + written.size();
+    const auto [rest, failure] = std::from_chars(written.data(), end, value);
+    if (failure != std::errc{} || rest != end || written.empty()) {
+      refuse(name, fmt::format("'{}' is no number; write for example 1e-3", written));
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
 std::optional<std::chrono::milliseconds> Settings::duration(std::string_view name) const {
   const std::string written = text(name);
   if (written.empty()) return std::nullopt;

@@ -52,6 +52,7 @@ class Settings {
   const std::vector<std::string>& list(std::string_view name) const;
   std::string text(std::string_view name) const;  // empty when there is none
   std::uint64_t number(std::string_view name, std::uint64_t min, std::uint64_t max) const;
+  std::vector<double> reals(std::string_view name) const;
   std::optional<std::chrono::milliseconds> duration(std::string_view name) const;
   // One of the words that the table lists as the option's value: "quick|full".
   std::size_t choice(std::string_view name) const;

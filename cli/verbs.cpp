@@ -18,6 +18,7 @@ constexpr std::array kVerbs = {
     Verb{"verify", "SELECTOR...|CASEFILE", 1, kAny, "run cases several times; equal seeds must give equal fingerprints", &verify},
     Verb{"judge", "RUNDIR", 1, 1, "judge a stored run again, without the implementation", &judge_again},
     Verb{"diff", "RUN_A RUN_B", 2, 2, "new failures, fixed ones and drifted measurements", &diff},
+    Verb{"residual", "", 0, 0, "probability that a frame check takes a corrupted telegram for a good one", &residual},
 };
 // clang-format on
 

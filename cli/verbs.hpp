@@ -29,6 +29,7 @@ int replay(Session& session);
 int verify(Session& session);
 int judge_again(Session& session);
 int diff(Session& session);
+int residual(Session& session);
 
 struct Verb {
   std::string_view name;
