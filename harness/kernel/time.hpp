@@ -68,6 +68,14 @@ constexpr Duration levels_duration(std::int64_t levels, std::int64_t levels_per_
   return Duration{negative ? -size : size};
 }
 
+// The levels of a line that fit a duration, a begun one not counted: the inverse of levels_duration but for
+// its rounding, which can make the answer one less. `duration` is not negative.
+constexpr std::int64_t levels_within(Duration duration, std::int64_t levels_per_second) {
+  __extension__ using Wide = __int128;
+  return static_cast<std::int64_t>(static_cast<Wide>(duration.count()) * levels_per_second /
+                                   1'000'000'000'000);
+}
+
 // The instant at which level `n` of a line begins that started at `start`.
 constexpr Time level_time(Time start, std::int64_t n, std::int64_t levels_per_second) {
   const std::int64_t from = start.time_since_epoch().count();

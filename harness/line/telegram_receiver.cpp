@@ -1,6 +1,7 @@
 #include "harness/line/telegram_receiver.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace fieldproof::line {
 namespace {
@@ -9,26 +10,53 @@ constexpr std::int64_t kJoinedLevelsPerBit = 240;
 
 // The number of whole levels from `from` to `to` when both lie on one grid, -1 otherwise.
 std::int64_t levels_between(kernel::Time from, kernel::Time to, std::int64_t rate) {
-  __extension__ using Wide = __int128;
-  const auto count = static_cast<std::int64_t>(
-      (static_cast<Wide>((to - from).count()) * rate + kernel::kSecond.count() / 2) /
-      kernel::kSecond.count());
-  return kernel::level_time(from, count, rate) == to ? count : -1;
+  if (to < from) return -1;
+  const std::int64_t whole = kernel::levels_within(to - from, rate);
+  for (const std::int64_t count : {whole, whole + 1}) {
+    if (kernel::level_time(from, count, rate) == to) return count;
+  }
+  return -1;
 }
 
+// The first level of a line that begins at `start` whose middle lies at or after `time`.
+std::size_t first_middle_at(kernel::Time start, std::int64_t rate, kernel::Time time) {
+  if (time <= start) return 0;
+  const std::int64_t halves = kernel::levels_within(time - start, 2 * rate);
+  std::int64_t n = std::max<std::int64_t>(0, (halves - 1) / 2 - 1);  // one less, for the rounding
+  while (kernel::level_time(start, 2 * n + 1, 2 * rate) < time) ++n;
+  return static_cast<std::size_t>(n);
+}
+
+std::size_t end_of_run(const Levels& levels, std::size_t from) {
+  const std::uint64_t other = levels[from] ? ~std::uint64_t{0} : 0;
+  for (std::size_t n = from; n < levels.size(); n += 64) {
+    const std::uint64_t changed = levels.window(n) ^ other;
+    if (changed != 0) return std::min(levels.size(), n + static_cast<std::size_t>(std::countr_zero(changed)));
+  }
+  return levels.size();
+}
+
+// Appends up to level `until` what a look at the middle of each level finds in the waveform, run by run.
 void append_sampled(Levels& levels, const Waveform& wave, kernel::Time start, std::int64_t rate,
                     std::size_t until) {
-  for (std::size_t n = levels.size(); n < until; ++n) {
-    const auto middle = kernel::level_time(start, 2 * static_cast<std::int64_t>(n) + 1, 2 * rate);
-    levels.append(wave.at(middle) ? 1 : 0, 1);
+  const auto fill_until = [&](bool level, kernel::Time end) {
+    const std::size_t to = std::min(until, first_middle_at(start, rate, end));
+    if (to > levels.size()) levels.append_fill(level, to - levels.size());
+  };
+  fill_until(true, wave.start);
+  for (std::size_t n = 0; n < wave.levels.size() && levels.size() < until;) {
+    const std::size_t next = end_of_run(wave.levels, n);
+    fill_until(wave.levels[n], wave.time_of(next));
+    n = next;
   }
+  if (levels.size() < until) levels.append_idle(until - levels.size());
 }
 
 std::size_t levels_until(kernel::Time start, kernel::Time end, std::int64_t rate) {
-  __extension__ using Wide = __int128;
-  return static_cast<std::size_t>(
-      (static_cast<Wide>((end - start).count()) * rate + kernel::kSecond.count() - 1) /
-      kernel::kSecond.count());
+  if (end <= start) return 0;
+  std::int64_t count = kernel::levels_within(end - start, rate);
+  while (kernel::level_time(start, count, rate) < end) ++count;
+  return static_cast<std::size_t>(count);
 }
 
 }  // namespace

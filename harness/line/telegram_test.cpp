@@ -200,6 +200,23 @@ TEST(TelegramReceiver, AcceptsOnePerCentAndLosesSixPerCentOfRate) {
   EXPECT_NE(data_at(kBitRate * 106 / 100), expected);
 }
 
+TEST(TelegramReceiver, ATelegramMayGoOnAtAnotherRate) {
+  Waveform wave{kernel::kStart, kBitRate, {}};
+  for (const std::uint8_t data : {0x55, 0x00, 0xFF, 0x33}) code().append(wave.levels, kDataTelegram, data);
+  for (const std::int64_t rate : {kBitRate * 99 / 100, kBitRate * 101 / 100, kBitRate + 1}) {
+    for (std::size_t cut = 1; cut < wave.levels.size(); ++cut) {
+      const Waveform first{wave.start, wave.rate, wave.levels.slice(0, cut)};
+      const Waveform second{wave.time_of(cut), rate, wave.levels.slice(cut, wave.levels.size() - cut)};
+      std::vector<std::uint8_t> data;
+      for (const Seen& seen : hear({first, second})) {
+        EXPECT_EQ(seen.header, kDataTelegram);
+        data.push_back(seen.data);
+      }
+      EXPECT_EQ(data, (std::vector<std::uint8_t>{0x55, 0x00, 0xFF, 0x33})) << cut << " " << rate;
+    }
+  }
+}
+
 TEST(TelegramReceiver, ACutTelegramIsCompletedByTheIdleLine) {
   TelegramReceiver receiver(code(), kBitRate);
   Waveform wave{kernel::kStart, kBitRate, {}};

@@ -77,10 +77,7 @@ bool Waveform::at(kernel::Time time) const {
 std::size_t Waveform::first_level_at(kernel::Time time) const {
   if (time <= start) return 0;
   if (time >= end()) return levels.size();
-  __extension__ using Wide = __int128;
-  // The quotient is at most one level off, because level starts are rounded to the nearest picosecond.
-  auto n =
-      static_cast<std::size_t>(static_cast<Wide>((time - start).count()) * rate / kernel::kSecond.count());
+  auto n = static_cast<std::size_t>(kernel::levels_within(time - start, rate));
   while (n > 0 && time_of(n - 1) >= time) --n;
   while (n < levels.size() && time_of(n) < time) ++n;
   return n;
