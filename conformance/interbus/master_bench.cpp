@@ -36,7 +36,9 @@ void MasterBench::power_up(std::vector<VirtualStation> ring) {
   const std::string number = places_.size() == 1 ? "" : fmt::format("#{}", places_.size());
   master_seat_ = segment_.attach(*master_, "master" + number);
   const std::size_t ring_seat = segment_.attach(*ring_, "ring" + number);
-  master_->wire(segment_.connect("ring/in" + number, ring_seat, 0, kernel::Duration{}));
+  segment::Link& out = segment_.connect("ring/in" + number, ring_seat, 0, kernel::Duration{});
+  line_watch_.watch(out, segment_.trace());
+  master_->wire(out);
   back_ = &segment_.connect("master/in" + number, master_seat_, 0, kernel::Duration{});
   ring_->wire(*back_);
   ring_->set_script(

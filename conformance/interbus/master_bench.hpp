@@ -9,6 +9,7 @@
 
 #include "conformance/interbus/ring_emulator.hpp"
 #include "conformance/judging.hpp"
+#include "conformance/line_watch.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/interbus/device.hpp"
@@ -52,6 +53,9 @@ class MasterBench {
   interbus::RingEmulator& ring() { return *ring_; }
   segment::Segment& segment() { return segment_; }
   kernel::Time now() const { return segment_.now(); }
+
+  // What the master drives.
+  const LineWatch& line_watch() const { return line_watch_; }
 
   // From outside of the segment's run.
   void start();
@@ -103,6 +107,7 @@ class MasterBench {
   interbus::Rules rules_;
   interbus::MasterConfiguration configuration_;
   std::vector<Place> places_;
+  LineWatch line_watch_;
   segment::Segment segment_;
   interbus::MasterDevice* master_ = nullptr;
   interbus::RingEmulator* ring_ = nullptr;

@@ -263,6 +263,28 @@ struct NoClockTolerance final : Master {
   bool hears(const line::Waveform& wave) const override { return wave.rate == rules().bit_rate; }
 };
 
+// Drives the idle line of its pause while the last telegram still leaves.
+struct DrivesOverItself final : Master {
+  using Master::Master;
+  void wire(segment::Port& out) override {
+    early_.behind = &out;
+    Master::wire(early_);
+  }
+
+  struct EarlyPort final : segment::Port {
+    void drive(line::Waveform& wave) override {
+      const kernel::Time end = wave.end();
+      const std::int64_t rate = wave.rate;
+      behind->drive(wave);
+      line::Waveform early{end - kernel::levels_duration(2, rate), rate, {}};
+      early.levels.append_idle(1);
+      behind->drive(early);
+    }
+    segment::Port* behind = nullptr;
+  };
+  EarlyPort early_;
+};
+
 struct StopKeepsOutputs final : Master {
   using Master::Master;
   bool clears_outputs_on_stop() const override { return false; }

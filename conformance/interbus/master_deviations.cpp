@@ -114,6 +114,8 @@ const std::vector<Row>& rows() {
       {"no_clock_tolerance", "", "hears only a return line of exactly its own rate", make<NoClockTolerance>},
       {"telegrams_without_gap", "", "leaves no gap between the telegrams of a cycle",
        with_rules([](Rules& rules) { rules.telegram_gap_millibits = 0; })},
+      {"drives_over_itself", "", "begins a transmission before the one before has left",
+       make<DrivesOverItself>},
       {"stop_keeps_outputs", "", "stops without setting the outputs to 0", make<StopKeepsOutputs>},
   };
   return table;

@@ -106,12 +106,19 @@ void clock_tolerance(MasterBench& bench, CaseJudge& judge) {
 void telegram_pitch(MasterBench& bench, CaseJudge& judge) {
   bench.bring_up(judge, interbus::line_of(4, 0x0603, 8));
   const SeenCycle& seen = bench.ring().last_cycle();
-  const double pitch = static_cast<double>(seen.levels.back() - seen.levels.front()) /
-                       static_cast<double>(seen.levels.size() - 1);
+  const kernel::Duration bit = kernel::levels_duration(1, bench.rules().bit_rate);
+  const double pitch = static_cast<double>((seen.starts.back() - seen.starts.front()).count()) /
+                       static_cast<double>(bit.count() * static_cast<std::int64_t>(seen.starts.size() - 1));
   judge.expect_between("mean pitch of telegrams", "bit", pitch, 13 * 1.15 * 0.95, 13 * 1.15 * 1.05,
                        "pitch_off");
   judge.expect(bench.ring().statistics().longest_silence < bench.rules().silence_limit, "silence_too_long",
                "no silence above 25 ms", "a longer one");
+}
+
+// What is judged is the monitor of the bench.
+void transmissions_do_not_overlap(MasterBench& bench, CaseJudge& judge) {
+  bench.bring_up(judge, paper_ring());
+  bench.run_data_cycles(judge, bench.volume<std::uint64_t>(10, 1000));
 }
 
 }  // namespace
@@ -156,6 +163,12 @@ std::vector<MasterCase> master_timing_cases() {
   add("telegrams_have_their_gap", "IM-38", "The mean pitch of the telegrams of a cycle is 1.15 times 13 bit",
       formula, "a data cycle with 64 user octets", "14.95 bit within 5 %", {"timing"},
       {{"telegrams_without_gap", "pitch_off"}}, telegram_pitch);
+  add("transmissions_do_not_overlap", "monitor",
+      "A master begins a transmission when the one before it has left",
+      {"follows from Park 2004", "one telegram after the other on a segment", Standing::derived},
+      "recognition, then data cycles",
+      "the monitor of the master's line sees no overlap; it judges every other case too", {"must", "timing"},
+      {{"drives_over_itself", "transmissions_overlap"}}, transmissions_do_not_overlap);
   return cases;
 }
 

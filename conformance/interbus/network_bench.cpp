@@ -46,6 +46,7 @@ NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkPa
   ring_ = std::make_unique<interbus::Ring>(segment_, built_, master_seat_, parts.make_slave);
   master_->wire(ring_->out());
   ring_->link_to(1).tap_driven(listener_);
+  for (segment::Link* link : ring_->links()) line_watch_.watch(*link, segment_.trace());
   install(plan);
 }
 

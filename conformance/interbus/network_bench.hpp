@@ -9,6 +9,7 @@
 
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/judging.hpp"
+#include "conformance/line_watch.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/segment/segment.hpp"
@@ -46,6 +47,8 @@ class NetworkBench {
   segment::Segment& segment() { return segment_; }
   interbus::MasterDevice& master() { return *master_; }
   interbus::Ring& ring() { return *ring_; }
+  // What every station drives.
+  const LineWatch& line_watch() const { return line_watch_; }
   interbus::MasterStatus status() const { return master_->status(); }
 
   // Powers up and waits until data cycles run; false when the network does not get there in ten seconds.
@@ -83,6 +86,7 @@ class NetworkBench {
   std::unique_ptr<interbus::Ring> ring_;
   std::unique_ptr<fault::InstalledPlan> plan_;
   Listener listener_;
+  LineWatch line_watch_;
 };
 
 struct NetworkCase {

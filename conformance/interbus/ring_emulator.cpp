@@ -134,24 +134,23 @@ void RingEmulator::receive(segment::PortIndex, const line::Waveform& reception) 
     reset_stations();
   }
   const bool was_open = is_open();
-  out_.start = reception.start + delay();
-  out_.rate = reception.rate * rate_per_mille_ / 1000;
-  out_.levels.clear();
-  wave_end_level_ = 0;
-  // A fault lengthens what comes back by a few telegrams at most.
-  out_.levels.make_room(reception.levels.size() + 4 * kStatusLongest);
+  begin_answer(reception.start);
   receiver_.receive(reception, [this](const line::Waveform& wave, const line::Telegram& telegram) {
+    telegram_bit_ = bit_of(wave, telegram.level);
     // Most telegrams are those of the pauses.
-    const bool is_plain = !telegram.is_data() && !expects_status_ && wave_end_level_ > 0 &&
-                          telegram.level - wave_end_level_ < kStatusLongest;
+    const bool is_plain = !telegram.is_data() && !expects_status_ && heard_bits_ > 0 &&
+                          telegram_bit_ < heard_bits_ + kStatusLongest;
     if (!is_plain) return on_telegram(wave, telegram);
-    wave_end_level_ = telegram.level + line::kStatusTelegramLevels;
+    heard_bits_ = telegram_bit_ + line::kStatusTelegramLevels;
     ++statistics_.status_telegrams;
-    emit_levels(telegram.level, status_levels_, line::kStatusTelegramLevels);
+    emit_levels(telegram_bit_, status_levels_, line::kStatusTelegramLevels);
   });
-  if (wave_end_level_ > 0) last_end_ = reception.time_of(wave_end_level_);
+  if (heard_bits_ > 0) {
+    last_end_ = kernel::level_time(heard_from_, static_cast<std::int64_t>(heard_bits_), rules_.bit_rate);
+  }
   if (is_faulted_ && faults_.stuck) {
-    const std::size_t size = reception.levels.size();
+    const auto size =
+        static_cast<std::size_t>(kernel::levels_within(reception.end() - reception.start, rules_.bit_rate));
     out_.levels.clear();
     if (!*faults_.stuck) out_.levels.append_fill(false, size);
   }
@@ -159,15 +158,30 @@ void RingEmulator::receive(segment::PortIndex, const line::Waveform& reception) 
 }
 
 void RingEmulator::on_time(kernel::Time now) {
-  out_.start = now + delay();
-  out_.levels.clear();
-  out_.levels.make_room(4 * kStatusLongest);
-  receiver_.flush([this](const line::Waveform& wave, line::Telegram t) {
-    last_end_ = wave.time_of(t.level + t.levels());
-    t.level = 0;
-    on_telegram(wave, t);
+  begin_answer(now);
+  receiver_.flush([this](const line::Waveform& wave, const line::Telegram& telegram) {
+    telegram_bit_ = bit_of(wave, telegram.level);
+    on_telegram(wave, telegram);
+    last_end_ = kernel::level_time(wave.time_of(telegram.level), telegram.levels(), rules_.bit_rate);
   });
   if (!is_open() && !out_.levels.empty()) back_->drive(out_);
+}
+
+void RingEmulator::begin_answer(kernel::Time from) {
+  heard_from_ = from;
+  heard_bits_ = 0;
+  out_.start = from + delay();
+  out_.rate = rules_.bit_rate * rate_per_mille_ / 1000;
+  out_.levels.clear();
+}
+
+// What began before the reception (a telegram that an earlier one left incomplete) leaves with its start.
+std::size_t RingEmulator::bit_of(const line::Waveform& wave, std::uint32_t level) const {
+  if (wave.start == heard_from_ && wave.rate == rules_.bit_rate) return level;
+  const kernel::Duration since = wave.time_of(level) - heard_from_;
+  if (since <= kernel::Duration::zero()) return 0;
+  const kernel::Duration half_bit = kernel::levels_duration(1, 2 * rules_.bit_rate);
+  return static_cast<std::size_t>(kernel::levels_within(since + half_bit, rules_.bit_rate));
 }
 
 void RingEmulator::note_gap(kernel::Time start, kernel::Time last_end) {
@@ -184,13 +198,14 @@ kernel::Duration RingEmulator::silence_until(kernel::Time now) const {
 }
 
 void RingEmulator::on_telegram(const line::Waveform& wave, const line::Telegram& telegram) {
-  if (wave_end_level_ == 0) {
+  if (heard_bits_ == 0) {
     note_gap(wave.time_of(telegram.level), last_end_);
-  } else if (telegram.level - wave_end_level_ >= kStatusLongest) {
-    note_gap(wave.time_of(telegram.level), wave.time_of(wave_end_level_));
+  } else if (telegram_bit_ >= heard_bits_ + kStatusLongest) {
+    note_gap(wave.time_of(telegram.level),
+             kernel::level_time(heard_from_, static_cast<std::int64_t>(heard_bits_), rules_.bit_rate));
   }
-  wave_end_level_ = telegram.level + telegram.levels();
-  if (!telegram.is_data()) return on_status(telegram);
+  heard_bits_ = telegram_bit_ + telegram.levels();
+  if (!telegram.is_data()) return on_status();
   const bool is_check = (telegram.header & line::kControl) != 0;
   const bool is_id = (telegram.header & line::kSelect) != 0;
   if (!is_check && (phase_ != Phase::transfer || is_id != is_id_cycle_)) begin_cycle(wave, telegram);
@@ -198,19 +213,19 @@ void RingEmulator::on_telegram(const line::Waveform& wave, const line::Telegram&
   SeenCycle& seen = open_cycle();
   seen.octets.push_back(telegram.data);
   seen.headers.push_back(telegram.header);
-  seen.levels.push_back(telegram.level);
+  seen.starts.push_back(wave.time_of(telegram.level));
   if (is_check) {
     if (is_id != is_id_cycle_) {
       seen.in_phase = false;
       ++statistics_.wrong_phases;
     }
-    on_check(wave, telegram);
+    on_check(telegram);
   } else {
     on_transfer(telegram);
   }
 }
 
-void RingEmulator::on_status(const line::Telegram& telegram) {
+void RingEmulator::on_status() {
   ++statistics_.status_telegrams;
   std::uint64_t levels = status_levels_;
   unsigned count = line::kStatusTelegramLevels;
@@ -221,11 +236,11 @@ void RingEmulator::on_status(const line::Telegram& telegram) {
       count = line::kDataTelegramLevels;
     }
     if (faults_.trailing_telegram) {
-      emit_levels(telegram.level, code_.levels_of(line::kDataTelegram | line::kControl, 0),
+      emit_levels(telegram_bit_, code_.levels_of(line::kDataTelegram | line::kControl, 0),
                   line::kDataTelegramLevels);
     }
   }
-  emit_levels(telegram.level, levels, count);
+  emit_levels(telegram_bit_, levels, count);
 }
 
 }  // namespace fieldproof::interbus

@@ -67,12 +67,11 @@ struct SeenCycle {
   bool check_good = false;
   bool status_clean = false;
   kernel::Time start{};
-  kernel::Time end{};  // of the status word
-  std::int64_t rate = 1;
+  kernel::Time end{};                // of the status word
   std::vector<std::uint8_t> octets;  // all data telegrams
   std::vector<std::uint8_t> headers;
-  std::vector<std::uint32_t> levels;  // where the telegrams begin, in levels behind the wave's start
-  std::size_t transfer_octets = 0;    // with the loopback word
+  std::vector<kernel::Time> starts;  // of its telegrams
+  std::size_t transfer_octets = 0;   // with the loopback word
 
   std::uint16_t word(std::size_t octet) const {
     return static_cast<std::uint16_t>(octets[octet] << 8 | octets[octet + 1]);
@@ -156,21 +155,26 @@ class RingEmulator : public segment::Station {
   static constexpr std::size_t kKept = 64;
 
   void on_telegram(const line::Waveform& wave, const line::Telegram& telegram);
-  void on_status(const line::Telegram& telegram);
+  void on_status();
   void begin_cycle(const line::Waveform& wave, const line::Telegram& telegram);
   void load_register(kernel::Time when);
   void on_transfer(const line::Telegram& telegram);
-  void on_check(const line::Waveform& wave, const line::Telegram& telegram);
+  void on_check(const line::Telegram& telegram);
   void finish_cycle();
   void latch(kernel::Time when);
   void apply_control_words();
   void emit(const line::Telegram& telegram, std::uint8_t octet);
-  // At a level of the reception, or right behind what was sent before.
-  void emit_levels(std::size_t level, std::uint64_t levels, unsigned count) {
-    out_.levels.place(std::max(level, out_.levels.size()), levels, count);
+  // The bit of what leaves at which a telegram belongs: counted from the start of the reception.
+  std::size_t bit_of(const line::Waveform& wave, std::uint32_t level) const;
+  // At a bit, or right behind what was sent before.
+  void emit_levels(std::size_t bit, std::uint64_t levels, unsigned count) {
+    const std::size_t at = std::max(bit, out_.levels.size());
+    out_.levels.make_room(at + count);
+    out_.levels.place(at, levels, count);
   }
   std::uint8_t shifted_octet(std::size_t index) const;
   void note_gap(kernel::Time start, kernel::Time last_end);
+  void begin_answer(kernel::Time from);
   void reset_stations();
   void close_ring();
   bool is_open() const;
@@ -222,7 +226,9 @@ class RingEmulator : public segment::Station {
   std::uint64_t cycle_count_ = 0;
   LineStatistics statistics_;
   kernel::Time last_end_{kernel::Duration::min()};
-  std::size_t wave_end_level_ = 0;
+  kernel::Time heard_from_{};     // start of the reception
+  std::size_t heard_bits_ = 0;    // end of its last telegram, counted from there
+  std::size_t telegram_bit_ = 0;  // begin of the one in work
   std::optional<kernel::Time> last_data_start_;
 };
 

@@ -51,10 +51,9 @@ void RingEmulator::begin_cycle(const line::Waveform& wave, const line::Telegram&
   seen.in_phase = true;
   seen.check_good = seen.status_clean = false;
   seen.start = seen.end = when;
-  seen.rate = wave.rate;
   seen.octets.clear();
   seen.headers.clear();
-  seen.levels.clear();
+  seen.starts.clear();
   seen.transfer_octets = 0;
 }
 
@@ -106,7 +105,7 @@ void RingEmulator::on_transfer(const line::Telegram& telegram) {
   ++transferred_;
 }
 
-void RingEmulator::on_check(const line::Waveform& wave, const line::Telegram& telegram) {
+void RingEmulator::on_check(const line::Telegram& telegram) {
   SeenCycle& seen = open_cycle();
   if (phase_ == Phase::transfer) {
     phase_ = Phase::check;
@@ -125,7 +124,7 @@ void RingEmulator::on_check(const line::Waveform& wave, const line::Telegram& te
   }
   emit(telegram, octet);
   if (n + 1 != kCheckOctets) return;
-  seen.end = wave.time_of(telegram.level + telegram.levels());
+  seen.end = kernel::level_time(seen.starts.back(), telegram.levels(), rules_.bit_rate);
   finish_cycle();
 }
 
@@ -177,7 +176,7 @@ void RingEmulator::apply_control_words() {
 void RingEmulator::emit(const line::Telegram& telegram, std::uint8_t octet) {
   const auto header = static_cast<std::uint8_t>(telegram.header & 7);
   std::uint64_t levels = code_.levels_of(header, octet);
-  if (!is_faulted_) return emit_levels(telegram.level, levels, line::kDataTelegramLevels);
+  if (!is_faulted_) return emit_levels(telegram_bit_, levels, line::kDataTelegramLevels);
   const auto index =
       static_cast<int>((header & line::kControl) != 0 ? transferred_ + checked_ - 1 : transferred_);
   for (const CycleFaults::Flip& flip : faults_.flips) {
@@ -189,9 +188,9 @@ void RingEmulator::emit(const line::Telegram& telegram, std::uint8_t octet) {
   if (faults_.header_flipped == index) levels ^= std::uint64_t{1} << (flag_level_ == 1 ? 2 : 1);
   if (faults_.dropped == index) return;
   if (faults_.inserted == index) {
-    emit_levels(telegram.level, code_.levels_of(header, kJunk), line::kDataTelegramLevels);
+    emit_levels(telegram_bit_, code_.levels_of(header, kJunk), line::kDataTelegramLevels);
   }
-  emit_levels(telegram.level, levels, line::kDataTelegramLevels);
+  emit_levels(telegram_bit_, levels, line::kDataTelegramLevels);
   if (faults_.duplicated == index) emit_levels(0, levels, line::kDataTelegramLevels);
 }
 

@@ -34,8 +34,24 @@ class Line : public segment::Port {
     }
     now_ += kernel::kMillisecond;
     returned.clear();
-    ring.receive(0, wave);
+    send(wave);
     return returned;
+  }
+
+  // How the master divides what it sends: levels to a bit, and bits to a waveform, which drift apart.
+  unsigned fineness = 1;
+  std::size_t bits_to_a_part = 100'000;
+  kernel::Duration drift{};
+
+  void send(const line::Waveform& wave) {
+    kernel::Duration late{};
+    for (std::size_t at = 0; at < wave.levels.size(); at += bits_to_a_part, late += drift) {
+      const std::size_t count = std::min(bits_to_a_part, wave.levels.size() - at);
+      line::Waveform part{wave.time_of(at) + late, wave.rate * fineness, {}};
+      for (std::size_t n = at; n < at + count; ++n) part.levels.append_fill(wave.levels[n], fineness);
+      ring.receive(0, part);
+    }
+    if (ring.next_time() != kernel::kNever) ring.on_time(ring.next_time());
   }
 
   void drive(line::Waveform& wave) override {
@@ -56,6 +72,37 @@ class Line : public segment::Port {
 };
 
 using Octets = std::vector<std::uint8_t>;
+
+TEST(RingEmulator, answers_the_same_however_the_master_divides_its_telegrams) {
+  const Octets octets{0xA5, 0x5A, 0x12, 0x34, 0x56, 0x78};
+  const auto answer = [&](unsigned fineness, std::size_t bits, kernel::Duration drift) {
+    Line line({{0x0203, 2, -1, false}});
+    line.fineness = fineness;
+    line.bits_to_a_part = bits;
+    line.drift = drift;
+    return line.cycle(octets);
+  };
+  const Octets expected = answer(1, 100'000, {});
+  ASSERT_EQ(expected.size(), octets.size() + 4);
+  EXPECT_EQ(answer(20, 100'000, {}), expected);
+  for (const std::size_t bits : {15U, 7U, 31U, 100U}) {
+    EXPECT_EQ(answer(1, bits, {}), expected) << bits;
+    EXPECT_EQ(answer(16, bits, {}), expected) << bits;
+    EXPECT_EQ(answer(1, bits, 30 * kernel::kNanosecond), expected) << bits;
+  }
+}
+
+TEST(RingEmulator, stands_telegrams_that_run_over_each_other) {
+  Line line({{0x0203, 2, -1, false}});
+  line.bits_to_a_part = 40;
+  line.drift = -7 * kernel::kMicrosecond;
+  for (int n = 0; n < 50; ++n) {
+    line.drift -= 333 * kernel::kNanosecond;
+    line.cycle({0xA5, 0x5A, 0x12, 0x34, 0x56, 0x78});
+  }
+  line.bits_to_a_part = 100'000;
+  EXPECT_EQ(line.cycle({0xA5, 0x5A, 0x12, 0x34, 0x56, 0x78}).size(), 10U);
+}
 
 TEST(RingEmulator, computes_the_published_check_value) {
   const Octets digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};

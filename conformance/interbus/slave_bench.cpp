@@ -110,6 +110,7 @@ void SlaveBench::find_way() {
     if (places[n].before != position_ - 1) continue;
     const int position = static_cast<int>(n) + 1;
     ring_.link_to(position).tap_driven(places[n].on_branch ? branch_ : remote_);
+    line_watch_.watch(ring_.link_to(position), segment_.trace());
     neighbour_words_.at(places[n].on_branch ? 1 : 0) = places[n].words;
   }
 }
@@ -124,6 +125,7 @@ void SlaveBench::install(const fault::Plan& plan) {
   ring_.link_to(position_).set_channel(plan.empty() ? static_cast<fault::Channel*>(&channel_) : &channels_);
   ring_.link_to(position_).tap_arrived(in_);
   ring_.link_from(position_).tap_driven(out_);
+  line_watch_.watch(ring_.link_from(position_), segment_.trace());
   kernel::Duration cables{};
   for (segment::Link* link : ring_.links()) cables += link->delay();
   // What went out comes back after the delays of all stations and cables; a cut telegram ends one later.

@@ -12,6 +12,7 @@
 
 #include "conformance/interbus/slave_line.hpp"
 #include "conformance/interbus/slave_model.hpp"
+#include "conformance/line_watch.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/channel_chain.hpp"
 #include "harness/fault/plan.hpp"
@@ -134,6 +135,9 @@ class SlaveBench final : private segment::Station {
   // A whole data cycle as the station in front of the IUT would send it, alone in the ring.
   line::Levels direct_data_cycle(std::span<const std::uint16_t> words, unsigned gap_bits);
 
+  // What the IUT drives, on all its lines.
+  const LineWatch& line_watch() const { return line_watch_; }
+
   // ---- views ----
   LineView& in() { return in_; }
   LineView& out() { return out_; }
@@ -184,6 +188,7 @@ class SlaveBench final : private segment::Station {
   LineView out_;
   LineView remote_;
   LineView branch_;
+  LineWatch line_watch_;
   kernel::Duration settling_{};
   std::uint16_t loopback_word_;
   std::vector<std::uint16_t> inputs_;

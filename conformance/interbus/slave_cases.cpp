@@ -87,7 +87,10 @@ judge::CaseResult run_slave_case(const SlaveCase& slave_case, const SlaveSetting
   CaseJudge judge(test_case);
   judge.use_clock([&] { return bench.now(); });
   judge.use_decode([&] { return bench.decode_lines(); });
-  judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) { slave_case.procedure(bench, j); });
+  judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
+    slave_case.procedure(bench, j);
+    bench.line_watch().judge(j);
+  });
   result.seed = setting.seed;
   result.fingerprint = bench.segment().trace().fingerprint();
   result.virtual_time = bench.now() - kernel::kStart;

@@ -163,6 +163,14 @@ void SendsDataAtPowerUp::on_time(kernel::Time now) {
   Slave::on_time(now);
 }
 
+void DrivesOverItself::receive(segment::PortIndex port, const line::Waveform& reception) {
+  Slave::receive(port, reception);
+  if (port != interbus::kFromUpstream) return;
+  line::Waveform wave{reception.end(), rules().bit_rate, {}};
+  line::shared_telegram_code(rules().telegram).append(wave.levels, 0, 0x00);
+  upstream_->drive(wave);
+}
+
 kernel::Time SendsDataAtPowerUp::next_time() const {
   return std::min(greeting_, Slave::next_time());
 }

@@ -432,6 +432,20 @@ class SendsDataAtPowerUp : public Slave {
   kernel::Time greeting_ = kernel::kStart + 10 * kernel::kMillisecond;
 };
 
+// Sends a status telegram of its own while the last telegram of a transmission still leaves.
+class DrivesOverItself : public Slave {
+ public:
+  using Slave::Slave;
+  void wire(const SlavePorts& ports, Terminals& terminals) override {
+    upstream_ = ports.upstream;
+    Slave::wire(ports, terminals);
+  }
+  void receive(segment::PortIndex port, const line::Waveform& reception) override;
+
+ private:
+  segment::Port* upstream_ = nullptr;
+};
+
 // ---- supervision, interfaces, messages ----
 
 class SilenceCountsDataOnly : public Slave {

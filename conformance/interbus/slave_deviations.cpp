@@ -106,6 +106,8 @@ std::vector<Row> telegram_rows() {
       {"does_not_retime", "", "sends low pulses that are 10 % of a bit too long", make<DoesNotRetime>},
       {"swallows_status_telegrams", "", "does not pass on status telegrams", make<SwallowsStatusTelegrams>},
       {"sends_data_at_power_up", "", "sends a data telegram 10 ms after power-up", make<SendsDataAtPowerUp>},
+      {"drives_over_itself", "", "begins a transmission before the one before has left",
+       make<DrivesOverItself>},
   };
 }
 

@@ -153,6 +153,15 @@ void status_inside_a_cycle(SlaveBench& bench, CaseJudge& judge) {
   }
 }
 
+// What is judged are the monitors of the bench.
+void transmissions_do_not_overlap(SlaveBench& bench, CaseJudge&) {
+  bench.bring_up();
+  for (int n = bench.volume(5, 50); n > 0; --n) {
+    bench.data_cycle(bench.random_words());
+    bench.status_telegrams(2);
+  }
+}
+
 }  // namespace
 
 std::vector<SlaveCase> slave_telegram_cases() {
@@ -270,6 +279,18 @@ std::vector<SlaveCase> slave_telegram_cases() {
         .catches = {{"status_telegram_shifts", "register_content_wrong"}},
         .not_applicable = for_inputs()},
        status_inside_a_cycle});
+  cases.push_back(
+      {{.id = "interbus/slave/telegram/transmissions_do_not_overlap",
+        .purpose = "monitor",
+        .requirement = "A slave begins a transmission when the one before it has left, on each of its lines.",
+        .reference = sources::derived("one telegram after the other on a segment"),
+        .stimulus = "An ID cycle, then data cycles with status telegrams between them.",
+        .expected = "The monitors of the lines that the slave drives see no overlap. They judge every other "
+                    "case too.",
+        .tags = {"must"},
+        .catches = {{"drives_over_itself", "transmissions_overlap"}},
+        .not_applicable = for_every_slave()},
+       transmissions_do_not_overlap});
   return cases;
 }
 

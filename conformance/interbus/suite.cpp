@@ -147,7 +147,10 @@ Outcome Run::run(const MasterCase& master_case) {
   CaseJudge judge(test_case_);
   judge.use_clock([&] { return bench.now(); });
   Outcome outcome;
-  outcome.result = judge.run_procedure([&](CaseJudge& j) { master_case.procedure(bench, j); });
+  outcome.result = judge.run_procedure([&](CaseJudge& j) {
+    master_case.procedure(bench, j);
+    bench.line_watch().judge(j);
+  });
   finish(outcome, bench.segment().trace(), bench.now());
   if (lines) keep(outcome, *lines);
   return outcome;
@@ -209,7 +212,10 @@ Outcome Run::run(const NetworkCase& network_case) {
   CaseJudge judge(test_case_);
   judge.use_clock([&] { return bench.segment().now(); });
   Outcome outcome;
-  outcome.result = judge.run_procedure([&](CaseJudge& j) { network_case.procedure(bench, j); });
+  outcome.result = judge.run_procedure([&](CaseJudge& j) {
+    network_case.procedure(bench, j);
+    bench.line_watch().judge(j);
+  });
   finish(outcome, bench.segment().trace(), bench.segment().now());
   if (lines) keep(outcome, *lines);
   return outcome;
