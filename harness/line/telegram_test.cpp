@@ -202,7 +202,8 @@ TEST(TelegramReceiver, AcceptsOnePerCentAndLosesSixPerCentOfRate) {
 
 TEST(TelegramReceiver, ATelegramMayGoOnAtAnotherRate) {
   Waveform wave{kernel::kStart, kBitRate, {}};
-  for (const std::uint8_t data : {0x55, 0x00, 0xFF, 0x33}) code().append(wave.levels, kDataTelegram, data);
+  const std::vector<std::uint8_t> sent{0x55, 0x00, 0xFF, 0x33};
+  for (const std::uint8_t data : sent) code().append(wave.levels, kDataTelegram, data);
   for (const std::int64_t rate : {kBitRate * 99 / 100, kBitRate * 101 / 100, kBitRate + 1}) {
     for (std::size_t cut = 1; cut < wave.levels.size(); ++cut) {
       const Waveform first{wave.start, wave.rate, wave.levels.slice(0, cut)};
@@ -212,7 +213,7 @@ TEST(TelegramReceiver, ATelegramMayGoOnAtAnotherRate) {
         EXPECT_EQ(seen.header, kDataTelegram);
         data.push_back(seen.data);
       }
-      EXPECT_EQ(data, (std::vector<std::uint8_t>{0x55, 0x00, 0xFF, 0x33})) << cut << " " << rate;
+      EXPECT_EQ(data, sent) << cut << " " << rate;
     }
   }
 }
