@@ -3,9 +3,19 @@
 #include <fmt/format.h>
 
 namespace fieldproof::conformance {
+namespace {
+
+constexpr kernel::Duration kWindow = 10 * kernel::kMillisecond;
+
+}  // namespace
+
+LineWatch::LineWatch(kernel::Duration shortest_transmission) {
+  rules_.window = kWindow;
+  rules_.most_transmissions = static_cast<std::size_t>(kWindow / shortest_transmission) + 1;
+}
 
 void LineWatch::watch(segment::Link& link, trace::Trace& trace) {
-  places_.push_back({link.name(), segment::LineMonitor({}, trace, link.trace_channel())});
+  places_.push_back({link.name(), segment::LineMonitor(rules_, trace, link.trace_channel())});
   link.tap_driven(places_.back().monitor);
 }
 
@@ -13,6 +23,13 @@ void LineWatch::judge(CaseJudge& judge) const {
   for (const Place& place : places_) {
     if (place.monitor.count() == 0) continue;
     const segment::Violation& first = place.monitor.violations().front();
+    if (first.kind == segment::ViolationKind::too_many) {
+      judge.fail("station_babbles",
+                 {{fmt::format("on the line to {}, at most {} transmissions in {}", place.line,
+                               rules_.most_transmissions, kernel::describe(rules_.window))},
+                  fmt::format("one more in {}", kernel::describe(first.measured)),
+                  first.time});
+    }
     judge.fail("transmissions_overlap",
                {{fmt::format("on the line to {}, each transmission begins when the one before has ended",
                              place.line)},

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocols/interbus/observation.hpp"
+#include "protocols/interbus/timing.hpp"
+
 namespace fieldproof::conformance {
 
 using interbus::CycleFaults;
@@ -17,7 +20,10 @@ std::vector<VirtualStation> paper_ring() {
 }
 
 MasterBench::MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume)
-    : make_master_(std::move(make_master)), volume_(volume), random_(seed) {}
+    : make_master_(std::move(make_master)),
+      volume_(volume),
+      random_(seed),
+      line_watch_(interbus::shortest_telegram(interbus::Rules{})) {}
 
 MasterBench::~MasterBench() = default;
 
@@ -35,6 +41,7 @@ void MasterBench::power_up(std::vector<VirtualStation> ring) {
   ring_ = places_.back().ring.get();
   const std::string number = places_.size() == 1 ? "" : fmt::format("#{}", places_.size());
   master_seat_ = segment_.attach(*master_, "master" + number);
+  master_place_ = segment_.trace().add_channel("master" + number);
   const std::size_t ring_seat = segment_.attach(*ring_, "ring" + number);
   segment::Link& out = segment_.connect("ring/in" + number, ring_seat, 0, kernel::Duration{});
   line_watch_.watch(out, segment_.trace());
@@ -114,6 +121,7 @@ bool MasterBench::run_until(const std::function<bool()>& condition, kernel::Dura
 }
 
 void MasterBench::on_cycle_end(kernel::Time now, bool data_cycle, bool accepted) {
+  segment_.trace().observe(master_place_, now, interbus::observed_cycle_end(data_cycle, accepted));
   ++finished_.count;
   if (data_cycle) ++finished_.data_count;
   if (!accepted) ++finished_.rejected_count;

@@ -113,6 +113,7 @@ class MasterBench {
   interbus::RingEmulator* ring_ = nullptr;
   segment::Link* back_ = nullptr;
   std::size_t master_seat_ = 0;
+  trace::Channel master_place_ = 0;
   FinishedCycle finished_;
   std::function<void()> on_cycle_;
   interbus::RingEmulator::Script script_;

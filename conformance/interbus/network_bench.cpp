@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "protocols/interbus/master.hpp"
+#include "protocols/interbus/observation.hpp"
+#include "protocols/interbus/timing.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -34,7 +36,8 @@ NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkPa
       places_(interbus::ring_order(network_)),
       volume_(volume),
       random_(seed),
-      listener_(network_.rules) {
+      listener_(network_.rules),
+      line_watch_(interbus::shortest_telegram(network_.rules)) {
   interbus::MasterConfiguration configuration = interbus::master_configuration(network_);
   configuration.rules = built_.rules;
   if (parts.make_master) {
@@ -45,6 +48,10 @@ NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkPa
   master_seat_ = segment_.attach(*master_, "master");
   ring_ = std::make_unique<interbus::Ring>(segment_, built_, master_seat_, parts.make_slave);
   master_->wire(ring_->out());
+  master_->on_cycle_end([&trace = segment_.trace(), place = segment_.trace().add_channel("master")](
+                            kernel::Time now, bool data_cycle, bool accepted) {
+    trace.observe(place, now, interbus::observed_cycle_end(data_cycle, accepted), 0);
+  });
   ring_->link_to(1).tap_driven(listener_);
   for (segment::Link* link : ring_->links()) line_watch_.watch(*link, segment_.trace());
   install(plan);
@@ -66,11 +73,22 @@ void NetworkBench::run_behind_sampling() {
 bool NetworkBench::bring_up() {
   master_->start(segment_.now());
   segment_.refresh(master_seat_);
-  for (int tries = 0; tries < 1000; ++tries) {
+  const kernel::Time end = segment_.now() + longest_recognition();
+  while (segment_.now() < end) {
     if (status().state == interbus::MasterState::run) return true;
     segment_.run_for(10 * kMillisecond);
   }
   return false;
+}
+
+// Recognition adds the stations one by one, each with a few ID cycles through all that are known.
+kernel::Duration NetworkBench::longest_recognition() const {
+  constexpr std::int64_t kCyclesPerStation = 8;
+  const auto stations = static_cast<std::int64_t>(places_.size());
+  const kernel::Duration longest_cycle =
+      interbus::structural_cycle_time(built_) +
+      interbus::frame_time(built_.rules, static_cast<unsigned>(2 * stations)) + kMillisecond;
+  return 10 * kernel::kSecond + kCyclesPerStation * stations * longest_cycle;
 }
 
 }  // namespace fieldproof::conformance

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -43,6 +44,12 @@ class NetworkBench {
   Count volume(Count quick, Count full) const {
     return volume_ == Volume::quick ? quick : full;
   }
+  // The same for cycles: no more of them than a minute has, but some.
+  std::int64_t cycle_volume(std::int64_t quick, std::int64_t full) const {
+    const std::int64_t in_a_minute =
+        60 * kernel::kSecond / std::max(status().cycle_time, kernel::kMicrosecond);
+    return std::min(volume(quick, full), std::max<std::int64_t>(in_a_minute, 5));
+  }
   kernel::Random& random() { return random_; }
   segment::Segment& segment() { return segment_; }
   interbus::MasterDevice& master() { return *master_; }
@@ -51,7 +58,8 @@ class NetworkBench {
   const LineWatch& line_watch() const { return line_watch_; }
   interbus::MasterStatus status() const { return master_->status(); }
 
-  // Powers up and waits until data cycles run; false when the network does not get there in ten seconds.
+  // Powers up and waits until data cycles run; false when the network does not get there in the time that its
+  // size allows.
   bool bring_up();
   void run_cycles(std::int64_t count) { segment_.run_for(status().cycle_time * count); }
 
@@ -74,6 +82,7 @@ class NetworkBench {
   };
 
   void install(const fault::Plan& plan);
+  kernel::Duration longest_recognition() const;
 
   interbus::NetworkDescription network_;
   interbus::NetworkDescription built_;

@@ -7,6 +7,7 @@
 #include "harness/kernel/error.hpp"
 #include "protocols/interbus/cycle_fields.hpp"
 #include "protocols/interbus/network.hpp"
+#include "protocols/interbus/timing.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -87,6 +88,7 @@ SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
       out_(train_.code(), network_.rules.bit_rate),
       remote_(train_.code(), network_.rules.bit_rate),
       branch_(train_.code(), network_.rules.bit_rate),
+      line_watch_(interbus::shortest_telegram(network_.rules)),
       loopback_word_(network_.rules.loopback_word),
       inputs_(words()) {
   if (setting.make_recorder) {

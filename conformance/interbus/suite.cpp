@@ -44,8 +44,9 @@ class Run {
       : test_case_(test_case), setup_(setup), own_(own) {
     if (!setup.network_file.empty()) network_ = interbus::NetworkDescription::load(setup.network_file);
     if (!setup.plan_file.empty()) {
-      plan_ = fault::load_plan(setup.plan_file,
-                               {.telegrams = &line::shared_telegram_code(interbus::Rules{}.telegram)});
+      plan_ = fault::load_plan(
+          setup.plan_file, {.telegrams = &line::shared_telegram_code(network_ ? network_->rules.telegram
+                                                                              : interbus::Rules{}.telegram)});
     }
     const std::string role = test_case.role();
     for (const Assignment& assignment : setup.implementations) {
@@ -61,6 +62,9 @@ class Run {
   Outcome run(const NetworkCase& network_case);
 
  private:
+  using MakeSlave =
+      std::function<std::unique_ptr<interbus::SlaveDevice>(const interbus::SlaveConfiguration&)>;
+  MakeSlave slave_maker(const std::string& uri) const;
   std::unique_ptr<interbus::SlaveDevice> make_slave(const interbus::SlaveConfiguration& configuration);
   std::unique_ptr<interbus::MasterDevice> make_master(const interbus::MasterConfiguration& configuration);
   NetworkParts network_parts(std::size_t stations);
@@ -78,16 +82,17 @@ class Run {
   DeviceRecording recording_;
 };
 
+Run::MakeSlave Run::slave_maker(const std::string& uri) const {
+  if (uri == "ref") return std::make_unique<interbus::Slave, const interbus::SlaveConfiguration&>;
+  if (uri == kOwn && own_.make_slave) return own_.make_slave;
+  return [name = deviation_of(uri, "slave")](const interbus::SlaveConfiguration& configuration) {
+    return make_slave_deviation(name, configuration);
+  };
+}
+
 std::unique_ptr<interbus::SlaveDevice> Run::make_slave(const interbus::SlaveConfiguration& configuration) {
   if (played_back_) return played_back_slave(*played_back_, played_back_devices_++);
-  std::unique_ptr<interbus::SlaveDevice> device;
-  if (assigned_.uri == "ref") {
-    device = std::make_unique<interbus::Slave>(configuration);
-  } else if (assigned_.uri == kOwn && own_.make_slave) {
-    device = own_.make_slave(configuration);
-  } else {
-    device = make_slave_deviation(deviation_of(assigned_.uri, "slave"), configuration);
-  }
+  std::unique_ptr<interbus::SlaveDevice> device = slave_maker(assigned_.uri)(configuration);
   return setup_.record ? recorded(std::move(device), recording_) : std::move(device);
 }
 
@@ -158,13 +163,15 @@ Outcome Run::run(const MasterCase& master_case) {
 
 NetworkParts Run::network_parts(std::size_t stations) {
   NetworkParts parts;
-  std::map<int, std::string> slaves;
+  std::map<int, MakeSlave> slaves;
   for (const Assignment& assignment : setup_.implementations) {
     if (assignment.uri == "ref") continue;
     if (assignment.role == "slave") {
-      slaves[assignment.position == 0 ? 1 : assignment.position] = deviation_of(assignment.uri, "slave");
+      slaves[assignment.position == 0 ? 1 : assignment.position] = slave_maker(assignment.uri);
     } else if (assignment.role == "master") {
-      parts.make_master = conformance::make_master(assignment.uri);
+      parts.make_master = assignment.uri == kOwn && own_.make_master
+                              ? own_.make_master
+                              : conformance::make_master(assignment.uri);
     } else {
       parts = deviating_network(deviation_of(assignment.uri, "network"), stations);
     }
@@ -176,7 +183,7 @@ NetworkParts Run::network_parts(std::size_t stations) {
   }
   parts.make_slave = [slaves](int position, const interbus::SlaveConfiguration& configuration) {
     const auto assigned = slaves.find(position);
-    return assigned == slaves.end() ? nullptr : make_slave_deviation(assigned->second, configuration);
+    return assigned == slaves.end() ? nullptr : assigned->second(configuration);
   };
   return parts;
 }

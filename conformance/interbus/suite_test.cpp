@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -123,6 +124,93 @@ TEST(InterbusSuite, AStationOfTheCallersIsJudged) {
   const TestCase& test_case = own->cases().front();
   EXPECT_EQ(own->run(test_case, setup_of("slave", "own")).result.verdict, judge::Verdict::pass);
   EXPECT_EQ(made, 1);
+}
+
+// A file that lives as long as the test needs it.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::string_view text)
+      : path_(std::filesystem::path(testing::TempDir()) / ("suite_" + std::to_string(getpid()) + ".json")) {
+    std::ofstream(path_) << text;
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() { std::filesystem::remove(path_); }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST(InterbusSuite, AStationOfTheCallersTakesPartInEveryCaseThatHasItsRole) {
+  const auto own = interbus_suite({.make_slave = [](const interbus::SlaveConfiguration& configuration) {
+    return std::make_unique<interbus::Slave>(configuration);
+  }});
+  for (const TestCase& test_case : own->cases()) {
+    const bool has_role = test_case.role() == "slave" || std::ranges::count(test_case.parts, "slave") > 0;
+    if (!has_role || is_canary(test_case)) continue;
+    EXPECT_EQ(own->run(test_case, setup_of("slave", "own")).result.verdict, judge::Verdict::pass)
+        << test_case.id;
+  }
+}
+
+// The cycle is that of the network's frame, whichever of the published formulas it names.
+TEST(InterbusSuite, TheCycleTimeIsJudgedByTheFrameWhateverFormulaIsNamed) {
+  const TestCase& test_case = case_of("interbus/network/timing/cycle_time_is_that_of_the_formula");
+  for (const std::string formula : {"f1", "f2", "f3", "f4", "f5"}) {
+    for (const std::string rules : {R"({})", R"({"end_telegrams": 2})", R"({"software_time": "700 us"})"}) {
+      const TemporaryFile network(R"({"name": "n", "bit_rate": "500 kbit/s", "formula": ")" + formula +
+                                  R"(", "rules": )" + rules +
+                                  R"(, "stations": [{"name": "a", "id_code": "0x0203"}]})");
+      conformance::Setup setup = setup_of("", "");
+      setup.network_file = network.path();
+      const Outcome outcome = suite().run(test_case, setup);
+      EXPECT_EQ(outcome.result.verdict, judge::Verdict::pass) << formula << " " << rules;
+    }
+  }
+}
+
+std::string refusal_of_plan(const std::string& text) {
+  const TemporaryFile plan(text);
+  conformance::Setup setup = setup_of("", "");
+  setup.plan_file = plan.path();
+  try {
+    suite().run(case_of("interbus/network/timing/cycles_do_not_jitter"), setup);
+  } catch (const kernel::Error& error) {
+    EXPECT_EQ(error.exit_code(), 65);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(InterbusSuite, APlanThatNamesWhatARingDoesNotHaveIsRefused) {
+  const auto with = [](const std::string& when) {
+    return R"({"rules": [{"when": {)" + when + R"(}, "effect": {"flip": {}}, "times": 1}]})";
+  };
+  EXPECT_NE(refusal_of_plan(with(R"("receiver": "slave 1 in")")).find("slave@1/in"), std::string::npos);
+  EXPECT_NE(refusal_of_plan(with(R"("field": "fcs")")).find("field \"fcs\""), std::string::npos);
+  EXPECT_NE(refusal_of_plan(with(R"("frame": "data")")).find("data_cycle"), std::string::npos);
+  EXPECT_NE(refusal_of_plan(with(R"("after": {"observation": "outputs"})")).find("\"output\""),
+            std::string::npos);
+  EXPECT_EQ(refusal_of_plan(with(R"("receiver": "slave@*", "field": "check", "frame": "data_cycle")")), "");
+}
+
+TEST(InterbusSuite, ARuleWaitsForWhatTheUpperTesterSees) {
+  const TemporaryFile plan(R"({"rules": [{"when": {"receiver": "slave@1/in", "field": "check",
+      "after": {"observation": "data_cycle_accepted", "nth": 10}}, "effect": {"flip": {}}, "times": 1}]})");
+  conformance::Setup setup = setup_of("", "");
+  const TestCase& test_case = case_of("interbus/network/exchange/nothing_is_rejected_without_faults");
+  EXPECT_EQ(suite().run(test_case, setup).result.verdict, judge::Verdict::pass);
+  setup.plan_file = plan.path();
+  EXPECT_EQ(suite().run(test_case, setup).result.verdict, judge::Verdict::fail);
+}
+
+TEST(InterbusSuite, TheFingerprintKnowsTheOutputs) {
+  const TestCase& test_case = case_of("interbus/slave/frame_check/leaves_for_what_the_slave_itself_sent");
+  const auto fingerprint = [&](const std::string& uri) {
+    return suite().run(test_case, setup_of("slave", uri)).result.fingerprint;
+  };
+  EXPECT_NE(fingerprint("deviant:output_octets_swapped"), fingerprint("ref"));
 }
 
 TEST(InterbusSuite, WhatCannotBeServedIsRefusedWithNearNames) {

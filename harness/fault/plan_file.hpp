@@ -12,7 +12,7 @@
 // is wrong throws kernel::Error(configuration) with file, line, JSON pointer and what would be right.
 //
 //   { "rules": [ { "name": "third data cycle, FCS of slave 2",
-//                  "when": { "receiver": "slave 2 in", "frame": "data_cycle", "frame_number": 3,
+//                  "when": { "receiver": "slave@2/in", "frame": "data_cycle", "frame_number": 3,
 //                            "field": "fcs", "bit": 0 },
 //                  "effect": { "flip": {} },
 //                  "times": 1 } ] }

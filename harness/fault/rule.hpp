@@ -159,7 +159,7 @@ bool fits(std::string_view pattern, std::string_view name);
 // The word of an effect in plans and traces: "flip", "force", "delay", "drop", "repeat", "insert", "mute".
 std::string_view word_of(const Effect& effect);
 
-// Rules as tests write them: `plan.add(flip_level("slave 2 in", "data", 3))`.
+// Rules as tests write them: `plan.add(flip_level("slave@2/in", "data", 3))`.
 Rule flip_level(std::string receiver, std::string field, std::uint32_t level);
 Rule drop_frame(std::string receiver, std::string frame_kind, std::uint64_t number);
 Rule mute(std::string receiver, kernel::Time from, kernel::Duration duration);

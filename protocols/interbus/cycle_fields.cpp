@@ -33,6 +33,14 @@ void CycleFields::locate(const line::Waveform& sent, std::vector<fault::Span>& s
   code_.decode(sent.levels, 0, [&](const line::Telegram& telegram) { add(telegram, spans); });
 }
 
+std::vector<std::string> CycleFields::frame_kinds() {
+  return {"data_cycle", "id_cycle", "status"};
+}
+
+std::vector<std::string> CycleFields::fields() {
+  return {"start", "select", "control", "flag", "stop", "data", "id", "lbw", "check", "status_word", "end"};
+}
+
 std::string_view CycleFields::data_field(bool is_id) const {
   if (is_checking_) {
     if (check_unit_ < 2) return "check";

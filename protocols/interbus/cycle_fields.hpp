@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "harness/fault/fields.hpp"
 #include "harness/line/telegram_receiver.hpp"
@@ -26,6 +28,10 @@ class CycleFields final : public fault::FieldMap {
   };
 
   CycleFields(const Rules& rules, InFront in_front);
+
+  // Every name that `locate` can give.
+  static std::vector<std::string> frame_kinds();
+  static std::vector<std::string> fields();
 
   void locate(const line::Waveform& sent, std::vector<fault::Span>& spans) override;
 

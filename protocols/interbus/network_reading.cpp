@@ -222,7 +222,7 @@ NetworkDescription read_shape(const Value& root) {
     read_bit_rate(object.required("bit_rate"), network.rules);
     if (const auto formula = object.optional("formula")) network.formula = read_formula(*formula);
     if (const auto time = object.optional("cycle_time")) {
-      network.cycle_time = time->as_duration(kernel::kMicrosecond, 1000 * kernel::kSecond);
+      network.cycle_time = time->as_duration(kernel::kMicrosecond, 10 * kernel::kSecond);
     }
     if (const auto rules = object.optional("rules")) {
       config::read_object(*rules, [&](ObjectReader& members) {
@@ -232,7 +232,7 @@ NetworkDescription read_shape(const Value& root) {
         read_word_rules(members, network.rules);
       });
     }
-    for (const Value& station : object.required("stations").as_array()) {
+    for (const Value& station : object.required("stations").as_array(1)) {
       network.stations.push_back(read_station(station));
     }
     if (const auto copy = object.optional("copy")) {

@@ -221,16 +221,19 @@ TEST(NetworkErrorTest, DefaultIsBlamedOnItsObject) {
 }
 
 TEST(NetworkErrorTest, MisspelledKeysAndChecksNameTheirNeighbours) {
-  EXPECT_NE(refusal_of(with_stations("", R"(, "formla": "f1")")).find("did you mean \"formula\""),
+  EXPECT_NE(refusal_of(with_stations(R"({"name": "a", "id_code": "0x0203"})", R"(, "formla": "f1")"))
+                .find("did you mean \"formula\""),
             std::string::npos);
-  EXPECT_NE(refusal_of(with_stations("", R"(, "rules": {"frame_check": "CRC-16/IBM-3470"})"))
+  EXPECT_NE(refusal_of(with_stations(R"({"name": "a", "id_code": "0x0203"})",
+                                     R"(, "rules": {"frame_check": "CRC-16/IBM-3470"})"))
                 .find("CRC-16/IBM-3740"),
             std::string::npos);
 }
 
 TEST(NetworkReadingTest, RulesAreTakenAndTheOthersKept) {
   const auto network = read_text(with_stations(
-      "", R"(, "cycle_time": "860 us", "rules": {"telegram": {"header": ["flag", "select", "control"],
+      R"({"name": "a", "id_code": "0x0203"})",
+      R"(, "cycle_time": "860 us", "rules": {"telegram": {"header": ["flag", "select", "control"],
       "data_flag_level": false}, "silence_limit": "30 ms", "loopback_word": "0x1234"})"));
   EXPECT_EQ(network.cycle_time, 860 * kernel::kMicrosecond);
   EXPECT_EQ(network.rules.telegram.header[0], line::HeaderLevel::flag);
@@ -243,7 +246,8 @@ TEST(NetworkReadingTest, RulesAreTakenAndTheOthersKept) {
 }
 
 TEST(NetworkReadingTest, FastRateShortensTheDistance) {
-  const auto network = read_text(R"({"name": "x", "bit_rate": "2 Mbit/s", "stations": []})");
+  const auto network = read_text(
+      R"({"name": "x", "bit_rate": "2 Mbit/s", "stations": [{ "name": "a", "id_code": "0x0203" }]})");
   EXPECT_EQ(network.rules.bit_rate, 2'000'000);
   EXPECT_EQ(network.rules.max_distance_m, 150U);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/kernel/check.hpp"
+#include "protocols/interbus/observation.hpp"
 #include "protocols/interbus/slave.hpp"
 
 namespace fieldproof::interbus {
@@ -38,9 +39,15 @@ void Ring::add_station(const NetworkDescription& network, const RingPlace& place
   const int position = static_cast<int>(slaves_.size()) + 1;
   std::unique_ptr<SlaveDevice> device = make_slave ? make_slave(position, configuration) : nullptr;
   if (device == nullptr) device = std::make_unique<Slave>(configuration);
-  const std::size_t seat = segment_.attach(*device, "slave@" + std::to_string(position));
+  const std::string station = "slave@" + std::to_string(position);
+  const std::size_t seat = segment_.attach(*device, station);
   slaves_.push_back(
       {std::move(device), configuration, TerminalBlock(place.words), SlavePorts{}, seat, word_count_});
+  slaves_.back().terminals.on_change(
+      [&trace = segment_.trace(),
+       place = segment_.trace().add_channel(station)](const TerminalBlock::Change& change) {
+        trace.observe(place, change.when, kOutputChanged, std::uint64_t{change.word} << 16 | change.after);
+      });
   word_count_ += place.words;
 }
 
@@ -99,7 +106,17 @@ std::vector<segment::Link*> Ring::links() {
   return all;
 }
 
+fault::KnownNames Ring::known_names() {
+  fault::KnownNames known;
+  for (const segment::Link* link : links()) known.receivers.push_back(link->name());
+  known.frame_kinds = CycleFields::frame_kinds();
+  known.fields = CycleFields::fields();
+  for (const std::string_view name : kObservations) known.observations.emplace_back(name);
+  return known;
+}
+
 void Ring::install(fault::InstalledPlan& plan) {
+  fault::expect_known_names(plan.plan(), known_names());
   const Rules& rules = slaves_.front().configuration.rules;
   for (const Receiver& receiver : receivers()) {
     receiver.link->set_channel(plan.channel_for(receiver.link->name(), receiver.link->trace_channel(),

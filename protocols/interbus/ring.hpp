@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/fault/known_names.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/interbus/cycle_fields.hpp"
@@ -16,6 +17,9 @@
 // The stations of a network, wired to a ring: for each station a forward link to it and a return link from
 // it, both as long as its cable. What sits at the master's place (a master, or a lower tester that plays one)
 // is attached to the segment by the caller and wired with `out()`.
+//
+// What the trace is told: each change of an output, as "output" at "slave@3" with word * 65536 + value, at
+// the instant of the change.
 //
 // Receivers, and so the links to them, are named "slave@3/in", "slave@3/return" (from behind OUT1),
 // "slave@3/branch_return" (from behind OUT2) and "master/in"; positions count from 1 in ring order.
@@ -52,7 +56,7 @@ class Ring {
   std::vector<segment::Link*> links();
 
   // Puts the channels of a fault plan on the receivers that its rules can mean. The plan must outlive the
-  // ring.
+  // ring. Throws kernel::Error(configuration) for a rule that names what a ring does not have.
   void install(fault::InstalledPlan& plan);
 
   // Positions of the image words: first word of a station in the master's images.
@@ -76,6 +80,7 @@ class Ring {
     segment::Link* back = nullptr;
   };
 
+  fault::KnownNames known_names();
   static std::size_t index(int position) { return static_cast<std::size_t>(position - 1); }
   void add_station(const NetworkDescription& network, const RingPlace& place, const MakeSlave& make_slave);
   void find_last_behind(const std::vector<RingPlace>& places);

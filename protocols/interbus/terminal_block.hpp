@@ -42,6 +42,8 @@ class TerminalBlock : public Terminals {
   // Changes of outputs since `forget_changes`, at most kMostChanges of them; and how often any output was
   // written, changed or not.
   static constexpr std::size_t kMostChanges = 65'536;
+  // Called at each change as it is written.
+  void on_change(std::function<void(const Change&)> hook) { on_change_ = std::move(hook); }
   const std::vector<Change>& changes() const { return changes_; }
   void forget_changes() { changes_.clear(); }
   std::uint64_t write_count() const { return write_count_; }
@@ -56,7 +58,9 @@ class TerminalBlock : public Terminals {
     std::uint16_t& held = outputs_.at(word);
     writes_[word] = {when, held};
     if (held == value) return;
-    if (changes_.size() < kMostChanges) changes_.push_back({when, word, held, value});
+    const Change change{when, word, held, value};
+    if (changes_.size() < kMostChanges) changes_.push_back(change);
+    if (on_change_) on_change_(change);
     held = value;
   }
   bool has_peripheral_fault(kernel::Time when) override {
@@ -79,6 +83,7 @@ class TerminalBlock : public Terminals {
   Condition peripheral_fault_;
   Condition reconfiguration_;
   std::vector<Change> changes_;
+  std::function<void(const Change&)> on_change_;
   std::uint64_t write_count_ = 0;
   kernel::Time last_write_{};
 };

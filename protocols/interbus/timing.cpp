@@ -103,6 +103,10 @@ std::string_view name(Formula formula) {
   return kFormulas[static_cast<std::size_t>(formula)].name;
 }
 
+Duration shortest_telegram(const Rules& rules) {
+  return kernel::levels_duration(line::kStatusTelegramLevels, rules.bit_rate);
+}
+
 Duration frame_time(const Rules& rules, unsigned user_octets) {
   const std::int64_t telegrams = kFrameInformationOctets + user_octets + rules.end_telegrams;
   return bits_duration(telegrams * (1'000 * kDataTelegramBits + rules.telegram_gap_millibits),

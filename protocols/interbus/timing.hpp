@@ -73,6 +73,9 @@ std::string_view name(Formula formula);
 // loopback word, user octets, check and status word, end telegrams.
 kernel::Duration frame_time(const Rules& rules, unsigned user_octets);
 
+// A status telegram.
+kernel::Duration shortest_telegram(const Rules& rules);
+
 // From the master around the ring and back, without the registers: retiming of the stations, and the cable
 // in both directions.
 kernel::Duration ring_delay(const NetworkDescription& network);

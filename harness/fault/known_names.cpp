@@ -1,0 +1,47 @@
+#include "harness/fault/known_names.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "harness/config/nearest.hpp"
+#include "harness/kernel/error.hpp"
+
+namespace fieldproof::fault {
+namespace {
+
+class Check {
+ public:
+  Check(const KnownNames& known, std::size_t rule) : known_(known), rule_(rule) {}
+
+  void when(const When& when) const {
+    one("receiver", when.receiver, known_.receivers);
+    one("frame", when.frame_kind, known_.frame_kinds);
+    one("field", when.field, known_.fields);
+    if (when.after) one("observation", when.after->observation, known_.observations);
+    for (const auto* parts : {&when.all_of, &when.any_of, &when.none_of}) {
+      for (const When& part : *parts) this->when(part);
+    }
+  }
+
+ private:
+  void one(std::string_view what, const std::string& pattern, const std::vector<std::string>& names) const {
+    if (std::ranges::any_of(names, [&](const std::string& name) { return fits(pattern, name); })) return;
+    throw kernel::Error(
+        kernel::ErrorKind::configuration,
+        fmt::format("/rules/{} of the plan: there is no {} \"{}\" here; the nearest are \"{}\"", rule_, what,
+                    pattern, fmt::join(config::nearest(pattern, names, 3), "\", \"")));
+  }
+
+  const KnownNames& known_;
+  std::size_t rule_;
+};
+
+}  // namespace
+
+void expect_known_names(const Plan& plan, const KnownNames& known) {
+  for (std::size_t n = 0; n < plan.rules().size(); ++n) Check(known, n).when(plan.rules()[n].when);
+}
+
+}  // namespace fieldproof::fault
