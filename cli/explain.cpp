@@ -40,6 +40,10 @@ int explain(Session& session) {
   field("purpose", test_case.purpose);
   field("requirement", test_case.requirement);
   field("source", source_text(test_case.reference));
+  for (const conformance::Detail& detail : test_case.details) {
+    field("source of a detail", fmt::format("{}\n  with the findings {}", source_text(detail.reference),
+                                            fmt::join(detail.reasons, ", ")));
+  }
   field("stimulus", test_case.stimulus);
   field("expected", test_case.expected);
   field("tags", fmt::format("{}", fmt::join(test_case.tags, " ")));

@@ -26,7 +26,7 @@ Row row_of(const conformance::TestCase& test_case, const std::optional<judge::Pi
   row.json["id"] = test_case.id;
   row.json["purpose"] = test_case.purpose;
   row.json["requirement"] = test_case.requirement;
-  row.json["verified"] = judge::is_verified(test_case.reference.standing);
+  row.json["verified"] = judge::is_verified(test_case.rests_on().standing);
   row.json["tags"] = test_case.tags;
   row.json["catches"] = ordered_json::array();
   for (const conformance::Catch& caught : test_case.catches) row.json["catches"].push_back(caught.deviation);

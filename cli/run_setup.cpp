@@ -60,9 +60,10 @@ std::string suite_version(const conformance::Catalogue& catalogue) {
   Hash hash;
   for (const conformance::Entry& entry : catalogue.entries()) {
     const conformance::TestCase& test_case = *entry.test_case;
+    const judge::Reference rests_on = test_case.rests_on();
     for (const std::string* text :
          {&test_case.id, &test_case.purpose, &test_case.requirement, &test_case.stimulus, &test_case.expected,
-          &test_case.reference.source, &test_case.reference.clause}) {
+          &rests_on.source, &rests_on.clause}) {
       hash.add(*text);
     }
     for (const conformance::Catch& caught : test_case.catches)

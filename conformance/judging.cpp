@@ -9,7 +9,7 @@ void CaseJudge::add(judge::Verdict verdict, std::string_view reason, Sighting si
   finding.verdict = verdict;
   finding.reason = reason;
   finding.requirement = test_case_.requirement;
-  finding.reference = test_case_.reference;
+  finding.reference = test_case_.reference_of(reason);
   finding.expected = std::move(sighting.expected);
   finding.actual = std::move(sighting.actual);
   if (sighting.time) {
@@ -60,12 +60,14 @@ judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>
   result.id = test_case_.id;
   result.purpose = test_case_.purpose;
   result.requirement = test_case_.requirement;
-  result.reference = test_case_.reference;
+  result.reference = test_case_.rests_on();
   result.verdict = judge::Verdict::pass;
   for (const judge::Finding& finding : findings_) {
     if (finding.verdict <= result.verdict) continue;
     result.verdict = finding.verdict;
     result.reason = finding.reason;
+    // A warning ended nothing: the rest of the case holds, so its verdict rests on the rest, too.
+    if (finding.verdict > judge::Verdict::warn) result.reference = finding.reference;
   }
   result.findings = std::move(findings_);
   result.measurements = std::move(measurements_);

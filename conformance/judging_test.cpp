@@ -57,6 +57,44 @@ TEST(CaseJudge, ends_at_the_first_failure) {
   EXPECT_EQ(finding.requirement, "an example holds");
 }
 
+// The example, with a part of it that nobody could verify.
+TestCase example_with_detail() {
+  TestCase test_case = example();
+  test_case.details = {{{"our choice", "the coding", judge::Standing::own}, {"not_marked", "not_told"}}};
+  return test_case;
+}
+
+judge::CaseResult result_of(const TestCase& test_case, const std::function<void(CaseJudge&)>& procedure) {
+  CaseJudge judge(test_case);
+  return judge.run_procedure(procedure);
+}
+
+TEST(CaseJudge, a_finding_rests_on_the_detail_that_its_reason_belongs_to) {
+  const TestCase test_case = example_with_detail();
+  for (const std::string_view reason : {"not_marked", "not_told"}) {
+    const auto result = result_of(test_case, [&](CaseJudge& j) { j.fail(reason, {{"a mark"}, "none"}); });
+    EXPECT_EQ(result.findings.at(0).reference.source, "our choice");
+    EXPECT_EQ(result.reference.source, "our choice");
+    EXPECT_FALSE(judge::is_verified(result.reference.standing));
+  }
+  const auto other = result_of(test_case, [](CaseJudge& j) { j.fail("lost", {{"all"}, "one less"}); });
+  EXPECT_EQ(other.findings.at(0).reference.source, "a source");
+  EXPECT_EQ(other.reference.standing, judge::Standing::calc);
+}
+
+TEST(CaseJudge, a_pass_rests_on_every_detail_and_so_does_one_with_a_warning) {
+  const TestCase test_case = example_with_detail();
+  const auto passed = result_of(test_case, [](CaseJudge&) {});
+  EXPECT_EQ(passed.reference.source, "a source");
+  EXPECT_EQ(passed.reference.clause, "a clause; our choice: the coding");
+  EXPECT_EQ(passed.reference.standing, judge::Standing::own);
+  const auto warned = result_of(test_case, [](CaseJudge& j) { j.warn("slow", {{"fast"}, "slow"}); });
+  EXPECT_EQ(warned.verdict, judge::Verdict::warn);
+  EXPECT_EQ(warned.reference.standing, judge::Standing::own);
+  EXPECT_EQ(warned.findings.at(0).reference.standing, judge::Standing::calc);
+  EXPECT_EQ(result_of(example(), [](CaseJudge&) {}).reference.standing, judge::Standing::calc);
+}
+
 TEST(CaseJudge, describes_only_what_does_not_hold) {
   const TestCase test_case = example();
   CaseJudge judge(test_case);

@@ -1,6 +1,7 @@
 #include "conformance/test_case.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace fieldproof::conformance {
 
@@ -8,6 +9,19 @@ std::string TestCase::role() const {
   const std::size_t first = id.find('/');
   if (first == std::string::npos) return {};
   return id.substr(first + 1, id.find('/', first + 1) - first - 1);
+}
+
+const judge::Reference& TestCase::reference_of(std::string_view reason) const {
+  for (const Detail& detail : details) {
+    if (std::ranges::find(detail.reasons, reason) != detail.reasons.end()) return detail.reference;
+  }
+  return reference;
+}
+
+judge::Reference TestCase::rests_on() const {
+  judge::Reference all = reference;
+  for (const Detail& detail : details) all = judge::resting_on_both(std::move(all), detail.reference);
+  return all;
 }
 
 bool has_tag(const TestCase& test_case, std::string_view tag) {

@@ -22,11 +22,19 @@ struct Catch {
   std::string reason;
 };
 
+// A part of what a case requires that has a source of its own, usually a weaker one than the case: findings
+// with one of these reasons rest on it instead.
+struct Detail {
+  judge::Reference reference;
+  std::vector<std::string> reasons;
+};
+
 struct TestCase {
   std::string id;       // "interbus/slave/data_cycle/weight_four_codeword_is_accepted"; never reused
   std::string purpose;  // the label of the test purpose, "IS-14"
   std::string requirement;
   judge::Reference reference;
+  std::vector<Detail> details{};
   std::string stimulus;
   std::string expected;
   std::vector<std::string> tags;  // "must", "timing", "long", "canary" ...
@@ -37,6 +45,11 @@ struct TestCase {
   std::function<std::optional<std::string>(const judge::Pics&)> not_applicable;
 
   std::string role() const;  // second part of the id
+  // What a finding with this reason rests on.
+  const judge::Reference& reference_of(std::string_view reason) const;
+  // What a pass rests on: the case's own source and every detail, because a failure in either would be one of
+  // the case. The weakest standing decides.
+  judge::Reference rests_on() const;
 };
 
 bool has_tag(const TestCase& test_case, std::string_view tag);

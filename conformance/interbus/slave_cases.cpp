@@ -144,4 +144,26 @@ judge::Reference own(std::string place) {
 }
 }  // namespace sources
 
+namespace details {
+Detail check_coding() {
+  return {sources::own("bit order and final XOR of the frame check"), {"check_wrong"}};
+}
+Detail status_coding() {
+  return {sources::own("a clean status word is 0000h and passes as it came"), {"status_word_wrong"}};
+}
+Detail mark(std::vector<std::string> reasons) {
+  return {sources::own("coding of the mark in the status word; that there is one is from memory"),
+          std::move(reasons)};
+}
+Detail message(std::vector<std::string> reasons) {
+  return {sources::own("place of the message bit of a check error; that there is one is from memory"),
+          std::move(reasons)};
+}
+std::vector<Detail> answer() {
+  return {{sources::own("coding of SL and CR in the check phase and in ID cycles"), {"header_wrong"}},
+          check_coding(),
+          status_coding()};
+}
+}  // namespace details
+
 }  // namespace fieldproof::conformance

@@ -238,6 +238,7 @@ std::vector<SlaveCase> slave_data_cycle_cases() {
             "The loopback word is data for a slave: whatever its value, it passes unchanged behind "
             "the slave's own register.",
         .reference = sources::park("section 2.2: the cycle ends when the loopback word has returned"),
+        .details = details::answer(),
         .stimulus = "Valid data cycles with each of the 65 536 loopback words.",
         .expected =
             "Each loopback word leaves as it came, with the register in front of it and a right check.",
@@ -251,6 +252,7 @@ std::vector<SlaveCase> slave_data_cycle_cases() {
         .requirement = "Outputs show exactly the words of the cycle, and the cycle carries exactly the words "
                        "at the inputs, in both cases with the octets in order.",
         .reference = sources::park("section 2.2: full duplex exchange of process data"),
+        .details = details::answer(),
         .stimulus =
             "Valid data cycles with walking ones and zeros, 0000h, FFFFh and a pseudo-random sequence "
             "of 32 767 words, other words in each direction.",
@@ -265,6 +267,7 @@ std::vector<SlaveCase> slave_data_cycle_cases() {
         .purpose = "IS-39",
         .requirement = "Cycles that follow each other without any pause are each accepted and answered.",
         .reference = sources::derived("one cycle is independent of the one before it"),
+        .details = details::answer(),
         .stimulus = "1 000 000 valid data cycles with pseudo-random words, no idle bit between telegrams or "
                     "cycles.",
         .expected =

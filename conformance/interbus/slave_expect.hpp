@@ -36,8 +36,9 @@ void expect_marked(SlaveBench& bench, CaseJudge& judge, std::size_t n);
 // Cycle n was rejected: left marked, no output has changed (`output_changed_by_rejected_cycle`).
 void expect_rejected(SlaveBench& bench, CaseJudge& judge, std::size_t n);
 // Sends a clean cycle with words that differ from the outputs in each bit of one word, and requires its
-// answer and its words at the outputs.
+// words at the outputs (`reason`) and a clean status word (`status_word_wrong`).
 void expect_good_cycle(SlaveBench& bench, CaseJudge& judge, std::string_view reason);
+void expect_clean_status(SlaveBench& bench, CaseJudge& judge, const CycleOnLine& out);
 
 // The data cycles of the last train were each latched, in order and in time; `words` are theirs, one behind
 // the other. `valid_cycle_rejected`, `outputs_changed_before_check`, `outputs_latched_late`. Forgets changes.

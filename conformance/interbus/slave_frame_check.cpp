@@ -240,13 +240,8 @@ void weight_four_code_words_are_accepted(SlaveBench& bench, CaseJudge& judge) {
     const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
     if (!in || !out) continue;
     const std::vector<std::uint16_t> arrived = words_held(in->telegrams.first(in->octets), bench.words());
-    judge.expect(out->status() == bench.rules().status_clean, "weight_four_code_word_rejected", [&] {
-      return Sighting{.expected = {"the cycle is accepted: what arrived is a code word"},
-                      .actual = fmt::format("status word {:04X}h", out->status()),
-                      .time = bench.out().start_of(out->telegrams[out->octets + 2]),
-                      .first_difference = text_of(Pattern(pattern))};
-    });
     expect_outputs(bench, judge, arrived, "weight_four_code_word_rejected");
+    expect_clean_status(bench, judge, *out);
   }
 }
 
@@ -287,9 +282,9 @@ void zeros_do_not_hide_a_lost_octet(SlaveBench& bench, CaseJudge& judge) {
   expect_zeros(octets - 1, octets, "lost_zero_octet_accepted");
   expect_zeros(octets + 1, octets, "added_zero_octet_accepted");
   drive_zeros(bench, octets, check_of_zeros(bench, octets));
-  judge.expect(left_clean(bench), "valid_cycle_rejected", "a cycle of zeros with its own check is accepted",
-               "its status word did not leave clean");
   expect_outputs(bench, judge, std::vector<std::uint16_t>(bench.words()), "valid_cycle_rejected");
+  judge.expect(left_clean(bench), "status_word_wrong", "a cycle of zeros with its own check is accepted",
+               "its status word did not leave clean");
 }
 
 // ---- status word ----
@@ -335,6 +330,7 @@ std::vector<SlaveCase> slave_frame_check_cases() {
             "In the check phase a slave sends the check of the bits that it sent itself, not of those "
             "that it received: polynomial x^16 + x^12 + x^5 + 1, register preset with ones.",
         .reference = per_segment,
+        .details = {details::check_coding()},
         .stimulus = "Valid data and ID cycles with random inputs and words, one after the other.",
         .expected = "The check that leaves equals the check, computed bit by bit, of the octets that left.",
         .tags = {"must"},
@@ -350,8 +346,8 @@ std::vector<SlaveCase> slave_frame_check_cases() {
         .requirement =
             "A slave whose received check does not fit what it received marks the status word that "
             "passes, takes nothing over, and tells the error in the next ID cycle.",
-        .reference = sources::practical_guide("comparison with the checksum of the previous device; the "
-                                              "message bit: literature from memory"),
+        .reference = sources::practical_guide("comparison with the checksum of the previous device"),
+        .details = {details::mark(), details::message(), details::status_coding()},
         .stimulus = "Data cycles in which one bit of loopback word or process data is flipped at the slave's "
                     "receiver, each bit in turn; an ID cycle behind each.",
         .expected = "The status word leaves marked, no output changes, the message bit stands in the ID "
@@ -369,6 +365,7 @@ std::vector<SlaveCase> slave_frame_check_cases() {
             "An error in the check itself is an error like one in the data: each of its 16 bits is "
             "compared.",
         .reference = per_segment,
+        .details = {details::mark(), details::message(), details::status_coding()},
         .stimulus =
             "Data cycles in which one bit of the check is flipped at the slave's receiver, each bit in "
             "turn; an ID cycle behind each.",
@@ -384,6 +381,7 @@ std::vector<SlaveCase> slave_frame_check_cases() {
         .purpose = "IS-12",
         .requirement = "The frame check detects every error of two or three bits in a code word of 64 bits.",
         .reference = sources::calculated("Hamming distance 4 of 1021h at these lengths"),
+        .details = {details::mark({"double_or_triple_error_accepted"}), details::status_coding()},
         .stimulus = "All 2016 pairs of bits of the code word (loopback word, two words, check) and 100 000 "
                     "random triples, flipped at the slave's receiver.",
         .expected = "The status word of each cycle leaves marked, and no output changes.",
@@ -396,6 +394,7 @@ std::vector<SlaveCase> slave_frame_check_cases() {
         .purpose = "IS-13",
         .requirement = "The frame check detects every burst of at most 16 bits, at any position.",
         .reference = sources::calculated("a polynomial of degree 16 with a constant term"),
+        .details = {details::mark({"burst_accepted"}), details::status_coding()},
         .stimulus =
             "Bursts of 2 to 16 bits, first and last bit flipped, at every position of the code word of 64 "
             "bits with every pattern between: 1 638 335 of them. A longer register: every burst up to 10 "
@@ -413,6 +412,7 @@ std::vector<SlaveCase> slave_frame_check_cases() {
             "accept such a cycle. A rejection proves another polynomial, another span or a stricter "
             "check than the other stations have.",
         .reference = sources::calculated("84 code words of weight four in 64 bits"),
+        .details = {details::status_coding()},
         .stimulus =
             "Data cycles with each of the 84 patterns flipped at the slave's receiver, in loopback word, "
             "data and check.",
@@ -429,6 +429,9 @@ std::vector<SlaveCase> slave_frame_check_cases() {
             "The registers of the frame check are preset with ones, so that leading zeros count: a "
             "frame of zeros that lost or gained an octet does not pass.",
         .reference = sources::practical_guide("registers preset with 1 to improve detection"),
+        .details = {details::mark({"zero_preset_check_accepted", "lost_zero_octet_accepted",
+                                   "added_zero_octet_accepted"}),
+                    details::status_coding()},
         .stimulus =
             "Cycles of zeros, loopback word included: with the check of a register that was preset with "
             "zeros; one octet short and one octet long with the check of the right length; and one with "
@@ -446,6 +449,7 @@ std::vector<SlaveCase> slave_frame_check_cases() {
             "A status word that another station has marked passes marked, and its cycle is not taken "
             "over even though the slave's own check fits (the slave-local rule).",
         .reference = sources::from_memory("the status word tells later stations and the master"),
+        .details = {details::mark({"mark_of_others_cleared"}), details::status_coding()},
         .stimulus = "Data cycles whose data and check are right and whose status word arrives marked.",
         .expected = "The status word leaves marked, no output changes; a clean cycle afterwards is accepted.",
         .tags = {"must"},

@@ -34,6 +34,7 @@ std::vector<SlaveCase> slave_id_cycle_cases() {
         .requirement = "In an ID cycle the 16-bit ID register of the slave is in the ring: its own ID code "
                        "leaves first, bits 0 to 12 as declared, and behind it everything that came in.",
         .reference = sources::park("section 2.2: identification cycle and loopback word"),
+        .details = details::answer(),
         .stimulus =
             "ID cycles with a loopback word that differs from cycle to cycle and one control word for "
             "the slave.",

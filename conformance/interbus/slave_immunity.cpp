@@ -167,7 +167,8 @@ std::vector<SlaveCase> slave_immunity_cases() {
         .requirement =
             "While a cycle is rejected, the outputs hold the words of the last valid one, without a "
             "glitch longer than 1 us.",
-        .reference = sources::derived("the previous data stay valid when a cycle is rejected"),
+        .reference = sources::from_memory("the previous data stay valid when a cycle is rejected"),
+        .details = {details::status_coding()},
         .stimulus =
             "A valid data cycle, one with a bit flipped at the slave's receiver, a valid one; again and "
             "again with other words.",
@@ -187,6 +188,7 @@ std::vector<SlaveCase> slave_immunity_cases() {
             "campaigns.",
         .reference = {"Beckhoff BC4000 documentation",
                       "five cycle times until valid data are exchanged again", judge::Standing::searched},
+        .details = {details::status_coding()},
         .stimulus =
             "Data cycles between status telegrams, each level flipped with a chance of 0.1, 1 and 5 % at "
             "the slave's receiver; every 16 cycles the faults pause.",

@@ -211,6 +211,7 @@ std::vector<SlaveCase> slave_interface_cases() {
             "cycle. Off, the ring is closed in this slave and has its registers only; on, the station "
             "behind it is in the ring.",
         .reference = sources::from_memory("outgoing remote bus on and off; the coding is this project's"),
+        .details = details::answer(),
         .stimulus =
             "ID cycles with OUT1 off, on and off again, data cycles between them; a station of one word is "
             "behind OUT1.",
@@ -230,6 +231,7 @@ std::vector<SlaveCase> slave_interface_cases() {
             "The control word of an ID cycle switches the second outgoing interface (OUT2) at the end of "
             "that cycle: the stations behind it are added to the ring or removed.",
         .reference = sources::from_memory("local bus on and off; the coding is this project's"),
+        .details = details::answer(),
         .stimulus =
             "ID cycles with OUT2 off, on and off again, data cycles between them; a station of one word is "
             "behind OUT2.",

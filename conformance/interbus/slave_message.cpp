@@ -101,6 +101,7 @@ std::vector<SlaveCase> slave_message_cases() {
             "A fault at the periphery is told by its message bit in the next ID cycle and by nothing "
             "else: data cycles go on undisturbed.",
         .reference = sources::from_memory("messages become visible only in an ID cycle"),
+        .details = details::answer(),
         .stimulus =
             "The fault input is set; data cycles, an ID cycle, data cycles; it is cleared; ID cycles.",
         .expected =
@@ -116,6 +117,7 @@ std::vector<SlaveCase> slave_message_cases() {
         .purpose = "IS-35",
         .requirement = "A request for reconfiguration is told by its own message bit in the next ID cycle.",
         .reference = sources::from_memory("messages become visible only in an ID cycle"),
+        .details = details::answer(),
         .stimulus =
             "The button is pressed; data cycles, an ID cycle, data cycles; it is released; ID cycles.",
         .expected = "The ID register has the message bit of reconfiguration and no other while the button is "
@@ -131,6 +133,7 @@ std::vector<SlaveCase> slave_message_cases() {
             "The message of a check error stands in the ID register from the first rejected cycle until "
             "an ID cycle has read it, and only then.",
         .reference = sources::from_memory("dynamic messages in bits 13 to 15, read in the next ID cycle"),
+        .details = {details::mark(), details::message(), details::status_coding()},
         .stimulus =
             "A clean cycle and an ID cycle; two data cycles with one bit flipped at the slave's receiver; "
             "two ID cycles.",

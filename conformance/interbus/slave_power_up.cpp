@@ -72,6 +72,7 @@ std::vector<SlaveCase> slave_power_up_cases() {
         .requirement = "Status telegrams fill the pauses. A slave passes each of them on, shifts nothing, "
                        "leaves its outputs as they are, and takes them for a sign of life.",
         .reference = sources::phoenix_maintenance("status telegrams in every pause"),
+        .details = {details::status_coding()},
         .stimulus =
             "One second of status telegrams after power-up; then an ID cycle, a valid data cycle, and "
             "again one second of status telegrams; then a data cycle.",

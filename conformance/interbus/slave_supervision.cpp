@@ -82,6 +82,7 @@ std::vector<SlaveCase> slave_supervision_cases() {
             "Silence shorter than the supervision time of 25 ms changes nothing: outputs hold, and the "
             "cycle behind it is a normal one.",
         .reference = sources::phoenix_maintenance("status telegrams away for more than 25 ms"),
+        .details = {details::status_coding()},
         .stimulus = "A valid data cycle, status telegrams, 24.0 ms of silence, a data cycle.",
         .expected = "No output changes in the silence, and the data cycle is taken over without an ID cycle.",
         .tags = {"must", "timing"},
@@ -95,6 +96,7 @@ std::vector<SlaveCase> slave_supervision_cases() {
             "When telegrams stay away for more than 25 ms, the slave takes the interruption for a reset "
             "and its outputs go to the safe state. The tolerance of 1 ms is this project's.",
         .reference = sources::phoenix_maintenance("status telegrams away for more than 25 ms"),
+        .details = {{sources::own("the tolerance of 1 ms"), {"outputs_not_safe_after_limit"}}},
         .stimulus = "A valid data cycle, status telegrams, then silence.",
         .expected = "All outputs are 0 between 25.0 ms and 26.0 ms after the end of the last telegram.",
         .tags = {"must", "timing"},
@@ -109,6 +111,7 @@ std::vector<SlaveCase> slave_supervision_cases() {
             "After power-up and after a reset, outputs stay in the safe state until an ID cycle has "
             "told the master what is in the ring.",
         .reference = sources::own("data cycles count only after identification"),
+        .details = {details::status_coding()},
         .stimulus =
             "Valid data cycles right after power-up, and after a silence of 26 ms; then an ID cycle and a "
             "data cycle.",

@@ -173,6 +173,7 @@ std::vector<SlaveCase> slave_telegram_cases() {
             "The select bit (SL) of a telegram is not inside the frame check. A telegram whose SL says "
             "ID cycle inside the data phase breaks the data cycle, which must not be taken over.",
         .reference = sources::practical_guide("SL is FALSE while the data phase runs"),
+        .details = {details::status_coding()},
         .stimulus =
             "Data cycles in which the SL bit of one telegram of the data phase is flipped at the slave's "
             "receiver, each telegram in turn; two status telegrams, then a clean cycle.",
@@ -190,6 +191,7 @@ std::vector<SlaveCase> slave_telegram_cases() {
             "in 256, whose last data octet equals the first check octet of those before it). One that "
             "begins late shifts the data, which the slave cannot see; the master sees it.",
         .reference = sources::practical_guide("CR is TRUE in the check phase"),
+        .details = {details::status_coding()},
         .stimulus =
             "Data cycles in which the CR bit of the last data telegram is set at the slave's receiver; "
             "then cycles in which that of the first check telegram is cleared. A clean cycle behind each.",
@@ -209,6 +211,7 @@ std::vector<SlaveCase> slave_telegram_cases() {
             "telegram makes the ring eight bits short and leaves data levels that may look like other "
             "telegrams: the cycle must not be taken over.",
         .reference = sources::derived("five header bits, outside the checksum"),
+        .details = {details::status_coding()},
         .stimulus =
             "Data cycles in which the FL bit of one telegram is flipped at the slave's receiver, each "
             "telegram of data and check phase in turn; two status telegrams, then a clean cycle.",
@@ -225,6 +228,7 @@ std::vector<SlaveCase> slave_telegram_cases() {
             "A telegram without its stop bit is broken, whatever its octet says: its cycle is not taken "
             "over. The receiver finds the telegrams behind it again within two status telegrams.",
         .reference = sources::own("resynchronisation within two status telegrams"),
+        .details = {details::status_coding()},
         .stimulus =
             "Data cycles in which the stop bit of one telegram arrives as 0, each telegram in turn, with "
             "gaps of 2, 0 and 13 bits; two status telegrams, then a clean cycle.",
@@ -241,6 +245,7 @@ std::vector<SlaveCase> slave_telegram_cases() {
             "A start bit is validated in its middle: a low pulse of less than half a bit on the idle "
             "line is no telegram.",
         .reference = sources::own("receiver samples in the middle of the bit, majority of three"),
+        .details = {details::status_coding()},
         .stimulus =
             "Low pulses of 0.10 to 0.40 bit on the idle line at the slave's receiver, with 1 to 14 bits of "
             "idle line behind them; then a clean cycle.",
@@ -256,6 +261,7 @@ std::vector<SlaveCase> slave_telegram_cases() {
             "A low pulse that passes for a start bit makes one false telegram. It has no effect, and a "
             "telegram that begins after its 13 bits is received.",
         .reference = sources::own("a false telegram outside of a cycle is discarded"),
+        .details = {details::status_coding()},
         .stimulus =
             "Low pulses of 0.60 bit on the idle line at the slave's receiver, at least 13 bits of idle "
             "line, then a clean cycle.",
@@ -271,6 +277,7 @@ std::vector<SlaveCase> slave_telegram_cases() {
             "Status telegrams between the data telegrams of a cycle fill pauses of the master; they "
             "shift nothing and do not enter the frame check.",
         .reference = sources::phoenix_maintenance("status telegrams in every pause"),
+        .details = details::answer(),
         .stimulus = "Valid data cycles with 1, 2 and 5 status telegrams behind each data telegram.",
         .expected =
             "The data telegrams leave as without them, the status telegrams leave, the outputs take over "

@@ -206,6 +206,7 @@ std::vector<SlaveCase> slave_timing_cases() {
             "rate differs by up to 1 % from its own. At 6 % the thirteenth bit is sampled in its "
             "neighbour: such cycles must not pass.",
         .reference = sources::own("limits of 1 % and 6 %; the geometry of thirteen bits is computed"),
+        .details = {details::status_coding()},
         .stimulus =
             "Data cycles with alternating bits at +-0.1, +-1 and +-6 % of the bit rate; then in steps of "
             "0.5 % between.",
@@ -233,6 +234,7 @@ std::vector<SlaveCase> slave_timing_cases() {
             "The idle time between the telegrams of a cycle is the master's affair: none, a few bits "
             "or many.",
         .reference = sources::derived("the factor 1.15 of the cycle time"),
+        .details = details::answer(),
         .stimulus = "Valid data cycles with 0, 1, 2, 13 and 100 bits of idle line between telegrams.",
         .expected = "Every cycle is answered and taken over.",
         .tags = {"must"},

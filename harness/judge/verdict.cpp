@@ -41,4 +41,12 @@ std::optional<Standing> standing_from(std::string_view name) {
   return value_named<Standing>(kStandingNames, name);
 }
 
+Reference resting_on_both(Reference whole, const Reference& part) {
+  if (!whole.clause.empty()) whole.clause += "; ";
+  whole.clause += part.source;
+  if (!part.clause.empty()) whole.clause += ": " + part.clause;
+  whole.standing = std::max(whole.standing, part.standing);
+  return whole;
+}
+
 }  // namespace fieldproof::judge

@@ -11,7 +11,8 @@ namespace fieldproof::judge {
 
 enum class Verdict { none, not_applicable, pass, warn, inconclusive, fail, error };
 
-// Where a fact comes from. Printed in lower case words; `memory` and `own` are unverified.
+// Where a fact comes from, the strongest first. Printed in lower case words; `memory` and `own` are
+// unverified.
 enum class Standing {
   seed,      // printed in one of the papers that the project reproduces
   sure,      // standard, sure
@@ -35,5 +36,8 @@ struct Reference {
   std::string clause;  // "frame information", may be empty
   Standing standing = Standing::own;
 };
+
+// The reference of what rests on both: the weaker standing decides, and `part` is named behind `whole`.
+Reference resting_on_both(Reference whole, const Reference& part);
 
 }  // namespace fieldproof::judge

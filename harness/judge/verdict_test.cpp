@@ -30,6 +30,20 @@ TEST(Standing, IsFoundByItsName) {
   EXPECT_EQ(standing_from("rumour"), std::nullopt);
 }
 
+TEST(Standing, TheWeakerOneDecidesWhereTwoSourcesAreNeeded) {
+  const Reference book{"a book", "page 3", Standing::searched};
+  const Reference choice{"this project's choice", "the coding", Standing::own};
+  const Reference both = resting_on_both(book, choice);
+  EXPECT_EQ(both.source, "a book");
+  EXPECT_EQ(both.clause, "page 3; this project's choice: the coding");
+  EXPECT_EQ(both.standing, Standing::own);
+  EXPECT_EQ(resting_on_both(choice, book).standing, Standing::own);
+  EXPECT_EQ(resting_on_both({"a book", "", Standing::memory}, {"a paper", "", Standing::seed}).clause,
+            "a paper");
+  EXPECT_EQ(resting_on_both({"a book", "", Standing::memory}, {"a paper", "", Standing::seed}).standing,
+            Standing::memory);
+}
+
 TEST(Standing, MemoryAndOwnChoiceAreNotVerified) {
   for (const Standing standing : kStandings) {
     EXPECT_EQ(is_verified(standing), standing != Standing::memory && standing != Standing::own);
