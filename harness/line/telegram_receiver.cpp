@@ -92,10 +92,14 @@ bool TelegramReceiver::sample_telegram(const Waveform& wave, std::size_t& at, Te
   return false;
 }
 
-std::size_t TelegramReceiver::first_idle(const Levels& levels) {
-  std::size_t n = 0;
-  while (n < levels.size() && !levels[n]) ++n;
-  return n;
+std::size_t TelegramReceiver::next_idle(const Levels& levels, std::size_t from) {
+  while (from < levels.size() && !levels[from]) ++from;
+  return from;
+}
+
+bool TelegramReceiver::begins_before(const Waveform& wave, std::size_t from, kernel::Time time) {
+  const std::size_t edge = falling_edge(wave.levels, from);
+  return edge < wave.levels.size() && wave.time_of(edge) < time;
 }
 
 void TelegramReceiver::keep(const Waveform& wave, std::size_t from) {
@@ -110,26 +114,26 @@ std::size_t TelegramReceiver::idle_levels(const Waveform& wave) const {
   return static_cast<std::size_t>((kDataTelegramLevels + 1) * wave.rate / bit_rate_ + 1);
 }
 
-Waveform TelegramReceiver::join(const Waveform& first, const Waveform& second) const {
-  Waveform joined;
-  joined.start = first.start;
-  joined.rate = first.rate;
-  const std::int64_t offset =
-      first.rate == second.rate ? levels_between(first.start, second.start, first.rate) : -1;
-  if (offset >= static_cast<std::int64_t>(first.levels.size())) {
-    joined.levels = first.levels;
-    joined.levels.append_idle(static_cast<std::size_t>(offset) - first.levels.size());
-    joined.levels.append(second.levels);
-    return joined;
-  }
-  // No common grid: both are written at one rate, a multiple of the sixteenths at which bits are sampled and
-  // of the tenths and twentieths in which people write glitches. It does not grow when joins follow joins.
-  joined.rate = std::max({first.rate, second.rate, bit_rate_ * kJoinedLevelsPerBit});
-  append_sampled(joined.levels, first, joined.start, joined.rate,
+bool TelegramReceiver::join_on_grid(const Waveform& second, Waveform& joined) const {
+  if (pending_.rate != second.rate) return false;
+  const std::int64_t offset = levels_between(pending_.start, second.start, second.rate);
+  if (offset < static_cast<std::int64_t>(pending_.levels.size())) return false;
+  joined = pending_;
+  joined.levels.append_idle(static_cast<std::size_t>(offset) - joined.levels.size());
+  joined.levels.append(second.levels);
+  return true;
+}
+
+// At a multiple of the sixteenths at which bits are sampled and of the tenths and twentieths in which people
+// write glitches. It does not grow when joins follow joins.
+void TelegramReceiver::join_head(const Waveform& second, Waveform& joined) const {
+  const kernel::Time head = kernel::level_time(second.start, kDataTelegramLevels + 1, bit_rate_);
+  joined.start = pending_.start;
+  joined.rate = std::max({pending_.rate, second.rate, bit_rate_ * kJoinedLevelsPerBit});
+  append_sampled(joined.levels, pending_, joined.start, joined.rate,
                  levels_until(joined.start, second.start, joined.rate));
   append_sampled(joined.levels, second, joined.start, joined.rate,
-                 levels_until(joined.start, second.end(), joined.rate));
-  return joined;
+                 levels_until(joined.start, std::min(head, second.end()), joined.rate));
 }
 
 }  // namespace fieldproof::line

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "harness/kernel/time.hpp"
 #include "harness/line/sampling.hpp"
@@ -31,14 +32,14 @@ class TelegramReceiver {
   // the `wave` that the sink is given (not always the one that was received).
   template <typename Sink>
   void receive(const Waveform& wave, Sink&& sink) {
-    if (!has_pending_) return decode(wave, sink);
-    if (wave.start >= pending_until_) {
-      flush(sink);
-      return decode(wave, sink);
-    }
+    if (has_pending_ && wave.start >= pending_until_) flush(sink);
+    if (!has_pending_) return decode(wave, first_level(wave), sink);
     has_pending_ = false;
-    const Waveform joined = join(pending_, wave);
-    decode(joined, sink);
+    Waveform joined;
+    if (join_on_grid(wave, joined)) return decode(joined, first_level(joined), sink);
+    // Off the grid only as much is joined as completes what began before: the rest may be long and slow.
+    join_head(wave, joined);
+    if (const auto next = complete_pending(joined, wave, sink)) decode(wave, *next, sink);
   }
 
   // The end of a telegram that is not complete, kNever when there is none.
@@ -52,16 +53,15 @@ class TelegramReceiver {
     Waveform rest;
     std::swap(rest, pending_);
     rest.levels.append_idle(idle_levels(rest));
-    decode(rest, sink);
+    decode(rest, first_level(rest), sink);
     has_pending_ = false;  // what a flushed rest leaves behind is shorter than a telegram of the idle line
   }
 
  private:
   template <typename Sink>
-  void decode(const Waveform& wave, Sink& sink) {
+  void decode(const Waveform& wave, std::size_t at, Sink& sink) {
     const std::size_t size = wave.levels.size();
     if (size == 0) return;
-    std::size_t at = wave.start == low_until_ ? first_idle(wave.levels) : 0;
     if (wave.rate == bit_rate_) {
       at = code_.decode(wave.levels, at, [&](const Telegram& telegram) { sink(wave, telegram); });
     } else {
@@ -76,14 +76,44 @@ class TelegramReceiver {
     }
   }
 
-  static std::size_t first_idle(const Levels& levels);
+  // The telegrams that began before `wave`. Gives the level of it at which the search goes on, nothing when
+  // the end of the wave cuts the telegram again.
+  template <typename Sink>
+  std::optional<std::size_t> complete_pending(const Waveform& joined, const Waveform& wave, Sink& sink) {
+    std::size_t at = 0;
+    Telegram telegram;
+    while (begins_before(joined, at, wave.start)) {
+      if (sample_telegram(joined, at, telegram)) {
+        sink(joined, telegram);
+      } else if (begins_before(joined, at, wave.start)) {
+        keep(joined, at);
+        return std::nullopt;
+      } else {
+        break;
+      }
+    }
+    const std::size_t next = wave.first_level_at(joined.time_of(at));
+    // A low line behind a missing stop bit is no start bit.
+    return at == joined.levels.size() && telegram.is_stop_missing() ? next_idle(wave.levels, next) : next;
+  }
+
+  // Where the search in a waveform begins: a low line that goes on from the one before has no edge.
+  std::size_t first_level(const Waveform& wave) const {
+    return wave.start == low_until_ ? next_idle(wave.levels, 0) : 0;
+  }
+  static std::size_t next_idle(const Levels& levels, std::size_t from);
+  static bool begins_before(const Waveform& wave, std::size_t from, kernel::Time time);
   // Finds and samples the next telegram from level `at` on; false when there is none or when the end of the
   // waveform cuts it (`at` is then its first level), else `at` is where the search goes on.
   bool sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram) const;
   void keep(const Waveform& wave, std::size_t from);
   // Idle levels behind a cut telegram that complete it whatever it is.
   std::size_t idle_levels(const Waveform& wave) const;
-  Waveform join(const Waveform& first, const Waveform& second) const;
+  // What is pending and `second` behind it as one waveform; false when they share no grid.
+  bool join_on_grid(const Waveform& second, Waveform& joined) const;
+  // The same at a rate at which both can be written, with as much of `second` as a telegram that began before
+  // it can last.
+  void join_head(const Waveform& second, Waveform& joined) const;
 
   const TelegramCode& code_;
   std::int64_t bit_rate_;

@@ -218,6 +218,18 @@ TEST(TelegramReceiver, ATelegramMayGoOnAtAnotherRate) {
   }
 }
 
+// A minute at one level in a second would be 10^10 levels at the rate of the telegram before it.
+TEST(TelegramReceiver, ACutTelegramMayBeFollowedByAVerySlowLine) {
+  Waveform wave{kernel::kStart, kBitRate, {}};
+  code().append(wave.levels, kDataTelegram, 0x0F);
+  const Waveform first{wave.start, wave.rate, wave.levels.slice(0, 9)};
+  Waveform slow{wave.time_of(9), 1, {}};
+  slow.levels.append_idle(60);
+  const std::vector<Seen> seen = hear({first, slow});
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_EQ(seen[0].data, 0x0F);
+}
+
 TEST(TelegramReceiver, ACutTelegramIsCompletedByTheIdleLine) {
   TelegramReceiver receiver(code(), kBitRate);
   Waveform wave{kernel::kStart, kBitRate, {}};
