@@ -105,7 +105,8 @@ bool TelegramReceiver::begins_before(const Waveform& wave, std::size_t from, ker
 void TelegramReceiver::keep(const Waveform& wave, std::size_t from) {
   pending_.start = wave.time_of(from);
   pending_.rate = wave.rate;
-  pending_.levels = wave.levels.slice(from, wave.levels.size() - from);
+  pending_.levels.clear();
+  pending_.levels.append(wave.levels, from, wave.levels.size() - from);
   pending_until_ = kernel::level_time(pending_.start, kDataTelegramLevels, bit_rate_);
   has_pending_ = true;
 }
@@ -114,26 +115,27 @@ std::size_t TelegramReceiver::idle_levels(const Waveform& wave) const {
   return static_cast<std::size_t>((kDataTelegramLevels + 1) * wave.rate / bit_rate_ + 1);
 }
 
-bool TelegramReceiver::join_on_grid(const Waveform& second, Waveform& joined) const {
+bool TelegramReceiver::join_on_grid(const Waveform& second) {
   if (pending_.rate != second.rate) return false;
   const std::int64_t offset = levels_between(pending_.start, second.start, second.rate);
   if (offset < static_cast<std::int64_t>(pending_.levels.size())) return false;
-  joined = pending_;
-  joined.levels.append_idle(static_cast<std::size_t>(offset) - joined.levels.size());
-  joined.levels.append(second.levels);
+  joined_ = pending_;
+  joined_.levels.append_idle(static_cast<std::size_t>(offset) - joined_.levels.size());
+  joined_.levels.append(second.levels);
   return true;
 }
 
 // At a multiple of the sixteenths at which bits are sampled and of the tenths and twentieths in which people
 // write glitches. It does not grow when joins follow joins.
-void TelegramReceiver::join_head(const Waveform& second, Waveform& joined) const {
+void TelegramReceiver::join_head(const Waveform& second) {
   const kernel::Time head = kernel::level_time(second.start, kDataTelegramLevels + 1, bit_rate_);
-  joined.start = pending_.start;
-  joined.rate = std::max({pending_.rate, second.rate, bit_rate_ * kJoinedLevelsPerBit});
-  append_sampled(joined.levels, pending_, joined.start, joined.rate,
-                 levels_until(joined.start, second.start, joined.rate));
-  append_sampled(joined.levels, second, joined.start, joined.rate,
-                 levels_until(joined.start, std::min(head, second.end()), joined.rate));
+  joined_.start = pending_.start;
+  joined_.levels.clear();
+  joined_.rate = std::max({pending_.rate, second.rate, bit_rate_ * kJoinedLevelsPerBit});
+  append_sampled(joined_.levels, pending_, joined_.start, joined_.rate,
+                 levels_until(joined_.start, second.start, joined_.rate));
+  append_sampled(joined_.levels, second, joined_.start, joined_.rate,
+                 levels_until(joined_.start, std::min(head, second.end()), joined_.rate));
 }
 
 }  // namespace fieldproof::line

@@ -35,11 +35,16 @@ class TelegramReceiver {
     if (has_pending_ && wave.start >= pending_until_) flush(sink);
     if (!has_pending_) return decode(wave, first_level(wave), sink);
     has_pending_ = false;
-    Waveform joined;
-    if (join_on_grid(wave, joined)) return decode(joined, first_level(joined), sink);
+    if (join_on_grid(wave)) return decode(joined_, first_level(joined_), sink);
     // Off the grid only as much is joined as completes what began before: the rest may be long and slow.
-    join_head(wave, joined);
-    if (const auto next = complete_pending(joined, wave, sink)) decode(wave, *next, sink);
+    join_head(wave);
+    if (const auto next = complete_pending(joined_, wave, sink)) decode(wave, *next, sink);
+  }
+
+  // Forgets everything that was heard.
+  void reset() {
+    has_pending_ = false;
+    low_until_ = kernel::kNever;
   }
 
   // The end of a telegram that is not complete, kNever when there is none.
@@ -50,10 +55,9 @@ class TelegramReceiver {
   void flush(Sink&& sink) {
     if (!has_pending_) return;
     has_pending_ = false;
-    Waveform rest;
-    std::swap(rest, pending_);
-    rest.levels.append_idle(idle_levels(rest));
-    decode(rest, first_level(rest), sink);
+    std::swap(joined_, pending_);
+    joined_.levels.append_idle(idle_levels(joined_));
+    decode(joined_, first_level(joined_), sink);
     has_pending_ = false;  // what a flushed rest leaves behind is shorter than a telegram of the idle line
   }
 
@@ -109,11 +113,11 @@ class TelegramReceiver {
   void keep(const Waveform& wave, std::size_t from);
   // Idle levels behind a cut telegram that complete it whatever it is.
   std::size_t idle_levels(const Waveform& wave) const;
-  // What is pending and `second` behind it as one waveform; false when they share no grid.
-  bool join_on_grid(const Waveform& second, Waveform& joined) const;
+  // Makes one waveform of what is pending and `second` behind it; false when they share no grid.
+  bool join_on_grid(const Waveform& second);
   // The same at a rate at which both can be written, with as much of `second` as a telegram that began before
   // it can last.
-  void join_head(const Waveform& second, Waveform& joined) const;
+  void join_head(const Waveform& second);
 
   const TelegramCode& code_;
   std::int64_t bit_rate_;
@@ -121,6 +125,7 @@ class TelegramReceiver {
   bool has_pending_ = false;
   kernel::Time pending_until_{};
   Waveform pending_;
+  Waveform joined_;                          // what is pending with what follows it; a member for its buffer
   kernel::Time low_until_ = kernel::kNever;  // end of a reception that left the line low
 };
 
