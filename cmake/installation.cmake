@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 if(TARGET fieldproof)
   install(TARGETS fieldproof RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 endif()
-foreach(folder IN ITEMS harness protocols conformance reports)
+foreach(folder IN ITEMS harness protocols conformance emc reports)
   if(IS_DIRECTORY "${CMAKE_SOURCE_DIR}/${folder}")
     install(DIRECTORY ${folder} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/fieldproof" FILES_MATCHING PATTERN "*.hpp"
       PATTERN node_modules EXCLUDE)

@@ -1,0 +1,164 @@
+#include "emc/generator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "harness/kernel/error.hpp"
+
+#if defined(__clang__)
+#pragma clang fp contract(off)
+#elif defined(__GNUC__)
+#pragma GCC optimize("fp-contract=off")
+#endif
+
+namespace fieldproof::emc {
+namespace {
+
+constexpr kernel::Duration kPeriod = 300 * kernel::kMillisecond;
+constexpr double kTolerance = 0.2;
+constexpr std::int64_t kJitterPerMille = 10;
+
+struct Nominal {
+  kernel::Duration pitch;
+  kernel::Duration duration;
+};
+
+Nominal nominal_of(Repetition repetition) {
+  switch (repetition) {
+    case Repetition::khz_5:
+      return {200 * kernel::kMicrosecond, 15 * kernel::kMillisecond};
+    case Repetition::khz_100:
+      return {10 * kernel::kMicrosecond, 750 * kernel::kMicrosecond};
+    case Repetition::khz_2_5_edition_1:
+      return {400 * kernel::kMicrosecond, 15 * kernel::kMillisecond};
+  }
+  return {};
+}
+
+// Uniform within the tolerance on both sides of 1.
+double factor(kernel::Random& random) {
+  return 1 - kTolerance + 2 * kTolerance * random.uniform();
+}
+
+kernel::Duration scaled(kernel::Duration duration, double by) {
+  return kernel::Duration{static_cast<std::int64_t>(static_cast<double>(duration.count()) * by + 0.5)};
+}
+
+std::int64_t floor_quotient(kernel::Duration a, kernel::Duration b) {
+  const std::int64_t quotient = a / b;
+  return a.count() % b.count() < 0 ? quotient - 1 : quotient;
+}
+
+BurstTiming draw(const BurstSettings& settings, kernel::Random random) {
+  const Nominal nominal = nominal_of(settings.repetition);
+  BurstTiming timing{};
+  timing.pitch = nominal.pitch;
+  timing.period = kPeriod;
+  timing.sweep_steps = 1;
+  kernel::Duration duration = nominal.duration;
+  const bool is_artefact = settings.clock == GeneratorClock::commensurable_with_the_line_to_show_the_artefact;
+  if (settings.draws_tolerances && !is_artefact) {
+    timing.pitch = scaled(nominal.pitch, 1 / factor(random));
+    duration = scaled(nominal.duration, factor(random));
+    timing.period = scaled(kPeriod, factor(random));
+  }
+  timing.pulses = (duration + timing.pitch - kernel::kPicosecond) / timing.pitch;
+  if (is_artefact) return timing;
+  timing.jitter = timing.pitch * kJitterPerMille / 1000;
+  timing.phase = kernel::Duration{random.between(0, timing.period.count() - 1)};
+  if (settings.phase == BurstPhase::swept) {
+    timing.sweep_steps = std::max(1U, settings.sweep_steps);
+    timing.sweep = timing.pitch / timing.sweep_steps;
+  }
+  return timing;
+}
+
+}  // namespace
+
+std::string_view text_of(Repetition repetition) {
+  constexpr std::array<std::string_view, 3> kTexts{"5 kHz", "100 kHz", "2.5 kHz"};
+  return kTexts.at(static_cast<std::size_t>(repetition));
+}
+
+std::string_view text_of(Polarity polarity) {
+  return polarity == Polarity::positive ? "+" : "-";
+}
+
+Level Level::standard(PortKind port, unsigned number) {
+  if (number < 1 || number > 4) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        fmt::format("there is no level {}; IEC 61000-4-4 has the levels 1 to 4, and level X "
+                                    "with a voltage of your own.",
+                                    number));
+  }
+  const double first = port == PortKind::signal ? 250 : 500;
+  return {number, first * static_cast<double>(1U << (number - 1))};
+}
+
+Level Level::free(double open_circuit_volts) {
+  if (!(open_circuit_volts >= 1 && open_circuit_volts <= 10'000)) {
+    throw kernel::Error(
+        kernel::ErrorKind::usage,
+        fmt::format("level X cannot have {} V; it takes 1 V to 10000 V.", open_circuit_volts));
+  }
+  return {0, open_circuit_volts};
+}
+
+std::string Level::text() const {
+  return number_ == 0 ? fmt::format("X ({} V)", volts_) : fmt::format("{} ({} V)", number_, volts_);
+}
+
+BurstSchedule::BurstSchedule(const BurstSettings& settings, const kernel::Random& random)
+    : timing_(draw(settings, random.split("burst timing"))),
+      on_(settings.on),
+      off_(settings.off),
+      jitter_(random.split("pulse jitter")) {}
+
+kernel::Time BurstSchedule::burst_begin(std::int64_t burst) const {
+  const std::int64_t step = burst < 0 ? timing_.sweep_steps - 1 : burst % timing_.sweep_steps;
+  return on_ + timing_.phase + burst * timing_.period + step * timing_.sweep;
+}
+
+kernel::Time BurstSchedule::pulse(std::int64_t burst, std::int64_t number) const {
+  const kernel::Time place = burst_begin(burst) + number * timing_.pitch;
+  if (timing_.jitter == kernel::Duration::zero()) return place;
+  const auto name = static_cast<std::uint64_t>((burst + 1) * timing_.pulses + number);
+  const std::int64_t most = timing_.jitter.count();
+  return place + kernel::Duration{jitter_.split(name).between(-most, most)};
+}
+
+std::int64_t BurstSchedule::burst_before(kernel::Time time) const {
+  // The burst that runs when the generator is switched on has number -1; there is none before it.
+  const kernel::Duration behind =
+      time - on_ - timing_.phase - timing_.sweep * timing_.sweep_steps - timing_.jitter;
+  return std::max<std::int64_t>(-1, floor_quotient(behind, timing_.period));
+}
+
+void BurstSchedule::seek(kernel::Time from) {
+  known_from_ = from;
+  const kernel::Time wanted = std::max(from, on_);
+  next_ = kernel::kNever;
+  if (wanted >= off_) return;
+  std::int64_t burst = burst_before(wanted);
+  while (true) {
+    const kernel::Duration behind = wanted - burst_begin(burst) - timing_.jitter;
+    std::int64_t number = std::max<std::int64_t>(0, floor_quotient(behind, timing_.pitch));
+    for (; number < timing_.pulses; ++number) {
+      const kernel::Time at = pulse(burst, number);
+      if (at < wanted) continue;
+      if (at < off_) next_ = at;
+      return;
+    }
+    ++burst;
+  }
+}
+
+BurstSchedule::Window BurstSchedule::window_of(kernel::Time pulse) const {
+  const std::int64_t burst = burst_before(pulse + 2 * timing_.jitter + timing_.sweep * timing_.sweep_steps);
+  const kernel::Time begin = burst_begin(burst);
+  return {begin - timing_.jitter, begin + timing_.pulses * timing_.pitch};
+}
+
+}  // namespace fieldproof::emc

@@ -1,0 +1,180 @@
+#include "emc/profile.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "harness/config/nearest.hpp"
+#include "harness/kernel/error.hpp"
+
+namespace fieldproof::emc {
+namespace {
+
+Profile profile_a() {
+  Profile profile{"A", "unshielded, not isolated", {}};
+  profile.coupling.common_mode_limit_v = 12;
+  return profile;
+}
+
+Profile changed(Profile profile, std::string name, std::string title, double Coupling::* member,
+                double value) {
+  profile.name = std::move(name);
+  profile.title = std::move(title);
+  profile.coupling.*member = value;
+  return profile;
+}
+
+std::vector<Profile> make_built_in() {
+  const Profile a = profile_a();
+  const Profile a2{"A2", "unshielded, isolated", {}};
+  const Profile b = changed(a, "B", "shield on a pigtail, not isolated", &Coupling::shield_db, 30);
+  Profile d{"D", "unshielded, isolated, fast receiver", {}};
+  d.coupling.filter_mhz = 16;
+  d.coupling.bit_v = 1.5;
+  Profile e{"E", "unshielded, isolated, receiver of a 31.25 kbit/s bus", {}};
+  e.coupling.filter_mhz = 0.1;
+  e.coupling.bit_v = 0.375;
+  return {
+      a,
+      a2,
+      changed(a2, "A3", "unshielded, isolated, well balanced", &Coupling::imbalance_db, 40),
+      b,
+      changed(b, "B2", "shield on a pigtail, opto-coupler", &Coupling::common_mode_limit_v, 50),
+      changed(a, "C", "shield bonded all around, not isolated", &Coupling::shield_db, 58),
+      d,
+      e,
+  };
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
+
+const Profile* find(std::string_view name) {
+  const auto profiles = Profile::built_in();
+  const auto found = std::find_if(profiles.begin(), profiles.end(),
+                                  [&](const Profile& profile) { return lower(profile.name) == lower(name); });
+  return found == profiles.end() ? nullptr : &*found;
+}
+
+std::vector<std::string_view> names_of_built_in() {
+  std::vector<std::string_view> names;
+  for (const Profile& profile : Profile::built_in()) names.push_back(profile.name);
+  return names;
+}
+
+std::string read_name(const config::Value& value) {
+  const std::string_view name = value.as_string();
+  const bool is_word =
+      !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+               c == '.' || c == '-';
+      });
+  if (!is_word) {
+    config::fail(value, "a name has 1 to 64 letters, digits, \"_\", \".\" or \"-\", for example \"line_7\"");
+  }
+  if (find(name) != nullptr) {
+    config::fail(value, fmt::format("\"{}\" is a built-in profile; choose a name of your own", name));
+  }
+  return std::string(name);
+}
+
+void read_parameter(const config::Value& value, const CouplingParameter& parameter, Coupling& coupling) {
+  if (std::isinf(parameter.largest) && value.is_null()) {
+    coupling.*parameter.member = parameter.largest;
+    return;
+  }
+  const double largest = std::min(parameter.largest, 1e9);
+  coupling.*parameter.member = value.as_number(parameter.smallest, largest);
+}
+
+void read_coupling(const config::Value& value, Coupling& coupling) {
+  config::read_object(value, [&](config::ObjectReader& object) {
+    if (const auto method = object.optional("method")) {
+      coupling.method =
+          method->as_choice<CouplingMethod>({{"capacitive_clamp", CouplingMethod::capacitive_clamp},
+                                             {"coupling_network", CouplingMethod::coupling_network}});
+    }
+    if (const auto pulse = object.optional("pulse")) {
+      coupling.pulse = pulse->as_choice<PulseShape>({{"standard_formula", PulseShape::standard_formula},
+                                                     {"double_exponential", PulseShape::double_exponential}});
+    }
+    for (const CouplingParameter& parameter : coupling_parameters()) {
+      if (const auto member = object.optional(parameter.name)) read_parameter(*member, parameter, coupling);
+    }
+    if (const auto level = object.optional("forced_level")) {
+      coupling.forced_level = level->as_integer<int>(0, 1) == 1;
+    }
+  });
+}
+
+}  // namespace
+
+std::span<const Profile> Profile::built_in() {
+  static const std::vector<Profile> profiles = make_built_in();
+  return profiles;
+}
+
+const Profile& Profile::named(std::string_view name) {
+  if (const Profile* profile = find(name)) return *profile;
+  const std::vector<std::string_view> names = names_of_built_in();
+  std::string sentence =
+      fmt::format("there is no profile \"{}\"; built in are {}", name, fmt::join(names, ", "));
+  if (const auto meant = config::misspelled(name, names))
+    sentence += fmt::format("; did you mean {}?", *meant);
+  throw kernel::Error(kernel::ErrorKind::usage, sentence);
+}
+
+Profile Profile::read(const config::Value& root) {
+  return config::read_object(root, [&](config::ObjectReader& object) {
+    Profile profile;
+    const config::Value name = object.required("name");
+    profile.name = read_name(name);
+    profile.title = profile.name;
+    if (const auto title = object.optional("title")) profile.title = std::string(title->as_string());
+    if (const auto from = object.optional("based_on")) {
+      const std::vector<std::string_view> names = names_of_built_in();
+      profile.coupling = named(names.at(from->as_choice(names))).coupling;
+    }
+    if (const auto coupling = object.optional("coupling")) read_coupling(*coupling, profile.coupling);
+    try {
+      check_coupling(profile.coupling);
+    } catch (const kernel::Error& error) {
+      config::fail(object.value(), error.what());
+    }
+    return profile;
+  });
+}
+
+Profile Profile::load(const std::filesystem::path& path) {
+  const config::Document document = config::Document::load(path);
+  return read(document.root());
+}
+
+std::vector<std::string> caveats_of(const Profile& profile) {
+  std::string chosen;
+  for (const CouplingParameter& parameter : coupling_parameters()) {
+    if (parameter.standing == Standing::standard) continue;
+    const double value = profile.coupling.*parameter.member;
+    chosen += chosen.empty() ? "" : ", ";
+    chosen += std::isinf(value) ? fmt::format("{} none", parameter.name)
+                                : fmt::format("{} = {}", parameter.name, value);
+  }
+  return {
+      fmt::format("The coupling of profile {} ({}) is a model of this project and is not calibrated: the "
+                  "voltage at which errors begin on a real line may be several times higher or lower.",
+                  profile.name, profile.title),
+      "No published error rate against burst voltage was found for these buses to hold the model to; what it "
+      "is checked for are shapes and ratios: growth with the level, the part of the receiver's sampling, "
+      "clustering at 5 and 100 kHz.",
+      "Parameters without a verified source: " + chosen + ".",
+  };
+}
+
+}  // namespace fieldproof::emc

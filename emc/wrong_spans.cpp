@@ -1,0 +1,121 @@
+#include "emc/wrong_spans.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#if defined(__clang__)
+#pragma clang fp contract(off)
+#elif defined(__GNUC__)
+#pragma GCC optimize("fp-contract=off")
+#endif
+
+namespace fieldproof::emc {
+namespace {
+
+bool begins_earlier(const Span& a, const Span& b) {
+  return a.from < b.from;
+}
+
+// Orders spans and joins those that touch. One pulse after the other they mostly are in order.
+void join(std::vector<Span>& spans) {
+  if (spans.size() < 2) return;
+  if (!std::is_sorted(spans.begin(), spans.end(), begins_earlier)) {
+    std::sort(spans.begin(), spans.end(), begins_earlier);
+  }
+  std::size_t last = 0;
+  for (std::size_t n = 1; n < spans.size(); ++n) {
+    if (spans[n].from <= spans[last].to) {
+      spans[last].to = std::max(spans[last].to, spans[n].to);
+    } else {
+      spans[++last] = spans[n];
+    }
+  }
+  spans.resize(last + 1);
+}
+
+// The end of the run of equal levels that begins at `first`.
+std::size_t end_of_run(const line::Levels& levels, std::size_t first) {
+  const std::uint64_t flipped = levels[first] ? ~std::uint64_t{0} : 0;
+  std::size_t at = first;
+  while (at < levels.size()) {
+    const std::uint64_t others = levels.window(at) ^ flipped;
+    if (others != 0) return std::min(levels.size(), at + static_cast<std::size_t>(std::countr_zero(others)));
+    at += 64;
+  }
+  return levels.size();
+}
+
+}  // namespace
+
+void WrongSpans::begin(const line::Waveform& sent, std::int64_t ticks_per_level) {
+  sent_ = &sent;
+  ticks_per_level_ = ticks_per_level;
+  ticks_per_picosecond_ =
+      static_cast<double>(sent.rate * ticks_per_level) / static_cast<double>(kernel::kSecond.count());
+  for (auto& spans : of_level_) spans.clear();
+}
+
+std::int64_t WrongSpans::tick_of(kernel::Time time) const {
+  const double ticks = static_cast<double>((time - sent_->start).count()) * ticks_per_picosecond_;
+  return static_cast<std::int64_t>(std::floor(ticks + 0.5));
+}
+
+void WrongSpans::add(kernel::Time pulse, const WrongOutput& wrong) {
+  for (std::size_t level = 0; level < 2; ++level) {
+    for (const Interval& interval : wrong.of_level[level]) {
+      const Span span{tick_of(pulse + interval.from), tick_of(pulse + interval.to)};
+      if (span.from < span.to) of_level_[level].push_back(span);
+    }
+  }
+}
+
+const std::vector<Span>& WrongSpans::resolve() {
+  heard_.clear();
+  resolve(false);
+  resolve(true);
+  join(heard_);
+  return heard_;
+}
+
+void WrongSpans::resolve(bool level) {
+  std::vector<Span>& spans = of_level_[level ? 1 : 0];
+  join(spans);
+  const line::Levels& levels = sent_->levels;
+  const std::int64_t end = static_cast<std::int64_t>(levels.size()) * ticks_per_level_;
+  for (const Span& span : spans) {
+    const std::int64_t from = std::max<std::int64_t>(0, span.from);
+    const std::int64_t to = std::min(end, span.to);
+    for (std::int64_t at = from; at < to;) {
+      const std::int64_t bit = at / ticks_per_level_;
+      const std::int64_t next = std::min(to, (bit + 1) * ticks_per_level_);
+      if (levels[static_cast<std::size_t>(bit)] == level) heard_.push_back({at, next});
+      at = next;
+    }
+  }
+}
+
+void append_stretched(const line::Levels& levels, std::int64_t ticks_per_level,
+                      const std::vector<Span>& inverted, line::Levels& stretched) {
+  stretched.make_room(stretched.size() + levels.size() * static_cast<std::size_t>(ticks_per_level));
+  auto span = inverted.begin();
+  for (std::size_t first = 0; first < levels.size();) {
+    const bool level = levels[first];
+    const std::size_t run_end = end_of_run(levels, first);
+    std::int64_t at = static_cast<std::int64_t>(first) * ticks_per_level;
+    const std::int64_t end = static_cast<std::int64_t>(run_end) * ticks_per_level;
+    const auto fill_until = [&](std::int64_t until, bool with) {
+      if (until > at) stretched.append_fill(with, static_cast<std::size_t>(until - at));
+      at = std::max(at, until);
+    };
+    for (; span != inverted.end() && span->from < end; ++span) {
+      fill_until(std::min(span->from, end), level);
+      fill_until(std::min(span->to, end), !level);
+      if (span->to > end) break;  // goes on in the next run
+    }
+    fill_until(end, level);
+    first = run_end;
+  }
+}
+
+}  // namespace fieldproof::emc

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "emc/coupling.hpp"
+#include "harness/kernel/time.hpp"
+#include "harness/line/waveform.hpp"
+
+// The times in which a receiver hears a transmission wrongly, on a fine grid laid over its levels: `ticks`
+// per level, a whole number of them.
+//
+// The two ends of an interval go to the nearest tick. As pulses come at any phase, that lengthens as often as
+// it shortens.
+namespace fieldproof::emc {
+
+// Ticks [from, to), counted from the start of the transmission.
+struct Span {
+  std::int64_t from;
+  std::int64_t to;
+
+  friend bool operator==(const Span&, const Span&) = default;
+};
+
+class WrongSpans {
+ public:
+  // Forgets everything; what is added then belongs to `sent`.
+  void begin(const line::Waveform& sent, std::int64_t ticks_per_level);
+
+  // The effect of a pulse. Pulses are added in order.
+  void add(kernel::Time pulse, const WrongOutput& wrong);
+
+  // Takes out what is not heard: where the driven level is not the one that is mistaken. What is left is when
+  // the line is heard as the opposite of what it is; ordered, apart, within the transmission.
+  const std::vector<Span>& resolve();
+
+  std::int64_t ticks_per_level() const { return ticks_per_level_; }
+
+ private:
+  std::int64_t tick_of(kernel::Time time) const;
+  void resolve(bool level);
+
+  const line::Waveform* sent_ = nullptr;
+  std::int64_t ticks_per_level_ = 1;
+  double ticks_per_picosecond_ = 0;
+  std::array<std::vector<Span>, 2> of_level_;
+  std::vector<Span> heard_;
+};
+
+// The levels at `ticks_per_level` times the rate, inverted in the spans.
+void append_stretched(const line::Levels& levels, std::int64_t ticks_per_level,
+                      const std::vector<Span>& inverted, line::Levels& stretched);
+
+}  // namespace fieldproof::emc
