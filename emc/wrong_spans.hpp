@@ -36,6 +36,11 @@ class WrongSpans {
   // the line is heard as the opposite of what it is; ordered, apart, within the transmission.
   const std::vector<Span>& resolve();
 
+  // The ticks that a pulse can reach.
+  Span reach_of(kernel::Time pulse, const Interval& hull) const {
+    return {tick_of(pulse + hull.from), tick_of(pulse + hull.to)};
+  }
+
   std::int64_t ticks_per_level() const { return ticks_per_level_; }
 
  private:

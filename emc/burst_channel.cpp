@@ -1,0 +1,139 @@
+#include "emc/burst_channel.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace fieldproof::emc {
+
+BurstChannel::BurstChannel(BurstSchedule schedule, WrongOutput wrong, BurstReceiver receiver,
+                           trace::Trace& trace, trace::Channel place)
+    : schedule_(std::move(schedule)),
+      wrong_(std::move(wrong)),
+      reach_(wrong_.hull()),
+      receiver_(std::move(receiver)),
+      trace_(trace),
+      place_(place),
+      impact_(receiver_.framing.get(), receiver_.sampling, receiver_.validates_start) {
+  if (receiver_.framing) {
+    longest_unit_ = kernel::levels_duration(static_cast<std::int64_t>(receiver_.framing->longest_unit()),
+                                            receiver_.bit_rate);
+  }
+}
+
+// An instant that is not before the end of the transmission, without a division.
+kernel::Time BurstChannel::latest_end(const line::Waveform& sent) {
+  if (sent.rate != known_rate_) {
+    known_rate_ = sent.rate;
+    longest_level_ = kernel::levels_duration(1, sent.rate) + kernel::kPicosecond;
+  }
+  return sent.start + longest_level_ * static_cast<std::int64_t>(sent.levels.size());
+}
+
+bool BurstChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+  ++statistics_.transmissions;
+  if (is_out_of_step_ && is_far_behind_last(sent)) is_out_of_step_ = false;
+  const kernel::Time last_pulse = latest_end(sent) - reach_.from;
+  const bool is_changed = reach_.from < reach_.to &&
+                          schedule_.has_pulse_in(sent.start - reach_.to + kernel::kPicosecond, last_pulse) &&
+                          corrupt(sent, last_pulse, arrivals);
+  last_start_ = sent.start;
+  last_levels_ = sent.levels.size();
+  last_rate_ = sent.rate;
+  return is_changed;
+}
+
+bool BurstChannel::corrupt(const line::Waveform& sent, kernel::Time last_pulse,
+                           std::vector<line::Waveform>& arrivals) {
+  const bool is_of_bits = sent.rate == receiver_.bit_rate;
+  spans_.begin(sent, is_of_bits ? kTicksPerBit : ticks_for(sent.rate));
+  pulses_.clear();
+  for (kernel::Time pulse = schedule_.first_from(sent.start - reach_.to + kernel::kPicosecond);
+       pulse < last_pulse; pulse = schedule_.first_from(pulse + kernel::kPicosecond)) {
+    pulses_.push_back(pulse);
+    spans_.add(pulse, wrong_);
+  }
+  const std::vector<Span>& heard = spans_.resolve();
+  if (heard.empty()) return false;
+  ++statistics_.hit_transmissions;
+  count(heard);
+  const bool is_known = is_of_bits && is_in_step(sent);
+  if (is_known) impact_.judge(sent.levels, heard, kTicksPerBit);
+  if (!is_known || impact_.is_unclear()) {
+    rewrite(sent, heard, arrivals);
+  } else {
+    if (impact_.flipped_bits().empty()) return false;
+    flip(sent, arrivals);
+  }
+  ++statistics_.changed_transmissions;
+  return true;
+}
+
+std::int64_t BurstChannel::ticks_for(std::int64_t rate) const {
+  return std::max<std::int64_t>(1, (kTicksPerBit * receiver_.bit_rate + rate - 1) / rate);
+}
+
+kernel::Time BurstChannel::last_end() const {
+  return kernel::level_time(last_start_, static_cast<std::int64_t>(last_levels_), last_rate_);
+}
+
+// So far that no receiver is still busy with a unit of the transmission before.
+bool BurstChannel::is_far_behind_last(const line::Waveform& sent) const {
+  return last_rate_ == 0 || sent.start >= last_end() + longest_unit_;
+}
+
+bool BurstChannel::is_in_step(const line::Waveform& sent) const {
+  if (is_far_behind_last(sent)) return true;
+  return receiver_.has_whole_units && !is_out_of_step_ && sent.start >= last_end();
+}
+
+void BurstChannel::count(const std::vector<Span>& heard) {
+  const std::int64_t ticks = spans_.ticks_per_level();
+  std::int64_t counted = -1;  // the last level
+  for (const Span& span : heard) {
+    const std::int64_t first = std::max(counted + 1, span.from / ticks);
+    const std::int64_t last = (span.to - 1) / ticks;
+    if (last >= first) statistics_.wrong_levels += static_cast<std::uint64_t>(last - first + 1);
+    counted = std::max(counted, last);
+  }
+  for (const kernel::Time pulse : pulses_) {
+    if (touches(pulse, heard)) ++statistics_.pulses;
+  }
+}
+
+// Does the pulse reach into one of the spans?
+bool BurstChannel::touches(kernel::Time pulse, const std::vector<Span>& spans) const {
+  const Span reach = spans_.reach_of(pulse, reach_);
+  return std::any_of(spans.begin(), spans.end(),
+                     [&](const Span& span) { return span.from < reach.to && reach.from < span.to; });
+}
+
+void BurstChannel::flip(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+  line::Waveform& arrival = arrivals.emplace_back(sent);
+  flipped_.clear();
+  for (const std::size_t bit : impact_.flipped_bits()) {
+    arrival.levels.flip(bit);
+    const std::int64_t begin = static_cast<std::int64_t>(bit) * kTicksPerBit;
+    flipped_.push_back({begin, begin + kTicksPerBit});
+  }
+  statistics_.flipped_bits += flipped_.size();
+  tell(flipped_);
+}
+
+void BurstChannel::rewrite(const line::Waveform& sent, const std::vector<Span>& heard,
+                           std::vector<line::Waveform>& arrivals) {
+  line::Waveform& arrival = arrivals.emplace_back();
+  arrival.start = sent.start;
+  arrival.rate = sent.rate * spans_.ticks_per_level();
+  append_stretched(sent.levels, spans_.ticks_per_level(), heard, arrival.levels);
+  ++statistics_.rewritten_transmissions;
+  tell(heard);
+  is_out_of_step_ = true;
+}
+
+void BurstChannel::tell(const std::vector<Span>& changed) {
+  for (const kernel::Time pulse : pulses_) {
+    if (touches(pulse, changed)) trace_.fault(place_, pulse, "burst pulse");
+  }
+}
+
+}  // namespace fieldproof::emc

@@ -1,0 +1,351 @@
+#include "emc/burst_channel.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "harness/line/character.hpp"
+#include "harness/line/telegram.hpp"
+#include "harness/line/telegram_receiver.hpp"
+
+namespace fieldproof::emc {
+namespace {
+
+using kernel::Duration;
+using kernel::kMicrosecond;
+using kernel::kNanosecond;
+using kernel::kStart;
+using line::Sampling;
+
+constexpr std::int64_t kBitRate = 500'000;
+constexpr Duration kBit = 2 * kMicrosecond;
+
+// The output is forced to `forced` for the time [from, to) behind each pulse.
+WrongOutput forced(bool forced, Duration from, Duration to) {
+  WrongOutput wrong;
+  wrong.of_level.at(forced ? 0 : 1) = {{from, to}};
+  return wrong;
+}
+
+class FaultTimes final : public trace::Recorder {
+ public:
+  void on_driven(trace::Channel, const line::Waveform&) override {}
+  void on_fault(trace::Channel, kernel::Time time, std::string_view what) override {
+    EXPECT_EQ(what, "burst pulse");
+    times.push_back(time);
+  }
+  void on_observation(trace::Channel, kernel::Time, std::string_view, std::uint64_t) override {}
+
+  std::vector<kernel::Time> times;
+};
+
+// A channel whose first pulse comes at an instant that the test knows.
+class BurstChannelTest : public testing::Test {
+ protected:
+  static BurstReceiver telegrams() {
+    return {kBitRate, std::make_shared<TelegramFraming>(line::TelegramLayout{}), Sampling{}, true, true};
+  }
+
+  BurstChannel channel(const WrongOutput& wrong, BurstReceiver receiver = telegrams()) {
+    trace_.set_recorder(&faults_);
+    return {schedule_, wrong, std::move(receiver), trace_, place_};
+  }
+
+  // A telegram whose level `level` begins `offset` before the pulse.
+  line::Waveform telegram(std::uint8_t data, std::size_t level, Duration offset) {
+    line::Waveform wave;
+    wave.rate = kBitRate;
+    code_.append(wave.levels, line::kDataTelegram, data);
+    wave.start = pulse_ - offset - static_cast<std::int64_t>(level) * kBit;
+    return wave;
+  }
+
+  std::vector<std::uint8_t> read(const line::Waveform& wave) {
+    line::TelegramReceiver receiver(code_, kBitRate);
+    std::vector<std::uint8_t> octets;
+    const auto keep = [&](const line::Waveform&, const line::Telegram& telegram) {
+      octets.push_back(telegram.data);
+    };
+    receiver.receive(wave, keep);
+    receiver.flush(keep);
+    return octets;
+  }
+
+  const line::TelegramCode& code_ = line::shared_telegram_code(line::TelegramLayout{});
+  trace::Trace trace_;
+  trace::Channel place_ = trace_.add_channel("rx");
+  FaultTimes faults_;
+  BurstSchedule schedule_{BurstSettings{}, kernel::Random(1)};
+  kernel::Time pulse_ = BurstSchedule(schedule_).first_from(kStart + kernel::kSecond);
+  std::vector<line::Waveform> arrivals_;
+};
+
+TEST_F(BurstChannelTest, AWrongTimeAtTheSamplesOfABitFlipsIt) {
+  BurstChannel channel = this->channel(forced(true, {}, 300 * kNanosecond));
+  // The first data level (level 4, most significant): samples at 875, 1000 and 1125 ns.
+  const line::Waveform sent = telegram(0x00, 4, 870 * kNanosecond);
+  ASSERT_TRUE(channel.pass(sent, arrivals_));
+  ASSERT_EQ(arrivals_.size(), 1U);
+  EXPECT_EQ(arrivals_.front().rate, kBitRate);
+  EXPECT_EQ(read(arrivals_.front()), std::vector<std::uint8_t>{0x80});
+  EXPECT_EQ(channel.statistics().flipped_bits, 1U);
+  EXPECT_EQ(channel.statistics().wrong_levels, 1U);
+  EXPECT_EQ(faults_.times, std::vector<kernel::Time>{pulse_});
+}
+
+TEST_F(BurstChannelTest, AWrongTimeBetweenTheSamplesIsNotSeen) {
+  for (const Duration offset :
+       {100 * kNanosecond, 500 * kNanosecond, 1150 * kNanosecond, 1690 * kNanosecond}) {
+    BurstChannel channel = this->channel(forced(true, {}, 300 * kNanosecond));
+    EXPECT_FALSE(channel.pass(telegram(0x00, 4, offset), arrivals_)) << kernel::describe(offset);
+    EXPECT_EQ(channel.statistics().hit_transmissions, 1U);
+    EXPECT_EQ(channel.statistics().changed_transmissions, 0U);
+  }
+  EXPECT_TRUE(faults_.times.empty());
+}
+
+TEST_F(BurstChannelTest, WhatIsForcedToTheDrivenLevelIsNoHit) {
+  BurstChannel channel = this->channel(forced(true, {}, 300 * kNanosecond));
+  EXPECT_FALSE(channel.pass(telegram(0xFF, 4, 870 * kNanosecond), arrivals_));
+  EXPECT_EQ(channel.statistics().hit_transmissions, 0U);
+}
+
+TEST_F(BurstChannelTest, OneSampleOfThreeIsOutvotedAndDecidesAlone) {
+  const WrongOutput wrong = forced(true, {}, 120 * kNanosecond);
+  for (const auto& [kind, expected] :
+       {std::pair{Sampling::Kind::majority_of_three, false}, {Sampling::Kind::mid_bit, true}}) {
+    BurstReceiver receiver = telegrams();
+    receiver.sampling.kind = kind;
+    BurstChannel channel = this->channel(wrong, receiver);
+    EXPECT_EQ(channel.pass(telegram(0x00, 4, 940 * kNanosecond), arrivals_), expected);
+  }
+}
+
+// 875 ns are seven sixteenths of a bit.
+TEST_F(BurstChannelTest, AGlitchOnTheIdleLineIsRefusedByTheValidationOfTheStart) {
+  const auto with_idle = [&](Duration before) {
+    line::Waveform wave;
+    wave.rate = kBitRate;
+    wave.levels.append_idle(10);
+    code_.append(wave.levels, line::kDataTelegram, 0x5A);
+    wave.start = pulse_ + before - 10 * kBit;  // the start bit comes `before` behind the pulse
+    return wave;
+  };
+  BurstChannel channel = this->channel(forced(false, {}, 700 * kNanosecond));
+  EXPECT_FALSE(channel.pass(with_idle(5 * kMicrosecond), arrivals_));
+  EXPECT_EQ(channel.statistics().hit_transmissions, 1U);
+
+  // Long enough to pass for a start bit: the receiver reads a telegram of its own into the line.
+  BurstChannel strong = this->channel(forced(false, {}, 1200 * kNanosecond));
+  ASSERT_TRUE(strong.pass(with_idle(5 * kMicrosecond), arrivals_));
+  EXPECT_EQ(strong.statistics().rewritten_transmissions, 1U);
+  EXPECT_NE(read(arrivals_.back()), std::vector<std::uint8_t>{0x5A});
+}
+
+// A glitch that is less than seven sixteenths of a bit in front of the start edge and reaches it is taken for
+// the edge: the grid of the samples is early by as much.
+TEST_F(BurstChannelTest, AGlitchInFrontOfAStartShiftsTheGrid) {
+  line::Waveform wave;
+  wave.rate = kBitRate;
+  wave.levels.append_idle(4);
+  code_.append(wave.levels, line::kDataTelegram, 0x5A);
+  wave.start = pulse_ + 600 * kNanosecond - 4 * kBit;
+  BurstChannel channel = this->channel(forced(false, {}, 300 * kNanosecond));
+  ASSERT_TRUE(channel.pass(wave, arrivals_));
+  const line::Waveform& arrival = arrivals_.front();
+  EXPECT_EQ(arrival.rate, kBitRate * BurstChannel::kTicksPerBit);
+  EXPECT_EQ(read(arrival), std::vector<std::uint8_t>{0x5A});  // silently
+  const std::size_t edge = line::falling_edge(arrival.levels, 0);
+  const Duration early = wave.time_of(4) - arrival.time_of(edge);
+  EXPECT_LE(abs(early - 600 * kNanosecond), 5 * kNanosecond);
+}
+
+TEST_F(BurstChannelTest, TheRewrittenWaveIsWrongWhereTheOutputIsWrong) {
+  BurstReceiver unknown{kBitRate, nullptr, {}, true, true};
+  const WrongOutput wrong = forced(true, 40 * kNanosecond, 240 * kNanosecond);
+  BurstChannel channel = this->channel(wrong, unknown);
+  const line::Waveform sent = telegram(0x00, 4, 500 * kNanosecond);
+  ASSERT_TRUE(channel.pass(sent, arrivals_));
+  const line::Waveform& arrival = arrivals_.front();
+  EXPECT_EQ(arrival.start, sent.start);
+  EXPECT_EQ(arrival.levels.size(), sent.levels.size() * BurstChannel::kTicksPerBit);
+  const Duration tick = kBit / BurstChannel::kTicksPerBit;
+  std::int64_t wrong_ticks = 0;
+  for (std::size_t n = 0; n < arrival.levels.size(); ++n) {
+    const kernel::Time middle = arrival.time_of(n) + tick / 2;
+    const Duration behind = middle - pulse_;
+    const bool is_wrong = arrival.levels[n] != sent.at(middle);
+    wrong_ticks += is_wrong;
+    const bool is_within = behind > 40 * kNanosecond + tick && behind < 240 * kNanosecond - tick;
+    const bool is_outside = behind < 40 * kNanosecond - tick || behind > 240 * kNanosecond + tick;
+    EXPECT_TRUE(is_wrong || !is_within) << kernel::describe(behind);
+    EXPECT_FALSE(is_wrong && is_outside) << kernel::describe(behind);
+  }
+  EXPECT_NEAR(static_cast<double>(wrong_ticks), 24, 1);  // 200 ns
+}
+
+TEST_F(BurstChannelTest, BeforeTheFirstPulseNothingIsTouched) {
+  BurstSettings settings;
+  settings.on = kStart + kernel::kSecond;
+  schedule_ = BurstSchedule(settings, kernel::Random(1));
+  BurstChannel channel = this->channel(forced(true, {}, 300 * kNanosecond));
+  line::Waveform wave = telegram(0, 4, {});
+  for (wave.start = kStart; wave.start < settings.on - kernel::kMillisecond;
+       wave.start += kernel::kMillisecond) {
+    EXPECT_FALSE(channel.pass(wave, arrivals_));
+  }
+  EXPECT_EQ(channel.statistics().transmissions, 999U);
+  EXPECT_EQ(channel.statistics().hit_transmissions, 0U);
+}
+
+TEST_F(BurstChannelTest, WithoutWrongTimesNoPulseMatters) {
+  BurstChannel channel = this->channel(WrongOutput{});
+  EXPECT_FALSE(channel.pass(telegram(0, 4, 870 * kNanosecond), arrivals_));
+  EXPECT_EQ(channel.statistics().pulses, 0U);
+}
+
+TEST_F(BurstChannelTest, LevelsFinerThanBitsAreRewrittenOnTheirOwnGrid) {
+  line::Waveform fine;
+  const line::Waveform sent = telegram(0x00, 4, 870 * kNanosecond);
+  fine.rate = kBitRate * 20;
+  fine.start = sent.start;
+  for (std::size_t n = 0; n < sent.levels.size(); ++n) fine.levels.append_fill(sent.levels[n], 20);
+  BurstChannel channel = this->channel(forced(true, {}, 300 * kNanosecond));
+  ASSERT_TRUE(channel.pass(fine, arrivals_));
+  EXPECT_EQ(arrivals_.front().rate, kBitRate * 240);
+  EXPECT_EQ(read(arrivals_.front()), std::vector<std::uint8_t>{0x80});
+}
+
+// ---- the short cuts give what the receiver would make of the rewritten wave ----
+
+struct Line {
+  std::vector<line::Waveform> waves;
+  WrongOutput wrong;
+  BurstSettings settings;
+  std::uint64_t seed;
+  Sampling sampling;
+};
+
+WrongOutput arbitrary_wrong_output() {
+  WrongOutput wrong;
+  const int longest = *rc::gen::element(100, 300, 1000);
+  for (auto& intervals : wrong.of_level) {
+    Duration at{};
+    const int count = *rc::gen::inRange(0, 3);
+    for (int n = 0; n < count; ++n) {
+      at += *rc::gen::inRange(1, longest) * kNanosecond;
+      const Duration to = at + *rc::gen::inRange(1, longest) * kNanosecond;
+      intervals.push_back({at, to});
+      at = to;
+    }
+  }
+  return wrong;
+}
+
+// What a real receiver of telegrams reads through a channel: each telegram as it was sampled, and roughly
+// when (a short cut keeps the grid of the bits).
+std::vector<std::tuple<std::uint16_t, std::uint8_t>> heard_through(BurstChannel& channel, const Line& line) {
+  line::TelegramReceiver receiver(line::shared_telegram_code(line::TelegramLayout{}), kBitRate,
+                                  {line.sampling, true});
+  std::vector<std::tuple<std::uint16_t, std::uint8_t>> heard;
+  const auto keep = [&](const line::Waveform&, const line::Telegram& telegram) {
+    heard.emplace_back(telegram.sampled, telegram.header);
+  };
+  for (const line::Waveform& wave : line.waves) {
+    std::vector<line::Waveform> arrivals;
+    if (!channel.pass(wave, arrivals)) {
+      receiver.receive(wave, keep);
+    }
+    for (const line::Waveform& arrival : arrivals) receiver.receive(arrival, keep);
+  }
+  receiver.flush(keep);
+  return heard;
+}
+
+Line arbitrary_line() {
+  Line line;
+  line.wrong = arbitrary_wrong_output();
+  line.seed = *rc::gen::arbitrary<std::uint64_t>();
+  line.settings.repetition = Repetition::khz_100;
+  line.sampling.kind = *rc::gen::element(Sampling::Kind::majority_of_three, Sampling::Kind::mid_bit);
+  const kernel::Random random(line.seed);
+  kernel::Time at = BurstSchedule(line.settings, random).first_from(kStart + kernel::kSecond);
+  kernel::Random draws = random.split("telegrams");
+  const auto& code = line::shared_telegram_code(line::TelegramLayout{});
+  const int waves = *rc::gen::inRange(1, 6);
+  for (int n = 0; n < waves; ++n) {
+    line::Waveform wave;
+    wave.rate = kBitRate;
+    wave.start = at;
+    wave.levels.append_idle(draws.below(4));
+    const std::uint64_t telegrams = 1 + draws.below(15);
+    for (std::uint64_t k = 0; k < telegrams; ++k) {
+      const auto header = static_cast<std::uint8_t>(draws.below(8));
+      code.append(wave.levels, header, static_cast<std::uint8_t>(draws.below(256)));
+      wave.levels.append_idle(draws.below(k + 1 == telegrams ? 2 : 4));
+    }
+    at = wave.end() + Duration{draws.between(0, 40'000'000)};
+    line.waves.push_back(std::move(wave));
+  }
+  return line;
+}
+
+RC_GTEST_PROP(BurstChannelProperty, ShortCutsGiveWhatTheReceiverMakesOfTheWrongWave, ()) {
+  const Line line = arbitrary_line();
+  trace::Trace trace;
+  const trace::Channel place = trace.add_channel("rx");
+  const BurstSchedule schedule(line.settings, kernel::Random(line.seed));
+  const auto framing = std::make_shared<TelegramFraming>(line::TelegramLayout{});
+  BurstChannel quick(schedule, line.wrong, {kBitRate, framing, line.sampling, true, true}, trace, place);
+  BurstChannel full(schedule, line.wrong, {kBitRate, nullptr, line.sampling, true, true}, trace, place);
+  const auto by_short_cuts = heard_through(quick, line);
+  const auto in_full = heard_through(full, line);
+  RC_CLASSIFY(quick.statistics().flipped_bits > 0, "flips");
+  RC_CLASSIFY(quick.statistics().rewritten_transmissions < full.statistics().rewritten_transmissions,
+              "spared a rewriting");
+  RC_ASSERT(by_short_cuts == in_full);
+}
+
+// The same for characters, whose receiver hears each transmission by itself.
+RC_GTEST_PROP(BurstChannelProperty, ShortCutsGiveWhatTheReceiverOfCharactersMakesOfTheWrongWave, ()) {
+  const line::CharacterFormat format{8, line::Parity::even, line::StopBits::two};
+  const line::CharacterCode code(format);
+  const WrongOutput wrong = arbitrary_wrong_output();
+  const kernel::Random random(*rc::gen::arbitrary<std::uint64_t>());
+  BurstSettings settings;
+  settings.repetition = Repetition::khz_100;
+  const BurstSchedule schedule(settings, random);
+  line::Waveform wave;
+  wave.rate = kBitRate;
+  wave.start = BurstSchedule(schedule).first_from(kStart + kernel::kSecond);
+  kernel::Random draws = random.split("characters");
+  for (int n = 0; n < 16; ++n) {
+    code.append(wave.levels, static_cast<unsigned>(draws.below(256)));
+    wave.levels.append_idle(draws.below(3));
+  }
+  trace::Trace trace;
+  const trace::Channel place = trace.add_channel("rx");
+  BurstChannel quick(schedule, wrong, {kBitRate, std::make_shared<CharacterFraming>(format), {}, true, true},
+                     trace, place);
+  BurstChannel full(schedule, wrong, {kBitRate, nullptr, {}, true, true}, trace, place);
+  const line::CharacterReceiver receiver(format, kBitRate);
+  const auto heard_through = [&](BurstChannel& channel) {
+    std::vector<line::Waveform> arrivals;
+    if (!channel.pass(wave, arrivals)) arrivals.push_back(wave);
+    std::vector<line::CharacterReceiver::Received> received;
+    receiver.receive(arrivals.at(0), received);
+    std::vector<std::tuple<std::uint16_t, bool, bool>> heard;
+    for (const auto& one : received) {
+      heard.emplace_back(one.character.data, one.character.is_parity_wrong, one.character.is_stop_missing);
+    }
+    return heard;
+  };
+  RC_ASSERT(heard_through(quick) == heard_through(full));
+}
+
+}  // namespace
+}  // namespace fieldproof::emc

@@ -1,0 +1,83 @@
+#include "emc/sampled_impact.hpp"
+
+#include <algorithm>
+
+namespace fieldproof::emc {
+
+void SampledImpact::judge(const line::Levels& levels, const std::vector<Span>& heard,
+                          std::int64_t ticks_per_bit) {
+  heard_ = &heard;
+  ticks_ = ticks_per_bit;
+  flipped_.clear();
+  units_.clear();
+  is_unclear_ = framing_ == nullptr || !framing_->find(levels, units_);
+  auto unit = units_.begin();
+  Place place{0, heard.empty() ? 0 : heard.front().from};
+  while (!is_unclear_ && place.span < heard.size()) {
+    const auto bit = static_cast<std::size_t>(place.at / ticks_);
+    while (unit != units_.end() && unit->end() <= bit) ++unit;
+    const bool is_in_unit = unit != units_.end() && unit->first <= bit;
+    const std::int64_t behind_decision = place.at - static_cast<std::int64_t>(bit) * ticks_ - last_sample();
+    if (is_in_unit && (unit->role_of(bit) != BitRole::stop || behind_decision < 0)) {
+      judge_in_unit(*unit, place);
+    } else {
+      const auto next = is_in_unit ? unit + 1 : unit;
+      const std::size_t idle_until = next == units_.end() ? levels.size() : next->first;
+      judge_on_idle_line(static_cast<std::int64_t>(idle_until) * ticks_, place);
+    }
+  }
+}
+
+void SampledImpact::judge_in_unit(const FramedUnit& unit, Place& place) {
+  const std::int64_t bit = place.at / ticks_;
+  const BitRole role = unit.role_of(static_cast<std::size_t>(bit));
+  const bool is_edge_moved = role == BitRole::start && place.at == bit * ticks_;
+  const bool is_wrong = is_sampled_wrong(bit, place.span);
+  is_unclear_ = is_edge_moved || (is_wrong && role != BitRole::sampled);
+  if (is_wrong) flipped_.push_back(static_cast<std::size_t>(bit));
+  if (role != BitRole::stop) return pass_bit(bit, place);
+  // The receiver looks for an edge behind its last sample of a stop bit.
+  const std::int64_t decided = bit * ticks_ + last_sample();
+  while (place.span < heard_->size() && (*heard_)[place.span].from < decided) {
+    is_unclear_ = is_unclear_ || (*heard_)[place.span].to > decided;
+    ++place.span;
+  }
+  if (place.span < heard_->size()) place.at = (*heard_)[place.span].from;
+}
+
+// Goes on behind the bit.
+void SampledImpact::pass_bit(std::int64_t bit, Place& place) const {
+  const std::int64_t end = (bit + 1) * ticks_;
+  while (place.span < heard_->size() && (*heard_)[place.span].to <= end) ++place.span;
+  if (place.span < heard_->size()) place.at = std::max(end, (*heard_)[place.span].from);
+}
+
+// `place.at` is a falling edge of a quiet line.
+void SampledImpact::judge_on_idle_line(std::int64_t idle_until, Place& place) {
+  const std::int64_t quiet_from = place.at + first_sample();
+  const std::int64_t decided = place.at + last_sample();
+  is_unclear_ = !validates_start_ || decided >= idle_until;
+  while (!is_unclear_ && place.span < heard_->size() && (*heard_)[place.span].from <= decided) {
+    is_unclear_ = (*heard_)[place.span].to > quiet_from;
+    ++place.span;
+  }
+  if (place.span < heard_->size()) place.at = (*heard_)[place.span].from;
+}
+
+bool SampledImpact::is_sampled_wrong(std::int64_t bit, std::size_t first_span) const {
+  const std::int64_t begin = bit * ticks_;
+  const bool middle = is_wrong_at(begin + sixteenths(8), first_span);
+  if (sampling_.kind == line::Sampling::Kind::mid_bit) return middle;
+  const int wrong = int{is_wrong_at(begin + sixteenths(7), first_span)} + int{middle} +
+                    int{is_wrong_at(begin + sixteenths(9), first_span)};
+  return wrong >= 2;
+}
+
+bool SampledImpact::is_wrong_at(std::int64_t tick, std::size_t first_span) const {
+  for (std::size_t n = first_span; n < heard_->size() && (*heard_)[n].from <= tick; ++n) {
+    if (tick < (*heard_)[n].to) return true;
+  }
+  return false;
+}
+
+}  // namespace fieldproof::emc
