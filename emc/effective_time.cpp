@@ -47,7 +47,7 @@ double flips_per_pulse(const WrongOutput& wrong, line::Sampling sampling, std::i
 GilbertElliott fitted_gilbert_elliott(double flips_per_pulse, Repetition repetition, std::int64_t bit_rate) {
   BurstSettings settings;
   settings.repetition = repetition;
-  settings.draws_tolerances = false;
+  settings.tolerances = Tolerances::none;
   const BurstTiming timing = BurstSchedule(settings, kernel::Random(0)).timing();
   const auto bits = [&](kernel::Duration duration) {
     return static_cast<double>(duration.count()) * static_cast<double>(bit_rate) /

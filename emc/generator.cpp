@@ -51,22 +51,26 @@ std::int64_t floor_quotient(kernel::Duration a, kernel::Duration b) {
   return a.count() % b.count() < 0 ? quotient - 1 : quotient;
 }
 
+std::int64_t pulses_within(kernel::Duration duration, kernel::Duration pitch) {
+  return (duration + pitch - kernel::kPicosecond) / pitch;
+}
+
 BurstTiming draw(const BurstSettings& settings, kernel::Random random) {
   const Nominal nominal = nominal_of(settings.repetition);
   BurstTiming timing{};
   timing.pitch = nominal.pitch;
+  timing.pulses = pulses_within(nominal.duration, nominal.pitch);
   timing.period = kPeriod;
   timing.sweep_steps = 1;
-  kernel::Duration duration = nominal.duration;
-  const bool is_artefact = settings.clock == GeneratorClock::commensurable_with_the_line_to_show_the_artefact;
-  if (settings.draws_tolerances && !is_artefact) {
-    timing.pitch = scaled(nominal.pitch, 1 / factor(random));
-    duration = scaled(nominal.duration, factor(random));
+  if (settings.clock == GeneratorClock::commensurable_with_the_line_to_show_the_artefact) return timing;
+  if (settings.tolerances != Tolerances::none) timing.pitch = scaled(nominal.pitch, 1 / factor(random));
+  if (settings.tolerances == Tolerances::rate_duration_and_period) {
+    timing.pulses = pulses_within(scaled(nominal.duration, factor(random)), timing.pitch);
     timing.period = scaled(kPeriod, factor(random));
   }
-  timing.pulses = (duration + timing.pitch - kernel::kPicosecond) / timing.pitch;
-  if (is_artefact) return timing;
-  timing.jitter = timing.pitch * kJitterPerMille / 1000;
+  if (settings.has_jitter || settings.tolerances == Tolerances::none) {
+    timing.jitter = timing.pitch * kJitterPerMille / 1000;
+  }
   timing.phase = kernel::Duration{random.between(0, timing.period.count() - 1)};
   if (settings.phase == BurstPhase::swept) {
     timing.sweep_steps = std::max(1U, settings.sweep_steps);

@@ -55,13 +55,21 @@ enum class BurstPhase : std::uint8_t {
 // become an artefact of the model. Whoever wants to show that has to say so here.
 enum class GeneratorClock : std::uint8_t { its_own, commensurable_with_the_line_to_show_the_artefact };
 
+// What a run draws within the standard's 20 %. With the nominal period there are 200 bursts per minute, with
+// the nominal duration 75 pulses in each, however fast they come.
+enum class Tolerances : std::uint8_t {
+  none,  // phase and jitter alone keep the clocks apart
+  rate,
+  rate_duration_and_period,
+};
+
 struct BurstSettings {
   Level level = Level::standard(PortKind::signal, 3);
   Repetition repetition = Repetition::khz_5;
   Polarity polarity = Polarity::positive;
-  // Draws rate, duration and period within the standard's 20 %; otherwise they are nominal (75 pulses per
-  // burst, 200 bursts per minute) and phase and jitter alone keep the clocks apart.
-  bool draws_tolerances = true;
+  Tolerances tolerances = Tolerances::rate_duration_and_period;
+  // Each pulse strays from its place. Where no tolerances are drawn it does so whatever is said here.
+  bool has_jitter = true;
   BurstPhase phase = BurstPhase::asynchronous;
   unsigned sweep_steps = 16;
   GeneratorClock clock = GeneratorClock::its_own;

@@ -28,7 +28,7 @@ std::vector<kernel::Time> pulses_of(BurstSchedule& schedule, kernel::Time from, 
 BurstSettings nominal(Repetition repetition) {
   BurstSettings settings;
   settings.repetition = repetition;
-  settings.draws_tolerances = false;
+  settings.tolerances = Tolerances::none;
   return settings;
 }
 
@@ -67,6 +67,19 @@ TEST(BurstScheduleTest, FifteenThousandPulsesPerMinuteAndPolarity) {
         EXPECT_NEAR(count, 15'000, 1) << text_of(repetition) << text_of(polarity);
       }
     }
+  }
+}
+
+// Also when the rate is drawn.
+TEST(BurstScheduleTest, TheDrawnRateAloneChangesNoCount) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    BurstSettings settings;
+    settings.tolerances = Tolerances::rate;
+    BurstSchedule schedule(settings, kernel::Random(seed));
+    EXPECT_NE(schedule.timing().pitch, 200 * kMicrosecond);
+    EXPECT_EQ(schedule.timing().period, 300 * kMillisecond);
+    const auto count = static_cast<double>(pulses_of(schedule, kStart, kStart + 60 * kSecond).size());
+    EXPECT_NEAR(count, 15'000, 1);
   }
 }
 
@@ -183,13 +196,16 @@ TEST(BurstScheduleTest, OnlyTheArtefactHasNoPhaseAndNoJitter) {
     EXPECT_EQ((pulse - kStart) % (200 * kMicrosecond), kernel::Duration::zero());
   }
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    for (const bool draws : {false, true}) {
-      for (const BurstPhase phase : {BurstPhase::asynchronous, BurstPhase::swept}) {
+    for (const Tolerances tolerances :
+         {Tolerances::none, Tolerances::rate, Tolerances::rate_duration_and_period}) {
+      for (const bool has_jitter : {false, true}) {
         BurstSettings usual;
-        usual.draws_tolerances = draws;
-        usual.phase = phase;
+        usual.tolerances = tolerances;
+        usual.has_jitter = has_jitter;
         const BurstTiming timing = BurstSchedule(usual, kernel::Random(seed)).timing();
-        EXPECT_GT(timing.jitter, kernel::Duration::zero());
+        const bool is_drawn = timing.pitch % (200 * kMicrosecond) != kernel::Duration::zero();
+        EXPECT_TRUE(is_drawn || timing.jitter > kernel::Duration::zero());
+        EXPECT_EQ(timing.jitter > kernel::Duration::zero(), has_jitter || tolerances == Tolerances::none);
       }
     }
   }
@@ -201,7 +217,8 @@ RC_GTEST_PROP(BurstScheduleProperty, AnswersDoNotDependOnTheQuestionsBefore, ())
   settings.repetition =
       *rc::gen::element(Repetition::khz_5, Repetition::khz_100, Repetition::khz_2_5_edition_1);
   settings.phase = *rc::gen::element(BurstPhase::asynchronous, BurstPhase::swept);
-  settings.draws_tolerances = *rc::gen::arbitrary<bool>();
+  settings.tolerances =
+      *rc::gen::element(Tolerances::none, Tolerances::rate, Tolerances::rate_duration_and_period);
   const kernel::Random random(*rc::gen::arbitrary<std::uint64_t>());
   BurstSchedule walked(settings, random);
   const auto pulses = pulses_of(walked, kStart, kStart + 2 * kSecond);

@@ -91,6 +91,13 @@ std::optional<std::uint64_t> GilbertElliottProcess::next_flip(std::uint64_t bits
   }
 }
 
+void GilbertElliottProcess::skip(std::uint64_t bits) {
+  for (; bits >= stays_; enter(!is_bad_)) bits -= stays_;
+  stays_ -= bits;
+  // Flips have no memory: the way to the next one may be drawn anew.
+  clean_ = (is_bad_ ? bad_flip_ : good_flip_)(random_);
+}
+
 GilbertElliottChannel::GilbertElliottChannel(const GilbertElliott& parameters, kernel::Random random)
     : process_(parameters, random) {}
 
@@ -101,10 +108,7 @@ void GilbertElliottChannel::pass_idle_time(const line::Waveform& sent) {
     const auto bits =
         static_cast<std::uint64_t>(static_cast<Wide>(idle) * static_cast<std::uint64_t>(sent.rate) /
                                    static_cast<std::uint64_t>(kernel::kSecond.count()));
-    for (std::uint64_t passed = 0; passed < bits;) {
-      const auto flip = process_.next_flip(bits - passed);
-      passed = flip ? passed + *flip + 1 : bits;
-    }
+    process_.skip(bits);
   }
   passed_until_ = std::max(passed_until_, sent.end());
 }

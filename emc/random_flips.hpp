@@ -54,6 +54,8 @@ class GilbertElliottProcess {
   // The next flip among the next `bits` bits, counted from the first of them; these bits (up to and with the
   // flip, or all) have then passed.
   std::optional<std::uint64_t> next_flip(std::uint64_t bits);
+  // So many bits pass of which nobody asks whether they flip; costs as much as the state changes.
+  void skip(std::uint64_t bits);
 
   bool is_bad() const { return is_bad_; }
 
