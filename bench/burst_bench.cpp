@@ -64,7 +64,7 @@ class BurstLine {
     const std::uint64_t before = channel_.statistics().wrong_levels;
     while (channel_.statistics().wrong_levels - before < count) {
       arrivals_.clear();
-      const kernel::Time pulse = channel_.schedule().first_from(sent_.start + kernel::kMillisecond / 2);
+      const kernel::Time pulse = channel_.schedule().first_from(sent_.start + kernel::kMillisecond);
       sent_.start = pulse - kernel::Duration{static_cast<std::int64_t>(random_.below(360'000'000))};
       channel_.pass(sent_, arrivals_);
     }
@@ -162,7 +162,7 @@ Batch own_skips() {
 }
 
 const Rows kRows({{"burst channel, clean", "copy of the waveform", "transmissions", "", 0, copies},
-                  {"burst channel, clean", "no pulse", "transmissions", "copy", 2, clean},
+                  {"burst channel, clean", "no pulse", "transmissions", "copy", 0.5, clean},
                   {"burst channel, hit", "a coin for each bit", "hit bits", "", 0, naive_injector},
                   {"burst channel, hit", "fieldproof", "hit bits", "a coin", 1, [] { return hit(true); }},
                   {"burst channel, hit", "fieldproof, each rewritten", "hit bits", "a coin", 0,

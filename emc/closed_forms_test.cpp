@@ -206,11 +206,11 @@ TEST(ClosedFormsTest, BothRepetitionRatesFlipAsManyBits) {
 }
 
 // The figures of the clustering are those of bursts of 75 pulses at a drawn rate without jitter.
-Outcome simulate_clustering(int tau, Repetition repetition) {
+Outcome simulate_clustering(int tau, Repetition repetition, bool has_jitter = false) {
   return simulate({.wrong = forced_low(tau * kNanosecond),
                    .repetition = repetition,
                    .tolerances = Tolerances::rate,
-                   .has_jitter = false,
+                   .has_jitter = has_jitter,
                    .runs = 7200,
                    .seconds_per_run = 3});
 }
@@ -252,6 +252,16 @@ TEST(ClosedFormsTest, FiveKilohertzSpreadsItsFlipsOverCycles) {
     EXPECT_LE(*least, figures.longest_run);
     EXPECT_GE(*most, figures.longest_run);
   }
+}
+
+// Without jitter a pitch can keep in step with the cycle, and so with the bits of one frame after the other.
+TEST(ClosedFormsTest, JitterBreaksTheLongestRuns) {
+  const Outcome outcome = simulate_clustering(300, Repetition::khz_5, true);
+  const int most = *std::max_element(outcome.longest_by_hour.begin(), outcome.longest_by_hour.end());
+  fmt::print("| the same with jitter, 300 ns | | at most {} | |\n", most);
+  // 220000 cycles in bursts per hour, each bad with 0.129: a run of nine in six hours has a chance of 1.3 %.
+  EXPECT_GE(most, 4);
+  EXPECT_LE(most, 8);
 }
 
 TEST(ClosedFormsTest, AHundredKilohertzCollectsThemInOneCycle) {

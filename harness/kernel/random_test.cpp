@@ -134,6 +134,22 @@ TEST(Random, RareGeometricHitsHaveTheRightQuantiles) {
             kSuspicious);
 }
 
+// The quick logarithm of a skip against the exact one, draw by draw. A skip of 10^12 shows the twelfth digit.
+TEST(Random, GeometricIsTheInversionOfItsDraw) {
+  for (const double p : {0.3, 1e-3, 1e-12}) {
+    const GeometricSkip skip(p);
+    Random random(12);
+    Random same(12);
+    for (int k = 0; k < 100'000; ++k) {
+      const double uniform = static_cast<double>((same.next() >> 11) + 1) * 0x1p-53;
+      const double exact = portable_log(uniform) / portable_log_of_complement(p);
+      const auto drawn = static_cast<double>(skip(random));
+      ASSERT_LE(drawn, exact * (1 + 1e-15) + 4e-16 / p) << uniform;
+      ASSERT_GT(drawn, exact * (1 - 1e-15) - 4e-16 / p - 1) << uniform;
+    }
+  }
+}
+
 TEST(Random, GeometricOfSureAndImpossibleHits) {
   constexpr std::uint64_t kForever = std::numeric_limits<std::uint64_t>::max();
   Random random(11);

@@ -14,8 +14,16 @@ void Levels::grow(std::size_t levels) {
 
 void Levels::append_fill(bool level, std::size_t count) {
   if (level) return append_idle(count);
-  for (; count > 64; count -= 64) append(0, 64);
-  append(0, static_cast<unsigned>(count));
+  reserve(size_ + count);
+  const std::size_t until = size_ + count;
+  // The rest of the word that is begun, whole words, and the beginning of the last one.
+  const std::size_t in_word = size_ % 64;
+  const auto head = static_cast<unsigned>(in_word == 0 ? 0 : std::min<std::size_t>(64 - in_word, count));
+  append(0, head);
+  const std::size_t whole = (until - size_) / 64;
+  std::fill_n(words_.begin() + static_cast<std::ptrdiff_t>(size_ / 64), whole, std::uint64_t{0});
+  size_ += whole * 64;
+  append(0, static_cast<unsigned>(until - size_));
 }
 
 void Levels::append(const Levels& other) {

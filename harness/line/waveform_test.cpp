@@ -63,6 +63,23 @@ RC_GTEST_PROP(LevelsProperty, SlicesAndConcatenationsAreThoseOfTheText,
   RC_ASSERT(both.text() == first.text() + "111");
 }
 
+TEST(Levels, FillsFromAnyPlaceForAnyLength) {
+  for (const std::size_t begin : {0U, 1U, 63U, 64U, 65U}) {
+    for (const std::size_t count : {0U, 1U, 62U, 63U, 64U, 65U, 128U, 1000U}) {
+      for (const bool level : {false, true}) {
+        Levels levels;
+        for (std::size_t n = 0; n < begin; ++n) levels.append(n % 2, 1);
+        std::string expected = levels.text();
+        levels.append_fill(level, count);
+        levels.append(0b01, 2);
+        expected += std::string(count, level ? '1' : '0') + "10";
+        ASSERT_EQ(levels.text(), expected) << begin << " " << count;
+        ASSERT_EQ(levels.window(levels.size()), ~std::uint64_t{0});  // idle behind the end
+      }
+    }
+  }
+}
+
 TEST(Levels, ClearLeavesAnIdleLine) {
   Levels levels;
   levels.append_fill(false, 1000);
