@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <ctime>
 #include <limits>
 
@@ -12,11 +13,13 @@
 #include "cli/implementations.hpp"
 #include "cli/pics_file.hpp"
 #include "reports/run_directory.hpp"
+#include "reports/text_summary.hpp"
 
 namespace fieldproof::cli {
 namespace {
 
 constexpr std::uint64_t kMostJobs = 1024;
+constexpr std::chrono::milliseconds kLongestVirtualTime{3'600'000};
 
 // FNV-1a, 64 bit.
 class Hash {
@@ -107,6 +110,22 @@ reports::Manifest manifest_of(const Session& session, unsigned jobs) {
   manifest.started = utc_now();
   manifest.jobs = jobs;
   return manifest;
+}
+
+std::string simulation_header(const Session& session, std::uint64_t seed, const std::string& network_file) {
+  conformance::Setup setup;
+  setup.seed = seed;
+  setup.network_file = network_file;
+  return reports::run_header(identity_of(session, setup, 0), manifest_of(session, 1));
+}
+
+kernel::Duration virtual_time_from(const Settings& settings) {
+  const auto duration = settings.duration("duration");
+  if (!duration || *duration > kLongestVirtualTime) {
+    settings.refuse("duration", fmt::format("'{}' is no time of 1 ms to 1 h; write for example 60s",
+                                            settings.text("duration")));
+  }
+  return duration->count() * kernel::kMillisecond;
 }
 
 std::string utc_now() {

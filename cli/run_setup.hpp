@@ -7,6 +7,7 @@
 
 #include "cli/verbs.hpp"
 #include "conformance/runner.hpp"
+#include "harness/kernel/time.hpp"
 #include "reports/results.hpp"
 
 namespace fieldproof::cli {
@@ -20,6 +21,12 @@ unsigned jobs_from(const Settings& settings);
 reports::RunIdentity identity_of(const Session& session, const conformance::Setup& setup,
                                  std::size_t selected);
 reports::Manifest manifest_of(const Session& session, unsigned jobs);
+
+// The first line of what a verb prints that simulates without a suite.
+std::string simulation_header(const Session& session, std::uint64_t seed, const std::string& network_file);
+
+// The virtual time of `--duration`, 1 ms to 1 h.
+kernel::Duration virtual_time_from(const Settings& settings);
 
 // Version of the tool and a hash over everything that the cases declare: "0.1.0+1f2e3d4c".
 std::string suite_version(const conformance::Catalogue& catalogue);

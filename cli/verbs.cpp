@@ -19,6 +19,8 @@ constexpr std::array kVerbs = {
     Verb{"judge", "RUNDIR", 1, 1, "judge a stored run again, without the implementation", &judge_again},
     Verb{"diff", "RUN_A RUN_B", 2, 2, "new failures, fixed ones and drifted measurements", &diff},
     Verb{"residual", "", 0, 0, "probability that a frame check takes a corrupted telegram for a good one", &residual},
+    Verb{"measure", "PROTOCOL", 1, 1, "cycle time, jitter and skew of a network, theory beside measurement", &measure_protocol},
+    Verb{"paper", "[NAME]", 0, 1, "what a paper published beside what is reproduced of it [interbus]", &paper},
 };
 // clang-format on
 

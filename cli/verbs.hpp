@@ -30,6 +30,8 @@ int verify(Session& session);
 int judge_again(Session& session);
 int diff(Session& session);
 int residual(Session& session);
+int measure_protocol(Session& session);
+int paper(Session& session);
 
 struct Verb {
   std::string_view name;

@@ -18,6 +18,7 @@ class Matching {
     const kernel::Time input = generator_.edge(edge.number);
     const Phase phase = measure::phase_during(phase_during_, input, edge.when);
     if (edge.number % 2 == 0) {
+      if (generator_.is_train_end(edge.number)) return;
       skew_.fall_delays.add(phase, edge.when - input);
       ++shown_pauses_;
       return;
@@ -30,7 +31,8 @@ class Matching {
   EdgeSkew finish(std::uint64_t foreign_words) {
     skew_.pulses = generator_.pulse_count();
     skew_.lost_pulses = skew_.pulses - shown_pulses_;
-    skew_.lost_pauses = skew_.pulses - shown_pauses_;
+    skew_.pauses = generator_.pause_count();
+    skew_.lost_pauses = skew_.pauses - shown_pauses_;
     skew_.foreign_words = foreign_words;
     return std::move(skew_);
   }

@@ -11,6 +11,10 @@ Phase phase_during(const PhaseDuring& phase_during, kernel::Time from, kernel::T
   return phase_during ? phase_during(from, to) : Phase::quiet;
 }
 
+void PhasedDistribution::add(const PhasedDistribution& other) {
+  for (std::size_t n = 0; n < parts_.size(); ++n) parts_.at(n).add(other.parts_.at(n));
+}
+
 Distribution PhasedDistribution::total() const {
   Distribution all;
   for (const Distribution& part : parts_) all.add(part);

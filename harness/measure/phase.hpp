@@ -30,6 +30,7 @@ class PhasedDistribution {
   void add(Phase phase, Value value) {
     parts_.at(static_cast<std::size_t>(phase)).add(value);
   }
+  void add(const PhasedDistribution& other);
   const Distribution& in(Phase phase) const { return parts_.at(static_cast<std::size_t>(phase)); }
   Distribution total() const;
 

@@ -21,6 +21,10 @@ TEST(PhaseTest, EachPhaseHasItsValuesAndTheTotalHasAll) {
   EXPECT_TRUE(values.in(Phase::recovery).is_empty());
   EXPECT_EQ(values.total().count(), 3U);
   EXPECT_EQ(values.total().max(), 7);
+  PhasedDistribution more = values;
+  more.add(values);
+  EXPECT_EQ(more.in(Phase::burst).count(), 4U);
+  EXPECT_EQ(more.in(Phase::quiet).count(), 2U);
 }
 
 TEST(PhaseTest, HaveNames) {

@@ -27,6 +27,7 @@ SignalGenerator::SignalGenerator(const SquareWave& wave) : wave_(wave) {
 }
 
 void SignalGenerator::trigger(kernel::Time at, std::int64_t periods) {
+  FIELDPROOF_CHECK(periods > 0, "a train has at least one period");
   const kernel::Time first = at + wave_.phase;
   FIELDPROOF_CHECK(edges_.empty() || first > edges_.back(), "a train begins behind the one before it");
   edges_.reserve(edges_.size() + static_cast<std::size_t>(2 * periods));
@@ -34,6 +35,11 @@ void SignalGenerator::trigger(kernel::Time at, std::int64_t periods) {
     edges_.push_back(first + wave_.frequency.periods(k));
     edges_.push_back(first + part_of_periods(wave_.frequency, k * kMillion + wave_.duty_ppm));
   }
+  train_ends_.push_back(edges_.size());
+}
+
+bool SignalGenerator::is_train_end(std::uint64_t number) const {
+  return std::binary_search(train_ends_.begin(), train_ends_.end(), number);
 }
 
 std::uint64_t SignalGenerator::edges_until(kernel::Time when) const {

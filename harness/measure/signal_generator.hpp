@@ -41,6 +41,10 @@ class SignalGenerator {
   const std::vector<kernel::Time>& edges() const { return edges_; }
   kernel::Time edge(std::uint64_t number) const { return edges_.at(number - 1); }
   std::uint64_t pulse_count() const { return edges_.size() / 2; }
+  // Between two pulses of one train; what lies behind a train is a rest.
+  std::uint64_t pause_count() const { return pulse_count() - train_ends_.size(); }
+  // The last edge of a train, in front of a rest.
+  bool is_train_end(std::uint64_t number) const;
 
   // Edges at or before an instant; the level there is high when it is odd.
   std::uint64_t edges_until(kernel::Time when) const;
@@ -48,6 +52,7 @@ class SignalGenerator {
  private:
   SquareWave wave_;
   std::vector<kernel::Time> edges_;
+  std::vector<std::uint64_t> train_ends_;
 };
 
 }  // namespace fieldproof::measure

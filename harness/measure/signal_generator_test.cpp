@@ -42,6 +42,12 @@ TEST(SignalGeneratorTest, TrainsFollowEachOther) {
   EXPECT_THROW(generator.trigger(kStart + 30 * kMillisecond, 1), kernel::BrokenInvariant);
   generator.trigger(kStart + 30 * kMillisecond + kPicosecond, 1);
   EXPECT_EQ(generator.pulse_count(), 3U);
+  EXPECT_EQ(generator.pause_count(), 1U);
+  EXPECT_FALSE(generator.is_train_end(2));
+  EXPECT_TRUE(generator.is_train_end(4));
+  EXPECT_FALSE(generator.is_train_end(5));
+  EXPECT_TRUE(generator.is_train_end(6));
+  EXPECT_THROW(generator.trigger(kernel::kStart + kernel::kSecond, 0), kernel::BrokenInvariant);
 }
 
 TEST(SignalGeneratorTest, AWaveWithoutPulseOrPauseIsNone) {

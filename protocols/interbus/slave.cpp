@@ -239,6 +239,7 @@ void Slave::finish_cycle(kernel::Time end) {
   } else {
     finish_id_cycle(good, end);
   }
+  on_cycle_end(end);
   phase_ = Phase::pause;
 }
 

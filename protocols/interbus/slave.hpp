@@ -78,6 +78,8 @@ class Slave : public SlaveDevice {
   virtual std::uint16_t word_of(std::uint8_t first, std::uint8_t second) const;
   virtual std::uint16_t id_register(kernel::Time when);
   virtual void on_transfer_end(kernel::Time) {}
+  // The last octet of the status word has passed, whatever became of the cycle.
+  virtual void on_cycle_end(kernel::Time) {}
   // A check telegram outside of a cycle, which is passed on.
   virtual void on_stray_check() {}
   virtual void on_cycle_rejected(kernel::Time, bool own_error);

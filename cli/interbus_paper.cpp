@@ -1,0 +1,165 @@
+// The sections of Park 2004 that need no disturbance: cycle times, the highest frequency, square waves.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/paper_sections.hpp"
+#include "protocols/interbus/network_measurement.hpp"
+#include "protocols/interbus/paper.hpp"
+#include "protocols/interbus/timing.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+using interbus::Formula;
+using interbus::NetworkDescription;
+using interbus::SignalRecord;
+using kernel::Duration;
+using reports::PublishedRow;
+using reports::PublishedSection;
+
+constexpr double kHalfOfLastDigitMs = 0.0005;  // the paper prints three decimals of a millisecond
+
+double milliseconds(double picoseconds) {
+  return picoseconds * 1e-9;
+}
+double milliseconds(Duration duration) {
+  return milliseconds(static_cast<double>(duration.count()));
+}
+
+std::string told(Duration duration) {
+  return fmt::format("{:.4f} ms", milliseconds(duration));
+}
+
+NetworkDescription at_cycle(NetworkDescription network, Duration cycle) {
+  network.cycle_time = cycle;
+  return network;
+}
+
+SignalRecord run(const NetworkDescription& network, const PaperSettings& settings,
+                 measure::Frequency frequency, Duration duration) {
+  interbus::SignalSettings signal;
+  signal.wave.frequency = frequency;
+  signal.duration = duration;
+  signal.seed = settings.seed;
+  return interbus::record_signal(network, signal);
+}
+
+// The cycle time that a network runs at, from a second of it.
+Duration measured_cycle(const NetworkDescription& network, const PaperSettings& settings) {
+  const SignalRecord record = run(network, settings, measure::Frequency::from_hertz(50), kernel::kSecond);
+  return Duration{std::llround(record.cycle_times.total().mean())};
+}
+
+PublishedRow cycle_row(std::string what, Duration published, Duration reproduced, std::string remark) {
+  const double distance = std::abs(milliseconds(published) - milliseconds(reproduced));
+  return {std::move(what), fmt::format("{} ms", milliseconds(published)), told(reproduced), std::move(remark),
+          distance <= kHalfOfLastDigitMs};
+}
+
+Duration by_formula(Formula formula, unsigned user_octets) {
+  interbus::TimingInput input = interbus::timing_input(interbus::paper_network());
+  input.user_octets = user_octets;
+  return interbus::cycle_time(formula, input);
+}
+
+}  // namespace
+
+PublishedSection interbus_cycle_times(const PaperSettings& settings) {
+  const NetworkDescription network = interbus::paper_network();
+  const NetworkDescription as_printed = interbus::paper_network_as_printed();
+  const Duration shortest = measured_cycle(network, settings);
+  const Duration shortest_as_printed = measured_cycle(as_printed, settings);
+  const Duration printed = by_formula(Formula::f1, 4);
+  PublishedSection section;
+  section.heading = "Cycle time: calculated 0.755 ms, best at 0.814 ms, first set to 0.86 ms";
+  section.note =
+      "The paper calls 0.755 and 0.814 ms nearly equal; they are 7.8 % apart and it gives no reason.";
+  section.rows = {
+      cycle_row("calculated, as printed: 8 + n telegrams, n = 2", interbus::kPaperCalculatedCycle,
+                by_formula(Formula::f1, 2), "f1 = [1.15 * 13 * (8 + n) + 3 m] t_bit + 450 us; m = 1"),
+      cycle_row("calculated, the network itself: 6 + n, n = 4", interbus::kPaperCalculatedCycle,
+                by_formula(Formula::f4, 4),
+                "f4; the two modules have 4 octets and the text counts 6 octets of frame information"),
+      cycle_row("shortest cycle of that network", interbus::kPaperCalculatedCycle, shortest,
+                "simulated, telegram by telegram"),
+      {"printed formula with the 4 octets of the network", "", told(printed),
+       "f1 with n = 4: the paper does not calculate it", std::nullopt},
+      {"shortest cycle with 8 + n telegrams", "0.814 ms (set, best result)", told(shortest_as_printed),
+       "simulated; the least setting that such a master accepts is 0.8148 ms",
+       std::abs(milliseconds(shortest_as_printed) - milliseconds(interbus::kPaperBestCycle)) < 0.001},
+      {"from the calculated to the best time", "",
+       fmt::format("{:.1f} us", 1e3 * milliseconds(shortest_as_printed - shortest)),
+       "exactly two telegrams, 2 * 1.15 * 13 bit * 2 us: 8 + n counts the 2 octets that n = 2 leaves out",
+       std::nullopt},
+      cycle_row("set to the best time", interbus::kPaperBestCycle,
+                measured_cycle(at_cycle(network, interbus::kPaperBestCycle), settings), "simulated"),
+      cycle_row("set to the first time", interbus::kPaperSetCycle,
+                measured_cycle(at_cycle(network, interbus::kPaperSetCycle), settings), "simulated")};
+  return section;
+}
+
+PublishedSection interbus_highest_frequency(const PaperSettings& settings) {
+  const NetworkDescription network = at_cycle(interbus::paper_network(), interbus::kPaperBestCycle);
+  const double highest = interbus::highest_frequency_hz(interbus::kPaperBestCycle);
+  PublishedSection section;
+  section.heading = "Highest frequency: 614 Hz at 0.814 ms";
+  section.note = "f_max = 1 / (2 T): half a period lasts one cycle. The paper calls it theoretical only.";
+  section.rows.push_back({"f_max", fmt::format("{} Hz", interbus::kPaperHighestFrequencyHz),
+                          fmt::format("{:.2f} Hz", highest), "by the closed form",
+                          std::abs(highest - interbus::kPaperHighestFrequencyHz) < 0.5});
+  for (const std::int64_t hertz : {614, 620, 700}) {
+    const SignalRecord record =
+        run(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
+    const measure::EdgeSkew& skew = record.paths.front().skew;
+    const double expected =
+        interbus::pulse_width(record.settings.wave.high(), interbus::kPaperBestCycle).lost_probability;
+    section.rows.push_back(
+        {fmt::format("pulses lost at {} Hz", hertz), "",
+         fmt::format("{} of {} ({:.2f} %)", skew.lost_pulses, skew.pulses,
+                     100 * static_cast<double>(skew.lost_pulses) / static_cast<double>(skew.pulses)),
+         fmt::format("simulated; by theory 1 - H/T = {:.2f} %", 100 * expected), std::nullopt});
+  }
+  return section;
+}
+
+PublishedSection interbus_square_waves(const PaperSettings& settings) {
+  const NetworkDescription network = at_cycle(interbus::paper_network(), interbus::kPaperBestCycle);
+  PublishedSection section;
+  section.heading = "Input and output at 50, 150 and 200 Hz";
+  section.note =
+      "The paper shows pictures of an oscilloscope without a number, and says that the distortion grows "
+      "towards the highest frequency. Latch model M2.";
+  for (const std::int64_t hertz : interbus::kPaperSignalsHz) {
+    const SignalRecord record =
+        run(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
+    const interbus::PathRecord& path = record.paths.front();
+    const auto delays = path.skew.rise_delays.total();
+    const auto widths = path.skew.widths.total();
+    const auto theory = interbus::path_delay(network, path.path, interbus::LatchModel::frame_edges);
+    const auto duty = [&](std::int64_t picoseconds) {
+      return 100 * milliseconds(static_cast<double>(picoseconds)) * 1e-3 * static_cast<double>(hertz);
+    };
+    section.rows.push_back(
+        {fmt::format("{} Hz: delay of an edge", hertz), "",
+         fmt::format("{:.3f} to {:.3f} ms", milliseconds(static_cast<double>(delays.min())),
+                     milliseconds(static_cast<double>(delays.max()))),
+         fmt::format("mean {:.3f} ms; by theory {:.3f} to {:.3f} ms, mean {:.3f} ms",
+                     milliseconds(delays.mean()), milliseconds(theory.min), milliseconds(theory.max),
+                     milliseconds(theory.mean)),
+         std::nullopt});
+    section.rows.push_back(
+        {fmt::format("{} Hz: duty cycle of a period at the output", hertz), "",
+         fmt::format("{:.1f} to {:.1f} %", duty(widths.min()), duty(widths.max())),
+         fmt::format("50 % at the input; by theory at most {:.2f} % off: T f",
+                     100 * interbus::max_duty_error(static_cast<double>(hertz), interbus::kPaperBestCycle)),
+         std::nullopt});
+    measure::Trace trace = path.trace;
+    trace.length = std::min(trace.length, 60 * kernel::kMillisecond);
+    section.traces.push_back({fmt::format("{} Hz", hertz), std::move(trace)});
+  }
+  return section;
+}
+
+}  // namespace fieldproof::cli

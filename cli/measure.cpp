@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "cli/run_setup.hpp"
+#include "cli/verbs.hpp"
+#include "harness/kernel/error.hpp"
+#include "harness/measure/frequency.hpp"
+#include "protocols/interbus/network_measurement.hpp"
+#include "protocols/interbus/paper.hpp"
+#include "reports/measurement_writer.hpp"
+#include "reports/run_directory.hpp"
+
+// `fieldproof measure`: cycle time, jitter and skew of a network, theory beside measurement.
+namespace fieldproof::cli {
+namespace {
+
+interbus::NetworkDescription network_from(const Settings& settings) {
+  if (settings.is_set("network")) return interbus::NetworkDescription::load(settings.text("network"));
+  interbus::NetworkDescription network = interbus::paper_network();
+  network.cycle_time = interbus::kPaperBestCycle;
+  return network;
+}
+
+// "50Hz,150Hz"; the option may be given several times.
+std::vector<measure::SquareWave> signals_from(const Settings& settings) {
+  std::vector<measure::SquareWave> signals;
+  for (const std::string& list : settings.list("signal")) {
+    std::size_t begin = 0;
+    while (begin <= list.size()) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      const std::string text = list.substr(begin, end - begin);
+      const auto frequency = measure::Frequency::read(text);
+      if (!frequency) {
+        settings.refuse("signal", fmt::format("'{}' is no frequency of 1 mHz to 1 MHz; write for example "
+                                              "50Hz,614.25Hz,1.5kHz",
+                                              text));
+      }
+      signals.push_back({.frequency = *frequency});
+      begin = end + 1;
+    }
+  }
+  return signals;
+}
+
+interbus::MeasurementSettings measurement_from(const Settings& settings) {
+  constexpr std::array kModels = {interbus::LatchModel::same_instant, interbus::LatchModel::frame_edges,
+                                  interbus::LatchModel::previous_frame};
+  interbus::MeasurementSettings measurement;
+  measurement.signals = signals_from(settings);
+  measurement.duration = virtual_time_from(settings);
+  measurement.latch = kModels.at(settings.choice("latch"));
+  measurement.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
+  return measurement;
+}
+
+int code_of(measure::Agreement agreement) {
+  switch (agreement) {
+    case measure::Agreement::holds:
+      return kAllAsExpected;
+    case measure::Agreement::open:
+      return kInconclusive;
+    case measure::Agreement::differs:
+      return kFailed;
+  }
+  return kInternal;
+}
+
+measure::Measurement measure_interbus(Session& session) {
+  interbus::MeasurementSettings settings = measurement_from(session.settings);
+  const interbus::NetworkDescription network = network_from(session.settings);
+  settings.on_progress = [&](std::size_t done) { session.terminal.progress(done); };
+  session.terminal.print(simulation_header(session, settings.seed, session.settings.text("network")));
+  session.terminal.begin_progress(settings.signals.size(), "signals");
+  measure::Measurement measured = interbus::measure_network(network, settings);
+  session.terminal.end_progress();
+  return measured;
+}
+
+struct Measured {
+  std::string_view protocol;
+  measure::Measurement (*serve)(Session&);
+};
+constexpr std::array kMeasured = {Measured{"interbus", &measure_interbus}};
+
+}  // namespace
+
+int measure_protocol(Session& session) {
+  const std::string& protocol = session.operands.front();
+  const auto row = std::ranges::find(kMeasured, protocol, &Measured::protocol);
+  if (row == kMeasured.end()) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        fmt::format("there is nothing to measure of '{}'; there is 'interbus'", protocol));
+  }
+  const measure::Measurement measured = row->serve(session);
+  session.terminal.print(reports::measurement_text(measured));
+  if (session.settings.is_set("json")) {
+    reports::write_text_file(session.settings.text("json"), reports::measurement_json(measured));
+  }
+  const int code = code_of(measure::agreement(measured));
+  if (code != kAllAsExpected) {
+    session.terminal.print(fmt::format("reproduce: fieldproof measure {} {}\n", session.operands.front(),
+                                       session.settings.reproduce_options()));
+  }
+  return code;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,167 @@
+// Subject: the verbs `measure` and `paper` as their user meets them, on the program itself.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/probe/called_program.hpp"
+#include "reports/schema/ajv_judge.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+const fs::path kSource = FIELDPROOF_SOURCE_DIR;
+
+class MeasureVerb : public testing::Test {
+ protected:
+  MeasureVerb() {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / ("fieldproof_" + std::to_string(getpid())) / test.name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~MeasureVerb() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+
+  Called call(std::vector<std::string> arguments) const {
+    Call made;
+    made.program = FIELDPROOF_EXE;
+    made.arguments = std::move(arguments);
+    made.folder = folder_;
+    return made.run();
+  }
+  Json json(const char* file) const {
+    std::ifstream input(folder_ / file);
+    return Json::parse(input);
+  }
+  void write(const char* file, const std::string& text) const { std::ofstream(folder_ / file) << text; }
+
+  void expect_valid(const char* file, const char* schema) const {
+    const auto judgement = reports::judge_with_ajv(
+        kSource, kSource / "reports/schema" / (std::string(schema) + ".schema.json"), {folder_ / file});
+    if (!judgement.is_available) GTEST_SKIP() << judgement.output;
+    EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
+  }
+
+  fs::path folder_;
+};
+
+#define EXPECT_HOLDS(text, part) EXPECT_NE((text).find(part), std::string::npos) << "in\n" << (text)
+
+TEST_F(MeasureVerb, PrintsTheoryBesideMeasurement) {
+  const Called called =
+      call({"measure", "interbus", "--signal", "50Hz,700Hz", "--duration", "10s", "--json", "m.json"});
+  EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
+  EXPECT_EQ(called.out.rfind("fieldproof ", 0), 0U);
+  for (const char* part : {"seed 1,", "latch model", "M2: inputs at the start", "cycle time",
+                           "50 Hz from di16 word 0 to do16 word 0", "700 Hz from", "p99.99",
+                           "share of lost pulses", "theory and measurement: holds"}) {
+    EXPECT_HOLDS(called.out, part);
+  }
+  const Json measured = json("m.json");
+  EXPECT_EQ(measured["schema"], "fieldproof/measurement/1");
+  EXPECT_EQ(measured["agreement"], "holds");
+  EXPECT_EQ(measured["series"].size(), 3U);
+  EXPECT_EQ(measured["series"][0]["comparisons"][0]["measured"], 814.0);
+  expect_valid("m.json", "measurement");
+}
+
+TEST_F(MeasureVerb, EqualCallsGiveEqualOctetsAndOtherSeedsOthers) {
+  const std::vector<std::string> arguments = {"measure",  "interbus", "--duration", "2s",
+                                              "--signal", "150Hz",    "--seed"};
+  const auto with_seed = [&](const char* seed) {
+    std::vector<std::string> all = arguments;
+    all.emplace_back(seed);
+    return call(all).out;
+  };
+  EXPECT_EQ(with_seed("5"), with_seed("5"));
+  EXPECT_NE(with_seed("5"), with_seed("6"));
+}
+
+TEST_F(MeasureVerb, TakesANetworkAndALatchModel) {
+  const Called called =
+      call({"measure", "interbus", "--network", (kSource / "examples/mixed_line.json").string(), "--signal",
+            "50Hz", "--latch", "M3", "--duration", "10s"});
+  EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
+  for (const char* part :
+       {"M3: inputs at the end of the frame before", "from robot word 15 to oven_do word 0"}) {
+    EXPECT_HOLDS(called.out, part);
+  }
+}
+
+TEST_F(MeasureVerb, TooFewSamplesAreInconclusiveAndReproducible) {
+  const Called called =
+      call({"measure", "interbus", "--signal", "200Hz", "--duration", "1ms", "--seed", "3"});
+  EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "theory and measurement: open");
+  EXPECT_HOLDS(called.out, "reproduce: fieldproof measure interbus --seed 3 --signal 200Hz --duration 1ms");
+}
+
+TEST_F(MeasureVerb, RefusesWhatItCannotMeasure) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"measure"},
+                                             {"measure", "interbux"},
+                                             {"measure", "interbus", "--signal", "fast"},
+                                             {"measure", "interbus", "--signal", "50Hz,"},
+                                             {"measure", "interbus", "--signal", "2000kHz"},
+                                             {"measure", "interbus", "--latch", "M4"},
+                                             {"measure", "interbus", "--duration", "0s"},
+                                             {"measure", "interbus", "--duration", "2h"},
+                                             {"paper", "interbux"},
+                                             {"paper", "--signal", "50Hz"}}) {
+    const Called called = call(arguments);
+    EXPECT_EQ(called.exit_code, 64) << testing::PrintToString(arguments) << called.err;
+    EXPECT_EQ(called.err.rfind("fieldproof: ", 0), 0U) << called.err;
+  }
+}
+
+TEST_F(MeasureVerb, ABadNetworkIsToldWithItsPlace) {
+  write("bad.json", "{\n  \"name\": \"x\",\n  \"bit_rat\": \"500 kbit/s\"\n}\n");
+  const Called bad = call({"measure", "interbus", "--network", "bad.json"});
+  EXPECT_EQ(bad.exit_code, 65);
+  EXPECT_HOLDS(bad.err, "bad.json:3: /bit_rat");
+  write("mute.json",
+        "{\"name\": \"mute\", \"bit_rate\": \"500 kbit/s\","
+        " \"stations\": [{\"name\": \"a\", \"id_code\": \"0x0103\"}]}");
+  const Called mute = call({"measure", "interbus", "--network", "mute.json"});
+  EXPECT_EQ(mute.exit_code, 65);
+  EXPECT_HOLDS(mute.err, "nothing is copied from an input to an output");
+}
+
+TEST_F(MeasureVerb, ThePaperIsReproducedSideBySide) {
+  const Called called = call({"paper", "interbus", "--duration", "5s", "--json", "paper.json"});
+  EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
+  for (const char* part : {"0.755 ms", "0.7550 ms", "0.814 ms", "0.8148 ms", "0.86 ms", "0.8600 ms",
+                           "59.8 us", "exactly two telegrams", "614 Hz", "614.25 Hz", "0 of", "pictures",
+                           "(no number)", "input  ", "output ", "every published number is reproduced"}) {
+    EXPECT_HOLDS(called.out, part);
+  }
+  expect_valid("paper.json", "publication");
+}
+
+// Where the paper shows pictures, no number is called the paper's.
+TEST_F(MeasureVerb, PicturesOfThePaperHaveNoNumber) {
+  ASSERT_EQ(call({"paper", "--duration", "1s", "--json", "paper.json"}).exit_code, 0);
+  const Json paper = json("paper.json");
+  int pictures = 0;
+  for (const Json& section : paper["sections"]) {
+    if (section["heading"] != "Input and output at 50, 150 and 200 Hz") continue;
+    EXPECT_EQ(section["traces"].size(), 3U);
+    for (const Json& row : section["rows"]) {
+      EXPECT_TRUE(row["published"].is_null()) << row;
+      ++pictures;
+    }
+  }
+  EXPECT_EQ(pictures, 6);
+}
+
+}  // namespace
+}  // namespace fieldproof::cli

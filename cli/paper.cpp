@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+
+#include "cli/exit_code.hpp"
+#include "cli/paper_sections.hpp"
+#include "cli/run_setup.hpp"
+#include "cli/verbs.hpp"
+#include "harness/kernel/error.hpp"
+#include "reports/run_directory.hpp"
+
+// `fieldproof paper`: what a paper published beside what is reproduced of it.
+namespace fieldproof::cli {
+namespace {
+
+struct Section {
+  std::string_view paper;
+  reports::PublishedSection (*reproduce)(const PaperSettings&);
+};
+
+struct Paper {
+  std::string_view name;
+  std::string_view title;
+};
+
+constexpr std::array kPapers = {
+    Paper{"interbus", "J.-H. Park, The Study on the Cycling Time for Interbus, 2004"},
+};
+
+// In the order in which they are printed.
+constexpr std::array kSections = {
+    Section{"interbus", &interbus_cycle_times},
+    Section{"interbus", &interbus_highest_frequency},
+    Section{"interbus", &interbus_square_waves},
+};
+
+const Paper& paper_named(const std::string& name) {
+  const auto found = std::ranges::find(kPapers, name, &Paper::name);
+  if (found != kPapers.end()) return *found;
+  throw kernel::Error(kernel::ErrorKind::usage,
+                      fmt::format("there is no paper '{}'; there is 'interbus'", name));
+}
+
+}  // namespace
+
+int paper(Session& session) {
+  const Paper& chosen = paper_named(session.operands.empty() ? "interbus" : session.operands.front());
+  PaperSettings settings;
+  settings.seed = session.settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
+  settings.duration = virtual_time_from(session.settings);
+  session.terminal.print(simulation_header(session, settings.seed, ""));
+  reports::Publication publication{std::string(chosen.title), settings.seed, {}};
+  session.terminal.begin_progress(
+      static_cast<std::size_t>(std::ranges::count(kSections, chosen.name, &Section::paper)), "sections");
+  for (const Section& section : kSections) {
+    if (section.paper != chosen.name) continue;
+    publication.sections.push_back(section.reproduce(settings));
+    session.terminal.progress(publication.sections.size());
+  }
+  session.terminal.end_progress();
+  session.terminal.print(reports::publication_text(publication));
+  if (session.settings.is_set("json")) {
+    reports::write_text_file(session.settings.text("json"), reports::publication_json(publication));
+  }
+  return reports::is_reproduced(publication) ? kAllAsExpected : kFailed;
+}
+
+}  // namespace fieldproof::cli

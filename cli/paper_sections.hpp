@@ -1,0 +1,22 @@
+// The sections of a publication: each a function that reproduces one part of a paper. What the program prints
+// is the table in paper.cpp; a new section is a row there.
+#pragma once
+
+#include <cstdint>
+
+#include "harness/kernel/time.hpp"
+#include "reports/publication.hpp"
+
+namespace fieldproof::cli {
+
+struct PaperSettings {
+  std::uint64_t seed = 1;
+  kernel::Duration duration = 60 * kernel::kSecond;  // virtual time of each signal
+};
+
+// Park 2004, "The Study on the Cycling Time for Interbus".
+reports::PublishedSection interbus_cycle_times(const PaperSettings& settings);
+reports::PublishedSection interbus_highest_frequency(const PaperSettings& settings);
+reports::PublishedSection interbus_square_waves(const PaperSettings& settings);
+
+}  // namespace fieldproof::cli

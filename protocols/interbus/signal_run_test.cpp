@@ -1,0 +1,183 @@
+#include "protocols/interbus/signal_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/fault/channel.hpp"
+#include "harness/kernel/error.hpp"
+#include "protocols/interbus/paper.hpp"
+#include "protocols/interbus/slave.hpp"
+#include "protocols/interbus/timing.hpp"
+
+namespace fieldproof::interbus {
+namespace {
+
+using kernel::kSecond;
+using measure::Frequency;
+using measure::Phase;
+
+SignalSettings settings_at(std::int64_t hertz, kernel::Duration duration = 2 * kSecond) {
+  SignalSettings settings;
+  settings.wave.frequency = Frequency::from_hertz(hertz);
+  settings.duration = duration;
+  return settings;
+}
+
+NetworkDescription paper_at(kernel::Duration cycle) {
+  NetworkDescription network = paper_network();
+  network.cycle_time = cycle;
+  return network;
+}
+
+TEST(SignalRunTest, EveryPulseOfEveryTrainIsSeen) {
+  const SignalRecord record = record_signal(paper_at(kPaperBestCycle), settings_at(200));
+  ASSERT_EQ(record.paths.size(), 1U);
+  const measure::EdgeSkew& skew = record.paths.front().skew;
+  EXPECT_EQ(record.paths.front().path.name, "di16 word 0 to do16 word 0");
+  EXPECT_GT(record.trains, 40);
+  EXPECT_EQ(skew.pulses, static_cast<std::uint64_t>(8 * record.trains));
+  EXPECT_EQ(skew.lost_pulses + skew.lost_pauses + skew.foreign_words, 0U);
+  EXPECT_EQ(skew.rise_delays.total().count(), skew.pulses);
+  EXPECT_EQ(skew.widths.total().count(), skew.pulses);
+  EXPECT_EQ(record.rejected_cycles + record.id_cycles, 0U);
+  EXPECT_EQ(record.cycle_times.total().min(), kPaperBestCycle.count());
+  EXPECT_EQ(record.cycle_times.total().max(), kPaperBestCycle.count());
+}
+
+TEST(SignalRunTest, ASeedDecidesEverything) {
+  const auto delays = [](std::uint64_t seed) {
+    SignalSettings settings = settings_at(150);
+    settings.seed = seed;
+    return record_signal(paper_at(kPaperBestCycle), settings).paths.front().skew.rise_delays.total().mean();
+  };
+  EXPECT_EQ(delays(1), delays(1));
+  EXPECT_NE(delays(1), delays(2));
+}
+
+TEST(SignalRunTest, OneTrainIsTheLeast) {
+  const SignalRecord record = record_signal(paper_network(), settings_at(50, kernel::kPicosecond));
+  EXPECT_EQ(record.trains, 1);
+  EXPECT_EQ(record.paths.front().skew.pulses, 8U);
+}
+
+// At 50 Hz and a cycle of 0.8 ms a period is exactly 25 cycles: a continuous signal meets the cycle at one
+// phase, and the delays of its edges look like a constant. Trains of one signal show the whole distribution.
+TEST(SignalRunTest, ACommensurableSignalShowsOneDelayOnlyWithoutTrains) {
+  const NetworkDescription network = paper_at(800 * kernel::kMicrosecond);
+  SignalSettings settings = settings_at(50, 20 * kSecond);
+  const auto trains = record_signal(network, settings).paths.front().skew.rise_delays.total();
+  EXPECT_NEAR(trains.standard_deviation() / 800e6, 0.2887, 0.01);
+  settings.periods_per_train = 1'000;
+  settings.duration = kernel::kPicosecond;
+  const SignalRecord continuous = record_signal(network, settings);
+  EXPECT_EQ(continuous.trains, 1);
+  const auto delays = continuous.paths.front().skew.rise_delays.total();
+  EXPECT_EQ(delays.count(), 1'000U);
+  EXPECT_EQ(delays.min(), delays.max());
+}
+
+TEST(SignalRunTest, TheTraceIsThatOfTheFirstTrain) {
+  const auto trace = record_signal(paper_network(), settings_at(50)).paths.front().trace;
+  ASSERT_EQ(trace.input.size(), 16U);
+  ASSERT_EQ(trace.output.size(), 16U);
+  for (std::size_t n = 0; n < 16; ++n) {
+    EXPECT_EQ(trace.input[n].level, n % 2 == 0);
+    EXPECT_EQ(trace.output[n].level, n % 2 == 0);
+    EXPECT_LT(trace.input[n].when, trace.output[n].when);
+  }
+  EXPECT_GT(trace.length, trace.output.back().when);
+}
+
+// Loses every n-th transmission that reaches the master.
+class LossyReturn final : public fault::Channel {
+ public:
+  bool pass(const line::Waveform&, std::vector<line::Waveform>&) override { return ++count_ % 50 == 0; }
+
+ private:
+  int count_ = 0;
+};
+
+TEST(SignalRunTest, ADisturbanceIsPutOnTheRingAndToldApart) {
+  LossyReturn lossy;
+  SignalSettings settings = settings_at(50, 4 * kSecond);
+  settings.disturb = [&](Ring& ring) { ring.find_link("master/in")->set_channel(&lossy); };
+  // The second of two seconds is said to be the burst.
+  settings.phase_during = [](kernel::Time from, kernel::Time) {
+    return (from - kernel::kStart) / kSecond % 2 == 1 ? Phase::burst : Phase::quiet;
+  };
+  const SignalRecord record = record_signal(paper_network(), settings);
+  EXPECT_GT(record.rejected_cycles, 50U);
+  EXPECT_GE(record.id_cycles, record.rejected_cycles);
+  const measure::EdgeSkew& skew = record.paths.front().skew;
+  EXPECT_GT(skew.rise_delays.in(Phase::burst).count(), 20U);
+  EXPECT_GT(skew.rise_delays.in(Phase::quiet).count(), 20U);
+  // A rejected cycle makes edges late, but no word wrong.
+  const auto cycle = structural_cycle_time(paper_network());
+  EXPECT_GT(skew.rise_delays.total().max(), kernel::Duration(5 * cycle / 2).count());
+  EXPECT_EQ(skew.foreign_words, 0U);
+  EXPECT_GT(record.cycle_times.total().max(), kernel::Duration(cycle).count());
+}
+
+// A slave that shifts the words of its image in time: the second one is a sample behind.
+class TearingSlave final : public Slave {
+ public:
+  using Slave::Slave;
+
+ protected:
+  void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) override {
+    Slave::sample_inputs(when, octets);
+    if (octets.size() < 4) return;
+    std::swap(octets[2], held_[0]);
+    std::swap(octets[3], held_[1]);
+  }
+
+ private:
+  std::uint8_t held_[2] = {};
+};
+
+NetworkDescription two_words() {
+  NetworkDescription network = paper_network();
+  network.stations[0].branch[0].id_code = 0x02BE;
+  network.stations[0].branch[1].id_code = 0x02BD;
+  network.copy.push_back({"di16", 1, "do16", 1});
+  return network;
+}
+
+TEST(SignalRunTest, WordsOfOneStationBelongTogether) {
+  SignalSettings settings = settings_at(150);
+  const SignalRecord whole = record_signal(two_words(), settings);
+  EXPECT_EQ(whole.paths.size(), 2U);
+  EXPECT_GT(whole.images, 400U);
+  EXPECT_EQ(whole.torn_images, 0U);
+  settings.make_slave = [](int, const SlaveConfiguration& configuration) {
+    return std::make_unique<TearingSlave>(configuration);
+  };
+  const SignalRecord torn = record_signal(two_words(), settings);
+  EXPECT_GT(torn.torn_images, torn.images / 3);
+}
+
+std::string refusal_of(const NetworkDescription& network, const SignalSettings& settings) {
+  try {
+    record_signal(network, settings);
+  } catch (const kernel::Error& error) {
+    EXPECT_EQ(error.exit_code(), 65);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SignalRunTest, ANetworkWithoutCopyOrWithoutCyclesIsRefused) {
+  NetworkDescription without = paper_network();
+  without.copy.clear();
+  EXPECT_NE(refusal_of(without, settings_at(50)).find("/copy"), std::string::npos);
+  SignalSettings cut = settings_at(50);
+  cut.disturb = [](Ring& ring) { ring.set_cable(1, false); };
+  EXPECT_NE(refusal_of(paper_network(), cut).find("no data cycles"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fieldproof::interbus

@@ -1,0 +1,100 @@
+#include "reports/publication.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/judge/untrusted_text.hpp"
+#include "reports/measurement_writer.hpp"
+#include "reports/text_summary.hpp"
+#include "reports/trace_json.hpp"
+
+namespace fieldproof::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using judge::as_utf8;
+
+constexpr std::size_t kWhatWidth = 46;
+constexpr std::size_t kValueWidth = 30;
+constexpr std::size_t kTraceColumns = 100;
+constexpr std::string_view kNoNumber = "(no number)";
+
+std::string_view sign_of(const PublishedRow& row) {
+  if (!row.agrees) return "";
+  return *row.agrees ? "agrees" : "DIFFERS";
+}
+
+std::string row_text(const PublishedRow& row) {
+  const std::string published = row.published.empty() ? std::string(kNoNumber) : escaped_line(row.published);
+  std::string text = fmt::format("  {:<{}} {:<{}} {:<{}} {}", escaped_line(row.what), kWhatWidth, published,
+                                 kValueWidth - 14, escaped_line(row.reproduced), kValueWidth, sign_of(row));
+  text.erase(text.find_last_not_of(' ') + 1);
+  if (!row.remark.empty()) text += fmt::format("\n      {}", escaped_line(row.remark));
+  return text + "\n";
+}
+
+std::string section_text(const PublishedSection& section) {
+  std::string text = fmt::format("\n{}\n", escaped_line(section.heading));
+  if (!section.note.empty()) text += fmt::format("  {}\n", escaped_line(section.note));
+  if (!section.rows.empty()) {
+    text += fmt::format("  {:<{}} {:<{}} {}\n", "", kWhatWidth, "paper", kValueWidth - 14, "reproduced");
+  }
+  for (const PublishedRow& row : section.rows) text += row_text(row);
+  for (const PublishedTrace& one : section.traces) {
+    text += fmt::format("\n{}, {}\n{}", escaped_line(one.name), kernel::describe(one.trace.length),
+                        trace_text(one.trace, kTraceColumns));
+  }
+  return text;
+}
+
+Json section_json(const PublishedSection& section) {
+  Json json = {{"heading", as_utf8(section.heading)},
+               {"note", as_utf8(section.note)},
+               {"rows", Json::array()},
+               {"traces", Json::array()}};
+  for (const PublishedRow& row : section.rows) {
+    Json one = {{"what", as_utf8(row.what)},
+                {"published", nullptr},
+                {"reproduced", as_utf8(row.reproduced)},
+                {"remark", as_utf8(row.remark)},
+                {"agrees", nullptr}};
+    if (!row.published.empty()) one["published"] = as_utf8(row.published);
+    if (row.agrees) one["agrees"] = *row.agrees;
+    json["rows"].push_back(std::move(one));
+  }
+  for (const PublishedTrace& one : section.traces) {
+    json["traces"].push_back({{"name", as_utf8(one.name)}, {"trace", trace_json(one.trace)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+bool is_reproduced(const Publication& publication) {
+  return std::ranges::all_of(publication.sections, [](const PublishedSection& section) {
+    return std::ranges::all_of(section.rows,
+                               [](const PublishedRow& row) { return row.agrees.value_or(true); });
+  });
+}
+
+std::string publication_text(const Publication& publication) {
+  std::string text = fmt::format("{}\n", escaped_line(publication.title));
+  for (const PublishedSection& section : publication.sections) text += section_text(section);
+  return text + (is_reproduced(publication) ? "\nevery published number is reproduced\n"
+                                            : "\nnot every published number is reproduced\n");
+}
+
+std::string publication_json(const Publication& publication) {
+  Json json = {{"schema", "fieldproof/publication/1"},
+               {"title", as_utf8(publication.title)},
+               {"seed", fmt::format("{}", publication.seed)},
+               {"reproduced", is_reproduced(publication)},
+               {"sections", Json::array()}};
+  for (const PublishedSection& section : publication.sections)
+    json["sections"].push_back(section_json(section));
+  return json.dump(1) + "\n";
+}
+
+}  // namespace fieldproof::reports

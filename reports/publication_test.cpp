@@ -1,0 +1,57 @@
+#include "reports/publication.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "reports/approved_text.hpp"
+#include "reports/sample_measurement.hpp"
+#include "reports/schema/ajv_judge.hpp"
+
+namespace fieldproof::reports {
+namespace {
+
+Publication sample_publication() {
+  PublishedSection section;
+  section.heading = "Cycle time";
+  section.note = "as printed";
+  section.rows = {{"calculated", "0.755 ms", "0.7550 ms", "by the formula", true},
+                  {"delay", "", "1.1 to 1.9 ms", "pictures only", std::nullopt}};
+  section.traces = {{"50 Hz", sample_measurement().series[0].trace}};
+  return {"A paper", 7, {section}};
+}
+
+TEST(PublicationTest, WritesTheApprovedDocuments) {
+  expect_approved("publication.json", publication_json(sample_publication()));
+  expect_approved("publication.txt", publication_text(sample_publication()));
+}
+
+TEST(PublicationTest, IsValidForASchemaValidator) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "publication.json";
+  write_text_file(file, publication_json(sample_publication()));
+  const AjvJudgement judgement = judge_with_ajv(
+      FIELDPROOF_SOURCE_DIR,
+      std::filesystem::path(FIELDPROOF_SOURCE_DIR) / "reports/schema/publication.schema.json", {file});
+  if (!judgement.is_available) GTEST_SKIP() << judgement.output;
+  EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
+}
+
+TEST(PublicationTest, APictureIsNoNumber) {
+  const auto json = nlohmann::json::parse(publication_json(sample_publication()));
+  EXPECT_TRUE(json["sections"][0]["rows"][1]["published"].is_null());
+  EXPECT_TRUE(json["sections"][0]["rows"][1]["agrees"].is_null());
+  EXPECT_NE(publication_text(sample_publication()).find("(no number)"), std::string::npos);
+}
+
+TEST(PublicationTest, OneRowThatDiffersIsNoReproduction) {
+  Publication publication = sample_publication();
+  EXPECT_TRUE(is_reproduced(publication));
+  publication.sections[0].rows[0].agrees = false;
+  EXPECT_FALSE(is_reproduced(publication));
+  EXPECT_NE(publication_text(publication).find("DIFFERS"), std::string::npos);
+  EXPECT_NE(publication_text(publication).find("not every published number"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fieldproof::reports

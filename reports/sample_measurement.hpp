@@ -1,0 +1,33 @@
+// For tests: a small measurement with values in two phases.
+#pragma once
+
+#include "harness/measure/measurement.hpp"
+
+namespace fieldproof::reports {
+
+inline measure::Measurement sample_measurement() {
+  using measure::Phase;
+  measure::Measurement measurement;
+  measurement.protocol = "interbus";
+  measurement.network = "one coupler";
+  measurement.seed = 7;
+  measurement.tolerance_percent = 2;
+  measurement.conditions = {{"latch model", "M2"}};
+  measure::Series series;
+  series.name = "50 Hz from di to do";
+  series.comparisons = {{"cycle time", "us", 814, 814.2, 814, "of the theory"},
+                        {"largest error, at most", "%", 4.07, 3.5, 100, "of a period", 0, true}};
+  measure::Curve delays{"delay", "us", 1e6, {}};
+  for (const std::int64_t value : {1'000'000, 2'000'000, 3'000'000, 4'000'000})
+    delays.values.add(Phase::quiet, value);
+  delays.values.add(Phase::burst, std::int64_t{9'500'000});
+  series.curves = {delays};
+  series.counts = {{"lost pulses", 1, 20}, {"trains", 3, 0}};
+  series.trace.length = kernel::kMillisecond;
+  series.trace.input = {{kernel::kMicrosecond, true}};
+  series.trace.output = {{3 * kernel::kMicrosecond, true}};
+  measurement.series = {series};
+  return measurement;
+}
+
+}  // namespace fieldproof::reports
