@@ -22,7 +22,7 @@ using reports::PublishedSection;
 constexpr double kHalfOfLastDigitMs = 0.0005;  // the paper prints three decimals of a millisecond
 
 double milliseconds(double picoseconds) {
-  return picoseconds * 1e-9;
+  return picoseconds / 1e9;
 }
 double milliseconds(Duration duration) {
   return milliseconds(static_cast<double>(duration.count()));
@@ -87,11 +87,12 @@ PublishedSection interbus_cycle_times(const PaperSettings& settings) {
       {"printed formula with the 4 octets of the network", "", told(printed),
        "f1 with n = 4: the paper does not calculate it", std::nullopt},
       {"shortest cycle with 8 + n telegrams", "0.814 ms (set, best result)", told(shortest_as_printed),
-       "simulated; the least setting that such a master accepts is 0.8148 ms",
+       "simulated; that 0.814 ms is this time with its last digit cut is a reading, the paper does not say "
+       "so",
        std::abs(milliseconds(shortest_as_printed) - milliseconds(interbus::kPaperBestCycle)) < 0.001},
       {"from the calculated to the best time", "",
        fmt::format("{:.1f} us", 1e3 * milliseconds(shortest_as_printed - shortest)),
-       "exactly two telegrams, 2 * 1.15 * 13 bit * 2 us: 8 + n counts the 2 octets that n = 2 leaves out",
+       "exactly two telegrams, 2 * 1.15 * 13 bit * 2 us: 8 + n as printed instead of 6 + n, both with n = 4",
        std::nullopt},
       cycle_row("set to the best time", interbus::kPaperBestCycle,
                 measured_cycle(at_cycle(network, interbus::kPaperBestCycle), settings), "simulated"),

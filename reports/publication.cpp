@@ -16,8 +16,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 using judge::as_utf8;
 
-constexpr std::size_t kWhatWidth = 46;
-constexpr std::size_t kValueWidth = 30;
+constexpr std::size_t kWhatWidth = 50;
+constexpr std::size_t kPublishedWidth = 26;
+constexpr std::size_t kReproducedWidth = 24;
 constexpr std::size_t kTraceColumns = 100;
 constexpr std::string_view kNoNumber = "(no number)";
 
@@ -28,8 +29,9 @@ std::string_view sign_of(const PublishedRow& row) {
 
 std::string row_text(const PublishedRow& row) {
   const std::string published = row.published.empty() ? std::string(kNoNumber) : escaped_line(row.published);
-  std::string text = fmt::format("  {:<{}} {:<{}} {:<{}} {}", escaped_line(row.what), kWhatWidth, published,
-                                 kValueWidth - 14, escaped_line(row.reproduced), kValueWidth, sign_of(row));
+  std::string text =
+      fmt::format("  {:<{}} {:<{}} {:<{}} {}", escaped_line(row.what), kWhatWidth, published, kPublishedWidth,
+                  escaped_line(row.reproduced), kReproducedWidth, sign_of(row));
   text.erase(text.find_last_not_of(' ') + 1);
   if (!row.remark.empty()) text += fmt::format("\n      {}", escaped_line(row.remark));
   return text + "\n";
@@ -39,7 +41,7 @@ std::string section_text(const PublishedSection& section) {
   std::string text = fmt::format("\n{}\n", escaped_line(section.heading));
   if (!section.note.empty()) text += fmt::format("  {}\n", escaped_line(section.note));
   if (!section.rows.empty()) {
-    text += fmt::format("  {:<{}} {:<{}} {}\n", "", kWhatWidth, "paper", kValueWidth - 14, "reproduced");
+    text += fmt::format("  {:<{}} {:<{}} {}\n", "", kWhatWidth, "paper", kPublishedWidth, "reproduced");
   }
   for (const PublishedRow& row : section.rows) text += row_text(row);
   for (const PublishedTrace& one : section.traces) {

@@ -19,7 +19,7 @@ namespace fieldproof::interbus {
 
 class LatchingSlave final : public Slave {
  public:
-  // `sample_to_latch`: see timing.hpp.
+  // `sample_to_latch`: see station_timing.hpp.
   LatchingSlave(const SlaveConfiguration& configuration, LatchModel model, kernel::Duration sample_to_latch);
 
  protected:

@@ -6,6 +6,7 @@
 
 #include "protocols/interbus/live_network.hpp"
 #include "protocols/interbus/paper.hpp"
+#include "protocols/interbus/station_timing.hpp"
 #include "protocols/interbus/timing.hpp"
 
 namespace fieldproof::interbus {
@@ -20,7 +21,7 @@ constexpr int kOutputStation = 3;
 // From the only edge at the input, `after_start` behind the start of a data cycle, to the output.
 Duration delay_of(LatchModel model, Duration after_start) {
   const NetworkDescription network = paper_network();
-  const Duration way = sample_to_latch(network.rules, timing_input(network).user_octets);
+  const Duration way = sample_to_latch(network);
   LiveNetwork live(network, [&](int, const SlaveConfiguration& configuration) {
     return std::make_unique<LatchingSlave>(configuration, model, way);
   });
@@ -41,7 +42,7 @@ class LatchingSlaveTest : public testing::Test {
  protected:
   NetworkDescription network_ = paper_network();
   Duration cycle_ = structural_cycle_time(network_);
-  Duration frame_ = sample_to_latch(network_.rules, 4);
+  Duration frame_ = sample_to_latch(network_);
   Duration arrival_ = arrival_delays(network_).at(kInputStation - 1);
 };
 

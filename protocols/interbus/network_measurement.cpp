@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "protocols/interbus/station_timing.hpp"
 #include "protocols/interbus/timing.hpp"
 
 namespace fieldproof::interbus {
@@ -244,12 +245,11 @@ Duration cycle_time_in_force(const NetworkDescription& network) {
 Duration frame_between(const NetworkDescription& network, const CopiedPath& path) {
   const std::vector<Duration> arrivals = arrival_delays(network);
   const auto arrival = [&](int position) { return arrivals.at(static_cast<std::size_t>(position - 1)); };
-  return sample_to_latch(network.rules, timing_input(network).user_octets) + arrival(path.to) -
-         arrival(path.from);
+  return sample_to_latch(network) + arrival(path.to) - arrival(path.from);
 }
 
 EdgeDelay path_delay(const NetworkDescription& network, const CopiedPath& path, LatchModel model) {
-  const Duration frame = sample_to_latch(network.rules, timing_input(network).user_octets);
+  const Duration frame = sample_to_latch(network);
   const Duration way = frame_between(network, path) - frame;
   EdgeDelay delay = edge_delay(model, cycle_time_in_force(network), frame);
   for (Duration* part : {&delay.min, &delay.mean, &delay.max}) *part += way;

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "protocols/interbus/paper.hpp"
-#include "protocols/interbus/timing.hpp"
+#include "protocols/interbus/station_timing.hpp"
 
 namespace fieldproof::interbus {
 namespace {
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Models, LatchTest,
 TEST(NetworkMeasurementTest, SurvivorsAboveTheHighestFrequencyAreLaterByHalfTheirWidth) {
   const SignalRecord record = run_at(700);
   const auto delays = record.paths.front().skew.rise_delays.total();
-  const Duration frame = sample_to_latch(paper_network().rules, 4);
+  const Duration frame = sample_to_latch(paper_network());
   const Duration expected =
       mean_delay_of_survivors(LatchModel::frame_edges, kPaperBestCycle, frame, record.settings.wave.high());
   EXPECT_NEAR(in_cycles(delays.mean()), in_cycles(static_cast<double>(expected.count())), 0.02);

@@ -15,7 +15,7 @@
 #include "harness/measure/two_channel_recorder.hpp"
 #include "protocols/interbus/latching_slave.hpp"
 #include "protocols/interbus/live_network.hpp"
-#include "protocols/interbus/timing.hpp"
+#include "protocols/interbus/station_timing.hpp"
 
 namespace fieldproof::interbus {
 namespace {
@@ -28,7 +28,7 @@ constexpr std::int64_t kRestCycles = 6;
 
 Ring::MakeSlave slaves_for(const NetworkDescription& network, const SignalSettings& settings) {
   if (settings.make_slave) return settings.make_slave;
-  const Duration way = sample_to_latch(network.rules, timing_input(network).user_octets);
+  const Duration way = sample_to_latch(network);
   return [latch = settings.latch, way](int, const SlaveConfiguration& configuration) {
     return std::make_unique<LatchingSlave>(configuration, latch, way);
   };

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "harness/kernel/check.hpp"
 
@@ -63,48 +62,6 @@ Duration dense_telegrams(const TimingInput& input, std::int64_t millibits_per_st
                        input.bit_rate);
 }
 
-// The way of a telegram through the ring, station by station in its order.
-class Way {
- public:
-  explicit Way(const NetworkDescription& network) : rules_(network.rules), places_(ring_order(network)) {}
-
-  std::vector<Duration> arrivals() {
-    arrivals_.resize(places_.size());
-    Duration at{};
-    while (next_ < places_.size()) at = pass(at);
-    return std::move(arrivals_);
-  }
-
- private:
-  // From in front of the cable to the next station to where its own way back ends; with all behind it.
-  Duration pass(Duration at) {
-    const auto station = static_cast<int>(next_++);
-    const RingPlace& place = places_[static_cast<std::size_t>(station)];
-    const bool is_local = place.station->is_local;
-    const Duration cable =
-        cable_time(place.station->cable_m, static_cast<double>(rules_.cable_delay_ps_per_m));
-    at += cable;
-    arrivals_[static_cast<std::size_t>(station)] = at;
-    at += half_bits(is_local ? rules_.local_delay_half_bits : rules_.forward_delay_half_bits);
-    for (const bool on_branch : {true, false}) {
-      if (next_ < places_.size() && places_[next_].before == station &&
-          places_[next_].on_branch == on_branch) {
-        at = pass(at);
-      }
-    }
-    return at + half_bits(is_local ? rules_.local_delay_half_bits : rules_.return_delay_half_bits) + cable;
-  }
-
-  Duration half_bits(unsigned count) const {
-    return bits_duration(std::int64_t{500} * count, rules_.bit_rate);
-  }
-
-  const Rules& rules_;
-  std::vector<RingPlace> places_;
-  std::size_t next_ = 0;
-  std::vector<Duration> arrivals_;
-};
-
 }  // namespace
 
 TimingInput timing_input(const NetworkDescription& network) {
@@ -156,24 +113,13 @@ Duration frame_time(const Rules& rules, unsigned user_octets) {
                        rules.bit_rate);
 }
 
-Duration sample_to_latch(const Rules& rules, unsigned user_octets) {
-  // Telegram k begins at level 13 * k + floor(k * gap), see cycle_frame.hpp.
-  const std::int64_t last = kFrameInformationOctets + user_octets - 1;
-  const std::int64_t levels = kDataTelegramBits * (last + 1) + last * rules.telegram_gap_millibits / 1'000;
-  return kernel::levels_duration(levels, rules.bit_rate);
-}
-
-std::vector<Duration> arrival_delays(const NetworkDescription& network) {
-  return Way(network).arrivals();
-}
-
 Duration ring_delay(const NetworkDescription& network) {
   const Rules& rules = network.rules;
   std::int64_t half_bits = 0;
   double cable_m = 0;
   for (const RingPlace& place : ring_order(network)) {
     half_bits += place.station->is_local
-                     ? std::int64_t{2} * rules.local_delay_half_bits
+                     ? rules.local_delay_half_bits
                      : std::int64_t{rules.forward_delay_half_bits} + rules.return_delay_half_bits;
     cable_m += place.station->cable_m;
   }

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "harness/judge/verdict.hpp"
 #include "harness/kernel/time.hpp"
@@ -80,15 +79,6 @@ kernel::Duration shortest_telegram(const Rules& rules);
 // From the master around the ring and back, without the registers: retiming of the stations, and the cable
 // in both directions.
 kernel::Duration ring_delay(const NetworkDescription& network);
-
-// From the start of the first telegram of a data cycle at a station, when it samples its inputs, to the end
-// of the last octet of the status word there, when it latches its outputs; on the levels that a master
-// drives.
-kernel::Duration sample_to_latch(const Rules& rules, unsigned user_octets);
-
-// From the master's output to the receiver of each station on the way out, in the order of the ring: what
-// lies in front of it, with every branch there and back.
-std::vector<kernel::Duration> arrival_delays(const NetworkDescription& network);
 
 // Shortest cycle of a master under the network's rules: frame, ring and software time. It is F4 where the
 // rules are those of the reference and F1 with two end telegrams.
