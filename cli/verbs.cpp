@@ -18,6 +18,7 @@ constexpr std::array kVerbs = {
     Verb{"verify", "SELECTOR...|CASEFILE", 1, kAny, "run cases several times; equal seeds must give equal fingerprints", &verify},
     Verb{"judge", "RUNDIR", 1, 1, "judge a stored run again, without the implementation", &judge_again},
     Verb{"diff", "RUN_A RUN_B", 2, 2, "new failures, fixed ones and drifted measurements", &diff},
+    Verb{"emc", "PROTOCOL", 1, 1, "a network under IEC 61000-4-4 bursts: criterion and ledger by level, repetition, polarity", &emc_protocol},
     Verb{"residual", "", 0, 0, "probability that a frame check takes a corrupted telegram for a good one", &residual},
     Verb{"measure", "PROTOCOL", 1, 1, "cycle time, jitter and skew of a network, theory beside measurement", &measure_protocol},
     Verb{"paper", "[NAME]", 0, 1, "what a paper published beside what is reproduced of it [interbus]", &paper},

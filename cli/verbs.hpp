@@ -30,6 +30,7 @@ int verify(Session& session);
 int judge_again(Session& session);
 int diff(Session& session);
 int residual(Session& session);
+int emc_protocol(Session& session);
 int measure_protocol(Session& session);
 int paper(Session& session);
 

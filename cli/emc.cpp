@@ -1,0 +1,286 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/emc_text.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/implementations.hpp"
+#include "cli/interruption.hpp"
+#include "cli/run_setup.hpp"
+#include "cli/verbs.hpp"
+#include "conformance/interbus/master_deviations.hpp"
+#include "conformance/interbus/slave_deviations.hpp"
+#include "conformance/ordered_work.hpp"
+#include "harness/kernel/error.hpp"
+#include "protocols/interbus/paper.hpp"
+#include "reports/run_directory.hpp"
+
+// `fieldproof emc`: a network under bursts of each level, repetition and polarity.
+namespace fieldproof::cli {
+namespace {
+
+using emc::Level;
+using emc::Polarity;
+using emc::Repetition;
+
+constexpr std::size_t kMostTests = 10'000;
+
+std::vector<std::string> words_of(const Settings& settings, std::string_view name) {
+  std::vector<std::string> words;
+  for (const std::string& list : settings.list(name)) {
+    for (std::size_t begin = 0; begin <= list.size();) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      words.push_back(list.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  return words;
+}
+
+std::optional<double> number_of(std::string_view text) {
+  double value = 0;
+  const auto [rest, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc{} || rest != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// "3", "1..4", "x:1000", "x:1000..4500:500".
+class LevelReader {
+ public:
+  explicit LevelReader(const Settings& settings) : settings_(settings) {}
+
+  std::vector<Level> read() {
+    for (const std::string& word : words_of(settings_, "levels")) add(word);
+    return std::move(levels_);
+  }
+
+ private:
+  void add(const std::string& word) {
+    const bool is_free = word.starts_with("x:") || word.starts_with("X:");
+    const std::string range = is_free ? word.substr(2) : word;
+    const std::size_t dots = range.find("..");
+    const std::string from = range.substr(0, dots);
+    std::string to = dots == std::string::npos ? from : range.substr(dots + 2);
+    std::string step = is_free ? "500" : "1";
+    if (const std::size_t colon = to.find(':'); dots != std::string::npos && colon != std::string::npos) {
+      step = to.substr(colon + 1);
+      to.resize(colon);
+    }
+    const auto low = number_of(from);
+    const auto high = number_of(to);
+    const auto pitch = number_of(step);
+    const bool is_range =
+        low && high && pitch && *pitch >= 1 && *low <= *high && (*high - *low) / *pitch < kMostTests;
+    if (!is_range || (!is_free && (*low != static_cast<unsigned>(*low) || *pitch != 1))) refuse(word);
+    const auto count = static_cast<unsigned>((*high - *low) / *pitch + 1e-9) + 1;
+    for (unsigned n = 0; n < count; ++n) {
+      const double value = *low + n * *pitch;
+      levels_.push_back(is_free ? Level::free(value)
+                                : Level::standard(emc::PortKind::signal, static_cast<unsigned>(value)));
+    }
+  }
+
+  [[noreturn]] void refuse(const std::string& word) const {
+    settings_.refuse(
+        "levels", fmt::format("'{}' is no level; write 1..4, 3, x:1000 or x:1000..4500:500 (volts)", word));
+  }
+
+  const Settings& settings_;
+  std::vector<Level> levels_;
+};
+
+// The values of a list option by their words.
+template <typename Value, std::size_t N>
+std::vector<Value> choices(const Settings& settings, std::string_view name,
+                           const std::array<std::pair<std::string_view, Value>, N>& known) {
+  std::vector<Value> chosen;
+  for (const std::string& word : words_of(settings, name)) {
+    const auto found = std::ranges::find(known, word, &std::pair<std::string_view, Value>::first);
+    if (found == known.end()) {
+      std::string all;
+      for (const auto& [text, value] : known) all += (all.empty() ? "" : ", ") + std::string(text);
+      settings.refuse(name, fmt::format("'{}' is none of {}", word, all));
+    }
+    chosen.push_back(found->second);
+  }
+  return chosen;
+}
+
+std::vector<EmcTest> tests_from(const Settings& settings) {
+  constexpr std::array<std::pair<std::string_view, Repetition>, 3> kRepetitions = {
+      {{"5kHz", Repetition::khz_5},
+       {"100kHz", Repetition::khz_100},
+       {"2.5kHz", Repetition::khz_2_5_edition_1}}};
+  constexpr std::array<std::pair<std::string_view, Polarity>, 2> kPolarities = {
+      {{"+", Polarity::positive}, {"-", Polarity::negative}}};
+  const auto levels = LevelReader(settings).read();
+  const auto repetitions = choices(settings, "repetition", kRepetitions);
+  const auto polarities = choices(settings, "polarity", kPolarities);
+  std::vector<EmcTest> tests;
+  for (const Level& level : levels) {
+    for (const Repetition repetition : repetitions) {
+      for (const Polarity polarity : polarities) tests.push_back({level, repetition, polarity, {}});
+    }
+  }
+  if (tests.size() > kMostTests) {
+    settings.refuse("levels",
+                    fmt::format("these are {} tests; at most {} make a campaign", tests.size(), kMostTests));
+  }
+  return tests;
+}
+
+emc::Profile profile_from(const Settings& settings) {
+  const std::string written = settings.text("profile");
+  return std::filesystem::is_regular_file(written) ? emc::Profile::load(written)
+                                                   : emc::Profile::named(written);
+}
+
+interbus::NetworkDescription network_from(const Settings& settings) {
+  if (settings.is_set("network")) return interbus::NetworkDescription::load(settings.text("network"));
+  interbus::NetworkDescription network = interbus::paper_network();
+  network.cycle_time = interbus::kPaperBestCycle;
+  return network;
+}
+
+// Deviations by role; the rest of the network are references.
+emc::InterbusStations stations_from(const Session& session, std::size_t stations) {
+  emc::InterbusStations players;
+  const auto entries = session.catalogue.select(std::vector<std::string>{"interbus/**"});
+  for (const std::string& text : session.settings.list("iut")) {
+    const conformance::Assignment assigned = parse_implementation(text, session.catalogue, entries);
+    if (assigned.uri == "ref") continue;
+    constexpr std::string_view kDeviant = "deviant:";
+    if (!assigned.uri.starts_with(kDeviant) || (assigned.role != "slave" && assigned.role != "master")) {
+      session.settings.refuse(
+          "iut",
+          fmt::format("'{}' cannot take part here; write slave@N=deviant:NAME or master=deviant:NAME", text));
+    }
+    const std::string name = assigned.uri.substr(kDeviant.size());
+    if (assigned.role == "master") {
+      players.make_master = conformance::make_master(assigned.uri);
+      continue;
+    }
+    const int at = std::max(assigned.position, 1);
+    if (at > static_cast<int>(stations) || players.make_slave) {
+      session.settings.refuse(
+          "iut", fmt::format("'{}': one slave deviates, at a position from 1 to {}", text, stations));
+    }
+    players.make_slave = [at, name](int position, const interbus::SlaveConfiguration& configuration) {
+      return position == at ? conformance::make_slave_deviation(name, configuration) : nullptr;
+    };
+  }
+  return players;
+}
+
+// Runs the tests over the threads; a test is told when all before it are done.
+class Campaign {
+ public:
+  explicit Campaign(Session& session)
+      : session_(session),
+        interruption_(session.settings.duration("max-time")),
+        network_(network_from(session.settings)),
+        stations_(stations_from(session, interbus::ring_order(network_).size())) {
+    const Settings& settings = session.settings;
+    done_.network = network_.name;
+    done_.implementations =
+        fmt::format("{}", settings.list("iut").empty() ? "ref" : settings.reproduce_options());
+    done_.profile = profile_from(settings);
+    done_.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
+    done_.duration = virtual_time_from(settings);
+    planned_ = tests_from(settings);
+  }
+
+  // Whether all tests were made.
+  bool run() {
+    const emc::LineResponse response(done_.profile.coupling);
+    done_.threshold_volts = response.threshold_volts();
+    session_.terminal.print(simulation_header(session_, done_.seed, session_.settings.text("network")));
+    session_.terminal.print(emc_table_head());
+    conformance::OrderedWork<emc::ImmunityResult> work;
+    work.count = planned_.size();
+    work.threads = jobs_from(session_.settings);
+    work.stop = interruption_.token();
+    work.work = [&](std::size_t n) {
+      return emc::run_immunity(network_, stations_, response, settings_of(n));
+    };
+    work.deliver = [&](std::size_t n, emc::ImmunityResult&& result) {
+      planned_[n].result = result;
+      done_.tests.push_back(planned_[n]);
+      session_.terminal.print(emc_line(done_.tests.back()));
+      return true;
+    };
+    work.idle = [&](std::size_t finished) { session_.terminal.progress(finished); };
+    session_.terminal.begin_progress(planned_.size(), "tests");
+    const std::size_t delivered = work.run();
+    session_.terminal.end_progress();
+    return delivered == planned_.size();
+  }
+
+  const EmcCampaign& result() const { return done_; }
+  const Interruption& interruption() const { return interruption_; }
+
+ private:
+  emc::ImmunitySettings settings_of(std::size_t n) const {
+    emc::ImmunitySettings settings;
+    settings.bursts.level = planned_[n].level;
+    settings.bursts.repetition = planned_[n].repetition;
+    settings.bursts.polarity = planned_[n].polarity;
+    settings.duration = done_.duration;
+    settings.seed = kernel::Random(done_.seed).split(n).seed();
+    return settings;
+  }
+
+  Session& session_;
+  Interruption interruption_;
+  interbus::NetworkDescription network_;
+  emc::InterbusStations stations_;
+  std::vector<EmcTest> planned_;
+  EmcCampaign done_;
+};
+
+int code_of(const EmcCampaign& campaign, std::size_t worst_allowed) {
+  for (const EmcTest& test : campaign.tests) {
+    if (!test.result.came_up) return kInconclusive;
+  }
+  const bool fails = std::ranges::any_of(campaign.tests, [&](const EmcTest& test) {
+    return static_cast<std::size_t>(test.result.criterion) > worst_allowed;
+  });
+  return fails ? kFailed : kAllAsExpected;
+}
+
+}  // namespace
+
+int emc_protocol(Session& session) {
+  if (session.operands.front() != "interbus") {
+    throw kernel::Error(
+        kernel::ErrorKind::usage,
+        fmt::format("no bursts are prepared for '{}'; there is 'interbus'", session.operands.front()));
+  }
+  const std::size_t worst_allowed = session.settings.choice("worst");
+  Campaign campaign(session);
+  const bool is_complete = campaign.run();
+  session.terminal.print(emc_summary(campaign.result()));
+  if (session.settings.is_set("json")) {
+    reports::write_text_file(session.settings.text("json"), emc_json(campaign.result()));
+  }
+  if (!is_complete) {
+    session.terminal.log(campaign.interruption().reason());
+    const int signal = campaign.interruption().signal();
+    return signal != 0 ? kSignalBase + signal : kNothingJudged;
+  }
+  const int code = code_of(campaign.result(), worst_allowed);
+  if (code != kAllAsExpected) {
+    session.terminal.print(
+        fmt::format("reproduce: fieldproof emc interbus {}\n", session.settings.reproduce_options()));
+  }
+  return code;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,132 @@
+#include "cli/emc_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "emc/residual/residual_error.hpp"
+#include "reports/text_summary.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string recovery_text(const emc::ImmunityResult& result) {
+  if (result.recovered_by_itself) return fmt::format("{}", result.recovery_cycles);
+  return result.recovered_after_start ? "after a start" : "never";
+}
+
+ordered_json ledger_json(const emc::ErrorLedger& ledger) {
+  return {{"sent", ledger.sent},
+          {"corrupted", ledger.corrupted},
+          {"detected", ledger.detected},
+          {"repeated", ledger.repeated},
+          {"accepted_wrong_inputs", ledger.accepted_wrong_inputs},
+          {"accepted_wrong_outputs", ledger.accepted_wrong_outputs},
+          {"partly_latched", ledger.partly_latched}};
+}
+
+ordered_json line_json(const emc::BurstStatistics& line) {
+  return {{"transmissions", line.transmissions},
+          {"hit", line.hit_transmissions},
+          {"changed", line.changed_transmissions},
+          {"pulses", line.pulses},
+          {"wrong_levels", line.wrong_levels}};
+}
+
+ordered_json test_json(const EmcTest& test) {
+  const emc::ImmunityResult& result = test.result;
+  return {{"level", test.level.text()},
+          {"open_circuit_volts", test.level.open_circuit_volts()},
+          {"repetition", emc::text_of(test.repetition)},
+          {"polarity", emc::text_of(test.polarity)},
+          {"came_up", result.came_up},
+          {"criterion", emc::name(result.criterion)},
+          {"longest_bad_run", result.longest_bad_run},
+          {"recovered_by_itself", result.recovered_by_itself},
+          {"recovered_after_start", result.recovered_after_start},
+          {"recovery_cycles", result.recovery_cycles},
+          {"bus_stops", result.bus_stops},
+          {"quality_bit", result.quality_bit},
+          {"cycle_time_us", static_cast<double>(result.cycle_time.count()) / 1e6},
+          {"ledger", ledger_json(result.ledger)},
+          {"line", line_json(result.line)}};
+}
+
+}  // namespace
+
+EmcTotal total_of(const EmcCampaign& campaign) {
+  EmcTotal total;
+  for (const EmcTest& test : campaign.tests) {
+    total.corrupted += test.result.ledger.corrupted;
+    total.detected += test.result.ledger.detected;
+    total.accepted_wrong += test.result.ledger.accepted_wrong();
+  }
+  if (total.corrupted > 0) {
+    total.upper_bound_of_share =
+        emc::upper_bound_of_share(std::min(total.accepted_wrong, total.corrupted), total.corrupted);
+  }
+  return total;
+}
+
+std::string emc_table_head() {
+  return fmt::format("{:<14} {:>8} {:>3}  {:>9} {:>8} {:>10} {:>9} {:>9} {:>8} {:>14} {:>6} {:>6}\n", "level",
+                     "pulses", "pol", "criterion", "cycles", "corrupted", "rejected", "held", "longest",
+                     "recovery", "stops", "wrong");
+}
+
+std::string emc_line(const EmcTest& test) {
+  const emc::ImmunityResult& result = test.result;
+  const std::string where = fmt::format("{:<14} {:>8} {:>3}", test.level.text(),
+                                        emc::text_of(test.repetition), emc::text_of(test.polarity));
+  if (!result.came_up) return where + "  the network does not come up on a quiet line\n";
+  const emc::ErrorLedger& ledger = result.ledger;
+  return fmt::format("{}  {:>9} {:>8} {:>10} {:>9} {:>9} {:>8} {:>14} {:>6} {:>6}\n", where,
+                     emc::name(result.criterion), ledger.sent, ledger.corrupted, ledger.detected,
+                     ledger.detected - std::min(ledger.detected, ledger.partly_latched),
+                     result.longest_bad_run, recovery_text(result), result.bus_stops,
+                     ledger.accepted_wrong());
+}
+
+std::string emc_summary(const EmcCampaign& campaign) {
+  const EmcTotal total = total_of(campaign);
+  std::string text = "\ncriterion  what it means (a choice of this project)\n";
+  for (const auto criterion : {emc::Criterion::a, emc::Criterion::b, emc::Criterion::c, emc::Criterion::d}) {
+    text += fmt::format("{:>9}  {}\n", emc::name(criterion), emc::text_of(criterion));
+  }
+  text += fmt::format(
+      "\nledger: {} cycles corrupted, {} rejected, {} words accepted wrong; of corrupted cycles at most "
+      "{:.3g} pass "
+      "unseen (one-sided 95 %)\n",
+      total.corrupted, total.detected, total.accepted_wrong, total.upper_bound_of_share);
+  text += fmt::format("profile {} ({}): a receiver can be wrong from {:.0f} V on\n", campaign.profile.name,
+                      reports::escaped_line(campaign.profile.title), campaign.threshold_volts);
+  for (const std::string& caveat : emc::caveats_of(campaign.profile)) text += fmt::format("  - {}\n", caveat);
+  return text;
+}
+
+std::string emc_json(const EmcCampaign& campaign) {
+  ordered_json tests = ordered_json::array();
+  for (const EmcTest& test : campaign.tests) tests.push_back(test_json(test));
+  const EmcTotal total = total_of(campaign);
+  const ordered_json document = {{"schema", "fieldproof/emc/1"},
+                                 {"protocol", "interbus"},
+                                 {"network", campaign.network},
+                                 {"implementations", campaign.implementations},
+                                 {"profile", campaign.profile.name},
+                                 {"threshold_volts", campaign.threshold_volts},
+                                 {"unverified", emc::caveats_of(campaign.profile)},
+                                 {"seed", campaign.seed},
+                                 {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
+                                 {"tests", tests},
+                                 {"total",
+                                  {{"corrupted", total.corrupted},
+                                   {"detected", total.detected},
+                                   {"accepted_wrong", total.accepted_wrong},
+                                   {"upper_bound_of_share", total.upper_bound_of_share}}}};
+  return document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace fieldproof::cli

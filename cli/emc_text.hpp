@@ -1,0 +1,45 @@
+// What `fieldproof emc` found, as a table for a person and as JSON (reports/schema/emc.schema.json).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "emc/interbus/immunity.hpp"
+#include "emc/profile.hpp"
+
+namespace fieldproof::cli {
+
+struct EmcTest {
+  emc::Level level = emc::Level::standard(emc::PortKind::signal, 1);
+  emc::Repetition repetition = emc::Repetition::khz_5;
+  emc::Polarity polarity = emc::Polarity::positive;
+  emc::ImmunityResult result;
+};
+
+struct EmcCampaign {
+  std::string network;
+  std::string implementations;  // "ref", or the options as they were given
+  emc::Profile profile;
+  double threshold_volts = 0;  // the lowest setting at which an output can be wrong at all
+  std::uint64_t seed = 0;
+  kernel::Duration duration{};
+  std::vector<EmcTest> tests;
+};
+
+// The ledger of all tests together, and how much a count of wrong words can still hide.
+struct EmcTotal {
+  std::uint64_t corrupted = 0;
+  std::uint64_t detected = 0;
+  std::uint64_t accepted_wrong = 0;
+  double upper_bound_of_share = 1;  // of the corrupted cycles, one-sided 95 %; 1 where none was
+};
+EmcTotal total_of(const EmcCampaign& campaign);
+
+std::string emc_line(const EmcTest& test);
+std::string emc_table_head();
+// The ledger and what it rests on.
+std::string emc_summary(const EmcCampaign& campaign);
+std::string emc_json(const EmcCampaign& campaign);
+
+}  // namespace fieldproof::cli
