@@ -25,6 +25,7 @@ ordered_json ledger_json(const emc::ErrorLedger& ledger) {
           {"repeated", ledger.repeated},
           {"accepted_wrong_inputs", ledger.accepted_wrong_inputs},
           {"accepted_wrong_outputs", ledger.accepted_wrong_outputs},
+          {"cleared_outputs", ledger.cleared_outputs},
           {"partly_latched", ledger.partly_latched}};
 }
 
@@ -72,9 +73,9 @@ EmcTotal total_of(const EmcCampaign& campaign) {
 }
 
 std::string emc_table_head() {
-  return fmt::format("{:<14} {:>8} {:>3}  {:>9} {:>8} {:>10} {:>9} {:>9} {:>8} {:>14} {:>6} {:>6}\n", "level",
-                     "pulses", "pol", "criterion", "cycles", "corrupted", "rejected", "held", "longest",
-                     "recovery", "stops", "wrong");
+  return fmt::format("{:<14} {:>8} {:>3}  {:>9} {:>8} {:>10} {:>9} {:>9} {:>8} {:>14} {:>6} {:>8} {:>6}\n",
+                     "level", "pulses", "pol", "criterion", "cycles", "corrupted", "rejected", "held",
+                     "longest", "recovery", "stops", "cleared", "wrong");
 }
 
 std::string emc_line(const EmcTest& test) {
@@ -83,10 +84,10 @@ std::string emc_line(const EmcTest& test) {
                                         emc::text_of(test.repetition), emc::text_of(test.polarity));
   if (!result.came_up) return where + "  the network does not come up on a quiet line\n";
   const emc::ErrorLedger& ledger = result.ledger;
-  return fmt::format("{}  {:>9} {:>8} {:>10} {:>9} {:>9} {:>8} {:>14} {:>6} {:>6}\n", where,
+  return fmt::format("{}  {:>9} {:>8} {:>10} {:>9} {:>9} {:>8} {:>14} {:>6} {:>8} {:>6}\n", where,
                      emc::name(result.criterion), ledger.sent, ledger.corrupted, ledger.detected,
                      ledger.detected - std::min(ledger.detected, ledger.partly_latched),
-                     result.longest_bad_run, recovery_text(result), result.bus_stops,
+                     result.longest_bad_run, recovery_text(result), result.bus_stops, ledger.cleared_outputs,
                      ledger.accepted_wrong());
 }
 

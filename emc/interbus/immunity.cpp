@@ -65,9 +65,12 @@ class Oracle {
   void watch(int position) {
     const unsigned first = ring_.first_word(position);
     ring_.terminals(position).on_change([this, first](const interbus::TerminalBlock::Change& change) {
+      if (change.after == 0) {
+        ++ledger_.cleared_outputs;  // the safe value, never sent
+        return;
+      }
       has_latched_ = true;
-      // 0 is the safe value and never sent.
-      if (change.after != 0 && change.after != sent_[first + change.word]) ++ledger_.accepted_wrong_outputs;
+      if (change.after != sent_[first + change.word]) ++ledger_.accepted_wrong_outputs;
     });
   }
 

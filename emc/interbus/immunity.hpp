@@ -52,6 +52,9 @@ struct ErrorLedger {
   // Words that an application got and nobody had sent: in the master's input image, at a station's outputs.
   std::uint64_t accepted_wrong_inputs = 0;
   std::uint64_t accepted_wrong_outputs = 0;
+  // Words at a station's outputs that became 0, which nobody sends: a reset, after a stop of the bus or a
+  // silence.
+  std::uint64_t cleared_outputs = 0;
   // Rejected by the master, but a station had taken over its outputs: the words were right.
   std::uint64_t partly_latched = 0;
 
