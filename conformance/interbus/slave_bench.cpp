@@ -141,6 +141,12 @@ void SlaveBench::set_inputs(std::span<const std::uint16_t> words) {
   }
 }
 
+const std::vector<std::uint16_t>& SlaveBench::outputs() {
+  outputs_.resize(words());
+  for (unsigned word = 0; word < words(); ++word) outputs_[word] = terminals().output_at(word, now());
+  return outputs_;
+}
+
 void SlaveBench::set_bridge(bool on_branch, bool present) {
   ring_.slave(position_).set_next_present(on_branch, present);
   segment_.refresh(ring_.seat(position_));

@@ -90,7 +90,8 @@ class SlaveBench final : private segment::Station {
 
   // ---- upper tester ----
   interbus::TerminalBlock& terminals() { return ring_.terminals(position_); }
-  const std::vector<std::uint16_t>& outputs() { return terminals().outputs(); }
+  // What stands at the outputs now; a value that the slave gave for a later instant does not stand there yet.
+  const std::vector<std::uint16_t>& outputs();
   const std::vector<interbus::TerminalBlock::Change>& changes() { return terminals().changes(); }
   void set_inputs(std::span<const std::uint16_t> words);
   void set_bridge(bool on_branch, bool present);
@@ -192,6 +193,7 @@ class SlaveBench final : private segment::Station {
   kernel::Duration settling_{};
   std::uint16_t loopback_word_;
   std::vector<std::uint16_t> inputs_;
+  std::vector<std::uint16_t> outputs_;  // see outputs()
   std::vector<std::uint8_t> octets_;
   kernel::Time sent_at_{};
   kernel::Time last_sent_{};  // through the ring

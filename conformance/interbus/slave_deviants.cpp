@@ -1,6 +1,7 @@
 #include "conformance/interbus/slave_deviants.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 
 namespace fieldproof::conformance::slave_deviants {
@@ -87,6 +88,15 @@ void TearsInputs::sample_inputs(kernel::Time when, std::span<std::uint8_t> octet
   }
 }
 
+void TearsBetweenInputWords::sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) {
+  const kernel::Duration telegram = kernel::levels_duration(line::kDataTelegramLevels, rules().bit_rate);
+  for (unsigned word = 0; word < octets.size() / 2; ++word, when += telegram) {
+    const std::uint16_t input = terminals().input(word, when);
+    octets[2 * word] = static_cast<std::uint8_t>(input >> 8);
+    octets[2 * word + 1] = static_cast<std::uint8_t>(input & 0xFF);
+  }
+}
+
 void IdRegisterInDataCycle::sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) {
   const std::uint16_t id = configuration().id_code;
   octets[0] = static_cast<std::uint8_t>(id >> 8);
@@ -115,6 +125,26 @@ void SwallowsStatusTelegrams::change(line::Waveform& wave) {
   const line::Levels before = wave.levels;
   code().decode(before, 0, [&](const line::Telegram& telegram) {
     if (telegram.is_data()) return;
+    for (std::size_t n = telegram.level; n < telegram.level + telegram.levels(); ++n)
+      wave.levels.set(n, true);
+  });
+}
+
+void SelectBitInStatusTelegrams::change(line::Waveform& wave) {
+  const line::Levels before = wave.levels;
+  const std::uint64_t select = code().levels_of(0, 0) ^ code().levels_of(line::kSelect, 0);
+  code().decode(before, 0, [&](const line::Telegram& telegram) {
+    if (!telegram.is_data())
+      wave.levels.flip(telegram.level + static_cast<std::size_t>(std::countr_zero(select)));
+  });
+}
+
+void FallsSilent::change(line::Waveform& wave) {
+  const line::Levels before = wave.levels;
+  code().decode(before, 0, [&](const line::Telegram& telegram) {
+    const bool is_silent = check_telegrams_left_ == 0;
+    if (telegram.is_data() && (telegram.header & line::kControl) != 0 && !is_silent) --check_telegrams_left_;
+    if (!is_silent) return;
     for (std::size_t n = telegram.level; n < telegram.level + telegram.levels(); ++n)
       wave.levels.set(n, true);
   });

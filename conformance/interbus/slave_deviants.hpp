@@ -110,6 +110,37 @@ class LocksUpAfterRejectedCycle : public Slave {
   bool is_locked_ = false;
 };
 
+class WaitsForIdCycleAfterRejectedCycle : public Slave {
+  using Slave::Slave;
+  bool accepts_cycle(bool own_check_good, bool upstream_clean) const override {
+    const bool is_deaf = is_waiting_ && phase() == Phase::data_check;
+    return !is_deaf && Slave::accepts_cycle(own_check_good, upstream_clean);
+  }
+  void on_cycle_rejected(kernel::Time when, bool own_error) override {
+    is_waiting_ = true;
+    Slave::on_cycle_rejected(when, own_error);
+  }
+  void on_id_read(std::uint16_t messages_read) override {
+    is_waiting_ = false;
+    Slave::on_id_read(messages_read);
+  }
+  bool is_waiting_ = false;
+};
+
+class LosesTheCycleBehindARejectedOne : public Slave {
+  using Slave::Slave;
+  bool accepts_cycle(bool own_check_good, bool upstream_clean) const override {
+    const bool loses = has_rejected_;
+    has_rejected_ = false;
+    return !loses && Slave::accepts_cycle(own_check_good, upstream_clean);
+  }
+  void on_cycle_rejected(kernel::Time when, bool own_error) override {
+    has_rejected_ = own_error;
+    Slave::on_cycle_rejected(when, own_error);
+  }
+  mutable bool has_rejected_ = false;
+};
+
 // ---- telegrams ----
 
 class StopBitNotChecked : public Slave {
@@ -204,6 +235,12 @@ class TearsInputs : public Slave {
   void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) override;
 };
 
+// The words one telegram apart, each of them whole.
+class TearsBetweenInputWords : public Slave {
+  using Slave::Slave;
+  void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) override;
+};
+
 class SamplesWithPreviousCycle : public Slave {
   using Slave::Slave;
   void sample_inputs(kernel::Time, std::span<std::uint8_t> octets) override {
@@ -292,7 +329,8 @@ class IdRegisterInDataCycle : public WrongRegisterLength {
 
 class LatchesLate : public Slave {
  public:
-  using Slave::Slave;
+  LatchesLate(const SlaveConfiguration& configuration, kernel::Duration lateness)
+      : Slave(configuration), late_(lateness) {}
   void wire(const SlavePorts& ports, Terminals& terminals) override {
     late_.attach(terminals, configuration().words);
     Slave::wire(ports, late_);
@@ -301,9 +339,13 @@ class LatchesLate : public Slave {
  private:
   class LateTerminals final : public PassingTerminals {
    public:
+    explicit LateTerminals(kernel::Duration lateness) : lateness_(lateness) {}
     void output(unsigned word, std::uint16_t value, kernel::Time when) override {
-      PassingTerminals::output(word, value, when + 60 * kernel::kMicrosecond);
+      PassingTerminals::output(word, value, when + lateness_);
     }
+
+   private:
+    kernel::Duration lateness_;
   };
   LateTerminals late_;
 };
@@ -446,7 +488,28 @@ class DrivesOverItself : public Slave {
   segment::Port* upstream_ = nullptr;
 };
 
+class SelectBitInStatusTelegrams : public ChangesWhatItDrives {
+  using ChangesWhatItDrives::ChangesWhatItDrives;
+  void change(line::Waveform& wave) override;
+};
+
+// Drives nothing any more once it has driven so many cycles.
+class FallsSilent : public ChangesWhatItDrives {
+ public:
+  FallsSilent(const SlaveConfiguration& configuration, unsigned cycles)
+      : ChangesWhatItDrives(configuration), check_telegrams_left_(4 * cycles) {}
+
+ private:
+  void change(line::Waveform& wave) override;
+  unsigned check_telegrams_left_;
+};
+
 // ---- supervision, interfaces, messages ----
+
+class SafeStateLate : public Slave {
+  using Slave::Slave;
+  void on_reset(kernel::Time now) override { clear_outputs(now + 500 * kernel::kMillisecond); }
+};
 
 class SilenceCountsDataOnly : public Slave {
   using Slave::Slave;

@@ -35,6 +35,18 @@ Make with_rules(Change change) {
   };
 }
 
+Make latching_late(kernel::Duration lateness) {
+  return [lateness](const SlaveConfiguration& configuration) {
+    return std::make_unique<slave_deviants::LatchesLate>(configuration, lateness);
+  };
+}
+
+Make falling_silent(unsigned cycles) {
+  return [cycles](const SlaveConfiguration& configuration) {
+    return std::make_unique<slave_deviants::FallsSilent>(configuration, cycles);
+  };
+}
+
 Make without_control(std::uint16_t Rules::* bit) {
   return [bit](const SlaveConfiguration& configuration) {
     return std::make_unique<slave_deviants::IgnoresControlBit>(configuration, configuration.rules.*bit);
@@ -77,6 +89,10 @@ std::vector<Row> check_rows() {
        make<LosesEvery200thCycle>},
       {"locks_up_after_rejected_cycle", "", "takes no cycle any more after a rejected one",
        make<LocksUpAfterRejectedCycle>},
+      {"loses_the_cycle_behind_a_rejected_one", "", "does not take the words of the cycle behind a wrong one",
+       make<LosesTheCycleBehindARejectedOne>},
+      {"waits_for_id_cycle_after_rejected_cycle", "",
+       "takes no data cycle after a rejected one until an ID cycle", make<WaitsForIdCycleAfterRejectedCycle>},
   };
 }
 
@@ -105,6 +121,9 @@ std::vector<Row> telegram_rows() {
       {"delay_varies", "", "delays every second transmission by one more bit", make<DelayVaries>},
       {"does_not_retime", "", "sends low pulses that are 10 % of a bit too long", make<DoesNotRetime>},
       {"swallows_status_telegrams", "", "does not pass on status telegrams", make<SwallowsStatusTelegrams>},
+      {"select_bit_in_status_telegrams", "", "passes status telegrams on with another SL bit",
+       make<SelectBitInStatusTelegrams>},
+      {"falls_silent_after_820_cycles", "", "sends nothing any more after 820 cycles", falling_silent(820)},
       {"sends_data_at_power_up", "", "sends a data telegram 10 ms after power-up", make<SendsDataAtPowerUp>},
       {"drives_over_itself", "", "begins a transmission before the one before has left",
        make<DrivesOverItself>},
@@ -128,11 +147,16 @@ std::vector<Row> register_rows() {
       {"input_bit_stuck", "", "always sends one input bit as 1", make<InputBitStuck>},
       {"tears_inputs", "MS14", "samples the two octets of an input word one telegram apart",
        make<TearsInputs>},
+      {"tears_between_input_words", "", "samples its input words one telegram apart",
+       make<TearsBetweenInputWords>},
       {"samples_with_previous_cycle", "", "samples its inputs at the end of the cycle before",
        make<SamplesWithPreviousCycle>},
       {"latches_at_end_of_data_phase", "MS4", "takes the words before their check has come",
        make<LatchesAtEndOfDataPhase>},
-      {"latches_late", "", "changes its outputs 60 us after the cycle", make<LatchesLate>},
+      {"latches_late", "", "changes its outputs 60 us after the cycle",
+       latching_late(60 * kernel::kMicrosecond)},
+      {"latches_5_ms_late", "", "changes its outputs 5 ms after the cycle",
+       latching_late(5 * kernel::kMillisecond)},
       {"clears_outputs_on_rejected_cycle", "MS11", "sets its outputs to 0 on every rejected cycle",
        make<ClearsOutputsOnRejectedCycle>},
       {"glitches_outputs_on_rejected_cycle", "", "sets its outputs to 0 for 2 us on every rejected cycle",
@@ -148,6 +172,8 @@ std::vector<Row> management_rows() {
   return {
       {"silence_limit_250_ms", "MS9", "takes silence for a reset only after 250 ms",
        with_rules([](Rules& rules) { rules.silence_limit *= 10; })},
+      {"safe_state_500_ms_late", "", "sets its outputs to 0 half a second after a reset",
+       make<SafeStateLate>},
       {"silence_limit_20_ms", "", "takes silence for a reset after 20 ms already",
        with_rules([](Rules& rules) { rules.silence_limit = rules.silence_limit * 4 / 5; })},
       {"silence_counts_data_only", "MS10", "does not take status telegrams for a sign of life",

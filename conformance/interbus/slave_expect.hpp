@@ -23,7 +23,14 @@ bool is_right_data_cycle(SlaveBench& bench, const FoundCycle& found);
 // As many data telegrams left as arrived; `telegram_lost`, `telegram_added`.
 void expect_all_telegrams(SlaveBench& bench, CaseJudge& judge);
 
+// Cycle n of the last train, as it left. It did: else `telegram_lost`.
+CycleOnLine cycle_that_left(SlaveBench& bench, CaseJudge& judge, std::size_t n);
+
+// Each status telegram that arrived left, as it came; `status_telegram_lost`, `status_telegram_changed`.
+void expect_status_telegrams(SlaveBench& bench, CaseJudge& judge);
+
 // Cycle n of the last train left as a right slave with this register sends it; the reasons of the model.
+// What the register of a slave without inputs carries in a data cycle is not judged.
 void expect_answer(SlaveBench& bench, CaseJudge& judge, std::size_t n, std::span<const std::uint8_t> load);
 
 // The outputs have these values now. Holds for a slave without outputs.

@@ -143,6 +143,7 @@ std::vector<SlaveCase> slave_message_cases() {
         .tags = {"must"},
         .catches = {{"message_never_cleared", "message_not_cleared"},
                     {"message_without_error", "message_without_error"},
+                    {"does_not_mark_status", "error_not_marked"},
                     {"tells_no_check_error", "message_missing"}},
         .not_applicable = for_every_slave()},
        check_error_is_told_once});

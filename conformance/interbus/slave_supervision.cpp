@@ -35,12 +35,15 @@ void long_silence_clears_outputs(SlaveBench& bench, CaseJudge& judge) {
   bench.segment().run_until(last + latest);
   expect_outputs(bench, judge, std::vector<std::uint16_t>(bench.words()), "outputs_not_safe_after_limit");
   for (const auto& change : bench.changes()) {
-    judge.expect(change.when - last >= limit, "outputs_lost_before_limit", [&] {
+    const kernel::Duration after = change.when - last;
+    const auto sighting = [&] {
       return Sighting{.expected = {fmt::format("outputs change {} to {} after the last telegram",
                                                kernel::describe(limit), kernel::describe(latest))},
-                      .actual = fmt::format("after {}", kernel::describe(change.when - last)),
+                      .actual = fmt::format("after {}", kernel::describe(after)),
                       .time = change.when};
-    });
+    };
+    judge.expect(after >= limit, "outputs_lost_before_limit", sighting);
+    judge.expect(after <= latest, "outputs_not_safe_after_limit", sighting);
   }
   if (!bench.changes().empty()) {
     judge.measure("silence until the safe state", "ms",
@@ -101,6 +104,7 @@ std::vector<SlaveCase> slave_supervision_cases() {
         .expected = "All outputs are 0 between 25.0 ms and 26.0 ms after the end of the last telegram.",
         .tags = {"must", "timing"},
         .catches = {{"silence_limit_250_ms", "outputs_not_safe_after_limit"},
+                    {"safe_state_500_ms_late", "outputs_not_safe_after_limit"},
                     {"silence_limit_20_ms", "outputs_lost_before_limit"}},
         .not_applicable = for_outputs()},
        long_silence_clears_outputs});
