@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "harness/kernel/error.hpp"
+
 namespace fieldproof::conformance {
 
 void CaseJudge::add(judge::Verdict verdict, std::string_view reason, Sighting sighting) {
@@ -55,6 +57,9 @@ judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>
     procedure(*this);
   } catch (const CaseEnded&) {
     // The finding that ended it is kept.
+  } catch (const kernel::Error& failure) {
+    if (failure.kind() != kernel::ErrorKind::implementation) throw;
+    add(judge::Verdict::fail, kMisbehaves, {{"what the bench can serve"}, failure.what()});
   }
   judge::CaseResult result;
   result.id = test_case_.id;

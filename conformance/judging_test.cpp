@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "harness/kernel/error.hpp"
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -126,6 +128,20 @@ TEST(CaseJudge, a_value_outside_or_no_number_fails_and_inconclusive_is_no_pass) 
       [](CaseJudge& j) { j.inconclusive("not_shown", {{"a status telegram"}, "nothing"}); });
   EXPECT_EQ(result.verdict, judge::Verdict::inconclusive);
   EXPECT_EQ(result.reason, "not_shown");
+}
+
+TEST(CaseJudge, blames_the_implementation_for_its_own_errors_only) {
+  const TestCase test_case = example();
+  CaseJudge judge(test_case);
+  const judge::CaseResult result = judge.run_procedure(
+      [](CaseJudge&) { throw kernel::Error(kernel::ErrorKind::implementation, "it has gone"); });
+  EXPECT_EQ(result.verdict, judge::Verdict::fail);
+  EXPECT_EQ(result.reason, kMisbehaves);
+  ASSERT_EQ(result.findings.size(), 1U);
+  EXPECT_EQ(result.findings[0].actual, "it has gone");
+  EXPECT_THROW(judge.run_procedure(
+                   [](CaseJudge&) { throw kernel::Error(kernel::ErrorKind::configuration, "a file"); }),
+               kernel::Error);
 }
 
 }  // namespace

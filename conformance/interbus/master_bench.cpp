@@ -1,10 +1,12 @@
 #include "conformance/interbus/master_bench.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "protocols/interbus/network.hpp"
 #include "protocols/interbus/observation.hpp"
 #include "protocols/interbus/timing.hpp"
 
@@ -19,9 +21,10 @@ std::vector<VirtualStation> paper_ring() {
   return {{0x0008, 0, -1, false}, {0x01BE, 1, 0, true}, {0x01BD, 1, 1, false}};
 }
 
-MasterBench::MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume)
+MasterBench::MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume, judge::Pics pics)
     : make_master_(std::move(make_master)),
       volume_(volume),
+      pics_(std::move(pics)),
       random_(seed),
       line_watch_(interbus::shortest_telegram(interbus::Rules{})) {}
 
@@ -65,6 +68,16 @@ void MasterBench::start() {
 
 void MasterBench::stop() {
   master_->stop(now());
+  segment_.refresh(master_seat_);
+}
+
+void MasterBench::write_output(unsigned word, std::uint16_t value) {
+  master_->write_output(word, value);
+  segment_.refresh(master_seat_);
+}
+
+void MasterBench::request_id_cycle() {
+  master_->request_id_cycle();
   segment_.refresh(master_seat_);
 }
 
@@ -160,19 +173,69 @@ void MasterBench::ask_script(const RingEmulator::CycleInfo& info, CycleFaults& f
   if (script_) script_(info, faults);
 }
 
-bool MasterBench::is_accepted_with(CaseJudge& judge, CycleFaults faults) {
+std::vector<unsigned> MasterBench::input_words() const {
+  std::vector<unsigned> words;
+  unsigned first = 0;
+  for (const VirtualStation& station : ring_->stations()) {
+    for (unsigned word = 0; word < station.words && interbus::has_inputs(station.id_code); ++word) {
+      words.push_back(first + word);
+    }
+    first += station.words;
+  }
+  return words;
+}
+
+// At least one cycle; the last one is a data cycle that the application is told to be good.
+void MasterBench::run_to_accepted_data_cycle(CaseJudge& judge) {
+  for (int n = 0; n < 8; ++n) {
+    judge.expect(run_cycle(), "no_data_cycle", "the master goes on with cycles", "no cycle ends any more");
+    if (finished_.is_data && finished_.is_accepted) return;
+  }
+  judge.fail("no_data_cycle", {{"an accepted data cycle within 8 cycles"}, "none"});
+}
+
+void MasterBench::expect_inputs(CaseJudge& judge, const std::vector<std::uint16_t>& expected) {
+  const std::vector<std::uint16_t> seen = inputs();
+  judge.expect(seen == expected, "new_inputs_missed", [&] {
+    return Sighting{{fmt::format("the inputs of the last good cycle, {:04X}h", fmt::join(expected, "h "))},
+                    fmt::format("{:04X}h", fmt::join(seen, "h "))};
+  });
+}
+
+std::vector<std::uint16_t> MasterBench::inputs() const {
+  std::vector<std::uint16_t> values;
+  for (const unsigned word : input_words()) values.push_back(master_->input(word));
+  return values;
+}
+
+MasterBench::Suffered MasterBench::suffer(CaseJudge& judge, CycleFaults faults) {
+  const std::vector<unsigned> words = input_words();
+  const auto offer = [&](const std::vector<std::uint16_t>& values) {
+    for (std::size_t n = 0; n < words.size(); ++n) ring_->set_input(words[n], values[n]);
+  };
+  Suffered suffered;
+  for (const unsigned word : words) {
+    suffered.offered.push_back(ring_->input(word));
+    suffered.held.push_back(static_cast<std::uint16_t>(~ring_->input(word)));
+  }
+  offer(suffered.held);
+  // The first of them may have been under way.
+  for (int n = 0; n < 2; ++n) run_to_accepted_data_cycle(judge);
+  expect_inputs(judge, suffered.held);
+  offer(suffered.offered);
   armed_ = std::move(faults);
   faulted_number_.reset();
-  const auto finish = [&](const std::function<bool()>& is_done) {
-    for (int n = 0; n < 8 && !is_done(); ++n) {
-      judge.expect(run_cycle(), "no_data_cycle", "the master goes on with cycles", "no cycle ends any more");
-    }
-    judge.expect(is_done(), "no_data_cycle", "a data cycle within 8 cycles", "none");
-  };
-  finish([&] { return faulted_number_.has_value(); });
-  const bool accepted = finished_.is_accepted;
-  finish([&] { return finished_.is_data && finished_.is_accepted; });
-  return accepted;
+  for (int n = 0; n < 8 && !faulted_number_; ++n) {
+    judge.expect(run_cycle(), "no_data_cycle", "the master goes on with cycles", "no cycle ends any more");
+  }
+  judge.expect(faulted_number_.has_value(), "no_data_cycle", "a data cycle within 8 cycles", "none");
+  suffered.is_told_accepted = finished_.is_accepted;
+  suffered.seen = inputs();
+  const std::uint64_t id_cycles = ring_->statistics().id_cycles;
+  run_to_accepted_data_cycle(judge);
+  suffered.id_cycles = ring_->statistics().id_cycles - id_cycles;
+  expect_inputs(judge, suffered.offered);
+  return suffered;
 }
 
 }  // namespace fieldproof::conformance

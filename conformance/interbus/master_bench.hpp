@@ -10,6 +10,7 @@
 #include "conformance/interbus/ring_emulator.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/line_watch.hpp"
+#include "harness/judge/pics.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/interbus/device.hpp"
@@ -19,7 +20,13 @@
 //
 // A procedure sets `rules()`, `configuration()` and then powers up with a ring; afterwards it runs cycles.
 // The reasons that a master does not get as far as the case needs are the bench's: `not_in_run`,
-// `no_data_cycle`.
+// `no_data_cycle`, `new_inputs_missed`.
+//
+// What a master may do in more than one way it declares, as text items of its PICS:
+//   request_below_minimum   of a cycle time:       clipped | refused
+//   outputs_after_bus_stop  of a ring that is cut: zero | held
+//   line_after_stop         by the command:        silent | status_telegrams
+// Of an item that it does not declare, each answer is admissible.
 namespace fieldproof::conformance {
 
 class MasterBench {
@@ -27,7 +34,7 @@ class MasterBench {
   using MakeMaster =
       std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)>;
 
-  MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume);
+  MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume, judge::Pics pics = {});
   ~MasterBench();
   MasterBench(const MasterBench&) = delete;
   MasterBench& operator=(const MasterBench&) = delete;
@@ -42,6 +49,10 @@ class MasterBench {
     return volume_ == Volume::quick ? quick : full;
   }
   kernel::Random& random() { return random_; }
+  // Whether the master declares this answer, or none.
+  bool may_answer(std::string_view item, std::string_view answer) const {
+    return pics_.text(item, answer) == answer;
+  }
 
   // A fresh master on a fresh ring; starts it. Everything from an earlier power-up is gone, but time goes on.
   void power_up(std::vector<interbus::VirtualStation> ring);
@@ -57,9 +68,11 @@ class MasterBench {
   // What the master drives.
   const LineWatch& line_watch() const { return line_watch_; }
 
-  // From outside of the segment's run.
+  // From outside of the segment's run; the master is asked again when it wants to act.
   void start();
   void stop();
+  void write_output(unsigned word, std::uint16_t value);
+  void request_id_cycle();
 
   void run_for(kernel::Duration duration) { segment_.run_for(duration); }
   // False when the duration has passed without the condition.
@@ -81,9 +94,18 @@ class MasterBench {
   // Any cycle that the master finishes next. False when it finishes none any more.
   bool run_cycle();
 
-  // The next data cycle suffers the faults; gives whether the application was told of a good cycle. Then the
-  // master is given the time to finish a good data cycle again.
-  bool is_accepted_with(CaseJudge& judge, interbus::CycleFaults faults);
+  // What the application and the line saw of one disturbed data cycle. Inputs are the words of the stations
+  // that have any, in the order of the ring.
+  struct Suffered {
+    bool is_told_accepted = false;       // what the application was told
+    std::vector<std::uint16_t> held;     // inputs before the cycle
+    std::vector<std::uint16_t> offered;  // by the stations in the cycle: each the inverse of what is held
+    std::vector<std::uint16_t> seen;     // inputs right behind the cycle
+    std::uint64_t id_cycles = 0;         // on the line, from there to the next accepted data cycle
+  };
+  // The next data cycle suffers the faults while the stations offer new inputs: those that the ring has now.
+  // Then the master is given the time to finish a good data cycle again, which must bring them.
+  Suffered suffer(CaseJudge& judge, interbus::CycleFaults faults);
   // Faults of every cycle from now on, until cleared with nothing.
   void set_script(interbus::RingEmulator::Script script) { script_ = std::move(script); }
 
@@ -94,6 +116,10 @@ class MasterBench {
   void on_cycle_end(kernel::Time now, bool data_cycle, bool accepted);
   void ask_script(const interbus::RingEmulator::CycleInfo& info, interbus::CycleFaults& faults);
   kernel::Duration longest_cycle() const;
+  std::vector<unsigned> input_words() const;
+  std::vector<std::uint16_t> inputs() const;
+  void run_to_accepted_data_cycle(CaseJudge& judge);
+  void expect_inputs(CaseJudge& judge, const std::vector<std::uint16_t>& expected);
 
   // Masters and rings of earlier power-ups stay in the segment, with nothing to do.
   struct Place {
@@ -103,6 +129,7 @@ class MasterBench {
 
   MakeMaster make_master_;
   Volume volume_;
+  judge::Pics pics_;
   kernel::Random random_;
   interbus::Rules rules_;
   interbus::MasterConfiguration configuration_;

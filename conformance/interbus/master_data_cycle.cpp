@@ -17,7 +17,7 @@ void expect_frame(MasterBench& bench, CaseJudge& judge, const std::vector<Virtua
   bench.bring_up(judge, ring);
   const auto words = static_cast<unsigned>(bench.ring().word_count());
   for (unsigned word = 0; word < words; ++word) {
-    bench.master().write_output(word, static_cast<std::uint16_t>(0x4000 + word));
+    bench.write_output(word, static_cast<std::uint16_t>(0x4000 + word));
   }
   bench.run_data_cycles(judge, 2);
   const SeenCycle& seen = bench.ring().last_cycle();
@@ -31,7 +31,7 @@ void expect_frame(MasterBench& bench, CaseJudge& judge, const std::vector<Virtua
     for (unsigned word = end - station->words; word < end; ++word, octet += 2) {
       judge.expect(seen.word(octet) == 0x4000 + word, "data_order", [&] {
         return Sighting{{fmt::format("word {} of the image at octet {}", word, octet)},
-                        fmt::format("{:04X}h", seen.word(octet)),
+                        seen.describe_word(octet),
                         seen.start,
                         fmt::format("octet {} of the frame", octet)};
       });
@@ -60,13 +60,15 @@ void check_of_what_was_sent(MasterBench& bench, CaseJudge& judge) {
   judge.expect(bench.wait_for_run(), "not_in_run", "the master runs", "it does not");
   for (std::uint64_t n = bench.volume<std::uint64_t>(20, 2000); n > 0; --n) {
     for (unsigned word = 0; word < 4; ++word) {
-      bench.master().write_output(word, static_cast<std::uint16_t>(bench.random().next()));
+      bench.write_output(word, static_cast<std::uint16_t>(bench.random().next()));
     }
     bench.run_data_cycles(judge, 1);
     const SeenCycle& seen = bench.ring().last_cycle();
     judge.expect(seen.status_clean, "status_word_not_clean", "status word 0000h", "another status word");
     const std::uint16_t own = interbus::RingEmulator::check_of({seen.octets.data(), seen.transfer_octets});
-    judge.expect_equal(seen.word(seen.transfer_octets), own, "check_not_of_sent_bits", "check word");
+    judge.expect(seen.word(seen.transfer_octets) == own, "check_not_of_sent_bits", [&] {
+      return Sighting{{fmt::format("check word {:04X}h", own)}, seen.describe_word(seen.transfer_octets)};
+    });
   }
   expect_good();
 }

@@ -290,4 +290,95 @@ struct StopKeepsOutputs final : Master {
   bool clears_outputs_on_stop() const override { return false; }
 };
 
+struct InputsFrozen final : Master {
+  using Master::Master;
+  void run_copy_task() override {
+    if (first_.size() != inputs().size()) first_ = inputs();
+    inputs() = first_;
+    Master::run_copy_task();
+  }
+  std::vector<std::uint16_t> first_;
+};
+
+struct IdCycleOnlyClaimed final : Master {
+  using Master::Master;
+  bool needs_id_cycle_after_error() const override { return false; }
+  MasterStatus status() const override {
+    MasterStatus status = Master::status();
+    status.id_cycles += status.rejected_data_cycles;
+    return status;
+  }
+};
+
+struct OutputsOneCycleLate final : Master {
+  using Master::Master;
+  void take_outputs(std::span<const std::uint16_t> image, std::span<std::uint16_t> sent) const override {
+    if (before_.size() != image.size()) before_.assign(image.begin(), image.end());
+    std::ranges::copy(before_, sent.begin());
+    std::ranges::copy(image, before_.begin());
+  }
+  mutable std::vector<std::uint16_t> before_;
+};
+
+struct SilentAfterFirstDataCycle final : Master {
+  using Master::Master;
+  kernel::Time next_time() const override {
+    return supervision().data_cycles() > 0 ? kernel::kNever : Master::next_time();
+  }
+};
+
+struct SilentAfterError final : Master {
+  using Master::Master;
+  kernel::Time next_time() const override {
+    return supervision().rejected_cycles() > 0 ? kernel::kNever : Master::next_time();
+  }
+};
+
+struct IdCyclesForEverAfterError final : Master {
+  using Master::Master;
+  void on_time(kernel::Time now) override {
+    if (supervision().rejected_cycles() > 0) request_id_cycle();
+    Master::on_time(now);
+  }
+};
+
+struct FirstCyclesRejected final : Master {
+  using Master::Master;
+  bool accepts_inputs(std::span<const std::uint16_t>) const override {
+    return supervision().data_cycles() > 1;
+  }
+};
+
+// Cycles of one state that start 30 ms late, with nothing on the line before.
+template <interbus::MasterState state>
+struct PausesIn final : Master {
+  using Master::Master;
+  kernel::Duration lateness(std::uint64_t cycle) const override {
+    constexpr kernel::Duration kPause = 30 * kernel::kMillisecond;
+    return status().state == state ? static_cast<std::int64_t>(cycle) * kPause : kernel::Duration{};
+  }
+};
+
+// Copies the inputs of the cycle before, and ends a pulse of an odd number of cycles one cycle early.
+struct PulseWidthsEven final : Master {
+  using Master::Master;
+  void run_copy_task() override {
+    const std::vector<std::uint16_t> now = inputs();
+    if (before_.size() != now.size()) {
+      before_ = now;
+      cycles_.assign(now.size(), 0);
+    }
+    for (std::size_t word = 0; word < now.size(); ++word) {
+      cycles_[word] = before_[word] != 0 ? cycles_[word] + 1 : 0;
+      const bool ends = before_[word] != 0 && now[word] == 0;
+      inputs()[word] = ends && cycles_[word] % 2 != 0 ? std::uint16_t{0} : before_[word];
+    }
+    Master::run_copy_task();
+    inputs() = now;
+    before_ = now;
+  }
+  std::vector<std::uint16_t> before_;
+  std::vector<unsigned> cycles_;  // that each word is not 0
+};
+
 }  // namespace fieldproof::conformance::deviants

@@ -18,6 +18,7 @@ namespace {
 
 using interbus::MasterConfiguration;
 using interbus::MasterDevice;
+using interbus::MasterState;
 
 template <typename Deviant>
 std::unique_ptr<MasterDevice> make(const MasterConfiguration& configuration) {
@@ -117,6 +118,25 @@ const std::vector<Row>& rows() {
       {"drives_over_itself", "", "begins a transmission before the one before has left",
        make<DrivesOverItself>},
       {"stop_keeps_outputs", "", "stops without setting the outputs to 0", make<StopKeepsOutputs>},
+      {"inputs_frozen", "", "gives the application the inputs of its first data cycle for ever",
+       make<InputsFrozen>},
+      {"id_cycle_only_claimed", "", "counts an ID cycle after a rejected one, but sends none",
+       make<IdCycleOnlyClaimed>},
+      {"outputs_one_cycle_late", "", "sends the outputs as they were a cycle before",
+       make<OutputsOneCycleLate>},
+      {"silent_after_first_data_cycle", "", "falls silent after its first data cycle",
+       make<SilentAfterFirstDataCycle>},
+      {"silent_after_error", "", "falls silent after the first cycle that it rejects",
+       make<SilentAfterError>},
+      {"id_cycles_for_ever_after_error", "", "sends ID cycles only after the first cycle that it rejects",
+       make<IdCyclesForEverAfterError>},
+      {"first_cycles_rejected", "", "rejects its first data cycle", make<FirstCyclesRejected>},
+      {"pauses_in_identification", "", "waits 30 ms in silence between the cycles of the recognition",
+       make<PausesIn<MasterState::identification>>},
+      {"pauses_in_locating", "", "waits 30 ms in silence between the cycles of the search for a fault",
+       make<PausesIn<MasterState::locating>>},
+      {"pulse_widths_even", "", "copies pulses of an odd number of cycles one cycle shorter",
+       make<PulseWidthsEven>},
   };
   return table;
 }

@@ -73,6 +73,8 @@ std::span<const Row> rows() {
        [](std::size_t stations) { return with_last_slave("sends_check_of_received_bits", stations); }},
       {"master_rejects_large_changes", "the master rejects cycles in which more than three input bits change",
        [](std::size_t) { return with_master("implausible_inputs_rejected"); }},
+      {"master_rejects_first_cycles", "the master rejects the first data cycles of a run",
+       [](std::size_t) { return with_master("first_cycles_rejected"); }},
   };
   return kRows;
 }

@@ -1,4 +1,5 @@
 #include <array>
+#include <span>
 #include <utility>
 
 #include "conformance/interbus/playback.hpp"
@@ -186,31 +187,63 @@ class RecordedMaster final : public MasterDevice {
 
 // ---- playing back ----
 
-// The events of one device and how far they have been played. What the device did within a call is played
-// within the call of the same number: the bench may have done something at that very instant, before it.
+// The events of one device and how far they have been played: what it did because a time had come at that
+// time, what it did within a call of the bench within the call of the same number. The two are followed apart
+// from one another, so that a call that the bench makes later, or never, does not keep the device from
+// acting. Within one instant they keep the order in which they were recorded: the bench may have done
+// something at that very instant, before it.
 class Reel {
  public:
   Reel(const DeviceRecording& recording, std::size_t device)
-      : events_(device < recording.device_count() ? &recording.events(device) : nullptr) {}
+      : events_(device < recording.device_count() ? std::span<const DeviceEvent>(recording.events(device))
+                                                  : std::span<const DeviceEvent>()) {
+    skip_to_call();
+    skip_to_timed();
+  }
 
-  kernel::Time next_time() const { return is_over() || next().call != 0 ? kernel::kNever : next().at; }
+  kernel::Time next_time() const {
+    return timed_ == events_.size() || waits_for_call() ? kernel::kNever : events_[timed_].at;
+  }
 
   template <typename Play>
   void play_call(Play&& play) {
     ++calls_;
-    while (!is_over() && next().call == calls_) play((*events_)[next_++]);
+    while (call_ < events_.size() && events_[call_].call <= calls_) {
+      while (timed_ < call_) play_timed(play);
+      const DeviceEvent& event = events_[call_++];
+      skip_to_call();
+      play(event);
+    }
   }
   template <typename Play>
   void play_until(kernel::Time now, Play&& play) {
-    while (!is_over() && next().call == 0 && next().at <= now) play((*events_)[next_++]);
+    while (next_time() <= now && timed_ < events_.size()) play_timed(play);
   }
 
  private:
-  bool is_over() const { return events_ == nullptr || next_ == events_->size(); }
-  const DeviceEvent& next() const { return (*events_)[next_]; }
+  // Playing an event may make the bench call, so the next one is found first.
+  template <typename Play>
+  void play_timed(Play&& play) {
+    const DeviceEvent& event = events_[timed_++];
+    skip_to_timed();
+    play(event);
+  }
+  bool waits_for_call() const {
+    for (std::size_t n = timed_; n-- > call_ && events_[n].at == events_[timed_].at;) {
+      if (events_[n].call != 0) return true;
+    }
+    return false;
+  }
+  void skip_to_call() {
+    while (call_ < events_.size() && events_[call_].call == 0) ++call_;
+  }
+  void skip_to_timed() {
+    while (timed_ < events_.size() && events_[timed_].call != 0) ++timed_;
+  }
 
-  const std::vector<DeviceEvent>* events_;
-  std::size_t next_ = 0;
+  std::span<const DeviceEvent> events_;
+  std::size_t call_ = 0;   // the next event of a call
+  std::size_t timed_ = 0;  // the next event of a time
   std::uint64_t calls_ = 0;
 };
 

@@ -73,9 +73,12 @@ struct SeenCycle {
   std::vector<kernel::Time> starts;  // of its telegrams
   std::size_t transfer_octets = 0;   // with the loopback word
 
-  std::uint16_t word(std::size_t octet) const {
+  // Nothing when the cycle was over before.
+  std::optional<std::uint16_t> word(std::size_t octet) const {
+    if (octet + 1 >= octets.size()) return std::nullopt;
     return static_cast<std::uint16_t>(octets[octet] << 8 | octets[octet + 1]);
   }
+  std::string describe_word(std::size_t octet) const;
   std::string describe() const;
 };
 
@@ -126,6 +129,7 @@ class RingEmulator : public segment::Station {
 
   // ---- terminals: words station by station in the order of the ring ----
   void set_input(unsigned word, std::uint16_t value) { inputs_.at(word) = value; }
+  std::uint16_t input(unsigned word) const { return inputs_.at(word); }
   void set_signal(Signal signal) { signal_ = std::move(signal); }
   std::uint16_t output(unsigned word) const { return outputs_.at(word); }
   std::size_t word_count() const { return outputs_.size(); }

@@ -224,6 +224,12 @@ std::vector<std::string> RingEmulator::describe_last(std::size_t count) const {
   return lines;
 }
 
+std::string SeenCycle::describe_word(std::size_t octet) const {
+  const auto value = word(octet);
+  return value ? fmt::format("{:04X}h", *value)
+               : fmt::format("the cycle ends after {} telegrams", octets.size());
+}
+
 std::string SeenCycle::describe() const {
   constexpr std::size_t kShown = 24;
   std::string text =

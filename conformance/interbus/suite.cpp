@@ -144,7 +144,7 @@ Outcome Run::run(const MasterCase& master_case) {
   if (network_) refuse("cases for a master make the rings that they need; leave out the network");
   if (!plan_.empty()) refuse("cases for a master bring their own faults; leave out the plan");
   MasterBench bench([this](const auto& configuration) { return make_master(configuration); }, setup_.seed,
-                    setup_.volume);
+                    setup_.volume, setup_.pics.value_or(judge::Pics{}));
   std::optional<LineRecorder> lines;
   if (setup_.record) {
     bench.segment().trace().set_recorder(&lines.emplace(bench.segment().trace(), bench.rules()));

@@ -106,6 +106,13 @@ void expect_same_verdict_from_recording(const std::string& id, const std::string
   EXPECT_EQ(again.result.reason, first.result.reason) << id << " " << uri;
 }
 
+TEST(InterbusSuite, EveryCasesOwnRecordingIsJudgedLikeTheRun) {
+  for (const TestCase& test_case : suite().cases()) {
+    if (test_case.role() == "network") continue;
+    expect_same_verdict_from_recording(test_case.id, test_case.role(), "ref");
+  }
+}
+
 TEST(InterbusSuite, ARecordingIsJudgedLikeTheImplementationItself) {
   const std::string slave = "interbus/slave/frame_check/flipped_data_bit_is_rejected_marked_and_told";
   expect_same_verdict_from_recording(slave, "slave", "ref");

@@ -20,7 +20,7 @@ const std::string& Link::name() const {
 }
 
 void Link::drive(line::Waveform& wave) {
-  FIELDPROOF_CHECK(wave.start >= segment_.now(), "nobody drives a line in the past");
+  segment_.expect_not_past(name(), wave);
   FIELDPROOF_CHECK(wave.rate > 0, "a waveform has a rate");
   if (wave.start < driven_until_) ++overlap_count_;
   driven_until_ = std::max(driven_until_, wave.end());

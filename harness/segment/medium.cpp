@@ -144,7 +144,7 @@ MediumPort& Medium::listen(std::string_view name, kernel::Duration position) {
 }
 
 void Medium::drive(MediumPort& from, line::Waveform& wave) {
-  FIELDPROOF_CHECK(wave.start >= segment_.now(), "nobody drives a line in the past");
+  segment_.expect_not_past(from.name(), wave);
   segment_.trace().driven(from.trace_channel_, wave);
   for (Tap* tap : driven_taps_) tap->on_wave(wave);
   if (wave.levels.empty()) return;

@@ -120,8 +120,10 @@ void Master::enter_bus_stop() {
 }
 
 // The bus is given up: outputs 0, and silence until the stations are in reset; then the fault is looked for.
+// Not by a master that is to stop: the data cycle with outputs 0 that it owes would find no bus any more.
 void Master::abort_bus(kernel::Time now) {
   std::ranges::fill(outputs_, std::uint16_t{0});
+  if (is_stopping_) return enter_off();
   enter_bus_stop();
   action_at_ = std::max(now, driven_until_) + silence();
   if (configuration_error_.empty() && searches_fault()) recognise_at_ = action_at_ + kReadyTime;
