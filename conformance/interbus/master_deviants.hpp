@@ -184,6 +184,16 @@ struct IdCycleWithoutSelect final : Master {
   std::uint8_t id_select() const override { return 0; }
 };
 
+// Asked for the transfer phase and for the check phase in turn.
+struct SelectDroppedInCheck final : Master {
+  using Master::Master;
+  std::uint8_t id_select() const override {
+    is_transfer_ = !is_transfer_;
+    return is_transfer_ ? Master::id_select() : std::uint8_t{0};
+  }
+  mutable bool is_transfer_ = false;
+};
+
 struct BranchesNotSearched final : Master {
   using Master::Master;
   bool searches_branches() const override { return false; }

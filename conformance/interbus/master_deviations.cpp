@@ -87,6 +87,8 @@ const std::vector<Row>& rows() {
       {"restart_without_id_cycle", "MM22", "restarts with data cycles", make<RestartWithoutIdCycle>},
       {"id_cycle_without_select", "", "sends ID cycles with the headers of data cycles",
        make<IdCycleWithoutSelect>},
+      {"select_dropped_in_check", "", "sends the check phase of ID cycles with the headers of data cycles",
+       make<SelectDroppedInCheck>},
       {"branches_not_searched", "", "never looks behind a second outgoing interface",
        make<BranchesNotSearched>},
       {"station_limit_ignored", "", "takes more stations than allowed",

@@ -197,6 +197,11 @@ kernel::Duration RingEmulator::silence_until(kernel::Time now) const {
   return std::max(now - last_end_, kernel::Duration::zero());
 }
 
+void RingEmulator::note_wrong_phase() {
+  open_cycle().in_phase = false;
+  ++statistics_.wrong_phases;
+}
+
 void RingEmulator::on_telegram(const line::Waveform& wave, const line::Telegram& telegram) {
   if (heard_bits_ == 0) {
     note_gap(wave.time_of(telegram.level), last_end_);
@@ -208,17 +213,17 @@ void RingEmulator::on_telegram(const line::Waveform& wave, const line::Telegram&
   if (!telegram.is_data()) return on_status();
   const bool is_check = (telegram.header & line::kControl) != 0;
   const bool is_id = (telegram.header & line::kSelect) != 0;
-  if (!is_check && (phase_ != Phase::transfer || is_id != is_id_cycle_)) begin_cycle(wave, telegram);
+  if (!is_check && (phase_ != Phase::transfer || is_id != is_id_cycle_)) {
+    if (phase_ == Phase::transfer) note_wrong_phase();  // the cycle that is broken off
+    begin_cycle(wave, telegram);
+  }
   if (cycle_count_ == 0) return;  // a check phase without a cycle
   SeenCycle& seen = open_cycle();
   seen.octets.push_back(telegram.data);
   seen.headers.push_back(telegram.header);
   seen.starts.push_back(wave.time_of(telegram.level));
   if (is_check) {
-    if (is_id != is_id_cycle_) {
-      seen.in_phase = false;
-      ++statistics_.wrong_phases;
-    }
+    if (is_id != is_id_cycle_) note_wrong_phase();
     on_check(telegram);
   } else {
     on_transfer(telegram);

@@ -87,7 +87,7 @@ struct LineStatistics {
   std::uint64_t id_cycles = 0;
   std::uint64_t status_telegrams = 0;
   std::uint64_t bad_checks = 0;
-  std::uint64_t wrong_phases = 0;
+  std::uint64_t wrong_phases = 0;  // telegrams with another SL than the cycle that they belong to
   kernel::Time first_telegram = kernel::kNever;
   kernel::Duration longest_silence{};  // between two telegrams, since `forget`
   // Between the starts of two data cycles that follow one another directly.
@@ -159,6 +159,7 @@ class RingEmulator : public segment::Station {
   static constexpr std::size_t kKept = 64;
 
   void on_telegram(const line::Waveform& wave, const line::Telegram& telegram);
+  void note_wrong_phase();
   void on_status();
   void begin_cycle(const line::Waveform& wave, const line::Telegram& telegram);
   void load_register(kernel::Time when);

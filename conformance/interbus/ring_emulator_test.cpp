@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/interbus/master_deviations.hpp"
 #include "harness/line/frame_check_16.hpp"
@@ -19,6 +21,11 @@ class Line : public segment::Port {
 
   // The octets that come back of a cycle with this transfer phase.
   std::vector<std::uint8_t> cycle(std::vector<std::uint8_t> octets, bool is_id = false) {
+    return cycle(std::move(octets), [is_id](std::size_t) { return is_id; });
+  }
+  // The same with SL telegram by telegram.
+  std::vector<std::uint8_t> cycle(std::vector<std::uint8_t> octets,
+                                  const std::function<bool(std::size_t)>& is_selected) {
     const std::size_t transfer = octets.size();
     const std::uint16_t check = line::shared_frame_check_16("CRC-16/IBM-3740").compute(octets);
     octets.insert(octets.end(),
@@ -28,7 +35,7 @@ class Line : public segment::Port {
     wave.rate = 500'000;
     for (std::size_t n = 0; n < octets.size(); ++n) {
       const unsigned header =
-          line::kDataTelegram | (is_id ? line::kSelect : 0U) | (n >= transfer ? line::kControl : 0U);
+          line::kDataTelegram | (is_selected(n) ? line::kSelect : 0U) | (n >= transfer ? line::kControl : 0U);
       code_.append(wave.levels, static_cast<std::uint8_t>(header), octets[n]);
       wave.levels.append_idle(2);
     }
@@ -107,6 +114,31 @@ TEST(RingEmulator, stands_telegrams_that_run_over_each_other) {
 TEST(RingEmulator, computes_the_published_check_value) {
   const Octets digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
   EXPECT_EQ(RingEmulator::check_of(digits), 0x29B1);
+}
+
+TEST(RingEmulator, counts_telegrams_that_do_not_belong_to_their_cycle) {
+  Line line(line_of(1, 0x0103, 1));
+  const Octets octets{0xA5, 0x5A, 0x00, 0x03};
+  line.cycle(octets, true);
+  line.cycle(octets, false);
+  EXPECT_EQ(line.ring.statistics().wrong_phases, 0U);
+  line.cycle(octets, [](std::size_t n) { return n < 2; });  // SL changes within the transfer
+  EXPECT_EQ(line.ring.statistics().wrong_phases, 1U);
+  EXPECT_FALSE(line.ring.cycle(2).in_phase);
+  line.cycle(octets, [](std::size_t n) { return n < 6; });  // and within the check
+  EXPECT_EQ(line.ring.statistics().wrong_phases, 3U);
+}
+
+TEST(RingEmulator, a_word_that_a_cycle_does_not_have_is_none) {
+  SeenCycle seen;
+  EXPECT_EQ(seen.word(0), std::nullopt);
+  seen.octets = {0xA5};
+  EXPECT_EQ(seen.word(0), std::nullopt);
+  EXPECT_EQ(seen.describe_word(0), "the cycle ends after 1 telegrams");
+  seen.octets = {0xA5, 0x5A};
+  EXPECT_EQ(seen.word(0), 0xA55A);
+  EXPECT_EQ(seen.describe_word(0), "A55Ah");
+  EXPECT_EQ(seen.word(1), std::nullopt);
 }
 
 TEST(RingEmulator, one_station_closes_the_ring_until_its_interface_is_switched_on) {

@@ -32,6 +32,7 @@ class OneStation : public segment::Port {
   kernel::Time now() const { return now_; }
   void set_answer(Answer answer) { answer_ = answer; }
   unsigned finished() const { return finished_; }
+  unsigned waves() const { return waves_; }  // that the master drove
 
   // One step of the master's time line; false when it wants nothing more.
   bool step() {
@@ -40,6 +41,7 @@ class OneStation : public segment::Port {
     now_ = std::max(now_, next);
     master_->on_time(now_);
     if (driven_.levels.empty()) return true;
+    ++waves_;
     const line::Waveform sent = std::exchange(driven_, {});
     answer(sent);
     return true;
@@ -99,6 +101,7 @@ class OneStation : public segment::Port {
   kernel::Time now_ = kernel::kStart;
   Answer answer_ = Answer::good;
   unsigned finished_ = 0;
+  unsigned waves_ = 0;
 };
 
 constexpr unsigned kStopAfter = 3;
@@ -203,6 +206,29 @@ ID requested    | off           | identification| identification| run           
 other station   | off           | identification| identification| bus_stop      | locating      | bus_stop
 )";
   EXPECT_EQ(table, approved) << table;
+}
+
+// A stop that waits for its data cycle, when the ID cycle under way turns out to be the last bad one.
+TEST(MasterStates, a_stop_holds_when_the_bus_is_given_up) {
+  Rules rules;
+  rules.stop_after_bad_cycles = 2;
+  OneStation line(rules);
+  line.master().start(line.now());
+  ASSERT_TRUE(line.step_to(MasterState::run));
+  line.finish_cycles(1);
+  line.set_answer(Answer::bad);
+  line.finish_cycles(1);
+  ASSERT_EQ(line.state(), MasterState::run);
+  // The ID cycle that follows has started, and has not come back.
+  const std::uint64_t cycles = line.finished();
+  const std::uint64_t waves = line.waves();
+  while (line.waves() == waves) ASSERT_TRUE(line.step());
+  ASSERT_EQ(line.finished(), cycles);
+  line.master().stop(line.now());
+  ASSERT_EQ(line.state(), MasterState::run);
+  line.finish_cycles(1);
+  EXPECT_EQ(line.state(), MasterState::off);
+  EXPECT_EQ(line.master().next_time(), kernel::kNever);
 }
 
 }  // namespace
