@@ -224,9 +224,12 @@ void flipped_flag(MasterBench& bench, CaseJudge& judge) {
                   "flag of the status telegram behind the cycle changed");
 }
 
+// That a cycle ends when the loopback word is back, and that a telegram has 5 bits of head, was read; that a
+// master rejects what differs from it was not.
 const judge::Reference kRejection{"literature from memory; Schneider INTERBUS manual",
-                                  "cycle ends when the loopback word is back", Standing::searched};
-const judge::Reference kHeader{"Park 2004, section 2.2", "telegrams with 5 bits of head", Standing::seed};
+                                  "cycle ends when the loopback word is back", Standing::memory};
+const judge::Reference kHeader{"literature from memory; Park 2004, section 2.2",
+                               "telegrams with 5 bits of head", Standing::memory};
 
 }  // namespace
 

@@ -165,8 +165,9 @@ std::vector<MasterCase> master_ring_change_cases() {
   const judge::Reference stopped{"Phoenix Contact, ABB-DSC manual", "look for failure", Standing::searched};
   const judge::Reference compared{"IEC 61158-4-8, table of contents: acquiring and comparing configuration",
                                   "", Standing::searched};
-  const judge::Reference messages{"WAGO 750-304 manual", "dynamic messages in the ID register",
-                                  Standing::searched};
+  // Which bit means what is this project's choice, and that they show in ID cycles only is from memory.
+  const judge::Reference messages{"this project; WAGO 750-304 manual",
+                                  "meaning of the bits; dynamic messages in the ID register", Standing::own};
   add("cut_ring_is_located", "IM-17",
       "When the ring is cut the bus stops, the outputs are as declared and the master finds the place",
       stopped, "the cable cut behind each station in turn",
