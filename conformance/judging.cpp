@@ -59,7 +59,8 @@ judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>
     // The finding that ended it is kept.
   } catch (const kernel::Error& failure) {
     if (failure.kind() != kernel::ErrorKind::implementation) throw;
-    add(judge::Verdict::fail, kMisbehaves, {{"what the bench can serve"}, failure.what()});
+    // It drives in the past, or has gone: nothing can be made of it, and that is its fault.
+    add(judge::Verdict::fail, "implementation_misbehaves", {{"what the bench can serve"}, failure.what()});
   }
   judge::CaseResult result;
   result.id = test_case_.id;

@@ -25,10 +25,6 @@
 
 namespace fieldproof::conformance {
 
-// The reason of a case that an implementation ended by what nothing can be made of: it drives in the past, or
-// is not there any more.
-inline constexpr std::string_view kMisbehaves = "implementation_misbehaves";
-
 // Thrown by the judge to end a procedure; no error of the bench.
 struct CaseEnded {};
 
@@ -78,8 +74,7 @@ class CaseJudge {
   void warn(std::string_view reason, Sighting sighting);
   void measure(std::string_view name, std::string_view unit, double value);
 
-  // Runs the procedure up to its end, to the finding that ends it, or to a kernel::Error that blames the
-  // implementation, which is a finding, too. Gives the result with verdict, reason,
+  // Runs the procedure up to its end or to the finding that ends it. Gives the result with verdict, reason,
   // findings, measurements, requirement and reference; seed, fingerprint and times are the suite's to fill.
   judge::CaseResult run_procedure(const std::function<void(CaseJudge&)>& procedure);
 

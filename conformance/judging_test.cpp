@@ -136,7 +136,7 @@ TEST(CaseJudge, blames_the_implementation_for_its_own_errors_only) {
   const judge::CaseResult result = judge.run_procedure(
       [](CaseJudge&) { throw kernel::Error(kernel::ErrorKind::implementation, "it has gone"); });
   EXPECT_EQ(result.verdict, judge::Verdict::fail);
-  EXPECT_EQ(result.reason, kMisbehaves);
+  EXPECT_EQ(result.reason, "implementation_misbehaves");
   ASSERT_EQ(result.findings.size(), 1U);
   EXPECT_EQ(result.findings[0].actual, "it has gone");
   EXPECT_THROW(judge.run_procedure(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "harness/segment/past_drive.hpp"
 #include "harness/segment/segment.hpp"
 
 namespace fieldproof::segment {
@@ -20,7 +21,7 @@ const std::string& Link::name() const {
 }
 
 void Link::drive(line::Waveform& wave) {
-  segment_.expect_not_past(name(), wave);
+  expect_not_past(name(), wave, segment_.now());
   FIELDPROOF_CHECK(wave.rate > 0, "a waveform has a rate");
   if (wave.start < driven_until_) ++overlap_count_;
   driven_until_ = std::max(driven_until_, wave.end());

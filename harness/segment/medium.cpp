@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "harness/kernel/check.hpp"
+#include "harness/segment/past_drive.hpp"
 
 namespace fieldproof::segment {
 namespace {
@@ -144,7 +145,7 @@ MediumPort& Medium::listen(std::string_view name, kernel::Duration position) {
 }
 
 void Medium::drive(MediumPort& from, line::Waveform& wave) {
-  segment_.expect_not_past(from.name(), wave);
+  expect_not_past(from.name(), wave, segment_.now());
   segment_.trace().driven(from.trace_channel_, wave);
   for (Tap* tap : driven_taps_) tap->on_wave(wave);
   if (wave.levels.empty()) return;

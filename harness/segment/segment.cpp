@@ -1,10 +1,6 @@
 #include "harness/segment/segment.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-
-#include "harness/kernel/error.hpp"
 
 namespace fieldproof::segment {
 
@@ -33,12 +29,6 @@ std::size_t Segment::attach(Station& station, std::string name) {
 
 Link& Segment::connect(std::string name, std::size_t receiver, PortIndex port, kernel::Duration delay) {
   return links_.emplace_back(*this, std::move(name), receiver, port, delay);
-}
-
-void Segment::refuse_past(const std::string& line, const line::Waveform& wave) const {
-  throw kernel::Error(kernel::ErrorKind::implementation,
-                      fmt::format("{} is driven at {} when it is {} already; a station drives now or later",
-                                  line, kernel::describe(wave.start), kernel::describe(now())));
 }
 
 }  // namespace fieldproof::segment

@@ -39,12 +39,6 @@ class Segment {
   // Asks the station for its next time again; needed after something outside the segment changed it.
   void refresh(std::size_t station) { seats_[station].refresh(); }
 
-  // Of a wave that a station drives onto a line: throws kernel::Error(implementation) when it begins in the
-  // past. The station may be under test, so this is no broken promise of ours.
-  void expect_not_past(const std::string& line, const line::Waveform& wave) const {
-    if (wave.start < now()) refuse_past(line, wave);
-  }
-
   void deliver(std::size_t station, PortIndex port, const line::Waveform& wave) {
     seats_[station].receive(port, wave);
   }
@@ -68,8 +62,6 @@ class Segment {
     kernel::SlotId slot_;
     kernel::Time armed_ = kernel::kNever;
   };
-
-  [[noreturn]] void refuse_past(const std::string& line, const line::Waveform& wave) const;
 
   kernel::Scheduler scheduler_;
   trace::Trace trace_;
