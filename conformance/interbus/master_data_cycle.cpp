@@ -97,6 +97,8 @@ std::vector<MasterCase> master_data_cycle_cases() {
             "The master's check covers the loopback word and the data, not the headers; its status "
             "word is clean",
         .reference = {"Buesing/Meyer, Practical Guide", "check per segment", Standing::searched},
+        .details = {{{"this project", "status word 0000h of a clean cycle", Standing::own},
+                     {"status_word_not_clean"}}},
         .stimulus = "random outputs",
         .expected = "the check of an independent computation over the bits on the line; status word 0000h",
         .tags = {"must"},

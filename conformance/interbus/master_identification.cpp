@@ -122,6 +122,8 @@ constexpr std::array<interbus::LengthCode, 16> kLengthCodes{{{0x01, 1},
                                                              {0x13, 24},
                                                              {0x11, 26},
                                                              {0x14, 32}}};
+constexpr unsigned kCodeFromMemory = 0x14;  // the only one that was not read
+constexpr std::string_view kCodeFromMemoryMisread = "length_code_from_memory_misread";
 constexpr unsigned kFirstUndefinedCode = 0x18;
 constexpr unsigned kEndOfCodes = 0x20;
 
@@ -136,7 +138,7 @@ void length_codes(MasterBench& bench, CaseJudge& judge) {
     bench.power_up(interbus::line_of(1, id_code_with(code), words));
     judge.expect(
         bench.wait_for_run() && bench.status().stations.at(0).words == words && bench.finished().is_accepted,
-        "length_code_misread", [&] {
+        code == kCodeFromMemory ? kCodeFromMemoryMisread : "length_code_misread", [&] {
           return Sighting{{fmt::format("code {:02X}h is {} words", code, words)},
                           "the ring has another length"};
         });
@@ -197,6 +199,8 @@ std::vector<MasterCase> master_identification_cases() {
        .requirement =
            "The length code is read by its table, not as a binary number; an undefined one is refused",
        .reference = {"Schneider 890USE196, table of length codes", "ID code", Standing::searched},
+       .details = {{{"literature from memory", "length code 14h", Standing::memory},
+                    {std::string(kCodeFromMemoryMisread)}}},
        .stimulus = "a station with each length code of whole words, and with the codes 18h to 1Fh",
        .expected = "the expected length of the ring; an error for undefined codes",
        .tags = {"must"},

@@ -269,6 +269,9 @@ std::vector<MasterCase> master_rejection_cases() {
       "each bit of the data, and of the check, changed behind the last station",
       {{"own_check_ignored", "bad_check_accepted"}, {"inputs_taken_before_check", "rejected_inputs_seen"}},
       bad_check);
+  cases.back().test_case.details = {
+      {{"literature from memory", "inputs of a rejected cycle are discarded", Standing::memory},
+       {"rejected_inputs_seen"}}};
   add("marked_status_names_the_segment", "IM-14",
       "A marked status word rejects the cycle; the following ID cycle names the segment",
       {"literature from memory", "check status and message bits", Standing::memory},
