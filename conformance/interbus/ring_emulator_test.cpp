@@ -21,11 +21,11 @@ class Line : public segment::Port {
 
   // The octets that come back of a cycle with this transfer phase.
   std::vector<std::uint8_t> cycle(std::vector<std::uint8_t> octets, bool is_id = false) {
-    return cycle(std::move(octets), [is_id](std::size_t) { return is_id; });
+    return mixed_cycle(std::move(octets), [is_id](std::size_t) { return is_id; });
   }
   // The same with SL telegram by telegram.
-  std::vector<std::uint8_t> cycle(std::vector<std::uint8_t> octets,
-                                  const std::function<bool(std::size_t)>& is_selected) {
+  std::vector<std::uint8_t> mixed_cycle(std::vector<std::uint8_t> octets,
+                                        const std::function<bool(std::size_t)>& is_selected) {
     const std::size_t transfer = octets.size();
     const std::uint16_t check = line::shared_frame_check_16("CRC-16/IBM-3740").compute(octets);
     octets.insert(octets.end(),
@@ -122,10 +122,10 @@ TEST(RingEmulator, counts_telegrams_that_do_not_belong_to_their_cycle) {
   line.cycle(octets, true);
   line.cycle(octets, false);
   EXPECT_EQ(line.ring.statistics().wrong_phases, 0U);
-  line.cycle(octets, [](std::size_t n) { return n < 2; });  // SL changes within the transfer
+  line.mixed_cycle(octets, [](std::size_t n) { return n < 2; });  // SL changes within the transfer
   EXPECT_EQ(line.ring.statistics().wrong_phases, 1U);
   EXPECT_FALSE(line.ring.cycle(2).in_phase);
-  line.cycle(octets, [](std::size_t n) { return n < 6; });  // and within the check
+  line.mixed_cycle(octets, [](std::size_t n) { return n < 6; });  // and within the check
   EXPECT_EQ(line.ring.statistics().wrong_phases, 3U);
 }
 
