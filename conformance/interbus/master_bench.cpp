@@ -151,7 +151,8 @@ bool MasterBench::run_cycle() {
     if (segment_.scheduler().next() > end) return false;
     segment_.step();
   }
-  return true;
+  id_cycles_in_a_row_ = finished_.is_data ? 0 : id_cycles_in_a_row_ + 1;
+  return id_cycles_in_a_row_ <= kMostIdCycles + 8 * ring_->stations().size();
 }
 
 void MasterBench::run_data_cycles(CaseJudge& judge, std::uint64_t count) {
@@ -216,7 +217,9 @@ MasterBench::Suffered MasterBench::suffer(CaseJudge& judge, CycleFaults faults) 
   Suffered suffered;
   for (const unsigned word : words) {
     suffered.offered.push_back(ring_->input(word));
-    suffered.held.push_back(static_cast<std::uint16_t>(~ring_->input(word)));
+    // A change of one bit is enough to be told from the other, and nothing that a master could find
+    // implausible.
+    suffered.held.push_back(static_cast<std::uint16_t>(ring_->input(word) ^ 1U));
   }
   offer(suffered.held);
   // The first of them may have been under way.

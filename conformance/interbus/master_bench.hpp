@@ -91,7 +91,8 @@ class MasterBench {
   // Called after each finished cycle; the application of the case.
   void on_cycle(std::function<void()> hook) { on_cycle_ = std::move(hook); }
   void run_data_cycles(CaseJudge& judge, std::uint64_t count);
-  // Any cycle that the master finishes next. False when it finishes none any more.
+  // Any cycle that the master finishes next. False when it finishes none any more, or ID cycles and nothing
+  // else.
   bool run_cycle();
 
   // What the application and the line saw of one disturbed data cycle. Inputs are the words of the stations
@@ -141,6 +142,8 @@ class MasterBench {
   segment::Link* back_ = nullptr;
   std::size_t master_seat_ = 0;
   trace::Channel master_place_ = 0;
+  static constexpr std::size_t kMostIdCycles = 64;
+  std::size_t id_cycles_in_a_row_ = 0;
   FinishedCycle finished_;
   std::function<void()> on_cycle_;
   interbus::RingEmulator::Script script_;
