@@ -22,9 +22,9 @@ namespace fieldproof::interbus {
 
 struct StationDescription {
   std::string name;
-  std::uint16_t id_code = 0;               // bits 0..12; the register length follows from its length code
-  double cable_m = 0;                      // from the station before it; 0 on a local bus
-  bool is_local = false;                   // behind a second outgoing interface on logic-level lines
+  std::uint16_t id_code = 0;                 // bits 0..12; the register length follows from its length code
+  double cable_m = 0;                        // from the station before it; 0 on a local bus
+  bool is_local = false;                     // behind a second outgoing interface on logic-level lines
   std::vector<StationDescription> branch{};  // behind the second outgoing interface, in order
 };
 
