@@ -100,7 +100,7 @@ class MasterBench {
   struct Suffered {
     bool is_told_accepted = false;       // what the application was told
     std::vector<std::uint16_t> held;     // inputs before the cycle
-    std::vector<std::uint16_t> offered;  // by the stations in the cycle: each the inverse of what is held
+    std::vector<std::uint16_t> offered;  // by the stations in the cycle: each other than what is held
     std::vector<std::uint16_t> seen;     // inputs right behind the cycle
     std::uint64_t id_cycles = 0;         // on the line, from there to the next accepted data cycle
   };
