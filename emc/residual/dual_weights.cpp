@@ -40,13 +40,14 @@ constexpr std::array<Steps, kNibbles> all_steps() {
   return all;
 }
 
+constexpr std::array<Steps, kNibbles> kSteps = all_steps();
+
 constexpr std::array<std::int8_t, kNibbles> all_gains() {
   std::array<std::int8_t, kNibbles> gains{};
-  for (unsigned key = 0; key < kNibbles; ++key) gains.at(key) = all_steps().at(key).after;
+  for (unsigned key = 0; key < kNibbles; ++key) gains.at(key) = kSteps.at(key).after;
   return gains;
 }
 
-constexpr std::array<Steps, kNibbles> kSteps = all_steps();
 constexpr std::array<std::int8_t, kNibbles> kGains = all_gains();
 
 // Weighs every window of `bits` bits on the cycles that it is given.
