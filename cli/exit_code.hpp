@@ -12,6 +12,7 @@ inline constexpr int kDiffers = 3;  // a fingerprint differed
 inline constexpr int kNothingJudged = 4;
 inline constexpr int kUsage = 64;
 inline constexpr int kInternal = 70;
+inline constexpr int kResultLost = 74;  // would be 0, but standard output took not all of the result
 inline constexpr int kSignalBase = 128;
 
 struct ExitRules {

@@ -14,6 +14,9 @@
 namespace fieldproof::cli {
 namespace {
 
+constexpr char kSignalCame = 's';
+constexpr char kEnd = 'e';
+
 // A handler may touch lock-free atomics and call write, nothing else.
 std::atomic<int> received{0};
 std::atomic<int> wake_end{-1};
@@ -21,8 +24,7 @@ std::atomic<int> wake_end{-1};
 extern "C" void on_signal(int signal) {
   const int former_errno = errno;
   received.store(signal);
-  const char byte = 's';
-  [[maybe_unused]] const auto written = write(wake_end.load(), &byte, 1);
+  [[maybe_unused]] const auto written = write(wake_end.load(), &kSignalCame, 1);
   errno = former_errno;
 }
 
@@ -56,8 +58,7 @@ Interruption::Interruption(std::optional<std::chrono::milliseconds> max_time) {
 }
 
 Interruption::~Interruption() {
-  const char byte = 'e';
-  [[maybe_unused]] const auto written = write(wake_[1], &byte, 1);
+  [[maybe_unused]] const auto written = write(wake_[1], &kEnd, 1);
   watcher_.join();
   sigaction(SIGINT, &former_int_, nullptr);
   sigaction(SIGTERM, &former_term_, nullptr);
@@ -81,9 +82,15 @@ void Interruption::watch(Clock::time_point deadline) {
     pollfd wake{wake_[0], POLLIN, 0};
     const int ready = poll(&wake, 1, patience_until(deadline));
     if (ready < 0 && errno == EINTR) continue;
-    if (ready == 0 && Clock::now() < deadline) continue;
-    char byte = 'e';
-    if (ready > 0 && read(wake_[0], &byte, 1) == 1 && byte == 'e') return;
+    if (ready > 0) {
+      char byte = 0;
+      if (read(wake_[0], &byte, 1) != 1) continue;
+      if (byte == kEnd) return;
+      if (byte == kSignalCame) source_.request_stop();
+      continue;
+    }
+    if (Clock::now() < deadline) continue;
+    is_out_of_time_ = true;
     source_.request_stop();
     // Stays for the end of the object; a time that is over must not be found again.
     deadline = Clock::time_point::max();

@@ -4,6 +4,7 @@
 // kind kills at once. One object at a time; signals get their former handlers back at its end.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <optional>
@@ -24,7 +25,7 @@ class Interruption {
 
   // SIGINT or SIGTERM, 0 when none came.
   int signal() const;
-  bool is_out_of_time() const { return source_.stop_requested() && signal() == 0; }
+  bool is_out_of_time() const { return is_out_of_time_.load(); }
 
   // "interrupted by SIGINT", "the time of --max-time was over", or nothing.
   std::string reason() const;
@@ -34,6 +35,7 @@ class Interruption {
   void watch(Clock::time_point deadline);
 
   std::stop_source source_;
+  std::atomic<bool> is_out_of_time_{false};
   int wake_[2] = {-1, -1};
   struct sigaction former_int_{};
   struct sigaction former_term_{};

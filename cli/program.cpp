@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 
 #include "cli/command_line.hpp"
@@ -15,12 +14,12 @@
 namespace fieldproof::cli {
 namespace {
 
-int serve(const Command& command, const std::vector<std::string>& arguments, Suites (*make_suites)()) {
+int serve(const Command& command, const std::vector<std::string>& arguments, Suites (*make_suites)(),
+          Terminal& terminal) {
   const auto verb =
       std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == command.verb; });
   FIELDPROOF_CHECK(verb != verbs().end(), "the command line gives a verb that the table does not have");
   Settings settings(command, process_environment());
-  Terminal terminal;
   if (find_option("print-config", verb->name) != nullptr && settings.is_set("print-config")) {
     terminal.print(settings.describe());
     return kAllAsExpected;
@@ -31,22 +30,31 @@ int serve(const Command& command, const std::vector<std::string>& arguments, Sui
   return verb->serve(session);
 }
 
+// A caller who reads only the exit code must not take a result that was lost for one that was told.
+int code_after_output(int code, const Terminal& terminal) {
+  return code == kAllAsExpected && terminal.has_lost_result() ? kResultLost : code;
+}
+
 }  // namespace
 
 int run_program(int argc, const char* const* argv, Suites (*make_suites)()) {
+  secure_standard_streams();
   try {
+    Terminal terminal;
     const std::vector<std::string> arguments(argv, argv + argc);
     const Parsed parsed = parse_command_line(arguments);
-    if (!parsed.command) {
-      fmt::print("{}", parsed.text);
-      return kAllAsExpected;
+    int code = kAllAsExpected;
+    if (parsed.command) {
+      code = serve(*parsed.command, arguments, make_suites, terminal);
+    } else {
+      terminal.print(parsed.text);
     }
-    return serve(*parsed.command, arguments, make_suites);
+    return code_after_output(code, terminal);
   } catch (const kernel::Error& error) {
-    fmt::print(stderr, "fieldproof: {}\n", error.what());
+    print_log_line(error.what());
     return error.exit_code();
   } catch (const std::exception& failure) {
-    fmt::print(stderr, "fieldproof: internal error: {}\n", failure.what());
+    print_log_line(fmt::format("internal error: {}", failure.what()));
     return kInternal;
   }
 }

@@ -1,11 +1,15 @@
 #include "cli/terminal.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 namespace fieldproof::cli {
 namespace {
@@ -18,6 +22,12 @@ bool is_dumb() {
 bool refuses_colour() {
   const char* value = std::getenv("NO_COLOR");
   return value != nullptr && *value != '\0';
+}
+
+// A log that cannot be written must not end the program.
+void write_to_log(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
 }
 
 std::string time_left(double seconds) {
@@ -34,13 +44,15 @@ Terminal::Terminal()
 
 void Terminal::print(std::string_view text) {
   clear_progress();
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fflush(stdout);
+  const bool is_written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if ((is_written && std::fflush(stdout) == 0) || has_lost_result_) return;
+  has_lost_result_ = true;
+  log(fmt::format("the result cannot be written to standard output: {}", std::strerror(errno)));
 }
 
 void Terminal::log(std::string_view text) {
   clear_progress();
-  fmt::print(stderr, "fieldproof: {}\n", text);
+  print_log_line(text);
 }
 
 void Terminal::begin_progress(std::size_t total, std::string_view what) {
@@ -67,16 +79,27 @@ void Terminal::end_progress() {
 
 void Terminal::draw() {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  fmt::print(stderr, "\r\033[K{}", progress_text(done_, total_, seconds, what_));
-  std::fflush(stderr);
+  write_to_log("\r\033[K" + progress_text(done_, total_, seconds, what_));
   is_drawn_ = true;
 }
 
 void Terminal::clear_progress() {
   if (!is_drawn_) return;
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  write_to_log("\r\033[K");
   is_drawn_ = false;
+}
+
+void secure_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    // The lowest free number is given, and those below are taken.
+    if (fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    [[maybe_unused]] const int opened = open("/dev/null", O_RDWR);
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+void print_log_line(std::string_view text) {
+  write_to_log(fmt::format("fieldproof: {}\n", text));
 }
 
 std::string progress_text(std::size_t done, std::size_t total, double seconds, std::string_view what) {
