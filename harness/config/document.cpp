@@ -17,29 +17,41 @@ namespace {
                       fmt::format("{}: the file cannot be read: {}", path.string(), reason));
 }
 
-// Reads one octet more than allowed at most, so that an endless file ends, too.
-std::string text_of(const std::filesystem::path& path, std::size_t limit) {
+}  // namespace
+
+std::string read_text(const std::filesystem::path& path, std::size_t limit) {
   std::error_code no_status;
-  if (std::filesystem::is_directory(path, no_status)) fail_to_read(path, "it is a folder; name a file in it");
+  const auto kind = std::filesystem::status(path, no_status).type();
+  if (kind == std::filesystem::file_type::directory) {
+    fail_to_read(path, "it is a folder; name a file in it");
+  }
+  if (std::filesystem::exists(path, no_status) && kind != std::filesystem::file_type::regular) {
+    fail_to_read(path, "it is no regular file; write what it gives into one");
+  }
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) fail_to_read(path, std::generic_category().message(errno));
   std::string text;
   std::vector<char> block(std::size_t{1} << 16);
+  // Files below /proc have no size, so what is read is counted.
   while (text.size() <= limit && file) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     text.append(block.data(), static_cast<std::size_t>(file.gcount()));
   }
   if (file.bad()) fail_to_read(path, std::generic_category().message(errno));
+  if (text.size() > limit) {
+    throw kernel::Error(
+        kernel::ErrorKind::configuration,
+        fmt::format("{}:1:1: the file has more than {} octets, which are the most that are read",
+                    path.string(), limit));
+  }
   return text;
 }
-
-}  // namespace
 
 Document::Document(std::shared_ptr<const Source> source) : source_(std::move(source)) {}
 
 Document Document::load(const std::filesystem::path& path, const Limits& limits) {
-  return parse(text_of(path, limits.size), path.string(), limits);
+  return parse(read_text(path, limits.size), path.string(), limits);
 }
 
 Document Document::parse(std::string text, std::string name, const Limits& limits) {

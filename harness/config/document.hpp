@@ -148,6 +148,8 @@ class ObjectReader {
  private:
   template <typename Read>
   friend std::invoke_result_t<Read, ObjectReader&> read_object(const Value& value, Read&& read);
+  template <typename Read>
+  friend std::invoke_result_t<Read, ObjectReader&> read_open_object(const Value& value, Read&& read);
 
   explicit ObjectReader(const Value& value);
   void finish() const;
@@ -173,10 +175,22 @@ std::invoke_result_t<Read, ObjectReader&> read_object(const Value& value, Read&&
   }
 }
 
+// The same without the refusal, for documents of this program that may have grown keys since: results,
+// journals. Configuration is read by read_object.
+template <typename Read>
+std::invoke_result_t<Read, ObjectReader&> read_open_object(const Value& value, Read&& read) {
+  ObjectReader reader(value);
+  return std::invoke(std::forward<Read>(read), reader);
+}
+
 struct Limits {
   std::size_t size = std::size_t{64} << 20;  // octets of text; never more than 2^32 - 2
   std::size_t depth = 64;                    // containers inside each other
 };
+
+// The whole file. Throws kernel::Error(configuration) when it cannot be read, when it is no regular file (a
+// pipe may never begin, a device never end), and when it has more than `limit` octets.
+std::string read_text(const std::filesystem::path& path, std::size_t limit = Limits{}.size);
 
 class Document {
  public:

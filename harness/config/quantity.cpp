@@ -94,30 +94,42 @@ Decimal quantity(const Value& value, const Scale& scale) {
   fail(value, fmt::format("{} is not a unit of a {}; {}", in_quotes(name), scale.quantity, rule));
 }
 
-// Exactly this quantity in the smallest unit; saturates past 64 bit, where every range ends anyway.
-std::int64_t whole(const Value& value, const Scale& scale) {
+// Exactly this quantity in the smallest unit; what 64 bit do not hold saturates and is told.
+struct Whole {
+  std::int64_t number = 0;
+  bool is_saturated = false;
+};
+
+Whole whole(const Value& value, const Scale& scale) {
   const Decimal number = quantity(value, scale);
   if (number.power < 0 && !number.digits.empty()) {
     fail(value, fmt::format("{} is not a whole number of {}; write fewer decimals",
                             in_quotes(value.as_string()), scale.smallest));
   }
   constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
-  std::int64_t total = 0;
+  Whole total;
   const auto append = [&](std::int64_t digit) {
-    total = total > (kLargest - digit) / 10 ? kLargest : total * 10 + digit;
+    total.is_saturated = total.is_saturated || total.number > (kLargest - digit) / 10;
+    total.number = total.is_saturated ? kLargest : total.number * 10 + digit;
   };
   for (const char digit : number.digits) append(digit - '0');
-  for (int zeros = 0; zeros < number.power && total != 0; ++zeros) append(0);
-  return number.is_negative ? -total : total;
+  for (int zeros = 0; zeros < number.power && total.number != 0; ++zeros) append(0);
+  if (number.is_negative) total.number = -total.number;
+  return total;
+}
+
+// Also "-0 m": a sign has no place where nothing negative is meant.
+bool has_stray_sign(const Value& value, bool takes_negative) {
+  return !takes_negative && value.as_string().starts_with('-');
 }
 
 template <typename T, typename Describe>
-void check_range(const Value& value, T read, T min, T max, Describe describe) {
-  if (read < min) {
+void check_range(const Value& value, T read, T min, T max, Describe describe, bool is_saturated = false) {
+  if (read < min || has_stray_sign(value, min < T{})) {
     fail(value,
          fmt::format("{} is too small; write at least {}", in_quotes(value.as_string()), describe(min)));
   }
-  if (read > max) {
+  if (read > max || is_saturated) {
     fail(value,
          fmt::format("{} is too large; write at most {}", in_quotes(value.as_string()), describe(max)));
   }
@@ -126,15 +138,18 @@ void check_range(const Value& value, T read, T min, T max, Describe describe) {
 }  // namespace
 
 kernel::Duration Value::as_duration(kernel::Duration min, kernel::Duration max) const {
-  const kernel::Duration read{whole(*this, kTime)};
-  check_range(*this, read, min, max, [](kernel::Duration limit) { return kernel::describe(limit); });
-  return read;
+  const Whole read = whole(*this, kTime);
+  const kernel::Duration duration{read.number};
+  const auto describe = [](kernel::Duration limit) { return kernel::describe(limit); };
+  check_range(*this, duration, min, max, describe, read.is_saturated);
+  return duration;
 }
 
 std::int64_t Value::as_bit_rate(std::int64_t min, std::int64_t max) const {
-  const std::int64_t read = whole(*this, kRate);
-  check_range(*this, read, min, max, [](std::int64_t limit) { return fmt::format("{} bit/s", limit); });
-  return read;
+  const Whole read = whole(*this, kRate);
+  const auto describe = [](std::int64_t limit) { return fmt::format("{} bit/s", limit); };
+  check_range(*this, read.number, min, max, describe, read.is_saturated);
+  return read.number;
 }
 
 double Value::as_length_m(double min, double max) const {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "harness/kernel/untrusted_text.hpp"
+
 namespace fieldproof::config {
 
 namespace {
@@ -16,21 +18,11 @@ bool begins_character(char octet) {
 }  // namespace
 
 std::string printable(std::string_view text, std::size_t limit) {
-  std::string shown;
-  std::size_t used = 0;
-  for (; used < text.size(); ++used) {
-    const char octet = text[used];
-    if (used >= limit && begins_character(octet)) break;
-    const auto code = static_cast<unsigned char>(octet);
-    if (code < 0x20 || code == 0x7F) {
-      shown += fmt::format("\\u{:04x}", code);
-    } else {
-      shown += octet;
-    }
-  }
-  if (used < text.size()) shown += "...";
-  return shown;
+  std::size_t used = std::min(limit, text.size());
+  while (used < text.size() && !begins_character(text[used])) ++used;
+  return kernel::escaped_line(text.substr(0, used)) + (used < text.size() ? "..." : "");
 }
+
 std::pair<std::size_t, std::size_t> Source::place(std::size_t offset) const {
   const auto after = std::upper_bound(line_starts.begin(), line_starts.end(), offset);
   const auto line = static_cast<std::size_t>(after - line_starts.begin());

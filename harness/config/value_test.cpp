@@ -181,6 +181,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"duration_overflow", "\"99999999999999999999 s\"", pause,
                  "\"99999999999999999999 s\" is too large; write at most 25.000 ms"},
         BadValue{"duration_negative", "\"-5 us\"", pause, "\"-5 us\" is too small; write at least 1.000 us"},
+        BadValue{"length_minus_zero", "\"-0 m\"", cable, "\"-0 m\" is too small; write at least 0 m"},
         BadValue{"rate_above", "\"2.000001 Mbit/s\"", bit_rate,
                  "\"2.000001 Mbit/s\" is too large; write at most 2000000 bit/s"},
         BadValue{"length_above", "\"0.401 km\"", cable, "\"0.401 km\" is too large; write at most 400 m"}),
@@ -235,6 +236,22 @@ TEST(Value, QuantitiesAreExact) {
 TEST(Value, NegativeDurationsNeedANegativeMinimum) {
   const Document document = in_array("\"-1.5 us\"");
   EXPECT_EQ(document.root().as_array()[0].as_duration(-1ms, 1ms), kernel::Duration{-1'500'000});
+}
+
+// What 64 bit do not hold is no long duration, but another one than was written.
+TEST(Value, DurationsThatDoNotFitAreRefusedWithoutALimitToo) {
+  const Document document =
+      in_array(R"("9223372036854775807 ps", "9223372036854775808 ps", "99999999999 s")");
+  const auto values = document.root().as_array();
+  EXPECT_EQ(values[0].as_duration(), kernel::Duration::max());
+  EXPECT_THROW(values[1].as_duration(), kernel::Error);
+  EXPECT_THROW(values[2].as_duration(), kernel::Error);
+}
+
+TEST(Value, NothingNegativeIsNothingWithASign) {
+  const Document document = in_array(R"("-0 us")");
+  EXPECT_THROW(document.root().as_array()[0].as_duration(), kernel::Error);
+  EXPECT_EQ(document.root().as_array()[0].as_duration(-1ms, 1ms), kernel::Duration::zero());
 }
 
 TEST(Value, KnowsItsPlaceAndPointer) {
