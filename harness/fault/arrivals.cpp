@@ -36,12 +36,10 @@ void ArrivalWriter::finish() {
 }
 
 void order_by_start(std::vector<line::Waveform>& waves, std::size_t first) {
-  // By exchange: they are few and mostly in order, and their buffers stay where they are needed.
-  for (std::size_t i = first + 1; i < waves.size(); ++i) {
-    for (std::size_t k = i; k > first && waves[k].start < waves[k - 1].start; --k) {
-      std::swap(waves[k], waves[k - 1]);
-    }
-  }
+  const auto begin = waves.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto is_before = [](const line::Waveform& a, const line::Waveform& b) { return a.start < b.start; };
+  // Mostly they are in order, and sorting would take a buffer.
+  if (!std::is_sorted(begin, waves.end(), is_before)) std::stable_sort(begin, waves.end(), is_before);
 }
 
 void cut_front(line::Waveform& wave, kernel::Time from) {

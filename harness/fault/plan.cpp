@@ -55,7 +55,7 @@ InstalledPlan::~InstalledPlan() {
 
 Channel* InstalledPlan::channel_for(std::string_view receiver, trace::Channel place,
                                     std::unique_ptr<FieldMap> fields) {
-  auto channel = std::make_unique<RuleChannel>(trace_, place, std::move(fields));
+  auto channel = std::make_unique<RuleChannel>(trace_, place, std::move(fields), work_);
   const kernel::Random of_receiver = random_.split(receiver);
   for (RuleState& state : states_) channel->add(state, receiver, of_receiver.split(state.number));
   if (!channel->has_rules()) return nullptr;
@@ -69,6 +69,7 @@ std::uint64_t InstalledPlan::hits(std::size_t rule) const {
 void InstalledPlan::on_observation(trace::Channel channel, kernel::Time time, std::string_view what,
                                    std::uint64_t) {
   for (RuleState& state : states_) {
+    work_.spend(state.afters.size());
     for (AfterState& wait : state.afters) {
       if (!fits(wait.after->observation, what)) continue;
       if (!fits(wait.after->channel, trace_.channel_name(channel))) continue;

@@ -9,6 +9,7 @@
 
 #include "harness/fault/channel.hpp"
 #include "harness/fault/fields.hpp"
+#include "harness/fault/plan_work.hpp"
 #include "harness/fault/rule.hpp"
 #include "harness/fault/rule_channel.hpp"
 #include "harness/kernel/random.hpp"
@@ -65,6 +66,7 @@ class InstalledPlan final : private trace::Observer {
   trace::Trace& trace_;
   kernel::Random random_;
   std::deque<RuleState> states_;  // channels point into it
+  PlanWork work_;                 // of all receivers
   bool waits_ = false;            // some rule waits for an observation
   std::vector<std::unique_ptr<RuleChannel>> channels_;
 };

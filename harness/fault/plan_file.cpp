@@ -20,10 +20,12 @@ std::string pattern(const Value& value) {
   return std::string(text);
 }
 
+// `smallest` is where the counting begins: also of "every" without "from".
 Numbers read_numbers(const Value& value, std::uint64_t smallest) {
   if (!value.is_object()) return Numbers::only(value.as_integer<std::uint64_t>(smallest));
   return config::read_object(value, [&](ObjectReader& object) {
     Numbers numbers;
+    numbers.first = smallest;
     if (const auto from = object.optional("from")) numbers.first = from->as_integer<std::uint64_t>(smallest);
     if (const auto to = object.optional("to")) numbers.last = to->as_integer<std::uint64_t>(numbers.first);
     if (const auto every = object.optional("every")) numbers.every = every->as_integer<std::uint64_t>(1);
@@ -53,10 +55,11 @@ std::vector<When> read_whens(const Value& value) {
 }
 
 void read_window(ObjectReader& object, When& when) {
-  if (const auto from = object.optional("from")) when.from = kernel::kStart + from->as_duration();
+  if (const auto from = object.optional("from"))
+    when.from = kernel::kStart + from->as_duration({}, kLongestDuration);
   const auto to = object.optional("to");
   if (!to) return;
-  when.to = kernel::kStart + to->as_duration();
+  when.to = kernel::kStart + to->as_duration({}, kLongestDuration);
   if (when.to <= when.from || when.to == kernel::kStart) {
     config::fail(*to, "the window ends before it begins; write an instant behind \"from\"");
   }

@@ -167,6 +167,28 @@ INSTANTIATE_TEST_SUITE_P(
                 "2: /rules/0/scope: ", "\"field\""}),
     [](const testing::TestParamInfo<BadPlan>& instance) { return std::string(instance.param.name); });
 
+// A window that 64 bit do not hold would be another one than was written.
+INSTANTIATE_TEST_SUITE_P(
+    Meanings, BadPlans,
+    testing::Values(BadPlan{"from_beyond_time", with_when("\"from\": \"99999999999 s\""),
+                            "3: /rules/0/when/from: ", "too large"},
+                    BadPlan{"to_beyond_time", with_when("\"to\": \"1000001 s\""),
+                            "3: /rules/0/when/to: ", "too large"},
+                    BadPlan{"frames_up_to_none", with_when("\"frame_number\": {\"to\": 0}"),
+                            "3: /rules/0/when/frame_number/to: ", "from 1"},
+                    BadPlan{"negative_gap", with_effect("\"repeat\": {\"gap\": \"-0 us\"}"),
+                            "2: /rules/0/effect/repeat/gap: ", "too small"}),
+    [](const testing::TestParamInfo<BadPlan>& instance) { return std::string(instance.param.name); });
+
+TEST(PlanFile, EveryNthFrameBeginsWithTheFirst) {
+  const Plan plan = plan_of(with_when("\"frame_number\": {\"every\": 2}, \"unit\": {\"every\": 2}"));
+  EXPECT_EQ(plan.rules().front().when.frame, (Numbers{1, Numbers{}.last, 2}));
+  EXPECT_EQ(plan.rules().front().when.unit, (Numbers{0, Numbers{}.last, 2}));
+  EXPECT_EQ(canonical_text(plan),
+            canonical_text(plan_of(with_when("\"frame_number\": {\"from\": 1, \"every\": 2}, \"unit\": "
+                                             "{\"every\": 2}"))));
+}
+
 TEST(PlanFile, TheLimitsThemselvesAreRead) {
   EXPECT_EQ(error_of(with_when("\"chance\": 1.0")), "no error");
   EXPECT_EQ(error_of(with_when("\"from\": \"2 ms\", \"to\": \"2000000001 ps\"")), "no error");

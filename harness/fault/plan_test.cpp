@@ -454,5 +454,42 @@ RC_GTEST_PROP(Plan, ArrivalsNeverOverlap, (std::uint64_t seed)) {
   }
 }
 
+TEST(InstalledPlan, MutesThatMeetAreOneSilence) {
+  // Each level silences the line for two levels more: from the first one on until two behind the last.
+  Rule rule = rule_of(Mute{2 * kMicrosecond});
+  rule.scope = Scope::level;
+  rule.when.to = kStart + 3 * kMicrosecond;
+  Bench bench(Plan({rule}));
+  EXPECT_EQ(bench.pass("0101010"), "@4 010");
+}
+
+// What each transmission leaves for later ones must not be paid for again by each of them without end.
+TEST(InstalledPlan, EndsARunThatItWouldNeverLetEnd) {
+  const std::string train(1000, '1');
+  const auto passes = [&](const Effect& effect) {
+    Rule rule = rule_of(effect);
+    rule.scope = Scope::level;
+    Bench bench(Plan({rule}));
+    int count = 0;
+    try {
+      for (; count < 100'000; ++count) bench.pass(train, count * 2000 * kMicrosecond);
+    } catch (const PlanTooHeavy&) {
+      return count;
+    }
+    ADD_FAILURE() << word_of(effect) << " was served";
+    return count;
+  };
+  line::Levels many;
+  for (int n = 0; n < 500; ++n) many.append(~std::uint64_t{0}, 64);
+  EXPECT_GT(passes(Delay{kLongestDuration}), 10);
+  EXPECT_GE(passes(Repeat{1000}), 1);
+  EXPECT_GE(passes(Insert{many}), 1);
+}
+
+TEST(InstalledPlan, ServesAnOrdinaryPlanForLong) {
+  Bench bench(Plan({rule_of(Flip{}, Numbers::only(3)), rule_of(Mute{kMicrosecond})}));
+  for (int n = 0; n < 100'000; ++n) EXPECT_NO_THROW(bench.pass("01010101010", n * 20 * kMicrosecond));
+}
+
 }  // namespace
 }  // namespace fieldproof::fault

@@ -22,6 +22,26 @@ bool is_same_unit(const Span& a, const Span& b, Scope scope) {
   return a.frame == b.frame && a.frame_kind == b.frame_kind && (scope == Scope::frame || a.unit == b.unit);
 }
 
+std::uint64_t conditions_in(const When& when) {
+  std::uint64_t count = 1;
+  for (const auto* inner : {&when.all_of, &when.any_of, &when.none_of}) {
+    for (const When& condition : *inner) count += conditions_in(condition);
+  }
+  return count;
+}
+
+// Steps of work beside a question, from what they cost.
+constexpr std::uint64_t kStepsOfAHit = 192;
+constexpr std::uint64_t kStepsOfAnArrival = 512;
+constexpr std::uint64_t kStepsOfALevel = 8;  // that was not sent: whoever hears it decodes it
+
+// How many levels arrive because of an effect on this part.
+std::uint64_t levels_made_of(Piece part, const Effect& effect) {
+  if (const Repeat* repeat = std::get_if<Repeat>(&effect)) return repeat->count * std::uint64_t{part.count};
+  if (const Insert* insert = std::get_if<Insert>(&effect)) return insert->levels.size();
+  return 0;
+}
+
 std::string description(const RuleState& state, const Span& span, Piece part) {
   const Rule& rule = *state.rule;
   return fmt::format("{} levels {}..{}: {} of {} {}, unit {} (rule {}{}{})", word_of(rule.effect), part.first,
@@ -31,9 +51,11 @@ std::string description(const RuleState& state, const Span& span, Piece part) {
 
 }  // namespace
 
-RuleChannel::RuleChannel(trace::Trace& trace, trace::Channel place, std::unique_ptr<FieldMap> fields)
+RuleChannel::RuleChannel(trace::Trace& trace, trace::Channel place, std::unique_ptr<FieldMap> fields,
+                         PlanWork& work)
     : trace_(trace),
       place_(place),
+      work_(work),
       fields_(fields != nullptr ? std::move(fields) : std::make_unique<TransmissionFields>()) {}
 
 void RuleChannel::add(RuleState& state, std::string_view receiver, const kernel::Random& random) {
@@ -42,7 +64,7 @@ void RuleChannel::add(RuleState& state, std::string_view receiver, const kernel:
   if (!condition.can_hold_here()) return;
   opens_ = std::min(opens_, state.rule->when.from);
   closes_ = std::max(closes_, state.rule->when.to);
-  rules_.push_back({&state, std::move(condition), random});
+  rules_.push_back({&state, std::move(condition), random, conditions_in(state.rule->when)});
 }
 
 bool RuleChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
@@ -93,6 +115,7 @@ bool RuleChannel::can_answer(const line::Waveform& sent) {
 void RuleChannel::ask(BoundRule& bound, const line::Waveform& sent) {
   const Rule& rule = *bound.state->rule;
   asked_ = {};
+  work_.spend(spans_.size());
   for (std::size_t i = 0; i < spans_.size(); ++i) {
     const Span& span = spans_[i];
     if (!bound.condition.may_mean(span)) continue;
@@ -126,6 +149,7 @@ Piece RuleChannel::part_of(const Rule& rule, std::size_t at, const line::Wavefor
 void RuleChannel::ask_about(BoundRule& bound, const Span& span, Piece part, const line::Waveform& sent) {
   const Rule& rule = *bound.state->rule;
   if (bound.state->is_spent() || part == asked_) return;
+  work_.spend(bound.weight);
   const Piece whole = part;
   const bool narrows = changes_levels(rule.effect);
   if (narrows && (rule.when.from > sent.start || rule.when.to != kernel::kNever)) {
@@ -141,26 +165,41 @@ void RuleChannel::ask_about(BoundRule& bound, const Span& span, Piece part, cons
   enter(bound, span, part, sent);
 }
 
+// Claims do not touch each other, so only the first one that ends behind the begin of the part can touch it.
 bool RuleChannel::is_claimed(Piece part) const {
-  return std::any_of(claims_.begin(), claims_.end(),
-                     [&](const Claim& claim) { return claim.part.touches(part); });
+  const auto next = std::partition_point(claims_.begin(), claims_.end(),
+                                         [&](const Claim& claim) { return claim.part.end() <= part.first; });
+  return next != claims_.end() && next->part.touches(part);
 }
 
 void RuleChannel::enter(BoundRule& bound, const Span& span, Piece part, const line::Waveform& sent) {
   RuleState& state = *bound.state;
   ++state.hits;
+  work_.spend(kStepsOfAHit + part.count);
   const kernel::Time start = sent.time_of(part.first);
   trace_.fault(place_, start, description(state, span, part));
   const Rule& rule = *state.rule;
   if (changes_levels(rule.effect)) {
     change_levels(rule, part, sent);
   } else if (const Mute* mute = std::get_if<Mute>(&rule.effect)) {
-    if (mute->duration > kernel::Duration{}) mutes_.push_back({start, start + mute->duration});
+    if (mute->duration > kernel::Duration{}) this->mute({start, start + mute->duration});
   } else {
-    const auto behind = std::find_if(claims_.begin(), claims_.end(),
-                                     [&](const Claim& claim) { return claim.part.first > part.first; });
+    const auto behind = std::partition_point(
+        claims_.begin(), claims_.end(), [&](const Claim& claim) { return claim.part.first <= part.first; });
     claims_.insert(behind, {part, &rule.effect});
   }
+}
+
+// Mutes that meet become one, so that a rule that answers again and again leaves a single one.
+void RuleChannel::mute(Interval interval) {
+  const auto first = std::partition_point(mutes_.begin(), mutes_.end(),
+                                          [&](const Interval& mute) { return mute.to < interval.from; });
+  auto end = first;
+  for (; end != mutes_.end() && end->from <= interval.to; ++end) {
+    interval.from = std::min(interval.from, end->from);
+    interval.to = std::max(interval.to, end->to);
+  }
+  mutes_.insert(mutes_.erase(first, end), interval);
 }
 
 void RuleChannel::change_levels(const Rule& rule, Piece part, const line::Waveform& sent) {
@@ -196,6 +235,7 @@ void RuleChannel::write(const line::Waveform& sent, std::vector<line::Waveform>&
     const Piece part = claim.part;
     writer.write({written, part.first - written});
     written = part.end();
+    work_.spend(kStepsOfALevel * levels_made_of(claim.part, *claim.effect));
     if (const Delay* delay = std::get_if<Delay>(claim.effect)) writer.write(part, delay->duration);
     if (const Repeat* repeat = std::get_if<Repeat>(claim.effect)) {
       writer.write(part);
@@ -227,6 +267,7 @@ void RuleChannel::forget_before(kernel::Time time) {
 void RuleChannel::settle(const line::Waveform& sent, std::vector<line::Waveform>& arrivals,
                          std::size_t first) {
   if (!mutes_.empty()) silence(arrivals, first);
+  work_.spend((arrivals.size() - first) * (kStepsOfAnArrival + promised_.size()));
   const kernel::Time end = sent.end();
   const std::size_t known = promised_.size();
   for (std::size_t i = first; i < arrivals.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "harness/fault/channel.hpp"
 #include "harness/fault/condition.hpp"
 #include "harness/fault/fields.hpp"
+#include "harness/fault/plan_work.hpp"
 #include "harness/fault/rule.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/trace/trace.hpp"
@@ -32,7 +33,7 @@ struct RuleState {
 
 class RuleChannel final : public Channel {
  public:
-  RuleChannel(trace::Trace& trace, trace::Channel place, std::unique_ptr<FieldMap> fields);
+  RuleChannel(trace::Trace& trace, trace::Channel place, std::unique_ptr<FieldMap> fields, PlanWork& work);
 
   // Takes the rule if it can mean this receiver at all. The state must not move afterwards.
   void add(RuleState& state, std::string_view receiver, const kernel::Random& random);
@@ -45,6 +46,7 @@ class RuleChannel final : public Channel {
     RuleState* state;
     Condition condition;
     kernel::Random random;
+    std::uint64_t weight;  // conditions to look at for one question
   };
   struct Claim {
     Piece part;
@@ -68,9 +70,11 @@ class RuleChannel final : public Channel {
   void forget_before(kernel::Time time);
   void settle(const line::Waveform& sent, std::vector<line::Waveform>& arrivals, std::size_t first);
   void silence(std::vector<line::Waveform>& arrivals, std::size_t first) const;
+  void mute(Interval interval);
 
   trace::Trace& trace_;
   trace::Channel place_;
+  PlanWork& work_;
   std::unique_ptr<FieldMap> fields_;
   std::vector<BoundRule> rules_;
   kernel::Time opens_ = kernel::kNever;            // the earliest begin of a window
@@ -87,7 +91,7 @@ class RuleChannel final : public Channel {
   Piece asked_;  // the part that the rule was asked about last
 
   // What reaches into later transmissions.
-  std::vector<Interval> mutes_;
+  std::vector<Interval> mutes_;     // ordered, none touches another
   std::vector<Interval> promised_;  // arrivals beyond the end of their transmission, ordered
 };
 
