@@ -1,9 +1,9 @@
 // case.json: everything that is needed to run one case again as it ran, and what came out of it.
 //
 // Beside it lie the files of the case: trace.txt (the recording, one line each), playback.txt (what the
-// implementation drove), log.txt. Paths of a network or plan are those of copies inside the run's directory,
-// so that a directory that is moved or sent still replays. Reading is strict: kernel::Error(configuration)
-// names line and pointer. 64-bit numbers are texts.
+// implementation drove), log.txt. Paths of a network, plan or PICS are those of copies inside the run's
+// directory, so that a directory that is moved or sent still replays. Reading is strict:
+// kernel::Error(configuration) names line and pointer. 64-bit numbers are texts.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@ struct CaseFile {
   std::string id;
   std::uint64_t case_seed = 0;
   conformance::Setup setup;  // with the seed of the run
+  std::string pics_file;     // the copy of what `setup.pics` was read from; empty: none
   judge::Verdict verdict = judge::Verdict::none;
   std::string reason;
   std::uint64_t fingerprint = 0;
@@ -30,6 +31,7 @@ struct CaseFile {
 void store_case(const reports::RunDirectory& directory, const conformance::CaseRun& done,
                 std::uint64_t run_seed);
 
-CaseFile load_case(const std::filesystem::path& file);
+// The case, its implementations and its PICS are looked up in the catalogue.
+CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue);
 
 }  // namespace fieldproof::cli

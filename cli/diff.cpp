@@ -4,18 +4,20 @@
 #include "cli/verbs.hpp"
 #include "reports/run_directory.hpp"
 
-// `fieldproof diff`: what changed from one run to another; 1 when a case fails that did not.
+// `fieldproof diff`: what changed from one run to another; 1 when a case fails that did not, 2 when a run is
+// incomplete.
 namespace fieldproof::cli {
 
 int diff(Session& session) {
   const reports::Run before = reports::RunDirectory::open(session.operands.at(0)).load().run;
   const reports::Run after = reports::RunDirectory::open(session.operands.at(1)).load().run;
   const reports::Difference difference = reports::compare(before, after);
+  session.terminal.print(reports::diff_text(difference, {.colour = session.terminal.has_colour()}));
   if (session.settings.is_set("json")) {
     reports::write_text_file(session.settings.text("json"), reports::diff_json(difference));
   }
-  session.terminal.print(reports::diff_text(difference, {.colour = session.terminal.has_colour()}));
-  return difference.new_failures.empty() ? kAllAsExpected : kFailed;
+  if (!difference.new_failures.empty()) return kFailed;
+  return difference.incomplete.empty() ? kAllAsExpected : kInconclusive;
 }
 
 }  // namespace fieldproof::cli

@@ -153,8 +153,11 @@ interbus::NetworkDescription network_from(const Settings& settings) {
 emc::InterbusStations stations_from(const Session& session, std::size_t stations) {
   emc::InterbusStations players;
   const auto entries = session.catalogue.select(std::vector<std::string>{"interbus/**"});
-  for (const std::string& text : session.settings.list("iut")) {
-    const conformance::Assignment assigned = parse_implementation(text, session.catalogue, entries);
+  const std::vector<std::string>& texts = session.settings.list("iut");
+  const auto implementations = parse_implementations(texts, session.catalogue, entries);
+  for (std::size_t n = 0; n < texts.size(); ++n) {
+    const std::string& text = texts[n];
+    const conformance::Assignment& assigned = implementations[n];
     if (assigned.uri == "ref") continue;
     constexpr std::string_view kDeviant = "deviant:";
     if (!assigned.uri.starts_with(kDeviant) || (assigned.role != "slave" && assigned.role != "master")) {

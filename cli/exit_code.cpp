@@ -20,8 +20,9 @@ int exit_code(const reports::Run& run, const ExitRules& rules) {
   if (rules.is_strict) failed += doubtful + counts.of(Verdict::warn);
   if (failed > 0) return kFailed;
   if (rules.differs) return kDiffers;
-  if (doubtful > 0 && !rules.allows_inconclusive) return kInconclusive;
-  return counts.judged == 0 ? kNothingJudged : kAllAsExpected;
+  if (counts.judged == 0) return kNothingJudged;
+  if ((doubtful > 0 || rules.is_incomplete) && !rules.allows_inconclusive) return kInconclusive;
+  return kAllAsExpected;
 }
 
 }  // namespace fieldproof::cli

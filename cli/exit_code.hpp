@@ -18,7 +18,8 @@ inline constexpr int kSignalBase = 128;
 struct ExitRules {
   bool is_strict = false;  // warn and inconclusive count as fail
   bool allows_inconclusive = false;
-  bool differs = false;  // a fingerprint or a stored verdict was not met again
+  bool is_incomplete = false;  // not all that was selected is judged; counts as inconclusive
+  bool differs = false;        // a fingerprint or a stored verdict was not met again
   int signal = 0;
 };
 

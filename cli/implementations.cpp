@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <set>
 
+#include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::cli {
@@ -14,6 +16,7 @@ namespace {
 using conformance::Assignment;
 using conformance::Catalogue;
 using conformance::Entry;
+using conformance::Suite;
 
 constexpr std::string_view kDeviant = "deviant:";
 
@@ -33,13 +36,53 @@ int position_from(const std::string& text, std::string_view digits) {
   return position;
 }
 
-void check_role(const std::string& text, const std::string& role, const Catalogue& catalogue) {
+// The suites that have the role; all of them for an assignment that names none.
+std::vector<const Suite*> suites_with(const std::string& text, const std::string& role,
+                                      const Catalogue& catalogue) {
+  std::vector<const Suite*> suites;
   std::set<std::string> roles;
   for (const auto& suite : catalogue.suites()) {
-    for (std::string& known : suite->roles()) roles.insert(std::move(known));
+    const std::vector<std::string> known = suite->roles();
+    if (role.empty() || std::find(known.begin(), known.end(), role) != known.end()) {
+      suites.push_back(suite.get());
+    }
+    roles.insert(known.begin(), known.end());
   }
-  if (!roles.contains(role))
+  if (suites.empty())
     refuse(text, fmt::format("there is no role '{}'; there are '{}'", role, fmt::join(roles, "', '")));
+  return suites;
+}
+
+void check_position(const std::string& text, const Assignment& assignment,
+                    const std::vector<const Suite*>& suites) {
+  int last = 0;
+  for (const Suite* suite : suites) last = std::max(last, suite->last_position());
+  if (assignment.position <= last) return;
+  refuse(text, fmt::format("the position {} is out of range; a network has at most {} stations",
+                           assignment.position, last));
+}
+
+std::string place_of(const Assignment& assignment) {
+  return fmt::format("{} at position {}", assignment.role, std::max(1, assignment.position));
+}
+
+// Nobody could say which of two is judged.
+void check_places(const std::vector<Assignment>& implementations, std::span<const std::string> texts) {
+  for (std::size_t later = 1; later < implementations.size(); ++later) {
+    for (std::size_t earlier = 0; earlier < later; ++earlier) {
+      const Assignment& one = implementations[earlier];
+      const Assignment& other = implementations[later];
+      if (one.role.empty() || other.role.empty()) {
+        refuse(texts[later],
+               fmt::format("stands beside '{}', and one of the two is for every role; say both roles, or "
+                           "leave one of them",
+                           texts[earlier]));
+      }
+      if (place_of(one) != place_of(other)) continue;
+      refuse(texts[later],
+             fmt::format("the {} is taken by '{}'; leave one of the two", place_of(one), texts[earlier]));
+    }
+  }
 }
 
 // What stands before the first '=' is a role unless it looks like an URI.
@@ -68,12 +111,10 @@ void resolve_deviation(Assignment& assignment, const Catalogue& catalogue, std::
   assignment.uri = fmt::format("{}{}", kDeviant, found.deviation->name);
 }
 
-}  // namespace
-
 Assignment parse_implementation(const std::string& text, const Catalogue& catalogue,
                                 std::span<const Entry> among) {
   Assignment assignment = split(text);
-  if (!assignment.role.empty()) check_role(text, assignment.role, catalogue);
+  check_position(text, assignment, suites_with(text, assignment.role, catalogue));
   if (assignment.uri.starts_with(kDeviant)) {
     resolve_deviation(assignment, catalogue, among);
   } else if (assignment.uri != "ref") {
@@ -81,6 +122,48 @@ Assignment parse_implementation(const std::string& text, const Catalogue& catalo
            "there is no such kind of implementation; write ref, deviant:NAME or ROLE@POSITION=deviant:NAME");
   }
   return assignment;
+}
+
+bool has_deviation(const Suite& suite, const std::string& role, std::string_view name) {
+  return std::any_of(suite.deviations().begin(), suite.deviations().end(),
+                     [&](const conformance::Deviation& deviation) {
+                       return deviation.name == name && (role.empty() || deviation.role == role);
+                     });
+}
+
+}  // namespace
+
+std::vector<Assignment> parse_implementations(std::span<const std::string> texts, const Catalogue& catalogue,
+                                              std::span<const Entry> among) {
+  std::vector<Assignment> implementations;
+  for (const std::string& text : texts) {
+    implementations.push_back(parse_implementation(text, catalogue, among));
+  }
+  check_places(implementations, texts);
+  return implementations;
+}
+
+std::optional<std::string> obstacle(const Assignment& assignment, const Suite& suite) {
+  const std::vector<std::string> roles = suite.roles();
+  if (!assignment.role.empty() && std::find(roles.begin(), roles.end(), assignment.role) == roles.end()) {
+    return fmt::format("the protocol has no role '{}'; write one of '{}'", assignment.role,
+                       fmt::join(roles, "', '"));
+  }
+  if (assignment.position > suite.last_position()) {
+    return fmt::format("the position {} is out of range; a network has at most {} stations",
+                       assignment.position, suite.last_position());
+  }
+  if (assignment.uri == "ref") return std::nullopt;
+  if (!assignment.uri.starts_with(kDeviant)) {
+    return fmt::format("'{}' is no implementation that can be run again; write ref or deviant:NAME",
+                       assignment.uri);
+  }
+  const std::string name = assignment.uri.substr(kDeviant.size());
+  if (has_deviation(suite, assignment.role, name)) return std::nullopt;
+  std::vector<std::string> known;
+  for (const conformance::Deviation& deviation : suite.deviations()) known.push_back(deviation.name);
+  const auto near = config::nearest(name, std::span<const std::string>(known), 3);
+  return fmt::format("there is no deviation '{}'; the nearest are '{}'", name, fmt::join(near, "', '"));
 }
 
 }  // namespace fieldproof::cli

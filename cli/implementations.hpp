@@ -6,6 +6,7 @@
 //   slave@3=deviant:late         and the position: 1 is next to the master
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,9 +15,15 @@
 
 namespace fieldproof::cli {
 
-// Throws kernel::Error(usage) for an unknown kind, role, position or deviation, with the nearest one. `among`
-// are the selected cases: a bare deviation is looked for in their roles.
-conformance::Assignment parse_implementation(const std::string& text, const conformance::Catalogue& catalogue,
-                                             std::span<const conformance::Entry> among);
+// Throws kernel::Error(usage) for an unknown kind, role, position or deviation, with the nearest one, and for
+// two that want the same place. `among` are the selected cases: a bare deviation is looked for in their
+// roles.
+std::vector<conformance::Assignment> parse_implementations(std::span<const std::string> texts,
+                                                           const conformance::Catalogue& catalogue,
+                                                           std::span<const conformance::Entry> among);
+
+// The same for an assignment that a case file of this suite stores: why it cannot be served, or nothing.
+std::optional<std::string> obstacle(const conformance::Assignment& assignment,
+                                    const conformance::Suite& suite);
 
 }  // namespace fieldproof::cli

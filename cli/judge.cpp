@@ -44,7 +44,7 @@ int judge_again(Session& session) {
   for (const judge::CaseResult& before : stored_run.run.cases) {
     const std::filesystem::path file = directory.case_directory(before.id) / "case.json";
     if (!std::filesystem::exists(file)) continue;
-    CaseFile stored = load_case(file);
+    CaseFile stored = load_case(file, session.catalogue);
     if (const std::string why = obstacle(stored); !why.empty()) {
       session.terminal.log(fmt::format("{} is not judged again: {}", before.id, why));
       continue;
@@ -57,9 +57,10 @@ int judge_again(Session& session) {
     }
     if (result.verdict != before.verdict || result.reason != before.reason) {
       ++changed;
-      session.terminal.print(fmt::format("changed: {} was {} '{}', is {} '{}'\n", before.id,
-                                         judge::name(before.verdict), before.reason,
-                                         judge::name(result.verdict), result.reason));
+      session.terminal.print(fmt::format("changed: {} was {} '{}', is {} '{}'\n",
+                                         reports::escaped_line(before.id), judge::name(before.verdict),
+                                         reports::escaped_line(before.reason), judge::name(result.verdict),
+                                         reports::escaped_line(result.reason)));
     }
     again.cases.push_back(result);
   }

@@ -7,7 +7,7 @@
 #include "cli/verbs.hpp"
 #include "reports/text_summary.hpp"
 
-// `fieldproof list`: the cases, or the deviations, or the protocols.
+// `fieldproof list`: the cases, or the deviations, the protocols, the items of a PICS.
 namespace fieldproof::cli {
 namespace {
 
@@ -19,7 +19,9 @@ struct Row {
   std::string text;
 };
 
-Row row_of(const conformance::TestCase& test_case, const std::optional<judge::Pics>& pics) {
+Row row_of(const conformance::Entry& entry, const conformance::Setup& setup) {
+  const conformance::TestCase& test_case = *entry.test_case;
+  const std::optional<judge::Pics> pics = entry.suite->declared_pics(test_case, setup);
   std::optional<std::string> excluded;
   if (pics && test_case.not_applicable) excluded = test_case.not_applicable(*pics);
   Row row;
@@ -46,6 +48,15 @@ Row row_of(const conformance::DeviationEntry& entry) {
   return row;
 }
 
+Row row_of(const judge::PicsItem& item) {
+  Row row;
+  row.json["item"] = item.name;
+  row.json["answers"] = judge::answers_text(item);
+  row.json["meaning"] = item.meaning;
+  row.text = fmt::format("{}  {}  {}", item.name, judge::answers_text(item), item.meaning);
+  return row;
+}
+
 Row row_of(const conformance::Suite& suite) {
   Row row;
   row.json["protocol"] = suite.protocol();
@@ -69,10 +80,15 @@ std::vector<Row> rows_of(Session& session) {
       rows.push_back(row_of(entry));
     return rows;
   }
-  std::optional<judge::Pics> pics;
-  if (session.settings.is_set("pics")) pics = load_pics(session.settings.text("pics"));
+  const std::vector<judge::PicsItem> items = session.catalogue.pics_items();
+  if (is_single && session.operands.front() == "pics") {
+    for (const judge::PicsItem& item : items) rows.push_back(row_of(item));
+    return rows;
+  }
+  conformance::Setup setup;
+  if (session.settings.is_set("pics")) setup.pics = load_pics(session.settings.text("pics"), items);
   for (const conformance::Entry& entry : session.catalogue.select(session.operands)) {
-    rows.push_back(row_of(*entry.test_case, pics));
+    rows.push_back(row_of(entry, setup));
   }
   return rows;
 }

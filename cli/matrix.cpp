@@ -16,6 +16,8 @@ namespace fieldproof::cli {
 
 int matrix(Session& session) {
   const conformance::Suite& suite = session.catalogue.suite(session.operands.front());
+  const std::string file = session.settings.text("json");
+  if (!file.empty()) reports::check_writable(file);
   const Interruption interruption(session.settings.duration("max-time"));
   conformance::MatrixPlan plan;
   plan.seed = session.settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
@@ -29,12 +31,11 @@ int matrix(Session& session) {
   };
   const conformance::Matrix made = conformance::make_matrix(suite, plan);
   session.terminal.end_progress();
-  const std::string stored = session.settings.is_set("json")
-                                 ? session.settings.text("json")
-                                 : fmt::format("runs/matrix/{}.json", made.protocol);
-  reports::write_text_file(stored, matrix_json(made));
-  session.terminal.log(fmt::format("the matrix is in {}", stored));
   session.terminal.print(matrix_text(made));
+  if (!file.empty()) {
+    reports::write_text_file(file, matrix_json(made));
+    session.terminal.log(fmt::format("the matrix is in {}", file));
+  }
   if (!made.is_complete) {
     session.terminal.log(interruption.reason());
     return interruption.signal() != 0 ? kSignalBase + interruption.signal() : kNothingJudged;

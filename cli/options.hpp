@@ -1,5 +1,6 @@
 // The table of verbs and options: what the command line, the environment, a configuration file, `--help` and
-// `--print-config` know. A new option is a row here, a new verb a row in verbs.cpp.
+// `--print-config` know. A new option is a row here and a property of configuration.schema.json, a new
+// verb a row in verbs.cpp.
 #pragma once
 
 #include <span>
@@ -23,8 +24,9 @@ struct Option {
   std::string_view default_text;  // empty: none
   std::string_view verbs;         // "run verify": where it is known
   std::string_view help;
-  bool is_of_the_moment = false;  // only on the command line: says what to do now, not how
-  bool decides_outcome = false;   // belongs to the command that reproduces a result
+  bool is_of_the_moment = false;   // only on the command line: says what to do now, not how
+  bool decides_outcome = false;    // belongs to the command that reproduces a result
+  bool decides_exit_code = false;  // what the verdicts of the run mean; a run that is finished later keeps it
 };
 
 std::span<const Option> options();

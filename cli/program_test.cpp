@@ -3,6 +3,7 @@
 #include "cli/program.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <sstream>
 
 #include "cli/probe/called_program.hpp"
+#include "reports/schema/ajv_judge.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -181,6 +183,30 @@ TEST_F(ExitCode, OfTheRealProgramForWordsAndFiles) {
   EXPECT_EQ(version.out.rfind("fieldproof ", 0), 0U);
 }
 
+TEST_F(ExitCode, SixtyFourOrSixtyFiveForAValueThatIsEmpty) {
+  for (const char* option : {"plan", "network", "pics", "out", "json", "junit", "max-time", "iut"}) {
+    const Called called = probe({"run", "probe/**", std::string("--") + option, ""});
+    EXPECT_EQ(called.exit_code, 64) << option << called.err;
+    EXPECT_HOLDS(called.err, std::string("--") + option + ": the value is empty");
+  }
+  write("lab.json", "{\n\"plan\": \"\"}");
+  const Called file = probe({"run", "probe/**", "--config", "lab.json"});
+  EXPECT_EQ(file.exit_code, 65);
+  EXPECT_HOLDS(file.err, "lab.json:2: /plan: the value is empty");
+  write("lab.json", "{\"seed\": 1.5}");
+  EXPECT_HOLDS(probe({"run", "--config", "lab.json"}).err, "write a whole number");
+}
+
+TEST_F(ExitCode, SixtyFiveForAFileThatNeverEndsOrNeverBegins) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  for (const char* option : {"--plan", "--network", "--pics", "--config"}) {
+    for (const char* file : {"/dev/zero", "pipe", "."}) {
+      const Called called = probe({"run", "probe/**", option, file});
+      EXPECT_EQ(called.exit_code, 65) << option << " " << file << called.err;
+    }
+  }
+}
+
 using Closed = Program;
 
 // The words of a shell around a call of the probe: which streams are open.
@@ -225,6 +251,183 @@ TEST_F(Closed, ReaderOfTheOutputLetsARunFinishItsDirectory) {
   EXPECT_TRUE(fs::exists(folder_ / "a/junit.xml"));
 }
 
+// The real program on one case and on a deviation that the case catches.
+class OfInterbus : public Program {
+ protected:
+  Called real(std::vector<std::string> arguments) const {
+    Call made = call(std::move(arguments));
+    made.program = FIELDPROOF_EXE;
+    return made.run();
+  }
+  // One run of the case; the words follow.
+  Called judged(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"run", kCase, "--volume", "quick"});
+    return real(std::move(words));
+  }
+
+  const std::string kCase = "interbus/slave/frame_check/flipped_data_bit_is_rejected_marked_and_told";
+  const std::string kDeviant = "deviant:latches_in_spite_of_own_error";
+};
+
+TEST_F(OfInterbus, PicsItemThatNobodyKnowsIsRefusedWithTheNearest) {
+  write("pics.json", "{\n\"items\": {\"ouputs\": true}\n}");
+  const Called misspelled = judged({"--iut", kDeviant, "--pics", "pics.json"});
+  EXPECT_EQ(misspelled.exit_code, 65);
+  EXPECT_HOLDS(misspelled.err, "pics.json:2: /items/ouputs: ");
+  EXPECT_HOLDS(misspelled.err, "\"outputs\"");
+  for (const char* answers : {R"({"outputs": "yes"})", R"({"words": true})", R"({"words": -1})",
+                              R"({"outputs_while_outgoing_bus_is_reset": "hold"})"}) {
+    write("pics.json", std::string("{\"items\": ") + answers + "}");
+    EXPECT_EQ(judged({"--pics", "pics.json"}).exit_code, 65) << answers;
+    EXPECT_EQ(real({"list", kCase, "--pics", "pics.json"}).exit_code, 65) << answers;
+  }
+}
+
+TEST_F(OfInterbus, PicsLeavesWhatItDoesNotAnswerAsItIs) {
+  write("pics.json", R"({"items": {"reconfiguration_button": true}})");
+  EXPECT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json"}).exit_code, 1);
+  const Called listed = real({"list", "interbus/slave/**", "--pics", "pics.json"});
+  EXPECT_EQ(listed.out.find("not applicable"), std::string::npos) << listed.out;
+  write("pics.json", R"({"items": {"outputs": false}})");
+  EXPECT_HOLDS(real({"list", "interbus/slave/**", "--pics", "pics.json"}).out, "the slave has no outputs");
+}
+
+TEST_F(OfInterbus, PicsItemsAreListed) {
+  EXPECT_HOLDS(real({"list", "pics"}).out, "outputs  true or false  the slave has process data outputs\n");
+  EXPECT_HOLDS(real({"list", "pics", "--json"}).out, "\"item\": \"outputs_while_outgoing_bus_is_reset\"");
+}
+
+TEST_F(OfInterbus, OnePlaceHasOneImplementation) {
+  for (const char* other : {"slave=ref", "slave@1=ref", "ref"}) {
+    const Called twice = judged({"--iut", "slave=" + kDeviant, "--iut", other});
+    EXPECT_EQ(twice.exit_code, 64) << other;
+    EXPECT_HOLDS(twice.err, "slave=" + kDeviant);
+  }
+  // Of two slaves at two places a case for a slave would judge one only; a network has room for both.
+  EXPECT_EQ(judged({"--iut", "slave@1=" + kDeviant, "--iut", "slave@2=ref"}).exit_code, 64);
+  EXPECT_EQ(real({"run", "interbus/network/timing/cycles_do_not_jitter", "--volume", "quick", "--iut",
+                  "slave@1=ref", "--iut", "slave@2=ref"})
+                .exit_code,
+            0);
+}
+
+TEST_F(OfInterbus, PositionIsOneThatANetworkHas) {
+  EXPECT_EQ(judged({"--iut", "slave@16=ref"}).exit_code, 0);
+  for (const char* far : {"slave@513=ref", "slave@4097=ref", "slave@2147483647=ref"}) {
+    const Called called = judged({"--iut", far});
+    EXPECT_EQ(called.exit_code, 64) << far << called.err;
+    EXPECT_HOLDS(called.err, "at most 512 stations");
+  }
+}
+
+TEST_F(OfInterbus, WrongFileIsFoundBeforeAnythingIsStored) {
+  write("plan.json", "{\n\"rules\": 1}");
+  write("network.json", "{\"name\": \"n\", \"bit_rate\": \"500 kbit/s\",\n\"stations\": 1}");
+  for (const char* option : {"plan", "network"}) {
+    const Called called = judged({std::string("--") + option, std::string(option) + ".json"});
+    EXPECT_EQ(called.exit_code, 65);
+    EXPECT_HOLDS(called.err, std::string(option) + ".json:2: ");
+    EXPECT_FALSE(fs::exists(folder_ / "runs"));
+  }
+}
+
+TEST_F(OfInterbus, CaseFileIsHeldAgainstWhatThereIs) {
+  ASSERT_EQ(judged({"--iut", "slave@2=" + kDeviant, "--out", "a"}).exit_code, 1);
+  const fs::path file = fs::relative(case_file("a"), folder_);
+  const std::string good = read(file);
+  const auto refused = [&](const std::string& part, const std::string& instead) {
+    std::string text = good;
+    text.replace(text.find(part), part.size(), instead);
+    write(file, text);
+    const Called called = real({"replay", file.string()});
+    EXPECT_EQ(called.exit_code, 65) << instead << called.out;
+    EXPECT_HOLDS(called.err, "case.json:");
+    return called.err;
+  };
+  EXPECT_HOLDS(refused(kDeviant, "deviant:latches_in_spite_of_own_eror"), "latches_in_spite_of_own_error");
+  EXPECT_HOLDS(refused(kDeviant, "own"), "/implementations/0: ");
+  EXPECT_HOLDS(refused("\"role\": \"slave\"", "\"role\": \"slvae\""), "'slvae'");
+  EXPECT_HOLDS(refused("\"position\": 2", "\"position\": 513"), "at most 512 stations");
+  EXPECT_HOLDS(refused("rejected_marked_and_told", "rejected_marked_and_tol"), "/case: ");
+}
+
+TEST_F(OfInterbus, CaseFileIsAsItsSchemaSays) {
+  write("pics.json", R"({"items": {"outputs": true}})");
+  ASSERT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json", "--out", "a"}).exit_code, 1);
+  const fs::path file = case_file("a");
+  const fs::path source = FIELDPROOF_SOURCE_DIR;
+  const auto valid = reports::judge_with_ajv(source, source / "cli/case.schema.json", {file});
+  if (!valid.is_available) GTEST_SKIP() << valid.output;
+  EXPECT_EQ(valid.exit_code, 0) << valid.output;
+  std::string text = read(fs::relative(file, folder_));
+  text.replace(text.find("\"volume\": \"quick\""), 17, "\"volume\": \"loud\"");
+  write(fs::relative(file, folder_), text);
+  EXPECT_EQ(reports::judge_with_ajv(source, source / "cli/case.schema.json", {file}).exit_code, 1);
+  EXPECT_EQ(real({"replay", file.string()}).exit_code, 65);
+}
+
+TEST_F(OfInterbus, StoredTextDoesNotSteerTheTerminal) {
+  ASSERT_EQ(judged({"--iut", kDeviant, "--out", "a"}).exit_code, 1);
+  const fs::path file = fs::relative(case_file("a"), folder_);
+  std::string text = read(file);
+  const std::size_t at = text.find("\"reason\": \"") + 11;
+  write(file, text.insert(at, "\\u001b[2J\\u009b"));
+  for (const Called& called : {real({"replay", file.string()}), real({"judge", "a"})}) {
+    EXPECT_EQ(called.out.find_first_of("\x1b\x9b"), std::string::npos) << called.out;
+  }
+  write("lab.json", "{\"volume\": \"\\u001b[2J\", \"seed\": 2}");
+  write("keys.json", "{\"s\\u009b\\u202eed\": 2}");
+  write("cases.txt", "interbus/\x1b[2J\n");
+  for (const Called& called : {real({"run", "--config", "lab.json"}), real({"run", "--config", "keys.json"}),
+                               real({"list", "@cases.txt"})}) {
+    EXPECT_GE(called.exit_code, 64);
+    EXPECT_EQ(called.err.find("\x1b"), std::string::npos) << called.err;
+    EXPECT_EQ(called.err.find("\xc2\x9b"), std::string::npos) << called.err;
+    EXPECT_EQ(called.err.find("\xe2\x80\xae"), std::string::npos) << called.err;
+  }
+}
+
+TEST_F(OfInterbus, ReplayNamesThePicsInTheCommandThatReproduces) {
+  write("pics.json", R"({"items": {"reconfiguration_button": true}})");
+  ASSERT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json", "--out", "a"}).exit_code, 1);
+  const Called called = real({"replay", case_file("a").string()});
+  EXPECT_HOLDS(called.out, "--pics ");
+  EXPECT_HOLDS(called.out, "a/pics.json");
+}
+
+TEST_F(OfInterbus, RecordingIsHeldAgainstTheRoleThatItPlays) {
+  ASSERT_EQ(judged({"--iut", kDeviant, "--out", "a"}).exit_code, 1);
+  const fs::path file = fs::relative(case_file("a"), folder_).parent_path() / "playback.txt";
+  const std::string good = read(file);
+  const auto judged_with = [&](const std::string& part, const std::string& instead) {
+    std::string text = good;
+    text.replace(text.find(part), part.size(), instead);
+    write(file, text);
+    const Called called = real({"judge", "a"});
+    EXPECT_EQ(called.exit_code, 65) << instead << called.out << called.err;
+    EXPECT_HOLDS(called.err, "playback.txt:");
+  };
+  EXPECT_EQ(real({"judge", "a"}).exit_code, 1);
+  judged_with("\"start\":", "\"start\":-9223372036854775808,\"x\":");
+  judged_with("\"when\":", "\"when\":-1,\"x\":");
+  judged_with("\"output\":{\"word\":0", "\"output\":{\"word\":2");
+  judged_with("\"drive\":", "\"cycle_end\":{\"data_cycle\":true,\"accepted\":true},\"drive\":");
+  judged_with("\"devices\":[[",
+              "\"devices\":[[{\"at\":0,\"call\":1,\"cycle_end\":{\"data_cycle\":true,"
+              "\"accepted\":true}},");
+}
+
+TEST_F(OfInterbus, PlanThatMakesTooMuchOfARunIsToldSo) {
+  // Each level of each transmission: an arrival of its own, far in the future; a thousand levels more.
+  for (const char* effect : {R"({"delay": {"duration": "1000000 s"}})", R"({"repeat": {"count": 1000}})"}) {
+    write("plan.json", std::string(R"({"rules": [{"scope": "level", "effect": )") + effect + "}]}");
+    const Called called = real({"run", "interbus/network/timing/cycles_do_not_jitter", "--volume", "quick",
+                                "--record", "none", "--plan", "plan.json"});
+    EXPECT_EQ(called.exit_code, 2) << called.err;
+    EXPECT_HOLDS(called.out, "plan_too_heavy");
+  }
+}
+
 using Interrupted = Program;
 
 TEST_F(Interrupted, BySigintWritesThePartialResult) {
@@ -262,7 +465,9 @@ TEST_F(Interrupted, BySigkillKeepsEveryVerdictThatWasPrinted) {
     EXPECT_HOLDS(journal, "\"" + line.substr(begin, 16) + "\"");
   }
   EXPECT_GE(printed, 10U);
-  EXPECT_EQ(code({"diff", "killed", "killed"}), 0);
+  const Called partial = probe({"diff", "killed", "killed"});
+  EXPECT_EQ(partial.exit_code, 2);
+  EXPECT_HOLDS(partial.out, "the second run is incomplete: the run did not end; ");
 
   const Called failed = probe({"run", "--failed", "killed", "--jobs", "2"});
   EXPECT_EQ(failed.exit_code, 1) << failed.err;
@@ -284,6 +489,69 @@ TEST_F(Interrupted, ByMaxTimeIsMarkedIncomplete) {
   const Called called = probe({"run", "odd/slow/**", "--max-time", "600ms", "--jobs", "1", "--out", "short"});
   EXPECT_EQ(called.exit_code, 1);
   EXPECT_HOLDS(called.out, "the result is incomplete: the time of --max-time was over");
+  EXPECT_HOLDS(read("short/junit.xml"), "name=\"is_complete\"");
+}
+
+// All that was judged passes; what was not judged is no success.
+TEST_F(Interrupted, ByMaxTimeIsInconclusive) {
+  const std::vector<std::string> short_run = {"run",
+                                              "odd/slow/**",
+                                              "!odd/slow/case_*1",
+                                              "!odd/slow/case_*3",
+                                              "!odd/slow/case_*5",
+                                              "!odd/slow/case_*7",
+                                              "!odd/slow/case_*9",
+                                              "--max-time",
+                                              "300ms",
+                                              "--jobs",
+                                              "1",
+                                              "--junit",
+                                              "junit.xml"};
+  EXPECT_EQ(code(short_run), 2);
+  EXPECT_HOLDS(read("junit.xml"),
+               "<error message=\"the run is incomplete: the time of --max-time was over; ");
+  std::vector<std::string> allowed = short_run;
+  allowed.emplace_back("--allow-inconclusive");
+  EXPECT_EQ(code(allowed), 0);
+  EXPECT_HOLDS(read("junit.xml"), "errors=\"0\"");
+}
+
+TEST_F(Interrupted, RunIsResumedAsItWasAlsoFromRelativeFiles) {
+  write("plan.json", "{\"rules\": [3]}");
+  write("pics.json", "{\"items\": {\"x\": true}}");
+  EXPECT_EQ(code({"run", "probe/**", "odd/end/fails", "odd/end/warns", "--plan", "plan.json", "--pics",
+                  "pics.json", "--strict", "--fail-fast", "--out", "short"}),
+            1);
+  write("pics.json", "{\"items\": {\"x\": false}}");
+  const Called changed = probe({"run", "--resume", "short"});
+  EXPECT_EQ(changed.exit_code, 64);
+  EXPECT_HOLDS(changed.err, "the PICS has changed");
+  write("pics.json", "{\"items\": {\"x\": true} }");
+  const Called resumed = probe({"run", "--resume", "short"});
+  EXPECT_EQ(resumed.exit_code, 1) << resumed.err;
+  EXPECT_HOLDS(resumed.out, "6 of 6 selected cases judged");
+}
+
+TEST_F(Interrupted, RunKeepsWhatItsVerdictsMeanWhenItIsResumed) {
+  EXPECT_EQ(code({"run", "odd/slow/case_00", "odd/end/warns", "--strict", "--max-time", "1ms", "--jobs", "1",
+                  "--out", "short"}) != 0,
+            true);
+  const Called resumed = probe({"run", "--resume", "short"});
+  EXPECT_EQ(resumed.exit_code, 1) << resumed.out;
+  EXPECT_HOLDS(read("short/junit.xml"), "failures=\"1\"");
+}
+
+TEST_F(Interrupted, RunHasOneWriter) {
+  EXPECT_EQ(code({"run", "odd/slow/**", "--max-time", "100ms", "--jobs", "1", "--out", "short"}) != 0, true);
+  const Called both =
+      in_shell(call({"run", "--resume", "short", "--jobs", "1"}),
+               ">first.txt 2>&1 & first=$!; \"$0\" \"$@\" 2>second.txt; second=$?; wait $first; "
+               "echo $? $second >codes.txt")
+          .run();
+  EXPECT_EQ(both.exit_code, 0);
+  const std::string codes = read("codes.txt");
+  EXPECT_TRUE(codes == "1 65\n" || codes == "65 1\n") << codes;
+  EXPECT_HOLDS(read("first.txt") + read("second.txt"), "another program writes this run");
 }
 
 TEST_F(Interrupted, RunIsOnlyResumedAsItWas) {
@@ -393,6 +661,42 @@ TEST_F(Stored, FailFastEndsAfterTheFirstFailure) {
   EXPECT_HOLDS(called.out, "1 of 4 selected cases judged: 0 pass, 1 fail; 3 not run");
 }
 
+TEST_F(Stored, CopiesThatCannotBeWrittenAreRefusedBeforeTheRun) {
+  write("file", "");
+  for (const char* option : {"--junit", "--json"}) {
+    const Called called = probe({"run", "probe/**", option, "file/x.xml"});
+    EXPECT_EQ(called.exit_code, 65);
+    EXPECT_FALSE(fs::exists(folder_ / "runs"));
+  }
+  EXPECT_EQ(code({"matrix", "probe", "--json", "file/x.json"}), 65);
+}
+
+TEST_F(Stored, LatestThatIsNoLinkIsToldAndLeavesNothing) {
+  fs::create_directories(folder_ / "runs/latest/mine");
+  const Called called = probe({"run", "probe/**"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_HOLDS(called.err, "runs/latest does not lead to this run");
+  for (const auto& entry : fs::directory_iterator(folder_ / "runs")) {
+    EXPECT_NE(entry.path().filename().string().rfind(".latest", 0), 0U) << entry.path();
+  }
+}
+
+TEST_F(Stored, DocumentsThatAreNoRunAreRefusedAtTheirPlace) {
+  EXPECT_EQ(code({"run", "probe/**", "--out", "a"}), 0);
+  const std::string good = read("a/results.json");
+  const auto refused = [&](const std::string& text) {
+    write("a/results.json", text);
+    const Called called = probe({"diff", "a", "a"});
+    EXPECT_EQ(called.exit_code, 65) << called.err;
+    EXPECT_HOLDS(called.err, "a/results.json:");
+  };
+  refused("{\"schema\": \"fieldproof/results/1\", \"cases\": " + std::string(1'000'000, '['));
+  std::string text = good;
+  refused(text.replace(text.find("\"selected\": 4"), 13, "\"selected\": -1"));
+  text = good;
+  refused(text.replace(text.find("\"exit_code\": 0"), 14, "\"exit_code\": 1e300"));
+}
+
 using Shown = Program;
 
 TEST_F(Shown, ColourAndBarOnATerminalOnly) {
@@ -418,7 +722,7 @@ TEST_F(Shown, MatrixWithAndWithoutAHole) {
   EXPECT_EQ(holes.exit_code, 1);
   EXPECT_HOLDS(holes.out, "hole (uncaught-deviation): no case catches the end deviation 'unseen'");
   EXPECT_HOLDS(holes.out, "hole (false-alarm): odd/end/fails on the reference ends with fail ('always')");
-  EXPECT_TRUE(fs::exists(folder_ / "runs/matrix/odd.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "runs"));
 }
 
 TEST_F(Shown, CasesDeviationsAndProtocols) {

@@ -17,7 +17,9 @@ namespace {
 std::string differences(const CaseFile& stored, const judge::CaseResult& now) {
   std::string text;
   const auto differ = [&text](std::string_view what, std::string_view before, std::string_view after) {
-    if (before != after) text += fmt::format("differs: {} was '{}', is '{}'\n", what, before, after);
+    if (before != after)
+      text += fmt::format("differs: {} was '{}', is '{}'\n", what, reports::escaped_line(before),
+                          reports::escaped_line(after));
   };
   differ("verdict", judge::name(stored.verdict), judge::name(now.verdict));
   differ("reason", stored.reason, now.reason);
@@ -35,8 +37,9 @@ reports::RunIdentity identity_for(Session& session, const CaseFile& stored) {
     identity.reproduce_options += fmt::format(" --iut {}", reports::shell_quoted(role + assignment.uri));
   }
   if (stored.setup.volume == conformance::Volume::quick) identity.reproduce_options += " --volume quick";
-  for (const auto& [option, file] :
-       {std::pair{"network", stored.setup.network_file}, {"plan", stored.setup.plan_file}}) {
+  for (const auto& [option, file] : {std::pair{"network", stored.setup.network_file},
+                                     {"plan", stored.setup.plan_file},
+                                     {"pics", stored.pics_file}}) {
     if (!file.empty())
       identity.reproduce_options += fmt::format(" --{} {}", option, reports::shell_quoted(file));
   }
@@ -46,16 +49,14 @@ reports::RunIdentity identity_for(Session& session, const CaseFile& stored) {
 }  // namespace
 
 int replay(Session& session) {
-  CaseFile stored = load_case(session.operands.front());
+  CaseFile stored = load_case(session.operands.front(), session.catalogue);
   const conformance::Entry& entry = session.catalogue.at(stored.id);
   const bool is_other = session.settings.origin("iut") != Origin::fallback;
   if (is_other) {
-    stored.setup.implementations.clear();
-    for (const std::string& text : session.settings.list("iut")) {
-      stored.setup.implementations.push_back(
-          parse_implementation(text, session.catalogue, std::span(&entry, 1)));
-    }
+    stored.setup.implementations =
+        parse_implementations(session.settings.list("iut"), session.catalogue, std::span(&entry, 1));
   }
+  conformance::check_setup(std::span(&entry, 1), stored.setup);
   reports::Run run{identity_for(session, stored), {}};
   session.terminal.print(reports::run_header(run.identity, manifest_of(session, 1)));
   const conformance::CaseRun done =

@@ -74,23 +74,32 @@ void refuse_resume(const reports::RunDirectory& directory, const std::string& se
                       fmt::format("--resume {}: {}; start a new run", directory.path().string(), sentence));
 }
 
-// A resumed run must be the same run: nothing that decides its outcome may have changed.
+// A resumed run must be the same run: nothing that decides its outcome may have changed. What is compared is
+// what the options mean, not how they are written: the stored ones name their files from anywhere.
 void check_same_run(const reports::RunDirectory& directory, const reports::RunIdentity& stored,
                     const reports::RunIdentity& now) {
   if (stored.suite_version != now.suite_version) {
     refuse_resume(directory,
                   fmt::format("the suite was {} and is {}", stored.suite_version, now.suite_version));
   }
-  if (stored.reproduce_options != now.reproduce_options) {
-    refuse_resume(directory, fmt::format("its options were '{}', not '{}'", stored.reproduce_options,
-                                         now.reproduce_options));
+  if (stored.seed != now.seed) {
+    refuse_resume(directory, fmt::format("the seed was {}, not {}", stored.seed, now.seed));
+  }
+  if (stored.volume != now.volume) {
+    refuse_resume(directory, fmt::format("the volume was {}, not {}", stored.volume, now.volume));
+  }
+  if (stored.implementations != now.implementations) {
+    refuse_resume(directory, fmt::format("its options were '{}', not '{}': the implementations differ",
+                                         stored.reproduce_options, now.reproduce_options));
   }
   if (stored.plan_hash != now.plan_hash) refuse_resume(directory, "the plan of faults has changed since");
   if (stored.network_hash != now.network_hash) refuse_resume(directory, "the network has changed since");
+  if (stored.pics_hash != now.pics_hash) refuse_resume(directory, "the PICS has changed since");
 }
 
 Prepared prepare_resumed(Session& session) {
   auto directory = reports::RunDirectory::open(session.settings.text("resume"));
+  auto journal = std::make_unique<judge::Journal>(directory.journal());
   reports::StoredRun stored = directory.load();
   if (!session.operands.empty())
     refuse_resume(directory, "it has its selection already, leave out the selectors");
@@ -102,7 +111,8 @@ Prepared prepare_resumed(Session& session) {
   check_same_run(directory, stored.run.identity, now);
   session.terminal.log(
       fmt::format("{} of {} cases are judged already", stored.run.cases.size(), selected.size()));
-  prepared.book = std::make_unique<RunBook>(std::move(directory), std::move(stored), selected);
+  prepared.book =
+      std::make_unique<RunBook>(std::move(directory), std::move(journal), std::move(stored), selected);
   return prepared;
 }
 
@@ -176,11 +186,28 @@ class Judging {
   bool has_differed_ = false;
 };
 
+// Before hours of work that their absence would make worthless.
+void check_copies(const Settings& settings) {
+  for (const char* option : {"json", "junit"}) {
+    if (settings.is_set(option)) reports::check_writable(settings.text(option));
+  }
+}
+
+// JUnit tells the same as the exit code.
+reports::JunitOptions junit_options(const Settings& settings) {
+  reports::JunitOptions options;
+  options.is_strict = settings.is_set("strict");
+  if (settings.is_set("allow-inconclusive")) options.inconclusive = reports::InconclusiveAs::skipped;
+  if (options.is_strict) options.inconclusive = reports::InconclusiveAs::failure;
+  return options;
+}
+
 void write_copies(const Settings& settings, const RunBook& book) {
   if (settings.is_set("json"))
     reports::write_text_file(settings.text("json"), reports::results_json(book.run()));
   if (settings.is_set("junit")) {
-    reports::write_text_file(settings.text("junit"), reports::junit_xml(book.run(), book.manifest()));
+    reports::write_text_file(settings.text("junit"),
+                             reports::junit_xml(book.run(), book.manifest(), junit_options(settings)));
   }
 }
 
@@ -188,9 +215,13 @@ void write_copies(const Settings& settings, const RunBook& book) {
 
 int run(Session& session) {
   kept_recordings(session.settings);  // refuses before anything is stored
+  check_copies(session.settings);
   const Interruption interruption(session.settings.duration("max-time"));
   Prepared prepared = prepare(session);
   RunBook& book = *prepared.book;
+  const reports::JunitOptions options = junit_options(session.settings);
+  if (const std::string& warning = book.directory().warning(); !warning.empty())
+    session.terminal.log(warning);
   session.terminal.print(reports::run_header(book.run().identity, book.manifest()));
   Judging judging(session, prepared);
   std::string incomplete_because;
@@ -198,19 +229,21 @@ int run(Session& session) {
     incomplete_because = judging.run(interruption);
   } catch (const kernel::Error& error) {
     session.terminal.end_progress();
-    book.close(error.what(), error.exit_code());
+    book.close(error.what(), error.exit_code(), options);
+    write_copies(session.settings, book);
     throw;
   }
   ExitRules rules;
   rules.is_strict = session.settings.is_set("strict");
   rules.allows_inconclusive = session.settings.is_set("allow-inconclusive");
   rules.differs = judging.has_differed();
+  rules.is_incomplete = !incomplete_because.empty();
   rules.signal = interruption.signal();
   const int code = exit_code(book.run(), rules);
-  book.close(incomplete_because, code);
-  write_copies(session.settings, book);
+  book.close(incomplete_because, code, options);
   session.terminal.log(fmt::format("the result is in {}", book.directory().path().string()));
   session.terminal.print(reports::summary_text(book.run(), {.colour = session.terminal.has_colour()}));
+  write_copies(session.settings, book);
   return code;
 }
 

@@ -27,18 +27,18 @@ RunBook::RunBook(const std::string& out, reports::Manifest manifest, reports::Ru
       manifest_(std::move(manifest)),
       run_{std::move(identity), {}},
       selected_(std::move(selected)),
-      journal_(directory_.journal()),
+      journal_(std::make_unique<judge::Journal>(directory_.journal())),
       begin_(std::chrono::steady_clock::now()) {
   directory_.write("configuration.json", configuration);
 }
 
-RunBook::RunBook(reports::RunDirectory directory, reports::StoredRun stored,
-                 std::vector<conformance::Entry> selected)
+RunBook::RunBook(reports::RunDirectory directory, std::unique_ptr<judge::Journal> journal,
+                 reports::StoredRun stored, std::vector<conformance::Entry> selected)
     : directory_(std::move(directory)),
       manifest_(std::move(stored.manifest)),
       run_(std::move(stored.run)),
       selected_(std::move(selected)),
-      journal_(directory_.journal()),
+      journal_(std::move(journal)),
       begin_(std::chrono::steady_clock::now()) {}
 
 std::vector<conformance::Entry> RunBook::open_cases() const {
@@ -56,7 +56,7 @@ void RunBook::add(const conformance::CaseRun& done) {
   const bool has_recording =
       !done.outcome.recording.lines.empty() || !done.outcome.recording.playback.empty();
   if (needs_case_file(result.verdict) || has_recording) store_case(directory_, done, run_.identity.seed);
-  journal_.append(result);
+  journal_->append(result);
   run_.cases.push_back(result);
 }
 
@@ -68,7 +68,8 @@ void RunBook::sort_by_catalogue() {
       [&](const judge::CaseResult& a, const judge::CaseResult& b) { return order[a.id] < order[b.id]; });
 }
 
-void RunBook::close(const std::string& incomplete_because, int exit_code) {
+void RunBook::close(const std::string& incomplete_because, int exit_code,
+                    const reports::JunitOptions& options) {
   sort_by_catalogue();
   run_.identity.incomplete_because = incomplete_because;
   run_.identity.exit_code = exit_code;
@@ -77,7 +78,7 @@ void RunBook::close(const std::string& incomplete_because, int exit_code) {
   manifest_.wall_time_us +=
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(passed).count());
   directory_.store(manifest_, run_);
-  directory_.write("junit.xml", reports::junit_xml(run_, manifest_));
+  directory_.write("junit.xml", reports::junit_xml(run_, manifest_, options));
 }
 
 }  // namespace fieldproof::cli

@@ -13,6 +13,7 @@
 
 #include "cli/run_setup.hpp"
 #include "harness/judge/journal.hpp"
+#include "reports/junit_writer.hpp"
 #include "reports/run_directory.hpp"
 
 namespace fieldproof::cli {
@@ -22,8 +23,9 @@ class RunBook {
   // A new run below runs/, or exactly at `out` when that is not empty.
   RunBook(const std::string& out, reports::Manifest manifest, reports::RunIdentity identity,
           std::vector<conformance::Entry> selected, const std::string& configuration);
-  // Continues a stored run.
-  RunBook(reports::RunDirectory directory, reports::StoredRun stored,
+  // Continues a stored run. The journal was opened before the run was loaded, so that nobody else wrote
+  // since.
+  RunBook(reports::RunDirectory directory, std::unique_ptr<judge::Journal> journal, reports::StoredRun stored,
           std::vector<conformance::Entry> selected);
 
   const reports::RunDirectory& directory() const { return directory_; }
@@ -34,7 +36,7 @@ class RunBook {
   std::vector<conformance::Entry> open_cases() const;
 
   void add(const conformance::CaseRun& done);
-  void close(const std::string& incomplete_because, int exit_code);
+  void close(const std::string& incomplete_because, int exit_code, const reports::JunitOptions& options);
 
  private:
   void sort_by_catalogue();
@@ -43,7 +45,7 @@ class RunBook {
   reports::Manifest manifest_;
   reports::Run run_;
   std::vector<conformance::Entry> selected_;
-  judge::Journal journal_;
+  std::unique_ptr<judge::Journal> journal_;
   std::chrono::steady_clock::time_point begin_;
 };
 

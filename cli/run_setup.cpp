@@ -34,6 +34,12 @@ class Hash {
   std::uint64_t value_ = 0xCBF29CE484222325;
 };
 
+std::string hash_text(std::string_view content) {
+  Hash hash;
+  hash.add(content);
+  return fmt::format("{:016x}", hash.value());
+}
+
 std::string host_name() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
@@ -48,10 +54,9 @@ conformance::Setup setup_from(const Settings& settings, const conformance::Catal
   setup.volume = settings.choice("volume") == 0 ? conformance::Volume::quick : conformance::Volume::full;
   setup.network_file = settings.text("network");
   setup.plan_file = settings.text("plan");
-  if (settings.is_set("pics")) setup.pics = load_pics(settings.text("pics"));
-  for (const std::string& text : settings.list("iut")) {
-    setup.implementations.push_back(parse_implementation(text, catalogue, selected));
-  }
+  if (settings.is_set("pics")) setup.pics = load_pics(settings.text("pics"), catalogue.pics_items());
+  setup.implementations = parse_implementations(settings.list("iut"), catalogue, selected);
+  conformance::check_setup(selected, setup);
   return setup;
 }
 
@@ -79,9 +84,7 @@ std::string suite_version(const conformance::Catalogue& catalogue) {
 
 std::string file_hash(const std::string& file) {
   if (file.empty()) return {};
-  Hash hash;
-  hash.add(reports::read_text_file(file));
-  return fmt::format("{:016x}", hash.value());
+  return hash_text(reports::read_text_file(file));
 }
 
 reports::RunIdentity identity_of(const Session& session, const conformance::Setup& setup,
@@ -90,8 +93,10 @@ reports::RunIdentity identity_of(const Session& session, const conformance::Setu
   identity.tool_version = tool_version();
   identity.suite_version = suite_version(session.catalogue);
   identity.seed = setup.seed;
+  identity.volume = conformance::name(setup.volume);
   identity.plan_hash = file_hash(setup.plan_file);
   identity.network_hash = file_hash(setup.network_file);
+  if (setup.pics) identity.pics_hash = hash_text(pics_text(*setup.pics));
   identity.selectors = session.operands;
   for (const conformance::Assignment& assignment : setup.implementations) {
     identity.implementations.push_back({assignment.role, assignment.position, assignment.uri});

@@ -12,7 +12,8 @@
 
 namespace fieldproof::cli {
 
-// Seed, implementations, network, plan, PICS and volume of `run` and `verify`. Throws kernel::Error.
+// Seed, implementations, network, plan, PICS and volume of `run` and `verify`. Throws kernel::Error, also for
+// what the suites of the selected cases cannot serve.
 conformance::Setup setup_from(const Settings& settings, const conformance::Catalogue& catalogue,
                               std::span<const conformance::Entry> selected);
 

@@ -54,6 +54,17 @@ std::optional<bool> truth(std::string_view text) {
                       fmt::format("{}: {}", setting.place, sentence));
 }
 
+// An empty name would be taken for none at all, and an empty file for the folder of the call.
+void refuse_empty(const Option& option, const Setting& setting) {
+  if (option.kind != OptionKind::value && option.kind != OptionKind::list) return;
+  for (const std::string& value : setting.values) {
+    if (value.empty()) {
+      refuse_at(setting,
+                fmt::format("the value is empty; write {}, or leave the option out", option.value_name));
+    }
+  }
+}
+
 Setting fallback_of(const Option& option) {
   Setting setting;
   setting.place = fmt::format("default of --{}", option.name);
@@ -85,7 +96,9 @@ Setting from_environment(const Option& option, const std::string& text) {
 }
 
 std::string scalar_text(const config::Value& value) {
-  if (value.kind() == config::ValueKind::integer) return std::to_string(value.as_integer<std::uint64_t>());
+  const bool is_number =
+      value.kind() == config::ValueKind::integer || value.kind() == config::ValueKind::number;
+  if (is_number) return std::to_string(value.as_integer<std::uint64_t>());
   return std::string(value.as_string());
 }
 
@@ -142,6 +155,7 @@ Settings::Settings(const Command& command, const Environment& environment) : ver
       if (const auto value = environment(environment_name(option)))
         setting = from_environment(option, *value);
     }
+    refuse_empty(option, setting);
     settings_.emplace(option.name, std::move(setting));
   }
   if (settings_.contains("config") && is_set("config")) add_file(text("config"), Origin::file);
@@ -157,8 +171,9 @@ void Settings::add_file(const std::filesystem::path& file, Origin origin) {
       if (!value || own == settings_.end() || !is_known_to(option, verb_)) continue;
       if (own->second.origin != Origin::fallback) continue;
       // Where the stored run went and how it was shown is no matter of this one.
-      if (origin == Origin::stored_run && !option.decides_outcome) continue;
+      if (origin == Origin::stored_run && !option.decides_outcome && !option.decides_exit_code) continue;
       own->second = from_file(option, *value, file.string(), origin);
+      refuse_empty(option, own->second);
     }
   });
 }

@@ -45,7 +45,7 @@ class Settings {
   Settings(const Command& command, const Environment& environment);
 
   // Takes over from a configuration file what has only a default until now; from a stored run only what
-  // decides the outcome.
+  // decides the outcome or the exit code.
   void add_file(const std::filesystem::path& file, Origin origin);
 
   bool is_set(std::string_view name) const;  // a flag that is on, a value that is given

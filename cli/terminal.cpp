@@ -11,6 +11,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "reports/text_summary.hpp"
+
 namespace fieldproof::cli {
 namespace {
 
@@ -99,7 +101,7 @@ void secure_standard_streams() {
 }
 
 void print_log_line(std::string_view text) {
-  write_to_log(fmt::format("fieldproof: {}\n", text));
+  write_to_log(fmt::format("fieldproof: {}\n", reports::escaped_line(text)));
 }
 
 std::string progress_text(std::size_t done, std::size_t total, double seconds, std::string_view what) {

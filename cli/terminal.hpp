@@ -2,8 +2,8 @@
 //
 // Contract: colours only when standard output is a terminal that knows them and NO_COLOR is not set; the
 // progress bar only when standard error is a terminal and the call is not quiet. A line of the result never
-// lands inside the bar. Output is flushed line by line, so that what a person saw is what a log has. A log that
-// nobody can take is lost without a word; a result that is lost is remembered (`has_lost_result`).
+// lands inside the bar. Output is flushed line by line, so that what a person saw is what a log has. A log
+// that nobody can take is lost without a word; a result that is lost is remembered (`has_lost_result`).
 #pragma once
 
 #include <chrono>
@@ -51,11 +51,13 @@ class Terminal {
   std::chrono::steady_clock::time_point last_draw_{};
 };
 
-// Puts /dev/null in the place of a standard stream that is closed, so that no file or pipe of the program gets
-// its number and receives what is printed; and lets a write to a reader that has gone fail instead of killing.
+// Puts /dev/null in the place of a standard stream that is closed, so that no file or pipe of the program
+// gets its number and receives what is printed; and lets a write to a reader that has gone fail instead of
+// killing.
 void secure_standard_streams();
 
-// "fieldproof: text" on standard error.
+// "fieldproof: text" on standard error, as one line that cannot steer a terminal: a sentence may quote a
+// file.
 void print_log_line(std::string_view text);
 
 // "[######----]  12/30  40 %  3.1 cases/s  6 s left"; the rate and the rest are left out before they are

@@ -9,8 +9,8 @@ constexpr std::size_t kAny = 100'000;
 
 // clang-format off
 constexpr std::array kVerbs = {
-    Verb{"list", "[SELECTOR...|protocols|deviations]", 0, kAny,
-         "cases, deviations or protocols; why a case does not apply", &list},
+    Verb{"list", "[SELECTOR...|protocols|deviations|pics]", 0, kAny,
+         "cases, deviations, protocols or items of a PICS; why a case does not apply", &list},
     Verb{"run", "[SELECTOR...]", 0, kAny, "judge an implementation by the selected cases", &run},
     Verb{"explain", "CASE-ID", 1, 1, "requirement, source, stimulus, expected and what the case catches", &explain},
     Verb{"matrix", "PROTOCOL", 1, 1, "cases x deviations; 1 on a hole", &matrix},

@@ -26,7 +26,7 @@ struct Target {
 Target target_of(Session& session) {
   const std::string& first = session.operands.front();
   if (session.operands.size() == 1 && first.ends_with(".json") && std::filesystem::exists(first)) {
-    const CaseFile stored = load_case(first);
+    const CaseFile stored = load_case(first, session.catalogue);
     return {{session.catalogue.at(stored.id)}, stored.setup};
   }
   Target target;

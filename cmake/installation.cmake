@@ -7,6 +7,10 @@ foreach(folder IN ITEMS harness protocols conformance emc reports)
   if(IS_DIRECTORY "${CMAKE_SOURCE_DIR}/${folder}")
     install(DIRECTORY ${folder} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/fieldproof" FILES_MATCHING PATTERN "*.hpp"
       PATTERN node_modules EXCLUDE)
+  endif()
+endforeach()
+foreach(folder IN ITEMS harness protocols conformance reports cli)
+  if(IS_DIRECTORY "${CMAKE_SOURCE_DIR}/${folder}")
     install(DIRECTORY ${folder} DESTINATION "${CMAKE_INSTALL_DATADIR}/fieldproof" FILES_MATCHING PATTERN "*.schema.json"
       PATTERN node_modules EXCLUDE)
   endif()

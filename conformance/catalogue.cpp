@@ -143,6 +143,23 @@ std::vector<Entry> Catalogue::select(std::span<const std::string> selectors) con
   return selected;
 }
 
+std::vector<judge::PicsItem> Catalogue::pics_items() const {
+  std::vector<judge::PicsItem> items;
+  for (const auto& suite : suites_) {
+    for (judge::PicsItem& item : suite->pics_items()) {
+      const auto known = std::find_if(items.begin(), items.end(),
+                                      [&](const judge::PicsItem& other) { return other.name == item.name; });
+      if (known == items.end()) {
+        items.push_back(std::move(item));
+      } else {
+        FIELDPROOF_CHECK(known->kind == item.kind,
+                         fmt::format("two suites differ about the PICS item '{}'", item.name));
+      }
+    }
+  }
+  return items;
+}
+
 const Entry& Catalogue::at(std::string_view id) const {
   const auto found = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const Entry& entry) { return entry.test_case->id == id; });

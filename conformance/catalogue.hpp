@@ -41,6 +41,9 @@ class Catalogue {
   // selector that includes, everything but the canaries is included.
   std::vector<Entry> select(std::span<const std::string> selectors) const;
 
+  // The items of all suites; what two suites call alike they mean alike.
+  std::vector<judge::PicsItem> pics_items() const;
+
   const Entry& at(std::string_view id) const;
   const Suite& suite(std::string_view protocol) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "harness/fault/plan_work.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::conformance {
@@ -61,6 +62,8 @@ judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>
     if (failure.kind() != kernel::ErrorKind::implementation) throw;
     // It drives in the past, or has gone: nothing can be made of it, and that is its fault.
     add(judge::Verdict::fail, "implementation_misbehaves", {{"what the bench can serve"}, failure.what()});
+  } catch (const fault::PlanTooHeavy& heavy) {
+    add(judge::Verdict::inconclusive, "plan_too_heavy", {{"a run that ends"}, heavy.what()});
   }
   judge::CaseResult result;
   result.id = test_case_.id;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "conformance/ordered_work.hpp"
 #include "harness/kernel/check.hpp"
@@ -43,11 +44,12 @@ std::optional<std::string> excluded_by_setup(const TestCase& test_case, const Se
                      fmt::join(assigned, " and a "), role);
 }
 
-std::optional<std::string> not_applicable(const TestCase& test_case, const Setup& setup) {
-  if (setup.pics && test_case.not_applicable) {
-    if (auto reason = test_case.not_applicable(*setup.pics)) return reason;
-  }
-  return excluded_by_setup(test_case, setup);
+// A setup that excludes a case need not fit it, so that is looked at first.
+std::optional<std::string> not_applicable(const Entry& entry, const Setup& setup) {
+  if (auto reason = excluded_by_setup(*entry.test_case, setup)) return reason;
+  if (!entry.test_case->not_applicable) return std::nullopt;
+  const std::optional<judge::Pics> pics = entry.suite->declared_pics(*entry.test_case, setup);
+  return pics ? entry.test_case->not_applicable(*pics) : std::nullopt;
 }
 
 Outcome internal_error(const TestCase& test_case, std::string_view what) {
@@ -110,7 +112,7 @@ CaseRun run_case(const Entry& entry, const Setup& run_setup, KeptRecordings keep
   done.setup.seed = case_seed(run_setup.seed, entry.test_case->id);
   done.setup.record = keeps_recordings == KeptRecordings::all;
   const auto begin = std::chrono::steady_clock::now();
-  if (auto reason = not_applicable(*entry.test_case, done.setup)) {
+  if (auto reason = not_applicable(entry, done.setup)) {
     done.outcome.result = blank_result(*entry.test_case, Verdict::not_applicable, std::move(*reason));
   } else {
     done.outcome = guarded_run(entry, done.setup);
@@ -120,6 +122,16 @@ CaseRun run_case(const Entry& entry, const Setup& run_setup, KeptRecordings keep
   done.outcome.result.seed = done.setup.seed;
   done.outcome.result.wall_time_us = microseconds_since(begin);
   return done;
+}
+
+void check_setup(std::span<const Entry> entries, const Setup& setup) {
+  std::set<std::pair<const Suite*, std::string>> asked;
+  for (const Entry& entry : entries) {
+    if (excluded_by_setup(*entry.test_case, setup)) continue;
+    if (asked.insert({entry.suite, entry.test_case->role()}).second) {
+      entry.suite->check(*entry.test_case, setup);
+    }
+  }
 }
 
 std::size_t run(const Plan& plan) {

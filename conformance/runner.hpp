@@ -50,6 +50,10 @@ struct Plan {
 CaseRun run_case(const Entry& entry, const Setup& run_setup,
                  KeptRecordings keeps_recordings = KeptRecordings::none);
 
+// Throws the kernel::Error of a setup that cannot be served, before anything is run or stored. Each role of
+// each protocol is asked once, by its first case that applies.
+void check_setup(std::span<const Entry> entries, const Setup& setup);
+
 // The number of cases that were handed over; fewer than planned after a stop.
 std::size_t run(const Plan& plan);
 

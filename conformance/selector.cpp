@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::conformance {
 namespace {
+
+constexpr std::size_t kMostOctets = std::size_t{1} << 20;  // of a selector file
+constexpr std::size_t kMostLine = 4096;
+constexpr std::size_t kMostSelectors = 100'000;
 
 std::vector<std::string_view> parts_of(std::string_view path) {
   std::vector<std::string_view> parts;
@@ -78,6 +84,25 @@ Selector parse_one(std::string_view text, const std::string& place) {
   return selector;
 }
 
+// A directory opens like a file and cannot be read; a device may never end.
+std::string content_of(const std::string& file, const std::string& place) {
+  std::ifstream input(file, std::ios::binary);
+  std::string content(kMostOctets + 1, '\0');
+  std::error_code no_status;
+  const bool is_folder = std::filesystem::is_directory(file, no_status);
+  if (input && !is_folder) input.read(content.data(), static_cast<std::streamsize>(content.size()));
+  if (is_folder || input.bad() || !input.is_open()) {
+    refuse(place, fmt::format("the selector file '{}' cannot be read; give a file with one selector per line",
+                              file));
+  }
+  content.resize(static_cast<std::size_t>(input.gcount()));
+  if (content.size() > kMostOctets) {
+    refuse(place,
+           fmt::format("the selector file '{}' has more than {} octets; write globs", file, kMostOctets));
+  }
+  return content;
+}
+
 // `open` holds the files that are being read, so that a file that includes itself is seen.
 void parse_into(std::vector<Selector>& selectors, std::string_view text, const std::string& place,
                 std::vector<std::string>& open) {
@@ -89,18 +114,24 @@ void parse_into(std::vector<Selector>& selectors, std::string_view text, const s
   if (std::find(open.begin(), open.end(), file) != open.end()) {
     refuse(place, fmt::format("the selector file '{}' includes itself; remove that line", file));
   }
-  std::ifstream input(file);
-  if (!input) {
-    refuse(
-        place.empty() ? file : place,
-        fmt::format("the selector file '{}' cannot be read; give a file with one selector per line", file));
-  }
   open.push_back(file);
-  std::string line;
-  for (int number = 1; std::getline(input, line); ++number) {
-    const std::string_view selector = trimmed(line);
+  const std::size_t before = selectors.size();
+  const std::string content = content_of(file, place.empty() ? file : place);
+  std::string_view rest = content;
+  for (int number = 1; !rest.empty(); ++number) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    if (end > kMostLine) {
+      refuse(fmt::format("{}:{}", file, number), fmt::format("the line has more than {} octets", kMostLine));
+    }
+    const std::string_view selector = trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
     if (!selector.empty()) parse_into(selectors, selector, fmt::format("{}:{}", file, number), open);
+    if (selectors.size() > kMostSelectors) {
+      refuse(file, fmt::format("there are more than {} selectors; write globs", kMostSelectors));
+    }
   }
+  // Not everything, which no selector would mean: the person has one in mind.
+  if (selectors.size() == before) refuse(file, "the selector file has no selector; write one per line");
   open.pop_back();
 }
 

@@ -8,8 +8,8 @@
 //   !interbus/slave/long* takes away what the selector behind it matches
 //
 // Contract: cases tagged `canary` must fail, so they are selected only when they are named exactly or by
-// `+canary`, never by a glob. A selector file that cannot be read, or that includes itself, throws
-// kernel::Error(configuration).
+// `+canary`, never by a glob. A selector file that cannot be read, that includes itself, is very long or has
+// no selector throws kernel::Error(configuration).
 #pragma once
 
 #include <span>

@@ -88,6 +88,22 @@ TEST_F(SelectorFiles, ThatIncludeThemselvesAreRefusedWithTheirLine) {
   }
 }
 
+TEST_F(SelectorFiles, WithoutASelectorAreRefused) {
+  const std::string holds_empty = "@" + write("empty.txt", "");
+  for (const std::string& text : {holds_empty, "@" + write("comments.txt", "# interbus/**\n\n  \n"),
+                                  "@" + folder_.string(), "@" + write("outer.txt", holds_empty),
+                                  std::string("@/dev/zero"), "@" + write("long.txt", std::string(4097, 'a')),
+                                  "@" + write("large.txt", std::string((1 << 20) + 1, '\n'))}) {
+    const std::vector<std::string> texts = {text};
+    try {
+      parse_selectors(texts);
+      ADD_FAILURE() << text << " was accepted";
+    } catch (const kernel::Error& error) {
+      EXPECT_EQ(error.kind(), kernel::ErrorKind::configuration) << text;
+    }
+  }
+}
+
 TEST_F(SelectorFiles, ThatDoNotExistAreNamed) {
   const std::vector<std::string> texts = {"@/nowhere/x.txt"};
   EXPECT_THROW(parse_selectors(texts), kernel::Error);

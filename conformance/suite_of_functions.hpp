@@ -24,11 +24,16 @@ class SuiteOfFunctions : public Suite {
     cases_.push_back(std::move(test_case));
   }
   void add(Deviation deviation) { deviations_.push_back(std::move(deviation)); }
+  void add(judge::PicsItem item) { pics_items_.push_back(std::move(item)); }
+  void set_last_position(int position) { last_position_ = position; }
 
   std::string_view protocol() const override { return protocol_; }
   std::vector<std::string> roles() const override { return roles_; }
   const std::vector<TestCase>& cases() const override { return cases_; }
   const std::vector<Deviation>& deviations() const override { return deviations_; }
+
+  int last_position() const override { return last_position_; }
+  std::vector<judge::PicsItem> pics_items() const override { return pics_items_; }
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
     Outcome outcome = functions_.at(test_case.id)(test_case, setup);
@@ -44,6 +49,8 @@ class SuiteOfFunctions : public Suite {
   std::vector<std::string> roles_;
   std::vector<TestCase> cases_;
   std::vector<Deviation> deviations_;
+  std::vector<judge::PicsItem> pics_items_;
+  int last_position_ = 1;
   std::map<std::string, Function, std::less<>> functions_;
 };
 

@@ -115,6 +115,17 @@ class Suite {
   virtual const std::vector<TestCase>& cases() const = 0;
   virtual const std::vector<Deviation>& deviations() const = 0;
   virtual Outcome run(const TestCase& test_case, const Setup& setup) const = 0;
+
+  // The farthest position of a role on a network of the suite's own.
+  virtual int last_position() const { return 1; }
+  // What a PICS of this protocol may answer.
+  virtual std::vector<judge::PicsItem> pics_items() const { return {}; }
+  // The answers of the setup, completed by what the suite takes for granted; nothing when the setup has none.
+  virtual std::optional<judge::Pics> declared_pics(const TestCase&, const Setup& setup) const {
+    return setup.pics;
+  }
+  // Throws the kernel::Error of `run` for files and places of this setup, without running anything.
+  virtual void check(const TestCase&, const Setup&) const {}
 };
 
 }  // namespace fieldproof::conformance

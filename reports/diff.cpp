@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/judge/result_json.hpp"
-#include "harness/judge/untrusted_text.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 
 namespace fieldproof::reports {
 namespace {
@@ -83,9 +83,19 @@ void compare_identities(const RunIdentity& before, const RunIdentity& after, Dif
   hold("the program", before.tool_version, after.tool_version);
   hold("the suite", before.suite_version, after.suite_version);
   hold("the seed", fmt::format("{}", before.seed), fmt::format("{}", after.seed));
+  hold("the volume", before.volume, after.volume);
   hold("the plan", before.plan_hash, after.plan_hash);
   hold("the network", before.network_hash, after.network_hash);
+  hold("the PICS", before.pics_hash, after.pics_hash);
   hold("the implementation", implementations_text(before), implementations_text(after));
+}
+
+void tell_incomplete(std::string_view which, const Run& run, Difference& difference) {
+  if (run.is_complete()) return;
+  const Counts counts = count(run);
+  difference.incomplete.push_back(
+      fmt::format("the {} run is incomplete: {}; {} of {} selected cases were not judged", which,
+                  run.identity.incomplete_because, counts.not_run(), counts.selected));
 }
 
 std::string change_line(const VerdictChange& change) {
@@ -133,27 +143,27 @@ std::string fingerprint_lines(const std::vector<FingerprintChange>& changes) {
 Json changes_json(const std::vector<VerdictChange>& changes) {
   Json json = Json::array();
   for (const VerdictChange& change : changes) {
-    json.push_back({{"id", judge::as_utf8(change.id)},
+    json.push_back({{"id", kernel::as_utf8(change.id)},
                     {"before", name(change.before)},
                     {"after", name(change.after)},
-                    {"reason_before", judge::as_utf8(change.reason_before)},
-                    {"reason_after", judge::as_utf8(change.reason_after)}});
+                    {"reason_before", kernel::as_utf8(change.reason_before)},
+                    {"reason_after", kernel::as_utf8(change.reason_after)}});
   }
   return json;
 }
 
 Json texts_json(const std::vector<std::string>& texts) {
   Json json = Json::array();
-  for (const std::string& text : texts) json.push_back(judge::as_utf8(text));
+  for (const std::string& text : texts) json.push_back(kernel::as_utf8(text));
   return json;
 }
 
 Json drifts_json(const std::vector<Drift>& drifts) {
   Json json = Json::array();
   for (const Drift& drift : drifts) {
-    json.push_back({{"id", judge::as_utf8(drift.id)},
-                    {"measurement", judge::as_utf8(drift.measurement)},
-                    {"unit", judge::as_utf8(drift.unit)},
+    json.push_back({{"id", kernel::as_utf8(drift.id)},
+                    {"measurement", kernel::as_utf8(drift.measurement)},
+                    {"unit", kernel::as_utf8(drift.unit)},
                     {"before", judge::number_to_json(drift.before)},
                     {"after", judge::number_to_json(drift.after)},
                     {"absolute", judge::number_to_json(drift.absolute())},
@@ -165,7 +175,7 @@ Json drifts_json(const std::vector<Drift>& drifts) {
 Json fingerprints_json(const std::vector<FingerprintChange>& changes) {
   Json json = Json::array();
   for (const FingerprintChange& change : changes) {
-    json.push_back({{"id", judge::as_utf8(change.id)},
+    json.push_back({{"id", kernel::as_utf8(change.id)},
                     {"seed", fmt::format("{}", change.seed)},
                     {"before", judge::fingerprint_text(change.before)},
                     {"after", judge::fingerprint_text(change.after)}});
@@ -182,12 +192,15 @@ double Drift::relative() const {
 
 bool Difference::is_empty() const {
   return new_failures.empty() && fixed.empty() && changed.empty() && appeared.empty() &&
-         disappeared.empty() && drifts.empty() && fingerprints.empty() && identity.empty();
+         disappeared.empty() && drifts.empty() && fingerprints.empty() && identity.empty() &&
+         incomplete.empty();
 }
 
 Difference compare(const Run& before, const Run& after, const DriftLimits& limits) {
   Difference difference;
   compare_identities(before.identity, after.identity, difference);
+  tell_incomplete("first", before, difference);
+  tell_incomplete("second", after, difference);
   const auto former = by_id(before);
   const auto latter = by_id(after);
   for (const CaseResult& result : after.cases) {
@@ -210,7 +223,9 @@ Difference compare(const Run& before, const Run& after, const DriftLimits& limit
 std::string diff_text(const Difference& difference, const TextOptions& options) {
   if (difference.is_empty()) return "no difference\n";
   std::string out;
-  for (const std::string& sentence : difference.identity) out += escaped_line(sentence) + "\n";
+  for (const auto* sentences : {&difference.identity, &difference.incomplete}) {
+    for (const std::string& sentence : *sentences) out += escaped_line(sentence) + "\n";
+  }
   const std::string failures = change_lines("new failures", difference.new_failures);
   out += options.colour && !failures.empty() ? "\x1b[31m" + failures + "\x1b[0m" : failures;
   out += change_lines("fixed", difference.fixed);
@@ -223,6 +238,7 @@ std::string diff_text(const Difference& difference, const TextOptions& options) 
 std::string diff_json(const Difference& difference) {
   const Json json = {{"schema", "fieldproof/diff/1"},
                      {"identity", texts_json(difference.identity)},
+                     {"incomplete", texts_json(difference.incomplete)},
                      {"new_failures", changes_json(difference.new_failures)},
                      {"fixed", changes_json(difference.fixed)},
                      {"changed", changes_json(difference.changed)},

@@ -4,8 +4,9 @@
 // failure is one that is a failure only in the second run (also of a case that only the second run has), a
 // fixed one is judged in both runs and a failure only in the first. A measurement drifts when it moved by
 // more than `absolute` (in its unit) and by more than `relative` of its former value; what became or ceased
-// to be a number drifts always. Equal case seeds with different fingerprints are listed: with the same
-// implementation they break determinism.
+// to be a number drifts always. What an incomplete run never judged is in no list, so `incomplete` says which
+// of the two is: a comparison with it proves nothing about the rest. Equal case seeds with different
+// fingerprints are listed: with the same implementation they break determinism.
 #pragma once
 
 #include <cstdint>
@@ -57,6 +58,8 @@ struct Difference {
   std::vector<Drift> drifts;
   std::vector<FingerprintChange> fingerprints;
   std::vector<std::string> identity;  // sentences: "the seed changed from 1 to 2"
+
+  std::vector<std::string> incomplete;  // sentences: "the second run is incomplete: ..."
 
   bool is_empty() const;
 };

@@ -30,10 +30,22 @@ Difference drift(double before, double after, const DriftLimits& limits) {
 }
 
 TEST(Diff, FindsNothingBetweenEqualRuns) {
-  reports::Run again = sample_run();
+  reports::Run before = sample_run();
+  before.identity.incomplete_because.clear();
+  reports::Run again = before;
   for (judge::CaseResult& result : again.cases) result.wall_time_us = 1;
-  EXPECT_TRUE(compare(sample_run(), again).is_empty());
-  EXPECT_EQ(diff_text(compare(sample_run(), again)), "no difference\n");
+  EXPECT_TRUE(compare(before, again).is_empty());
+  EXPECT_EQ(diff_text(compare(before, again)), "no difference\n");
+}
+
+TEST(Diff, SaysWhichRunIsIncomplete) {
+  reports::Run whole = sample_run();
+  whole.identity.incomplete_because.clear();
+  const Difference difference = compare(whole, sample_run());
+  ASSERT_EQ(difference.incomplete.size(), 1U);
+  EXPECT_EQ(difference.incomplete.front(),
+            "the second run is incomplete: interrupted by SIGINT; 2 of 8 selected cases were not judged");
+  EXPECT_EQ(compare(sample_run(), sample_run()).incomplete.size(), 2U);
 }
 
 TEST(Diff, TellsEveryKindOfChangeAsApproved) {

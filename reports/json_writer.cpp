@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "harness/config/document.hpp"
 #include "harness/judge/result_json.hpp"
-#include "harness/judge/untrusted_text.hpp"
-#include "harness/kernel/error.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 
 namespace fieldproof::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using judge::as_utf8;
+using kernel::as_utf8;
 
 constexpr std::string_view kResultsSchema = "fieldproof/results/1";
 constexpr std::string_view kManifestSchema = "fieldproof/manifest/1";
@@ -43,8 +43,10 @@ Json identity_to_json(const RunIdentity& identity) {
   return {{"tool_version", as_utf8(identity.tool_version)},
           {"suite_version", as_utf8(identity.suite_version)},
           {"seed", decimal(identity.seed)},
+          {"volume", as_utf8(identity.volume)},
           {"plan_hash", as_utf8(identity.plan_hash)},
           {"network_hash", as_utf8(identity.network_hash)},
+          {"pics_hash", as_utf8(identity.pics_hash)},
           {"selectors", strings_to_json(identity.selectors)},
           {"implementations", std::move(implementations)},
           {"reproduce_options", as_utf8(identity.reproduce_options)},
@@ -65,59 +67,74 @@ Json counts_to_json(const Counts& counts) {
           {"by_verdict", std::move(by_verdict)}};
 }
 
-[[noreturn]] void refuse(const std::string& place, const std::string& sentence) {
-  throw kernel::Error(kernel::ErrorKind::configuration, place + ": " + sentence);
+using config::ObjectReader;
+using config::Value;
+
+constexpr std::uint32_t kMostCases = 10'000'000;
+constexpr int kMostPositions = 1'000'000;
+
+std::string text_in(ObjectReader& object, std::string_view key) {
+  return std::string(object.required(key).as_string());
 }
 
-Json document_from(std::string_view text, const std::string& place, std::string_view schema) {
-  Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) refuse(place, fmt::format("this is no JSON object with \"schema\": \"{}\"", schema));
-  const auto found = json.find("schema");
-  if (found == json.end() || *found != schema) {
-    refuse(place, fmt::format("this program reads \"schema\": \"{}\", the file has {}", schema,
-                              found == json.end() ? "none" : found->dump()));
-  }
-  return json;
-}
-
-// Type errors of a document, with the place in front.
+// Reads a document of this schema; keys that it has grown since are skipped.
 template <typename Read>
-auto read_with_place(const std::string& place, Read read) {
-  try {
-    return read();
-  } catch (const nlohmann::json::exception& error) {
-    refuse(place, fmt::format("a key is missing or of a wrong type ({})", error.what()));
-  }
+auto read_document(std::string_view text, const std::string& place, std::string_view schema, Read read) {
+  const config::Document document = config::Document::parse(std::string(text), place);
+  return config::read_open_object(document.root(), [&](ObjectReader& object) {
+    const Value written = object.required("schema");
+    if (written.as_string() != schema) {
+      config::fail(written, fmt::format("this program reads \"schema\": \"{}\", the file has \"{}\"", schema,
+                                        kernel::escaped_line(written.as_string())));
+    }
+    return read(object);
+  });
 }
 
-std::uint64_t decimal_from(const Json& json, const std::string& place, const std::string& key) {
-  const auto& digits = json.at(key).get_ref<const std::string&>();
-  std::uint64_t value = 0;
-  const char* end = digits.data() + digits.size();
-  const auto [stop, failure] = std::from_chars(digits.data(), end, value);
-  if (failure != std::errc{} || stop != end) {
-    refuse(place, fmt::format("\"{}\" must be a string with a decimal 64-bit integer", key));
+std::vector<Implementation> implementations_from(const Value& list) {
+  std::vector<Implementation> implementations;
+  for (const Value& one : list.as_array()) {
+    implementations.push_back(config::read_open_object(one, [](ObjectReader& object) {
+      return Implementation{text_in(object, "role"),
+                            object.required("position").as_integer<int>(0, kMostPositions),
+                            text_in(object, "uri")};
+    }));
   }
-  return value;
+  return implementations;
 }
 
-RunIdentity identity_from(const Json& json, const std::string& place) {
-  RunIdentity identity;
-  identity.tool_version = json.at("tool_version").get<std::string>();
-  identity.suite_version = json.at("suite_version").get<std::string>();
-  identity.seed = decimal_from(json, place, "seed");
-  identity.plan_hash = json.at("plan_hash").get<std::string>();
-  identity.network_hash = json.at("network_hash").get<std::string>();
-  identity.selectors = json.at("selectors").get<std::vector<std::string>>();
-  for (const Json& one : json.at("implementations")) {
-    identity.implementations.push_back(
-        {one.at("role").get<std::string>(), one.at("position").get<int>(), one.at("uri").get<std::string>()});
+RunIdentity identity_from(const Value& value) {
+  return config::read_open_object(value, [](ObjectReader& object) {
+    RunIdentity identity;
+    identity.tool_version = text_in(object, "tool_version");
+    identity.suite_version = text_in(object, "suite_version");
+    identity.seed = judge::unsigned_from(object.required("seed"));
+    if (const auto volume = object.optional("volume")) identity.volume = volume->as_string();
+    identity.plan_hash = text_in(object, "plan_hash");
+    identity.network_hash = text_in(object, "network_hash");
+    if (const auto hash = object.optional("pics_hash")) identity.pics_hash = hash->as_string();
+    identity.selectors = judge::texts_from(object.required("selectors"));
+    identity.implementations = implementations_from(object.required("implementations"));
+    identity.reproduce_options = text_in(object, "reproduce_options");
+    identity.selected = object.required("selected").as_integer<std::uint32_t>(0, kMostCases);
+    identity.incomplete_because = text_in(object, "incomplete_because");
+    identity.exit_code = object.required("exit_code").as_integer<int>(0, 255);
+    return identity;
+  });
+}
+
+// Two results of one case would be two verdicts.
+std::vector<judge::CaseResult> cases_from(const Value& list) {
+  std::vector<judge::CaseResult> cases;
+  std::set<std::string> ids;
+  for (const Value& one : list.as_array(0, kMostCases)) {
+    cases.push_back(judge::case_result_from(one));
+    if (!ids.insert(cases.back().id).second) {
+      config::fail(one, fmt::format("there is a result of '{}' already; remove one of the two",
+                                    kernel::escaped_line(cases.back().id)));
+    }
   }
-  identity.reproduce_options = json.at("reproduce_options").get<std::string>();
-  identity.selected = json.at("selected").get<std::size_t>();
-  identity.incomplete_because = json.at("incomplete_because").get<std::string>();
-  identity.exit_code = json.at("exit_code").get<int>();
-  return identity;
+  return cases;
 }
 
 }  // namespace
@@ -158,39 +175,37 @@ std::string timings_json(const Manifest& manifest, const Run& run) {
 }
 
 Run run_from_json(std::string_view text, const std::string& place) {
-  const Json json = document_from(text, place, kResultsSchema);
-  return read_with_place(place, [&] {
+  return read_document(text, place, kResultsSchema, [](ObjectReader& object) {
     Run run;
-    run.identity = identity_from(json.at("run"), place);
-    for (const Json& one : json.at("cases")) {
-      run.cases.push_back(judge::case_result_from(one, fmt::format("{}: cases/{}", place, run.cases.size())));
-    }
+    run.identity = identity_from(object.required("run"));
+    run.cases = cases_from(object.required("cases"));
     return run;
   });
 }
 
 Manifest manifest_from_json(std::string_view text, const std::string& place) {
-  const Json json = document_from(text, place, kManifestSchema);
-  return read_with_place(place, [&] {
+  return read_document(text, place, kManifestSchema, [](ObjectReader& object) {
     Manifest manifest;
-    manifest.build_type = json.at("build").at("type").get<std::string>();
-    manifest.compiler = json.at("build").at("compiler").get<std::string>();
-    manifest.host = json.at("host").get<std::string>();
-    manifest.arguments = json.at("arguments").get<std::vector<std::string>>();
-    manifest.started = json.at("started").get<std::string>();
-    manifest.finished = json.at("finished").get<std::string>();
-    manifest.wall_time_us = decimal_from(json, place, "wall_time_us");
-    manifest.jobs = json.at("jobs").get<unsigned>();
+    config::read_open_object(object.required("build"), [&](ObjectReader& build) {
+      manifest.build_type = text_in(build, "type");
+      manifest.compiler = text_in(build, "compiler");
+    });
+    manifest.host = text_in(object, "host");
+    manifest.arguments = judge::texts_from(object.required("arguments"));
+    manifest.started = text_in(object, "started");
+    manifest.finished = text_in(object, "finished");
+    manifest.wall_time_us = judge::unsigned_from(object.required("wall_time_us"));
+    manifest.jobs = object.required("jobs").as_integer<unsigned>();
     return manifest;
   });
 }
 
 void add_timings(std::string_view text, const std::string& place, Run& run) {
-  const Json json = document_from(text, place, kTimingsSchema);
-  read_with_place(place, [&] {
+  read_document(text, place, kTimingsSchema, [&](ObjectReader& object) {
     std::map<std::string, std::uint64_t, std::less<>> times;
-    const Json& cases = json.at("cases");
-    for (const auto& [id, unused] : cases.items()) times[id] = decimal_from(cases, place, id);
+    for (const config::Member& time : object.required("cases").as_members()) {
+      times.emplace(time.key, judge::unsigned_from(time.value));
+    }
     for (judge::CaseResult& result : run.cases) {
       const auto found = times.find(result.id);
       if (found != times.end()) result.wall_time_us = found->second;

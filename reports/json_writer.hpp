@@ -5,8 +5,9 @@
 // the number grows only when a reader of the former one would misread; keys may be added without it. 64-bit
 // integers are strings (result_json.hpp).
 //
-// Readers skip unknown keys and throw kernel::Error(configuration), led by `place`, for what is no such
-// document, for a newer schema and for a value of a wrong type.
+// Readers skip unknown keys and throw kernel::Error(configuration), with `place`, line and pointer, for what
+// is no such document, for a newer schema, for a value of a wrong type or range and for two results of one
+// case.
 #pragma once
 
 #include <string>

@@ -8,6 +8,7 @@
 
 #include "harness/judge/arbitrary_result.hpp"
 #include "harness/judge/journal.hpp"
+#include "harness/kernel/arbitrary_text.hpp"
 #include "harness/kernel/error.hpp"
 #include "reports/approved_text.hpp"
 #include "reports/diff.hpp"
@@ -143,8 +144,8 @@ TEST(JsonWriter, ResultsDoNotKnowTheOccasion) {
 RC_GTEST_PROP(JsonWriter, ReadsBackWhatItWrote, ()) {
   reports::Run run = sample_run();
   run.cases.push_back(*rc::gen::scale(0.3, judge::arbitrary_result()));
-  run.identity.incomplete_because = *judge::arbitrary_text();
-  run.identity.reproduce_options = *judge::arbitrary_text();
+  run.identity.incomplete_because = *kernel::arbitrary_text();
+  run.identity.reproduce_options = *kernel::arbitrary_text();
   run.identity.seed = *judge::arbitrary_word();
   const std::string text = results_json(run);
   const reports::Run read = run_from_json(text, "test");
@@ -174,22 +175,37 @@ std::string sentence_of(const std::string& text) {
 }
 
 TEST(JsonWriter, RefusesWhatIsNoResult) {
-  EXPECT_EQ(sentence_of("[]"),
-            "x/results.json: this is no JSON object with \"schema\": \"fieldproof/results/1\"");
-  EXPECT_EQ(sentence_of("{"), sentence_of("[]"));
-  EXPECT_EQ(sentence_of(R"({"schema":"fieldproof/results/2"})"),
-            "x/results.json: this program reads \"schema\": \"fieldproof/results/1\", the file has "
-            "\"fieldproof/results/2\"");
+  const auto expect_refused = [](const std::string& text, const std::string& part) {
+    const std::string sentence = sentence_of(text);
+    EXPECT_TRUE(sentence.starts_with("x/results.json:")) << sentence;
+    EXPECT_NE(sentence.find(part), std::string::npos) << sentence;
+  };
+  expect_refused("[]", "write an object");
+  expect_refused("{", "x/results.json:1:");
+  expect_refused(R"({"schema":"fieldproof/results/2"})",
+                 "this program reads \"schema\": \"fieldproof/results/1\", the file has "
+                 "\"fieldproof/results/2\"");
+  for (const std::string& nest : {std::string(100'000, '['), std::string(65, '[')}) {
+    expect_refused(R"({"schema":"fieldproof/results/1","cases":)" + nest, "inside each other");
+  }
   Json results = Json::parse(results_json(sample_run()));
   results["cases"][2]["verdict"] = "good";
-  EXPECT_EQ(
-      sentence_of(results.dump()),
-      "x/results.json: cases/2: \"verdict\" must be one of none, not-applicable, pass, warn, inconclusive, "
-      "fail, error");
+  expect_refused(results.dump(), "/cases/2/verdict: ");
   results = Json::parse(results_json(sample_run()));
   results["run"].erase("selected");
-  EXPECT_NE(sentence_of(results.dump()).find("x/results.json: a key is missing or of a wrong type"),
-            std::string::npos);
+  expect_refused(results.dump(), "/run: key \"selected\" is missing");
+  for (const auto& [key, value] : {std::pair<const char*, Json>{"selected", -1},
+                                   {"selected", 1e9},
+                                   {"exit_code", 1e300},
+                                   {"exit_code", 256},
+                                   {"exit_code", -1}}) {
+    results = Json::parse(results_json(sample_run()));
+    results["run"][key] = value;
+    expect_refused(results.dump(), std::string("/run/") + key + ": ");
+  }
+  results = Json::parse(results_json(sample_run()));
+  results["cases"].push_back(results["cases"][0]);
+  expect_refused(results.dump(), "already; remove one of the two");
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "harness/judge/result_json.hpp"
-#include "harness/judge/untrusted_text.hpp"
 #include "harness/kernel/time.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 #include "reports/text_summary.hpp"
 
 namespace fieldproof::reports {
@@ -22,8 +22,9 @@ enum class Outcome : std::uint8_t { passed, failure, error, skipped };
 Outcome outcome_of(Verdict verdict, const JunitOptions& options) {
   switch (verdict) {
     case Verdict::pass:
-    case Verdict::warn:
       return Outcome::passed;
+    case Verdict::warn:
+      return options.is_strict ? Outcome::failure : Outcome::passed;
     case Verdict::fail:
       return Outcome::failure;
     case Verdict::not_applicable:
@@ -48,12 +49,12 @@ std::string xml_chars(std::string_view text) {
   std::string out;
   while (!text.empty()) {
     const std::string_view before = text;
-    const auto point = judge::take_code_point(text);
+    const auto point = kernel::take_code_point(text);
     const std::string_view octets = before.substr(0, before.size() - text.size());
     if (point && is_xml_char(*point)) {
       out += octets;
     } else {
-      for (const char octet : octets) out += judge::escaped_octet(octet);
+      for (const char octet : octets) out += kernel::escaped_octet(octet);
     }
   }
   return out;
@@ -127,12 +128,15 @@ struct Totals {
   std::uint64_t wall_time_us = 0;
 
   void add(const CaseResult& result, const JunitOptions& options) {
-    const Outcome outcome = outcome_of(result.verdict, options);
+    add(outcome_of(result.verdict, options));
+    wall_time_us += result.wall_time_us;
+  }
+
+  void add(Outcome outcome) {
     ++tests;
     failures += outcome == Outcome::failure ? 1U : 0U;
     errors += outcome == Outcome::error ? 1U : 0U;
     skipped += outcome == Outcome::skipped ? 1U : 0U;
-    wall_time_us += result.wall_time_us;
   }
 
   std::string attributes() const {
@@ -164,13 +168,14 @@ std::string message_of(const CaseResult& result) {
   return result.reason;
 }
 
-std::string outcome_element(const RunIdentity& identity, const CaseResult& result, Outcome outcome) {
-  const std::string message = attribute(message_of(result));
+std::string outcome_element(Outcome outcome, const std::string& message, std::string_view type,
+                            const std::string& text) {
   if (outcome == Outcome::passed) return "";
-  if (outcome == Outcome::skipped) return fmt::format("      <skipped message=\"{}\"/>\n", message);
+  if (outcome == Outcome::skipped)
+    return fmt::format("      <skipped message=\"{}\"/>\n", attribute(message));
   const char* element = outcome == Outcome::failure ? "failure" : "error";
-  return fmt::format("      <{0} message=\"{1}\" type=\"{2}\">{3}</{0}>\n", element, message,
-                     name(result.verdict), cdata(finding_text(identity, result)));
+  return fmt::format("      <{0} message=\"{1}\" type=\"{2}\">{3}</{0}>\n", element, attribute(message), type,
+                     cdata(text));
 }
 
 std::string test_case(const RunIdentity& identity, const CaseResult& result, const Names& names,
@@ -179,8 +184,9 @@ std::string test_case(const RunIdentity& identity, const CaseResult& result, con
       fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{}\">\n", attribute(names.classname),
                   attribute(names.name), seconds(result.wall_time_us));
   out += properties(identity, result);
-  out += outcome_element(identity, result, outcome_of(result.verdict, options));
-  if (result.verdict == Verdict::warn) {
+  const Outcome outcome = outcome_of(result.verdict, options);
+  out += outcome_element(outcome, message_of(result), name(result.verdict), finding_text(identity, result));
+  if (result.verdict == Verdict::warn && outcome == Outcome::passed) {
     out += "      <system-out>" + cdata(finding_text(identity, result)) + "</system-out>\n";
   }
   if (!result.log.empty()) out += "      <system-err>" + cdata(result.log) + "</system-err>\n";
@@ -207,11 +213,26 @@ std::string timestamp(const Manifest& manifest) {
   return utc.empty() ? "" : fmt::format(" timestamp=\"{}\"", attribute(utc));
 }
 
+// The suite of one case that says that the others are not all.
+std::string incompleteness_suite(const Run& run, const Manifest& manifest, const Totals& totals,
+                                 Outcome outcome) {
+  const Counts counts = count(run);
+  const std::string text = fmt::format("the run is incomplete: {}; {} of {} selected cases were not judged",
+                                       run.identity.incomplete_because, counts.not_run(), counts.selected);
+  std::string out =
+      fmt::format("  <testsuite name=\"fieldproof.run\" {}{}>\n", totals.attributes(), timestamp(manifest));
+  out += "    <testcase classname=\"fieldproof.run\" name=\"is_complete\" time=\"0.000000\">\n";
+  out += outcome_element(outcome, text, "incomplete", text + "\n");
+  return out + "    </testcase>\n  </testsuite>\n";
+}
+
 }  // namespace
 
 std::string junit_xml(const Run& run, const Manifest& manifest, const JunitOptions& options) {
   Totals all;
   for (const CaseResult& result : run.cases) all.add(result, options);
+  const Outcome of_incomplete = outcome_of(Verdict::inconclusive, options);
+  if (!run.is_complete()) all.add(of_incomplete);
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   out += fmt::format("<testsuites name=\"fieldproof\" {}>\n", all.attributes());
   for (const auto& [folder, results] : by_folder(run)) {
@@ -223,6 +244,11 @@ std::string junit_xml(const Run& run, const Manifest& manifest, const JunitOptio
       out += test_case(run.identity, *result, names_of(result->id), options);
     }
     out += "  </testsuite>\n";
+  }
+  if (!run.is_complete()) {
+    Totals totals;
+    totals.add(of_incomplete);
+    out += incompleteness_suite(run, manifest, totals, of_incomplete);
   }
   return out + "</testsuites>\n";
 }

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "harness/judge/arbitrary_result.hpp"
-#include "harness/judge/untrusted_text.hpp"
+#include "harness/kernel/arbitrary_text.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 #include "reports/approved_text.hpp"
 #include "reports/sample_run.hpp"
 #include "reports/schema/ajv_judge.hpp"
@@ -50,7 +51,7 @@ class StrictReader {
  private:
   static bool has_only_xml_chars(std::string_view text) {
     while (!text.empty()) {
-      const auto point = judge::take_code_point(text);
+      const auto point = kernel::take_code_point(text);
       if (!point || *point == 0xFFFE || *point == 0xFFFF) return false;
       if (*point < 0x20 && *point != 9 && *point != 10 && *point != 13) return false;
     }
@@ -203,7 +204,24 @@ TEST(JunitWriter, GivesAConsumerTheRightVerdicts) {
                                                 {"interbus.slave.id_cycle#length_is_told", "error"},
                                                 {"interbus.master.stop#bus_is_left", "error"},
                                                 {"interbus.master.stop#branch_is_left", "skipped"},
-                                                {"interbus.master.stop#none", "error"}}));
+                                                {"interbus.master.stop#none", "error"},
+                                                {"fieldproof.run#is_complete", "error"}}));
+}
+
+TEST(JunitWriter, HasNoCaseMoreForACompleteRun) {
+  reports::Run run = sample_run();
+  run.identity.incomplete_because.clear();
+  const auto verdicts = consumed(junit_xml(run, sample_manifest()));
+  ASSERT_TRUE(verdicts);
+  EXPECT_EQ(verdicts->size(), run.cases.size());
+  EXPECT_FALSE(verdicts->contains("fieldproof.run#is_complete"));
+}
+
+TEST(JunitWriter, FailsAWarnWhenItIsStrict) {
+  const auto verdicts = consumed(junit_xml(sample_run(), sample_manifest(), {InconclusiveAs::failure, true}));
+  ASSERT_TRUE(verdicts);
+  EXPECT_EQ(verdicts->at("interbus.slave.id_cycle#code_is_told"), "failure");
+  EXPECT_EQ(verdicts->at("fieldproof.run#is_complete"), "failure");
 }
 
 TEST(JunitWriter, InconclusiveIsWhatTheOptionSaysAndNeverAPass) {
@@ -214,6 +232,7 @@ TEST(JunitWriter, InconclusiveIsWhatTheOptionSaysAndNeverAPass) {
     const auto verdicts = consumed(junit_xml(sample_run(), sample_manifest(), {option}));
     ASSERT_TRUE(verdicts);
     EXPECT_EQ(verdicts->at("interbus.slave.id_cycle#length_is_told"), meaning);
+    EXPECT_EQ(verdicts->at("fieldproof.run#is_complete"), meaning);
   }
 }
 
@@ -245,12 +264,12 @@ std::vector<judge::CaseResult> distinct(std::vector<judge::CaseResult> cases) {
 
 RC_GTEST_PROP(JunitWriter, IsWellFormedForAnyText, ()) {
   reports::Run run = sample_run();
-  run.identity.reproduce_options = *judge::arbitrary_text();
+  run.identity.reproduce_options = *kernel::arbitrary_text();
   run.cases = distinct(
       *rc::gen::scale(0.3, rc::gen::container<std::vector<judge::CaseResult>>(judge::arbitrary_result())));
   const auto verdicts = consumed(junit_xml(run, sample_manifest()));
   RC_ASSERT(verdicts.has_value());
-  RC_ASSERT(verdicts->size() == run.cases.size());
+  RC_ASSERT(verdicts->size() == run.cases.size() + 1);  // and that it is incomplete
 }
 
 TEST(JunitWriter, IsWellFormedForXmllintWithArbitraryText) {

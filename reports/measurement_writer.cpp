@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "harness/judge/untrusted_text.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 #include "reports/text_summary.hpp"
 #include "reports/trace_json.hpp"
 
@@ -15,7 +15,7 @@ namespace fieldproof::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using judge::as_utf8;
+using kernel::as_utf8;
 using measure::Comparison;
 using measure::Curve;
 using measure::Distribution;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "harness/judge/untrusted_text.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 #include "reports/measurement_writer.hpp"
 #include "reports/text_summary.hpp"
 #include "reports/trace_json.hpp"
@@ -14,7 +14,7 @@ namespace fieldproof::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using judge::as_utf8;
+using kernel::as_utf8;
 
 constexpr std::size_t kWhatWidth = 50;
 constexpr std::size_t kPublishedWidth = 26;

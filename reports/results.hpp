@@ -22,6 +22,8 @@ struct Implementation {
   std::string role;
   int position = 0;
   std::string uri;
+
+  friend bool operator==(const Implementation&, const Implementation&) = default;
 };
 
 // What decides the outcome of a run.
@@ -29,8 +31,10 @@ struct RunIdentity {
   std::string tool_version;
   std::string suite_version;
   std::uint64_t seed = 1;
+  std::string volume;        // of the repetitions: "quick", "full"
   std::string plan_hash;     // of the declared faults; empty: none
   std::string network_hash;  // of the network file; empty: the suites' own networks
+  std::string pics_hash;     // of the answers of the PICS; empty: none
   std::vector<std::string> selectors;
   std::vector<Implementation> implementations;
   // Every option of the command line that decides the outcome, quoted for a shell, without the selector:

@@ -6,10 +6,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <system_error>
 
+#include "harness/config/document.hpp"
 #include "harness/judge/journal.hpp"
 #include "harness/kernel/error.hpp"
 #include "reports/json_writer.hpp"
@@ -54,14 +54,24 @@ fs::path claim_folder(const fs::path& parent, const std::string& stem) {
   }
 }
 
-void point_latest_at(const fs::path& parent, const fs::path& run) {
+// Where a file is written until it is whole.
+fs::path part_of(const fs::path& path) {
+  fs::path beside = path;
+  beside += fmt::format(".{}.part", ::getpid());
+  return beside;
+}
+
+// Answers why it could not be done: the run is there all the same.
+std::string point_latest_at(const fs::path& parent, const fs::path& run) {
   const fs::path beside = parent / fmt::format(".latest.{}", ::getpid());
   std::error_code failure;
   fs::remove(beside, failure);
   fs::create_directory_symlink(run.filename(), beside, failure);
-  check(beside, failure, "the link to the latest run cannot be created");
-  fs::rename(beside, parent / "latest", failure);
-  check(parent / "latest", failure, "the link to the latest run cannot be replaced");
+  if (!failure) fs::rename(beside, parent / "latest", failure);
+  if (!failure) return {};
+  std::error_code ignored;
+  fs::remove(beside, ignored);
+  return fmt::format("{} does not lead to this run: {}", (parent / "latest").string(), failure.message());
 }
 
 }  // namespace
@@ -82,18 +92,19 @@ std::string case_directory_name(std::string_view case_id) {
 }
 
 std::string read_text_file(const fs::path& path) {
+  return config::read_text(path);
+}
+
+void check_writable(const fs::path& path) {
   std::error_code failure;
-  std::ifstream file(path, std::ios::binary);
-  if (!file || fs::is_directory(path, failure)) {
-    refuse(path, fmt::format("the file cannot be read: {}", std::strerror(file ? EISDIR : errno)));
-  }
-  return {std::istreambuf_iterator<char>(file), {}};
+  if (fs::is_directory(path, failure)) refuse(path, "the file cannot be written: it is a folder");
+  write_text_file(part_of(path), "");
+  fs::remove(part_of(path), failure);
 }
 
 void write_text_file(const fs::path& path, std::string_view content) {
   if (path.has_parent_path()) create_folders(path.parent_path());
-  fs::path beside = path;
-  beside += fmt::format(".{}.part", ::getpid());
+  const fs::path beside = part_of(path);
   std::error_code failure;
   {
     std::ofstream file(beside, std::ios::binary | std::ios::trunc);
@@ -116,10 +127,9 @@ void write_text_file(const fs::path& path, std::string_view content) {
 RunDirectory RunDirectory::create(const fs::path& parent, const Manifest& manifest,
                                   const RunIdentity& identity) {
   create_folders(parent);
-  const RunDirectory run(
-      claim_folder(parent, fmt::format("{}-{}", stamp_of(manifest.started), identity.seed)));
+  RunDirectory run(claim_folder(parent, fmt::format("{}-{}", stamp_of(manifest.started), identity.seed)));
   run.begin(manifest, identity);
-  point_latest_at(parent, run.path());
+  run.warning_ = point_latest_at(parent, run.path());
   return run;
 }
 

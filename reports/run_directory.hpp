@@ -40,6 +40,8 @@ class RunDirectory {
   static RunDirectory open(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }
+  // What could not be done beside the run itself: a `latest` that is no link. Empty: nothing.
+  const std::string& warning() const { return warning_; }
   std::filesystem::path journal() const { return path_ / "journal.jsonl"; }
   std::filesystem::path case_directory(std::string_view case_id) const;
 
@@ -60,12 +62,15 @@ class RunDirectory {
   void begin(const Manifest& manifest, const RunIdentity& identity) const;
 
   std::filesystem::path path_;
+  std::string warning_;
 };
 
 // The name of a case's directory below cases/.
 std::string case_directory_name(std::string_view case_id);
 
-// The whole file, or kernel::Error(configuration). Writing replaces atomically and creates missing parents.
+// The whole file, or kernel::Error(configuration): what config::read_text takes. Writing replaces atomically
+// and creates missing parents; `check_writable` refuses now what writing would refuse later.
+void check_writable(const std::filesystem::path& path);
 std::string read_text_file(const std::filesystem::path& path);
 void write_text_file(const std::filesystem::path& path, std::string_view content);
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "harness/judge/arbitrary_result.hpp"
 #include "harness/judge/journal.hpp"
+#include "harness/kernel/arbitrary_text.hpp"
 #include "harness/kernel/error.hpp"
 #include "reports/approved_text.hpp"
 #include "reports/json_writer.hpp"
@@ -85,7 +85,7 @@ TEST(RunDirectory, RefusesWhatIsNoRun) {
   EXPECT_EQ(sentence_of([&] { read_text_file(folder.path() / "none"); }),
             here + "/none: the file cannot be read: No such file or directory");
   EXPECT_EQ(sentence_of([&] { read_text_file(folder.path()); }),
-            here + ": the file cannot be read: Is a directory");
+            here + ": the file cannot be read: it is a folder; name a file in it");
 }
 
 TEST(RunDirectory, KeepsCasesApart) {
@@ -99,8 +99,8 @@ TEST(RunDirectory, KeepsCasesApart) {
 }
 
 RC_GTEST_PROP(RunDirectory, NamesOfCasesAreOnePlainWordAndDiffer, ()) {
-  const std::string one = *judge::arbitrary_text();
-  const std::string other = *judge::arbitrary_text();
+  const std::string one = *kernel::arbitrary_text();
+  const std::string other = *kernel::arbitrary_text();
   const std::string name = case_directory_name(one);
   RC_ASSERT(!name.empty() && name.front() != '.');
   RC_ASSERT(name.find('/') == std::string::npos && name.find('\0') == std::string::npos);

@@ -49,6 +49,8 @@ inline Run sample_run() {
   run.identity.tool_version = "0.1.0";
   run.identity.suite_version = "interbus 1";
   run.identity.seed = 7;
+  run.identity.volume = "full";
+  run.identity.pics_hash = "00112233445566ff";
   run.identity.selectors = {"interbus/**"};
   run.identity.implementations = {{"slave", 3, "deviant:accepts_bad_check"}};
   run.identity.reproduce_options = "--seed 7 --iut slave@3=deviant:accepts_bad_check";

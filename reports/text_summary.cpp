@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "harness/judge/result_json.hpp"
-#include "harness/judge/untrusted_text.hpp"
 #include "harness/kernel/time.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 
 namespace fieldproof::reports {
 namespace {
@@ -14,30 +14,6 @@ namespace {
 using judge::CaseResult;
 using judge::Finding;
 using judge::Verdict;
-
-// Code points that change how a terminal shows what stands around them.
-bool is_unseen(char32_t point) {
-  return point < 0x20 || (point >= 0x7F && point < 0xA0) || (point >= 0x200B && point <= 0x200F) ||
-         (point >= 0x2028 && point <= 0x202E) || (point >= 0x2060 && point <= 0x206F) || point == 0x061C ||
-         point == 0xFEFF;
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  while (!text.empty()) {
-    const std::string_view before = text;
-    const auto point = judge::take_code_point(text);
-    const std::string_view octets = before.substr(0, before.size() - text.size());
-    if (point && !is_unseen(*point)) {
-      out += octets;
-    } else if (!point || *point < 0x80) {
-      out += judge::escaped_octet(octets.front());
-    } else {
-      out += fmt::format("\\u{{{:04X}}}", static_cast<std::uint32_t>(*point));
-    }
-  }
-  return out;
-}
 
 std::string_view colour_of(Verdict verdict) {
   switch (verdict) {
@@ -135,14 +111,14 @@ const CaseResult* worst_case(const Run& run) {
 }  // namespace
 
 std::string escaped_line(std::string_view text) {
-  return escaped(text);
+  return kernel::escaped_line(text);
 }
 
 std::string escaped_block(std::string_view text) {
   std::string out;
   for (;;) {
     const std::size_t end = text.find_first_of("\n\t");
-    out += escaped(text.substr(0, end));
+    out += escaped_line(text.substr(0, end));
     if (end == std::string_view::npos) return out;
     out += text.at(end);
     text.remove_prefix(end + 1);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "harness/judge/arbitrary_result.hpp"
+#include "harness/kernel/arbitrary_text.hpp"
 #include "reports/approved_text.hpp"
 #include "reports/sample_run.hpp"
 
@@ -58,8 +59,8 @@ RC_GTEST_PROP(TextSummary, LetsNoControlCharacterPass, ()) {
   reports::Run run = sample_run();
   run.cases.push_back(*judge::arbitrary_result());
   run.cases.back().verdict = judge::Verdict::fail;
-  run.identity.incomplete_because = *judge::arbitrary_text();
-  run.identity.reproduce_options = *judge::arbitrary_text();
+  run.identity.incomplete_because = *kernel::arbitrary_text();
+  run.identity.reproduce_options = *kernel::arbitrary_text();
   const std::string text = summary_text(run, {false, 100});
   RC_ASSERT(std::none_of(text.begin(), text.end(),
                          [](char c) { return (c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7F; }));

@@ -142,10 +142,18 @@ void add_slow(SuiteOfFunctions& suite) {
   }
 }
 
+void add_items(SuiteOfFunctions& suite) {
+  suite.add(judge::PicsItem{"x", judge::PicsKind::truth, "whether there is an x"});
+  suite.add(judge::PicsItem{"n", judge::PicsKind::number, "how many n there are", 9});
+  suite.add(judge::PicsItem{"s", judge::PicsKind::text, "what s is", 0, {"zero", "last"}});
+  suite.set_last_position(8);
+}
+
 std::unique_ptr<SuiteOfFunctions> good_suite() {
   auto suite = std::make_unique<SuiteOfFunctions>("probe", std::vector<std::string>{"station"});
   suite->add({"swapped", "M1", "station", "swaps the octets of a word"});
   suite->add({"late", "M2", "station", "answers late"});
+  add_items(*suite);
   for (const char* name : {"word_is_latched", "word_is_held", "word_is_cleared"}) {
     suite->add(named(fmt::format("probe/station/data/{}", name), {"must"}, {{"swapped", "wrong_word"}}),
                failing_on("swapped", "wrong_word"));

@@ -29,6 +29,9 @@
 // Of an item that it does not declare, each answer is admissible.
 namespace fieldproof::conformance {
 
+// The rows of these items.
+std::vector<judge::PicsItem> master_pics_items();
+
 class MasterBench {
  public:
   using MakeMaster =

@@ -14,12 +14,15 @@ using nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
 constexpr std::size_t kMostLevels = 1 << 20;
+constexpr kernel::Duration kLongestCycle = 10 * kernel::kSecond;
 
 std::int64_t ticks(kernel::Time time) {
   return time.time_since_epoch().count();
 }
-kernel::Time time_of(std::int64_t ticks) {
-  return kernel::Time{kernel::Duration{ticks}};
+// An instant of a run; what is far behind any run would only overflow.
+kernel::Time read_time(const config::Value& value) {
+  constexpr std::int64_t kLatest = 1'000'000'000'000'000'000;
+  return kernel::Time{kernel::Duration{value.as_integer<std::int64_t>(0, kLatest)}};
 }
 
 // ---- writing ----
@@ -89,7 +92,7 @@ DriveEvent read_drive(const config::Value& value) {
   return config::read_object(value, [](config::ObjectReader& o) {
     DriveEvent event;
     event.port = o.required("port").as_integer<unsigned>(0, 2);
-    event.wave.start = time_of(o.required("start").as_integer());
+    event.wave.start = read_time(o.required("start"));
     event.wave.rate = o.required("rate").as_integer(1, std::int64_t{1} << 40);
     const auto size = o.required("size").as_integer<std::size_t>(0, kMostLevels);
     event.wave.levels = read_levels(o.required("levels"), size);
@@ -137,7 +140,8 @@ interbus::MasterStatus read_status(const config::Value& value) {
     s.fault_location = {location[0].as_integer<int>(), location[1].as_integer<int>()};
     s.peripheral_faults = read_positions(o.required("peripheral_faults"));
     s.reconfigurations = read_positions(o.required("reconfigurations"));
-    s.cycle_time = kernel::Duration{o.required("cycle_time").as_integer()};
+    s.cycle_time =
+        kernel::Duration{o.required("cycle_time").as_integer<std::int64_t>(0, kLongestCycle.count())};
     return s;
   });
 }
@@ -145,22 +149,28 @@ interbus::MasterStatus read_status(const config::Value& value) {
 DeviceEvent read_event(const config::Value& value) {
   return config::read_object(value, [&](config::ObjectReader& o) {
     DeviceEvent event;
-    event.at = time_of(o.required("at").as_integer());
+    event.at = read_time(o.required("at"));
     event.call = o.required("call").as_integer<std::uint64_t>();
-    if (const auto drive = o.optional("drive")) {
+    const auto drive = o.optional("drive");
+    const auto output = o.optional("output");
+    const auto cycle_end = o.optional("cycle_end");
+    const auto view = o.optional("view");
+    if (drive.has_value() + output.has_value() + cycle_end.has_value() + view.has_value() != 1) {
+      config::fail(value, "an event is one of \"drive\", \"output\", \"cycle_end\" and \"view\"");
+    }
+    if (drive) {
       event.what = read_drive(*drive);
-    } else if (const auto output = o.optional("output")) {
+    } else if (output) {
       event.what = config::read_object(*output, [](config::ObjectReader& p) {
         return OutputEvent{p.required("word").as_integer<unsigned>(0, 255),
-                           p.required("value").as_integer<std::uint16_t>(),
-                           time_of(p.required("when").as_integer())};
+                           p.required("value").as_integer<std::uint16_t>(), read_time(p.required("when"))};
       });
-    } else if (const auto cycle_end = o.optional("cycle_end")) {
+    } else if (cycle_end) {
       event.what = config::read_object(*cycle_end, [](config::ObjectReader& p) {
         return HookEvent{p.required("data_cycle").as_bool(), p.required("accepted").as_bool()};
       });
     } else {
-      event.what = config::read_object(o.required("view"), [](config::ObjectReader& p) {
+      event.what = config::read_object(*view, [](config::ObjectReader& p) {
         return ViewEvent{read_status(p.required("status")), read_words(p.required("inputs")),
                          read_words(p.required("outputs"))};
       });
@@ -194,8 +204,9 @@ std::string DeviceRecording::text() const {
 
 DeviceRecording DeviceRecording::load(const std::filesystem::path& path) {
   const config::Document document = config::Document::load(path);
-  return config::read_object(document.root(), [](config::ObjectReader& o) {
+  return config::read_object(document.root(), [name = path.string()](config::ObjectReader& o) {
     DeviceRecording recording;
+    recording.name_ = name;
     o.required("version").as_integer(kVersion, kVersion);
     for (const config::Value& device : o.required("devices").as_array(0, 4096)) {
       const std::size_t number = recording.add_device();

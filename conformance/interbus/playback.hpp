@@ -59,11 +59,15 @@ class DeviceRecording {
   std::size_t device_count() const { return devices_.size(); }
   bool is_truncated() const { return is_truncated_; }
 
+  // The file that it was loaded from; empty for one that was recorded.
+  const std::string& name() const { return name_; }
+
   std::string text() const;
   // Throws kernel::Error(configuration) with file, line and pointer for anything but such a text.
   static DeviceRecording load(const std::filesystem::path& path);
 
  private:
+  std::string name_;
   std::deque<std::vector<DeviceEvent>> devices_;
   std::size_t event_count_ = 0;
   bool is_truncated_ = false;
@@ -76,9 +80,10 @@ std::unique_ptr<interbus::MasterDevice> recorded(std::unique_ptr<interbus::Maste
                                                  DeviceRecording& recording);
 
 // The device number `device` of a recording; one that the recording does not have stays silent. The recording
-// must outlive the device.
-std::unique_ptr<interbus::SlaveDevice> played_back_slave(const DeviceRecording& recording,
-                                                         std::size_t device);
+// must outlive the device. Throws kernel::Error(configuration) for an event that no such device has: of the
+// other role, or of a word that a slave with so many words does not have.
+std::unique_ptr<interbus::SlaveDevice> played_back_slave(const DeviceRecording& recording, std::size_t device,
+                                                         unsigned words);
 std::unique_ptr<interbus::MasterDevice> played_back_master(const DeviceRecording& recording,
                                                            std::size_t device);
 

@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <span>
 #include <utility>
 
 #include "conformance/interbus/playback.hpp"
+#include "harness/kernel/error.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -247,6 +250,24 @@ class Reel {
   std::uint64_t calls_ = 0;
 };
 
+// Refuses the event at its place in the file.
+[[noreturn]] void refuse(const DeviceRecording& recording, std::size_t device, std::size_t event,
+                         std::string_view sentence) {
+  throw kernel::Error(kernel::ErrorKind::configuration,
+                      fmt::format("{}: /devices/{}/{}: {}", recording.name(), device, event, sentence));
+}
+
+// What a file says that no device of this role did.
+template <typename IsOwn>
+void check_events(const DeviceRecording& recording, std::size_t device, IsOwn is_own,
+                  std::string_view sentence) {
+  if (device >= recording.device_count()) return;
+  const std::vector<DeviceEvent>& events = recording.events(device);
+  for (std::size_t n = 0; n < events.size(); ++n) {
+    if (!is_own(events[n].what)) refuse(recording, device, n, sentence);
+  }
+}
+
 void drive_again(segment::Port* port, const DriveEvent& event) {
   if (port == nullptr) return;
   line::Waveform wave = event.wave;
@@ -340,11 +361,24 @@ std::unique_ptr<MasterDevice> recorded(std::unique_ptr<MasterDevice> device, Dev
   return std::make_unique<RecordedMaster>(std::move(device), recording);
 }
 
-std::unique_ptr<SlaveDevice> played_back_slave(const DeviceRecording& recording, std::size_t device) {
+std::unique_ptr<SlaveDevice> played_back_slave(const DeviceRecording& recording, std::size_t device,
+                                               unsigned words) {
+  const auto is_own = [words](const auto& what) {
+    const auto* output = std::get_if<OutputEvent>(&what);
+    return output != nullptr ? output->word < words : std::holds_alternative<DriveEvent>(what);
+  };
+  check_events(
+      recording, device, is_own,
+      fmt::format("a slave with {} words drives, and sets words below {}; the recording is of another "
+                  "case, or was changed",
+                  words, words));
   return std::make_unique<PlayedBackSlave>(recording, device);
 }
 
 std::unique_ptr<MasterDevice> played_back_master(const DeviceRecording& recording, std::size_t device) {
+  check_events(
+      recording, device, [](const auto& what) { return !std::holds_alternative<OutputEvent>(what); },
+      "a master sets no outputs of a slave; the recording is of another case, or was changed");
   return std::make_unique<PlayedBackMaster>(recording, device);
 }
 

@@ -26,17 +26,19 @@ interbus::StationDescription station(std::string name, std::uint16_t id_code) {
 }  // namespace
 
 interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveSetting& setting) {
-  const int stations = std::max(setting.stations, setting.position);
   interbus::NetworkDescription network;
   if (setting.network) network = *setting.network;
-  const int available = setting.network ? static_cast<int>(ring_order(network).size()) : stations;
+  const int available = setting.network ? static_cast<int>(ring_order(network).size())
+                                        : static_cast<int>(network.rules.max_stations);
   if (setting.position < 1 || setting.position > available) {
     throw kernel::Error(
         kernel::ErrorKind::usage,
-        fmt::format("there is no slave at position {}: the network has {}", setting.position, available));
+        fmt::format("there is no slave at position {}: {} {}", setting.position,
+                    setting.network ? "the network has" : "a network has at most (max_stations)", available));
   }
   if (setting.network) return network;
   network.name = "slave bench";
+  const int stations = std::max(setting.stations, setting.position);
   for (int position = 1; position <= stations; ++position) {
     const bool is_iut = position == setting.position;
     network.stations.push_back(station(fmt::format("station {}", position),
@@ -50,6 +52,27 @@ interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveS
     if (needs.remote_neighbour) network.stations.push_back(station("neighbour", kOneWordBothWays));
   }
   return network;
+}
+
+std::vector<judge::PicsItem> slave_pics_items() {
+  using enum judge::PicsKind;
+  constexpr std::int64_t kMostWords = 64;
+  return {
+      {"words", number, "length of the register in words of 16 bits", kMostWords},
+      {"inputs", truth, "the slave has process data inputs"},
+      {"outputs", truth, "the slave has process data outputs"},
+      {"id_code", number, "the ID code: bits 0 to 12 of the ID register", 0x1FFF},
+      {"remote_interface", truth, "there is an outgoing remote bus interface (OUT1)"},
+      {"branch_interface", truth, "there is an outgoing interface to a local bus or branch (OUT2)"},
+      {"reconfiguration_button", truth, "a reconfiguration can be asked for at the station"},
+      {"peripheral_fault_input", truth, "a peripheral fault can be told to the station"},
+      {"any_length_code", truth, "the station can be built with any register length"},
+      {"outputs_while_outgoing_bus_is_reset",
+       text,
+       "what the outputs do while an outgoing bus is reset",
+       0,
+       {"held", "cleared"}},
+  };
 }
 
 judge::Pics declared_slave(const interbus::SlaveConfiguration& configuration) {
@@ -80,7 +103,8 @@ SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
               if (position != setting.position || !setting.make_slave) return nullptr;
               return setting.make_slave(configuration);
             }),
-      pics_(setting.pics ? *setting.pics : declared_slave(ring_.configuration(position_))),
+      pics_(
+          setting.pics.value_or(judge::Pics{}).completed_by(declared_slave(ring_.configuration(position_)))),
       train_(network_.rules),
       model_(network_.rules),
       channel_(&train_.code()),

@@ -55,7 +55,7 @@ struct SlaveSetting {
   std::optional<interbus::NetworkDescription> network;  // instead of the bench's own
   std::uint64_t seed = 1;
   Volume volume = Volume::full;
-  std::optional<judge::Pics> pics;  // absent: what the network says about the IUT
+  std::optional<judge::Pics> pics;  // what is not answered is as the network says about the IUT
   fault::Plan plan{};               // declared faults besides those of the case
   // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
   std::function<trace::Recorder*(const trace::Trace&, const interbus::Rules&)> make_recorder;
@@ -63,7 +63,9 @@ struct SlaveSetting {
 
 // The network of a case. Throws kernel::Error for a position that the network does not have.
 interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveSetting& setting);
-// What a station of the bench declares about itself.
+// What a PICS of a slave may answer.
+std::vector<judge::PicsItem> slave_pics_items();
+// What a station of the bench declares about itself: an answer to each of these items.
 judge::Pics declared_slave(const interbus::SlaveConfiguration& configuration);
 
 class SlaveBench final : private segment::Station {

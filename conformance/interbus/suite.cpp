@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -57,6 +58,12 @@ class Run {
     }
   }
 
+  // Throw for a setup that the cases of the role cannot be run with.
+  void check(const SlaveCase& slave_case);
+  void check(const MasterCase& master_case);
+  void check(const NetworkCase& network_case);
+  judge::Pics pics(const SlaveCase& slave_case);
+
   Outcome run(const SlaveCase& slave_case);
   Outcome run(const MasterCase& master_case);
   Outcome run(const NetworkCase& network_case);
@@ -67,6 +74,8 @@ class Run {
   MakeSlave slave_maker(const std::string& uri) const;
   std::unique_ptr<interbus::SlaveDevice> make_slave(const interbus::SlaveConfiguration& configuration);
   std::unique_ptr<interbus::MasterDevice> make_master(const interbus::MasterConfiguration& configuration);
+  SlaveSetting slave_setting();
+  interbus::NetworkDescription network() const;
   NetworkParts network_parts(std::size_t stations);
   void finish(Outcome& outcome, const trace::Trace& trace, kernel::Time now) const;
   void keep(Outcome& outcome, LineRecorder& lines);
@@ -91,7 +100,7 @@ Run::MakeSlave Run::slave_maker(const std::string& uri) const {
 }
 
 std::unique_ptr<interbus::SlaveDevice> Run::make_slave(const interbus::SlaveConfiguration& configuration) {
-  if (played_back_) return played_back_slave(*played_back_, played_back_devices_++);
+  if (played_back_) return played_back_slave(*played_back_, played_back_devices_++, configuration.words);
   std::unique_ptr<interbus::SlaveDevice> device = slave_maker(assigned_.uri)(configuration);
   return setup_.record ? recorded(std::move(device), recording_) : std::move(device);
 }
@@ -117,7 +126,7 @@ void Run::keep(Outcome& outcome, LineRecorder& lines) {
   if (recording_.device_count() > 0) outcome.recording.playback = recording_.text();
 }
 
-Outcome Run::run(const SlaveCase& slave_case) {
+SlaveSetting Run::slave_setting() {
   SlaveSetting setting;
   setting.make_slave = [this](const interbus::SlaveConfiguration& c) { return make_slave(c); };
   setting.position = assigned_.position == 0 ? 1 : assigned_.position;
@@ -127,6 +136,30 @@ Outcome Run::run(const SlaveCase& slave_case) {
   setting.seed = setup_.seed;
   setting.volume = setup_.volume;
   setting.pics = setup_.pics;
+  return setting;
+}
+
+// A case for a slave judges one; a second one would stand in the ring and never be looked at.
+void Run::check(const SlaveCase& slave_case) {
+  const auto is_slave = [](const Assignment& one) { return one.role.empty() || one.role == "slave"; };
+  const auto count = std::count_if(setup_.implementations.begin(), setup_.implementations.end(), is_slave);
+  if (count > 1) {
+    refuse(
+        fmt::format("the cases for a slave judge one slave, {} are given; leave one of them, or select the "
+                    "cases for a network ('interbus/network/**')",
+                    count));
+  }
+  slave_network(slave_case.needs, slave_setting());
+}
+
+judge::Pics Run::pics(const SlaveCase& slave_case) {
+  SlaveSetting setting = slave_setting();
+  setting.make_slave = nullptr;
+  return SlaveBench(slave_case.needs, setting).pics();
+}
+
+Outcome Run::run(const SlaveCase& slave_case) {
+  SlaveSetting setting = slave_setting();
   std::optional<LineRecorder> lines;
   if (setup_.record) {
     setting.make_recorder = [&](const trace::Trace& trace, const interbus::Rules& rules) {
@@ -140,9 +173,13 @@ Outcome Run::run(const SlaveCase& slave_case) {
   return outcome;
 }
 
-Outcome Run::run(const MasterCase& master_case) {
+void Run::check(const MasterCase&) {
   if (network_) refuse("cases for a master make the rings that they need; leave out the network");
   if (!plan_.empty()) refuse("cases for a master bring their own faults; leave out the plan");
+}
+
+Outcome Run::run(const MasterCase& master_case) {
+  check(master_case);
   MasterBench bench([this](const auto& configuration) { return make_master(configuration); }, setup_.seed,
                     setup_.volume, setup_.pics.value_or(judge::Pics{}));
   std::optional<LineRecorder> lines;
@@ -207,9 +244,18 @@ interbus::NetworkDescription small_network() {
   return network;
 }
 
-Outcome Run::run(const NetworkCase& network_case) {
-  const interbus::NetworkDescription network = network_ ? *network_ : small_network();
+interbus::NetworkDescription Run::network() const {
+  return network_ ? *network_ : small_network();
+}
+
+void Run::check(const NetworkCase&) {
   if (played_back_) refuse("a network is not judged again from a recording; run it again");
+  network_parts(interbus::ring_order(network()).size());
+}
+
+Outcome Run::run(const NetworkCase& network_case) {
+  check(network_case);
+  const interbus::NetworkDescription network = this->network();
   NetworkBench bench(network, network_parts(interbus::ring_order(network).size()), plan_, setup_.seed,
                      setup_.volume);
   std::optional<LineRecorder> lines;
@@ -235,8 +281,10 @@ class InterbusSuite final : public Suite {
       for (const auto& one : cases) {
         cases_.push_back(one.test_case);
         runs_[one.test_case.id] = [&one](Run& run) { return run.run(one); };
+        checks_[one.test_case.id] = [&one](Run& run) { run.check(one); };
       }
     };
+    for (const SlaveCase& one : slave_cases()) slave_cases_[one.test_case.id] = &one;
     add(slave_cases());
     add(master_cases());
     add(network_cases());
@@ -250,6 +298,23 @@ class InterbusSuite final : public Suite {
   const std::vector<TestCase>& cases() const override { return cases_; }
   const std::vector<Deviation>& deviations() const override { return deviations_; }
 
+  int last_position() const override { return static_cast<int>(interbus::Rules{}.max_stations); }
+  std::vector<judge::PicsItem> pics_items() const override {
+    std::vector<judge::PicsItem> items = slave_pics_items();
+    for (judge::PicsItem& item : master_pics_items()) items.push_back(std::move(item));
+    return items;
+  }
+  std::optional<judge::Pics> declared_pics(const TestCase& test_case, const Setup& setup) const override {
+    const auto slave_case = slave_cases_.find(test_case.id);
+    if (!setup.pics || slave_case == slave_cases_.end()) return setup.pics;
+    return Run(test_case, setup, own_).pics(*slave_case->second);
+  }
+
+  void check(const TestCase& test_case, const Setup& setup) const override {
+    Run one(test_case, setup, own_);
+    checks_.at(test_case.id)(one);
+  }
+
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
     Run one(test_case, setup, own_);
     return runs_.at(test_case.id)(one);
@@ -260,6 +325,8 @@ class InterbusSuite final : public Suite {
   std::vector<TestCase> cases_;
   std::vector<Deviation> deviations_;
   std::map<std::string, std::function<Outcome(Run&)>, std::less<>> runs_;
+  std::map<std::string, std::function<void(Run&)>, std::less<>> checks_;
+  std::map<std::string, const SlaveCase*, std::less<>> slave_cases_;
 };
 
 }  // namespace

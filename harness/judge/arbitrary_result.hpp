@@ -11,23 +11,9 @@
 #include <vector>
 
 #include "harness/judge/finding.hpp"
+#include "harness/kernel/arbitrary_text.hpp"
 
 namespace fieldproof::judge {
-
-inline rc::Gen<std::string> arbitrary_text() {
-  const auto piece =
-      rc::gen::oneOf(rc::gen::arbitrary<std::string>(), rc::gen::string<std::string>(),
-                     rc::gen::element<std::string>("]]>", "<!--", "&#0;", "\"", "'", "\x1b[31m", "\x9b",
-                                                   "\xc3", "\xed\xa0\x80", "\xef\xbf\xbe", "\xf4\x90\x80\x80",
-                                                   "\xe2\x80\xae", "grüß", "\xf0\x9f\x9a\x8c", "\n", "\r\n",
-                                                   "\t", std::string(1, '\0'), "\\x41", "../", "</failure>"));
-  return rc::gen::map(rc::gen::container<std::vector<std::string>>(piece),
-                      [](const std::vector<std::string>& pieces) {
-                        std::string text;
-                        for (const std::string& part : pieces) text += part;
-                        return text;
-                      });
-}
 
 inline rc::Gen<double> arbitrary_number() {
   return rc::gen::oneOf(
@@ -49,27 +35,30 @@ inline rc::Gen<Verdict> arbitrary_verdict() {
 
 inline rc::Gen<Reference> arbitrary_reference() {
   return rc::gen::build<Reference>(
-      rc::gen::set(&Reference::source, arbitrary_text()), rc::gen::set(&Reference::clause, arbitrary_text()),
+      rc::gen::set(&Reference::source, kernel::arbitrary_text()),
+      rc::gen::set(&Reference::clause, kernel::arbitrary_text()),
       rc::gen::set(&Reference::standing,
                    rc::gen::element(Standing::seed, Standing::sure, Standing::searched, Standing::calc,
                                     Standing::derived, Standing::memory, Standing::own)));
 }
 
 inline rc::Gen<Finding> arbitrary_finding() {
-  const auto texts = rc::gen::container<std::vector<std::string>>(arbitrary_text());
+  const auto texts = rc::gen::container<std::vector<std::string>>(kernel::arbitrary_text());
   const auto time = rc::gen::map(rc::gen::arbitrary<std::int64_t>(),
                                  [](std::int64_t ps) { return kernel::Time{kernel::Duration{ps}}; });
   return rc::gen::build<Finding>(
-      rc::gen::set(&Finding::verdict, arbitrary_verdict()), rc::gen::set(&Finding::reason, arbitrary_text()),
-      rc::gen::set(&Finding::requirement, arbitrary_text()),
+      rc::gen::set(&Finding::verdict, arbitrary_verdict()),
+      rc::gen::set(&Finding::reason, kernel::arbitrary_text()),
+      rc::gen::set(&Finding::requirement, kernel::arbitrary_text()),
       rc::gen::set(&Finding::reference, arbitrary_reference()), rc::gen::set(&Finding::expected, texts),
-      rc::gen::set(&Finding::actual, arbitrary_text()), rc::gen::set(&Finding::time, time),
-      rc::gen::set(&Finding::first_difference, arbitrary_text()), rc::gen::set(&Finding::decode, texts));
+      rc::gen::set(&Finding::actual, kernel::arbitrary_text()), rc::gen::set(&Finding::time, time),
+      rc::gen::set(&Finding::first_difference, kernel::arbitrary_text()),
+      rc::gen::set(&Finding::decode, texts));
 }
 
 inline rc::Gen<Measurement> arbitrary_measurement() {
-  return rc::gen::build<Measurement>(rc::gen::set(&Measurement::name, arbitrary_text()),
-                                     rc::gen::set(&Measurement::unit, arbitrary_text()),
+  return rc::gen::build<Measurement>(rc::gen::set(&Measurement::name, kernel::arbitrary_text()),
+                                     rc::gen::set(&Measurement::unit, kernel::arbitrary_text()),
                                      rc::gen::set(&Measurement::value, arbitrary_number()),
                                      rc::gen::set(&Measurement::low, arbitrary_number()),
                                      rc::gen::set(&Measurement::high, arbitrary_number()));
@@ -81,10 +70,10 @@ inline rc::Gen<CaseResult> arbitrary_result() {
   return rc::gen::scale(
       0.3,
       rc::gen::build<CaseResult>(
-          rc::gen::set(&CaseResult::id, arbitrary_text()),
+          rc::gen::set(&CaseResult::id, kernel::arbitrary_text()),
           rc::gen::set(&CaseResult::verdict, arbitrary_verdict()),
-          rc::gen::set(&CaseResult::reason, arbitrary_text()),
-          rc::gen::set(&CaseResult::requirement, arbitrary_text()),
+          rc::gen::set(&CaseResult::reason, kernel::arbitrary_text()),
+          rc::gen::set(&CaseResult::requirement, kernel::arbitrary_text()),
           rc::gen::set(&CaseResult::reference, arbitrary_reference()),
           rc::gen::set(&CaseResult::findings, rc::gen::container<std::vector<Finding>>(arbitrary_finding())),
           rc::gen::set(&CaseResult::measurements,
@@ -93,8 +82,8 @@ inline rc::Gen<CaseResult> arbitrary_result() {
           rc::gen::set(&CaseResult::fingerprint, arbitrary_word()),
           rc::gen::set(&CaseResult::virtual_time, duration),
           rc::gen::set(&CaseResult::wall_time_us, arbitrary_word()),
-          rc::gen::set(&CaseResult::log, arbitrary_text()),
-          rc::gen::set(&CaseResult::purpose, arbitrary_text())));
+          rc::gen::set(&CaseResult::log, kernel::arbitrary_text()),
+          rc::gen::set(&CaseResult::purpose, kernel::arbitrary_text())));
 }
 
 }  // namespace fieldproof::judge

@@ -2,19 +2,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "harness/config/document.hpp"
 #include "harness/judge/result_json.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -42,6 +41,8 @@ std::string head_of(std::string_view result) {
   return fmt::format(R"({{"check":"{:016x}","size":{},"result":)", check_of(result), result.size());
 }
 
+constexpr std::size_t kLargestJournal = std::size_t{1} << 30;  // octets
+
 constexpr std::string_view kResultKey = R"("result":)";
 
 // The text of the result, or nothing when the line is not what `append` wrote.
@@ -54,15 +55,9 @@ std::optional<std::string_view> intact_result(std::string_view line) {
   return result;
 }
 
-std::string whole_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw_file_error(path, "the journal cannot be read");
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 CaseResult result_in(std::string_view text, const std::string& place) {
-  const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
-  return case_result_from(json, place);
+  const config::Document document = config::Document::parse(std::string(text), place);
+  return case_result_from(document.root());
 }
 
 // Keeps one result per case: the last one, at the place of the first.
@@ -86,43 +81,54 @@ class LatestResults {
 
 }  // namespace
 
-Journal::Journal(fs::path path, Durability durability) : path_(std::move(path)), durability_(durability) {
-  if (fs::exists(path_)) {
-    const JournalContent content = read_journal(path_);
-    if (content.is_torn && ::truncate(path_.c_str(), static_cast<off_t>(content.intact_size)) != 0) {
-      throw_file_error(path_, "the torn last line of the journal cannot be cut off");
-    }
-  }
-  file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (file_ < 0) throw_file_error(path_, "the journal cannot be opened for writing");
+// A file that is closed also when the constructor that opened it throws.
+Journal::OpenFile::~OpenFile() {
+  if (number >= 0) ::close(number);
 }
 
-Journal::~Journal() {
-  ::close(file_);
+Journal::Journal(fs::path path, Durability durability) : path_(std::move(path)), durability_(durability) {
+  file_.number = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (file_.number < 0) throw_file_error(path_, "the journal cannot be opened for writing");
+  // Before it is read: what is torn now may be what another program is just writing.
+  if (::flock(file_.number, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK) {
+      throw kernel::Error(
+          kernel::ErrorKind::configuration,
+          fmt::format("{}: another program writes this run; wait until it ends, or end it", path_.string()));
+    }
+    throw_file_error(path_, "the journal cannot be locked");
+  }
+  const JournalContent content = read_journal(path_);
+  if (content.is_torn && ::ftruncate(file_.number, static_cast<off_t>(content.intact_size)) != 0) {
+    throw_file_error(path_, "the torn last line of the journal cannot be cut off");
+  }
 }
+
+Journal::~Journal() = default;
 
 void Journal::append(const CaseResult& result) {
   const std::string text = to_json(result, WallTime::included).dump();
   const std::string line = head_of(text) + text + "}\n";
-  const off_t begin = ::lseek(file_, 0, SEEK_END);
+  const off_t begin = ::lseek(file_.number, 0, SEEK_END);
   ssize_t written = 0;
   do {
-    written = ::write(file_, line.data(), line.size());
+    written = ::write(file_.number, line.data(), line.size());
   } while (written < 0 && errno == EINTR);
   if (written != static_cast<ssize_t>(line.size())) {
     const int cause = written < 0 ? errno : ENOSPC;
     // What a full disk took of the line would stand torn in the middle once there is room again.
-    if (written > 0 && ::ftruncate(file_, begin) != 0) throw_file_error(path_, "the journal is damaged");
+    if (written > 0 && ::ftruncate(file_.number, begin) != 0)
+      throw_file_error(path_, "the journal is damaged");
     errno = cause;
     throw_file_error(path_, "the journal cannot be written");
   }
-  if (durability_ == Durability::synced && ::fdatasync(file_) != 0) {
+  if (durability_ == Durability::synced && ::fdatasync(file_.number) != 0) {
     throw_file_error(path_, "the journal cannot be brought to the disk");
   }
 }
 
 JournalContent read_journal(const fs::path& path) {
-  const std::string text = whole_file(path);
+  const std::string text = config::read_text(path, kLargestJournal);
   JournalContent content;
   LatestResults latest(content.results);
   std::size_t begin = 0;

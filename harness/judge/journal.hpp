@@ -7,8 +7,8 @@
 // (FNV-1a, 64 bit) and size are of the text of the result. Reading verifies both: a last line that does not
 // hold is torn and dropped; any other one is kernel::Error(configuration) that names file and line.
 //
-// Limits: one writer at a time. A case may stand in the journal more than once (it was run again on resume);
-// the last line counts.
+// Limits: one writer at a time, which is held: a second one is an Error(configuration). A case may stand in
+// the journal more than once (it was run again on resume); the last line counts.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ enum class Durability : std::uint8_t { written, synced };
 class Journal {
  public:
   // Creates the file, or continues it: a torn last line is cut off first. Throws kernel::Error(configuration)
-  // when the file cannot be opened or is damaged before its last line.
+  // when the file cannot be opened, is damaged before its last line, or has a writer already.
   explicit Journal(std::filesystem::path path, Durability durability = Durability::written);
   ~Journal();
   Journal(const Journal&) = delete;
@@ -35,9 +35,17 @@ class Journal {
   void append(const CaseResult& result);
 
  private:
+  struct OpenFile {
+    int number = -1;
+    OpenFile() = default;
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+    ~OpenFile();
+  };
+
   std::filesystem::path path_;
   Durability durability_;
-  int file_ = -1;
+  OpenFile file_;
 };
 
 struct JournalContent {

@@ -148,7 +148,7 @@ TEST(Journal, NamesTheDamagedLineInTheMiddle) {
 TEST(Journal, SaysWhichFileCannotBeRead) {
   const JournalFile file;
   EXPECT_EQ(sentence_of_reading(file.path()),
-            file.path().string() + ": the journal cannot be read: No such file or directory");
+            file.path().string() + ": the file cannot be read: No such file or directory");
   EXPECT_THROW(Journal(file.path() / "below"), kernel::Error);
 }
 

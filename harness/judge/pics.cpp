@@ -1,5 +1,8 @@
 #include "harness/judge/pics.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace fieldproof::judge {
 namespace {
 
@@ -24,6 +27,27 @@ std::int64_t Pics::number(std::string_view item, std::int64_t absent) const {
 std::string Pics::text(std::string_view item, std::string_view absent) const {
   const std::string* declared = answer<std::string>(items_, item);
   return declared == nullptr ? std::string(absent) : *declared;
+}
+
+Pics Pics::completed_by(Pics defaults) const {
+  for (const auto& [item, answer] : items_) defaults.declare(item, answer);
+  return defaults;
+}
+
+PicsKind kind_of(const Pics::Answer& answer) {
+  return static_cast<PicsKind>(answer.index());
+}
+
+std::string answers_text(const PicsItem& item) {
+  switch (item.kind) {
+    case PicsKind::truth:
+      return "true or false";
+    case PicsKind::number:
+      return fmt::format("a whole number from 0 to {}", item.most);
+    case PicsKind::text:
+      break;
+  }
+  return fmt::format("\"{}\"", fmt::join(item.words, "\" or \""));
 }
 
 }  // namespace fieldproof::judge

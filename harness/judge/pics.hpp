@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 // Protocol implementation conformance statement: what an implementation declares about itself. Applicability
 // of a case and declared options (which safe state, which reactions) are decided from it, never guessed.
@@ -25,8 +26,29 @@ class Pics {
 
   const std::map<std::string, Answer, std::less<>>& items() const { return items_; }
 
+  // These answers, and those of `defaults` to what is not answered here.
+  Pics completed_by(Pics defaults) const;
+
  private:
   std::map<std::string, Answer, std::less<>> items_;
 };
+
+// What an item may be answered with.
+enum class PicsKind : std::uint8_t { truth, number, text };
+
+PicsKind kind_of(const Pics::Answer& answer);
+
+// One row of the list of items that a suite knows. An item that no row names is a misspelling: nobody would
+// ask for it, and what it was meant to switch on would silently not apply.
+struct PicsItem {
+  std::string name;
+  PicsKind kind = PicsKind::truth;
+  std::string meaning;
+  std::int64_t most = 0;             // of a number, which is at least 0
+  std::vector<std::string> words{};  // that a text may be
+};
+
+// "true or false", "a whole number from 0 to 64", "\"held\" or \"cleared\"".
+std::string answers_text(const PicsItem& item);
 
 }  // namespace fieldproof::judge

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <string_view>
 
-#include "harness/judge/untrusted_text.hpp"
 #include "harness/kernel/error.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 
 namespace fieldproof::judge {
 namespace {
@@ -17,32 +18,32 @@ using Json = nlohmann::ordered_json;
 
 Json strings_to_json(const std::vector<std::string>& strings) {
   Json json = Json::array();
-  for (const std::string& string : strings) json.push_back(as_utf8(string));
+  for (const std::string& string : strings) json.push_back(kernel::as_utf8(string));
   return json;
 }
 
 Json reference_to_json(const Reference& reference) {
-  return {{"source", as_utf8(reference.source)},
-          {"clause", as_utf8(reference.clause)},
+  return {{"source", kernel::as_utf8(reference.source)},
+          {"clause", kernel::as_utf8(reference.clause)},
           {"standing", name(reference.standing)},
           {"verified", is_verified(reference.standing)}};
 }
 
 Json finding_to_json(const Finding& finding) {
   return {{"verdict", name(finding.verdict)},
-          {"reason", as_utf8(finding.reason)},
-          {"requirement", as_utf8(finding.requirement)},
+          {"reason", kernel::as_utf8(finding.reason)},
+          {"requirement", kernel::as_utf8(finding.requirement)},
           {"reference", reference_to_json(finding.reference)},
           {"expected", strings_to_json(finding.expected)},
-          {"actual", as_utf8(finding.actual)},
+          {"actual", kernel::as_utf8(finding.actual)},
           {"time_ps", fmt::format("{}", finding.time.time_since_epoch().count())},
-          {"first_difference", as_utf8(finding.first_difference)},
+          {"first_difference", kernel::as_utf8(finding.first_difference)},
           {"decode", strings_to_json(finding.decode)}};
 }
 
 Json measurement_to_json(const Measurement& measurement) {
-  return {{"name", as_utf8(measurement.name)},
-          {"unit", as_utf8(measurement.unit)},
+  return {{"name", kernel::as_utf8(measurement.name)},
+          {"unit", kernel::as_utf8(measurement.unit)},
           {"value", number_to_json(measurement.value)},
           {"low", number_to_json(measurement.low)},
           {"high", number_to_json(measurement.high)}};
@@ -55,124 +56,80 @@ Json list_to_json(const std::vector<T>& items, ToJson to_json) {
   return json;
 }
 
-// One object of a document and where it stands, for the sentence of an error.
-class Fields {
- public:
-  Fields(const Json& json, std::string place) : json_(json), place_(std::move(place)) {
-    if (!json_.is_object()) throw_wrong("", "an object");
+using config::ObjectReader;
+using config::Value;
+
+template <typename T>
+T integer_from(const Value& value, int base) {
+  const std::string_view digits = value.as_string();
+  T read{};
+  const char* end = digits.data() + digits.size();
+  const auto [stop, failure] = std::from_chars(digits.data(), end, read, base);
+  if (failure != std::errc{} || stop != end) {
+    config::fail(value, fmt::format("this is no {} 64-bit integer; write its digits as a string",
+                                    base == 10 ? "decimal" : "hexadecimal"));
   }
-
-  std::string text(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_string()) throw_wrong(key, "a string");
-    return value.get<std::string>();
-  }
-
-  template <typename T>
-  T integer(const char* key, int base = 10) const {
-    const std::string digits = text(key);
-    T value{};
-    const char* end = digits.data() + digits.size();
-    const auto [stop, failure] = std::from_chars(digits.data(), end, value, base);
-    if (failure != std::errc{} || stop != end) {
-      throw_wrong(key, base == 10 ? "a string with a decimal 64-bit integer"
-                                  : "a string with a hexadecimal 64-bit integer");
-    }
-    return value;
-  }
-
-  double number(const char* key) const {
-    const Json& value = at(key);
-    if (value.is_number()) return value.get<double>();
-    const std::string word = value.is_string() ? value.get<std::string>() : std::string();
-    if (word == "nan") return std::numeric_limits<double>::quiet_NaN();
-    if (word == "inf") return std::numeric_limits<double>::infinity();
-    if (word == "-inf") return -std::numeric_limits<double>::infinity();
-    throw_wrong(key, R"(a number, "nan", "inf" or "-inf")");
-  }
-
-  std::vector<std::string> texts(const char* key) const {
-    std::vector<std::string> read;
-    for (const Json& item : list(key)) {
-      if (!item.is_string()) throw_wrong(key, "a list of strings");
-      read.push_back(item.get<std::string>());
-    }
-    return read;
-  }
-
-  template <typename Read>
-  auto objects(const char* key, Read read) const {
-    std::vector<decltype(read(*this))> all;
-    for (const Json& item : list(key)) {
-      all.push_back(read(Fields(item, fmt::format("{}: {}/{}", place_, key, all.size()))));
-    }
-    return all;
-  }
-
-  Fields object(const char* key) const { return {at(key), fmt::format("{}: {}", place_, key)}; }
-
-  template <typename T, typename From>
-  T word(const char* key, From from, const char* what) const {
-    const auto value = from(text(key));
-    if (!value) throw_wrong(key, what);
-    return *value;
-  }
-
-  bool has(const char* key) const { return json_.contains(key); }
-
- private:
-  const Json& at(const char* key) const {
-    const auto found = json_.find(key);
-    if (found == json_.end()) throw_wrong(key, "present");
-    return *found;
-  }
-
-  const Json& list(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_array()) throw_wrong(key, "a list");
-    return value;
-  }
-
-  [[noreturn]] void throw_wrong(std::string_view key, std::string_view right) const {
-    const std::string what = key.empty() ? "the result of a case" : fmt::format("\"{}\"", key);
-    throw kernel::Error(kernel::ErrorKind::configuration,
-                        fmt::format("{}: {} must be {}", place_, what, right));
-  }
-
-  const Json& json_;
-  std::string place_;
-};
-
-Reference reference_from(const Fields& fields) {
-  return {fields.text("source"), fields.text("clause"),
-          fields.word<Standing>(
-              "standing", [](const std::string& word) { return standing_from(word); },
-              "one of seed, sure, searched, calc, derived, memory, own")};
+  return read;
 }
 
-Verdict verdict_in(const Fields& fields) {
-  return fields.word<Verdict>(
-      "verdict", [](const std::string& word) { return verdict_from(word); },
-      "one of none, not-applicable, pass, warn, inconclusive, fail, error");
+double number_from(const Value& value) {
+  if (!value.is_string()) return value.as_number();
+  constexpr std::array<std::string_view, 3> kWords = {"nan", "inf", "-inf"};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr std::array<double, 3> kMeanings = {std::numeric_limits<double>::quiet_NaN(), kInfinity,
+                                               -kInfinity};
+  return kMeanings.at(value.as_choice(kWords));
 }
 
-Finding finding_from(const Fields& fields) {
-  Finding finding;
-  finding.verdict = verdict_in(fields);
-  finding.reason = fields.text("reason");
-  finding.requirement = fields.text("requirement");
-  finding.reference = reference_from(fields.object("reference"));
-  finding.expected = fields.texts("expected");
-  finding.actual = fields.text("actual");
-  finding.time = kernel::Time{kernel::Duration{fields.integer<std::int64_t>("time_ps")}};
-  finding.first_difference = fields.text("first_difference");
-  finding.decode = fields.texts("decode");
-  return finding;
+template <typename From>
+auto word_from(const Value& value, From from, std::string_view what) {
+  const auto known = from(value.as_string());
+  if (!known) config::fail(value, fmt::format("this is none of {}", what));
+  return *known;
 }
 
-Measurement measurement_from(const Fields& fields) {
-  return {fields.text("name"), fields.text("unit"), fields.number("value"), fields.number("low"),
-          fields.number("high")};
+template <typename Read>
+auto list_from(const Value& value, Read read) {
+  std::vector<decltype(read(value))> all;
+  for (const Value& item : value.as_array()) all.push_back(read(item));
+  return all;
+}
+
+std::string text_in(ObjectReader& object, std::string_view key) {
+  return std::string(object.required(key).as_string());
+}
+
+Reference reference_from(const Value& value) {
+  return config::read_open_object(value, [](ObjectReader& object) {
+    const auto from = [](std::string_view word) { return standing_from(word); };
+    return Reference{
+        text_in(object, "source"), text_in(object, "clause"),
+        word_from(object.required("standing"), from, "seed, sure, searched, calc, derived, memory, own")};
+  });
+}
+
+Finding finding_from(const Value& value) {
+  return config::read_open_object(value, [](ObjectReader& object) {
+    Finding finding;
+    finding.verdict = verdict_from(object.required("verdict"));
+    finding.reason = text_in(object, "reason");
+    finding.requirement = text_in(object, "requirement");
+    finding.reference = reference_from(object.required("reference"));
+    finding.expected = texts_from(object.required("expected"));
+    finding.actual = text_in(object, "actual");
+    finding.time = kernel::Time{kernel::Duration{integer_from<std::int64_t>(object.required("time_ps"), 10)}};
+    finding.first_difference = text_in(object, "first_difference");
+    finding.decode = texts_from(object.required("decode"));
+    return finding;
+  });
+}
+
+Measurement measurement_from(const Value& value) {
+  return config::read_open_object(value, [](ObjectReader& object) {
+    return Measurement{text_in(object, "name"), text_in(object, "unit"),
+                       number_from(object.required("value")), number_from(object.required("low")),
+                       number_from(object.required("high"))};
+  });
 }
 
 }  // namespace
@@ -188,39 +145,54 @@ std::string fingerprint_text(std::uint64_t fingerprint) {
 }
 
 nlohmann::ordered_json to_json(const CaseResult& result, WallTime wall_time) {
-  Json json = {{"id", as_utf8(result.id)},
+  Json json = {{"id", kernel::as_utf8(result.id)},
                {"verdict", name(result.verdict)},
-               {"reason", as_utf8(result.reason)},
-               {"purpose", as_utf8(result.purpose)},
-               {"requirement", as_utf8(result.requirement)},
+               {"reason", kernel::as_utf8(result.reason)},
+               {"purpose", kernel::as_utf8(result.purpose)},
+               {"requirement", kernel::as_utf8(result.requirement)},
                {"reference", reference_to_json(result.reference)},
                {"findings", list_to_json(result.findings, finding_to_json)},
                {"measurements", list_to_json(result.measurements, measurement_to_json)},
                {"seed", fmt::format("{}", result.seed)},
                {"fingerprint", fingerprint_text(result.fingerprint)},
                {"virtual_time_ps", fmt::format("{}", result.virtual_time.count())},
-               {"log", as_utf8(result.log)}};
+               {"log", kernel::as_utf8(result.log)}};
   if (wall_time == WallTime::included) json["wall_time_us"] = fmt::format("{}", result.wall_time_us);
   return json;
 }
 
-CaseResult case_result_from(const nlohmann::ordered_json& json, const std::string& place) {
-  const Fields fields(json, place);
-  CaseResult result;
-  result.id = fields.text("id");
-  result.verdict = verdict_in(fields);
-  result.reason = fields.text("reason");
-  result.purpose = fields.text("purpose");
-  result.requirement = fields.text("requirement");
-  result.reference = reference_from(fields.object("reference"));
-  result.findings = fields.objects("findings", finding_from);
-  result.measurements = fields.objects("measurements", measurement_from);
-  result.seed = fields.integer<std::uint64_t>("seed");
-  result.fingerprint = fields.integer<std::uint64_t>("fingerprint", 16);
-  result.virtual_time = kernel::Duration{fields.integer<std::int64_t>("virtual_time_ps")};
-  result.log = fields.text("log");
-  if (fields.has("wall_time_us")) result.wall_time_us = fields.integer<std::uint64_t>("wall_time_us");
-  return result;
+std::uint64_t unsigned_from(const Value& value, int base) {
+  return integer_from<std::uint64_t>(value, base);
+}
+
+Verdict verdict_from(const Value& value) {
+  const auto from = [](std::string_view word) { return verdict_from(word); };
+  return word_from(value, from, "none, not-applicable, pass, warn, inconclusive, fail, error");
+}
+
+std::vector<std::string> texts_from(const Value& value) {
+  return list_from(value, [](const Value& item) { return std::string(item.as_string()); });
+}
+
+CaseResult case_result_from(const Value& value) {
+  return config::read_open_object(value, [](ObjectReader& object) {
+    CaseResult result;
+    result.id = text_in(object, "id");
+    result.verdict = verdict_from(object.required("verdict"));
+    result.reason = text_in(object, "reason");
+    result.purpose = text_in(object, "purpose");
+    result.requirement = text_in(object, "requirement");
+    result.reference = reference_from(object.required("reference"));
+    result.findings = list_from(object.required("findings"), finding_from);
+    result.measurements = list_from(object.required("measurements"), measurement_from);
+    result.seed = unsigned_from(object.required("seed"));
+    result.fingerprint = unsigned_from(object.required("fingerprint"), 16);
+    result.virtual_time =
+        kernel::Duration{integer_from<std::int64_t>(object.required("virtual_time_ps"), 10)};
+    result.log = text_in(object, "log");
+    if (const auto time = object.optional("wall_time_us")) result.wall_time_us = unsigned_from(*time);
+    return result;
+  });
 }
 
 }  // namespace fieldproof::judge

@@ -1,13 +1,13 @@
-#include "harness/judge/untrusted_text.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "harness/judge/arbitrary_result.hpp"
+#include "harness/kernel/arbitrary_text.hpp"
 
-namespace fieldproof::judge {
+namespace fieldproof::kernel {
 namespace {
 
 TEST(UntrustedText, KeepsEveryLengthOfWellFormedSequence) {
@@ -42,4 +42,4 @@ RC_GTEST_PROP(UntrustedText, BecomesWhatAStrictReaderTakes, ()) {
 }
 
 }  // namespace
-}  // namespace fieldproof::judge
+}  // namespace fieldproof::kernel

@@ -4,14 +4,15 @@
 // document.
 //
 // Contract: valid text comes back unchanged, so doing it twice is doing it once. Control characters stay:
-// whoever writes a format escapes what that format forbids.
+// whoever writes a format escapes what that format forbids. For a terminal and for the sentence of an error
+// that is `escaped_line`, which leaves no character that steers what stands around it.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
 
-namespace fieldproof::judge {
+namespace fieldproof::kernel {
 
 // Takes the first well-formed UTF-8 sequence off `rest` and returns its code point, or takes one octet off
 // and returns nothing when no well-formed sequence begins there. `rest` is not empty.
@@ -22,4 +23,8 @@ std::string escaped_octet(char octet);
 
 std::string as_utf8(std::string_view text);
 
-}  // namespace fieldproof::judge
+// One line of valid UTF-8 without control characters, bidirectional overrides and invisible separators: they
+// are written as \xNN or \u{NNNN}.
+std::string escaped_line(std::string_view text);
+
+}  // namespace fieldproof::kernel

@@ -1,10 +1,13 @@
-#include "harness/judge/untrusted_text.hpp"
+#include "harness/kernel/untrusted_text.hpp"
+
+#include <fmt/format.h>
 
 #include <cstddef>
+#include <cstdint>
 
 #include "harness/kernel/check.hpp"
 
-namespace fieldproof::judge {
+namespace fieldproof::kernel {
 namespace {
 
 struct Lead {
@@ -19,6 +22,13 @@ std::optional<Lead> lead_of(unsigned char octet) {
   if ((octet & 0xF0U) == 0xE0) return Lead{3, octet & 0x0FU, 0x800};
   if ((octet & 0xF8U) == 0xF0) return Lead{4, octet & 0x07U, 0x10000};
   return std::nullopt;
+}
+
+// Code points that change how a terminal shows what stands around them.
+bool is_unseen(char32_t point) {
+  return point < 0x20 || (point >= 0x7F && point < 0xA0) || (point >= 0x200B && point <= 0x200F) ||
+         (point >= 0x2028 && point <= 0x202E) || (point >= 0x2060 && point <= 0x206F) || point == 0x061C ||
+         point == 0xFEFF;
 }
 
 bool is_scalar_value(char32_t point) {
@@ -64,4 +74,21 @@ std::string as_utf8(std::string_view text) {
   return valid;
 }
 
-}  // namespace fieldproof::judge
+std::string escaped_line(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::string_view before = text;
+    const auto point = take_code_point(text);
+    const std::string_view octets = before.substr(0, before.size() - text.size());
+    if (point && !is_unseen(*point)) {
+      out += octets;
+    } else if (!point || *point < 0x80) {
+      out += escaped_octet(octets.front());
+    } else {
+      out += fmt::format("\\u{{{:04X}}}", static_cast<std::uint32_t>(*point));
+    }
+  }
+  return out;
+}
+
+}  // namespace fieldproof::kernel

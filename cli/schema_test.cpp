@@ -1,0 +1,219 @@
+// Subject: the schemas that editors use and the readers of the same documents, which must judge alike. What
+// only a reader can refuse (a duration that is not a whole number of picoseconds, a name that nobody knows)
+// is kept apart, so that the day a schema learns it is seen.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/matrix_text.hpp"
+#include "cli/options.hpp"
+#include "cli/pics_file.hpp"
+#include "cli/settings.hpp"
+#include "cli/suites.hpp"
+#include "conformance/catalogue.hpp"
+#include "harness/fault/plan_file.hpp"
+#include "harness/kernel/error.hpp"
+#include "reports/schema/ajv_judge.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSource = FIELDPROOF_SOURCE_DIR;
+
+// A document and who takes it.
+struct Sample {
+  std::string text;
+  bool reader_takes = true;
+  bool schema_takes = true;
+};
+
+Sample good(std::string text) {
+  return {std::move(text), true, true};
+}
+Sample bad(std::string text) {
+  return {std::move(text), false, false};
+}
+Sample bad_to_the_reader_only(std::string text) {
+  return {std::move(text), false, true};
+}
+
+class Schemas : public testing::Test {
+ protected:
+  Schemas() {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / ("fieldproof_" + std::to_string(getpid())) / test.name();
+    fs::create_directories(folder_);
+  }
+  ~Schemas() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+
+  void expect_alike(const fs::path& schema, const std::vector<Sample>& samples,
+                    const std::function<void(const fs::path&)>& read) {
+    std::vector<fs::path> files;
+    for (const Sample& sample : samples) {
+      files.push_back(folder_ / (std::to_string(files.size()) + ".json"));
+      std::ofstream(files.back()) << sample.text;
+      const std::optional<std::string> refusal = refusal_of(read, files.back());
+      EXPECT_EQ(!refusal, sample.reader_takes) << sample.text << " " << refusal.value_or("");
+    }
+    const auto judgement = reports::judge_with_ajv(kSource, kSource / schema, files);
+    if (!judgement.is_available) GTEST_SKIP() << judgement.output;
+    std::istringstream lines(judgement.output);
+    std::string line;
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      ASSERT_TRUE(std::getline(lines, line)) << judgement.output;
+      EXPECT_EQ(line.find(": valid") != std::string::npos, samples[n].schema_takes) << samples[n].text << "\n"
+                                                                                    << line;
+    }
+  }
+
+  static std::optional<std::string> refusal_of(const std::function<void(const fs::path&)>& read,
+                                               const fs::path& file) {
+    try {
+      read(file);
+    } catch (const kernel::Error& error) {
+      return error.what();
+    }
+    return std::nullopt;
+  }
+
+  fs::path folder_;
+};
+
+const conformance::Catalogue& catalogue() {
+  static const conformance::Catalogue catalogue(suites());
+  return catalogue;
+}
+
+std::string when(const std::string& members) {
+  return R"({"rules": [{"effect": {"drop": {}}, "when": {)" + members + "}}]}";
+}
+std::string effect(const std::string& members) {
+  return R"({"rules": [{"effect": {)" + members + "}}]}";
+}
+
+TEST_F(Schemas, OfAPlan) {
+  const auto telegrams = line::TelegramCode(line::TelegramLayout{});
+  expect_alike(
+      "harness/fault/plan.schema.json",
+      {good(when(R"("frame_number": 1)")),
+       bad(when(R"("frame_number": 0)")),
+       good(when(R"("frame_number": {"from": 1, "to": 1, "every": 1})")),
+       bad(when(R"("frame_number": {"from": 0})")),
+       bad(when(R"("frame_number": {"to": 0})")),
+       good(when(R"("unit": 0)")),
+       good(when(R"("unit": {"to": 0})")),
+       bad(when(R"("unit": {"every": 0})")),
+       bad_to_the_reader_only(when(R"("unit": {"from": 2, "to": 1})")),
+       good(when(R"("from": "0 s", "to": "1 ps")")),
+       bad(when(R"("to": "0 s")")),
+       bad(when(R"("from": "-0 s")")),
+       bad_to_the_reader_only(when(R"("from": "99999999999 s")")),
+       good(R"({"rules": [{"effect": {"drop": {}}, "times": 3}]})"),
+       bad(R"({"rules": [{"effect": {"drop": {}}, "times": 0}]})"),
+       bad_to_the_reader_only(R"({"rules": [{"effect": {"drop": {}}, "times": 3.0}]})"),
+       bad_to_the_reader_only(R"({"rules": [{"effect": {"drop": {}}, "times": 18446744073709551616}]})"),
+       good(effect(R"("force": {"level": 1, "count": 4294967295})")),
+       bad(effect(R"("force": {"level": 1, "count": 4294967296})")),
+       bad(effect(R"("force": {"level": 1, "duration": "0.0 s"})")),
+       good(effect(R"("delay": {"duration": "1 ps"})")),
+       good(effect(R"("delay": {"duration": "1000000 s"})")),
+       bad(effect(R"("delay": {"duration": "0 us"})")),
+       bad(effect(R"("delay": {"duration": "0.5 ps"})")),
+       bad_to_the_reader_only(effect(R"("delay": {"duration": "0.0001 ns"})")),
+       bad_to_the_reader_only(effect(R"("delay": {"duration": "1000001 s"})")),
+       good(effect(R"("repeat": {"gap": "0 us"})")),
+       bad(effect(R"("repeat": {"gap": "-0 us"})")),
+       good(effect(R"("insert": {"telegram": {"data": "0x005A"}})")),
+       bad(effect(R"("insert": {"telegram": {"data": "0x15A"}})")),
+       bad(effect(R"("insert": {"telegram": {"data": 256}})"))},
+      [&](const fs::path& file) { fault::load_plan(file, {.telegrams = &telegrams}); });
+}
+
+TEST_F(Schemas, OfAPics) {
+  expect_alike("cli/pics.schema.json",
+               {good(R"({"items": {}})"), bad("{}"), good(R"({"items": {"outputs": true, "words": 2}})"),
+                bad(R"({"items": {"ouputs": true}})"), bad(R"({"items": {"outputs": "yes"}})"),
+                bad(R"({"items": {"words": -1}})"), good(R"({"items": {"words": 64}})"),
+                bad(R"({"items": {"words": 65}})"), good(R"({"items": {"id_code": 8191}})"),
+                bad(R"({"items": {"id_code": 8192}})"),
+                good(R"({"items": {"outputs_while_outgoing_bus_is_reset": "cleared"}})"),
+                bad(R"({"items": {"outputs_while_outgoing_bus_is_reset": "clear"}})"),
+                bad(R"({"items": {}, "more": 1})")},
+               [](const fs::path& file) { load_pics(file, catalogue().pics_items()); });
+}
+
+nlohmann::json schema_of(const char* name) {
+  std::ifstream file(kSource / "cli" / name);
+  return nlohmann::json::parse(file);
+}
+
+std::set<std::string> keys_of(const nlohmann::json& properties) {
+  std::set<std::string> keys;
+  for (const auto& [key, unused] : properties.items()) keys.insert(key);
+  keys.erase("$schema");
+  return keys;
+}
+
+TEST(PicsSchema, NamesTheItemsThatTheSuitesPublish) {
+  std::set<std::string> published;
+  for (const judge::PicsItem& item : catalogue().pics_items()) published.insert(item.name);
+  EXPECT_EQ(keys_of(schema_of("pics.schema.json")["properties"]["items"]["properties"]), published);
+}
+
+TEST(ConfigurationSchema, NamesTheOptionsThatAFileMayGive) {
+  std::set<std::string> known;
+  for (const Option& option : options()) {
+    if (!option.is_of_the_moment && option.name != "config") known.insert(file_key(option));
+  }
+  EXPECT_EQ(keys_of(schema_of("configuration.schema.json")["properties"]), known);
+}
+
+TEST_F(Schemas, OfAConfiguration) {
+  expect_alike("cli/configuration.schema.json",
+               {good("{}"), good(R"({"seed": 7, "jobs": 2, "strict": true, "iut": ["ref"]})"),
+                good(R"({"seed": "18446744073709551615", "iut": "ref"})"), bad(R"({"sed": 7})"),
+                bad(R"({"seed": 1.5})"), bad(R"({"seed": -1})"), bad(R"({"strict": 1})"),
+                bad(R"({"plan": ""})"), bad(R"({"iut": [""]})"), bad(R"({"plan": ["a"]})")},
+               [](const fs::path& file) {
+                 Settings({"run", {}, {{"config", {file.string()}}}},
+                          [](const std::string&) -> std::optional<std::string> { return std::nullopt; });
+               });
+}
+
+TEST_F(Schemas, OfAMatrix) {
+  conformance::Matrix matrix;
+  conformance::TestCase test_case;
+  test_case.id = "a/b/c";
+  const conformance::Deviation deviation{"late", "M1", "b", "is late"};
+  std::vector<Sample> samples;
+  for (int kind = 0; kind <= static_cast<int>(conformance::CellKind::wrong_cause); ++kind) {
+    conformance::RoleMatrix role{"b", {&test_case}, {&deviation}, {{}}, {{{}}}};
+    role.cells[0][0].kind = static_cast<conformance::CellKind>(kind);
+    matrix.roles.push_back(role);
+  }
+  for (int kind = 0; kind <= static_cast<int>(conformance::HoleKind::false_alarm); ++kind) {
+    matrix.holes.push_back({static_cast<conformance::HoleKind>(kind), "a/b/c", "", "a sentence"});
+  }
+  samples.push_back(good(matrix_json(matrix)));
+  nlohmann::json broken = nlohmann::json::parse(samples.front().text);
+  broken["roles"][0]["cases"][0]["cells"][0]["kind"] = "seen";
+  samples.push_back({broken.dump(), true, false});
+  expect_alike("cli/matrix.schema.json", samples, [](const fs::path&) {});
+}
+
+}  // namespace
+}  // namespace fieldproof::cli
