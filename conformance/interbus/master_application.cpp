@@ -1,4 +1,4 @@
-// Chapter application: what the application sees of good and bad cycles (IM-21 to IM-23, IM-40).
+// Chapter application: what the application sees of good and bad cycles (IM-21 to IM-23).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -127,143 +127,6 @@ void whole_outputs(MasterBench& bench, CaseJudge& judge) {
   bench.ring().on_outputs(nullptr);
 }
 
-// Bursts of 1 to 6 cycles, in which every second cycle suffers some fault that no good receiver takes.
-class RandomFaults {
- public:
-  RandomFaults(kernel::Random random, std::uint64_t longest_pause)
-      : random_(random), longest_pause_(longest_pause) {}
-
-  void operator()(const CycleInfo& info, CycleFaults& faults) {
-    if (pause_ > 0) {
-      --pause_;
-      return;
-    }
-    if (left_ == 0) left_ = 1 + static_cast<unsigned>(random_.below(6));
-    if (--left_ == 0) pause_ = 6 + static_cast<unsigned>(random_.below(longest_pause_));
-    if (random_.chance(0.5)) disturb(info, faults);
-  }
-
- private:
-  void disturb(const CycleInfo& info, CycleFaults& faults) {
-    const std::size_t telegrams = info.octets + 6;
-    const auto at = static_cast<int>(random_.below(telegrams - 1));
-    switch (random_.below(12)) {
-      case 0:
-        faults.dropped = at;
-        break;
-      case 1:
-        faults.inserted = at;
-        break;
-      case 2:
-        faults.stop_missing = at;
-        break;
-      case 3:
-        faults.flag_flipped = at;
-        break;
-      case 4:
-        faults.header_flipped = at;
-        break;
-      case 5:
-        faults.marked_by = 0;
-        break;
-      default:
-        flip_bits(telegrams, faults);
-    }
-  }
-  // One to three different bits: every such pattern is found, whatever the data.
-  void flip_bits(std::size_t telegrams, CycleFaults& faults) {
-    std::vector<std::uint64_t> bits;
-    for (std::uint64_t n = 1 + random_.below(3); n > 0; --n) {
-      const std::uint64_t bit = random_.below(8 * telegrams);
-      if (std::ranges::find(bits, bit) == bits.end()) bits.push_back(bit);
-    }
-    for (const std::uint64_t bit : bits) {
-      faults.flips.push_back(
-          {static_cast<std::size_t>(bit / 8), static_cast<std::uint8_t>(1U << bit % 8), false});
-    }
-  }
-
-  kernel::Random random_;
-  std::uint64_t longest_pause_;
-  unsigned left_ = 0;
-  unsigned pause_ = 20;
-};
-
-// What a run through random faults came to.
-class Ledger {
- public:
-  void add(const MasterBench::FinishedCycle& cycle, bool is_faulted) {
-    ++cycles_;
-    if (!cycle.is_accepted) ++bad_;
-    since_fault_ = is_faulted ? 0 : since_fault_ + 1;
-    ++without_data_;
-    // Counted up to the cycle that brings data, or up to now: a recovery that never ends is one, too.
-    longest_recovery_ = std::max(longest_recovery_, std::min(since_fault_, without_data_));
-    if (cycle.is_accepted && cycle.is_data) without_data_ = 0;
-    longest_run_ = std::max(longest_run_, without_data_);
-  }
-
-  std::uint64_t cycles() const { return cycles_; }
-  double share_of_bad() const { return static_cast<double>(bad_) / static_cast<double>(cycles_); }
-  std::uint64_t longest_run() const { return longest_run_; }  // of cycles without new data
-  std::uint64_t longest_recovery() const { return longest_recovery_; }
-
- private:
-  std::uint64_t cycles_ = 0;
-  std::uint64_t bad_ = 0;
-  std::uint64_t since_fault_ = 0;
-  std::uint64_t without_data_ = 0;
-  std::uint64_t longest_run_ = 0;
-  std::uint64_t longest_recovery_ = 0;
-};
-
-void random_faults(MasterBench& bench, CaseJudge& judge) {
-  bench.rules().software_time = 10 * kernel::kMicrosecond;
-  bench.bring_up(judge, paper_ring());
-  kernel::Random inputs = bench.random().split("inputs");
-  std::uint16_t offered = bench.master().input(0);
-  std::uint16_t held = offered;
-  // Only the first word is an input; the second comes back as it is.
-  bench.ring().set_signal([&](unsigned word, kernel::Time) {
-    if (word == 0) offered = static_cast<std::uint16_t>(inputs.next());
-    return word == 0 ? offered : std::uint16_t{0};
-  });
-  Ledger ledger;
-  bench.run_data_cycles(judge, 1);
-  held = bench.master().input(0);
-  RandomFaults faults(bench.random().split("faults"), bench.volume<std::uint64_t>(12, 120));
-  bool is_faulted = false;
-  bench.set_script([&](const CycleInfo& info, CycleFaults& cycle) {
-    faults(info, cycle);
-    is_faulted = !cycle.is_none();
-  });
-  bool is_wrong = false;
-  bench.on_cycle([&] {
-    const auto& cycle = bench.finished();
-    if (cycle.is_data && cycle.is_accepted) held = offered;
-    is_wrong = is_wrong || bench.master().input(0) != held || bench.master().input(1) != 0;
-    ledger.add(cycle, is_faulted);
-  });
-  const std::uint64_t cycles = bench.volume<std::uint64_t>(600, 1'000'000);
-  const std::uint64_t limit = bench.rules().published_recovery_cycles;
-  bool goes_on = true;
-  while (goes_on && ledger.cycles() < cycles && !is_wrong && ledger.longest_recovery() <= limit) {
-    goes_on = bench.run_cycle();
-  }
-  bench.on_cycle({});
-  judge.expect(!is_wrong, "wrong_inputs_accepted", "no input of a disturbed cycle reaches the application",
-               "an input does");
-  judge.expect(goes_on, "no_data_cycle", "the master goes on with cycles", "no cycle ends any more");
-  judge.expect(bench.is_in_run(), "stopped_without_cause", "the bus runs through bursts of 6 cycles",
-               "it has stopped");
-  judge.measure("share of rejected cycles", "", ledger.share_of_bad());
-  judge.measure("longest run of cycles without new data", "cycles",
-                static_cast<double>(ledger.longest_run()));
-  judge.expect_between("cycles from the last fault to the next valid data", "cycles",
-                       static_cast<double>(ledger.longest_recovery()), 0, static_cast<double>(limit),
-                       "recovery_too_slow");
-}
-
 }  // namespace
 
 std::vector<MasterCase> master_application_cases() {
@@ -300,17 +163,6 @@ std::vector<MasterCase> master_application_cases() {
        {"outputs_one_cycle_late", "outputs_late"},
        {"silent_after_first_data_cycle", "outputs_not_sent"}},
       whole_outputs);
-  add("no_wrong_input_under_random_faults", "IM-40",
-      "No input of a disturbed cycle reaches the application, and valid data come again within 5 cycles",
-      {"Beckhoff BC4000 documentation; check theory",
-       "5 cycle times after an error; up to 3 bit errors found", Standing::searched},
-      "bursts of up to 6 cycles with declared random faults on the return line, 1e6 cycles",
-      "no wrong input; at most 5 cycles to valid data", {"must", "long", "declared_faults"},
-      {{"own_check_ignored", "wrong_inputs_accepted"},
-       {"inputs_taken_before_check", "wrong_inputs_accepted"},
-       {"silent_after_error", "no_data_cycle"},
-       {"id_cycles_for_ever_after_error", "recovery_too_slow"}},
-      random_faults);
   return cases;
 }
 

@@ -38,12 +38,14 @@ std::vector<judge::PicsItem> master_pics_items() {
   };
 }
 
-MasterBench::MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume, judge::Pics pics)
+MasterBench::MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume, judge::Pics pics,
+                         std::span<const fault::Stress> stresses)
     : make_master_(std::move(make_master)),
       volume_(volume),
       pics_(std::move(pics)),
       random_(seed),
-      line_watch_(interbus::shortest_telegram(interbus::Rules{})) {}
+      line_watch_(interbus::shortest_telegram(interbus::Rules{})),
+      stressed_(stresses) {}
 
 MasterBench::~MasterBench() = default;
 
@@ -86,6 +88,12 @@ void MasterBench::start() {
 void MasterBench::stop() {
   master_->stop(now());
   segment_.refresh(master_seat_);
+}
+
+void MasterBench::begin_stress(const fault::Stress& stress) {
+  stressed_.begin(stress, *back_,
+                  {rules_.bit_rate, now(), random_.split("stress").split(stress_number_++), segment_.trace(),
+                   back_->trace_channel()});
 }
 
 void MasterBench::write_output(unsigned word, std::uint16_t value) {

@@ -10,6 +10,7 @@
 #include "conformance/interbus/ring_emulator.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/line_watch.hpp"
+#include "conformance/stressed_receiver.hpp"
 #include "harness/judge/pics.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/segment/segment.hpp"
@@ -37,7 +38,8 @@ class MasterBench {
   using MakeMaster =
       std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)>;
 
-  MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume, judge::Pics pics = {});
+  MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume, judge::Pics pics = {},
+              std::span<const fault::Stress> stresses = {});
   ~MasterBench();
   MasterBench(const MasterBench&) = delete;
   MasterBench& operator=(const MasterBench&) = delete;
@@ -113,6 +115,14 @@ class MasterBench {
   // Faults of every cycle from now on, until cleared with nothing.
   void set_script(interbus::RingEmulator::Script script) { script_ = std::move(script); }
 
+  // A stress at the master's receiver, from now on; the n-th of a case has the n-th disturbances.
+  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
+  void begin_stress(const fault::Stress& stress);
+  void end_stress() { stressed_.end(); }
+  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
+  // What comes back to the master from now on is shown to the tap as well. For one ring.
+  void tap_arrived(segment::Tap& tap) { back_->tap_arrived(tap); }
+
   interbus::MasterStatus status() const { return master_->status(); }
   bool is_in_run() const { return status().state == interbus::MasterState::run; }
 
@@ -152,6 +162,8 @@ class MasterBench {
   interbus::RingEmulator::Script script_;
   std::optional<interbus::CycleFaults> armed_;
   std::optional<std::uint64_t> faulted_number_;  // of the data cycle that suffered them
+  StressedReceiver stressed_;
+  std::uint64_t stress_number_ = 0;
 };
 
 // The ring of the cycle-time paper: a coupler, behind its second interface 16 inputs and 16 outputs.

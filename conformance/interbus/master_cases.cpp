@@ -29,7 +29,7 @@ const std::vector<MasterCase>& master_cases() {
     std::vector<MasterCase> all;
     for (auto chapter : {master_identification_cases, master_data_cycle_cases, master_rejection_cases,
                          master_supervision_cases, master_ring_change_cases, master_timing_cases,
-                         master_application_cases, master_skew_cases}) {
+                         master_application_cases, master_skew_cases, master_immunity_cases}) {
       std::vector<MasterCase> cases_of_chapter = chapter();
       std::move(cases_of_chapter.begin(), cases_of_chapter.end(), std::back_inserter(all));
     }

@@ -26,5 +26,6 @@ std::vector<MasterCase> master_ring_change_cases();
 std::vector<MasterCase> master_timing_cases();
 std::vector<MasterCase> master_application_cases();
 std::vector<MasterCase> master_skew_cases();
+std::vector<MasterCase> master_immunity_cases();
 
 }  // namespace fieldproof::conformance

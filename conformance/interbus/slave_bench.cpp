@@ -108,6 +108,7 @@ SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
       train_(network_.rules),
       model_(network_.rules),
       channel_(&train_.code()),
+      stressed_(setting.stresses),
       in_(train_.code(), network_.rules.bit_rate),
       out_(train_.code(), network_.rules.bit_rate),
       remote_(train_.code(), network_.rules.bit_rate),
@@ -156,6 +157,13 @@ void SlaveBench::install(const fault::Plan& plan) {
   for (segment::Link* link : ring_.links()) cables += link->delay();
   // What went out comes back after the delays of all stations and cables; a cut telegram ends one later.
   settling_ = cables + bits(4 * static_cast<std::int64_t>(ring_.size()) + 4 * line::kDataTelegramLevels);
+}
+
+void SlaveBench::begin_stress(const fault::Stress& stress) {
+  segment::Link& link = ring_.link_to(position_);
+  stressed_.begin(stress, link,
+                  {rules().bit_rate, now(), random_.split("stress").split(stress_number_++), segment_.trace(),
+                   link.trace_channel()});
 }
 
 void SlaveBench::set_inputs(std::span<const std::uint16_t> words) {

@@ -13,6 +13,7 @@
 #include "conformance/interbus/slave_line.hpp"
 #include "conformance/interbus/slave_model.hpp"
 #include "conformance/line_watch.hpp"
+#include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/channel_chain.hpp"
 #include "harness/fault/plan.hpp"
@@ -55,8 +56,9 @@ struct SlaveSetting {
   std::optional<interbus::NetworkDescription> network;  // instead of the bench's own
   std::uint64_t seed = 1;
   Volume volume = Volume::full;
-  std::optional<judge::Pics> pics;  // what is not answered is as the network says about the IUT
-  fault::Plan plan{};               // declared faults besides those of the case
+  std::optional<judge::Pics> pics;            // what is not answered is as the network says about the IUT
+  fault::Plan plan{};                         // declared faults besides those of the case
+  std::span<const fault::Stress> stresses{};  // of the cases that ask for them
   // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
   std::function<trace::Recorder*(const trace::Trace&, const interbus::Rules&)> make_recorder;
 };
@@ -128,6 +130,11 @@ class SlaveBench final : private segment::Station {
 
   // ---- faults at the IUT's receiver ----
   fault::ScriptedChannel& channel() { return channel_; }
+  // A stress in place of these, from now on; the n-th of a case has the n-th disturbances.
+  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
+  void begin_stress(const fault::Stress& stress);
+  void end_stress() { stressed_.end(); }
+  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
   // The code word whose last bits are loopback word, register and check: its bit n, as a level of the train.
   // The stations in front of the IUT put their registers before it.
   std::size_t code_word_bits() const { return 8 * (2 + 2 * words() + 2); }
@@ -187,6 +194,8 @@ class SlaveBench final : private segment::Station {
   fault::ScriptedChannel channel_;
   std::unique_ptr<fault::InstalledPlan> plan_;
   fault::ChannelChain channels_;  // at the IUT's receiver: of the case, then of the plan
+  StressedReceiver stressed_;
+  std::uint64_t stress_number_ = 0;
   LineView in_;
   LineView out_;
   LineView remote_;

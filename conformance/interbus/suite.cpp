@@ -37,12 +37,18 @@ std::string deviation_of(const std::string& uri, std::string_view role) {
   return uri.substr(kDeviant.size());
 }
 
+// What the suite was made with.
+struct Given {
+  OwnStations own;
+  std::vector<fault::Stress> stresses;
+};
+
 // What a run needs besides its case: the assignment of the case's role, the files that are named, and the two
 // recorders. Made anew for each run, so runs share nothing.
 class Run {
  public:
-  Run(const TestCase& test_case, const Setup& setup, const OwnStations& own)
-      : test_case_(test_case), setup_(setup), own_(own) {
+  Run(const TestCase& test_case, const Setup& setup, const Given& given)
+      : test_case_(test_case), setup_(setup), own_(given.own), stresses_(given.stresses) {
     if (!setup.network_file.empty()) network_ = interbus::NetworkDescription::load(setup.network_file);
     if (!setup.plan_file.empty()) {
       plan_ = fault::load_plan(
@@ -83,6 +89,7 @@ class Run {
   const TestCase& test_case_;
   const Setup& setup_;
   const OwnStations& own_;
+  std::span<const fault::Stress> stresses_;
   Assignment assigned_;
   std::optional<interbus::NetworkDescription> network_;
   fault::Plan plan_;
@@ -136,6 +143,7 @@ SlaveSetting Run::slave_setting() {
   setting.seed = setup_.seed;
   setting.volume = setup_.volume;
   setting.pics = setup_.pics;
+  setting.stresses = stresses_;
   return setting;
 }
 
@@ -181,7 +189,7 @@ void Run::check(const MasterCase&) {
 Outcome Run::run(const MasterCase& master_case) {
   check(master_case);
   MasterBench bench([this](const auto& configuration) { return make_master(configuration); }, setup_.seed,
-                    setup_.volume, setup_.pics.value_or(judge::Pics{}));
+                    setup_.volume, setup_.pics.value_or(judge::Pics{}), stresses_);
   std::optional<LineRecorder> lines;
   if (setup_.record) {
     bench.segment().trace().set_recorder(&lines.emplace(bench.segment().trace(), bench.rules()));
@@ -276,9 +284,10 @@ Outcome Run::run(const NetworkCase& network_case) {
 
 class InterbusSuite final : public Suite {
  public:
-  explicit InterbusSuite(OwnStations own) : own_(std::move(own)) {
+  explicit InterbusSuite(Given given) : given_(std::move(given)) {
     const auto add = [&](const auto& cases) {
       for (const auto& one : cases) {
+        if (given_.stresses.empty() && has_tag(one.test_case, kStressTag)) continue;
         cases_.push_back(one.test_case);
         runs_[one.test_case.id] = [&one](Run& run) { return run.run(one); };
         checks_[one.test_case.id] = [&one](Run& run) { run.check(one); };
@@ -307,21 +316,21 @@ class InterbusSuite final : public Suite {
   std::optional<judge::Pics> declared_pics(const TestCase& test_case, const Setup& setup) const override {
     const auto slave_case = slave_cases_.find(test_case.id);
     if (!setup.pics || slave_case == slave_cases_.end()) return setup.pics;
-    return Run(test_case, setup, own_).pics(*slave_case->second);
+    return Run(test_case, setup, given_).pics(*slave_case->second);
   }
 
   void check(const TestCase& test_case, const Setup& setup) const override {
-    Run one(test_case, setup, own_);
+    Run one(test_case, setup, given_);
     checks_.at(test_case.id)(one);
   }
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
-    Run one(test_case, setup, own_);
+    Run one(test_case, setup, given_);
     return runs_.at(test_case.id)(one);
   }
 
  private:
-  OwnStations own_;
+  Given given_;
   std::vector<TestCase> cases_;
   std::vector<Deviation> deviations_;
   std::map<std::string, std::function<Outcome(Run&)>, std::less<>> runs_;
@@ -331,8 +340,8 @@ class InterbusSuite final : public Suite {
 
 }  // namespace
 
-std::unique_ptr<Suite> interbus_suite(OwnStations own) {
-  return std::make_unique<InterbusSuite>(std::move(own));
+std::unique_ptr<Suite> interbus_suite(OwnStations own, std::vector<fault::Stress> stresses) {
+  return std::make_unique<InterbusSuite>(Given{std::move(own), std::move(stresses)});
 }
 
 }  // namespace fieldproof::conformance

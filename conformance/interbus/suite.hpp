@@ -2,8 +2,10 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "conformance/test_case.hpp"
+#include "harness/fault/stress.hpp"
 #include "protocols/interbus/device.hpp"
 
 // The INTERBUS suite: the cases for slaves, for masters and for whole networks, and their deviations.
@@ -19,6 +21,7 @@ struct OwnStations {
   std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)> make_master{};
 };
 
-std::unique_ptr<Suite> interbus_suite(OwnStations own = {});
+// Cases with the tag `bursts` need stresses for the receivers; without any they are left out.
+std::unique_ptr<Suite> interbus_suite(OwnStations own = {}, std::vector<fault::Stress> stresses = {});
 
 }  // namespace fieldproof::conformance

@@ -10,6 +10,7 @@
 #include "conformance/catalogue.hpp"
 #include "conformance/matrix.hpp"
 #include "conformance/runner.hpp"
+#include "conformance/stressed_receiver.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"
@@ -139,6 +140,26 @@ TEST(InterbusSuite, AStationOfTheCallersIsJudged) {
   const TestCase& test_case = own->cases().front();
   EXPECT_EQ(own->run(test_case, setup_of("slave", "own")).result.verdict, judge::Verdict::pass);
   EXPECT_EQ(made, 1);
+}
+
+// A receiver behind a cable that loses whatever is sent.
+class Deaf final : public fault::Channel {
+  bool pass(const line::Waveform&, std::vector<line::Waveform>&) override { return true; }
+};
+
+TEST(InterbusSuite, CasesOfStressesAreThereWithStresses) {
+  const auto has_stress_tag = [](const TestCase& test_case) { return has_tag(test_case, kStressTag); };
+  EXPECT_EQ(std::ranges::count_if(suite().cases(), has_stress_tag), 0);
+  const fault::Stress deaf{"nothing arrives for 2 ms", 2 * kernel::kMillisecond,
+                           [](const fault::StressedReceiver&) { return std::make_unique<Deaf>(); }};
+  const auto stressed = interbus_suite({}, {deaf});
+  EXPECT_EQ(std::ranges::count_if(stressed->cases(), has_stress_tag), 2);
+  for (const TestCase& test_case : stressed->cases()) {
+    if (!has_stress_tag(test_case)) continue;
+    EXPECT_EQ(stressed->run(test_case, setup_of(test_case.role(), "ref")).result.verdict,
+              judge::Verdict::pass)
+        << test_case.id;
+  }
 }
 
 // A file that lives as long as the test needs it.

@@ -1,0 +1,51 @@
+// Subject: the cases of the joined catalogue that need bursts, which no suite alone has.
+#include <gtest/gtest.h>
+
+#include "cli/suites.hpp"
+#include "conformance/catalogue.hpp"
+#include "conformance/runner.hpp"
+#include "conformance/stressed_receiver.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+using conformance::Catalogue;
+using conformance::Entry;
+
+std::vector<Entry> burst_cases() {
+  static const Catalogue catalogue(suites());
+  return catalogue.select(std::vector<std::string>{"+" + std::string(conformance::kStressTag)});
+}
+
+conformance::CaseRun run(const Entry& entry, const std::string& uri, std::uint64_t seed) {
+  conformance::Setup setup;
+  setup.seed = seed;
+  setup.volume = conformance::Volume::quick;
+  setup.implementations = {{entry.test_case->role(), 0, uri}};
+  return conformance::run_case(entry, setup);
+}
+
+TEST(BurstCases, ReferencesPass) {
+  ASSERT_EQ(burst_cases().size(), 2U);
+  for (const Entry& entry : burst_cases()) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const judge::CaseResult result = run(entry, "ref", seed).outcome.result;
+      EXPECT_EQ(result.verdict, judge::Verdict::pass)
+          << result.id << " seed " << seed << ": " << result.reason;
+    }
+  }
+}
+
+TEST(BurstCases, CatchWhatTheyDeclare) {
+  for (const Entry& entry : burst_cases()) {
+    EXPECT_FALSE(entry.test_case->catches.empty());
+    for (const conformance::Catch& caught : entry.test_case->catches) {
+      const judge::CaseResult result = run(entry, "deviant:" + caught.deviation, 1).outcome.result;
+      EXPECT_EQ(result.verdict, judge::Verdict::fail) << result.id << " " << caught.deviation;
+      EXPECT_EQ(result.reason, caught.reason) << result.id << " " << caught.deviation;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fieldproof::cli

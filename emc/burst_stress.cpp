@@ -1,0 +1,84 @@
+#include "emc/burst_stress.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "emc/burst_channel.hpp"
+#include "emc/coupling.hpp"
+
+namespace fieldproof::emc {
+namespace {
+
+// Shared by all channels of a profile, whatever thread asks first.
+class SharedResponse {
+ public:
+  explicit SharedResponse(const Coupling& coupling) : coupling_(coupling) {}
+
+  const LineResponse& get() {
+    std::call_once(is_computed_, [this] { response_.emplace(coupling_); });
+    return *response_;
+  }
+
+ private:
+  Coupling coupling_;
+  std::once_flag is_computed_;
+  std::optional<LineResponse> response_;
+};
+
+// One burst: that which the run would have drawn, moved to where the stress begins.
+BurstSchedule burst_at(kernel::Time from, BurstSettings settings, const kernel::Random& random) {
+  const BurstTiming drawn = BurstSchedule(settings, random).timing();
+  settings.on = from - drawn.phase;
+  settings.off = from + drawn.period / 2;
+  return {settings, random};
+}
+
+// The longest burst that the tolerances allow, and the pitch behind its last pulse.
+kernel::Duration longest_burst(Repetition repetition) {
+  return repetition == Repetition::khz_100 ? kernel::kMillisecond : 20 * kernel::kMillisecond;
+}
+
+fault::Stress stress(const std::shared_ptr<SharedResponse>& response, const BurstSettings& settings,
+                     const std::string& profile) {
+  const auto make_channel = [response, settings](const fault::StressedReceiver& receiver) {
+    return std::make_unique<BurstChannel>(
+        burst_at(receiver.from, settings, receiver.random),
+        response->get().wrong_output(settings.level.open_circuit_volts(), settings.polarity),
+        BurstReceiver{receiver.bit_rate, nullptr, line::Sampling{}, true, false}, receiver.trace,
+        receiver.place);
+  };
+  return {fmt::format("a burst of {}, {}, level {}, profile {}", text_of(settings.repetition),
+                      text_of(settings.polarity), settings.level.text(), profile),
+          longest_burst(settings.repetition), make_channel};
+}
+
+}  // namespace
+
+std::vector<fault::Stress> burst_stresses(const Profile& profile, std::span<const Level> levels) {
+  const auto response = std::make_shared<SharedResponse>(profile.coupling);
+  std::vector<fault::Stress> stresses;
+  for (const Level& level : levels) {
+    for (const Repetition repetition : {Repetition::khz_5, Repetition::khz_100}) {
+      for (const Polarity polarity : {Polarity::positive, Polarity::negative}) {
+        BurstSettings settings;
+        settings.level = level;
+        settings.repetition = repetition;
+        settings.polarity = polarity;
+        stresses.push_back(stress(response, settings, profile.name));
+      }
+    }
+  }
+  return stresses;
+}
+
+std::vector<fault::Stress> catalogue_stresses() {
+  return burst_stresses(Profile::named("A"), std::array{Level::standard(PortKind::signal, 4),
+                                                        Level::standard(PortKind::signal, 3)});
+}
+
+}  // namespace fieldproof::emc
