@@ -168,5 +168,19 @@ TEST_F(MeasureVerb, PicturesOfThePaperHaveNoNumber) {
   EXPECT_EQ(pictures, 6);
 }
 
+TEST_F(MeasureVerb, ThePapersBurstsFailWithoutAShieldAndNotBehindAProperOne) {
+  ASSERT_EQ(call({"paper", "--duration", "12s", "--json", "paper.json"}).exit_code, 0);
+  const Json section = json("paper.json")["sections"].back();
+  EXPECT_HOLDS(section["heading"].get<std::string>(), "1000 to 4500 V");
+  ASSERT_EQ(section["rows"].size(), 17U);  // eight voltages without and with a shield, and what they come to
+  for (std::size_t n = 0; n < 16; ++n) {
+    const Json& row = section["rows"][n];
+    EXPECT_TRUE(row["published"].is_null()) << row;
+    EXPECT_EQ(row["reproduced"].get<std::string>().starts_with("A: "), n % 2 == 1) << row;
+    EXPECT_HOLDS(row["reproduced"].get<std::string>(), " 0 wrong words accepted");
+  }
+  EXPECT_EQ(section["rows"][16]["agrees"], true);
+}
+
 }  // namespace
 }  // namespace fieldproof::cli

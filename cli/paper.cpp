@@ -35,6 +35,7 @@ constexpr std::array kSections = {
     Section{"interbus", &interbus_cycle_times},
     Section{"interbus", &interbus_highest_frequency},
     Section{"interbus", &interbus_square_waves},
+    Section{"interbus", &interbus_bursts},
 };
 
 const Paper& paper_named(const std::string& name) {

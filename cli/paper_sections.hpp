@@ -18,5 +18,6 @@ struct PaperSettings {
 reports::PublishedSection interbus_cycle_times(const PaperSettings& settings);
 reports::PublishedSection interbus_highest_frequency(const PaperSettings& settings);
 reports::PublishedSection interbus_square_waves(const PaperSettings& settings);
+reports::PublishedSection interbus_bursts(const PaperSettings& settings);
 
 }  // namespace fieldproof::cli
