@@ -223,6 +223,9 @@ class Campaign {
     session_.terminal.begin_progress(planned_.size(), "tests");
     const std::size_t delivered = work.run();
     session_.terminal.end_progress();
+    if (!done_.tests.empty()) {
+      done_.residual = emc::frame_residual(network_, done_.tests.front().result.cycle_time);
+    }
     return delivered == planned_.size();
   }
 

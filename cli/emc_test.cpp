@@ -62,6 +62,11 @@ TEST_F(EmcVerb, TellsEachTestAndTheLedger) {
     EXPECT_EQ(test.at("ledger").at("accepted_wrong_inputs"), 0);
   }
   EXPECT_EQ(document.at("total").at("accepted_wrong"), 0);
+  const auto& residual = document.at("residual");
+  EXPECT_EQ(residual.at("frame_check"), "CRC-16/IBM-3740");
+  EXPECT_DOUBLE_EQ(residual.at("expected_wrong_at_most").get<double>(),
+                   residual.at("worst_share_of_corrupted").get<double>() *
+                       document.at("total").at("corrupted").get<double>());
 }
 
 TEST_F(EmcVerb, TheNumberOfThreadsChangesNothing) {

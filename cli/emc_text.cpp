@@ -56,6 +56,25 @@ ordered_json test_json(const EmcTest& test) {
           {"line", line_json(result.line)}};
 }
 
+std::string residual_text(const emc::FrameResidual& residual, const EmcTotal& total) {
+  return fmt::format(
+      "{} over {} bits lets at most {:.3g} of the corrupted cycles pass (exact, at the worst bit-error rate, "
+      "{:.2g}): of these {:.3g}\n"
+      "per hour {:.3g} cycles pass wrong at a bit-error rate of 1e-2 (formula of IEC 61784-3, unverified)\n",
+      residual.frame_check, residual.bits, residual.worst_share, residual.worst_ber, total.expected_at_most,
+      residual.rate_per_hour);
+}
+
+ordered_json residual_json(const emc::FrameResidual& residual, const EmcTotal& total) {
+  return {{"frame_check", residual.frame_check},
+          {"bits", residual.bits},
+          {"worst_ber", residual.worst_ber},
+          {"worst_share_of_corrupted", residual.worst_share},
+          {"expected_wrong_at_most", total.expected_at_most},
+          {"probability_at_ber_0.01", residual.probability_at_one_in_100},
+          {"rate_per_hour_at_ber_0.01", residual.rate_per_hour}};
+}
+
 }  // namespace
 
 EmcTotal total_of(const EmcCampaign& campaign) {
@@ -69,6 +88,7 @@ EmcTotal total_of(const EmcCampaign& campaign) {
     total.upper_bound_of_share =
         emc::upper_bound_of_share(std::min(total.accepted_wrong, total.corrupted), total.corrupted);
   }
+  total.expected_at_most = static_cast<double>(total.corrupted) * campaign.residual.worst_share;
   return total;
 }
 
@@ -102,6 +122,7 @@ std::string emc_summary(const EmcCampaign& campaign) {
       "{:.3g} pass "
       "unseen (one-sided 95 %)\n",
       total.corrupted, total.detected, total.accepted_wrong, total.upper_bound_of_share);
+  text += residual_text(campaign.residual, total);
   text += fmt::format("profile {} ({}): a receiver can be wrong from {:.0f} V on\n", campaign.profile.name,
                       reports::escaped_line(campaign.profile.title), campaign.threshold_volts);
   for (const std::string& caveat : emc::caveats_of(campaign.profile)) text += fmt::format("  - {}\n", caveat);
@@ -122,6 +143,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                                  {"seed", campaign.seed},
                                  {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
                                  {"tests", tests},
+                                 {"residual", residual_json(campaign.residual, total)},
                                  {"total",
                                   {{"corrupted", total.corrupted},
                                    {"detected", total.detected},

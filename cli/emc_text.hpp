@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "emc/interbus/frame_residual.hpp"
 #include "emc/interbus/immunity.hpp"
 #include "emc/profile.hpp"
 
@@ -25,6 +26,7 @@ struct EmcCampaign {
   std::uint64_t seed = 0;
   kernel::Duration duration{};
   std::vector<EmcTest> tests;
+  emc::FrameResidual residual;
 };
 
 // The ledger of all tests together, and how much a count of wrong words can still hide.
@@ -33,6 +35,8 @@ struct EmcTotal {
   std::uint64_t detected = 0;
   std::uint64_t accepted_wrong = 0;
   double upper_bound_of_share = 1;  // of the corrupted cycles, one-sided 95 %; 1 where none was
+  // Cycles that may pass wrong by the theory of the frame check, at the worst bit-error rate.
+  double expected_at_most = 0;
 };
 EmcTotal total_of(const EmcCampaign& campaign);
 
