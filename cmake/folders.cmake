@@ -1,5 +1,6 @@
 # Folders become targets: libraries, test programs, fuzz targets, benchmarks.
 include(embed_schemas)
+include(embed_page)
 
 # Names of the direct subfolders of a folder that hold sources.
 function(fieldproof_subfolders folder result)

@@ -24,8 +24,9 @@ bool contains(const std::vector<File>& files, const std::string& path) {
   return std::any_of(files.begin(), files.end(), [&](const File& file) { return file.path == path; });
 }
 
-// Headers that the build writes: one per folder with a JSON Schema.
+// Headers that the build writes: one per folder with a JSON Schema, one for the page of the reports.
 bool is_generated(const std::vector<File>& files, const std::string& target) {
+  if (target == "reports/embedded_page.hpp") return contains(files, "reports/page/page.js");
   if (!target.ends_with("/embedded_schemas.hpp")) return false;
   const std::string folder = folder_of(target) + "/";
   return std::any_of(files.begin(), files.end(), [&](const File& file) {

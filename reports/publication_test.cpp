@@ -5,21 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/approved_text.hpp"
-#include "reports/sample_measurement.hpp"
+#include "reports/sample_page.hpp"
 #include "reports/schema/ajv_judge.hpp"
 
 namespace fieldproof::reports {
 namespace {
-
-Publication sample_publication() {
-  PublishedSection section;
-  section.heading = "Cycle time";
-  section.note = "as printed";
-  section.rows = {{"calculated", "0.755 ms", "0.7550 ms", "by the formula", true},
-                  {"delay", "", "1.1 to 1.9 ms", "pictures only", std::nullopt}};
-  section.traces = {{"50 Hz", sample_measurement().series[0].trace}};
-  return {"A paper", 7, {section}};
-}
 
 TEST(PublicationTest, WritesTheApprovedDocuments) {
   expect_approved("publication.json", publication_json(sample_publication()));

@@ -1,0 +1,30 @@
+// Subject: the page of a report, driven in a browser by page/browser_test.mjs.
+#include <gtest/gtest.h>
+
+#include "reports/approved_text.hpp"
+#include "reports/sample_page.hpp"
+#include "reports/schema/ajv_judge.hpp"
+
+namespace fieldproof::reports {
+namespace {
+
+constexpr int kNoBrowser = 77;
+
+AjvJudgement drive(const std::filesystem::path& page) {
+  const std::string driver = std::string(FIELDPROOF_SOURCE_DIR) + "/reports/page/browser_test.mjs";
+  return run_for_judgement("node " + shell_word(driver) + " " + shell_word(page.string()) + " 2>&1");
+}
+
+TEST(BrowserTest, APageWithEverythingServesItsReader) {
+  if (run_for_judgement("node --version 2>/dev/null").exit_code != 0) {
+    GTEST_SKIP() << "the page is driven by node, which is not installed; run script/setup";
+  }
+  const TemporaryFolder folder;
+  write_text_file(folder.path() / "report.html", html_page(sample_page()));
+  const AjvJudgement judgement = drive(folder.path() / "report.html");
+  if (judgement.exit_code == kNoBrowser) GTEST_SKIP() << judgement.output;
+  EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
+}
+
+}  // namespace
+}  // namespace fieldproof::reports

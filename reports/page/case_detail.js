@@ -1,0 +1,106 @@
+// Everything that is known of one case.
+import { command, definitions, element, notice } from "./dom.js";
+import { duration, exactTime, number, plural } from "./format.js";
+import { table } from "./table.js";
+import { timeLine } from "./time_line.js";
+
+const kStandings = {
+  seed: "printed in a paper that the project reproduces",
+  sure: "standard, sure",
+  searched: "read in a copy of the named document",
+  calc: "computed; the computation is tested",
+  derived: "follows from verified facts",
+  memory: "from memory",
+  own: "a choice of this project",
+};
+
+export function standingText(reference) {
+  return kStandings[reference.standing] ?? reference.standing;
+}
+
+export function unverifiedMark(reference) {
+  return reference.verified ? null : element("span", {class: "unverified", title: standingText(reference)}, "unverified");
+}
+
+export function sourceText(reference) {
+  const clause = reference.clause ? `, ${reference.clause}` : "";
+  return [`${reference.source}${clause} `, element("span", {class: "quiet"}, `(${standingText(reference)}) `), unverifiedMark(reference)];
+}
+
+function isSameSource(a, b) {
+  return a.source === b.source && a.clause === b.clause && a.standing === b.standing;
+}
+
+function lines(texts, empty) {
+  if (texts.length === 0) return element("p", {class: "quiet"}, empty);
+  return element("ul", {class: "plain"}, texts.map((text) => element("li", {}, text)));
+}
+
+function facing(expected, actual) {
+  return element("div", {class: "facing"}, element("div", {}, element("h5", {}, "Expected"), lines(expected, "nothing is listed")),
+      element("div", {class: "actual"}, element("h5", {}, "Actual"), element("p", {}, actual || "nothing was observed")));
+}
+
+// What the case says already is not said again.
+function findingPart(finding, result, at, count) {
+  const title = count > 1 ? `Finding ${at + 1} of ${count}` : "Finding";
+  const decode = finding.decode.length
+      ? element("details", {open: finding.decode.length <= 12}, element("summary", {}, `Decode, ${plural(finding.decode.length, "line")}`),
+          element("pre", {class: "scroll", tabindex: "0"}, finding.decode.join("\n")))
+      : null;
+  return element("article", {class: "finding-text"},
+      element("h4", {}, `${title}: `, element("span", {class: `verdict ${finding.verdict}`}, finding.verdict), " ",
+          element("code", {}, finding.reason || "no reason code")),
+      finding.requirement !== result.requirement ? element("p", {}, finding.requirement) : null,
+      definitions([["Source", isSameSource(finding.reference, result.reference) ? "" : sourceText(finding.reference)], ["Time", exactTime(finding.time_ps)],
+        ["First difference", finding.first_difference]]),
+      facing(finding.expected, finding.actual), decode);
+}
+
+// Where there is no limit, low and high are the value itself.
+function limitText(one) {
+  return one.low === one.value && one.high === one.value ? "no limit" : `${number(one.low)} to ${number(one.high)}`;
+}
+
+function measurementsPart(measurements) {
+  return table("Measurements", [
+    {title: "quantity", cell: (one) => one.name},
+    {title: "value", kind: "number", cell: (one) => `${number(one.value)} ${one.unit}`},
+    {title: "limits", kind: "number", cell: limitText},
+  ], measurements);
+}
+
+function timeLinePart(more) {
+  if (more.timeline) return [element("h4", {}, "Time line"), timeLine(more.timeline)];
+  if (more.timeline_left_out) {
+    return notice(`The time line is not in this page, which holds as many as fit; it is in ${more.folder}/timeline.json. ` +
+        "Run this case alone, and its page has it.");
+  }
+  return null;
+}
+
+function storyPart(story) {
+  if (!story) return null;
+  return definitions([["Stimulus", story.stimulus], ["Expected", story.expected],
+    ["Deviations that it catches", story.catches.length ? lines(story.catches, "") : ""]]);
+}
+
+// `row` is {result, more, story, run}.
+export function caseDetail(row) {
+  const { result, more, story } = row;
+  const parts = [
+    element("p", {class: "requirement"}, result.requirement || "No requirement is stated."),
+    definitions([["Source", sourceText(result.reference)], ["Purpose", result.purpose],
+      [result.verdict === "not-applicable" ? "Why it does not apply" : "Reason", result.reason]]),
+    storyPart(story),
+    result.findings.map((finding, at) => findingPart(finding, result, at, result.findings.length)),
+    timeLinePart(more),
+    result.measurements.length ? measurementsPart(result.measurements) : null,
+    result.log ? [element("h4", {}, "Log of the implementation"), element("pre", {class: "scroll", tabindex: "0"}, result.log)] : null,
+    definitions([["Seed of the case", result.seed], ["Fingerprint", element("code", {}, result.fingerprint)],
+      ["Virtual time", exactTime(result.virtual_time_ps)], ["Wall time", duration(Number(more.wall_time_us))],
+      ["Stored", more.files ? `${more.folder}: ${more.files.join(", ")}` : ""]]),
+    command(more.command),
+  ];
+  return element("div", {class: "case-detail"}, parts);
+}

@@ -1,0 +1,181 @@
+// Charts by uPlot: histograms, the two channels of an oscilloscope, curves over logarithmic axes.
+//
+// A chart is drawn when its place first comes near the view, again when the width or the colour scheme
+// changes, and before printing. Beside each stands the text that says the same.
+import { element } from "./dom.js";
+import { number, scientific } from "./format.js";
+
+const places = new Set();
+const kPaperWidth = 620;
+
+const nearView = new IntersectionObserver((entries) => {
+  for (const entry of entries) if (entry.isIntersecting) draw(entry.target);
+}, {rootMargin: "400px"});
+
+const widths = new ResizeObserver((entries) => {
+  for (const { target } of entries) if (target.chart && target.drawnWidth !== widthOf(target)) draw(target);
+});
+
+function isPrinting() {
+  return matchMedia("print").matches;
+}
+
+function widthOf(place) {
+  return isPrinting() ? Math.min(kPaperWidth, place.widest ?? kPaperWidth) : Math.min(place.clientWidth, place.widest ?? 1200);
+}
+
+function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+function draw(place) {
+  const width = widthOf(place);
+  if (width <= 0) return;
+  place.chart?.destroy();
+  place.drawnWidth = width;
+  const { options, data } = place.make();
+  place.chart = new uPlot({width, height: place.chartHeight, ...options}, data, place);
+}
+
+export function drawAllCharts() {
+  for (const place of places) if (place.isConnected) draw(place);
+}
+
+export function watchCharts() {
+  for (const query of ["(prefers-color-scheme: dark)", "print"]) {
+    matchMedia(query).addEventListener("change", () => {
+      for (const place of places) if (place.chart || isPrinting()) draw(place);
+    });
+  }
+  addEventListener("beforeprint", drawAllCharts);
+}
+
+function chartPlace(label, height, make, widest) {
+  const place = element("div", {class: "chart", role: "img", "aria-label": label});
+  Object.assign(place, {make, chartHeight: height, widest});
+  place.style.minHeight = `${height}px`;
+  places.add(place);
+  nearView.observe(place);
+  widths.observe(place);
+  return place;
+}
+
+function axis(label, more = {}) {
+  return {
+    stroke: colour("quiet"),
+    grid: {stroke: colour("line"), width: 1},
+    ticks: {stroke: colour("line"), width: 1},
+    font: "11px system-ui, sans-serif",
+    labelFont: "11px system-ui, sans-serif",
+    labelSize: 18,
+    label,
+    filter: (plot, splits) => splits,
+  values: (plot, splits) => splits.map((value) => (value === null ? "" : number(value))),
+    ...more,
+  };
+}
+
+// A legend in words stands outside; the cursor shows the value under it.
+const kQuiet = {legend: {show: true, live: true}, cursor: {drag: {x: true, y: false}}};
+
+// Bins {low, high, count} as bars; drag zooms, a double click shows all.
+export function histogram(label, unit, bins) {
+  const make = () => {
+    const isOne = bins.length === 1;
+    const margin = isOne ? Math.max(Math.abs(bins[0].low) * 0.01, 1) : (bins[0].high - bins[0].low) / 2;
+    const middles = bins.map((bin) => (bin.low + bin.high) / 2);
+    return {
+      data: [middles, bins.map((bin) => bin.count)],
+      options: {
+        ...kQuiet,
+        scales: {x: {time: false, range: isOne ? [middles[0] - margin, middles[0] + margin] : (plot, low, high) => [low - margin, high + margin]},
+          y: {range: (plot, low, high) => [0, Math.max(high * 1.05, 1)]}},
+        axes: [axis(unit, {size: 32}), axis("count", {size: 52})],
+        series: [
+          {label: unit, value: (plot, value) => (value === null ? "" : number(value))},
+          {label: "count", stroke: colour("accent"), fill: colour("accent-soft"), points: {show: false},
+            paths: uPlot.paths.bars({size: [isOne ? 0.05 : 0.95, 80]})},
+        ],
+      },
+    };
+  };
+  return chartPlace(label, 190, make, 560);
+}
+
+// Edges {time_us, level} as a step line from 0 to 1; the level before the first edge is the other one.
+function steps(edges, length) {
+  const first = edges.length ? !edges[0].level : false;
+  const points = [[0, first ? 1 : 0]];
+  for (const edge of edges) points.push([edge.time_us, edge.level ? 1 : 0]);
+  points.push([length, points.at(-1)[1]]);
+  return points;
+}
+
+function valueAt(points, time) {
+  let value = points[0][1];
+  for (const [when, level] of points) {
+    if (when > time) break;
+    value = level;
+  }
+  return value;
+}
+
+// Input above output, as on the two channels of an oscilloscope.
+export function oscilloscope(label, trace) {
+  const make = () => {
+    const input = steps(trace.input, trace.length_us);
+    const output = steps(trace.output, trace.length_us);
+    const times = [...new Set([...input, ...output].map(([when]) => when))].sort((a, b) => a - b);
+    const stepped = uPlot.paths.stepped({align: 1});
+    const names = new Map([[1.8, "input"], [0.3, "output"]]);
+    const level = (offset) => (plot, value) => (value === null ? "" : value > offset + 0.5 ? "1" : "0");
+    return {
+      data: [times.map((one) => one / 1000), times.map((one) => 1.3 + valueAt(input, one)), times.map((one) => valueAt(output, one))],
+      options: {
+        ...kQuiet,
+        scales: {x: {time: false}, y: {range: [-0.2, 2.6]}},
+        axes: [axis("ms", {size: 32}), axis("", {size: 56, labelSize: 0, splits: () => [...names.keys()], values: () => [...names.values()],
+          grid: {show: false}, ticks: {show: false}})],
+        series: [
+          {label: "ms", value: (plot, value) => (value === null ? "" : number(value))},
+          {label: "input", stroke: colour("accent"), width: 1.5, paths: stepped, points: {show: false}, value: level(1.3)},
+          {label: "output", stroke: colour("second"), width: 1.5, paths: stepped, points: {show: false}, value: level(0)},
+        ],
+      },
+    };
+  };
+  return chartPlace(label, 190, make);
+}
+
+// Series {label, values, isPoints} over `x`, both axes logarithmic; values that are not above 0 are left out.
+export function logarithmicCurves(label, xLabel, yLabel, x, series) {
+  const colours = ["accent", "second", "third"];
+  const make = () => ({
+    data: [x, ...series.map((one) => one.values.map((value) => (value > 0 ? value : null)))],
+    options: {
+      ...kQuiet,
+      scales: {x: {time: false, distr: 3}, y: {distr: 3}},
+      axes: [axis(xLabel, {...kDecades, size: 32}), axis(yLabel, {...kDecades, size: 62})],
+      series: [
+        {label: xLabel, value: (plot, value) => (value === null ? "" : scientific(value))},
+        ...series.map((one, at) => ({label: one.label, stroke: colour(colours[at]), width: 1.5,
+          dash: at === 2 ? [6, 4] : undefined, spanGaps: true, points: {show: true, size: 6},
+          paths: one.isPoints ? () => null : undefined,
+          value: (plot, value) => (value === null ? "" : scientific(value))})),
+      ],
+    },
+  });
+  return chartPlace(label, 240, make, 720);
+}
+
+// Grid and labels at powers of ten, at most ten of them.
+const kDecades = {
+  splits: (plot, which, low, high) => {
+    const first = Math.ceil(Math.log10(low) - 1e-9);
+    const last = Math.floor(Math.log10(high) + 1e-9);
+    const step = Math.ceil((last - first + 1) / 10);
+    return Array.from({length: Math.floor((last - first) / step) + 1}, (none, at) => 10 ** (first + at * step));
+  },
+  filter: (plot, splits) => splits,
+  values: (plot, splits) => splits.map((value) => (value === null ? "" : value.toExponential(0))),
+};

@@ -1,0 +1,106 @@
+// Networks under bursts: the performance criterion by level, repetition and polarity, and the ledger of errors.
+import { definitions, element, notice, section } from "./dom.js";
+import { number, part, scientific } from "./format.js";
+import { later } from "./later.js";
+import { documentCommand, documentsOf } from "./summary.js";
+import { table } from "./table.js";
+
+function wrongOf({ ledger }) {
+  return ledger.accepted_wrong_inputs + ledger.accepted_wrong_outputs;
+}
+
+function recoveryText(test) {
+  if (test.recovered_by_itself) return number(test.recovery_cycles);
+  return test.recovered_after_start ? "after a start" : "never";
+}
+
+function unique(values) {
+  return [...new Set(values)];
+}
+
+function heatCell(test) {
+  if (!test) return element("td", {class: "heat"}, "not tested");
+  if (!test.came_up) return element("td", {class: "heat none"}, "does not come up");
+  const { ledger } = test;
+  return element("td", {class: `heat criterion-${test.criterion}`}, element("strong", {}, test.criterion),
+      element("small", {}, `${number(ledger.detected)} rejected`, element("br"), `${part(ledger.corrupted, ledger.sent)} hit`,
+          wrongOf(test) ? [element("br"), `${number(wrongOf(test))} wrong`] : null));
+}
+
+function heatMap(tests) {
+  const levels = unique(tests.map((test) => test.level)).reverse();
+  const columns = unique(tests.map((test) => `${test.repetition}\n${test.polarity}`)).map((key) => key.split("\n"));
+  const head = element("tr", {}, element("th", {scope: "col"}, "level"),
+      columns.map(([repetition, polarity]) => element("th", {scope: "col"}, `${repetition} ${polarity === "-" ? "−" : polarity}`)));
+  const rows = levels.map((level) => element("tr", {}, element("th", {scope: "row"}, level),
+      columns.map(([repetition, polarity]) =>
+          heatCell(tests.find((test) => test.level === level && test.repetition === repetition && test.polarity === polarity)))));
+  return element("div", {class: "scroll", role: "region", tabindex: "0", "aria-label": "Performance criterion"},
+      element("table", {class: "heat-map"}, element("caption", {}, "Performance criterion by level, repetition rate and polarity"),
+          element("thead", {}, head), element("tbody", {}, rows)));
+}
+
+function criteriaPart(content) {
+  if (!content.criteria) return null;
+  return element("ul", {class: "criteria"}, content.criteria.map((one) =>
+    element("li", {}, element("span", {class: `heat criterion-${one.criterion}`}, one.criterion), " ", one.meaning)));
+}
+
+function ledger(tests) {
+  const column = (title, cell) => ({title, kind: "number", cell});
+  return table("Error ledger of each test", [
+    {title: "level", cell: (test) => test.level},
+    {title: "pulses", cell: (test) => `${test.repetition} ${test.polarity === "-" ? "−" : test.polarity}`},
+    {title: "criterion", cell: (test) => (test.came_up ? test.criterion : "did not come up")},
+    column("sent", ({ledger: one}) => number(one.sent)),
+    column("corrupted", ({ledger: one}) => number(one.corrupted)),
+    column("detected", ({ledger: one}) => number(one.detected)),
+    column("repeated", ({ledger: one}) => number(one.repeated)),
+    column("wrong inputs accepted", ({ledger: one}) => number(one.accepted_wrong_inputs)),
+    column("wrong outputs accepted", ({ledger: one}) => number(one.accepted_wrong_outputs)),
+    column("outputs cleared", ({ledger: one}) => number(one.cleared_outputs)),
+    column("partly latched", ({ledger: one}) => number(one.partly_latched)),
+    column("longest bad run", (test) => number(test.longest_bad_run)),
+    column("recovery, cycles", recoveryText),
+    column("bus stops", (test) => number(test.bus_stops)),
+    column("wrong levels", ({line}) => number(line.wrong_levels)),
+    column("transmissions hit", ({line}) => part(line.hit, line.transmissions)),
+  ], tests, "many");
+}
+
+// What counting shows, beside what the frame check itself allows.
+function totalPart({ total, residual }) {
+  return table("Corrupted cycles that pass unseen", [
+    {title: "", cell: ([what]) => what},
+    {title: "share", kind: "number", cell: ([, share]) => share},
+    {title: "cycles", kind: "number", cell: ([, , cycles]) => cycles},
+    {title: "how it is known", kind: "text", cell: ([, , , how]) => how},
+  ], [
+    ["counted", scientific(total.accepted_wrong / Math.max(total.corrupted, 1)), `${number(total.accepted_wrong)} words wrong`,
+      `${number(total.corrupted)} cycles corrupted, ${number(total.detected)} rejected`],
+    ["upper bound", scientific(total.upper_bound_of_share), number(total.upper_bound_of_share * total.corrupted, 3),
+      "one-sided 95 %, from the count"],
+    [`exact: ${residual.frame_check} over ${number(residual.bits)} bits`, scientific(residual.worst_share_of_corrupted),
+      `at most ${number(residual.expected_wrong_at_most, 3)}`,
+      `at the worst bit-error rate, ${scientific(residual.worst_ber)}, where every bit flips with the same chance`],
+    ["exact, at a bit-error rate of 0.01", scientific(residual["probability_at_ber_0.01"]), "",
+      ["probability of each cycle; per hour ", scientific(residual["rate_per_hour_at_ber_0.01"]), " by a formula of IEC 61784-3 ",
+        element("span", {class: "unverified"}, "unverified")]],
+  ]);
+}
+
+function campaign({ name, content }) {
+  return element("article", {}, element("h3", {}, content.network),
+      definitions([["Document", name], ["Implementation", content.implementations], ["Profile", content.profile],
+        ["A receiver can be wrong from", `${number(content.threshold_volts, 3)} V on`], ["Seed", String(content.seed)],
+        ["Each test", `${number(content.duration_s)} s`]]),
+      documentCommand(content, name),
+      content.unverified.length ? notice(element("strong", {}, "Unverified and uncalibrated"),
+          element("ul", {}, content.unverified.map((text) => element("li", {}, text)))) : null,
+      heatMap(content.tests), criteriaPart(content), totalPart(content), ledger(content.tests));
+}
+
+export function immunitySection(data) {
+  const documents = documentsOf(data, "fieldproof/emc/1");
+  return documents.length ? section("immunity", "Immunity to bursts", documents.map((document) => later(() => campaign(document)))) : null;
+}

@@ -1,0 +1,229 @@
+// For tests: a page with everything on it. A run of a hundred cases, a dozen of which failed and have a time
+// line; a document of each kind; and names that try to leave their element.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "reports/html_writer.hpp"
+#include "reports/measurement_writer.hpp"
+#include "reports/publication.hpp"
+#include "reports/sample_measurement.hpp"
+#include "reports/sample_run.hpp"
+
+namespace fieldproof::reports {
+
+inline constexpr const char* kHostileName = "</script><img src=x onerror=alert(1)><!--<script>alert(2)//";
+
+// Forty frames that two stations send in turn; every seventh is changed by a fault.
+inline std::string sample_timeline(const std::string& case_id) {
+  using Json = nlohmann::ordered_json;
+  constexpr std::int64_t kFrame = 26'000'000;
+  constexpr std::int64_t kBegin = 1'000'000'000'000'000;  // beyond what a double counts in picoseconds
+  Json json = {{"schema", "fieldproof/timeline/1"},
+               {"case", case_id},
+               {"is_cut", true},
+               {"channels", {{{"name", "master to slave"}}, {{"name", kHostileName}}}},
+               {"transmissions", Json::array()},
+               {"faults", Json::array()},
+               {"observations", Json::array()},
+               {"findings", Json::array()},
+               {"windows", Json::array()}};
+  for (std::int64_t n = 0; n < 40; ++n) {
+    const std::int64_t start = kBegin + n * 2 * kFrame;
+    json["transmissions"].push_back({{"channel", n % 2},
+                                     {"start_ps", std::to_string(start)},
+                                     {"end_ps", std::to_string(start + kFrame)},
+                                     {"text", fmt::format("data telegram {:02X}h", n)},
+                                     {"levels", 13},
+                                     {"is_changed", n % 7 == 3}});
+    if (n % 7 != 3) continue;
+    json["faults"].push_back(
+        {{"channel", n % 2}, {"time_ps", std::to_string(start + kFrame / 2)}, {"text", "flips level 6"}});
+    json["observations"].push_back({{"channel", 0},
+                                    {"time_ps", std::to_string(start + 2 * kFrame)},
+                                    {"what", "output word 0"},
+                                    {"value", "0xa5ff"}});
+  }
+  json["findings"].push_back({{"time_ps", std::to_string(kBegin + 20 * kFrame)},
+                              {"reason", "outputs_changed"},
+                              {"requirement", "outputs are kept"},
+                              {"expected", "no change"},
+                              {"actual", kHostileName}});
+  json["windows"].push_back({{"kind", "burst"},
+                             {"from_ps", std::to_string(kBegin + 5 * kFrame)},
+                             {"to_ps", std::to_string(kBegin + 30 * kFrame)}});
+  return json.dump(1);
+}
+
+inline PageRun sample_page_run() {
+  PageRun page;
+  page.name = "20260102T030405Z-7";
+  page.stored.manifest = sample_manifest();
+  page.stored.run = sample_run();
+  Run& run = page.stored.run;
+  run.identity.implementations[0].uri = kHostileName;
+  run.cases.push_back(sample_case(kHostileName, judge::Verdict::pass));
+  for (int n = 0; run.cases.size() < 100; ++n) {
+    judge::CaseResult result = n < 12 ? sample_failure() : sample_case("", judge::Verdict::pass);
+    result.id = fmt::format("interbus/slave/sample/case_{}", n);
+    if (n < 12) {
+      page.timelines[result.id] = sample_timeline(result.id);
+      page.files[result.id] = {"case.json", "timeline.json", "trace.txt"};
+      result.findings[0].actual = kHostileName;
+    }
+    run.cases.push_back(std::move(result));
+  }
+  run.identity.selected = run.cases.size() + 1;
+  return page;
+}
+
+inline nlohmann::ordered_json sample_emc() {
+  using Json = nlohmann::ordered_json;
+  Json json = {
+      {"schema", "fieldproof/emc/1"},
+      {"protocol", "interbus"},
+      {"command", "fieldproof emc interbus --seed 7"},
+      {"network", "one coupler"},
+      {"implementations", kHostileName},
+      {"profile", "A"},
+      {"threshold_volts", 47.5},
+      {"unverified", {"The coupling is not calibrated.", "clamp_pf has no verified source."}},
+      {"criteria", Json::array()},
+      {"seed", 7},
+      {"duration_s", 3.0},
+      {"tests", Json::array()},
+      {"residual",
+       {{"frame_check", "CRC-16/IBM-3740"},
+        {"bits", 160},
+        {"worst_ber", 0.02},
+        {"worst_share_of_corrupted", 1e-5},
+        {"expected_wrong_at_most", 0.001},
+        {"probability_at_ber_0.01", 1e-6},
+        {"rate_per_hour_at_ber_0.01", 1e-3}}},
+      {"total",
+       {{"corrupted", 160}, {"detected", 80}, {"accepted_wrong", 4}, {"upper_bound_of_share", 0.06}}}};
+  const std::string criteria = "ABCD";
+  for (const char criterion : criteria) {
+    json["criteria"].push_back({{"criterion", std::string(1, criterion)}, {"meaning", "as agreed"}});
+  }
+  for (int n = 0; n < 16; ++n) {
+    json["tests"].push_back({{"level", fmt::format("{} ({} V)", n / 4 + 1, 250 << (n / 4))},
+                             {"open_circuit_volts", 250 << (n / 4)},
+                             {"repetition", n % 4 < 2 ? "5 kHz" : "100 kHz"},
+                             {"polarity", n % 2 == 0 ? "+" : "-"},
+                             {"came_up", n != 7},
+                             {"criterion", std::string(1, criteria.at(static_cast<std::size_t>(n) / 4))},
+                             {"longest_bad_run", n},
+                             {"recovered_by_itself", n < 10},
+                             {"recovered_after_start", n < 14},
+                             {"recovery_cycles", 1},
+                             {"bus_stops", n / 8},
+                             {"quality_bit", false},
+                             {"cycle_time_us", 814.0},
+                             {"ledger",
+                              {{"sent", 3600},
+                               {"corrupted", 10},
+                               {"detected", 5},
+                               {"repeated", 5},
+                               {"accepted_wrong_inputs", n / 12},
+                               {"accepted_wrong_outputs", 0},
+                               {"cleared_outputs", 1},
+                               {"partly_latched", 0}}},
+                             {"line",
+                              {{"transmissions", 17000},
+                               {"hit", 380},
+                               {"changed", 370},
+                               {"pulses", 590},
+                               {"wrong_levels", 630}}}});
+  }
+  return json;
+}
+
+inline nlohmann::ordered_json sample_residual() {
+  using Json = nlohmann::ordered_json;
+  const Json worst = {{"ber", 0.05}, {"probability", 1.8e-5}, {"rises_throughout", false}};
+  Json json = {{"schema", "fieldproof/residual/1"},
+               {"frame_check", "CRC-16/IBM-3740"},
+               {"width", 16},
+               {"polynomial", "0x1021"},
+               {"bits", 120},
+               {"hamming_distance", 4},
+               {"weights_up_to", 6},
+               {"weights", {{{"weight", 0}, {"count", "1"}}, {{"weight", 4}, {"count", "470"}}}},
+               {"worst", worst},
+               {"worst_up_to_usual", worst},
+               {"usual_ber", 0.01},
+               {"safety_source", "IEC 61784-3"},
+               {"safety_standing", "memory"},
+               {"messages_per_hour", 3600},
+               {"receivers", 1},
+               {"seed", "7"},
+               {"points", Json::array()}};
+  double probability = 4.7e-22;
+  for (const double ber : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
+    json["points"].push_back({{"ber", ber},
+                              {"probability", probability},
+                              {"share_of_corrupted", probability / ber},
+                              {"proper_bound", probability / 2},
+                              {"rate_per_hour", probability * 3600},
+                              {"proper_bound_exceeded", true}});
+    probability *= 1e4;
+  }
+  return json;
+}
+
+inline nlohmann::ordered_json sample_matrix() {
+  using Json = nlohmann::ordered_json;
+  const Json passed = {{"kind", "passed"}, {"verdict", "pass"}};
+  const Json caught = {{"kind", "caught"}, {"verdict", "fail"}, {"reason", "late"}, {"declared", "late"}};
+  const Json missed = {{"kind", "missed"}, {"verdict", "pass"}, {"declared", "late"}};
+  Json role = {{"role", "slave"},
+               {"deviations",
+                {{{"name", "answers_late"}, {"mutant", "MS1"}, {"description", kHostileName}},
+                 {{"name", "never_answers"}, {"mutant", ""}, {"description", "says nothing"}}}},
+               {"cases", Json::array()}};
+  role["cases"].push_back({{"id", "interbus/slave/sample/case_0"},
+                           {"purpose", "IS-1"},
+                           {"reference", passed},
+                           {"cells", {caught, missed}}});
+  return {{"schema", "fieldproof/matrix/1"},
+          {"protocol", "interbus"},
+          {"seed", "7"},
+          {"complete", true},
+          {"roles", {role}},
+          {"holes",
+           {{{"kind", "missed"},
+             {"case", "interbus/slave/sample/case_0"},
+             {"deviation", "never_answers"},
+             {"sentence", "nothing catches it"}}}}};
+}
+
+inline Publication sample_publication() {
+  PublishedSection section;
+  section.heading = "Cycle time";
+  section.note = "as printed";
+  section.rows = {{"calculated", "0.755 ms", "0.7550 ms", "by the formula", true},
+                  {"delay", "", "1.1 to 1.9 ms", "pictures only", std::nullopt}};
+  section.traces = {{"50 Hz", sample_measurement().series[0].trace}};
+  return {"A paper", 7, {section}};
+}
+
+inline PageContent sample_page() {
+  PageContent content;
+  content.catalogue.suite_version = sample_run().identity.suite_version;
+  for (const judge::CaseResult& result : sample_page_run().stored.run.cases) {
+    content.catalogue.stories[result.id] = {
+        "one bit of a cycle flips", "outputs stay", {"answers_late, late"}};
+  }
+  content.runs = {sample_page_run()};
+  content.documents = {{"measurement.json", measurement_json(sample_measurement())},
+                       {"emc.json", sample_emc().dump()},
+                       {"residual.json", sample_residual().dump()},
+                       {"publication.json", publication_json(sample_publication())},
+                       {"matrix.json", sample_matrix().dump()}};
+  return content;
+}
+
+}  // namespace fieldproof::reports
