@@ -14,6 +14,7 @@
 #include "cli/implementations.hpp"
 #include "cli/interruption.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "conformance/interbus/master_deviations.hpp"
 #include "conformance/interbus/slave_deviations.hpp"
@@ -273,9 +274,7 @@ int emc_protocol(Session& session) {
   Campaign campaign(session);
   const bool is_complete = campaign.run();
   session.terminal.print(emc_summary(campaign.result()));
-  if (session.settings.is_set("json")) {
-    reports::write_text_file(session.settings.text("json"), emc_json(campaign.result()));
-  }
+  write_document(session, "emc", emc_json(campaign.result()));
   if (!is_complete) {
     session.terminal.log(campaign.interruption().reason());
     const int signal = campaign.interruption().signal();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "emc/residual/residual_error.hpp"
@@ -12,6 +13,8 @@ namespace fieldproof::cli {
 namespace {
 
 using nlohmann::ordered_json;
+
+constexpr std::array kCriteria = {emc::Criterion::a, emc::Criterion::b, emc::Criterion::c, emc::Criterion::d};
 
 std::string recovery_text(const emc::ImmunityResult& result) {
   if (result.recovered_by_itself) return fmt::format("{}", result.recovery_cycles);
@@ -114,7 +117,7 @@ std::string emc_line(const EmcTest& test) {
 std::string emc_summary(const EmcCampaign& campaign) {
   const EmcTotal total = total_of(campaign);
   std::string text = "\ncriterion  what it means (a choice of this project)\n";
-  for (const auto criterion : {emc::Criterion::a, emc::Criterion::b, emc::Criterion::c, emc::Criterion::d}) {
+  for (const auto criterion : kCriteria) {
     text += fmt::format("{:>9}  {}\n", emc::name(criterion), emc::text_of(criterion));
   }
   text += fmt::format(
@@ -132,6 +135,10 @@ std::string emc_summary(const EmcCampaign& campaign) {
 std::string emc_json(const EmcCampaign& campaign) {
   ordered_json tests = ordered_json::array();
   for (const EmcTest& test : campaign.tests) tests.push_back(test_json(test));
+  ordered_json criteria = ordered_json::array();
+  for (const auto criterion : kCriteria) {
+    criteria.push_back({{"criterion", emc::name(criterion)}, {"meaning", emc::text_of(criterion)}});
+  }
   const EmcTotal total = total_of(campaign);
   const ordered_json document = {{"schema", "fieldproof/emc/1"},
                                  {"protocol", "interbus"},
@@ -140,6 +147,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                                  {"profile", campaign.profile.name},
                                  {"threshold_volts", campaign.threshold_volts},
                                  {"unverified", emc::caveats_of(campaign.profile)},
+                                 {"criteria", std::move(criteria)},
                                  {"seed", campaign.seed},
                                  {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
                                  {"tests", tests},

@@ -8,6 +8,7 @@
 #include "cli/interruption.hpp"
 #include "cli/matrix_text.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "reports/run_directory.hpp"
 
@@ -33,7 +34,7 @@ int matrix(Session& session) {
   session.terminal.end_progress();
   session.terminal.print(matrix_text(made));
   if (!file.empty()) {
-    reports::write_text_file(file, matrix_json(made));
+    write_document(session, "matrix", matrix_json(made));
     session.terminal.log(fmt::format("the matrix is in {}", file));
   }
   if (!made.is_complete) {

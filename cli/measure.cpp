@@ -8,13 +8,13 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/measure/frequency.hpp"
 #include "protocols/interbus/network_measurement.hpp"
 #include "protocols/interbus/paper.hpp"
 #include "reports/measurement_writer.hpp"
-#include "reports/run_directory.hpp"
 
 // `fieldproof measure`: cycle time, jitter and skew of a network, theory beside measurement.
 namespace fieldproof::cli {
@@ -99,9 +99,7 @@ int measure_protocol(Session& session) {
   }
   const measure::Measurement measured = row->serve(session);
   session.terminal.print(reports::measurement_text(measured));
-  if (session.settings.is_set("json")) {
-    reports::write_text_file(session.settings.text("json"), reports::measurement_json(measured));
-  }
+  write_document(session, "measure", reports::measurement_json(measured));
   const int code = code_of(measure::agreement(measured));
   if (code != kAllAsExpected) {
     session.terminal.print(fmt::format("reproduce: fieldproof measure {} {}\n", session.operands.front(),

@@ -8,9 +8,9 @@
 #include "cli/exit_code.hpp"
 #include "cli/paper_sections.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "harness/kernel/error.hpp"
-#include "reports/run_directory.hpp"
 
 // `fieldproof paper`: what a paper published beside what is reproduced of it.
 namespace fieldproof::cli {
@@ -63,9 +63,7 @@ int paper(Session& session) {
   }
   session.terminal.end_progress();
   session.terminal.print(reports::publication_text(publication));
-  if (session.settings.is_set("json")) {
-    reports::write_text_file(session.settings.text("json"), reports::publication_json(publication));
-  }
+  write_document(session, "paper", reports::publication_json(publication));
   return reports::is_reproduced(publication) ? kAllAsExpected : kFailed;
 }
 

@@ -6,10 +6,10 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/residual_text.hpp"
+#include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
-#include "reports/run_directory.hpp"
 
 // `fieldproof residual`: how probably a frame check takes a corrupted telegram for a good one.
 namespace fieldproof::cli {
@@ -105,7 +105,7 @@ int residual(Session& session) {
     result.points.push_back(point_at(result, dual, rate));
     if (samples > 0) simulate(result, samples, result.points.back());
   }
-  if (settings.is_set("json")) reports::write_text_file(settings.text("json"), residual_json(result));
+  write_document(session, "residual", residual_json(result));
   session.terminal.print(residual_text(result));
   return kAllAsExpected;
 }

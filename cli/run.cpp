@@ -5,10 +5,12 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
+#include "cli/page_catalogue.hpp"
 #include "cli/run_book.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/verbs.hpp"
 #include "harness/kernel/error.hpp"
+#include "reports/html_writer.hpp"
 #include "reports/json_writer.hpp"
 #include "reports/junit_writer.hpp"
 #include "reports/text_summary.hpp"
@@ -188,7 +190,7 @@ class Judging {
 
 // Before hours of work that their absence would make worthless.
 void check_copies(const Settings& settings) {
-  for (const char* option : {"json", "junit"}) {
+  for (const char* option : {"json", "junit", "html"}) {
     if (settings.is_set(option)) reports::check_writable(settings.text(option));
   }
 }
@@ -202,13 +204,25 @@ reports::JunitOptions junit_options(const Settings& settings) {
   return options;
 }
 
-void write_copies(const Settings& settings, const RunBook& book) {
+// The page of a run stands in its directory, and is read from there like any other.
+void write_page(const Session& session, const RunBook& book) {
+  reports::PageContent content;
+  content.catalogue = page_catalogue(session.catalogue);
+  content.runs.push_back(reports::page_run(book.directory()));
+  const std::string page = reports::html_page(content);
+  book.directory().write("report.html", page);
+  if (session.settings.is_set("html")) reports::write_text_file(session.settings.text("html"), page);
+}
+
+void write_copies(const Session& session, const RunBook& book) {
+  const Settings& settings = session.settings;
   if (settings.is_set("json"))
     reports::write_text_file(settings.text("json"), reports::results_json(book.run()));
   if (settings.is_set("junit")) {
     reports::write_text_file(settings.text("junit"),
                              reports::junit_xml(book.run(), book.manifest(), junit_options(settings)));
   }
+  write_page(session, book);
 }
 
 }  // namespace
@@ -230,7 +244,7 @@ int run(Session& session) {
   } catch (const kernel::Error& error) {
     session.terminal.end_progress();
     book.close(error.what(), error.exit_code(), options);
-    write_copies(session.settings, book);
+    write_copies(session, book);
     throw;
   }
   ExitRules rules;
@@ -243,7 +257,7 @@ int run(Session& session) {
   book.close(incomplete_because, code, options);
   session.terminal.log(fmt::format("the result is in {}", book.directory().path().string()));
   session.terminal.print(reports::summary_text(book.run(), {.colour = session.terminal.has_colour()}));
-  write_copies(session.settings, book);
+  write_copies(session, book);
   return code;
 }
 

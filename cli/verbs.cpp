@@ -21,6 +21,7 @@ constexpr std::array kVerbs = {
     Verb{"emc", "PROTOCOL", 1, 1, "a network under IEC 61000-4-4 bursts: criterion and ledger by level, repetition, polarity", &emc_protocol},
     Verb{"residual", "", 0, 0, "probability that a frame check takes a corrupted telegram for a good one", &residual},
     Verb{"measure", "PROTOCOL", 1, 1, "cycle time, jitter and skew of a network, theory beside measurement", &measure_protocol},
+    Verb{"report", "RUNDIR|FILE...", 1, kAny, "stored runs and documents (emc, measure, paper, residual, matrix) as one HTML page", &report},
     Verb{"paper", "[NAME]", 0, 1, "what a paper published beside what is reproduced of it [interbus]", &paper},
 };
 // clang-format on

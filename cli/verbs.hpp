@@ -33,6 +33,7 @@ int residual(Session& session);
 int emc_protocol(Session& session);
 int measure_protocol(Session& session);
 int paper(Session& session);
+int report(Session& session);
 
 struct Verb {
   std::string_view name;

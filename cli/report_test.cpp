@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/probe/called_program.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ReportVerb : public testing::Test {
+ protected:
+  ReportVerb()
+      : folder_(fs::path(testing::TempDir()) /
+                ("fieldproof_report_" + std::to_string(getpid()) +
+                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::create_directories(folder_);
+  }
+  ~ReportVerb() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+
+  Called call(std::vector<std::string> arguments) const {
+    Call made;
+    made.program = FIELDPROOF_EXE;
+    made.arguments = std::move(arguments);
+    made.folder = folder_;
+    return made.run();
+  }
+
+  // A run with failures, stored in `out`.
+  Called run(const std::string& out, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {"run",   "interbus/slave/frame_check/**",
+                                          "--iut", "slave@1=deviant:latches_in_spite_of_own_error",
+                                          "--out", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return call(std::move(arguments));
+  }
+
+  Called residual() const {
+    return call(
+        {"residual", "--fcs", "CRC-8/SMBUS", "--bits", "40", "--samples", "1000", "--json", "residual.json"});
+  }
+
+  std::string read(const std::string& file) const {
+    std::ifstream input(folder_ / file);
+    return {std::istreambuf_iterator<char>(input), {}};
+  }
+
+  nlohmann::json data_of(const std::string& page) const {
+    const std::string html = read(page);
+    const std::string open = R"(<script type="application/json" id="data">)";
+    const std::size_t begin = html.find(open) + open.size();
+    return nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ReportVerb, EveryRunHasThePageThatTheVerbWrites) {
+  EXPECT_EQ(run("a", {"--html", "copy.html"}).exit_code, 1);
+  const std::string page = read("a/report.html");
+  ASSERT_FALSE(page.empty());
+  EXPECT_EQ(read("copy.html"), page);
+  const Called made = call({"report", "a", "--html", "again.html"});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(read("again.html"), page);
+  const nlohmann::json data = data_of("copy.html");
+  const nlohmann::json& results = data["runs"][0]["results"];
+  EXPECT_EQ(results, nlohmann::json::parse(read("a/results.json")));
+  for (const auto& one : results["cases"]) {
+    EXPECT_FALSE(data["catalogue"]["stories"][one["id"].get<std::string>()]["stimulus"].empty()) << one["id"];
+  }
+}
+
+TEST_F(ReportVerb, JoinsRunsAndDocuments) {
+  run("a");
+  run("b", {"--seed", "2"});
+  EXPECT_EQ(residual().exit_code, 0);
+  const Called made = call({"report", "a", "residual.json", "b", "--html", "new/joined.html"});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  const nlohmann::json data = data_of("new/joined.html");
+  ASSERT_EQ(data["runs"].size(), 2U);
+  EXPECT_EQ(data["runs"][0]["name"], "a");
+  EXPECT_EQ(data["runs"][1]["results"]["run"]["seed"], "2");
+  ASSERT_EQ(data["documents"].size(), 1U);
+  EXPECT_EQ(data["documents"][0]["content"]["frame_check"], "CRC-8/SMBUS");
+}
+
+// Each document says how it was made, and the command makes it again.
+TEST_F(ReportVerb, ADocumentHoldsItsCommand) {
+  residual();
+  const std::string first = read("residual.json");
+  std::istringstream words(nlohmann::json::parse(first).at("command").get<std::string>());
+  std::vector<std::string> arguments;
+  for (std::string word; words >> word;) arguments.push_back(word);
+  ASSERT_EQ(arguments.at(0), "fieldproof");
+  arguments.erase(arguments.begin());
+  arguments.insert(arguments.end(), {"--json", "again.json"});
+  EXPECT_EQ(call(arguments).exit_code, 0);
+  EXPECT_EQ(read("again.json"), first);
+}
+
+TEST_F(ReportVerb, RefusesWhatItCannotShow) {
+  const auto expect_refusal = [&](std::vector<std::string> arguments, int code, const std::string& told) {
+    const Called called = call(std::move(arguments));
+    EXPECT_EQ(called.exit_code, code) << called.err;
+    EXPECT_NE(called.err.find(told), std::string::npos) << called.err;
+    EXPECT_FALSE(fs::exists(folder_ / "r.html"));
+  };
+  run("a");
+  residual();
+  std::ofstream(folder_ / "wrong.json") << R"({"schema": "fieldproof/residual/1"})";
+  std::ofstream(folder_ / "other.json") << R"({"schema": "fieldproof/diff/1"})";
+  expect_refusal({"report", "a"}, 64, "--html");
+  expect_refusal({"report", "--html", "r.html"}, 64, "");
+  expect_refusal({"report", "none", "--html", "r.html"}, 65, "none");
+  expect_refusal({"report", "a/cases", "--html", "r.html"}, 65, "manifest.json");
+  expect_refusal({"report", "a", "wrong.json", "--html", "r.html"}, 65, "wrong.json:1");
+  expect_refusal({"report", "a", "other.json", "--html", "r.html"}, 65, "fieldproof/emc/1");
+  expect_refusal({"report", "a", "--html", "a"}, 65, "folder");
+}
+
+}  // namespace
+}  // namespace fieldproof::cli

@@ -1,0 +1,43 @@
+#include "cli/stored_document.hpp"
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "cli/embedded_schemas.hpp"
+#include "reports/embedded_schemas.hpp"
+#include "reports/results.hpp"
+#include "reports/run_directory.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+std::string command_of(const Session& session, const std::string& verb) {
+  std::string command = "fieldproof " + verb;
+  for (const std::string& operand : session.operands) command += " " + reports::shell_quoted(operand);
+  const std::string options = session.settings.reproduce_options();
+  return options.empty() ? command : command + " " + options;
+}
+
+}  // namespace
+
+void write_document(const Session& session, const std::string& verb, const std::string& json) {
+  if (!session.settings.is_set("json")) return;
+  using nlohmann::ordered_json;
+  ordered_json document = ordered_json::parse(json);
+  document["command"] = command_of(session, verb);
+  reports::write_text_file(session.settings.text("json"),
+                           document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+}
+
+std::span<const reports::DocumentKind> document_kinds() {
+  static const std::array kinds = {
+      reports::DocumentKind{"fieldproof/emc/1", reports::emc_schema},
+      reports::DocumentKind{"fieldproof/measurement/1", reports::measurement_schema},
+      reports::DocumentKind{"fieldproof/publication/1", reports::publication_schema},
+      reports::DocumentKind{"fieldproof/residual/1", reports::residual_schema},
+      reports::DocumentKind{"fieldproof/matrix/1", matrix_schema},
+  };
+  return kinds;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,18 @@
+// The documents that verbs store with --json, and by which schema a report knows them again.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "cli/verbs.hpp"
+#include "reports/page_content.hpp"
+
+namespace fieldproof::cli {
+
+// Writes the JSON of a verb's result to the file of `--json`, with the command that makes it again as its
+// last member; nothing when the option is not given.
+void write_document(const Session& session, const std::string& verb, const std::string& json);
+
+std::span<const reports::DocumentKind> document_kinds();
+
+}  // namespace fieldproof::cli
