@@ -5,8 +5,8 @@ import { drawn, element, replaceContent, visible } from "./dom.js";
 import { niceStep, number, plural, unitOf } from "./format.js";
 import { TimeLineModel } from "./time_line_model.js";
 
-const kLane = 56;
 const kTop = 22;
+const kLane = {withFrames: 56, withMarks: 34};
 const kAxis = 24;
 const kFrame = {top: 27, height: 20};
 const kLetter = 6.3;
@@ -24,8 +24,8 @@ class TimeLine {
     this.model = model;
     this.chosen = null;
     this.pointers = new Map();
-    this.lanes = Math.max(model.channels.length, 1);
-    this.height = kTop + this.lanes * kLane + kAxis;
+    this.lanes = lanesOf(model);
+    this.height = this.lanes.at(-1).bottom + kAxis;
     this.drawing = drawn("svg", {"aria-hidden": "true", focusable: "false"});
     this.stage = element("div", {class: "stage", tabindex: "0", role: "application", "aria-roledescription": "time line",
       "aria-label": this.summary()}, this.drawing);
@@ -196,8 +196,8 @@ class TimeLine {
     return ((us - this.model.view.from) / this.model.span) * this.width;
   }
 
-  laneTop(channel) {
-    return kTop + Math.max(0, Math.min(channel, this.lanes - 1)) * kLane;
+  laneOf(event) {
+    return this.lanes.find((lane) => lane.channel === event.channel) ?? this.lanes[0];
   }
 
   partAt(clientX) {
@@ -221,15 +221,15 @@ class TimeLine {
   }
 
   isInLane(event, y) {
-    const top = this.laneTop(event.channel);
-    return y >= top && y < top + kLane;
+    const lane = this.laneOf(event);
+    return y >= lane.top && y < lane.bottom;
   }
 
   // ---- drawing ----
 
   draw() {
     this.drawing.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
-    this.drawing.replaceChildren(...this.drawnWindows(), ...this.drawnLanes(), ...this.drawnAxis(), ...this.drawnEvents());
+    this.drawing.replaceChildren(...this.drawnLanes(), ...this.drawnWindows(), ...this.drawnAxis(), ...this.drawnEvents());
   }
 
   drawnWindows() {
@@ -242,15 +242,11 @@ class TimeLine {
   }
 
   drawnLanes() {
-    const names = this.model.channels.length ? this.model.channels : [""];
-    return names.flatMap((name, channel) => {
-      const top = this.laneTop(channel);
-      const middle = top + kFrame.top + kFrame.height / 2;
-      return [
-        drawn("line", {class: "lane", x1: 0, x2: this.width, y1: middle, y2: middle}),
-        drawn("text", {class: "lane-name", x: 4, y: top + 11}, clipped(name, this.width - 8)),
-      ];
-    });
+    return this.lanes.flatMap(({ name, top, middle }, at) => [
+      at % 2 ? null : drawn("rect", {class: "lane-ground", x: 0, y: top, width: this.width, height: this.lanes[at].bottom - top}),
+      drawn("line", {class: "lane", x1: 0, x2: this.width, y1: middle, y2: middle}),
+      drawn("text", {class: "lane-name", x: 4, y: top + 12}, clipped(name, this.width - 8)),
+    ].filter(Boolean));
   }
 
   drawnAxis() {
@@ -296,7 +292,7 @@ class TimeLine {
   drawnFrame(event) {
     const left = Math.max(this.x(event.from), -4);
     const width = Math.max(Math.min(this.x(event.to), this.width + 4) - left, 1.5);
-    const top = this.laneTop(event.channel) + kFrame.top;
+    const top = this.laneOf(event).top + kFrame.top;
     const box = drawn("rect", {class: `${event.kind}${event === this.chosen ? " chosen" : ""}`, x: left, y: top, width,
       height: kFrame.height, rx: width > 6 ? 2 : 0});
     if (width < 26) return [box];
@@ -310,11 +306,26 @@ class TimeLine {
       return drawn("g", {class: `finding${chosen}`}, drawn("line", {x1: x, x2: x, y1: 10, y2: this.height - kAxis}),
           drawn("path", {d: `M${x - 6} 2h12v7l-6 6l-6 -6z`}));
     }
-    const top = this.laneTop(event.channel);
-    const bottom = top + kFrame.top + kFrame.height;
-    const shape = event.kind === "fault" ? `M${x - 5} ${top + 17}h10l-5 9z` : `M${x} ${bottom + 1}l4.5 4l-4.5 4l-4.5 -4z`;
+    const { top, middle, hasFrames } = this.laneOf(event);
+    const below = hasFrames ? top + kFrame.top + kFrame.height + 1 : middle - 4;
+    const shape = event.kind === "fault" ? `M${x - 5} ${top + 17}h10l-5 9z` : `M${x} ${below}l4.5 4l-4.5 4l-4.5 -4z`;
     return drawn("path", {class: `${event.kind}${chosen}`, d: shape});
   }
+}
+
+// A lane for each channel on which anything happens, one at least.
+function lanesOf(model) {
+  const seen = model.channels.map((name, channel) => ({name, channel, events: model.events.filter((one) => one.channel === channel)}))
+      .filter(({ events }) => events.length > 0);
+  let top = kTop;
+  return (seen.length ? seen : [{name: "", channel: 0, events: []}]).map(({ name, channel, events }) => {
+    const hasFrames = events.some((one) => one.order === 0);
+    const bottom = top + (hasFrames ? kLane.withFrames : kLane.withMarks);
+    const middle = hasFrames ? top + kFrame.top + kFrame.height / 2 : top + 23;
+    const lane = {name, channel, hasFrames, top, middle, bottom};
+    top = bottom;
+    return lane;
+  });
 }
 
 function clipped(text, width) {
