@@ -273,6 +273,12 @@ await check("paper shows every case opened, all charts and no controls", async (
   expect(pdf.subarray(0, 5).toString() === "%PDF-" && pdf.length > 20000, "no PDF");
 });
 
+await check("nothing is wider than paper", async (page) => {
+  await page.emulateMedia({media: "print"});
+  await page.waitForSelector("body[data-is-whole]");
+  expect((await overflow(page)) <= 0, `${await overflow(page)} px`);
+}, {viewport: {width: 703, height: 1000}});
+
 for (const [name, options] of [["light", {}], ["dark", {colorScheme: "dark"}], ["phone", {viewport: {width: 390, height: 844}, isMobile: true}]]) {
   await check(`accessibility has no serious finding: ${name}`, async (page) => {
     await whole(page);

@@ -15,7 +15,7 @@ function sectionPart(part) {
       table(`${part.heading}: paper and reproduction`, [
         {title: "what", cell: (row) => row.what},
         {title: "paper", kind: "number", cell: (row) => row.published ?? element("span", {class: "quiet"}, "no number")},
-        {title: "reproduced", kind: "number", cell: (row) => row.reproduced},
+        {title: "reproduced", cell: (row) => row.reproduced},
         {title: "", cell: agreement},
         {title: "remark", kind: "text", cell: (row) => row.remark},
       ], part.rows),
