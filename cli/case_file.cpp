@@ -5,11 +5,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/build_info.hpp"
 #include "cli/implementations.hpp"
 #include "cli/pics_file.hpp"
 #include "harness/config/document.hpp"
 #include "harness/judge/result_json.hpp"
 #include "harness/kernel/error.hpp"
+#include "reports/pcapng_writer.hpp"
+#include "reports/timeline_writer.hpp"
+#include "reports/vcd_writer.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -76,6 +80,20 @@ ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed,
   return json;
 }
 
+std::string program_name() {
+  return fmt::format("fieldproof {}", tool_version());
+}
+
+void store_recording(const reports::RunDirectory& directory, const conformance::CaseRun& done) {
+  const conformance::Outcome& outcome = done.outcome;
+  const std::string& id = outcome.result.id;
+  const conformance::Recording& recording = outcome.recording;
+  directory.write_case(id, "trace.txt", fmt::format("{}\n", fmt::join(recording.lines(), "\n")));
+  directory.write_case(id, "timeline.json",
+                       reports::timeline_json(outcome.result, recording.trace, recording.told_in()));
+  directory.write_case(id, "trace.pcapng", capture_of(done));
+}
+
 std::vector<conformance::Assignment> implementations_from(const config::Value& list,
                                                           const conformance::Suite& suite) {
   std::vector<conformance::Assignment> implementations;
@@ -140,15 +158,22 @@ void store_case(const reports::RunDirectory& directory, const conformance::CaseR
   const std::string& id = done.outcome.result.id;
   const conformance::Recording& recording = done.outcome.recording;
   const KeptFiles kept = keep_files(directory, done.setup);
-  if (!recording.lines.empty()) {
-    directory.write_case(id, "trace.txt", fmt::format("{}\n", fmt::join(recording.lines, "\n")));
-  }
+  if (!recording.trace.records.empty()) store_recording(directory, done);
   if (!recording.playback.empty()) directory.write_case(id, kPlayback, recording.playback);
   if (!done.outcome.result.log.empty()) directory.write_case(id, "log.txt", done.outcome.result.log);
   // Last, so that a case file never names a file that is not there.
   const ordered_json json = case_json(done, run_seed, kept);
   directory.write_case(id, "case.json",
                        json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+}
+
+std::string capture_of(const conformance::CaseRun& done) {
+  const conformance::Recording& recording = done.outcome.recording;
+  return reports::pcapng(recording.trace, recording.told_in(), program_name(), done.outcome.result.id);
+}
+
+std::string wave_dump_of(const conformance::CaseRun& done) {
+  return reports::vcd(done.outcome.recording.trace, program_name(), done.outcome.result.id);
 }
 
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue) {

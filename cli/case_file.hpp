@@ -1,9 +1,11 @@
 // case.json: everything that is needed to run one case again as it ran, and what came out of it.
 //
-// Beside it lie the files of the case: trace.txt (the recording, one line each), playback.txt (what the
-// implementation drove), log.txt. Paths of a network, plan or PICS are those of copies inside the run's
-// directory, so that a directory that is moved or sent still replays. Reading is strict:
-// kernel::Error(configuration) names line and pointer. 64-bit numbers are texts.
+// Beside it lie the files of the case: trace.txt (the recording, one line each), timeline.json (what lies
+// around the first finding, as data), trace.pcapng (the recording for Wireshark), playback.txt (what the
+// implementation drove), log.txt. Paths of a
+// network, plan or PICS are those of copies inside the run's directory, so that a directory that is moved or
+// sent still replays. Reading is strict: kernel::Error(configuration) names line and pointer. 64-bit numbers
+// are texts.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +32,10 @@ struct CaseFile {
 // Stores the case with its recording and log.
 void store_case(const reports::RunDirectory& directory, const conformance::CaseRun& done,
                 std::uint64_t run_seed);
+
+// What was recorded of a case, for programs of others: a pcapng capture, and a value change dump.
+std::string capture_of(const conformance::CaseRun& done);
+std::string wave_dump_of(const conformance::CaseRun& done);
 
 // The case, its implementations and its PICS are looked up in the catalogue.
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue);

@@ -43,6 +43,8 @@ constexpr std::array kOptions = {
     Option{"measurements", flag, "", "", "run", "print what each case measured, with its limits"},
     Option{"count", flag, "", "", "list", "print the number only", true},
     Option{"bits", flag, "", "", "replay", "print the whole recording", true},
+    Option{"pcapng", value, "FILE", "", "replay", "write the recording as a capture for Wireshark here", true},
+    Option{"vcd", value, "FILE", "", "replay", "write the recording as a wave dump (VCD) here", true},
     Option{"runs", value, "N", "2", "verify", "how often each case is run (also -n)", true},
     Option{"fcs", value, "NAME", "", "residual", "frame check by its catalogue name: CRC-16/IBM-3740, CRC-32", false, true},
     Option{"bits", value, "N", "", "residual", "length of message and check", false, true},

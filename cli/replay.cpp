@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <array>
+
 #include "cli/case_file.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/implementations.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/verbs.hpp"
 #include "harness/judge/result_json.hpp"
+#include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
 // `fieldproof replay`: runs a stored case again and holds verdict, reason and fingerprint against the stored
@@ -46,9 +49,39 @@ reports::RunIdentity identity_for(Session& session, const CaseFile& stored) {
   return identity;
 }
 
+struct Export {
+  const char* option;
+  std::string (*write)(const conformance::CaseRun&);
+};
+
+constexpr std::array kExports = {Export{"pcapng", capture_of}, Export{"vcd", wave_dump_of}};
+
+// Refused before the case is run.
+void check_exports(const Settings& settings) {
+  for (const Export& one : kExports) {
+    if (settings.is_set(one.option)) reports::check_writable(settings.text(one.option));
+  }
+}
+
+void show_recording(Session& session, const conformance::CaseRun& done) {
+  const conformance::Recording& recording = done.outcome.recording;
+  bool is_shown = session.settings.is_set("bits");
+  if (is_shown) {
+    for (const std::string& line : recording.lines())
+      session.terminal.print(reports::escaped_line(line) + "\n");
+  }
+  for (const Export& one : kExports) {
+    if (!session.settings.is_set(one.option)) continue;
+    reports::write_text_file(session.settings.text(one.option), one.write(done));
+    is_shown = true;
+  }
+  if (is_shown && recording.truncated) session.terminal.log("the recording reached its bound and ends here");
+}
+
 }  // namespace
 
 int replay(Session& session) {
+  check_exports(session.settings);
   CaseFile stored = load_case(session.operands.front(), session.catalogue);
   const conformance::Entry& entry = session.catalogue.at(stored.id);
   const bool is_other = session.settings.origin("iut") != Origin::fallback;
@@ -61,12 +94,7 @@ int replay(Session& session) {
   session.terminal.print(reports::run_header(run.identity, manifest_of(session, 1)));
   const conformance::CaseRun done =
       conformance::run_case(entry, stored.setup, conformance::KeptRecordings::all);
-  if (session.settings.is_set("bits")) {
-    for (const std::string& line : done.outcome.recording.lines)
-      session.terminal.print(reports::escaped_line(line) + "\n");
-    if (done.outcome.recording.truncated)
-      session.terminal.log("the recording reached its bound and ends here");
-  }
+  show_recording(session, done);
   const judge::CaseResult& result = done.outcome.result;
   run.cases = {result};
   session.terminal.print(

@@ -21,7 +21,11 @@ Outcome outcome_of(Verdict verdict, const conformance::Setup& setup, std::string
   outcome.result.verdict = verdict;
   outcome.result.reason = std::move(reason);
   outcome.result.fingerprint = setup.seed * 31;
-  if (setup.record) outcome.recording.lines = {"first", "second"};
+  if (setup.record) {
+    outcome.recording.trace.channels = {"a"};
+    outcome.recording.trace.records = {trace::Observation{0, kernel::kStart, "first", 1},
+                                       trace::Fault{0, kernel::kStart, "second"}};
+  }
   return outcome;
 }
 
@@ -180,9 +184,10 @@ TEST(Runner, CaseOfARoleThatNobodyWasAssignedToIsNotApplicable) {
 TEST(Runner, FailedCaseIsRecordedByASecondRun) {
   const Catalogue catalogue = twelve_cases();
   const CaseRun passed = run_case(catalogue.entries()[0], {}, KeptRecordings::failed);
-  EXPECT_TRUE(passed.outcome.recording.lines.empty());
+  EXPECT_TRUE(passed.outcome.recording.lines().empty());
   const CaseRun failed = run_case(catalogue.entries()[3], {}, KeptRecordings::failed);
-  EXPECT_EQ(failed.outcome.recording.lines.size(), 2U);
+  EXPECT_EQ(failed.outcome.recording.lines(),
+            (std::vector<std::string>{"0 s  a  first = 1", "0 s  a  fault: second"}));
   EXPECT_TRUE(failed.is_repeatable);
 }
 

@@ -36,4 +36,9 @@ std::string_view name(Volume volume) {
   return volume == Volume::quick ? "quick" : "full";
 }
 
+const trace::Notation& Recording::told_in() const {
+  static const trace::PlainNotation unknown;
+  return notation != nullptr ? *notation : unknown;
+}
+
 }  // namespace fieldproof::conformance

@@ -10,6 +10,8 @@
 
 #include "harness/judge/finding.hpp"
 #include "harness/judge/pics.hpp"
+#include "harness/trace/notation.hpp"
+#include "harness/trace/recording.hpp"
 
 // One test case, one deviation, and the suite of a protocol that runs a case against an implementation.
 // There is one definition of a case: the command line, GoogleTest and the matrix all use it.
@@ -91,9 +93,14 @@ struct Setup {
 
 // A record of everything on the line and at the upper tester, for replay and for people.
 struct Recording {
-  std::vector<std::string> lines;  // one notation for people and programs, in order of time
-  std::string playback;            // what the implementation drove, for judging again without it
-  bool truncated = false;          // the bound was reached
+  trace::Recording trace;
+  std::shared_ptr<const trace::Notation> notation;  // of the protocol on these lines; null: not known
+  std::string playback;    // what the implementation drove, for judging again without it
+  bool truncated = false;  // a bound was reached
+
+  const trace::Notation& told_in() const;
+  // One line for each record, in one notation for people and programs.
+  std::vector<std::string> lines() const { return trace::text_lines(trace, told_in()); }
 };
 
 struct Outcome {

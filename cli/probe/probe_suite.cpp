@@ -59,8 +59,13 @@ Outcome judged(const Setup& setup, Verdict verdict, const std::string& reason = 
     outcome.result.findings = {finding};
   }
   if (setup.record) {
-    outcome.recording.lines = {"0 s begins",
-                               fmt::format("1.000 us drives {:016x}", outcome.result.fingerprint)};
+    outcome.recording.trace.channels = {"line"};
+    line::Waveform wave{kernel::kStart, 1'000'000, {}};
+    wave.levels.append(outcome.result.fingerprint, 64);
+    outcome.recording.trace.records = {
+        trace::Observation{0, kernel::kStart, "begins", 0},
+        trace::Transmission{0, std::move(wave), std::nullopt},
+    };
     outcome.recording.playback = fmt::format("{} {}", judge::name(verdict), reason);
   }
   return outcome;
@@ -127,7 +132,8 @@ void add_ends(SuiteOfFunctions& suite) {
     static std::atomic<std::uint64_t> calls{0};
     Outcome outcome = judged(setup, Verdict::pass);
     outcome.result.fingerprint = ++calls;
-    if (setup.record) outcome.recording.lines.push_back(fmt::format("call {}", calls.load()));
+    if (setup.record)
+      outcome.recording.trace.records.emplace_back(trace::Observation{0, kernel::kStart, "call", calls});
     return outcome;
   });
 }

@@ -7,7 +7,6 @@
 #include <optional>
 #include <string_view>
 
-#include "conformance/interbus/line_recorder.hpp"
 #include "conformance/interbus/master_cases.hpp"
 #include "conformance/interbus/master_deviations.hpp"
 #include "conformance/interbus/network_bench.hpp"
@@ -16,6 +15,7 @@
 #include "conformance/interbus/slave_deviations.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
+#include "protocols/interbus/cycle_notation.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"
 
@@ -84,7 +84,8 @@ class Run {
   interbus::NetworkDescription network() const;
   NetworkParts network_parts(std::size_t stations);
   void finish(Outcome& outcome, const trace::Trace& trace, kernel::Time now) const;
-  void keep(Outcome& outcome, LineRecorder& lines);
+  trace::Recorder& recorder_of(const trace::Trace& trace, const interbus::Rules& rules);
+  void keep(Outcome& outcome);
 
   const TestCase& test_case_;
   const Setup& setup_;
@@ -96,6 +97,8 @@ class Run {
   std::optional<DeviceRecording> played_back_;
   std::size_t played_back_devices_ = 0;
   DeviceRecording recording_;
+  std::optional<trace::BoundedRecorder> recorder_;
+  std::shared_ptr<const trace::Notation> notation_;
 };
 
 Run::MakeSlave Run::slave_maker(const std::string& uri) const {
@@ -127,10 +130,18 @@ void Run::finish(Outcome& outcome, const trace::Trace& trace, kernel::Time now) 
   outcome.result.virtual_time = now - kernel::kStart;
 }
 
-void Run::keep(Outcome& outcome, LineRecorder& lines) {
-  outcome.recording.truncated = lines.is_truncated() || recording_.is_truncated();
-  outcome.recording.lines = lines.take_lines();
-  if (recording_.device_count() > 0) outcome.recording.playback = recording_.text();
+trace::Recorder& Run::recorder_of(const trace::Trace& trace, const interbus::Rules& rules) {
+  notation_ = std::make_shared<interbus::CycleNotation>(rules);
+  return recorder_.emplace(trace);
+}
+
+void Run::keep(Outcome& outcome) {
+  if (!recorder_) return;
+  Recording& kept = outcome.recording;
+  kept.trace = recorder_->take();
+  kept.notation = std::move(notation_);
+  kept.truncated = kept.trace.is_cut || recording_.is_truncated();
+  if (recording_.device_count() > 0) kept.playback = recording_.text();
 }
 
 SlaveSetting Run::slave_setting() {
@@ -168,16 +179,15 @@ judge::Pics Run::pics(const SlaveCase& slave_case) {
 
 Outcome Run::run(const SlaveCase& slave_case) {
   SlaveSetting setting = slave_setting();
-  std::optional<LineRecorder> lines;
   if (setup_.record) {
-    setting.make_recorder = [&](const trace::Trace& trace, const interbus::Rules& rules) {
-      return &lines.emplace(trace, rules);
+    setting.make_recorder = [this](const trace::Trace& trace, const interbus::Rules& rules) {
+      return &recorder_of(trace, rules);
     };
   }
   Outcome outcome;
   outcome.result = run_slave_case(slave_case, setting);
   outcome.result.purpose = test_case_.purpose;
-  if (lines) keep(outcome, *lines);
+  keep(outcome);
   return outcome;
 }
 
@@ -190,9 +200,8 @@ Outcome Run::run(const MasterCase& master_case) {
   check(master_case);
   MasterBench bench([this](const auto& configuration) { return make_master(configuration); }, setup_.seed,
                     setup_.volume, setup_.pics.value_or(judge::Pics{}), stresses_);
-  std::optional<LineRecorder> lines;
   if (setup_.record) {
-    bench.segment().trace().set_recorder(&lines.emplace(bench.segment().trace(), bench.rules()));
+    bench.segment().trace().set_recorder(&recorder_of(bench.segment().trace(), bench.rules()));
   }
   CaseJudge judge(test_case_);
   judge.use_clock([&] { return bench.now(); });
@@ -202,7 +211,7 @@ Outcome Run::run(const MasterCase& master_case) {
     bench.line_watch().judge(j);
   });
   finish(outcome, bench.segment().trace(), bench.now());
-  if (lines) keep(outcome, *lines);
+  keep(outcome);
   return outcome;
 }
 
@@ -266,9 +275,8 @@ Outcome Run::run(const NetworkCase& network_case) {
   const interbus::NetworkDescription network = this->network();
   NetworkBench bench(network, network_parts(interbus::ring_order(network).size()), plan_, setup_.seed,
                      setup_.volume);
-  std::optional<LineRecorder> lines;
   if (setup_.record) {
-    bench.segment().trace().set_recorder(&lines.emplace(bench.segment().trace(), network.rules));
+    bench.segment().trace().set_recorder(&recorder_of(bench.segment().trace(), network.rules));
   }
   CaseJudge judge(test_case_);
   judge.use_clock([&] { return bench.segment().now(); });
@@ -278,7 +286,7 @@ Outcome Run::run(const NetworkCase& network_case) {
     bench.line_watch().judge(j);
   });
   finish(outcome, bench.segment().trace(), bench.segment().now());
-  if (lines) keep(outcome, *lines);
+  keep(outcome);
   return outcome;
 }
 

@@ -111,7 +111,7 @@ TEST(InterbusSuite, ARecordingHasLinesForPeople) {
   setup.record = true;
   for (const char* id : {"interbus/slave/frame_check/flipped_data_bit_is_rejected_marked_and_told",
                          "interbus/master/rejection/marked_status_names_the_segment"}) {
-    EXPECT_FALSE(suite().run(case_of(id), setup).recording.lines.empty()) << id;
+    EXPECT_FALSE(suite().run(case_of(id), setup).recording.lines().empty()) << id;
   }
 }
 

@@ -72,6 +72,7 @@ void Link::arrive(InFlight& flight) {
   if (channel_ == nullptr || flight.passed || !channel_->pass(flight.wave, arrivals_)) {
     return deliver(flight.wave);
   }
+  segment_.trace().changed(trace_channel_, flight.wave.start - delay_, flight.wave, arrivals_);
   // Taken out while the receiver is told, because what it drives may come through this link again.
   std::vector<line::Waveform> arrivals = std::move(arrivals_);
   for (line::Waveform& arrival : arrivals) {

@@ -104,6 +104,7 @@ void MediumPort::pass(const line::Waveform& wave, kernel::Time now) {
   if (channel_ == nullptr || !channel_->pass(wave, arrivals)) {
     tell(wave);
   } else {
+    medium_.segment_.trace().changed(trace_channel_, wave.start, wave, arrivals);
     for (line::Waveform& arrival : arrivals) {
       if (arrival.end() <= now) {
         tell(arrival);

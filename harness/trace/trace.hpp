@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,10 @@ class Recorder {
   virtual void on_fault(Channel channel, kernel::Time time, std::string_view what) = 0;
   virtual void on_observation(Channel channel, kernel::Time time, std::string_view what,
                               std::uint64_t value) = 0;
+  // A receiver got `arrivals` instead of `sent`, which is as it would have arrived and was driven at
+  // `driven_at`. No record of the trace: it does not enter the fingerprint.
+  virtual void on_changed(Channel /*receiver*/, kernel::Time /*driven_at*/, const line::Waveform& /*sent*/,
+                          std::span<const line::Waveform> /*arrivals*/) {}
 };
 
 // Is told every observation as it is made: how a fault rule waits for one. It changes nothing of the trace.
@@ -46,6 +51,11 @@ class Trace {
   void driven(Channel channel, const line::Waveform& wave);
   void fault(Channel channel, kernel::Time time, std::string_view what);
   void observe(Channel channel, kernel::Time time, std::string_view what, std::uint64_t value = 0);
+  // For the recorder alone; see Recorder::on_changed.
+  void changed(Channel receiver, kernel::Time driven_at, const line::Waveform& sent,
+               std::span<const line::Waveform> arrivals) {
+    if (recorder_ != nullptr) recorder_->on_changed(receiver, driven_at, sent, arrivals);
+  }
 
   std::uint64_t fingerprint() const { return fingerprint_; }
   std::uint64_t record_count() const { return record_count_; }

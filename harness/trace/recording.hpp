@@ -1,0 +1,113 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "harness/trace/trace.hpp"
+
+// What happened in one run, as data: what people read (trace.txt, timeline.json) and what other programs
+// open (pcapng, VCD) is written from it.
+//
+// Contract: records stand in the order in which they were told, which is that of virtual time but for faults,
+// told when a transmission arrives, and for transmissions that were given ahead of their time. The first
+// records are kept: at most `Recorder`'s bounds, then `is_cut` is set and nothing more is recorded, except
+// for what became of transmissions that are there.
+namespace fieldproof::trace {
+
+struct Transmission {
+  Channel channel = 0;
+  line::Waveform wave{};              // as it was driven
+  std::optional<std::size_t> change;  // of Recording::changes: what its receiver got instead
+};
+
+struct Fault {
+  Channel channel = 0;
+  kernel::Time time{};
+  std::string text;
+};
+
+struct Observation {
+  Channel channel = 0;
+  kernel::Time time{};
+  std::string what;
+  std::uint64_t value = 0;
+};
+
+using Record = std::variant<Transmission, Fault, Observation>;
+
+Channel channel_of(const Record& record);
+kernel::Time time_of(const Record& record);
+
+// A receiver got something else than what was sent: nothing when it was lost, several when it was repeated
+// or torn. On a link the receiver's channel is that of the transmission, which names the change; on a medium
+// each receiver has its own.
+struct Change {
+  Channel channel = 0;
+  line::Waveform sent{};  // as it would have arrived
+  std::vector<line::Waveform> arrivals;
+};
+
+// "levels 17, 18 changed", "lost", "2.000 us late"; one clause, for people.
+std::string describe(const Change& change);
+
+struct Recording {
+  std::vector<std::string> channels;  // names by number
+  std::vector<Record> records;
+  std::vector<Change> changes;
+  bool is_cut = false;
+};
+
+// Which faults belong to a change: those on its channel while what was sent arrived.
+class FaultIndex {
+ public:
+  // The recording must outlive the index.
+  explicit FaultIndex(const Recording& recording);
+
+  std::vector<const Fault*> of(const Change& change) const;
+
+ private:
+  std::map<Channel, std::vector<const Fault*>> faults_;  // in order of time
+};
+
+// Keeps a recording of the trace that it is set at. The trace must outlive what it is told.
+class BoundedRecorder final : public Recorder {
+ public:
+  static constexpr std::size_t kMostRecords = 20'000;
+  static constexpr std::size_t kMostLevels = std::size_t{1} << 28;  // 32 MiB
+
+  explicit BoundedRecorder(const Trace& trace, std::size_t most_records = kMostRecords,
+                           std::size_t most_levels = kMostLevels)
+      : trace_(trace), most_records_(most_records), most_levels_(most_levels) {}
+
+  void on_driven(Channel channel, const line::Waveform& wave) override;
+  void on_fault(Channel channel, kernel::Time time, std::string_view what) override;
+  void on_observation(Channel channel, kernel::Time time, std::string_view what,
+                      std::uint64_t value) override;
+  void on_changed(Channel receiver, kernel::Time driven_at, const line::Waveform& sent,
+                  std::span<const line::Waveform> arrivals) override;
+
+  const Recording& recording() const { return recording_; }
+  Recording take() { return std::move(recording_); }
+
+ private:
+  bool has_room(std::size_t levels);
+  void add(Record record);
+  line::Waveform kept(const line::Waveform& wave);
+
+  const Trace& trace_;
+  std::size_t most_records_;
+  std::size_t most_levels_;
+  std::size_t levels_ = 0;
+  Recording recording_;
+  std::map<std::pair<Channel, kernel::Time>, std::size_t> driven_;  // the last transmission of a start
+};
+
+}  // namespace fieldproof::trace
