@@ -27,12 +27,12 @@ constexpr const char* kFields =
 
 // Flips one level of a telegram each, at two places of the ring.
 constexpr const char* kPlan = R"({"rules": [
-  {"when": {"receiver": "slave@1/in", "frame": "data_cycle", "frame_number": {"every": 5}, "unit": 3, "bit": 2,
-            "field": "data"}, "effect": {"flip": {}}},
-  {"when": {"receiver": "master/in", "frame": "data_cycle", "frame_number": {"every": 7}, "unit": 1, "bit": 0,
-            "field": "data"}, "effect": {"flip": {}}},
-  {"when": {"receiver": "master/in", "frame": "data_cycle", "frame_number": {"every": 14}, "unit": 2, "bit": 7,
-            "field": "data"}, "effect": {"flip": {}}}
+  {"when": {"receiver": "slave@1/in", "frame": "data_cycle", "frame_number": {"every": 5}, "unit": 3,
+            "field": "data", "bit": 2}, "effect": {"flip": {}}},
+  {"when": {"receiver": "master/in", "frame": "data_cycle", "frame_number": {"every": 7}, "unit": 1,
+            "field": "data", "bit": 0}, "effect": {"flip": {}}},
+  {"when": {"receiver": "master/in", "frame": "data_cycle", "frame_number": {"every": 14}, "unit": 2,
+            "field": "data", "bit": 7}, "effect": {"flip": {}}}
 ]})";
 
 struct Packet {
@@ -225,9 +225,9 @@ TEST_F(Capture, OfAFaultedRunFlagsExactlyWhatWasCorrupted) {
 }
 
 // Lines that carry single telegrams, glitches, cut telegrams and other rates than the bits'.
-TEST_F(Capture, OfAnyCaseIsTakenApartWithoutAMalformedPacket) {
-  call({"run", "interbus/slave/**", "interbus/master/rejection/**", "--volume", "quick", "--record", "all",
-        "--out", "run", "--quiet"});
+TEST_F(Capture, OfDisturbedLinesIsTakenApartWithoutAMalformedPacket) {
+  call({"run", "interbus/slave/telegram/**", "interbus/slave/immunity/**", "interbus/slave/timing/**",
+        "interbus/master/rejection/**", "--volume", "quick", "--record", "all", "--out", "run", "--quiet"});
   std::size_t captures = 0;
   for (const auto& entry : fs::directory_iterator(folder_ / "run" / "cases")) {
     if (!fs::exists(entry.path() / "trace.pcapng")) continue;
@@ -240,7 +240,7 @@ TEST_F(Capture, OfAnyCaseIsTakenApartWithoutAMalformedPacket) {
       EXPECT_EQ(packet.has_error_flag, packet.wrong_checks > 0) << entry.path();
     }
   }
-  EXPECT_GT(captures, 60U);
+  EXPECT_GE(captures, 20U);
 }
 
 TEST_F(Capture, IsWrittenOnDemandByReplay) {

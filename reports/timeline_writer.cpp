@@ -24,8 +24,8 @@ using kernel::as_utf8;
 constexpr std::string_view kSchema = "fieldproof/timeline/1";
 constexpr std::size_t kMostOfAKind = 3000;
 constexpr std::size_t kMostBefore = 2500;
-// Faults that follow one another at most so late belong to one burst.
-constexpr kernel::Duration kWithinABurst = kernel::kMillisecond;
+// Faults that follow one another at most so late belong to one burst: pulses of 2.5 kHz do, cycles do not.
+constexpr kernel::Duration kWithinABurst = 500 * kernel::kMicrosecond;
 
 std::string ps(kernel::Time time) {
   return std::to_string(time.time_since_epoch().count());

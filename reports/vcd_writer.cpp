@@ -68,8 +68,11 @@ class DumpWriter {
     dump += "$scope module fieldproof $end\n";
     for (std::size_t n = 0; n < variables_.size(); ++n) dump += declaration(n);
     dump += "$upscope $end\n$enddefinitions $end\n#0\n$dumpvars\n";
+    std::map<std::size_t, std::uint64_t> begin = take_changes(0);
     for (std::size_t n = 0; n < variables_.size(); ++n) {
-      set(dump, n, variables_[n].kind == Kind::wire ? 1 : 0, true);
+      const auto known = begin.find(n);
+      const std::uint64_t idle = variables_[n].kind == Kind::wire ? 1 : 0;
+      set(dump, n, known == begin.end() ? idle : known->second, true);
     }
     dump += "$end\n";
     write_changes(dump);
@@ -165,17 +168,22 @@ class DumpWriter {
     }
   }
 
+  // The last value of each variable that changes at `time`; the next changes are behind it.
+  std::map<std::size_t, std::uint64_t> take_changes(std::int64_t time) {
+    std::map<std::size_t, std::uint64_t> last;
+    for (; next_ < changes_.size() && changes_[next_].time == time; ++next_) {
+      const ValueChange& change = changes_[next_];
+      const bool counts = variables_[change.variable].kind == Kind::counter;
+      last[change.variable] = counts ? ++counts_[change.variable] : change.value;
+    }
+    return last;
+  }
+
   void write_changes(std::string& dump) {
-    for (std::size_t n = 0; n < changes_.size();) {
-      const std::int64_t time = changes_[n].time;
-      std::map<std::size_t, std::uint64_t> last;
-      for (; n < changes_.size() && changes_[n].time == time; ++n) {
-        const ValueChange& change = changes_[n];
-        const bool counts = variables_[change.variable].kind == Kind::counter;
-        last[change.variable] = counts ? ++counts_[change.variable] : change.value;
-      }
+    while (next_ < changes_.size()) {
+      const std::int64_t time = changes_[next_].time;
       std::string block;
-      for (const auto& [number, value] : last) set(block, number, value);
+      for (const auto& [number, value] : take_changes(time)) set(block, number, value);
       if (!block.empty()) dump += fmt::format("#{}\n{}", time, block);
     }
   }
@@ -186,6 +194,7 @@ class DumpWriter {
   std::set<std::string> names_;
   std::vector<Variable> variables_;
   std::vector<ValueChange> changes_;
+  std::size_t next_ = 0;  // of the changes that are not written
   std::vector<std::uint64_t> values_;
   std::map<std::size_t, std::uint64_t> counts_;
 };

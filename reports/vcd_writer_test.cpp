@@ -85,7 +85,7 @@ std::map<std::string, std::string> changes_by_name(const std::string& dump) {
       words >> type >> width >> code >> names[code];
     } else if (first.starts_with('#')) {
       time = first;
-    } else if (!first.empty() && (first[0] == '0' || first[0] == '1' || first[0] == 'b')) {
+    } else if (!names.empty() && !first.empty() && (first[0] == '0' || first[0] == '1' || first[0] == 'b')) {
       std::string code = first.substr(1);
       std::string value = first.substr(0, 1);
       if (first[0] == 'b') {
