@@ -36,8 +36,9 @@ void check_rule(const Rule& rule) {
 
 }  // namespace
 
-InstalledPlan::InstalledPlan(Plan plan, trace::Trace& trace, const kernel::Random& random)
-    : plan_(std::move(plan)), trace_(trace), random_(random.split("fault plan")) {
+InstalledPlan::InstalledPlan(Plan plan, trace::Trace& trace, const kernel::Random& random,
+                             std::uint64_t most_work)
+    : plan_(std::move(plan)), trace_(trace), random_(random.split("fault plan")), work_(most_work) {
   for (const Rule& rule : plan_.rules()) {
     check_rule(rule);
     RuleState& state = states_.emplace_back();

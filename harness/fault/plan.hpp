@@ -44,8 +44,10 @@ class Plan {
 // and receivers draw.
 class InstalledPlan final : private trace::Observer {
  public:
-  // `random` is split, not drawn from. The trace must outlive the plan.
-  InstalledPlan(Plan plan, trace::Trace& trace, const kernel::Random& random);
+  // `random` is split, not drawn from. The trace must outlive the plan. A plan that makes more than
+  // `most_work` of the run ends it (see plan_work.hpp).
+  InstalledPlan(Plan plan, trace::Trace& trace, const kernel::Random& random,
+                std::uint64_t most_work = PlanWork::kMostSteps);
   ~InstalledPlan() override;
 
   // The channel of a receiver, for `Link::set_channel`; null when no rule can ever mean this receiver. Hits

@@ -20,12 +20,15 @@ class PlanWork {
  public:
   static constexpr std::uint64_t kMostSteps = 500'000'000;  // a few seconds
 
+  explicit PlanWork(std::uint64_t most = kMostSteps) : most_(most) {}
+
   void spend(std::uint64_t steps) {
     spent_ += steps;
-    if (spent_ > kMostSteps) throw PlanTooHeavy();
+    if (spent_ > most_) throw PlanTooHeavy();
   }
 
  private:
+  std::uint64_t most_;
   std::uint64_t spent_ = 0;
 };
 
