@@ -14,6 +14,10 @@
 namespace fieldproof::interbus {
 namespace {
 
+unsigned word_of(std::uint8_t high, std::uint8_t low) {
+  return unsigned{high} << 8U | low;
+}
+
 // Of one transmission: a train of cycles would fill pages.
 constexpr std::size_t kMostClauses = 16;
 constexpr std::size_t kMostWords = 64;
@@ -114,7 +118,7 @@ class CycleTeller final : public trace::Teller {
     bool has_loopback = false;
     for (std::size_t at = 0; at < octets.size(); at += 2) {
       const bool is_word = at + 1 < octets.size();
-      const unsigned word = is_word ? octets[at] << 8U | octets[at + 1] : octets[at];
+      const unsigned word = is_word ? word_of(octets[at], octets[at + 1]) : octets[at];
       const bool is_loopback = is_word && !has_loopback && word == rules_.loopback_word;
       has_loopback = has_loopback || is_loopback;
       if (at + 1 < told_transfer_ || (at < told_transfer_ && !is_word)) continue;
@@ -135,7 +139,7 @@ class CycleTeller final : public trace::Teller {
         fmt::format_to(out(), " {:02X} (one octet)", octets[at]);
         continue;
       }
-      const unsigned word = octets[at] << 8U | octets[at + 1];
+      const unsigned word = word_of(octets[at], octets[at + 1]);
       fmt::format_to(out(), " {:04X}", word);
       if (at == 0 && judges) write_verdict(fits);
       if (at == 2 && word != rules_.status_clean)
