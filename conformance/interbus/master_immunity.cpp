@@ -8,6 +8,7 @@
 
 #include "conformance/interbus/master_cases.hpp"
 #include "conformance/interbus/slave_model.hpp"
+#include "harness/kernel/check.hpp"
 
 namespace fieldproof::conformance {
 
@@ -279,6 +280,7 @@ class StressedRun {
 };
 
 void stresses(MasterBench& bench, CaseJudge& judge) {
+  FIELDPROOF_CHECK(!bench.stresses().empty(), "a case under stresses has some");
   bring_up_fast_ring(bench, judge);
   StressedRun run(bench);
   run.begin(judge);

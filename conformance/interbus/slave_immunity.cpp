@@ -4,6 +4,7 @@
 
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_expect.hpp"
+#include "harness/kernel/check.hpp"
 
 // IS-40 and IS-42: outputs while cycles are rejected, under random faults, and under stresses of the line.
 namespace fieldproof::conformance {
@@ -198,6 +199,7 @@ void stressed_cycle(SlaveBench& bench, CaseJudge& judge, Arrivals& arrivals) {
 }
 
 void stresses(SlaveBench& bench, CaseJudge& judge) {
+  FIELDPROOF_CHECK(!bench.stresses().empty(), "a case under stresses has some");
   bench.bring_up();
   Arrivals arrivals(bench);
   unsigned longest_recovery = 0;
