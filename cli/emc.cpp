@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -193,8 +194,7 @@ class Campaign {
         stations_(stations_from(session, interbus::ring_order(network_).size())) {
     const Settings& settings = session.settings;
     done_.network = network_.name;
-    done_.implementations =
-        fmt::format("{}", settings.list("iut").empty() ? "ref" : settings.reproduce_options());
+    done_.implementations = fmt::format("{}", fmt::join(settings.list("iut"), " "));
     done_.profile = profile_from(settings);
     done_.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
     done_.duration = virtual_time_from(settings);

@@ -43,7 +43,7 @@ function countBar(counts) {
 
 function implementationText(run) {
   if (run.implementations.length === 0) return "ref (the built-in reference)";
-  return run.implementations.map((one) => `${one.role}${one.position ? `@${one.position}` : ""}=${one.uri}`).join("; ");
+  return run.implementations.map((one) => (one.role ? `${one.role}${one.position ? `@${one.position}` : ""}=` : "") + one.uri).join("; ");
 }
 
 function setUp({ results, manifest }) {
