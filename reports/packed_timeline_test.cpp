@@ -32,22 +32,22 @@ TEST(PackedTimeline, SaysTheSame) {
     const Json& one = packed["transmissions"][n];
     const Json said = stored()["transmissions"][n];
     EXPECT_EQ(one[0], said["channel"]);
-    EXPECT_EQ(time_of(packed, one[1]), said["start_ps"]);
+    EXPECT_EQ(time_of(packed, one[1]), said["start_ps"].get<std::string>());
     const auto end = std::stoll(one[1].get<std::string>()) + std::stoll(one[2].get<std::string>());
-    EXPECT_EQ(time_of(packed, std::to_string(end)), said["end_ps"]);
+    EXPECT_EQ(time_of(packed, std::to_string(end)), said["end_ps"].get<std::string>());
     EXPECT_EQ(text(one[3]), said["text"]);
     EXPECT_EQ(one[4], said["levels"]);
-    EXPECT_EQ(one[5] == 1, said["is_changed"]);
+    EXPECT_EQ(one[5] == 1, said["is_changed"].get<bool>());
   }
   for (std::size_t n = 0; n < stored()["observations"].size(); ++n) {
     const Json& one = packed["observations"][n];
-    EXPECT_EQ(time_of(packed, one[1]), stored()["observations"][n]["time_ps"]);
+    EXPECT_EQ(time_of(packed, one[1]), stored()["observations"][n]["time_ps"].get<std::string>());
     EXPECT_EQ(text(one[2]), "output word 0");
     EXPECT_EQ(text(one[3]), "0xa5ff");
     EXPECT_EQ(text(packed["faults"][n][2]), "flips level 6");
   }
   EXPECT_EQ(text(packed["findings"][0][3]), kHostileName);
-  EXPECT_EQ(time_of(packed, packed["windows"][0][2]), stored()["windows"][0]["to_ps"]);
+  EXPECT_EQ(time_of(packed, packed["windows"][0][2]), stored()["windows"][0]["to_ps"].get<std::string>());
   EXPECT_LT(packed.dump().size(), stored().dump().size() / 2);
 }
 
