@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/probe/called_program.hpp"
+#include "cli/probe/program_fixture.hpp"
 #include "reports/wireshark/third_party_reader.hpp"
 
 namespace fieldproof::cli {
@@ -101,26 +101,8 @@ void add_telegrams(const std::string& text, Told& told) {
   }
 }
 
-class Capture : public testing::Test {
+class Capture : public ProgramFixture {
  protected:
-  Capture() {
-    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / ("fieldproof_" + std::to_string(getpid())) / test.name();
-    fs::create_directories(folder_);
-  }
-  ~Capture() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
-  Called call(std::vector<std::string> arguments) const {
-    Call made;
-    made.program = FIELDPROOF_EXE;
-    made.arguments = std::move(arguments);
-    made.folder = folder_;
-    return made.run();
-  }
-
   // Runs a case; gives the folder of what it left.
   fs::path run(const std::string& id, std::vector<std::string> options) const {
     std::vector<std::string> arguments = {"run", id, "--volume", "quick", "--record", "all", "--out", "run"};
@@ -128,13 +110,6 @@ class Capture : public testing::Test {
     call(arguments);
     for (const auto& entry : fs::directory_iterator(folder_ / "run" / "cases")) return entry.path();
     return {};
-  }
-
-  static std::string text_of(const fs::path& file) {
-    std::ifstream input(file);
-    std::stringstream text;
-    text << input.rdbuf();
-    return text.str();
   }
 
   static Told told_in(const fs::path& file) {
@@ -152,8 +127,6 @@ class Capture : public testing::Test {
     }
     return told;
   }
-
-  fs::path folder_;
 };
 
 std::vector<Packet> packets_in(const std::string& output) {
@@ -187,7 +160,7 @@ TEST_F(Capture, OfACleanRunShowsEveryTelegramAndNothingIsWrong) {
   }
   EXPECT_EQ(telegrams, told.telegrams);
   EXPECT_EQ(data_telegrams, told.data_telegrams);
-  EXPECT_EQ(checks, count_of(text_of(left / "trace.txt"), "check "));
+  EXPECT_EQ(checks, count_of(read(left / "trace.txt"), "check "));
 }
 
 TEST_F(Capture, OfAFaultedRunFlagsExactlyWhatWasCorrupted) {
@@ -197,7 +170,7 @@ TEST_F(Capture, OfAFaultedRunFlagsExactlyWhatWasCorrupted) {
       reports::read_with_tshark(FIELDPROOF_SOURCE_DIR, left / "trace.pcapng", kFields);
   if (!reading.is_available) GTEST_SKIP() << reading.output;
   const Told told = told_in(left / "trace.txt");
-  const auto timeline = nlohmann::json::parse(text_of(left / "timeline.json"));
+  const auto timeline = nlohmann::json::parse(read(left / "timeline.json"));
   ASSERT_FALSE(timeline["is_cut"].get<bool>());
   EXPECT_EQ(timeline["transmissions"].size(), told.transmissions);
   EXPECT_EQ(timeline["faults"].size(), told.faults);
@@ -248,8 +221,8 @@ TEST_F(Capture, IsWrittenOnDemandByReplay) {
   const std::string file = (left / "case.json").string();
   const Called called = call({"replay", file, "--pcapng", "a/b.pcapng", "--vcd", "c.vcd"});
   EXPECT_EQ(called.exit_code, 0) << called.err;
-  EXPECT_EQ(text_of(folder_ / "a/b.pcapng"), text_of(left / "trace.pcapng"));
-  const std::string dump = text_of(folder_ / "c.vcd");
+  EXPECT_EQ(read(folder_ / "a/b.pcapng"), read(left / "trace.pcapng"));
+  const std::string dump = read(folder_ / "c.vcd");
   EXPECT_TRUE(dump.starts_with("$version fieldproof ")) << dump.substr(0, 80);
   EXPECT_NE(dump.find(" master/in $end"), std::string::npos);
   EXPECT_EQ(call({"replay", file, "--vcd", "."}).exit_code, 65) << "a folder";
@@ -270,7 +243,7 @@ TEST_F(Capture, OfWavesIsReadByAnotherProgram) {
     EXPECT_NE(back.output.find(name), std::string::npos) << name;
   }
   const auto instants = [](const std::string& dump) { return count_of(dump, "\n#"); };
-  EXPECT_EQ(instants(back.output), instants(text_of(folder_ / "c.vcd")));
+  EXPECT_EQ(instants(back.output), instants(read(folder_ / "c.vcd")));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/probe/called_program.hpp"
+#include "cli/probe/program_fixture.hpp"
 #include "reports/schema/ajv_judge.hpp"
 
 namespace fieldproof::cli {
@@ -18,43 +18,7 @@ using Json = nlohmann::json;
 
 const fs::path kSource = FIELDPROOF_SOURCE_DIR;
 
-class MeasureVerb : public testing::Test {
- protected:
-  MeasureVerb() {
-    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / ("fieldproof_" + std::to_string(getpid())) / test.name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~MeasureVerb() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
-  Called call(std::vector<std::string> arguments) const {
-    Call made;
-    made.program = FIELDPROOF_EXE;
-    made.arguments = std::move(arguments);
-    made.folder = folder_;
-    return made.run();
-  }
-  Json json(const char* file) const {
-    std::ifstream input(folder_ / file);
-    return Json::parse(input);
-  }
-  void write(const char* file, const std::string& text) const { std::ofstream(folder_ / file) << text; }
-
-  void expect_valid(const char* file, const char* schema) const {
-    const auto judgement = reports::judge_with_ajv(
-        kSource, kSource / "reports/schema" / (std::string(schema) + ".schema.json"), {folder_ / file});
-    if (!judgement.is_available) GTEST_SKIP() << judgement.output;
-    EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
-  }
-
-  fs::path folder_;
-};
-
-#define EXPECT_HOLDS(text, part) EXPECT_NE((text).find(part), std::string::npos) << "in\n" << (text)
+using MeasureVerb = ProgramFixture;
 
 TEST_F(MeasureVerb, PrintsTheoryBesideMeasurement) {
   const Called called =
@@ -148,8 +112,8 @@ TEST_F(MeasureVerb, ThePaperIsReproducedSideBySide) {
 TEST_F(MeasureVerb, BothDocumentsAreValidForASchemaValidator) {
   ASSERT_EQ(call({"measure", "interbus", "--duration", "5s", "--json", "m.json"}).exit_code, 0);
   ASSERT_EQ(call({"paper", "--duration", "1s", "--json", "paper.json"}).exit_code, 0);
-  expect_valid("m.json", "measurement");
-  expect_valid("paper.json", "publication");
+  expect_valid({"m.json"}, "measurement");
+  expect_valid({"paper.json"}, "publication");
 }
 
 // Where the paper shows pictures, no number is called the paper's.

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "cli/probe/called_program.hpp"
+#include "cli/probe/program_fixture.hpp"
 #include "reports/schema/ajv_judge.hpp"
 
 namespace fieldproof::cli {
@@ -18,36 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Program : public testing::Test {
+class Program : public ProgramFixture {
  protected:
-  Program() {
-    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / ("fieldproof_" + std::to_string(getpid())) / test.name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Program() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
   Call call(std::vector<std::string> arguments) const {
-    Call made;
-    made.program = FIELDPROOF_PROBE;
-    made.arguments = std::move(arguments);
-    made.folder = folder_;
-    return made;
+    return prepared(std::move(arguments), FIELDPROOF_PROBE);
   }
   Called probe(std::vector<std::string> arguments) const { return call(std::move(arguments)).run(); }
   int code(std::vector<std::string> arguments) const { return probe(std::move(arguments)).exit_code; }
-
-  std::string read(const fs::path& file) const {
-    std::ifstream input(folder_ / file);
-    std::stringstream text;
-    text << input.rdbuf();
-    return text.str();
-  }
-  void write(const fs::path& file, const std::string& text) const { std::ofstream(folder_ / file) << text; }
 
   fs::path case_file(const fs::path& run) const {
     for (const auto& file : fs::recursive_directory_iterator(folder_ / run)) {
@@ -55,8 +32,6 @@ class Program : public testing::Test {
     }
     return {};
   }
-
-  fs::path folder_;
 };
 
 std::string last_line(const std::string& text) {
@@ -68,8 +43,6 @@ std::string last_line(const std::string& text) {
   }
   return last;
 }
-
-#define EXPECT_HOLDS(text, part) EXPECT_NE((text).find(part), std::string::npos) << "in\n" << (text)
 
 using ExitCode = Program;
 

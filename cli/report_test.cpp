@@ -1,41 +1,20 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "cli/probe/called_program.hpp"
+#include "cli/probe/program_fixture.hpp"
 
 namespace fieldproof::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ReportVerb : public testing::Test {
+class ReportVerb : public ProgramFixture {
  protected:
-  ReportVerb()
-      : folder_(fs::path(testing::TempDir()) /
-                ("fieldproof_report_" + std::to_string(getpid()) +
-                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::create_directories(folder_);
-  }
-  ~ReportVerb() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
-  Called call(std::vector<std::string> arguments) const {
-    Call made;
-    made.program = FIELDPROOF_EXE;
-    made.arguments = std::move(arguments);
-    made.folder = folder_;
-    return made.run();
-  }
-
   // A run with failures, stored in `out`.
   Called run(const std::string& out, std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments = {"run",   "interbus/slave/frame_check/**",
@@ -50,19 +29,12 @@ class ReportVerb : public testing::Test {
         {"residual", "--fcs", "CRC-8/SMBUS", "--bits", "40", "--samples", "1000", "--json", "residual.json"});
   }
 
-  std::string read(const std::string& file) const {
-    std::ifstream input(folder_ / file);
-    return {std::istreambuf_iterator<char>(input), {}};
-  }
-
   nlohmann::json data_of(const std::string& page) const {
     const std::string html = read(page);
     const std::string open = R"(<script type="application/json" id="data">)";
     const std::size_t begin = html.find(open) + open.size();
     return nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
   }
-
-  fs::path folder_;
 };
 
 TEST_F(ReportVerb, EveryRunHasThePageThatTheVerbWrites) {
@@ -118,8 +90,8 @@ TEST_F(ReportVerb, RefusesWhatItCannotShow) {
   };
   run("a");
   residual();
-  std::ofstream(folder_ / "wrong.json") << R"({"schema": "fieldproof/residual/1"})";
-  std::ofstream(folder_ / "other.json") << R"({"schema": "fieldproof/diff/1"})";
+  write("wrong.json", R"({"schema": "fieldproof/residual/1"})");
+  write("other.json", R"({"schema": "fieldproof/diff/1"})");
   expect_refusal({"report", "a"}, 64, "--html");
   expect_refusal({"report", "--html", "r.html"}, 64, "");
   expect_refusal({"report", "none", "--html", "r.html"}, 65, "none");

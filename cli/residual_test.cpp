@@ -2,53 +2,31 @@
 #include "cli/residual_text.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "cli/probe/called_program.hpp"
-#include "reports/schema/ajv_judge.hpp"
+#include "cli/probe/program_fixture.hpp"
 
 namespace fieldproof::cli {
 namespace {
 
-namespace fs = std::filesystem;
-
-class ResidualVerb : public testing::Test {
+class ResidualVerb : public ProgramFixture {
  protected:
-  ResidualVerb()
-      : folder_(fs::path(testing::TempDir()) /
-                ("fieldproof_residual_" + std::to_string(getpid()) +
-                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::create_directories(folder_);
-  }
-  ~ResidualVerb() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
   Called call(std::vector<std::string> arguments) const {
-    Call made;
-    made.program = FIELDPROOF_EXE;
-    made.arguments = std::move(arguments);
-    made.arguments.insert(made.arguments.begin(), "residual");
-    made.folder = folder_;
-    return made.run();
+    arguments.insert(arguments.begin(), "residual");
+    return ProgramFixture::call(std::move(arguments));
   }
 
   nlohmann::json json_of(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"--json", "residual.json"});
     const Called called = call(std::move(arguments));
     EXPECT_EQ(called.exit_code, 0) << called.err;
-    return nlohmann::json::parse(std::ifstream(folder_ / "residual.json"));
+    return json("residual.json");
   }
-
-  fs::path folder_;
 };
 
 TEST_F(ResidualVerb, PrintsTheWeightsAndTheProbabilityAtEachRate) {
@@ -88,13 +66,9 @@ TEST_F(ResidualVerb, SimulatesBesideTheExactValueAndRepeatsWithItsSeed) {
 
 TEST_F(ResidualVerb, JsonIsValidForItsSchema) {
   json_of({"--fcs", "CRC-8/SMBUS", "--bits", "40", "--samples", "100"});
-  fs::rename(folder_ / "residual.json", folder_ / "with_samples.json");
+  std::filesystem::rename(folder_ / "residual.json", folder_ / "with_samples.json");
   json_of({"--fcs", "CRC-8/SMBUS", "--bits", "8"});
-  const fs::path source = FIELDPROOF_SOURCE_DIR;
-  const auto judgement = reports::judge_with_ajv(source, source / "reports/schema/residual.schema.json",
-                                                 {folder_ / "with_samples.json", folder_ / "residual.json"});
-  if (!judgement.is_available) GTEST_SKIP() << judgement.output;
-  EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
+  expect_valid({"with_samples.json", "residual.json"}, "residual");
 }
 
 TEST_F(ResidualVerb, RefusesWithOneSentenceThatSaysWhatWouldBeRight) {
@@ -121,10 +95,7 @@ TEST_F(ResidualVerb, RefusesWithOneSentenceThatSaysWhatWouldBeRight) {
 }
 
 TEST_F(ResidualVerb, RefusesAWrongVariableOfTheEnvironmentAsConfiguration) {
-  Call made;
-  made.program = FIELDPROOF_EXE;
-  made.folder = folder_;
-  made.arguments = {"residual", "--fcs", "CRC-8/SMBUS", "--bits", "64"};
+  Call made = prepared({"residual", "--fcs", "CRC-8/SMBUS", "--bits", "64"});
   made.environment = {{"FIELDPROOF_BER", "1e-3;x"}};
   const Called called = made.run();
   EXPECT_EQ(called.exit_code, 65);

@@ -2,7 +2,6 @@
 // only a reader can refuse (a duration that is not a whole number of picoseconds, a name that nobody knows)
 // is kept apart, so that the day a schema learns it is seen.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -22,6 +21,7 @@
 #include "conformance/catalogue.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
+#include "reports/approved_text.hpp"
 #include "reports/schema/ajv_judge.hpp"
 
 namespace fieldproof::cli {
@@ -50,16 +50,6 @@ Sample bad_to_the_reader_only(std::string text) {
 
 class Schemas : public testing::Test {
  protected:
-  Schemas() {
-    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / ("fieldproof_" + std::to_string(getpid())) / test.name();
-    fs::create_directories(folder_);
-  }
-  ~Schemas() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
   void expect_alike(const fs::path& schema, const std::vector<Sample>& samples,
                     const std::function<void(const fs::path&)>& read) {
     std::vector<fs::path> files;
@@ -90,7 +80,8 @@ class Schemas : public testing::Test {
     return std::nullopt;
   }
 
-  fs::path folder_;
+  const reports::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 const conformance::Catalogue& catalogue() {
