@@ -1,53 +1,25 @@
 // Subject: `fieldproof emc` as its user meets it.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "cli/probe/called_program.hpp"
-#include "reports/schema/ajv_judge.hpp"
+#include "cli/probe/program_fixture.hpp"
 
 namespace fieldproof::cli {
 namespace {
 
-namespace fs = std::filesystem;
-
-class EmcVerb : public testing::Test {
+class EmcVerb : public ProgramFixture {
  protected:
-  EmcVerb()
-      : folder_(fs::path(testing::TempDir()) /
-                ("fieldproof_emc_" + std::to_string(getpid()) +
-                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::create_directories(folder_);
-  }
-  ~EmcVerb() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
   Called call(std::vector<std::string> arguments) const {
-    Call made;
-    made.program = FIELDPROOF_EXE;
-    made.arguments = std::move(arguments);
-    made.arguments.insert(made.arguments.begin(), {"emc", "interbus", "--quiet"});
-    if (std::ranges::count(made.arguments, "--duration") == 0) {
-      made.arguments.insert(made.arguments.end(), {"--duration", "1s"});
+    arguments.insert(arguments.begin(), {"emc", "interbus", "--quiet"});
+    if (std::ranges::count(arguments, "--duration") == 0) {
+      arguments.insert(arguments.end(), {"--duration", "1s"});
     }
-    made.folder = folder_;
-    return made.run();
+    return ProgramFixture::call(std::move(arguments));
   }
-
-  std::string text_of(const std::string& file) const {
-    std::ifstream input(folder_ / file);
-    return {std::istreambuf_iterator<char>(input), {}};
-  }
-
-  fs::path folder_;
 };
 
 TEST_F(EmcVerb, TellsEachTestAndTheLedger) {
@@ -55,13 +27,14 @@ TEST_F(EmcVerb, TellsEachTestAndTheLedger) {
   EXPECT_EQ(called.exit_code, 0) << called.err;
   EXPECT_NE(called.out.find("X (1500 V)"), std::string::npos) << called.out;
   EXPECT_NE(called.out.find("not calibrated"), std::string::npos) << called.out;
-  const nlohmann::json document = nlohmann::json::parse(text_of("emc.json"));
+  const nlohmann::json document = json("emc.json");
   ASSERT_EQ(document.at("tests").size(), 16U);
   for (const auto& test : document.at("tests")) {
     EXPECT_GT(test.at("ledger").at("sent"), 1000);
     EXPECT_EQ(test.at("ledger").at("accepted_wrong_inputs"), 0);
   }
   EXPECT_EQ(document.at("total").at("accepted_wrong"), 0);
+  EXPECT_EQ(document.at("seed"), "1");
   const auto& residual = document.at("residual");
   EXPECT_EQ(residual.at("frame_check"), "CRC-16/IBM-3740");
   EXPECT_DOUBLE_EQ(residual.at("expected_wrong_at_most").get<double>(),
@@ -72,8 +45,8 @@ TEST_F(EmcVerb, TellsEachTestAndTheLedger) {
 TEST_F(EmcVerb, TheNumberOfThreadsChangesNothing) {
   EXPECT_EQ(call({"--jobs", "1", "--levels", "1..4", "--json", "one.json"}).exit_code, 0);
   EXPECT_EQ(call({"--jobs", "2", "--levels", "1..4", "--json", "two.json"}).exit_code, 0);
-  EXPECT_EQ(text_of("one.json"), text_of("two.json"));
-  EXPECT_FALSE(text_of("one.json").empty());
+  EXPECT_EQ(read("one.json"), read("two.json"));
+  EXPECT_FALSE(read("one.json").empty());
 }
 
 TEST_F(EmcVerb, EndsWithOneWhereTheCriterionIsWorseThanAllowed) {
@@ -103,11 +76,7 @@ TEST_F(EmcVerb, RefusesWhatItCannotServe) {
 
 TEST_F(EmcVerb, JsonIsValidForItsSchema) {
   ASSERT_EQ(call({"--levels", "1", "--json", "emc.json"}).exit_code, 0);
-  const fs::path source = FIELDPROOF_SOURCE_DIR;
-  const auto judgement =
-      reports::judge_with_ajv(source, source / "reports/schema/emc.schema.json", {folder_ / "emc.json"});
-  if (!judgement.is_available) GTEST_SKIP() << judgement.output;
-  EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
+  expect_valid({"emc.json"}, "emc");
 }
 
 }  // namespace

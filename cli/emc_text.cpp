@@ -148,7 +148,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                                  {"threshold_volts", campaign.threshold_volts},
                                  {"unverified", emc::caveats_of(campaign.profile)},
                                  {"criteria", std::move(criteria)},
-                                 {"seed", campaign.seed},
+                                 {"seed", std::to_string(campaign.seed)},
                                  {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
                                  {"tests", tests},
                                  {"residual", residual_json(campaign.residual, total)},

@@ -91,7 +91,7 @@ inline nlohmann::ordered_json sample_emc() {
       {"threshold_volts", 47.5},
       {"unverified", {"The coupling is not calibrated.", "clamp_pf has no verified source."}},
       {"criteria", Json::array()},
-      {"seed", 7},
+      {"seed", "7"},
       {"duration_s", 3.0},
       {"tests", Json::array()},
       {"residual",

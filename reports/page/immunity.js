@@ -92,7 +92,7 @@ function totalPart({ total, residual }) {
 function campaign({ name, content }) {
   return element("article", {}, element("h3", {}, content.network),
       definitions([["Document", name], ["Implementation", content.implementations], ["Profile", content.profile],
-        ["A receiver can be wrong from", `${number(content.threshold_volts, 3)} V on`], ["Seed", String(content.seed)],
+        ["A receiver can be wrong from", `${number(content.threshold_volts, 3)} V on`], ["Seed", content.seed],
         ["Each test", `${number(content.duration_s)} s`]]),
       documentCommand(content, name),
       content.unverified.length ? notice(element("strong", {}, "Unverified and uncalibrated"),
