@@ -1,9 +1,9 @@
 // Chapter identification: what a master finds on a ring (IM-02 to IM-05).
 #include <fmt/format.h>
 
-#include <array>
 #include <utility>
 
+#include "conformance/interbus/length_codes.hpp"
 #include "conformance/interbus/master_cases.hpp"
 
 namespace fieldproof::conformance {
@@ -103,28 +103,7 @@ void limits_are_refused(MasterBench& bench, CaseJudge& judge) {
   expect_refused(bench, judge, more, "more I/O points than allowed");
 }
 
-// The table of the manual, written out here so that it is not that of the code under test. 08h to 0Dh and 10h
-// are said to be lengths below and between whole words; what they mean could not be verified, so a master may
-// take or refuse them, and is not judged by them.
-constexpr std::array<interbus::LengthCode, 16> kLengthCodes{{{0x01, 1},
-                                                             {0x02, 2},
-                                                             {0x03, 3},
-                                                             {0x04, 4},
-                                                             {0x05, 5},
-                                                             {0x0E, 6},
-                                                             {0x0F, 7},
-                                                             {0x06, 8},
-                                                             {0x07, 9},
-                                                             {0x15, 10},
-                                                             {0x16, 12},
-                                                             {0x17, 14},
-                                                             {0x12, 16},
-                                                             {0x13, 24},
-                                                             {0x11, 26},
-                                                             {0x14, 32}}};
-constexpr unsigned kCodeFromMemory = 0x14;  // the only one that was not read
 constexpr std::string_view kCodeFromMemoryMisread = "length_code_from_memory_misread";
-constexpr unsigned kFirstUndefinedCode = 0x18;
 constexpr unsigned kEndOfCodes = 0x20;
 
 std::uint16_t id_code_with(unsigned length_code) {
@@ -133,17 +112,17 @@ std::uint16_t id_code_with(unsigned length_code) {
 
 void length_codes(MasterBench& bench, CaseJudge& judge) {
   const std::size_t stride = bench.volume<std::size_t>(5, 1);
-  for (std::size_t n = 0; n < kLengthCodes.size(); n += stride) {
+  for (std::size_t n = 1; n < kLengthCodes.size(); n += stride) {
     const auto [code, words] = kLengthCodes.at(n);
     bench.power_up(interbus::line_of(1, id_code_with(code), words));
     judge.expect(
         bench.wait_for_run() && bench.status().stations.at(0).words == words && bench.finished().is_accepted,
-        code == kCodeFromMemory ? kCodeFromMemoryMisread : "length_code_misread", [&] {
+        code == kLengthCodeFromMemory ? kCodeFromMemoryMisread : "length_code_misread", [&] {
           return Sighting{{fmt::format("code {:02X}h is {} words", code, words)},
                           "the ring has another length"};
         });
   }
-  for (unsigned code = kFirstUndefinedCode; code < kEndOfCodes; code += bench.volume(6U, 1U)) {
+  for (unsigned code = kFirstUndefinedLengthCode; code < kEndOfCodes; code += bench.volume(6U, 1U)) {
     bench.power_up(interbus::line_of(1, id_code_with(code), 1));
     const bool is_running = bench.wait_for_run();
     judge.expect(!is_running && !bench.status().configuration_error.empty(), "length_code_misread", [&] {

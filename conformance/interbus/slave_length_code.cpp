@@ -1,39 +1,14 @@
+#include "conformance/interbus/length_codes.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_expect.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 // IS-04: the length of the data register follows from the length code, one case for each code.
 namespace fieldproof::conformance {
 namespace {
-
-struct Length {
-  unsigned code;
-  unsigned words;
-};
-
-// The tester's own copy of the table: the one of the rules is what the slave under test may use.
-constexpr std::array<Length, 17> kLengths{{{0x00, 0},
-                                           {0x01, 1},
-                                           {0x02, 2},
-                                           {0x03, 3},
-                                           {0x04, 4},
-                                           {0x05, 5},
-                                           {0x0E, 6},
-                                           {0x0F, 7},
-                                           {0x06, 8},
-                                           {0x07, 9},
-                                           {0x15, 10},
-                                           {0x16, 12},
-                                           {0x17, 14},
-                                           {0x12, 16},
-                                           {0x13, 24},
-                                           {0x11, 26},
-                                           {0x14, 32}}};
-constexpr unsigned kFromMemory = 0x14;
 
 // After how many octets what came in leaves again; nothing when it does not come.
 std::optional<std::size_t> shift_of(const CycleOnLine& in, const CycleOnLine& out) {
@@ -71,7 +46,7 @@ void has_register_of(SlaveBench& bench, CaseJudge& judge, unsigned words) {
   }
 }
 
-SlaveCase length_case(const Length& length) {
+SlaveCase length_case(const interbus::LengthCode& length) {
   const auto id_code = static_cast<std::uint16_t>(length.code << 8 | 0x03);
   const bool is_binary = length.code == length.words;
   std::vector<Catch> catches{{"id_register_in_data_cycle", "register_length_wrong"}};
@@ -83,7 +58,7 @@ SlaveCase length_case(const Length& length) {
            fmt::format("A slave whose ID code has the length code {:02X}h has a data register of {} "
                        "words. The code is an entry of a table, not a number of words.",
                        length.code, length.words),
-       .reference = length.code == kFromMemory
+       .reference = length.code == kLengthCodeFromMemory
                         ? sources::from_memory("table of length codes, entry 14h")
                         : judge::Reference{"Schneider 890USE196", "page 37, table of length codes",
                                            judge::Standing::searched},
@@ -106,7 +81,7 @@ SlaveCase length_case(const Length& length) {
 
 std::vector<SlaveCase> slave_length_code_cases() {
   std::vector<SlaveCase> cases;
-  for (const Length& length : kLengths) cases.push_back(length_case(length));
+  for (const interbus::LengthCode& length : kLengthCodes) cases.push_back(length_case(length));
   return cases;
 }
 
