@@ -285,7 +285,7 @@ void stresses(MasterBench& bench, CaseJudge& judge) {
   StressedRun run(bench);
   run.begin(judge);
   for (const fault::Stress& stress : bench.stresses()) {
-    for (unsigned burst = 0; burst < bench.volume(2U, 20U); ++burst) {
+    for (unsigned burst = 0; burst < bench.volume(1U, 10U); ++burst) {
       run.suffer(stress);
       if (!run.is_going_on() && !run.restart_if_stopped()) break;
     }
