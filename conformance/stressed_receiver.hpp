@@ -23,9 +23,9 @@ class StressedReceiver final : private fault::Channel {
   std::span<const fault::Stress> stresses() const { return stresses_; }
 
   // From now on. Equal streams give equal disturbances.
-  void begin(const fault::Stress& stress, segment::Link& link, const fault::StressedReceiver& receiver) {
+  void begin(const fault::Stress& stress, segment::Link& link, const fault::StressPlace& place) {
     end();
-    channel_ = stress.make_channel(receiver);
+    channel_ = stress.make_channel(place);
     link_ = &link;
     before_ = link.channel();
     link.set_channel(this);

@@ -45,12 +45,11 @@ kernel::Duration longest_burst(Repetition repetition) {
 
 fault::Stress stress(const std::shared_ptr<SharedResponse>& response, const BurstSettings& settings,
                      const std::string& profile) {
-  const auto make_channel = [response, settings](const fault::StressedReceiver& receiver) {
+  const auto make_channel = [response, settings](const fault::StressPlace& place) {
     return std::make_unique<BurstChannel>(
-        burst_at(receiver.from, settings, receiver.random),
+        burst_at(place.from, settings, place.random),
         response->get().wrong_output(settings.level.open_circuit_volts(), settings.polarity),
-        BurstReceiver{receiver.bit_rate, nullptr, line::Sampling{}, true, false}, receiver.trace,
-        receiver.place);
+        BurstReceiver{place.bit_rate, nullptr, line::Sampling{}, true, false}, place.trace, place.channel);
   };
   return {fmt::format("a burst of {}, {}, level {}, profile {}", text_of(settings.repetition),
                       text_of(settings.polarity), settings.level.text(), profile),

@@ -151,7 +151,7 @@ TEST(InterbusSuite, CasesOfStressesAreThereWithStresses) {
   const auto has_stress_tag = [](const TestCase& test_case) { return has_tag(test_case, kStressTag); };
   EXPECT_EQ(std::ranges::count_if(suite().cases(), has_stress_tag), 0);
   const fault::Stress deaf{"nothing arrives for 2 ms", 2 * kernel::kMillisecond,
-                           [](const fault::StressedReceiver&) { return std::make_unique<Deaf>(); }};
+                           [](const fault::StressPlace&) { return std::make_unique<Deaf>(); }};
   const auto stressed = interbus_suite({}, {deaf});
   EXPECT_EQ(std::ranges::count_if(stressed->cases(), has_stress_tag), 2);
   for (const TestCase& test_case : stressed->cases()) {
