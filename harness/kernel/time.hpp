@@ -54,10 +54,14 @@ constexpr Duration levels_duration(std::int64_t levels, std::int64_t levels_per_
     return negative ? -Duration::max() : Duration::max();
   }
   std::uint64_t fraction = 0;
-  // Below 16 Mlevels/s the rest fits 64 bit arithmetic with room for the rounding; a 128-bit division costs
+  // Where 64 bit arithmetic has room it is used, in two steps at higher rates: a 128-bit division costs
   // several times as much.
+  constexpr std::uint64_t kStep = 1'000'000;  // kPerSecond is its square
   if (rate <= 16'000'000) {
     fraction = (rest * kPerSecond + rate / 2) / rate;
+  } else if (rate <= kLargest / kStep) {
+    const std::uint64_t upper = rest * kStep;
+    fraction = upper / rate * kStep + (upper % rate * kStep + rate / 2) / rate;
   } else {
     __extension__ using Wide = unsigned __int128;
     fraction = static_cast<std::uint64_t>((static_cast<Wide>(rest) * kPerSecond + rate / 2) / rate);
@@ -71,9 +75,11 @@ constexpr Duration levels_duration(std::int64_t levels, std::int64_t levels_per_
 // The levels of a line that fit a duration, a begun one not counted: the inverse of levels_duration but for
 // its rounding, which can make the answer one less. `duration` is not negative.
 constexpr std::int64_t levels_within(Duration duration, std::int64_t levels_per_second) {
+  constexpr std::int64_t kPerSecond = 1'000'000'000'000;
+  std::int64_t product = 0;
+  if (!__builtin_mul_overflow(duration.count(), levels_per_second, &product)) return product / kPerSecond;
   __extension__ using Wide = __int128;
-  return static_cast<std::int64_t>(static_cast<Wide>(duration.count()) * levels_per_second /
-                                   1'000'000'000'000);
+  return static_cast<std::int64_t>(static_cast<Wide>(duration.count()) * levels_per_second / kPerSecond);
 }
 
 // The instant at which level `n` of a line begins that started at `start`.

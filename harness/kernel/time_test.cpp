@@ -42,7 +42,8 @@ RC_GTEST_PROP(Time, IsTheExactQuotientRoundedOnce, ()) {
   const auto rate = *rc::gen::oneOf(rc::gen::inRange<std::int64_t>(1, 1000),
                                     rc::gen::inRange<std::int64_t>(1000, 2'000'000),
                                     rc::gen::inRange<std::int64_t>(15'999'990, 16'000'010),
-                                    rc::gen::inRange<std::int64_t>(16'000'000, 2'000'000'000));
+                                    rc::gen::inRange<std::int64_t>(16'000'000, 2'000'000'000),
+                                    rc::gen::inRange<std::int64_t>(9'223'372'036'844, 9'223'372'036'864));
   const auto n =
       *rc::gen::oneOf(rc::gen::inRange<std::int64_t>(-100'000, 100'000),
                       rc::gen::inRange<std::int64_t>(-(std::int64_t{1} << 40), (std::int64_t{1} << 40) + 1));
@@ -59,6 +60,14 @@ RC_GTEST_PROP(Time, IsTheExactQuotientRoundedOnce, ()) {
   RC_ASSERT(error <= rate);
   RC_ASSERT(level_time(kStart + Duration{17}, n, rate) == Time{Duration{17}} + levels_duration(n, rate) ||
             levels_duration(n, rate).count() > std::numeric_limits<std::int64_t>::max() - 17);
+}
+
+RC_GTEST_PROP(Time, CountsTheLevelsThatFit, ()) {
+  const auto rate = *rc::gen::oneOf(rc::gen::inRange<std::int64_t>(1, 2'000'000),
+                                    rc::gen::inRange<std::int64_t>(1, 2'000'000'000));
+  const auto duration = *rc::gen::oneOf(rc::gen::inRange<std::int64_t>(0, 1'000'000'000),
+                                        rc::gen::inRange<std::int64_t>(0, 1'000'000'000'000'000));
+  RC_ASSERT(levels_within(Duration{duration}, rate) == Wide{duration} * rate / 1'000'000'000'000);
 }
 
 TEST(Time, IsDescribedExactlyInSensibleUnits) {
