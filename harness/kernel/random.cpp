@@ -15,28 +15,11 @@
 namespace fieldproof::kernel {
 namespace {
 
-// SplitMix64: a counter in steps of the golden ratio, each value scrambled.
-constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
-
-constexpr std::uint64_t scramble(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
-  return x ^ (x >> 31);
-}
-
-// The two ways to name a child start from different constants, so that no index meets a label by design.
-constexpr std::uint64_t kLabelled = 0x6C6162656C6C6564;
-constexpr std::uint64_t kIndexed = 0x696E646578656421;
-
 // FNV-1a, 64 bit.
 constexpr std::uint64_t hash_of(std::string_view text) {
   std::uint64_t hash = 0xCBF29CE484222325;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3;
   return hash;
-}
-
-constexpr std::uint64_t child_seed(std::uint64_t parent, std::uint64_t kind, std::uint64_t name) {
-  return scramble(scramble(scramble(parent + kGolden) ^ kind) + scramble(name + kGolden));
 }
 
 // 2 * artanh(s) = ln((1 + s) / (1 - s)) for |s| <= 0.172: the first term left out is below 2^-56 of the sum.
@@ -92,19 +75,8 @@ double log_of_fraction(std::uint64_t n) {
 
 }  // namespace
 
-Random::Random(std::uint64_t seed) : state_{}, seed_(seed) {
-  for (std::uint64_t& word : state_) {
-    seed += kGolden;
-    word = scramble(seed);
-  }
-}
-
 Random Random::split(std::string_view label) const {
   return Random(child_seed(seed_, kLabelled, hash_of(label)));
-}
-
-Random Random::split(std::uint64_t index) const {
-  return Random(child_seed(seed_, kIndexed, index));
 }
 
 std::uint64_t Random::geometric(double p) {

@@ -22,14 +22,16 @@ namespace fieldproof::kernel {
 
 class Random {
  public:
-  explicit Random(std::uint64_t seed);
+  explicit Random(std::uint64_t seed) : state_{}, seed_(seed) {
+    for (std::uint64_t& word : state_) word = scramble(seed += kGolden);
+  }
 
   // The seed that this stream was made from (a child has its own).
   std::uint64_t seed() const { return seed_; }
 
   // Child streams. A label and an index never name the same child by construction of the mixing.
   Random split(std::string_view label) const;
-  Random split(std::uint64_t index) const;
+  Random split(std::uint64_t index) const { return Random(child_seed(seed_, kIndexed, index)); }
 
   // 64 uniform bits.
   std::uint64_t next() {
@@ -87,6 +89,23 @@ class Random {
 
  private:
   __extension__ using Wide = unsigned __int128;
+
+  // SplitMix64: a counter in steps of the golden ratio, each value scrambled.
+  static constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
+
+  static constexpr std::uint64_t scramble(std::uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
+    x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
+    return x ^ (x >> 31);
+  }
+
+  // The two ways to name a child start from different constants, so that no index meets a label by design.
+  static constexpr std::uint64_t kLabelled = 0x6C6162656C6C6564;
+  static constexpr std::uint64_t kIndexed = 0x696E646578656421;
+
+  static constexpr std::uint64_t child_seed(std::uint64_t parent, std::uint64_t kind, std::uint64_t name) {
+    return scramble(scramble(scramble(parent + kGolden) ^ kind) + scramble(name + kGolden));
+  }
 
   std::array<std::uint64_t, 4> state_;
   std::uint64_t seed_;
