@@ -56,32 +56,24 @@ void CharacterCode::append(Levels& levels, unsigned data) const {
 }
 
 void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& received) const {
-  const std::size_t size = wave.levels.size();
-  std::size_t edge = falling_edge(wave.levels, 0);
-  while (edge < size) {
-    const kernel::Time start = wave.time_of(edge);
-    if (sampling_.sample(wave, start, 0, bit_rate_)) {
-      const kernel::Time idle = sampling_.idle_seen_at(wave, start, bit_rate_);
-      edge = falling_edge(wave.levels, std::max(wave.first_level_at(idle), edge + 1));
+  const unsigned length = code_.format().bits_before_stop() + 1;
+  Sampler sampler(wave, sampling_, bit_rate_);
+  std::size_t edge = 0;
+  while ((edge = falling_edge(wave.levels, edge)) < wave.levels.size()) {
+    sampler.start(edge);
+    std::uint32_t bits = 0;
+    for (unsigned bit = 0; bit < length; ++bit) bits |= std::uint32_t{sampler.sample(bit)} << bit;
+    if ((bits & 1) != 0) {
+      edge = sampler.idle_seen();
       continue;
     }
-    received.push_back(sampled(wave, edge));
-    const Received& last = received.back();
+    const kernel::Time start = wave.time_of(edge);
+    Received& last = received.emplace_back(
+        Received{code_.from_bits(bits), start, sampling_.decided_at(start, length - 1, bit_rate_)});
+    last.character.level = static_cast<std::uint32_t>(edge);
     // With the stop bit missing the line is low: the next falling edge lies behind an idle level anyhow.
-    edge = falling_edge(wave.levels, std::max(wave.first_level_at(last.end), edge + 1));
+    edge = sampler.behind(length - 1);
   }
-}
-
-CharacterReceiver::Received CharacterReceiver::sampled(const Waveform& wave, std::size_t edge) const {
-  const unsigned length = code_.format().bits_before_stop() + 1;
-  const kernel::Time start = wave.time_of(edge);
-  std::uint32_t bits = 0;
-  for (unsigned bit = 0; bit < length; ++bit) {
-    bits |= std::uint32_t{sampling_.sample(wave, start, bit, bit_rate_)} << bit;
-  }
-  Received received{code_.from_bits(bits), start, sampling_.decided_at(start, length - 1, bit_rate_)};
-  received.character.level = static_cast<std::uint32_t>(edge);
-  return received;
 }
 
 }  // namespace fieldproof::line

@@ -131,8 +131,6 @@ class CharacterReceiver {
   void receive(const Waveform& wave, std::vector<Received>& received) const;
 
  private:
-  Received sampled(const Waveform& wave, std::size_t edge) const;
-
   CharacterCode code_;
   std::int64_t bit_rate_;
   Sampling sampling_;

@@ -40,8 +40,4 @@ std::size_t falling_edge(const Levels& levels, std::size_t from) {
   return size;
 }
 
-std::size_t falling_edge_at(const Waveform& wave, kernel::Time from) {
-  return falling_edge(wave.levels, wave.first_level_at(from));
-}
-
 }  // namespace fieldproof::line

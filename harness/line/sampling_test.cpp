@@ -76,6 +76,28 @@ RC_GTEST_PROP(Sampling, AgreesWithAskingForEachSample, ()) {
   RC_ASSERT(Sampling{}.sample(wave, edge, bit, kBitRate) == (at(7) + at(8) + at(9) >= 2));
 }
 
+// On a grid of whole picoseconds, where instants are exact, levels and instants tell the same.
+RC_GTEST_PROP(Sampler, SeesInLevelsWhatInstantsTell, ()) {
+  const auto sixteenth = *rc::gen::element<std::int64_t>(1, 2, 5, 10);  // levels
+  Waveform wave;
+  wave.start = kStart + 3 * kMicrosecond;
+  wave.rate = kBitRate * 16 * sixteenth;
+  for (const bool level : *rc::gen::arbitrary<std::vector<bool>>()) {
+    wave.levels.append_fill(level, *rc::gen::inRange<std::size_t>(0, 40));
+  }
+  wave.levels.append(0, 1);
+  const Sampling sampling{*rc::gen::element(Sampling::Kind::majority_of_three, Sampling::Kind::mid_bit)};
+  const auto edge = *rc::gen::inRange<std::size_t>(0, wave.levels.size());
+  const auto bit = *rc::gen::inRange(0U, 12U);
+  const Time start = wave.time_of(edge);
+  Sampler sampler(wave, sampling, kBitRate);
+  sampler.start(edge);
+  RC_ASSERT(sampler.sample(bit) == sampling.sample(wave, start, bit, kBitRate));
+  RC_ASSERT(sampler.is_decided(bit) == (sampling.decided_at(start, bit, kBitRate) <= wave.end()));
+  RC_ASSERT(sampler.behind(bit) == wave.first_level_at(sampling.decided_at(start, bit, kBitRate)));
+  RC_ASSERT(sampler.idle_seen() == wave.first_level_at(sampling.idle_seen_at(wave, start, kBitRate)));
+}
+
 RC_GTEST_PROP(Sampling, FindsTheEdgeThatASlowSearchFinds, (const std::vector<bool>& bits)) {
   Levels levels;
   for (const bool level : bits) levels.append(level ? 1 : 0, 1);

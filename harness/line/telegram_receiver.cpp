@@ -1,7 +1,6 @@
 #include "harness/line/telegram_receiver.hpp"
 
 #include <algorithm>
-#include <bit>
 
 namespace fieldproof::line {
 namespace {
@@ -27,15 +26,6 @@ std::size_t first_middle_at(kernel::Time start, std::int64_t rate, kernel::Time 
   return static_cast<std::size_t>(n);
 }
 
-std::size_t end_of_run(const Levels& levels, std::size_t from) {
-  const std::uint64_t other = levels[from] ? ~std::uint64_t{0} : 0;
-  for (std::size_t n = from; n < levels.size(); n += 64) {
-    const std::uint64_t changed = levels.window(n) ^ other;
-    if (changed != 0) return std::min(levels.size(), n + static_cast<std::size_t>(std::countr_zero(changed)));
-  }
-  return levels.size();
-}
-
 // Appends up to level `until` what a look at the middle of each level finds in the waveform, run by run.
 void append_sampled(Levels& levels, const Waveform& wave, kernel::Time start, std::int64_t rate,
                     std::size_t until) {
@@ -45,7 +35,7 @@ void append_sampled(Levels& levels, const Waveform& wave, kernel::Time start, st
   };
   fill_until(true, wave.start);
   for (std::size_t n = 0; n < wave.levels.size() && levels.size() < until;) {
-    const std::size_t next = end_of_run(wave.levels, n);
+    const std::size_t next = wave.levels.end_of_run(n);
     fill_until(wave.levels[n], wave.time_of(next));
     n = next;
   }
@@ -66,26 +56,26 @@ TelegramReceiver::TelegramReceiver(const TelegramCode& code, std::int64_t bit_ra
     : code_(code), bit_rate_(bit_rate), options_(options) {}
 
 bool TelegramReceiver::sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram) const {
+  Sampler sampler(wave, options_.sampling, bit_rate_);
   while ((at = falling_edge(wave.levels, at)) < wave.levels.size()) {
-    const kernel::Time edge = wave.time_of(at);
+    sampler.start(at);
     // Whether it is a start bit is not known yet: the next reception may go on with it.
-    if (options_.sampling.decided_at(edge, 0, bit_rate_) > wave.end()) return false;
+    if (!sampler.is_decided(0)) return false;
     std::uint64_t sampled = 0;
     for (unsigned bit = 0; bit < kDataTelegramLevels; ++bit) {
-      if (options_.sampling.sample(wave, edge, bit, bit_rate_)) sampled |= std::uint64_t{1} << bit;
+      if (sampler.sample(bit)) sampled |= std::uint64_t{1} << bit;
     }
     if ((sampled & 1) != 0) {
       if (options_.validates_start) {
-        at = falling_edge_at(wave, options_.sampling.idle_seen_at(wave, edge, bit_rate_));
+        at = sampler.idle_seen();
         continue;
       }
       sampled &= ~std::uint64_t{1};
     }
     telegram = code_.from_levels(sampled);
     telegram.level = static_cast<std::uint32_t>(at);
-    const kernel::Time decided = options_.sampling.decided_at(edge, telegram.levels() - 1, bit_rate_);
-    if (decided > wave.end()) return false;
-    at = wave.first_level_at(decided);
+    if (!sampler.is_decided(telegram.levels() - 1)) return false;
+    at = sampler.behind(telegram.levels() - 1);
     while (telegram.is_stop_missing() && at < wave.levels.size() && !wave.levels[at]) ++at;
     return true;
   }

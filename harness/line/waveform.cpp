@@ -5,6 +5,23 @@
 #include "harness/kernel/check.hpp"
 
 namespace fieldproof::line {
+namespace {
+
+// change(word, mask) for the words that hold levels [first, end), the mask telling which of its levels.
+template <typename Change>
+void change_words(std::uint64_t* words, std::size_t first, std::size_t end, Change change) {
+  if (first >= end) return;
+  std::uint64_t* word = words + first / 64;
+  std::uint64_t* const last = words + (end - 1) / 64;
+  std::uint64_t mask = ~std::uint64_t{0} << (first % 64);
+  for (; word != last; ++word) {
+    change(*word, mask);
+    mask = ~std::uint64_t{0};
+  }
+  change(*last, mask & (~std::uint64_t{0} >> (63 - (end - 1) % 64)));
+}
+
+}  // namespace
 
 void Levels::grow(std::size_t levels) {
   const std::size_t wanted = std::max(levels + 64, capacity_ * 2);
@@ -13,17 +30,23 @@ void Levels::grow(std::size_t levels) {
 }
 
 void Levels::append_fill(bool level, std::size_t count) {
-  if (level) return append_idle(count);
-  reserve(size_ + count);
-  const std::size_t until = size_ + count;
-  // The rest of the word that is begun, whole words, and the beginning of the last one.
-  const std::size_t in_word = size_ % 64;
-  const auto head = static_cast<unsigned>(in_word == 0 ? 0 : std::min<std::size_t>(64 - in_word, count));
-  append(0, head);
-  const std::size_t whole = (until - size_) / 64;
-  std::fill_n(words_.begin() + static_cast<std::ptrdiff_t>(size_ / 64), whole, std::uint64_t{0});
-  size_ += whole * 64;
-  append(0, static_cast<unsigned>(until - size_));
+  const std::size_t first = size_;
+  append_idle(count);
+  if (!level) fill(first, size_, false);
+}
+
+void Levels::fill(std::size_t first, std::size_t end, bool level) {
+  FIELDPROOF_CHECK(end <= size_, "levels that are filled lie in the waveform");
+  if (level) {
+    change_words(words_.data(), first, end, [](std::uint64_t& word, std::uint64_t mask) { word |= mask; });
+  } else {
+    change_words(words_.data(), first, end, [](std::uint64_t& word, std::uint64_t mask) { word &= ~mask; });
+  }
+}
+
+void Levels::invert(std::size_t first, std::size_t end) {
+  FIELDPROOF_CHECK(end <= size_, "levels that are inverted lie in the waveform");
+  change_words(words_.data(), first, end, [](std::uint64_t& word, std::uint64_t mask) { word ^= mask; });
 }
 
 void Levels::append(const Levels& other) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -76,9 +78,22 @@ class Levels {
   // Positions at or beyond the end are a broken invariant.
   void flip(std::size_t n);
   void set(std::size_t n, bool level);
+  // Levels [first, end).
+  void fill(std::size_t first, std::size_t end, bool level);
+  void invert(std::size_t first, std::size_t end);
 
   void clear();
   void resize(std::size_t size);  // new levels are idle
+
+  // The end of the run of equal levels that begins at `first`, which lies in the levels.
+  std::size_t end_of_run(std::size_t first) const {
+    const std::uint64_t equal = (*this)[first] ? ~std::uint64_t{0} : 0;
+    for (std::size_t n = first; n < size_; n += 64) {
+      const std::uint64_t others = window(n) ^ equal;
+      if (others != 0) return std::min(size_, n + static_cast<std::size_t>(std::countr_zero(others)));
+    }
+    return size_;
+  }
 
   // Levels [first, first + count), idle beyond the end.
   Levels slice(std::size_t first, std::size_t count) const;

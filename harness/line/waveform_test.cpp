@@ -126,5 +126,27 @@ RC_GTEST_PROP(WaveformProperty, FirstLevelAtIsTheInverseOfTimeOf, ()) {
   RC_ASSERT(wave.first_level_at(wave.time_of(n) + kPicosecond) == std::min(n + 1, count));
 }
 
+RC_GTEST_PROP(Levels, RangesAreWhatTheirLevelsAreOneByOne, (const std::vector<bool>& bits)) {
+  const Levels levels = levels_of(bits);
+  const auto first = *rc::gen::inRange<std::size_t>(0, bits.size() + 1);
+  const auto end = *rc::gen::inRange<std::size_t>(first, bits.size() + 1);
+  const bool value = *rc::gen::arbitrary<bool>();
+  Levels filled = levels;
+  filled.fill(first, end, value);
+  Levels inverted = levels;
+  inverted.invert(first, end);
+  for (std::size_t n = 0; n < bits.size(); ++n) {
+    const bool is_inside = n >= first && n < end;
+    RC_ASSERT(filled[n] == (is_inside ? value : bits[n]));
+    RC_ASSERT(inverted[n] == (is_inside ? !bits[n] : bits[n]));
+  }
+  RC_ASSERT(inverted.size() == bits.size());
+  if (first < bits.size()) {
+    std::size_t until = first;
+    while (until < bits.size() && bits[until] == bits[first]) ++until;
+    RC_ASSERT(levels.end_of_run(first) == until);
+  }
+}
+
 }  // namespace
 }  // namespace fieldproof::line
