@@ -43,7 +43,9 @@ class BurstLine {
              true,
              true},
             trace_, trace_.add_channel("rx")),
-        sent_(frame()) {}
+        sent_(frame()) {
+    place_frames();
+  }
 
   // Frames far from any burst.
   std::uint64_t pass_clean(std::uint64_t count) {
@@ -64,19 +66,32 @@ class BurstLine {
     const std::uint64_t before = channel_.statistics().wrong_levels;
     while (channel_.statistics().wrong_levels - before < count) {
       arrivals_.clear();
-      const kernel::Time pulse = channel_.schedule().first_from(sent_.start + kernel::kMillisecond);
-      sent_.start = pulse - kernel::Duration{static_cast<std::int64_t>(random_.below(360'000'000))};
+      sent_.start = starts_[placed_];
+      if (++placed_ == starts_.size()) placed_ = 0;
       channel_.pass(sent_, arrivals_);
     }
     return channel_.statistics().wrong_levels - before;
   }
 
  private:
+  // Frames over pulses, at any phase.
+  void place_frames() {
+    emc::BurstSchedule schedule({}, kernel::Random(1));
+    kernel::Random random(2);
+    kernel::Time pulse = kernel::kStart;
+    starts_.resize(50'000);
+    for (kernel::Time& start : starts_) {
+      pulse = schedule.first_from(pulse + kernel::kMillisecond);
+      start = pulse - kernel::Duration{static_cast<std::int64_t>(random.below(360'000'000))};
+    }
+  }
+
   trace::Trace trace_;
   emc::BurstChannel channel_;
   line::Waveform sent_;
   std::vector<line::Waveform> arrivals_;
-  kernel::Random random_{2};
+  std::vector<kernel::Time> starts_;
+  std::size_t placed_ = 0;
 };
 
 Batch clean() {

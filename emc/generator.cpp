@@ -125,14 +125,6 @@ kernel::Time BurstSchedule::burst_begin(std::int64_t burst) const {
   return on_ + timing_.phase + burst * timing_.period + step * timing_.sweep;
 }
 
-kernel::Time BurstSchedule::pulse(std::int64_t burst, std::int64_t number) const {
-  const kernel::Time place = burst_begin(burst) + number * timing_.pitch;
-  if (timing_.jitter == kernel::Duration::zero()) return place;
-  const auto name = static_cast<std::uint64_t>((burst + 1) * timing_.pulses + number);
-  const std::int64_t most = timing_.jitter.count();
-  return place + kernel::Duration{jitter_.split(name).between(-most, most)};
-}
-
 std::int64_t BurstSchedule::burst_before(kernel::Time time) const {
   // The burst that runs when the generator is switched on has number -1; there is none before it.
   const kernel::Duration behind =
@@ -140,23 +132,54 @@ std::int64_t BurstSchedule::burst_before(kernel::Time time) const {
   return std::max<std::int64_t>(-1, floor_quotient(behind, timing_.period));
 }
 
+void BurstSchedule::begin_burst(std::int64_t burst) {
+  burst_ = burst;
+  begin_ = burst_begin(burst);
+  number_ = 0;
+}
+
+kernel::Time BurstSchedule::pulse_here() const {
+  const kernel::Time place = begin_ + number_ * timing_.pitch;
+  if (timing_.jitter == kernel::Duration::zero()) return place;
+  const auto name = static_cast<std::uint64_t>((burst_ + 1) * timing_.pulses + number_);
+  const std::int64_t most = timing_.jitter.count();
+  return place + kernel::Duration{jitter_.split(name).between(-most, most)};
+}
+
+void BurstSchedule::step() {
+  if (++number_ >= timing_.pulses) begin_burst(burst_ + 1);
+}
+
+// To the first pulse from `wanted` on or, because pulses stray, to one shortly before it.
+void BurstSchedule::jump_to(kernel::Time wanted) {
+  begin_burst(burst_before(wanted));
+  const kernel::Duration behind = wanted - begin_ - timing_.jitter;
+  number_ = std::max<std::int64_t>(0, floor_quotient(behind, timing_.pitch));
+  if (number_ >= timing_.pulses) begin_burst(burst_ + 1);
+}
+
 void BurstSchedule::seek(kernel::Time from) {
-  known_from_ = from;
+  constexpr std::int64_t kNear = 16;  // steps that cost less than a jump
   const kernel::Time wanted = std::max(from, on_);
-  next_ = kernel::kNever;
-  if (wanted >= off_) return;
-  std::int64_t burst = burst_before(wanted);
-  while (true) {
-    const kernel::Duration behind = wanted - burst_begin(burst) - timing_.jitter;
-    std::int64_t number = std::max<std::int64_t>(0, floor_quotient(behind, timing_.pitch));
-    for (; number < timing_.pulses; ++number) {
-      const kernel::Time at = pulse(burst, number);
-      if (at < wanted) continue;
-      if (at < off_) next_ = at;
-      return;
-    }
-    ++burst;
+  if (wanted >= off_) {
+    known_from_ = from;
+    next_ = kernel::kNever;
+    return;
   }
+  if (from > next_ && from - next_ <= kNear * timing_.pitch) {
+    step();
+  } else {
+    jump_to(wanted);
+  }
+  // Pulses that come too early however they stray are not drawn.
+  while (begin_ + number_ * timing_.pitch < wanted - timing_.jitter) step();
+  kernel::Time at = pulse_here();
+  while (at < wanted) {
+    step();
+    at = pulse_here();
+  }
+  known_from_ = from;
+  next_ = at < off_ ? at : kernel::kNever;
 }
 
 BurstSchedule::Window BurstSchedule::window_of(kernel::Time pulse) const {

@@ -93,7 +93,8 @@ struct BurstTiming {
 //
 // Contract: the instants are a function of settings and stream alone, not of what is asked and when: the
 // schedules of several receivers, made from equal streams, have the same pulses. Questions in the order of
-// time cost a comparison each; a question further on costs a few divisions, however far it is.
+// time cost a comparison each and the drawing of the pulses in between; a question further on, or back, costs
+// a few divisions, however far it is.
 class BurstSchedule {
  public:
   // `random` is split, not drawn from.
@@ -117,15 +118,22 @@ class BurstSchedule {
 
  private:
   kernel::Time burst_begin(std::int64_t burst) const;
-  kernel::Time pulse(std::int64_t burst, std::int64_t number) const;
   // The last burst that surely begins before `time`.
   std::int64_t burst_before(kernel::Time time) const;
   void seek(kernel::Time from);
+  void jump_to(kernel::Time wanted);
+  void step();
+  void begin_burst(std::int64_t burst);
+  kernel::Time pulse_here() const;
 
   BurstTiming timing_;
   kernel::Time on_;
   kernel::Time off_;
   kernel::Random jitter_;
+  // The pulse that was found last, or where its search stands.
+  std::int64_t burst_ = 0;
+  kernel::Time begin_{};  // of that burst
+  std::int64_t number_ = 0;
   // No pulse lies in [known_from_, next_).
   kernel::Time known_from_ = kernel::kNever;
   kernel::Time next_ = kernel::kNever;

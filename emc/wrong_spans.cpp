@@ -1,7 +1,6 @@
 #include "emc/wrong_spans.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #if defined(__clang__)
@@ -32,18 +31,6 @@ void join(std::vector<Span>& spans) {
     }
   }
   spans.resize(last + 1);
-}
-
-// The end of the run of equal levels that begins at `first`.
-std::size_t end_of_run(const line::Levels& levels, std::size_t first) {
-  const std::uint64_t flipped = levels[first] ? ~std::uint64_t{0} : 0;
-  std::size_t at = first;
-  while (at < levels.size()) {
-    const std::uint64_t others = levels.window(at) ^ flipped;
-    if (others != 0) return std::min(levels.size(), at + static_cast<std::size_t>(std::countr_zero(others)));
-    at += 64;
-  }
-  return levels.size();
 }
 
 }  // namespace
@@ -97,24 +84,16 @@ void WrongSpans::resolve(bool level) {
 
 void append_stretched(const line::Levels& levels, std::int64_t ticks_per_level,
                       const std::vector<Span>& inverted, line::Levels& stretched) {
-  stretched.make_room(stretched.size() + levels.size() * static_cast<std::size_t>(ticks_per_level));
-  auto span = inverted.begin();
+  const auto ticks = static_cast<std::size_t>(ticks_per_level);
+  const std::size_t begin = stretched.size();
+  stretched.append_idle(levels.size() * ticks);
   for (std::size_t first = 0; first < levels.size();) {
-    const bool level = levels[first];
-    const std::size_t run_end = end_of_run(levels, first);
-    std::int64_t at = static_cast<std::int64_t>(first) * ticks_per_level;
-    const std::int64_t end = static_cast<std::int64_t>(run_end) * ticks_per_level;
-    const auto fill_until = [&](std::int64_t until, bool with) {
-      if (until > at) stretched.append_fill(with, static_cast<std::size_t>(until - at));
-      at = std::max(at, until);
-    };
-    for (; span != inverted.end() && span->from < end; ++span) {
-      fill_until(std::min(span->from, end), level);
-      fill_until(std::min(span->to, end), !level);
-      if (span->to > end) break;  // goes on in the next run
-    }
-    fill_until(end, level);
-    first = run_end;
+    const std::size_t end = levels.end_of_run(first);
+    if (!levels[first]) stretched.fill(begin + first * ticks, begin + end * ticks, false);
+    first = end;
+  }
+  for (const Span& span : inverted) {
+    stretched.invert(begin + static_cast<std::size_t>(span.from), begin + static_cast<std::size_t>(span.to));
   }
 }
 
