@@ -1,20 +1,25 @@
 // INTERBUS rings at full line fidelity: every telegram is encoded to levels and decoded again at every
 // station.
 //
-// Three measures. "real time": simulated time per processor time, beside a row that only counts real time, so
+// Four measures. "real time": simulated time per processor time, beside a row that only counts real time, so
 // the ratio is how much faster than real time a ring runs. "hop": one telegram over one of the links, beside
 // the floor, a hand-written loop without scheduler, trace, frame check, states and time that only decodes,
-// shifts and encodes the same telegrams. "cycle": one data cycle, for rings of 1 to 512 stations.
+// shifts and encodes the same telegrams. "cycle": one data cycle, for rings of 1 to 512 stations. "injector":
+// the paper's set-up with burst channels on both directions of its cable, whose bursts are yet to come,
+// beside the same without.
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <ctime>
+#include <deque>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bench/rows.hpp"
+#include "emc/burst_channel.hpp"
+#include "emc/profile.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/network.hpp"
@@ -237,6 +242,39 @@ std::function<Batch()> cycles_of(unsigned stations) {
   };
 }
 
+// The paper's set-up, with a burst channel on each link or without. The bursts are yet to come: the channels
+// look at their schedule for each transmission and find nothing.
+struct Coupled {
+  explicit Coupled(bool has_injector) : running(line_of(1, 2)) {
+    if (!has_injector) return;
+    const emc::WrongOutput wrong =
+        emc::LineResponse(emc::Profile::named("A").coupling).wrong_output(1000, emc::Polarity::positive);
+    emc::BurstSettings bursts;
+    bursts.on = running.segment.now() + 1'000'000 * kernel::kSecond;
+    for (segment::Link* link : {&running.ring.link_to(1), &running.ring.link_from(1)}) {
+      channels.emplace_back(emc::BurstSchedule(bursts, kernel::Random(1)), wrong,
+                            emc::BurstReceiver{500'000, nullptr, line::Sampling{}, true, true},
+                            running.segment.trace(), link->trace_channel());
+      link->set_channel(&channels.back());
+    }
+  }
+
+  Running running;
+  std::deque<emc::BurstChannel> channels;
+};
+
+std::function<Batch()> coupled(bool has_injector) {
+  return [=]() -> Batch {
+    auto ring = std::make_shared<Coupled>(has_injector);
+    return [=] {
+      ring->running.run(1000);
+      return std::uint64_t{1000};
+    };
+  };
+}
+
+constexpr double kInjectorWithoutHits = 1 / 1.3;
+
 const Rows kRows({
     {"INTERBUS hop, 64 stations", "hand-written loop", "hops", "", 0, make_floor},
     {"INTERBUS hop, 64 stations", "fieldproof", "hops", "hand-written loop", 0.5, make_hops},
@@ -250,6 +288,9 @@ const Rows kRows({
     {"INTERBUS data cycle", "10 stations", "cycles", "", 0, cycles_of(10)},
     {"INTERBUS data cycle", "64 stations", "cycles", "", 0, cycles_of(64)},
     {"INTERBUS data cycle", "512 stations without data", "cycles", "", 0, cycles_of(512)},
+    {"INTERBUS, 1 station, injector without hits", "no injector", "cycles", "", 0, coupled(false)},
+    {"INTERBUS, 1 station, injector without hits", "injector", "cycles", "no injector", kInjectorWithoutHits,
+     coupled(true)},
 });
 
 }  // namespace
