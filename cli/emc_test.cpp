@@ -74,6 +74,43 @@ TEST_F(EmcVerb, RefusesWhatItCannotServe) {
   EXPECT_NE(refusal({"--duration", "2h"}).find("1 h"), std::string::npos);
 }
 
+TEST_F(EmcVerb, HoldsACountOnATextbookChannelAgainstTheTheory) {
+  const Called called =
+      call({"--channel", "bsc:0.0002,bsc:0.001", "--duration", "10s", "--json", "channels.json"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_HOLDS(called.out, "bsc 0.001");
+  EXPECT_EQ(called.out.find("not calibrated"), std::string::npos) << "no burst, no coupling";
+  const nlohmann::json document = json("channels.json");
+  EXPECT_TRUE(document.at("tests").empty());
+  ASSERT_EQ(document.at("channels").size(), 2U);
+  for (const auto& test : document.at("channels")) {
+    EXPECT_GT(test.at("ledger").at("corrupted"), 1000);
+    EXPECT_GT(test.at("undetected_by_code_word"), 0);
+    EXPECT_GT(test.at("undetected_by_shift"), test.at("undetected_by_code_word"));
+    EXPECT_GT(test.at("chance_of_count"), 1e-3);
+  }
+  EXPECT_GT(document.at("channels").at(1).at("expected_wrong_cycles_at_most"),
+            document.at("channels").at(0).at("expected_wrong_cycles_at_most"));
+  expect_valid({"channels.json"}, "emc");
+}
+
+// A master that takes what fails its check accepts more than theory lets pass.
+TEST_F(EmcVerb, EndsWithOneWhereTheTheoryIsRefuted) {
+  const Called called =
+      call({"--channel", "bsc:0.001", "--duration", "10s", "--iut", "master=deviant:own_check_ignored"});
+  EXPECT_EQ(called.exit_code, 1) << called.out;
+  EXPECT_HOLDS(called.out, "reproduce: fieldproof emc interbus --iut master=deviant:own_check_ignored");
+  EXPECT_HOLDS(called.out, "--channel bsc:0.001");
+}
+
+TEST_F(EmcVerb, RefusesAChannelThatIsNone) {
+  for (const std::string text : {"bsc", "bsc:", "bsc:2", "bsc:0", "bsc:nan", "ge:0.1", ""}) {
+    const Called called = call({"--channel", text});
+    EXPECT_EQ(called.exit_code, 64) << text << called.out;
+  }
+  EXPECT_EQ(call({"--channel", "bsc:0.001", "--levels", "3"}).exit_code, 64);
+}
+
 TEST_F(EmcVerb, JsonIsValidForItsSchema) {
   ASSERT_EQ(call({"--levels", "1", "--json", "emc.json"}).exit_code, 0);
   expect_valid({"emc.json"}, "emc");

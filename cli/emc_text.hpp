@@ -15,7 +15,20 @@ struct EmcTest {
   emc::Level level = emc::Level::standard(emc::PortKind::signal, 1);
   emc::Repetition repetition = emc::Repetition::khz_5;
   emc::Polarity polarity = emc::Polarity::positive;
+  // Instead of bursts, the binary symmetric channel that disturbs each cable. 0: bursts.
+  double flip_probability = 0;
+  emc::UndetectedCycle undetected;  // on that channel
   emc::ImmunityResult result;
+
+  bool has_bursts() const { return flip_probability == 0; }
+  // Cycles that receivers may accept wrong on such a channel: no more come on average.
+  double expected_wrong_cycles() const {
+    return static_cast<double>(result.ledger.sent * result.receivers) * undetected.any();
+  }
+  // Of so many wrong cycles as were counted, or more, if that is true.
+  double chance_of_count() const {
+    return emc::chance_of_at_least(result.ledger.wrong_cycles, expected_wrong_cycles());
+  }
 };
 
 struct EmcCampaign {
@@ -27,6 +40,8 @@ struct EmcCampaign {
   kernel::Duration duration{};
   std::vector<EmcTest> tests;
   emc::FrameResidual residual;
+
+  bool has_bursts() const { return tests.empty() || tests.front().has_bursts(); }
 };
 
 // The ledger of all tests together, and how much a count of wrong words can still hide.
@@ -40,8 +55,8 @@ struct EmcTotal {
 };
 EmcTotal total_of(const EmcCampaign& campaign);
 
+std::string emc_table_head(bool has_bursts);
 std::string emc_line(const EmcTest& test);
-std::string emc_table_head();
 // The ledger and what it rests on.
 std::string emc_summary(const EmcCampaign& campaign);
 std::string emc_json(const EmcCampaign& campaign);

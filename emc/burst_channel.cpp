@@ -5,6 +5,17 @@
 
 namespace fieldproof::emc {
 
+BurstStatistics& BurstStatistics::operator+=(const BurstStatistics& other) {
+  transmissions += other.transmissions;
+  hit_transmissions += other.hit_transmissions;
+  changed_transmissions += other.changed_transmissions;
+  rewritten_transmissions += other.rewritten_transmissions;
+  pulses += other.pulses;
+  wrong_levels += other.wrong_levels;
+  flipped_bits += other.flipped_bits;
+  return *this;
+}
+
 BurstChannel::BurstChannel(BurstSchedule schedule, WrongOutput wrong, BurstReceiver receiver,
                            trace::Trace& trace, trace::Channel place)
     : schedule_(std::move(schedule)),

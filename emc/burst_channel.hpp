@@ -49,6 +49,8 @@ struct BurstStatistics {
   std::uint64_t pulses = 0;                   // that made the output wrong during a transmission
   std::uint64_t wrong_levels = 0;             // sent levels during which the output was wrong for some time
   std::uint64_t flipped_bits = 0;             // sampled wrongly, without those of rewritten transmissions
+
+  BurstStatistics& operator+=(const BurstStatistics& other);
 };
 
 class BurstChannel final : public fault::Channel {

@@ -129,6 +129,7 @@ inline nlohmann::ordered_json sample_emc() {
                                {"repeated", 5},
                                {"accepted_wrong_inputs", n / 12},
                                {"accepted_wrong_outputs", 0},
+                               {"wrong_cycles", n / 12},
                                {"cleared_outputs", 1},
                                {"partly_latched", 0}}},
                              {"line",
@@ -138,6 +139,19 @@ inline nlohmann::ordered_json sample_emc() {
                                {"pulses", 590},
                                {"wrong_levels", 630}}}});
   }
+  Json channel = {{"channel", "bsc"},
+                  {"flip_probability", 0.002},
+                  {"receivers", 2},
+                  {"undetected_by_code_word", 1e-12},
+                  {"undetected_by_shift", 1e-9},
+                  {"expected_wrong_cycles_at_most", 7.2e-6},
+                  {"chance_of_count", 1.0}};
+  for (const auto& [key, value] : json["tests"].front().items()) {
+    if (key != "level" && key != "open_circuit_volts" && key != "repetition" && key != "polarity") {
+      channel[key] = value;
+    }
+  }
+  json["channels"] = Json::array({std::move(channel)});
   return json;
 }
 

@@ -1,9 +1,12 @@
 #include "emc/interbus/frame_residual.hpp"
 
+#include <array>
+#include <boost/math/distributions/poisson.hpp>
 #include <cmath>
 
 #include "emc/residual/residual_error.hpp"
 #include "harness/kernel/check.hpp"
+#include "harness/line/frame_check_16.hpp"
 #include "protocols/interbus/timing.hpp"
 
 namespace fieldproof::emc {
@@ -24,16 +27,28 @@ void find_worst(const DualWeights& dual, FrameResidual& residual) {
   }
 }
 
+const line::FrameCheckParameters& frame_check_of(const interbus::NetworkDescription& network) {
+  const line::FrameCheckParameters* check = line::find_frame_check(network.rules.frame_check);
+  FIELDPROOF_CHECK(check != nullptr && check->width <= 16, "the network has a frame check of up to 16 bits");
+  return *check;
+}
+
+unsigned protected_bits(const interbus::NetworkDescription& network) {
+  constexpr unsigned kLoopbackBits = 16;
+  return kLoopbackBits + 8 * interbus::timing_input(network).user_octets + frame_check_of(network).width;
+}
+
+DualWeights dual_weights_of(const interbus::NetworkDescription& network) {
+  return dual_weights(frame_check_of(network), protected_bits(network));
+}
+
 }  // namespace
 
 FrameResidual frame_residual(const interbus::NetworkDescription& network, kernel::Duration cycle_time) {
-  const line::FrameCheckParameters* check = line::find_frame_check(network.rules.frame_check);
-  FIELDPROOF_CHECK(check != nullptr && check->width <= 16, "the network has a frame check of up to 16 bits");
-  constexpr unsigned kLoopbackBits = 16;
   FrameResidual residual;
   residual.frame_check = network.rules.frame_check;
-  residual.bits = kLoopbackBits + 8 * interbus::timing_input(network).user_octets + check->width;
-  const DualWeights dual = dual_weights(*check, residual.bits);
+  residual.bits = protected_bits(network);
+  const DualWeights dual = dual_weights_of(network);
   find_worst(dual, residual);
   residual.probability_at_one_in_100 = undetected_error_probability(dual, kAssumedBer);
   if (cycle_time > kernel::Duration{}) {
@@ -42,6 +57,35 @@ FrameResidual frame_residual(const interbus::NetworkDescription& network, kernel
         residual_error_rate_per_hour(residual.probability_at_one_in_100, cycles_per_hour, 1);
   }
   return residual;
+}
+
+UndetectedCycle undetected_cycle(const interbus::NetworkDescription& network, double flip_probability) {
+  return {undetected_error_probability(dual_weights_of(network), flip_probability),
+          flip_probability * share_of_passing_shifts(network)};
+}
+
+// Two octets bring the register to each of its values once; of the octets that may follow, one at most fits.
+double share_of_passing_shifts(const interbus::NetworkDescription& network) {
+  const line::FrameCheck16& check = line::shared_frame_check_16(network.rules.frame_check);
+  constexpr unsigned kPrefixes = 0x10000;
+  unsigned fitting = 0;
+  for (unsigned prefix = 0; prefix < kPrefixes; ++prefix) {
+    const std::array<std::uint8_t, 2> octets = {static_cast<std::uint8_t>(prefix >> 8),
+                                                static_cast<std::uint8_t>(prefix & 0xFF)};
+    const auto before = check.update(check.start(), octets);
+    const auto expected = check.check_octets(before);
+    const auto sent = check.check_octets(check.update_octet(before, expected[0]));
+    // The second octet of the real check is where the status word begins.
+    if (sent[0] == expected[1] && sent[1] == network.rules.status_clean >> 8) ++fitting;
+  }
+  return fitting / (256.0 * kPrefixes);
+}
+
+double chance_of_at_least(std::uint64_t counted, double expected) {
+  if (counted == 0) return 1;
+  if (expected <= 0) return 0;
+  const boost::math::poisson_distribution<double> theory(expected);
+  return boost::math::cdf(boost::math::complement(theory, static_cast<double>(counted - 1)));
 }
 
 }  // namespace fieldproof::emc

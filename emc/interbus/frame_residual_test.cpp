@@ -71,5 +71,18 @@ TEST(FrameResidual, WorstShareIsAtLeastThatOfRandomWords) {
   }
 }
 
+TEST(FrameResidual, AShiftPassesWithOneLastOctetIn256) {
+  EXPECT_DOUBLE_EQ(share_of_passing_shifts(interbus::paper_network()), 1.0 / 256);
+  EXPECT_DOUBLE_EQ(undetected_cycle(interbus::paper_network(), 0.001).by_shift, 0.001 / 256);
+  EXPECT_EQ(undetected_cycle(interbus::paper_network(), 0).any(), 0);
+}
+
+TEST(FrameResidual, ChanceOfACountIsThatOfThePoissonDistribution) {
+  EXPECT_DOUBLE_EQ(chance_of_at_least(0, 0.1), 1);
+  EXPECT_DOUBLE_EQ(chance_of_at_least(1, 0), 0);
+  EXPECT_NEAR(chance_of_at_least(1, 0.1), 1 - std::exp(-0.1), 1e-12);
+  EXPECT_NEAR(chance_of_at_least(3, 2), 1 - std::exp(-2.0) * (1 + 2 + 2), 1e-12);
+}
+
 }  // namespace
 }  // namespace fieldproof::emc

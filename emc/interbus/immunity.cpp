@@ -57,6 +57,8 @@ class Oracle {
     }
     was_rejected_ = !accepted;
     judge_inputs(is_data && accepted);
+    if (ledger_.accepted_wrong() != wrong_before_) ++ledger_.wrong_cycles;
+    wrong_before_ = ledger_.accepted_wrong();
     has_latched_ = false;
     exchange();
   }
@@ -110,7 +112,30 @@ class Oracle {
   std::vector<std::uint16_t> held_;          // the input image as it was seen last
   bool has_latched_ = false;
   bool was_rejected_ = false;
+  std::uint64_t wrong_before_ = 0;
   ErrorLedger ledger_;
+};
+
+// Counts what a channel of any kind does.
+class CountedChannel final : public fault::Channel {
+ public:
+  explicit CountedChannel(std::unique_ptr<fault::Channel> channel) : channel_(std::move(channel)) {}
+
+  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+    ++statistics_.transmissions;
+    const bool is_changed = channel_->pass(sent, arrivals);
+    if (is_changed) {
+      ++statistics_.hit_transmissions;
+      ++statistics_.changed_transmissions;
+    }
+    return is_changed;
+  }
+
+  const BurstStatistics& statistics() const { return statistics_; }
+
+ private:
+  std::unique_ptr<fault::Channel> channel_;
+  BurstStatistics statistics_;
 };
 
 class Run {
@@ -130,7 +155,12 @@ class Run {
     if (!come_up()) return;
     result_.came_up = true;
     result_.cycle_time = master_->status().cycle_time;
-    couple(response, stations.are_references());
+    off_ = segment_.now() + settings_.duration;
+    if (settings_.make_channel) {
+      couple_channels();
+    } else {
+      couple_bursts(response, stations.are_references());
+    }
     oracle_.begin();
     suffer();
     recover();
@@ -156,22 +186,37 @@ class Run {
   }
 
   // Both directions of the cables of the remote bus.
-  void couple(const LineResponse& response, bool are_references) {
+  std::vector<segment::Link*> cables() {
+    std::vector<segment::Link*> links;
+    for (int position = 1; position <= static_cast<int>(ring_.size()); ++position) {
+      if (ring_.configuration(position).is_local) continue;
+      links.push_back(&ring_.link_to(position));
+      links.push_back(&ring_.link_from(position));
+    }
+    return links;
+  }
+
+  void couple_channels() {
+    const kernel::Random random = random_.split("channels");
+    for (segment::Link* link : cables()) {
+      counted_.emplace_back(settings_.make_channel(random.split(counted_.size())));
+      link->set_channel(&counted_.back());
+    }
+  }
+
+  void couple_bursts(const LineResponse& response, bool are_references) {
     BurstSettings bursts = settings_.bursts;
     bursts.on = segment_.now();
-    bursts.off = off_ = bursts.on + settings_.duration;
+    bursts.off = off_;
     const WrongOutput wrong = response.wrong_output(bursts.level.open_circuit_volts(), bursts.polarity);
     const interbus::Rules& rules = network_.rules;
     const BurstReceiver receiver{rules.bit_rate, std::make_shared<TelegramFraming>(rules.telegram),
                                  line::Sampling{}, true, are_references};
-    for (int position = 1; position <= static_cast<int>(ring_.size()); ++position) {
-      if (ring_.configuration(position).is_local) continue;
-      for (segment::Link* link : {&ring_.link_to(position), &ring_.link_from(position)}) {
-        // Equal streams: all receivers of a run see the same pulses.
-        channels_.emplace_back(BurstSchedule(bursts, random_.split("bursts")), wrong, receiver,
-                               segment_.trace(), link->trace_channel());
-        link->set_channel(&channels_.back());
-      }
+    for (segment::Link* link : cables()) {
+      // Equal streams: all receivers of a run see the same pulses.
+      channels_.emplace_back(BurstSchedule(bursts, random_.split("bursts")), wrong, receiver,
+                             segment_.trace(), link->trace_channel());
+      link->set_channel(&channels_.back());
     }
   }
 
@@ -179,6 +224,10 @@ class Run {
     while (segment_.now() < off_) {
       segment_.run_until(std::min(segment_.now() + kSlice, off_));
       restart_if_stopped();
+    }
+    // Bursts know themselves when they end.
+    if (settings_.make_channel) {
+      for (segment::Link* link : cables()) link->set_channel(nullptr);
     }
   }
 
@@ -223,21 +272,15 @@ class Run {
   std::uint64_t changed_transmissions() const {
     std::uint64_t sum = 0;
     for (const BurstChannel& channel : channels_) sum += channel.statistics().changed_transmissions;
+    for (const CountedChannel& channel : counted_) sum += channel.statistics().changed_transmissions;
     return sum;
   }
 
   void sum_up() {
     result_.ledger = oracle_.ledger();
-    for (const BurstChannel& channel : channels_) {
-      const BurstStatistics& one = channel.statistics();
-      result_.line.transmissions += one.transmissions;
-      result_.line.hit_transmissions += one.hit_transmissions;
-      result_.line.changed_transmissions += one.changed_transmissions;
-      result_.line.rewritten_transmissions += one.rewritten_transmissions;
-      result_.line.pulses += one.pulses;
-      result_.line.wrong_levels += one.wrong_levels;
-      result_.line.flipped_bits += one.flipped_bits;
-    }
+    result_.receivers = channels_.size() + counted_.size();
+    for (const BurstChannel& channel : channels_) result_.line += channel.statistics();
+    for (const CountedChannel& channel : counted_) result_.line += channel.statistics();
     result_.criterion = criterion();
   }
 
@@ -258,6 +301,7 @@ class Run {
   Oracle oracle_;
   ImmunitySettings settings_;
   std::deque<BurstChannel> channels_;
+  std::deque<CountedChannel> counted_;
   Time off_{};
   bool is_exchanging_ = false;  // a good data cycle in `run` since the last start
   bool is_recovering_ = false;

@@ -8,12 +8,15 @@
 #include "emc/burst_channel.hpp"
 #include "emc/coupling.hpp"
 #include "emc/generator.hpp"
+#include "harness/fault/channel.hpp"
+#include "harness/kernel/random.hpp"
 #include "harness/kernel/time.hpp"
 #include "protocols/interbus/network.hpp"
 #include "protocols/interbus/ring.hpp"
 
 // One immunity run of an INTERBUS network: it comes up on a quiet line, exchanges random process data while
-// bursts couple into its remote-bus cables, and must be well again when they are over. An end-to-end oracle
+// bursts couple into its remote-bus cables (or a channel of the textbooks disturbs them, to hold the theory
+// against), and must be well again when they are over. An end-to-end oracle
 // knows what was at the terminals and in the images, and keeps the ledger of errors; the performance
 // criterion follows from it.
 //
@@ -34,6 +37,8 @@ struct InterbusStations {
 
 struct ImmunitySettings {
   BurstSettings bursts;  // `on` and `off` are the run's own
+  // Where it is set, each receiver gets one of these instead of the bursts.
+  std::function<std::unique_ptr<fault::Channel>(kernel::Random)> make_channel;
   kernel::Duration duration = 60 * kernel::kSecond;
   std::uint64_t seed = 1;
 };
@@ -52,6 +57,7 @@ struct ErrorLedger {
   // Words that an application got and nobody had sent: in the master's input image, at a station's outputs.
   std::uint64_t accepted_wrong_inputs = 0;
   std::uint64_t accepted_wrong_outputs = 0;
+  std::uint64_t wrong_cycles = 0;  // with such words, however many
   // Words at a station's outputs that became 0, which nobody sends: a reset, after a stop of the bus or a
   // silence.
   std::uint64_t cleared_outputs = 0;
@@ -71,7 +77,8 @@ struct ImmunityResult {
   bool recovered_after_start = false;  // where it did not by itself
   std::uint64_t bus_stops = 0;         // each was followed by a new start
   bool quality_bit = false;            // at any time
-  BurstStatistics line;                // sums over all receivers
+  std::uint64_t receivers = 0;         // that were disturbed
+  BurstStatistics line;                // sums over them; of a textbook's channel only the transmissions
   kernel::Duration cycle_time{};
 };
 

@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <ranges>
 
+#include "emc/interbus/frame_residual.hpp"
 #include "emc/profile.hpp"
+#include "emc/random_flips.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/paper.hpp"
 #include "protocols/interbus/slave.hpp"
@@ -77,6 +82,81 @@ TEST(Immunity, OneSeedGivesOneLedger) {
   EXPECT_NE(under("A", other).line.pulses, once.line.pulses);
 }
 
+// Where every third cycle is corrupted hardly one passes, and not more than may.
+TEST(Immunity, NoMoreWrongCyclesPassThanTheTheoryAllows) {
+  static constexpr double kFlips = 0.0005;
+  ImmunitySettings settings;
+  settings.duration = 60 * kernel::kSecond;
+  settings.make_channel = [](kernel::Random random) {
+    return std::make_unique<BernoulliChannel>(kFlips, random);
+  };
+  const ImmunityResult result = under("A", settings);
+  ASSERT_TRUE(result.came_up);
+  EXPECT_TRUE(result.recovered_by_itself);
+  EXPECT_EQ(result.receivers, 2U) << "one cable, two directions; local buses lie in no clamp";
+  EXPECT_GT(result.ledger.corrupted, 10'000U);
+  EXPECT_GT(result.line.changed_transmissions, result.ledger.corrupted);
+  const double allowed = static_cast<double>(result.ledger.sent * result.receivers) *
+                         undetected_cycle(interbus::paper_network(), kFlips).any();
+  EXPECT_GT(chance_of_at_least(result.ledger.wrong_cycles, allowed), 1e-3)
+      << result.ledger.wrong_cycles << " where " << allowed << " may come";
+}
+
+// Flips the control level of the last data telegram of every fourth data cycle, or nothing.
+class FlipsControlOfLastOctet final : public fault::Channel {
+ public:
+  explicit FlipsControlOfLastOctet(bool is_on) : is_on_(is_on) {}
+
+  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+    const auto last = last_of_data(sent);
+    if (!is_on_ || !last || ++cycles_ % 4 != 0) return false;
+    line::Waveform& arrival = arrivals.emplace_back(sent);
+    arrival.levels.flip(*last + control_);
+    return true;
+  }
+
+ private:
+  std::optional<std::size_t> last_of_data(const line::Waveform& wave) const {
+    std::optional<std::size_t> last;
+    bool has_check = false;
+    code_.decode(wave.levels, 0, [&](const line::Telegram& telegram) {
+      if (!telegram.is_data() || (telegram.header & line::kSelect) != 0) return;
+      if ((telegram.header & line::kControl) != 0) {
+        has_check = true;
+      } else {
+        last = telegram.level;
+      }
+    });
+    return has_check ? last : std::nullopt;
+  }
+
+  static constexpr line::TelegramLayout kLayout{};
+
+  const line::TelegramCode& code_ = line::shared_telegram_code(kLayout);
+  const std::size_t control_ =
+      1 + static_cast<std::size_t>(std::ranges::distance(
+              kLayout.header.begin(), std::ranges::find(kLayout.header, line::HeaderLevel::control)));
+  bool is_on_;
+  unsigned cycles_ = 0;
+};
+
+// One flipped level in every fourth cycle, the control level of the last data telegram at the first slave.
+TEST(Immunity, AFlippedControlLevelPassesASlaveOneTimeIn256) {
+  ImmunitySettings settings;
+  settings.duration = 300 * kernel::kSecond;
+  std::size_t receiver = 0;
+  settings.make_channel = [&receiver](kernel::Random) {
+    return std::make_unique<FlipsControlOfLastOctet>(receiver++ == 0);
+  };
+  const ImmunityResult result = under("A", settings);
+  ASSERT_TRUE(result.came_up);
+  const double expected =
+      static_cast<double>(result.ledger.corrupted) * share_of_passing_shifts(interbus::paper_network());
+  ASSERT_GT(expected, 100);
+  EXPECT_NEAR(static_cast<double>(result.ledger.wrong_cycles), expected, 4 * std::sqrt(expected));
+  EXPECT_EQ(result.ledger.accepted_wrong_inputs, 0U) << "a master counts telegrams";
+}
+
 struct IgnoresItsCheck final : Master {
   using Master::Master;
   bool accepts_check(const interbus::ReturnedCycle&) const override { return true; }
@@ -96,6 +176,8 @@ TEST(Immunity, AMasterThatGivesOnWhatItShouldRejectIsD) {
     return std::make_unique<IgnoresItsCheck>(configuration);
   });
   EXPECT_EQ(ignores.criterion, Criterion::d);
+  EXPECT_GT(ignores.ledger.wrong_cycles, 0U);
+  EXPECT_LE(ignores.ledger.wrong_cycles, ignores.ledger.accepted_wrong());
   EXPECT_GT(ignores.ledger.accepted_wrong_inputs, 0U);
   const ImmunityResult zeroes = criterion_of([](const interbus::MasterConfiguration& configuration) {
     return std::make_unique<ZeroesInputsOnError>(configuration);

@@ -68,6 +68,22 @@ function ledger(tests) {
   ], tests, "many");
 }
 
+// A channel on which every bit flips with the same chance: the count beside what the theory lets come.
+function channels(tests) {
+  const column = (title, cell) => ({title, kind: "number", cell});
+  return table("On a channel of the textbooks instead of bursts", [
+    {title: "each bit flips with", cell: (test) => scientific(test.flip_probability)},
+    column("sent", ({ledger: one}) => number(one.sent)),
+    column("corrupted", ({ledger: one}) => number(one.corrupted)),
+    column("detected", ({ledger: one}) => number(one.detected)),
+    column("longest bad run", (test) => number(test.longest_bad_run)),
+    column("bus stops", (test) => number(test.bus_stops)),
+    column("cycles accepted wrong", ({ledger: one}) => number(one.wrong_cycles)),
+    column("theory allows at most", (test) => number(test.expected_wrong_cycles_at_most, 3)),
+    column("chance of so many or more", (test) => number(test.chance_of_count, 3)),
+  ], tests, "many");
+}
+
 // What counting shows, beside what the frame check itself allows.
 function totalPart({ total, residual }) {
   return table("Corrupted cycles that pass unseen", [
@@ -90,14 +106,17 @@ function totalPart({ total, residual }) {
 }
 
 function campaign({ name, content }) {
+  const hasBursts = content.tests.length > 0;
   return element("article", {}, element("h3", {}, content.network),
-      definitions([["Document", name], ["Implementation", content.implementations], ["Profile", content.profile],
-        ["A receiver can be wrong from", `${number(content.threshold_volts, 3)} V on`], ["Seed", content.seed],
-        ["Each test", `${number(content.duration_s)} s`]]),
+      definitions([["Document", name], ["Implementation", content.implementations],
+        ...(hasBursts ? [["Profile", content.profile],
+          ["A receiver can be wrong from", `${number(content.threshold_volts, 3)} V on`]] : []),
+        ["Seed", content.seed], ["Each test", `${number(content.duration_s)} s`]]),
       documentCommand(content, name),
       content.unverified.length ? notice(element("strong", {}, "Unverified and uncalibrated"),
           element("ul", {}, content.unverified.map((text) => element("li", {}, text)))) : null,
-      heatMap(content.tests), criteriaPart(content), totalPart(content), ledger(content.tests));
+      hasBursts ? [heatMap(content.tests), criteriaPart(content)] : null, totalPart(content),
+      content.channels.length ? channels(content.channels) : null, hasBursts ? ledger(content.tests) : null);
 }
 
 export function immunitySection(data) {
