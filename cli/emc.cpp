@@ -2,15 +2,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/burst_options.hpp"
 #include "cli/emc_text.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/implementations.hpp"
@@ -35,89 +33,6 @@ using emc::Level;
 using emc::Polarity;
 using emc::Repetition;
 
-constexpr std::size_t kMostTests = 10'000;
-
-std::vector<std::string> words_of(const Settings& settings, std::string_view name) {
-  std::vector<std::string> words;
-  for (const std::string& list : settings.list(name)) {
-    for (std::size_t begin = 0; begin <= list.size();) {
-      const std::size_t end = std::min(list.find(',', begin), list.size());
-      words.push_back(list.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  }
-  return words;
-}
-
-std::optional<double> number_of(std::string_view text) {
-  double value = 0;
-  const auto [rest, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc{} || rest != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-// "3", "1..4", "x:1000", "x:1000..4500:500".
-class LevelReader {
- public:
-  explicit LevelReader(const Settings& settings) : settings_(settings) {}
-
-  std::vector<Level> read() {
-    for (const std::string& word : words_of(settings_, "levels")) add(word);
-    return std::move(levels_);
-  }
-
- private:
-  void add(const std::string& word) {
-    const bool is_free = word.starts_with("x:") || word.starts_with("X:");
-    const std::string range = is_free ? word.substr(2) : word;
-    const std::size_t dots = range.find("..");
-    const std::string from = range.substr(0, dots);
-    std::string to = dots == std::string::npos ? from : range.substr(dots + 2);
-    std::string step = is_free ? "500" : "1";
-    if (const std::size_t colon = to.find(':'); dots != std::string::npos && colon != std::string::npos) {
-      step = to.substr(colon + 1);
-      to.resize(colon);
-    }
-    const auto low = number_of(from);
-    const auto high = number_of(to);
-    const auto pitch = number_of(step);
-    const bool is_range =
-        low && high && pitch && *pitch >= 1 && *low <= *high && (*high - *low) / *pitch < kMostTests;
-    if (!is_range || (!is_free && (*low != static_cast<unsigned>(*low) || *pitch != 1))) refuse(word);
-    const auto count = static_cast<unsigned>((*high - *low) / *pitch + 1e-9) + 1;
-    for (unsigned n = 0; n < count; ++n) {
-      const double value = *low + n * *pitch;
-      levels_.push_back(is_free ? Level::free(value)
-                                : Level::standard(emc::PortKind::signal, static_cast<unsigned>(value)));
-    }
-  }
-
-  [[noreturn]] void refuse(const std::string& word) const {
-    settings_.refuse(
-        "levels", fmt::format("'{}' is no level; write 1..4, 3, x:1000 or x:1000..4500:500 (volts)", word));
-  }
-
-  const Settings& settings_;
-  std::vector<Level> levels_;
-};
-
-// The values of a list option by their words.
-template <typename Value, std::size_t N>
-std::vector<Value> choices(const Settings& settings, std::string_view name,
-                           const std::array<std::pair<std::string_view, Value>, N>& known) {
-  std::vector<Value> chosen;
-  for (const std::string& word : words_of(settings, name)) {
-    const auto found = std::ranges::find(known, word, &std::pair<std::string_view, Value>::first);
-    if (found == known.end()) {
-      std::string all;
-      for (const auto& [text, value] : known) all += (all.empty() ? "" : ", ") + std::string(text);
-      settings.refuse(name, fmt::format("'{}' is none of {}", word, all));
-    }
-    chosen.push_back(found->second);
-  }
-  return chosen;
-}
-
 // "bsc:0.002".
 std::vector<EmcTest> channels_from(const Settings& settings) {
   for (const std::string_view other : {"levels", "repetition", "polarity", "profile"}) {
@@ -126,8 +41,8 @@ std::vector<EmcTest> channels_from(const Settings& settings) {
     }
   }
   std::vector<EmcTest> tests;
-  for (const std::string& word : words_of(settings, "channel")) {
-    const auto flips = word.starts_with("bsc:") ? number_of(std::string_view(word).substr(4)) : std::nullopt;
+  for (const std::string& word : settings.words("channel")) {
+    const auto flips = word.starts_with("bsc:") ? real_of(std::string_view(word).substr(4)) : std::nullopt;
     if (!flips || !(*flips >= emc::kLeastBer && *flips <= emc::kGreatestBer)) {
       settings.refuse("channel", fmt::format("'{}' is no channel; write bsc:P with P from {:g} to {:g}", word,
                                              emc::kLeastBer, emc::kGreatestBer));
@@ -139,17 +54,10 @@ std::vector<EmcTest> channels_from(const Settings& settings) {
 }
 
 std::vector<EmcTest> bursts_from(const Settings& settings) {
-  constexpr std::array<std::pair<std::string_view, Repetition>, 3> kRepetitions = {
-      {{"5kHz", Repetition::khz_5},
-       {"100kHz", Repetition::khz_100},
-       {"2.5kHz", Repetition::khz_2_5_edition_1}}};
-  constexpr std::array<std::pair<std::string_view, Polarity>, 2> kPolarities = {
-      {{"+", Polarity::positive}, {"-", Polarity::negative}}};
-  const auto levels = LevelReader(settings).read();
-  const auto repetitions = choices(settings, "repetition", kRepetitions);
-  const auto polarities = choices(settings, "polarity", kPolarities);
+  const auto repetitions = repetitions_from(settings);
+  const auto polarities = polarities_from(settings);
   std::vector<EmcTest> tests;
-  for (const Level& level : levels) {
+  for (const Level& level : levels_from(settings)) {
     for (const Repetition repetition : repetitions) {
       for (const Polarity polarity : polarities) {
         EmcTest& test = tests.emplace_back();
@@ -170,12 +78,6 @@ std::vector<EmcTest> tests_from(const Settings& settings) {
                     fmt::format("these are {} tests; at most {} make a campaign", tests.size(), kMostTests));
   }
   return tests;
-}
-
-emc::Profile profile_from(const Settings& settings) {
-  const std::string written = settings.text("profile");
-  return std::filesystem::is_regular_file(written) ? emc::Profile::load(written)
-                                                   : emc::Profile::named(written);
 }
 
 interbus::NetworkDescription network_from(const Settings& settings) {

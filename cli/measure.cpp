@@ -3,18 +3,24 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/burst_options.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
+#include "emc/framing.hpp"
+#include "emc/interbus/burst_clamp.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/measure/frequency.hpp"
 #include "protocols/interbus/network_measurement.hpp"
 #include "protocols/interbus/paper.hpp"
 #include "reports/measurement_writer.hpp"
+#include "reports/text_summary.hpp"
 
 // `fieldproof measure`: cycle time, jitter and skew of a network, theory beside measurement.
 namespace fieldproof::cli {
@@ -27,23 +33,16 @@ interbus::NetworkDescription network_from(const Settings& settings) {
   return network;
 }
 
-// "50Hz,150Hz"; the option may be given several times.
 std::vector<measure::SquareWave> signals_from(const Settings& settings) {
   std::vector<measure::SquareWave> signals;
-  for (const std::string& list : settings.list("signal")) {
-    std::size_t begin = 0;
-    while (begin <= list.size()) {
-      const std::size_t end = std::min(list.find(',', begin), list.size());
-      const std::string text = list.substr(begin, end - begin);
-      const auto frequency = measure::Frequency::read(text);
-      if (!frequency) {
-        settings.refuse("signal", fmt::format("'{}' is no frequency of 1 mHz to 1 MHz; write for example "
-                                              "50Hz,614.25Hz,1.5kHz",
-                                              text));
-      }
-      signals.push_back({.frequency = *frequency});
-      begin = end + 1;
+  for (const std::string& word : settings.words("signal")) {
+    const auto frequency = measure::Frequency::read(word);
+    if (!frequency) {
+      settings.refuse("signal", fmt::format("'{}' is no frequency of 1 mHz to 1 MHz; write for example "
+                                            "50Hz,614.25Hz,1.5kHz",
+                                            word));
     }
+    signals.push_back({.frequency = *frequency});
   }
   return signals;
 }
@@ -71,9 +70,65 @@ int code_of(measure::Agreement agreement) {
   return kInternal;
 }
 
+// One level, one repetition rate and one polarity: a measurement has one disturbance.
+emc::BurstSettings bursts_from(const Settings& settings) {
+  const auto levels = levels_from(settings);
+  const auto repetitions = repetitions_from(settings);
+  const auto polarities = polarities_from(settings);
+  if (levels.size() != 1) settings.refuse("levels", "a measurement takes one level of bursts");
+  if (repetitions.size() != 1) settings.refuse("repetition", "a measurement takes one repetition rate");
+  if (polarities.size() != 1) settings.refuse("polarity", "a measurement takes one polarity");
+  emc::BurstSettings bursts;
+  bursts.level = levels.front();
+  bursts.repetition = repetitions.front();
+  bursts.polarity = polarities.front();
+  return bursts;
+}
+
+// Bursts that begin with the signal and go on until its end.
+class BurstsWhileMeasuring {
+ public:
+  BurstsWhileMeasuring(const Settings& settings, const interbus::NetworkDescription& network,
+                       std::uint64_t seed)
+      : profile_(profile_from(settings)), bursts_(bursts_from(settings)) {
+    const interbus::Rules& rules = network.rules;
+    const emc::LineResponse response(profile_.coupling);
+    clamp_.emplace(bursts_, response.wrong_output(bursts_.level.open_circuit_volts(), bursts_.polarity),
+                   emc::BurstReceiver{rules.bit_rate, std::make_shared<emc::TelegramFraming>(rules.telegram),
+                                      line::Sampling{}, true, true},
+                   kernel::Random(seed).split("bursts"),
+                   rules.published_recovery_cycles * interbus::cycle_time_in_force(network));
+  }
+
+  void disturb(interbus::MeasurementSettings& measurement) {
+    measurement.disturb = [this](interbus::Ring& ring, segment::Segment& segment) {
+      clamp_->couple(ring, segment, segment.now());
+    };
+    measurement.phase_during = [this](kernel::Time from, kernel::Time to) {
+      return clamp_->phase_during(from, to);
+    };
+    measurement.conditions.push_back(
+        {"bursts", fmt::format("{}, {}, level {}, profile {} ({})", emc::text_of(bursts_.repetition),
+                               emc::text_of(bursts_.polarity), bursts_.level.text(), profile_.name,
+                               reports::escaped_line(profile_.title))});
+    for (const std::string& caveat : emc::caveats_of(profile_)) {
+      measurement.conditions.push_back({"unverified", caveat});
+    }
+  }
+
+ private:
+  emc::Profile profile_;
+  emc::BurstSettings bursts_;
+  std::optional<emc::BurstClamp> clamp_;
+};
+
 measure::Measurement measure_interbus(Session& session) {
   interbus::MeasurementSettings settings = measurement_from(session.settings);
   const interbus::NetworkDescription network = network_from(session.settings);
+  std::optional<BurstsWhileMeasuring> bursts;
+  if (session.settings.is_set("levels")) {
+    bursts.emplace(session.settings, network, settings.seed).disturb(settings);
+  }
   settings.on_progress = [&](std::size_t done) { session.terminal.progress(done); };
   session.terminal.print(simulation_header(session, settings.seed, session.settings.text("network")));
   session.terminal.begin_progress(settings.signals.size(), "signals");

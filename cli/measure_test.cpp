@@ -86,6 +86,30 @@ TEST_F(MeasureVerb, RefusesWhatItCannotMeasure) {
   }
 }
 
+// The theory holds between bursts, and edges during a burst are later.
+TEST_F(MeasureVerb, TellsQuietBurstAndRecoveryApart) {
+  const Called called = call({"measure", "interbus", "--signal", "50Hz", "--levels", "2", "--duration", "30s",
+                              "--json", "bursts.json"});
+  EXPECT_EQ(called.exit_code, 0) << called.out;
+  EXPECT_HOLDS(called.out, "5 kHz, +, level 2 (500 V), profile A");
+  EXPECT_HOLDS(called.out, "not calibrated");
+  const nlohmann::json document = json("bursts.json");
+  for (const auto& distribution : document.at("series").at(1).at("distributions")) {
+    EXPECT_EQ(distribution.at("phases").size(), 3U) << distribution.at("quantity");
+  }
+  const auto& delays = document.at("series").at(1).at("distributions").at(0).at("phases");
+  EXPECT_GT(delays.at("burst").at("max").get<double>(), delays.at("quiet").at("max").get<double>());
+  EXPECT_GT(delays.at("quiet").at("count").get<int>(), delays.at("burst").at("count").get<int>());
+  expect_valid({"bursts.json"}, "measurement");
+}
+
+TEST_F(MeasureVerb, TakesOneDisturbanceAtATime) {
+  EXPECT_EQ(call({"measure", "interbus", "--levels", "1..4"}).exit_code, 64);
+  EXPECT_EQ(call({"measure", "interbus", "--levels", "2", "--repetition", "5kHz,100kHz"}).exit_code, 64);
+  EXPECT_EQ(call({"measure", "interbus", "--levels", "2", "--polarity", "+,-"}).exit_code, 64);
+  EXPECT_EQ(call({"measure", "interbus", "--levels", "2", "--profile", "Z"}).exit_code, 64);
+}
+
 TEST_F(MeasureVerb, ABadNetworkIsToldWithItsPlace) {
   write("bad.json", "{\n  \"name\": \"x\",\n  \"bit_rat\": \"500 kbit/s\"\n}\n");
   const Called bad = call({"measure", "interbus", "--network", "bad.json"});

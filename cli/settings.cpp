@@ -225,6 +225,18 @@ std::vector<double> Settings::reals(std::string_view name) const {
   return values;
 }
 
+std::vector<std::string> Settings::words(std::string_view name) const {
+  std::vector<std::string> words;
+  for (const std::string& written : list(name)) {
+    for (std::size_t begin = 0; begin <= written.size();) {
+      const std::size_t end = std::min(written.find(',', begin), written.size());
+      words.push_back(written.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  return words;
+}
+
 std::optional<std::chrono::milliseconds> Settings::duration(std::string_view name) const {
   const std::string written = text(name);
   if (written.empty()) return std::nullopt;

@@ -53,6 +53,8 @@ class Settings {
   std::string text(std::string_view name) const;  // empty when there is none
   std::uint64_t number(std::string_view name, std::uint64_t min, std::uint64_t max) const;
   std::vector<double> reals(std::string_view name) const;
+  // Of an option whose values are lists themselves, "a,b": the words of all of them.
+  std::vector<std::string> words(std::string_view name) const;
   std::optional<std::chrono::milliseconds> duration(std::string_view name) const;
   // One of the words that the table lists as the option's value: "quick|full".
   std::size_t choice(std::string_view name) const;

@@ -64,6 +64,7 @@ class BurstChannel final : public fault::Channel {
 
   const BurstStatistics& statistics() const { return statistics_; }
   BurstSchedule& schedule() { return schedule_; }
+  const BurstSchedule& schedule() const { return schedule_; }
 
   // Levels per bit of a rewritten transmission.
   static constexpr std::int64_t kTicksPerBit = 240;

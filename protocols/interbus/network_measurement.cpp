@@ -281,6 +281,7 @@ std::vector<Comparison> compare_path(const NetworkDescription& network, const Si
   append_phase_lag(rows, theory, skew);
   append_widths(rows, theory, skew);
   append_duty(rows, theory, skew);
+  if (record.settings.disturb) return rows;
   append_losses(rows, theory, skew);
   rows.push_back(none_of("words that the input never had", skew.foreign_words));
   rows.push_back(none_of("torn process images", record.torn_images));
@@ -294,13 +295,17 @@ measure::Measurement measure_network(const NetworkDescription& network, const Me
   measurement.seed = settings.seed;
   measurement.tolerance_percent = settings.tolerance_percent;
   measurement.conditions = conditions_of(network, settings);
+  measurement.conditions.insert(measurement.conditions.end(), settings.conditions.begin(),
+                                settings.conditions.end());
   measurement.series.emplace_back();  // the cycles come first
   CycleSeries cycles;
   for (std::size_t n = 0; n < settings.signals.size(); ++n) {
     const SignalRecord record = record_signal(network, {.wave = settings.signals[n],
                                                         .duration = settings.duration,
                                                         .latch = settings.latch,
-                                                        .seed = settings.seed});
+                                                        .seed = settings.seed,
+                                                        .disturb = settings.disturb,
+                                                        .phase_during = settings.phase_during});
     cycles.add(record);
     for (const PathRecord& path : record.paths)
       measurement.series.push_back(series_of(network, record, path));

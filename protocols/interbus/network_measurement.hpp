@@ -11,8 +11,9 @@
 // Cycle time, jitter and skew of a network: several signals, one run each, with the theory of skew.hpp and
 // timing.hpp beside what was measured.
 //
-// Where a run was disturbed, the comparisons are those of its quiet phase; the counts are of all of it. A row
-// of the comparison is left out where the theory expects so few samples of a kind that none may come.
+// Where a run is disturbed, the comparisons are those of its quiet phase, and what can only be counted over
+// all of it (losses, foreign words, torn images) is not compared. A row of the comparison is left out where
+// the theory expects so few samples of a kind that none may come.
 namespace fieldproof::interbus {
 
 struct MeasurementSettings {
@@ -21,6 +22,10 @@ struct MeasurementSettings {
   LatchModel latch = LatchModel::frame_edges;
   std::uint64_t seed = 1;
   double tolerance_percent = 2;
+  // A disturbance of each signal's run, told in words by `conditions`; see SignalSettings.
+  std::function<void(Ring&, segment::Segment&)> disturb{};
+  measure::PhaseDuring phase_during{};
+  std::vector<measure::Condition> conditions{};
   std::function<void(std::size_t done)> on_progress{};  // after each signal
 };
 

@@ -59,8 +59,8 @@ class SignalRun {
   SignalRun(const NetworkDescription& network, const SignalSettings& settings)
       : settings_(settings), live_(network, slaves_for(network, settings)), generator_(settings.wave) {
     watch(copied_paths(network));
-    if (settings_.disturb) settings_.disturb(live_.ring());
     if (!live_.bring_up()) refuse(network.name, live_.status());
+    if (settings_.disturb) settings_.disturb(live_.ring(), live_.segment());
     cycle_ = live_.status().cycle_time;
   }
 

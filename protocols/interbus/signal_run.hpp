@@ -8,6 +8,7 @@
 #include "harness/measure/edge_skew.hpp"
 #include "harness/measure/measurement.hpp"
 #include "harness/measure/signal_generator.hpp"
+#include "harness/segment/segment.hpp"
 #include "protocols/interbus/network.hpp"
 #include "protocols/interbus/ring.hpp"
 #include "protocols/interbus/skew.hpp"
@@ -32,9 +33,9 @@ struct SignalSettings {
   std::uint64_t seed = 1;
   // Stations instead of references with that latch model.
   Ring::MakeSlave make_slave{};
-  // Called once before power-up: puts channels on the receivers of the ring, for instance bursts. What it
-  // puts there must outlive the run.
-  std::function<void(Ring&)> disturb{};
+  // Called once when the ring exchanges data: puts channels on its receivers, for instance bursts. What it
+  // puts there must outlive the run. A bus that stops stays stopped.
+  std::function<void(Ring&, segment::Segment&)> disturb{};
   // Tells quiet, burst and recovery of that disturbance apart.
   measure::PhaseDuring phase_during{};
 };

@@ -104,7 +104,7 @@ class LossyReturn final : public fault::Channel {
 TEST(SignalRunTest, ADisturbanceIsPutOnTheRingAndToldApart) {
   LossyReturn lossy;
   SignalSettings settings = settings_at(50, 4 * kSecond);
-  settings.disturb = [&](Ring& ring) { ring.find_link("master/in")->set_channel(&lossy); };
+  settings.disturb = [&](Ring& ring, segment::Segment&) { ring.find_link("master/in")->set_channel(&lossy); };
   // The second of two seconds is said to be the burst.
   settings.phase_during = [](kernel::Time from, kernel::Time) {
     return (from - kernel::kStart) / kSecond % 2 == 1 ? Phase::burst : Phase::quiet;
@@ -174,9 +174,12 @@ TEST(SignalRunTest, ANetworkWithoutCopyOrWithoutCyclesIsRefused) {
   NetworkDescription without = paper_network();
   without.copy.clear();
   EXPECT_NE(refusal_of(without, settings_at(50)).find("/copy"), std::string::npos);
-  SignalSettings cut = settings_at(50);
-  cut.disturb = [](Ring& ring) { ring.set_cable(1, false); };
-  EXPECT_NE(refusal_of(paper_network(), cut).find("no data cycles"), std::string::npos);
+  SignalSettings other = settings_at(50);
+  other.make_slave = [](int, SlaveConfiguration configuration) {
+    configuration.id_code ^= 1;  // not the station that the master expects
+    return std::make_unique<Slave>(configuration);
+  };
+  EXPECT_NE(refusal_of(paper_network(), other).find("no data cycles"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,111 @@
+#include "cli/burst_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+namespace fieldproof::cli {
+namespace {
+
+using emc::Level;
+
+class LevelReader {
+ public:
+  explicit LevelReader(const Settings& settings) : settings_(settings) {}
+
+  std::vector<Level> read() {
+    for (const std::string& word : settings_.words("levels")) add(word);
+    return std::move(levels_);
+  }
+
+ private:
+  void add(const std::string& word) {
+    const bool is_free = word.starts_with("x:") || word.starts_with("X:");
+    const std::string range = is_free ? word.substr(2) : word;
+    const std::size_t dots = range.find("..");
+    const std::string from = range.substr(0, dots);
+    std::string to = dots == std::string::npos ? from : range.substr(dots + 2);
+    std::string step = is_free ? "500" : "1";
+    if (const std::size_t colon = to.find(':'); dots != std::string::npos && colon != std::string::npos) {
+      step = to.substr(colon + 1);
+      to.resize(colon);
+    }
+    const auto low = real_of(from);
+    const auto high = real_of(to);
+    const auto pitch = real_of(step);
+    const bool is_range = low && high && pitch && *pitch >= 1 && *low >= 0 && *low <= *high && *high < 1e6 &&
+                          (*high - *low) / *pitch < kMostTests;
+    if (!is_range || (!is_free && (*low != static_cast<unsigned>(*low) || *pitch != 1))) refuse(word);
+    const auto count = static_cast<unsigned>((*high - *low) / *pitch + 1e-9) + 1;
+    for (unsigned n = 0; n < count; ++n) {
+      const double value = *low + n * *pitch;
+      levels_.push_back(is_free ? Level::free(value)
+                                : Level::standard(emc::PortKind::signal, static_cast<unsigned>(value)));
+    }
+  }
+
+  [[noreturn]] void refuse(const std::string& word) const {
+    settings_.refuse(
+        "levels", fmt::format("'{}' is no level; write 1..4, 3, x:1000 or x:1000..4500:500 (volts)", word));
+  }
+
+  const Settings& settings_;
+  std::vector<Level> levels_;
+};
+
+// The values of a list option by their words.
+template <typename Value, std::size_t N>
+std::vector<Value> choices(const Settings& settings, std::string_view name,
+                           const std::array<std::pair<std::string_view, Value>, N>& known) {
+  std::vector<Value> chosen;
+  for (const std::string& word : settings.words(name)) {
+    const auto found = std::ranges::find(known, word, &std::pair<std::string_view, Value>::first);
+    if (found == known.end()) {
+      std::string all;
+      for (const auto& [text, value] : known) all += (all.empty() ? "" : ", ") + std::string(text);
+      settings.refuse(name, fmt::format("'{}' is none of {}", word, all));
+    }
+    chosen.push_back(found->second);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<Level> levels_from(const Settings& settings) {
+  return LevelReader(settings).read();
+}
+
+std::vector<emc::Repetition> repetitions_from(const Settings& settings) {
+  constexpr std::array<std::pair<std::string_view, emc::Repetition>, 3> kRepetitions = {
+      {{"5kHz", emc::Repetition::khz_5},
+       {"100kHz", emc::Repetition::khz_100},
+       {"2.5kHz", emc::Repetition::khz_2_5_edition_1}}};
+  return choices(settings, "repetition", kRepetitions);
+}
+
+std::vector<emc::Polarity> polarities_from(const Settings& settings) {
+  constexpr std::array<std::pair<std::string_view, emc::Polarity>, 2> kPolarities = {
+      {{"+", emc::Polarity::positive}, {"-", emc::Polarity::negative}}};
+  return choices(settings, "polarity", kPolarities);
+}
+
+emc::Profile profile_from(const Settings& settings) {
+  const std::string written = settings.text("profile");
+  return std::filesystem::is_regular_file(written) ? emc::Profile::load(written)
+                                                   : emc::Profile::named(written);
+}
+
+std::optional<double> real_of(std::string_view text) {
+  double value = 0;
+  const auto [rest, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc{} || rest != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace fieldproof::cli
