@@ -29,6 +29,7 @@ ordered_json ledger_json(const emc::ErrorLedger& ledger) {
           {"accepted_wrong_inputs", ledger.accepted_wrong_inputs},
           {"accepted_wrong_outputs", ledger.accepted_wrong_outputs},
           {"wrong_cycles", ledger.wrong_cycles},
+          {"missed_outputs", ledger.missed_outputs},
           {"cleared_outputs", ledger.cleared_outputs},
           {"partly_latched", ledger.partly_latched}};
 }

@@ -130,6 +130,7 @@ inline nlohmann::ordered_json sample_emc() {
                                {"accepted_wrong_inputs", n / 12},
                                {"accepted_wrong_outputs", 0},
                                {"wrong_cycles", n / 12},
+                               {"missed_outputs", 0},
                                {"cleared_outputs", 1},
                                {"partly_latched", 0}}},
                              {"line",

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "emc/framing.hpp"
+#include "emc/interbus/burst_clamp.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/interbus/master.hpp"
@@ -36,12 +38,15 @@ class Oracle {
       : master_(master), ring_(ring), random_(std::move(random)) {
     for (int position = 1; position <= static_cast<int>(ring.size()); ++position) watch(position);
     sent_.resize(ring.word_count());
+    put_out_.resize(ring.word_count());
     at_terminals_.resize(ring.word_count());
     held_.resize(ring.word_count());
   }
 
   void begin() { ledger_ = {}; }
   const ErrorLedger& ledger() const { return ledger_; }
+  // Whether the last good cycle was not put out somewhere.
+  bool has_missed() const { return has_missed_; }
 
   // At the end of a cycle: judges the images and gives both sides new values.
   void on_cycle_end(bool is_data, bool accepted, bool is_corrupted) {
@@ -57,6 +62,7 @@ class Oracle {
     }
     was_rejected_ = !accepted;
     judge_inputs(is_data && accepted);
+    if (is_data && accepted) judge_outputs();
     if (ledger_.accepted_wrong() != wrong_before_) ++ledger_.wrong_cycles;
     wrong_before_ = ledger_.accepted_wrong();
     has_latched_ = false;
@@ -67,6 +73,7 @@ class Oracle {
   void watch(int position) {
     const unsigned first = ring_.first_word(position);
     ring_.terminals(position).on_change([this, first](const interbus::TerminalBlock::Change& change) {
+      put_out_[first + change.word] = change.after;
       if (change.after == 0) {
         ++ledger_.cleared_outputs;  // the safe value, never sent
         return;
@@ -91,6 +98,19 @@ class Oracle {
     }
   }
 
+  // The words of a cycle that the master takes for good are at the outputs when it has ended.
+  void judge_outputs() {
+    has_missed_ = false;
+    for (int position = 1; position <= static_cast<int>(ring_.size()); ++position) {
+      for (unsigned n = 0; n < ring_.configuration(position).words; ++n) {
+        const unsigned word = ring_.first_word(position) + n;
+        if (put_out_[word] == sent_[word]) continue;
+        ++ledger_.missed_outputs;
+        has_missed_ = true;
+      }
+    }
+  }
+
   void exchange() {
     for (int position = 1; position <= static_cast<int>(ring_.size()); ++position) {
       const unsigned words = ring_.configuration(position).words;
@@ -110,7 +130,9 @@ class Oracle {
   std::vector<std::uint16_t> sent_;          // the output image of the cycle in work
   std::vector<std::uint16_t> at_terminals_;  // the inputs that it will bring
   std::vector<std::uint16_t> held_;          // the input image as it was seen last
+  std::vector<std::uint16_t> put_out_;       // at the output terminals
   bool has_latched_ = false;
+  bool has_missed_ = false;
   bool was_rejected_ = false;
   std::uint64_t wrong_before_ = 0;
   ErrorLedger ledger_;
@@ -185,39 +207,22 @@ class Run {
     segment_.refresh(seat_);
   }
 
-  // Both directions of the cables of the remote bus.
-  std::vector<segment::Link*> cables() {
-    std::vector<segment::Link*> links;
-    for (int position = 1; position <= static_cast<int>(ring_.size()); ++position) {
-      if (ring_.configuration(position).is_local) continue;
-      links.push_back(&ring_.link_to(position));
-      links.push_back(&ring_.link_from(position));
-    }
-    return links;
-  }
-
   void couple_channels() {
     const kernel::Random random = random_.split("channels");
-    for (segment::Link* link : cables()) {
+    for (segment::Link* link : cables_in_clamp(ring_)) {
       counted_.emplace_back(settings_.make_channel(random.split(counted_.size())));
       link->set_channel(&counted_.back());
     }
   }
 
   void couple_bursts(const LineResponse& response, bool are_references) {
-    BurstSettings bursts = settings_.bursts;
-    bursts.on = segment_.now();
-    bursts.off = off_;
-    const WrongOutput wrong = response.wrong_output(bursts.level.open_circuit_volts(), bursts.polarity);
+    const BurstSettings& bursts = settings_.bursts;
     const interbus::Rules& rules = network_.rules;
     const BurstReceiver receiver{rules.bit_rate, std::make_shared<TelegramFraming>(rules.telegram),
                                  line::Sampling{}, true, are_references};
-    for (segment::Link* link : cables()) {
-      // Equal streams: all receivers of a run see the same pulses.
-      channels_.emplace_back(BurstSchedule(bursts, random_.split("bursts")), wrong, receiver,
-                             segment_.trace(), link->trace_channel());
-      link->set_channel(&channels_.back());
-    }
+    clamp_.emplace(bursts, response.wrong_output(bursts.level.open_circuit_volts(), bursts.polarity),
+                   receiver, random_.split("bursts"));
+    clamp_->couple(ring_, segment_, segment_.now(), off_);
   }
 
   void suffer() {
@@ -227,7 +232,7 @@ class Run {
     }
     // Bursts know themselves when they end.
     if (settings_.make_channel) {
-      for (segment::Link* link : cables()) link->set_channel(nullptr);
+      for (segment::Link* link : cables_in_clamp(ring_)) link->set_channel(nullptr);
     }
   }
 
@@ -239,10 +244,10 @@ class Run {
   }
 
   void recover() {
-    const auto is_over = [&] { return is_exchanging_ || recovery_cycles_ >= kMostRecoveryCycles; };
+    const auto is_over = [&] { return is_well_ || recovery_cycles_ >= kMostRecoveryCycles; };
     is_recovering_ = true;
-    is_exchanging_ = false;
-    result_.recovered_by_itself = wait(is_over) && is_exchanging_;
+    is_well_ = false;
+    result_.recovered_by_itself = wait(is_over) && is_well_;
     result_.recovery_cycles = recovery_cycles_;
     if (result_.recovered_by_itself) return;
     master_->stop(segment_.now());
@@ -262,25 +267,36 @@ class Run {
     const std::uint64_t changed = changed_transmissions();
     oracle_.on_cycle_end(is_data, accepted, changed != changed_before_);
     changed_before_ = changed;
-    if (accepted && is_data && master_->status().state == MasterState::run) is_exchanging_ = true;
+    if (accepted && is_data && master_->status().state == MasterState::run) {
+      is_exchanging_ = true;
+      is_well_ = !oracle_.has_missed();
+    }
     bad_run_ = accepted ? 0 : bad_run_ + 1;
     result_.longest_bad_run = std::max(result_.longest_bad_run, bad_run_);
     result_.quality_bit = result_.quality_bit || master_->status().quality_bit;
     if (is_recovering_) ++recovery_cycles_;
   }
 
+  template <typename Use>
+  void for_each_statistics(Use use) const {
+    if (clamp_) {
+      for (const BurstChannel& channel : clamp_->channels()) use(channel.statistics());
+    }
+    for (const CountedChannel& channel : counted_) use(channel.statistics());
+  }
+
   std::uint64_t changed_transmissions() const {
     std::uint64_t sum = 0;
-    for (const BurstChannel& channel : channels_) sum += channel.statistics().changed_transmissions;
-    for (const CountedChannel& channel : counted_) sum += channel.statistics().changed_transmissions;
+    for_each_statistics([&](const BurstStatistics& one) { sum += one.changed_transmissions; });
     return sum;
   }
 
   void sum_up() {
     result_.ledger = oracle_.ledger();
-    result_.receivers = channels_.size() + counted_.size();
-    for (const BurstChannel& channel : channels_) result_.line += channel.statistics();
-    for (const CountedChannel& channel : counted_) result_.line += channel.statistics();
+    for_each_statistics([&](const BurstStatistics& one) {
+      ++result_.receivers;
+      result_.line += one;
+    });
     result_.criterion = criterion();
   }
 
@@ -300,10 +316,11 @@ class Run {
   interbus::Ring ring_;
   Oracle oracle_;
   ImmunitySettings settings_;
-  std::deque<BurstChannel> channels_;
+  std::optional<BurstClamp> clamp_;
   std::deque<CountedChannel> counted_;
   Time off_{};
   bool is_exchanging_ = false;  // a good data cycle in `run` since the last start
+  bool is_well_ = false;        // since it was set back, one that was put out everywhere
   bool is_recovering_ = false;
   std::uint64_t recovery_cycles_ = 0;
   std::uint64_t bad_run_ = 0;

@@ -58,6 +58,8 @@ struct ErrorLedger {
   std::uint64_t accepted_wrong_inputs = 0;
   std::uint64_t accepted_wrong_outputs = 0;
   std::uint64_t wrong_cycles = 0;  // with such words, however many
+  // Words of good cycles that a station did not put out: it held the ones before.
+  std::uint64_t missed_outputs = 0;
   // Words at a station's outputs that became 0, which nobody sends: a reset, after a stop of the bus or a
   // silence.
   std::uint64_t cleared_outputs = 0;
@@ -72,7 +74,8 @@ struct ImmunityResult {
   Criterion criterion = Criterion::d;
   ErrorLedger ledger;
   std::uint64_t longest_bad_run = 0;  // cycles of either kind
-  std::uint64_t recovery_cycles = 0;  // after the last pulse until a good data cycle, that one included
+  std::uint64_t recovery_cycles =
+      0;  // after the last pulse until a good data cycle that is put out, that one included
   bool recovered_by_itself = false;
   bool recovered_after_start = false;  // where it did not by itself
   std::uint64_t bus_stops = 0;         // each was followed by a new start

@@ -58,6 +58,7 @@ function ledger(tests) {
     column("repeated", ({ledger: one}) => number(one.repeated)),
     column("wrong inputs accepted", ({ledger: one}) => number(one.accepted_wrong_inputs)),
     column("wrong outputs accepted", ({ledger: one}) => number(one.accepted_wrong_outputs)),
+    column("outputs missed", ({ledger: one}) => number(one.missed_outputs)),
     column("outputs cleared", ({ledger: one}) => number(one.cleared_outputs)),
     column("partly latched", ({ledger: one}) => number(one.partly_latched)),
     column("longest bad run", (test) => number(test.longest_bad_run)),
