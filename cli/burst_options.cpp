@@ -16,10 +16,10 @@ using emc::Level;
 
 class LevelReader {
  public:
-  explicit LevelReader(const Settings& settings) : settings_(settings) {}
+  LevelReader(const Settings& settings, std::string_view option) : settings_(settings), option_(option) {}
 
-  std::vector<Level> read() {
-    for (const std::string& word : settings_.words("levels")) add(word);
+  std::vector<Level> read(const std::vector<std::string>& words) {
+    for (const std::string& word : words) add(word);
     return std::move(levels_);
   }
 
@@ -51,26 +51,38 @@ class LevelReader {
 
   [[noreturn]] void refuse(const std::string& word) const {
     settings_.refuse(
-        "levels", fmt::format("'{}' is no level; write 1..4, 3, x:1000 or x:1000..4500:500 (volts)", word));
+        option_, fmt::format("'{}' is no level; write 1..4, 3, x:1000 or x:1000..4500:500 (volts)", word));
   }
 
   const Settings& settings_;
+  std::string_view option_;
   std::vector<Level> levels_;
 };
 
-// The values of a list option by their words.
 template <typename Value, std::size_t N>
-std::vector<Value> choices(const Settings& settings, std::string_view name,
-                           const std::array<std::pair<std::string_view, Value>, N>& known) {
+using Words = std::array<std::pair<std::string_view, Value>, N>;
+
+constexpr Words<emc::Repetition, 3> kRepetitions = {{{"5kHz", emc::Repetition::khz_5},
+                                                     {"100kHz", emc::Repetition::khz_100},
+                                                     {"2.5kHz", emc::Repetition::khz_2_5_edition_1}}};
+constexpr Words<emc::Polarity, 2> kPolarities = {
+    {{"+", emc::Polarity::positive}, {"-", emc::Polarity::negative}}};
+
+template <typename Value, std::size_t N>
+Value choice(const Settings& settings, std::string_view option, const std::string& word,
+             const Words<Value, N>& known) {
+  const auto found = std::ranges::find(known, word, &std::pair<std::string_view, Value>::first);
+  if (found != known.end()) return found->second;
+  std::string all;
+  for (const auto& [text, value] : known) all += (all.empty() ? "" : ", ") + std::string(text);
+  settings.refuse(option, fmt::format("'{}' is none of {}", word, all));
+}
+
+template <typename Value, std::size_t N>
+std::vector<Value> choices(const Settings& settings, std::string_view option, const Words<Value, N>& known) {
   std::vector<Value> chosen;
-  for (const std::string& word : settings.words(name)) {
-    const auto found = std::ranges::find(known, word, &std::pair<std::string_view, Value>::first);
-    if (found == known.end()) {
-      std::string all;
-      for (const auto& [text, value] : known) all += (all.empty() ? "" : ", ") + std::string(text);
-      settings.refuse(name, fmt::format("'{}' is none of {}", word, all));
-    }
-    chosen.push_back(found->second);
+  for (const std::string& word : settings.words(option)) {
+    chosen.push_back(choice(settings, option, word, known));
   }
   return chosen;
 }
@@ -78,21 +90,28 @@ std::vector<Value> choices(const Settings& settings, std::string_view name,
 }  // namespace
 
 std::vector<Level> levels_from(const Settings& settings) {
-  return LevelReader(settings).read();
+  return LevelReader(settings, "levels").read(settings.words("levels"));
 }
 
 std::vector<emc::Repetition> repetitions_from(const Settings& settings) {
-  constexpr std::array<std::pair<std::string_view, emc::Repetition>, 3> kRepetitions = {
-      {{"5kHz", emc::Repetition::khz_5},
-       {"100kHz", emc::Repetition::khz_100},
-       {"2.5kHz", emc::Repetition::khz_2_5_edition_1}}};
   return choices(settings, "repetition", kRepetitions);
 }
 
 std::vector<emc::Polarity> polarities_from(const Settings& settings) {
-  constexpr std::array<std::pair<std::string_view, emc::Polarity>, 2> kPolarities = {
-      {{"+", emc::Polarity::positive}, {"-", emc::Polarity::negative}}};
   return choices(settings, "polarity", kPolarities);
+}
+
+emc::BurstSettings bursts_from(const Settings& settings) {
+  const std::vector<std::string> words = settings.words("bursts");
+  const auto levels = LevelReader(settings, "bursts").read({words.front()});
+  if (levels.size() != 1 || words.size() > 3) {
+    settings.refuse("bursts", "a measurement takes one level, one rate, one polarity; write 3,5kHz,+");
+  }
+  emc::BurstSettings bursts;
+  bursts.level = levels.front();
+  if (words.size() > 1) bursts.repetition = choice(settings, "bursts", words[1], kRepetitions);
+  if (words.size() > 2) bursts.polarity = choice(settings, "bursts", words[2], kPolarities);
+  return bursts;
 }
 
 emc::Profile profile_from(const Settings& settings) {

@@ -34,7 +34,7 @@ using emc::Polarity;
 using emc::Repetition;
 
 // "bsc:0.002".
-std::vector<EmcTest> channels_from(const Settings& settings) {
+std::vector<EmcTest> channel_tests_from(const Settings& settings) {
   for (const std::string_view other : {"levels", "repetition", "polarity", "profile"}) {
     if (settings.origin(other) == Origin::command_line) {
       settings.refuse("channel", fmt::format("a channel takes the place of bursts; leave out --{}", other));
@@ -53,7 +53,7 @@ std::vector<EmcTest> channels_from(const Settings& settings) {
   return tests;
 }
 
-std::vector<EmcTest> bursts_from(const Settings& settings) {
+std::vector<EmcTest> burst_tests_from(const Settings& settings) {
   const auto repetitions = repetitions_from(settings);
   const auto polarities = polarities_from(settings);
   std::vector<EmcTest> tests;
@@ -72,7 +72,7 @@ std::vector<EmcTest> bursts_from(const Settings& settings) {
 
 std::vector<EmcTest> tests_from(const Settings& settings) {
   const bool has_bursts = !settings.is_set("channel");
-  std::vector<EmcTest> tests = has_bursts ? bursts_from(settings) : channels_from(settings);
+  std::vector<EmcTest> tests = has_bursts ? burst_tests_from(settings) : channel_tests_from(settings);
   if (tests.size() > kMostTests) {
     settings.refuse(has_bursts ? "levels" : "channel",
                     fmt::format("these are {} tests; at most {} make a campaign", tests.size(), kMostTests));

@@ -70,21 +70,6 @@ int code_of(measure::Agreement agreement) {
   return kInternal;
 }
 
-// One level, one repetition rate and one polarity: a measurement has one disturbance.
-emc::BurstSettings bursts_from(const Settings& settings) {
-  const auto levels = levels_from(settings);
-  const auto repetitions = repetitions_from(settings);
-  const auto polarities = polarities_from(settings);
-  if (levels.size() != 1) settings.refuse("levels", "a measurement takes one level of bursts");
-  if (repetitions.size() != 1) settings.refuse("repetition", "a measurement takes one repetition rate");
-  if (polarities.size() != 1) settings.refuse("polarity", "a measurement takes one polarity");
-  emc::BurstSettings bursts;
-  bursts.level = levels.front();
-  bursts.repetition = repetitions.front();
-  bursts.polarity = polarities.front();
-  return bursts;
-}
-
 // Bursts that begin with the signal and go on until its end.
 class BurstsWhileMeasuring {
  public:
@@ -126,7 +111,7 @@ measure::Measurement measure_interbus(Session& session) {
   interbus::MeasurementSettings settings = measurement_from(session.settings);
   const interbus::NetworkDescription network = network_from(session.settings);
   std::optional<BurstsWhileMeasuring> bursts;
-  if (session.settings.is_set("levels")) {
+  if (session.settings.is_set("bursts")) {
     bursts.emplace(session.settings, network, settings.seed).disturb(settings);
   }
   settings.on_progress = [&](std::size_t done) { session.terminal.progress(done); };

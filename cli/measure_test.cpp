@@ -88,7 +88,7 @@ TEST_F(MeasureVerb, RefusesWhatItCannotMeasure) {
 
 // The theory holds between bursts, and edges during a burst are later.
 TEST_F(MeasureVerb, TellsQuietBurstAndRecoveryApart) {
-  const Called called = call({"measure", "interbus", "--signal", "50Hz", "--levels", "2", "--duration", "30s",
+  const Called called = call({"measure", "interbus", "--signal", "50Hz", "--bursts", "2", "--duration", "30s",
                               "--json", "bursts.json"});
   EXPECT_EQ(called.exit_code, 0) << called.out;
   EXPECT_HOLDS(called.out, "5 kHz, +, level 2 (500 V), profile A");
@@ -104,10 +104,12 @@ TEST_F(MeasureVerb, TellsQuietBurstAndRecoveryApart) {
 }
 
 TEST_F(MeasureVerb, TakesOneDisturbanceAtATime) {
-  EXPECT_EQ(call({"measure", "interbus", "--levels", "1..4"}).exit_code, 64);
-  EXPECT_EQ(call({"measure", "interbus", "--levels", "2", "--repetition", "5kHz,100kHz"}).exit_code, 64);
-  EXPECT_EQ(call({"measure", "interbus", "--levels", "2", "--polarity", "+,-"}).exit_code, 64);
-  EXPECT_EQ(call({"measure", "interbus", "--levels", "2", "--profile", "Z"}).exit_code, 64);
+  for (const std::string bursts : {"1..4", "0", "5", "two", "2,50kHz", "2,5kHz,plus", "2,5kHz,+,-", "x:0"}) {
+    EXPECT_EQ(call({"measure", "interbus", "--bursts", bursts}).exit_code, 64) << bursts;
+  }
+  EXPECT_EQ(call({"measure", "interbus", "--bursts", "2", "--profile", "Z"}).exit_code, 64);
+  EXPECT_HOLDS(call({"measure", "interbus", "--bursts", "x:800,100kHz,-", "--duration", "1s"}).out,
+               "100 kHz, -, level X (800 V)");
 }
 
 TEST_F(MeasureVerb, ABadNetworkIsToldWithItsPlace) {

@@ -1,7 +1,7 @@
 #include "emc/interbus/frame_residual.hpp"
 
 #include <array>
-#include <boost/math/distributions/poisson.hpp>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
 #include "emc/residual/residual_error.hpp"
@@ -81,11 +81,10 @@ double share_of_passing_shifts(const interbus::NetworkDescription& network) {
   return fitting / (256.0 * kPrefixes);
 }
 
+// The incomplete gamma function is the sum of the distribution's upper tail.
 double chance_of_at_least(std::uint64_t counted, double expected) {
   if (counted == 0) return 1;
-  if (expected <= 0) return 0;
-  const boost::math::poisson_distribution<double> theory(expected);
-  return boost::math::cdf(boost::math::complement(theory, static_cast<double>(counted - 1)));
+  return boost::math::gamma_p(static_cast<double>(counted), expected);
 }
 
 }  // namespace fieldproof::emc
