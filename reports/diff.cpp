@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "harness/judge/result_json.hpp"
 #include "harness/kernel/untrusted_text.hpp"
@@ -45,13 +46,25 @@ void compare_verdicts(const CaseResult& before, const CaseResult& after, Differe
   }
 }
 
+// A case may measure something of one name several times: the first belongs to the first, and so on.
+using NamedMeasurements = std::map<std::pair<std::string_view, std::size_t>, const judge::Measurement*>;
+
+NamedMeasurements by_name(const CaseResult& result) {
+  std::map<std::string_view, std::size_t> seen;
+  NamedMeasurements measurements;
+  for (const judge::Measurement& one : result.measurements) {
+    measurements[{one.name, seen[one.name]++}] = &one;
+  }
+  return measurements;
+}
+
 void compare_measurements(const CaseResult& before, const CaseResult& after, const DriftLimits& limits,
                           Difference& difference) {
-  for (const judge::Measurement& now : after.measurements) {
-    for (const judge::Measurement& then : before.measurements) {
-      if (then.name != now.name || !has_drifted(then.value, now.value, limits)) continue;
-      difference.drifts.push_back({after.id, now.name, now.unit, then.value, now.value});
-    }
+  const NamedMeasurements earlier = by_name(before);
+  for (const auto& [name, now] : by_name(after)) {
+    const auto then = earlier.find(name);
+    if (then == earlier.end() || !has_drifted(then->second->value, now->value, limits)) continue;
+    difference.drifts.push_back({after.id, now->name, now->unit, then->second->value, now->value});
   }
 }
 
@@ -123,9 +136,12 @@ std::string drift_lines(const std::vector<Drift>& drifts) {
   if (drifts.empty()) return "";
   std::string out = fmt::format("timing drift ({})\n", drifts.size());
   for (const Drift& drift : drifts) {
-    out += fmt::format("  {} {}: {} -> {} {} ({:+.6g} {}, {:+.3f} %)\n", escaped_line(drift.id),
-                       escaped_line(drift.measurement), drift.before, drift.after, escaped_line(drift.unit),
-                       drift.absolute(), escaped_line(drift.unit), 100 * drift.relative());
+    const std::string unit = escaped_line(drift.unit);
+    const std::string share =
+        std::isfinite(drift.relative()) ? fmt::format(", {:+.3f} %", 100 * drift.relative()) : "";
+    out += fmt::format("  {} {}: {:.9g} -> {:.9g} {} ({:+.6g} {}{})\n", escaped_line(drift.id),
+                       escaped_line(drift.measurement), drift.before, drift.after, unit, drift.absolute(),
+                       unit, share);
   }
   return out;
 }

@@ -1,12 +1,13 @@
 // What changed from one run to another.
 //
-// Cases are matched by id, measurements by case and name. A failure is a verdict of fail or error; a new
-// failure is one that is a failure only in the second run (also of a case that only the second run has), a
-// fixed one is judged in both runs and a failure only in the first. A measurement drifts when it moved by
-// more than `absolute` (in its unit) and by more than `relative` of its former value; what became or ceased
-// to be a number drifts always. What an incomplete run never judged is in no list, so `incomplete` says which
-// of the two is: a comparison with it proves nothing about the rest. Equal case seeds with different
-// fingerprints are listed: with the same implementation they break determinism.
+// Cases are matched by id, measurements by case and name, those of one name by their order. A failure is a
+// verdict of fail or error; a new failure is one that is a failure only in the second run (also of a case
+// that only the second run has), a fixed one is judged in both runs and a failure only in the first. A
+// measurement drifts when it moved by more than `absolute` (in its unit) and by more than `relative` of its
+// former value; what became or ceased to be a number drifts always. What an incomplete run never judged is in
+// no list, so `incomplete` says which of the two is: a comparison with it proves nothing about the rest.
+// Equal case seeds with different fingerprints are listed: with the same implementation they break
+// determinism.
 #pragma once
 
 #include <cstdint>

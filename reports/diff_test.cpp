@@ -93,6 +93,25 @@ TEST(Diff, DriftsFromZeroAndToNoNumber) {
   EXPECT_TRUE(drift(kNan, kNan, {0, 0}).drifts.empty());
 }
 
+TEST(Diff, TellsDriftsInNumbersThatPeopleWrite) {
+  EXPECT_NE(diff_text(drift(880.5999999999999, 900, {})).find("880.6 -> 900 us (+19.4 us, +2.203 %)"),
+            std::string::npos);
+  EXPECT_NE(diff_text(drift(0, 23.92, {})).find("0 -> 23.92 us (+23.92 us)\n"), std::string::npos);
+}
+
+TEST(Diff, MeasurementsOfOneNameBelongTogetherInTheirOrder) {
+  judge::CaseResult before = measured(755);
+  before.measurements.push_back({"cycle_time", "us", 814.8, 814.8, 814.8});
+  EXPECT_TRUE(compare(run_of({before}), run_of({before})).drifts.empty());
+  judge::CaseResult after = before;
+  after.measurements.back().value = 829;
+  const Difference difference = compare(run_of({before}), run_of({after}));
+  ASSERT_EQ(difference.drifts.size(), 1U);
+  EXPECT_EQ(difference.drifts.front().before, 814.8);
+  after.measurements.pop_back();
+  EXPECT_TRUE(compare(run_of({before}), run_of({after})).drifts.empty());
+}
+
 TEST(Diff, ListsOtherFingerprintsOfEqualSeedsOnly) {
   judge::CaseResult before = sample_case("a", Verdict::pass);
   judge::CaseResult after = before;
