@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <thread>
 
 #include "conformance/ordered_work.hpp"
@@ -29,14 +30,16 @@ Outcome outcome_of(Verdict verdict, const conformance::Setup& setup, std::string
   return outcome;
 }
 
-// Twelve cases that end in another order than they begin.
-Catalogue twelve_cases() {
+// Twelve cases that end in another order than they begin; before the seventh and the later ones begin their
+// work, `wait` is called.
+Catalogue twelve_cases(const std::function<void()>& wait = [] {}) {
   auto suite = std::make_unique<SuiteOfFunctions>("ring", std::vector<std::string>{"slave", "master"});
   for (int i = 0; i < 12; ++i) {
     TestCase test_case;
     test_case.id = fmt::format("ring/{}/case_{}", i < 10 ? "slave" : "master", i);
     test_case.requirement = "a requirement";
-    suite->add(std::move(test_case), [i](const TestCase&, const conformance::Setup& setup) {
+    suite->add(std::move(test_case), [i, wait](const TestCase&, const conformance::Setup& setup) {
+      if (i >= 6) wait();
       std::this_thread::sleep_for(std::chrono::microseconds((13 - i) * 300));
       if (i == 3) return outcome_of(Verdict::fail, setup, "three");
       return outcome_of(Verdict::pass, setup);
@@ -103,9 +106,12 @@ TEST(RunnerThreads, StopAfterTheCaseThatTheReceiverRefuses) {
 }
 
 TEST(RunnerThreads, StopTokenEndsTheRunWithAGaplessBeginning) {
-  const Catalogue catalogue = twelve_cases();
   for (const unsigned jobs : {1U, 3U}) {
     std::stop_source source;
+    // However late the first two are delivered, not all cases have run by then.
+    const Catalogue catalogue = twelve_cases([&source] {
+      while (!source.stop_requested()) std::this_thread::yield();
+    });
     std::vector<std::string> seen;
     Plan plan;
     plan.entries = catalogue.entries();
