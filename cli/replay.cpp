@@ -75,7 +75,7 @@ void show_recording(Session& session, const conformance::CaseRun& done) {
     reports::write_text_file(session.settings.text(one.option), one.write(done));
     is_shown = true;
   }
-  if (is_shown && recording.truncated) session.terminal.log("the recording reached its bound and ends here");
+  if (is_shown && recording.truncated) session.terminal.log("the recording is not whole: it has a bound");
 }
 
 }  // namespace

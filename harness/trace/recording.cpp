@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace fieldproof::trace {
 namespace {
@@ -76,59 +78,83 @@ std::vector<const Fault*> FaultIndex::of(const Change& change) const {
   return {first, end};
 }
 
-// Once something was left out nothing follows it, so that a recording has no hole.
-bool BoundedRecorder::has_room(std::size_t levels) {
-  if (recording_.records.size() >= most_records_ || levels > most_levels_ - levels_) recording_.is_cut = true;
-  return !recording_.is_cut;
+void BoundedRecorder::forget_older() {
+  is_cut_ = is_cut_ || !older_.records.empty();
+  older_ = std::exchange(newer_, {});
+}
+
+bool BoundedRecorder::make_room(std::size_t levels) {
+  if (newer_.records.size() >= part_records_ || levels > part_levels_ - newer_.levels) forget_older();
+  if (levels <= part_levels_) return true;
+  // What is too long itself leaves a hole: nothing before it is kept.
+  older_ = {};
+  is_cut_ = true;
+  return false;
 }
 
 void BoundedRecorder::add(Record record) {
-  recording_.records.push_back(std::move(record));
+  newer_.records.push_back(std::move(record));
   // Channels are added while a bench runs; they are known by the time something happens on them.
-  for (std::size_t n = recording_.channels.size(); n < trace_.channel_count(); ++n) {
-    recording_.channels.push_back(trace_.channel_name(static_cast<Channel>(n)));
+  for (std::size_t n = channels_.size(); n < trace_.channel_count(); ++n) {
+    channels_.push_back(trace_.channel_name(static_cast<Channel>(n)));
   }
 }
 
 // Without the room that the levels of a sender's buffer have for more.
-line::Waveform BoundedRecorder::kept(const line::Waveform& wave) {
-  levels_ += wave.levels.size();
+line::Waveform BoundedRecorder::Part::kept(const line::Waveform& wave) {
+  levels += wave.levels.size();
   return {wave.start, wave.rate, wave.levels.slice(0, wave.levels.size())};
 }
 
 void BoundedRecorder::on_driven(Channel channel, const line::Waveform& wave) {
-  if (!has_room(wave.levels.size())) return;
-  driven_[{channel, wave.start}] = recording_.records.size();
-  add(Transmission{channel, kept(wave), std::nullopt});
+  if (!make_room(wave.levels.size())) return;
+  newer_.driven[{channel, wave.start}] = newer_.records.size();
+  add(Transmission{channel, newer_.kept(wave), std::nullopt});
 }
 
 void BoundedRecorder::on_fault(Channel channel, kernel::Time time, std::string_view what) {
-  if (has_room(0)) add(Fault{channel, time, std::string(what)});
+  if (make_room(0)) add(Fault{channel, time, std::string(what)});
 }
 
 void BoundedRecorder::on_observation(Channel channel, kernel::Time time, std::string_view what,
                                      std::uint64_t value) {
-  if (has_room(0)) add(Observation{channel, time, std::string(what), value});
+  if (make_room(0)) add(Observation{channel, time, std::string(what), value});
 }
 
 void BoundedRecorder::on_changed(Channel receiver, kernel::Time driven_at, const line::Waveform& sent,
                                  std::span<const line::Waveform> arrivals) {
   if (arrivals.size() == 1 && is_equal(arrivals.front(), sent)) return;
-  const auto found = driven_.find({receiver, driven_at});
-  const bool is_of_a_link = found != driven_.end();
-  if (!is_of_a_link && (recording_.is_cut || recording_.changes.size() >= most_records_)) return;
+  const std::pair key{receiver, driven_at};
+  Part& part = !newer_.driven.contains(key) && older_.driven.contains(key) ? older_ : newer_;
   std::size_t levels = sent.levels.size();
   for (const line::Waveform& arrival : arrivals) levels += arrival.levels.size();
-  if (levels > most_levels_ - levels_) {
-    recording_.is_cut = true;
+  if (part.changes.size() >= part_records_ || levels > part_levels_ - std::min(part.levels, part_levels_)) {
+    is_cut_ = true;
     return;
   }
-  if (is_of_a_link) {
-    std::get<Transmission>(recording_.records[found->second]).change = recording_.changes.size();
+  if (const auto found = part.driven.find(key); found != part.driven.end()) {
+    std::get<Transmission>(part.records[found->second]).change = part.changes.size();
   }
-  Change change{receiver, kept(sent), {}};
-  for (const line::Waveform& arrival : arrivals) change.arrivals.push_back(kept(arrival));
-  recording_.changes.push_back(std::move(change));
+  Change change{receiver, part.kept(sent), {}};
+  for (const line::Waveform& arrival : arrivals) change.arrivals.push_back(part.kept(arrival));
+  part.changes.push_back(std::move(change));
+}
+
+Recording BoundedRecorder::take() {
+  Recording recording;
+  recording.is_cut = std::exchange(is_cut_, false);
+  recording.channels = std::exchange(channels_, {});
+  for (Part* const part : {&older_, &newer_}) {
+    const std::size_t changes = recording.changes.size();
+    for (Record& record : part->records) {
+      auto* const transmission = std::get_if<Transmission>(&record);
+      if (transmission != nullptr && transmission->change) *transmission->change += changes;
+      recording.records.push_back(std::move(record));
+    }
+    std::ranges::move(part->changes, std::back_inserter(recording.changes));
+    *part = {};
+  }
+  return recording;
 }
 
 }  // namespace fieldproof::trace

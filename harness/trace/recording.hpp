@@ -17,9 +17,9 @@
 // open (pcapng, VCD) is written from it.
 //
 // Contract: records stand in the order in which they were told, which is that of virtual time but for faults,
-// told when a transmission arrives, and for transmissions that were given ahead of their time. The first
-// records are kept: at most `Recorder`'s bounds, then `is_cut` is set and nothing more is recorded, except
-// for what became of transmissions that are there.
+// told when a transmission arrives, and for transmissions that were given ahead of their time. The last
+// records are kept, because a run ends with what went wrong: within the recorder's bounds, without a hole,
+// and `is_cut` says that there was more before.
 namespace fieldproof::trace {
 
 struct Transmission {
@@ -78,6 +78,9 @@ class FaultIndex {
 };
 
 // Keeps a recording of the trace that it is set at. The trace must outlive what it is told.
+//
+// It keeps two parts of at most half the bounds each and forgets the older one when the newer one is full: of
+// a long run at least half of what the bounds allow, for the price of a move now and then.
 class BoundedRecorder final : public Recorder {
  public:
   static constexpr std::size_t kMostRecords = 20'000;
@@ -85,7 +88,7 @@ class BoundedRecorder final : public Recorder {
 
   explicit BoundedRecorder(const Trace& trace, std::size_t most_records = kMostRecords,
                            std::size_t most_levels = kMostLevels)
-      : trace_(trace), most_records_(most_records), most_levels_(most_levels) {}
+      : trace_(trace), part_records_(most_records / 2), part_levels_(most_levels / 2) {}
 
   void on_driven(Channel channel, const line::Waveform& wave) override;
   void on_fault(Channel channel, kernel::Time time, std::string_view what) override;
@@ -94,20 +97,31 @@ class BoundedRecorder final : public Recorder {
   void on_changed(Channel receiver, kernel::Time driven_at, const line::Waveform& sent,
                   std::span<const line::Waveform> arrivals) override;
 
-  const Recording& recording() const { return recording_; }
-  Recording take() { return std::move(recording_); }
+  // What was kept; the recorder is empty then. The trace need not be there any more.
+  Recording take();
 
  private:
-  bool has_room(std::size_t levels);
+  struct Part {
+    std::vector<Record> records;
+    std::vector<Change> changes;
+    std::size_t levels = 0;
+    std::map<std::pair<Channel, kernel::Time>, std::size_t> driven;  // the last transmission of a start
+
+    line::Waveform kept(const line::Waveform& wave);
+  };
+
+  // Room for one more record of so many levels; false when they are more than a part may hold.
+  bool make_room(std::size_t levels);
   void add(Record record);
-  line::Waveform kept(const line::Waveform& wave);
+  void forget_older();
 
   const Trace& trace_;
-  std::size_t most_records_;
-  std::size_t most_levels_;
-  std::size_t levels_ = 0;
-  Recording recording_;
-  std::map<std::pair<Channel, kernel::Time>, std::size_t> driven_;  // the last transmission of a start
+  std::size_t part_records_;
+  std::size_t part_levels_;
+  std::vector<std::string> channels_;
+  Part older_;
+  Part newer_;
+  bool is_cut_ = false;
 };
 
 }  // namespace fieldproof::trace

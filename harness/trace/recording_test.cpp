@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,7 @@ TEST_F(RecordingTest, ChannelsThatAreAddedLaterHaveTheirNames) {
   trace.observe(line, kStart, "a");
   const Channel late = trace.add_channel("late");
   trace.observe(late, kStart, "b");
-  EXPECT_EQ(recorder.recording().channels, (std::vector<std::string>{"line", "station", "late"}));
+  EXPECT_EQ(recorder.take().channels, (std::vector<std::string>{"line", "station", "late"}));
 }
 
 TEST_F(RecordingTest, RecordingCostsTheFingerprintNothing) {
@@ -66,42 +67,79 @@ TEST_F(RecordingTest, RecordingCostsTheFingerprintNothing) {
   EXPECT_EQ(trace.record_count(), other.record_count());
 }
 
-TEST_F(RecordingTest, EndsAtItsBoundOfRecords) {
-  BoundedRecorder recorder(trace, 2);
-  record(recorder);
-  trace.observe(line, kStart, "a");
-  trace.driven(line, wave_of(kStart, 0, 4));
-  EXPECT_FALSE(recorder.recording().is_cut);
-  trace.observe(line, kStart, "c");
-  EXPECT_TRUE(recorder.recording().is_cut);
-  EXPECT_EQ(recorder.recording().records.size(), 2U);
+std::vector<std::string> observed(const Recording& recording) {
+  std::vector<std::string> texts;
+  for (const Record& record : recording.records) {
+    if (const auto* one = std::get_if<Observation>(&record)) texts.push_back(one->what);
+  }
+  return texts;
 }
 
-TEST_F(RecordingTest, EndsAtItsBoundOfLevelsAndHasNoHole) {
-  BoundedRecorder recorder(trace, 100, 10);
+TEST_F(RecordingTest, KeepsTheLastRecordsOfALongRun) {
+  BoundedRecorder recorder(trace, 4);
   record(recorder);
-  trace.driven(line, wave_of(kStart, 0, 10));
-  EXPECT_FALSE(recorder.recording().is_cut);
-  trace.driven(line, wave_of(kStart, 0, 1));
-  trace.observe(line, kStart, "behind");
-  EXPECT_TRUE(recorder.recording().is_cut);
-  EXPECT_EQ(recorder.recording().records.size(), 1U);
+  for (const char* what : {"a", "b", "c", "d"}) trace.observe(line, kStart, what);
+  const Recording all = recorder.take();
+  EXPECT_FALSE(all.is_cut);
+  EXPECT_EQ(observed(all), (std::vector<std::string>{"a", "b", "c", "d"}));
+  for (const char* what : {"a", "b", "c", "d", "e"}) trace.observe(line, kStart, what);
+  const Recording last = recorder.take();
+  EXPECT_TRUE(last.is_cut);
+  EXPECT_EQ(observed(last), (std::vector<std::string>{"c", "d", "e"}));
+  EXPECT_TRUE(recorder.take().records.empty());
 }
 
-TEST_F(RecordingTest, AChangeIsThatOfItsTransmissionAlsoBehindTheBound) {
-  BoundedRecorder recorder(trace, 2);
-  record(recorder);
-  trace.driven(line, wave_of(kStart, 0b0110, 4));
-  trace.driven(line, wave_of(kStart + 10 * kMicrosecond, 0b0110, 4));
-  trace.observe(line, kStart, "behind");
-  line::Waveform sent = wave_of(kStart + 12 * kMicrosecond, 0b0110, 4);
-  const std::vector<line::Waveform> arrivals = {wave_of(kStart + 12 * kMicrosecond, 0b0010, 4)};
-  trace.changed(line, kStart + 10 * kMicrosecond, sent, arrivals);
+TEST(Recording, IsTakenWhenItsTraceIsGone) {
+  std::optional<Trace> trace(std::in_place);
+  BoundedRecorder recorder(*trace);
+  trace->set_recorder(&recorder);
+  trace->observe(trace->add_channel("line"), kStart, "a");
+  trace.reset();
   const Recording recording = recorder.take();
-  EXPECT_FALSE(std::get<Transmission>(recording.records[0]).change.has_value());
-  ASSERT_EQ(std::get<Transmission>(recording.records[1]).change, std::size_t{0});
-  EXPECT_EQ(recording.changes.at(0).sent.start, sent.start);
-  EXPECT_EQ(recording.changes.at(0).arrivals.size(), 1U);
+  EXPECT_EQ(recording.channels, (std::vector<std::string>{"line"}));
+  EXPECT_EQ(recording.records.size(), 1U);
+}
+
+TEST_F(RecordingTest, KeepsNoMoreLevelsThanItsBound) {
+  BoundedRecorder recorder(trace, 100, 20);
+  record(recorder);
+  for (int n = 0; n < 5; ++n) trace.driven(line, wave_of(kStart + n * kMicrosecond, 0, 6));
+  const Recording recording = recorder.take();
+  EXPECT_TRUE(recording.is_cut);
+  ASSERT_EQ(recording.records.size(), 2U);
+  EXPECT_EQ(time_of(recording.records.back()), kStart + 4 * kMicrosecond);
+}
+
+TEST_F(RecordingTest, HasNoHoleWhereATransmissionIsTooLong) {
+  BoundedRecorder recorder(trace, 100, 20);
+  record(recorder);
+  trace.observe(line, kStart, "before");
+  trace.driven(line, wave_of(kStart, 0, 11));
+  trace.observe(line, kStart, "behind");
+  const Recording recording = recorder.take();
+  EXPECT_TRUE(recording.is_cut);
+  EXPECT_EQ(observed(recording), (std::vector<std::string>{"behind"}));
+}
+
+TEST_F(RecordingTest, AChangeIsThatOfItsTransmissionInBothParts) {
+  BoundedRecorder recorder(trace, 4);
+  record(recorder);
+  const auto drive = [&](int us) { trace.driven(line, wave_of(kStart + us * kMicrosecond, 0b0110, 4)); };
+  const auto change = [&](int us) {
+    const std::vector<line::Waveform> arrivals = {wave_of(kStart + us * kMicrosecond, 0b0010, 4)};
+    trace.changed(line, kStart + us * kMicrosecond, wave_of(kStart + us * kMicrosecond, 0b0110, 4), arrivals);
+  };
+  for (const int us : {0, 10, 20, 30, 40}) drive(us);
+  for (const int us : {40, 0, 20})
+    change(us);  // the first transmission is forgotten, its change is kept apart
+  const Recording recording = recorder.take();
+  ASSERT_EQ(recording.records.size(), 3U);
+  const auto changed = [&](std::size_t n) { return std::get<Transmission>(recording.records[n]).change; };
+  ASSERT_TRUE(changed(0) && changed(2));
+  EXPECT_FALSE(changed(1));
+  EXPECT_EQ(recording.changes.at(*changed(0)).sent.start, kStart + 20 * kMicrosecond);
+  EXPECT_EQ(recording.changes.at(*changed(2)).sent.start, kStart + 40 * kMicrosecond);
+  EXPECT_EQ(recording.changes.size(), 3U);
 }
 
 TEST_F(RecordingTest, WhatArrivesAsItWasSentIsNoChange) {
@@ -110,7 +148,7 @@ TEST_F(RecordingTest, WhatArrivesAsItWasSentIsNoChange) {
   const line::Waveform sent = wave_of(kStart, 0b0110, 4);
   trace.driven(line, sent);
   trace.changed(line, kStart, sent, std::vector{sent});
-  EXPECT_TRUE(recorder.recording().changes.empty());
+  EXPECT_TRUE(recorder.take().changes.empty());
 }
 
 TEST_F(RecordingTest, ChangesAreToldInOneClause) {
@@ -140,7 +178,8 @@ TEST_F(RecordingTest, FaultsOfAChangeLieWithinWhatWasSent) {
   fault(station, 11);
   const Change change{line, wave_of(kStart + 10 * kMicrosecond, 0, 4), {}};
   std::string told;
-  for (const Fault* one : FaultIndex(recorder.recording()).of(change)) told += one->text + " ";
+  const Recording recording = recorder.take();
+  for (const Fault* one : FaultIndex(recording).of(change)) told += one->text + " ";
   EXPECT_EQ(told, "10 13 ");
 }
 
