@@ -29,7 +29,8 @@ interbus::NetworkDescription two_remote_stations() {
 
 // What tells a deviation from the reference, which has none of it.
 enum class Sign {
-  wrong_data,      // criterion D
+  wrong_data,      // words are accepted wrong: criterion D
+  dead,            // it does not work again: criterion D
   cleared,         // outputs become 0
   missed,          // outputs of good cycles are not put out
   not_repeated,    // no ID cycles behind rejected cycles
@@ -57,7 +58,7 @@ constexpr std::array kOfMasters = {
     Row{"consecutive_never_cleared", Sign::stops},
     Row{"id_cycles_for_ever_after_error", Sign::stops},
     Row{"stop_one_late", Sign::stops_less, Line::flips},
-    Row{"silent_after_error", Sign::wrong_data},
+    Row{"silent_after_error", Sign::dead},
     Row{"telegram_count_ignored", Sign::fewer_rejected, Line::flips},
     Row{"stop_bit_ignored", Sign::fewer_rejected, Line::flips},
 };
@@ -86,7 +87,9 @@ double rejected_share(const ImmunityResult& result) {
 bool shows(Sign sign, const ImmunityResult& result, const ImmunityResult& reference) {
   switch (sign) {
     case Sign::wrong_data:
-      return result.criterion == Criterion::d && reference.criterion != Criterion::d;
+      return result.criterion == Criterion::d && result.ledger.accepted_wrong() > 0;
+    case Sign::dead:
+      return result.criterion == Criterion::d && !result.recovered_after_start;
     case Sign::cleared:
       return result.ledger.cleared_outputs > reference.ledger.cleared_outputs;
     case Sign::missed:

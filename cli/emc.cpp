@@ -2,10 +2,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/burst_options.hpp"
@@ -33,13 +35,25 @@ using emc::Level;
 using emc::Polarity;
 using emc::Repetition;
 
+constexpr std::array<std::string_view, 5> kBurstOptions = {"levels", "repetition", "polarity", "profile",
+                                                           "worst"};
+
+bool is_typed(const Settings& settings, std::string_view option) {
+  return settings.origin(option) == Origin::command_line;
+}
+
+// Bursts, or the channel that takes their place: what is typed wins over what a file or a variable says.
+bool wants_bursts(const Settings& settings) {
+  if (!settings.is_set("channel")) return true;
+  const auto typed =
+      std::ranges::find_if(kBurstOptions, [&](auto option) { return is_typed(settings, option); });
+  if (typed == kBurstOptions.end()) return false;
+  if (!is_typed(settings, "channel")) return true;
+  settings.refuse("channel", fmt::format("a channel takes the place of bursts; leave out --{}", *typed));
+}
+
 // "bsc:0.002".
 std::vector<EmcTest> channel_tests_from(const Settings& settings) {
-  for (const std::string_view other : {"levels", "repetition", "polarity", "profile"}) {
-    if (settings.origin(other) == Origin::command_line) {
-      settings.refuse("channel", fmt::format("a channel takes the place of bursts; leave out --{}", other));
-    }
-  }
   std::vector<EmcTest> tests;
   for (const std::string& word : settings.words("channel")) {
     const auto flips = word.starts_with("bsc:") ? real_of(std::string_view(word).substr(4)) : std::nullopt;
@@ -70,9 +84,12 @@ std::vector<EmcTest> burst_tests_from(const Settings& settings) {
   return tests;
 }
 
-std::vector<EmcTest> tests_from(const Settings& settings) {
-  const bool has_bursts = !settings.is_set("channel");
+std::vector<EmcTest> tests_from(const Settings& settings, bool has_bursts) {
   std::vector<EmcTest> tests = has_bursts ? burst_tests_from(settings) : channel_tests_from(settings);
+  if (tests.empty()) {
+    throw kernel::Error(kernel::ErrorKind::configuration,
+                        "an empty list of levels, repetition rates or polarities leaves nothing to test");
+  }
   if (tests.size() > kMostTests) {
     settings.refuse(has_bursts ? "levels" : "channel",
                     fmt::format("these are {} tests; at most {} make a campaign", tests.size(), kMostTests));
@@ -134,7 +151,8 @@ class Campaign {
     done_.profile = profile_from(settings);
     done_.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
     done_.duration = virtual_time_from(settings);
-    planned_ = tests_from(settings);
+    done_.has_bursts = wants_bursts(settings);
+    planned_ = tests_from(settings, done_.has_bursts);
     for (EmcTest& test : planned_) {
       if (!test.has_bursts()) test.undetected = emc::undetected_cycle(network_, test.flip_probability);
     }
@@ -145,7 +163,7 @@ class Campaign {
     const emc::LineResponse response(done_.profile.coupling);
     done_.threshold_volts = response.threshold_volts();
     session_.terminal.print(simulation_header(session_, done_.seed, session_.settings.text("network")));
-    session_.terminal.print(emc_table_head(planned_.front().has_bursts()));
+    session_.terminal.print(emc_table_head(done_.has_bursts));
     conformance::OrderedWork<emc::ImmunityResult> work;
     work.count = planned_.size();
     work.threads = jobs_from(session_.settings);
@@ -196,20 +214,28 @@ class Campaign {
   EmcCampaign done_;
 };
 
-// On a channel of the textbooks wrong data are no failure, more of them than the theory allows are.
+// On a channel of the textbooks wrong data are no failure, more of them than the theory allows are, and so is
+// a network that does not work again.
 bool is_failure(const EmcTest& test, std::size_t worst_allowed) {
   constexpr double kRefuted = 1e-3;
-  if (!test.has_bursts()) return test.chance_of_count() < kRefuted;
-  return static_cast<std::size_t>(test.result.criterion) > worst_allowed;
+  if (test.has_bursts()) return static_cast<std::size_t>(test.result.criterion) > worst_allowed;
+  const bool works_again = test.result.recovered_by_itself || test.result.recovered_after_start;
+  return test.chance_of_count() < kRefuted || !works_again;
+}
+
+// A network that hardly exchanged data shows nothing of what a check lets pass.
+bool says_nothing(const EmcTest& test) {
+  constexpr std::uint64_t kFewCycles = 100;
+  return !test.result.came_up || (!test.has_bursts() && test.result.ledger.sent < kFewCycles);
 }
 
 int code_of(const EmcCampaign& campaign, std::size_t worst_allowed) {
-  for (const EmcTest& test : campaign.tests) {
-    if (!test.result.came_up) return kInconclusive;
+  const auto fails = [&](const EmcTest& test) { return is_failure(test, worst_allowed); };
+  const auto came_up = [](const EmcTest& test) { return test.result.came_up; };
+  if (std::ranges::all_of(campaign.tests, came_up) && std::ranges::any_of(campaign.tests, fails)) {
+    return kFailed;
   }
-  const bool fails = std::ranges::any_of(
-      campaign.tests, [&](const EmcTest& test) { return is_failure(test, worst_allowed); });
-  return fails ? kFailed : kAllAsExpected;
+  return std::ranges::any_of(campaign.tests, says_nothing) ? kInconclusive : kAllAsExpected;
 }
 
 }  // namespace

@@ -103,6 +103,23 @@ TEST_F(EmcVerb, EndsWithOneWhereTheTheoryIsRefuted) {
   EXPECT_HOLDS(called.out, "--channel bsc:0.001");
 }
 
+TEST_F(EmcVerb, AChannelOnWhichNothingComesThroughShowsNothing) {
+  EXPECT_EQ(call({"--channel", "bsc:0.5", "--duration", "2s"}).exit_code, 2);
+  const Called dead =
+      call({"--channel", "bsc:0.001", "--duration", "5s", "--iut", "master=deviant:silent_after_error"});
+  EXPECT_EQ(dead.exit_code, 1) << dead.out;
+}
+
+TEST_F(EmcVerb, WhatIsTypedWinsOverAChannelInAFile) {
+  write("channel.json", R"({"channel": "bsc:0.001"})");
+  const Called typed = call({"--config", "channel.json", "--levels", "1", "--quiet"});
+  EXPECT_EQ(typed.exit_code, 0) << typed.err;
+  EXPECT_HOLDS(typed.out, "1 (250 V)");
+  EXPECT_HOLDS(call({"--config", "channel.json"}).out, "bsc 0.001");
+  write("empty.json", R"({"levels": []})");
+  EXPECT_EQ(call({"--config", "empty.json"}).exit_code, 65);
+}
+
 TEST_F(EmcVerb, RefusesAChannelThatIsNone) {
   for (const std::string text : {"bsc", "bsc:", "bsc:2", "bsc:0", "bsc:nan", "ge:0.1", ""}) {
     const Called called = call({"--channel", text});

@@ -71,6 +71,7 @@ ordered_json channel_json(const EmcTest& test) {
                        {"receivers", test.result.receivers},
                        {"undetected_by_code_word", test.undetected.by_code_word},
                        {"undetected_by_shift", test.undetected.by_shift},
+                       {"undetected_by_misframing", test.undetected.by_misframing},
                        {"expected_wrong_cycles_at_most", test.expected_wrong_cycles()},
                        {"chance_of_count", test.chance_of_count()}};
   json.update(result_json(test.result));
@@ -149,7 +150,7 @@ std::string emc_line(const EmcTest& test) {
 std::string emc_summary(const EmcCampaign& campaign) {
   const EmcTotal total = total_of(campaign);
   std::string text;
-  if (campaign.has_bursts()) {
+  if (campaign.has_bursts) {
     text = "\ncriterion  what it means (a choice of this project)\n";
     for (const auto criterion : kCriteria) {
       text += fmt::format("{:>9}  {}\n", emc::name(criterion), emc::text_of(criterion));
@@ -158,9 +159,9 @@ std::string emc_summary(const EmcCampaign& campaign) {
     text =
         "\nwrong: cycles in which a wrong word was accepted; chance: of so many or more, where as many come "
         "on "
-        "average as theory allows at most:\nflips that are a code word of the frame check (exact), and a "
-        "flipped control level of the last data telegram, which moves all words\nby an octet and passes a "
-        "slave's check 1 time in 256 (from this project's reading of the header, unverified)\n";
+        "average as theory allows at most:\nflips that are a code word of the frame check (exact), a flipped "
+        "control level that moves the end of the data by an octet,\nand an octet lost or inserted where the "
+        "check fits by chance (both from this project's reading of the header, unverified)\n";
   }
   text += fmt::format(
       "\nledger: {} cycles corrupted, {} rejected, {} words accepted wrong; of corrupted cycles at most "
@@ -168,10 +169,12 @@ std::string emc_summary(const EmcCampaign& campaign) {
       "unseen (one-sided 95 %)\n",
       total.corrupted, total.detected, total.accepted_wrong, total.upper_bound_of_share);
   text += residual_text(campaign.residual, total);
-  if (!campaign.has_bursts()) return text;
+  if (!campaign.has_bursts) return text;
   text += fmt::format("profile {} ({}): a receiver can be wrong from {:.0f} V on\n", campaign.profile.name,
                       reports::escaped_line(campaign.profile.title), campaign.threshold_volts);
-  for (const std::string& caveat : emc::caveats_of(campaign.profile)) text += fmt::format("  - {}\n", caveat);
+  for (const std::string& caveat : emc::caveats_of(campaign.profile)) {
+    text += fmt::format("  - {}\n", reports::escaped_line(caveat));
+  }
   return text;
 }
 
@@ -190,7 +193,7 @@ std::string emc_json(const EmcCampaign& campaign) {
     criteria.push_back({{"criterion", emc::name(criterion)}, {"meaning", emc::text_of(criterion)}});
   }
   const EmcTotal total = total_of(campaign);
-  const bool has_bursts = campaign.has_bursts();
+  const bool has_bursts = campaign.has_bursts;
   const ordered_json document = {
       {"schema", "fieldproof/emc/1"},
       {"protocol", "interbus"},

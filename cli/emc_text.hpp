@@ -40,8 +40,7 @@ struct EmcCampaign {
   kernel::Duration duration{};
   std::vector<EmcTest> tests;
   emc::FrameResidual residual;
-
-  bool has_bursts() const { return tests.empty() || tests.front().has_bursts(); }
+  bool has_bursts = true;  // else channels of the textbooks
 };
 
 // The ledger of all tests together, and how much a count of wrong words can still hide.

@@ -145,6 +145,7 @@ inline nlohmann::ordered_json sample_emc() {
                   {"receivers", 2},
                   {"undetected_by_code_word", 1e-12},
                   {"undetected_by_shift", 1e-9},
+                  {"undetected_by_misframing", 1e-10},
                   {"expected_wrong_cycles_at_most", 7.2e-6},
                   {"chance_of_count", 1.0}};
   for (const auto& [key, value] : json["tests"].front().items()) {

@@ -60,25 +60,39 @@ FrameResidual frame_residual(const interbus::NetworkDescription& network, kernel
 }
 
 UndetectedCycle undetected_cycle(const interbus::NetworkDescription& network, double flip_probability) {
+  // Start, flag, and the idle level in front of a telegram: a flip of one loses it or begins one too many.
+  constexpr double kFramingLevels = 3;
+  constexpr double kFitsByChance = 1.0 / 0x10000;
+  const double telegrams = (protected_bits(network) + 16) / 8.0;  // with those of the status word
+  const PassingShifts shifts = passing_shifts(network);
   return {undetected_error_probability(dual_weights_of(network), flip_probability),
-          flip_probability * share_of_passing_shifts(network)};
+          flip_probability * (shifts.early_check + shifts.late_check),
+          flip_probability * kFramingLevels * telegrams * kFitsByChance};
 }
 
-// Two octets bring the register to each of its values once; of the octets that may follow, one at most fits.
-double share_of_passing_shifts(const interbus::NetworkDescription& network) {
+// Two octets bring the register to each of its values once, so they stand for any data.
+PassingShifts passing_shifts(const interbus::NetworkDescription& network) {
   const line::FrameCheck16& check = line::shared_frame_check_16(network.rules.frame_check);
+  const unsigned status_high = network.rules.status_clean >> 8;
+  const unsigned status_low = network.rules.status_clean & 0xFF;
   constexpr unsigned kPrefixes = 0x10000;
-  unsigned fitting = 0;
+  constexpr unsigned kEndOctet = 0;
+  const bool is_status_whole_when_late =
+      network.rules.end_telegrams > 0 && status_low == status_high && kEndOctet == status_low;
+  unsigned early = 0;
+  unsigned late = 0;
   for (unsigned prefix = 0; prefix < kPrefixes; ++prefix) {
     const std::array<std::uint8_t, 2> octets = {static_cast<std::uint8_t>(prefix >> 8),
                                                 static_cast<std::uint8_t>(prefix & 0xFF)};
     const auto before = check.update(check.start(), octets);
-    const auto expected = check.check_octets(before);
-    const auto sent = check.check_octets(check.update_octet(before, expected[0]));
-    // The second octet of the real check is where the status word begins.
-    if (sent[0] == expected[1] && sent[1] == network.rules.status_clean >> 8) ++fitting;
+    const auto right = check.check_octets(before);
+    // The octet that would have to be the last one of the data, and the check that is sent behind it; the
+    // second octet of that is where the status word begins.
+    const auto sent = check.check_octets(check.update_octet(before, right[0]));
+    if (sent[0] == right[1] && sent[1] == status_high) ++early;
+    if (is_status_whole_when_late && sent[0] == right[1] && sent[1] == status_high) ++late;
   }
-  return fitting / (256.0 * kPrefixes);
+  return {early / (256.0 * kPrefixes), static_cast<double>(late) / kPrefixes};
 }
 
 // The incomplete gamma function is the sum of the distribution's upper tail.

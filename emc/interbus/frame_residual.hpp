@@ -26,23 +26,31 @@ struct FrameResidual {
 // Of widths up to 16 bits: takes milliseconds.
 FrameResidual frame_residual(const interbus::NetworkDescription& network, kernel::Duration cycle_time);
 
-// That a cycle arrives wrong at one receiver and passes, where each bit flips with this probability: an upper
-// bound, as a receiver also looks at framing and status, and a master at the loopback word.
+// That a cycle arrives wrong at one receiver and passes, where each bit flips with this probability. An upper
+// bound but for what takes two flips outside of the data, as a receiver also looks at framing and status, and
+// a master at the number of telegrams and at the loopback word.
+//
+// All but the code words rests on this project's reading of the header [own], whose levels no check protects:
+// nothing but the control level tells a slave where the data end.
 struct UndetectedCycle {
-  // The flips are a code word of the frame check.
-  double by_code_word = 0;
-  // One flip, in the control level of the last data telegram, and a slave takes that octet for the first of
-  // the check: all words move by an octet. The check fits when the octet happens to be what the check of
-  // those before it begins with, 1 time in 256; nothing else tells a slave how long a cycle is. [derived from
-  // this project's reading of the header, whose bits no check protects; the master counts telegrams]
-  double by_shift = 0;
+  double by_code_word = 0;   // the flips are a code word of the frame check
+  double by_shift = 0;       // one flipped control level moves the end of the data, see PassingShifts
+  double by_misframing = 0;  // one flipped level loses or inserts an octet, and the check fits by chance
 
-  double any() const { return by_code_word + by_shift; }
+  double any() const { return by_code_word + by_shift + by_misframing; }
 };
 UndetectedCycle undetected_cycle(const interbus::NetworkDescription& network, double flip_probability);
 
-// Of all last octets of a cycle's data, the share with which such a shift passes a slave's check.
-double share_of_passing_shifts(const interbus::NetworkDescription& network);
+// What share of cycles with one flipped control level passes a slave's check.
+struct PassingShifts {
+  // Of the last data telegram: its octet counts as the first of the check, and fits when it happens to be
+  // what the check of the octets before it begins with.
+  double early_check = 0;
+  // Of the first check telegram: its octet counts as data, and what follows is the check of that. The status
+  // word is whole only where end telegrams follow.
+  double late_check = 0;
+};
+PassingShifts passing_shifts(const interbus::NetworkDescription& network);
 
 // How well a count goes with a theory: the probability of so many events or more where `expected` come on
 // average (Poisson). A small one refutes that no more are to be expected.

@@ -43,7 +43,10 @@ class Oracle {
     held_.resize(ring.word_count());
   }
 
-  void begin() { ledger_ = {}; }
+  void begin() {
+    ledger_ = {};
+    wrong_before_ = 0;
+  }
   const ErrorLedger& ledger() const { return ledger_; }
   // Whether the last good cycle was not put out somewhere.
   bool has_missed() const { return has_missed_; }
