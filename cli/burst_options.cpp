@@ -41,6 +41,8 @@ class LevelReader {
     const bool is_range = low && high && pitch && *pitch >= 1 && *low >= 0 && *low <= *high && *high < 1e6 &&
                           (*high - *low) / *pitch < kMostTests;
     if (!is_range || (!is_free && (*low != static_cast<unsigned>(*low) || *pitch != 1))) refuse(word);
+    const bool is_level = is_free ? *low >= 1 && *high <= 10'000 : *low >= 1 && *high <= 4;
+    if (!is_level) refuse(word);
     const auto count = static_cast<unsigned>((*high - *low) / *pitch + 1e-9) + 1;
     for (unsigned n = 0; n < count; ++n) {
       const double value = *low + n * *pitch;
@@ -51,7 +53,8 @@ class LevelReader {
 
   [[noreturn]] void refuse(const std::string& word) const {
     settings_.refuse(
-        option_, fmt::format("'{}' is no level; write 1..4, 3, x:1000 or x:1000..4500:500 (volts)", word));
+        option_,
+        fmt::format("'{}' is no level; write 1..4, 3, x:1000 or x:1000..4500:500 (1 to 10000 volts)", word));
   }
 
   const Settings& settings_;

@@ -20,7 +20,6 @@
 #include "protocols/interbus/network_measurement.hpp"
 #include "protocols/interbus/paper.hpp"
 #include "reports/measurement_writer.hpp"
-#include "reports/text_summary.hpp"
 
 // `fieldproof measure`: cycle time, jitter and skew of a network, theory beside measurement.
 namespace fieldproof::cli {
@@ -93,9 +92,9 @@ class BurstsWhileMeasuring {
       return clamp_->phase_during(from, to);
     };
     measurement.conditions.push_back(
-        {"bursts", fmt::format("{}, {}, level {}, profile {} ({})", emc::text_of(bursts_.repetition),
-                               emc::text_of(bursts_.polarity), bursts_.level.text(), profile_.name,
-                               reports::escaped_line(profile_.title))});
+        {"bursts",
+         fmt::format("{}, {}, level {}, profile {} ({})", emc::text_of(bursts_.repetition),
+                     emc::text_of(bursts_.polarity), bursts_.level.text(), profile_.name, profile_.title)});
     for (const std::string& caveat : emc::caveats_of(profile_)) {
       measurement.conditions.push_back({"unverified", caveat});
     }
@@ -113,6 +112,8 @@ measure::Measurement measure_interbus(Session& session) {
   std::optional<BurstsWhileMeasuring> bursts;
   if (session.settings.is_set("bursts")) {
     bursts.emplace(session.settings, network, settings.seed).disturb(settings);
+  } else if (session.settings.origin("profile") == Origin::command_line) {
+    session.settings.refuse("profile", "a profile is one of bursts; say which with --bursts");
   }
   settings.on_progress = [&](std::size_t done) { session.terminal.progress(done); };
   session.terminal.print(simulation_header(session, settings.seed, session.settings.text("network")));

@@ -103,6 +103,25 @@ TEST_F(MeasureVerb, TellsQuietBurstAndRecoveryApart) {
   expect_valid({"bursts.json"}, "measurement");
 }
 
+// Pulses that a burst takes are no loss of the quiet phase.
+TEST_F(MeasureVerb, LostPulsesOfBurstsRefuteNoTheory) {
+  const Called called =
+      call({"measure", "interbus", "--signal", "150Hz,400Hz", "--bursts", "4", "--duration", "20s"});
+  EXPECT_EQ(called.exit_code, 0) << called.out;
+}
+
+TEST_F(MeasureVerb, ABusThatStopsIsToldAndDecidesNothing) {
+  write("impatient.json", R"({
+    "name": "impatient", "bit_rate": "500 kbit/s", "formula": "f4",
+    "rules": {"software_time": "450 us", "stop_after_bad_cycles": 3},
+    "stations": [{"name": "a", "id_code": "0x0103", "cable": "5 m"}],
+    "copy": [{"from": "a", "input_word": 0, "to": "a", "output_word": 0}]})");
+  const Called called = call({"measure", "interbus", "--network", "impatient.json", "--signal", "50Hz",
+                              "--bursts", "4", "--duration", "20s"});
+  EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "50 Hz: the bus stopped for good meanwhile");
+}
+
 TEST_F(MeasureVerb, TakesOneDisturbanceAtATime) {
   for (const std::string bursts : {"1..4", "0", "5", "two", "2,50kHz", "2,5kHz,plus", "2,5kHz,+,-", "x:0"}) {
     EXPECT_EQ(call({"measure", "interbus", "--bursts", bursts}).exit_code, 64) << bursts;

@@ -57,9 +57,10 @@ struct Measurement {
   double tolerance_percent = 0;
   std::vector<Condition> conditions;
   std::vector<Series> series;
+  bool is_complete = true;  // false: something could not be compared; a condition says what, and why
 };
 
-// Over everything that was compared.
+// Over everything that was compared; open where something could not be.
 Agreement agreement(const Measurement& measurement);
 
 }  // namespace fieldproof::measure

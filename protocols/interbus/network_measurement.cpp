@@ -95,7 +95,9 @@ Comparison of_cycle(const PathTheory& theory, std::string quantity, double expec
           us(theory.cycle),    std::string(kOfCycle),     standard_error};
 }
 
-void append_widths(std::vector<Comparison>& rows, const PathTheory& theory, const measure::EdgeSkew& skew) {
+// Lost pulses have no phase: where a run was disturbed nobody knows which of them the disturbance took.
+void append_widths(std::vector<Comparison>& rows, const PathTheory& theory, const measure::EdgeSkew& skew,
+                   bool is_disturbed) {
   const Distribution& widths = skew.widths.in(Phase::quiet);
   if (widths.is_empty()) return;
   const PulseWidth& width = theory.width;
@@ -110,9 +112,14 @@ void append_widths(std::vector<Comparison>& rows, const PathTheory& theory, cons
   if (more * count >= kFewSamples) {
     rows.push_back(of_cycle(theory, "longest pulse", us(width.longer), us(widths.max()), 0));
   }
-  const double came = count / (count + static_cast<double>(skew.lost_pulses));
-  rows.push_back(of_cycle(theory, "mean width of a pulse, lost ones as 0", us(width.mean),
-                          us(widths.mean()) * came, cycle * std::sqrt(more * (1 - more) / count)));
+  if (!is_disturbed) {
+    const double came = count / (count + static_cast<double>(skew.lost_pulses));
+    rows.push_back(of_cycle(theory, "mean width of a pulse, lost ones as 0", us(width.mean),
+                            us(widths.mean()) * came, cycle * std::sqrt(more * (1 - more) / count)));
+  } else if (!is_lossy) {
+    rows.push_back(of_cycle(theory, "mean width of a pulse", us(width.mean), us(widths.mean()),
+                            cycle * std::sqrt(more * (1 - more) / count)));
+  }
   rows.push_back(of_cycle(theory, "standard deviation of the width",
                           is_lossy ? 0 : us(width.standard_deviation), us(widths.standard_deviation()),
                           is_lossy ? 0 : cycle * std::abs(1 - 2 * more) / (2 * std::sqrt(count))));
@@ -173,13 +180,14 @@ measure::Series series_of(const NetworkDescription& network, const SignalRecord&
                           const PathRecord& path) {
   measure::Series series;
   series.name = fmt::format("{} from {}", measure::describe(record.settings.wave.frequency), path.path.name);
-  series.comparisons = compare_path(network, record, path);
+  if (!record.has_stopped) series.comparisons = compare_path(network, record, path);
   series.curves = curves_of(path.skew);
   series.counts = {{"lost pulses", path.skew.lost_pulses, path.skew.pulses},
                    {"lost pauses", path.skew.lost_pauses, path.skew.pauses},
                    {"words that the input never had", path.skew.foreign_words, 0},
                    {"torn process images", record.torn_images, record.images},
                    {"trains", static_cast<std::uint64_t>(record.trains), 0}};
+  if (record.has_stopped) series.counts.push_back({"the bus stopped for good", 1, 0});
   series.trace = path.trace;
   return series;
 }
@@ -279,9 +287,10 @@ std::vector<Comparison> compare_path(const NetworkDescription& network, const Si
   DelayRows("falling edges", theory.delay.min, theory.cycle, theory.low)
       .append(rows, skew.fall_delays.in(Phase::quiet));
   append_phase_lag(rows, theory, skew);
-  append_widths(rows, theory, skew);
+  const bool is_disturbed = record.settings.disturb != nullptr;
+  append_widths(rows, theory, skew, is_disturbed);
   append_duty(rows, theory, skew);
-  if (record.settings.disturb) return rows;
+  if (is_disturbed) return rows;
   append_losses(rows, theory, skew);
   rows.push_back(none_of("words that the input never had", skew.foreign_words));
   rows.push_back(none_of("torn process images", record.torn_images));
@@ -307,6 +316,12 @@ measure::Measurement measure_network(const NetworkDescription& network, const Me
                                                         .disturb = settings.disturb,
                                                         .phase_during = settings.phase_during});
     cycles.add(record);
+    if (record.has_stopped) {
+      measurement.is_complete = false;
+      measurement.conditions.push_back(
+          {"not compared", fmt::format("{}: the bus stopped for good meanwhile",
+                                       measure::describe(settings.signals[n].frequency))});
+    }
     for (const PathRecord& path : record.paths)
       measurement.series.push_back(series_of(network, record, path));
     if (settings.on_progress) settings.on_progress(n + 1);

@@ -165,6 +165,7 @@ class SignalRun {
     record_.data_cycles = after.data_cycles - before.data_cycles;
     record_.id_cycles = after.id_cycles - before.id_cycles;
     record_.rejected_cycles = after.rejected_cycles - before.rejected_cycles;
+    record_.has_stopped = after.state != MasterState::run;
     for (const Watched& watched : watched_) {
       record_.paths.push_back({watched.path, measure::edge_skew(watched.recorder, settings_.phase_during),
                                trace_of(watched.recorder)});
