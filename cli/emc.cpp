@@ -16,6 +16,7 @@
 #include "cli/implementations.hpp"
 #include "cli/interruption.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/simulated_network.hpp"
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "conformance/interbus/master_deviations.hpp"
@@ -24,7 +25,6 @@
 #include "emc/random_flips.hpp"
 #include "emc/residual/residual_error.hpp"
 #include "harness/kernel/error.hpp"
-#include "protocols/interbus/paper.hpp"
 #include "reports/run_directory.hpp"
 
 // `fieldproof emc`: a network under bursts of each level, repetition and polarity.
@@ -97,13 +97,6 @@ std::vector<EmcTest> tests_from(const Settings& settings, bool has_bursts) {
   return tests;
 }
 
-interbus::NetworkDescription network_from(const Settings& settings) {
-  if (settings.is_set("network")) return interbus::NetworkDescription::load(settings.text("network"));
-  interbus::NetworkDescription network = interbus::paper_network();
-  network.cycle_time = interbus::kPaperBestCycle;
-  return network;
-}
-
 // Deviations by role; the rest of the network are references.
 emc::InterbusStations stations_from(const Session& session, std::size_t stations) {
   emc::InterbusStations players;
@@ -143,7 +136,7 @@ class Campaign {
   explicit Campaign(Session& session)
       : session_(session),
         interruption_(session.settings.duration("max-time")),
-        network_(network_from(session.settings)),
+        network_(simulated_network_from(session.settings)),
         stations_(stations_from(session, interbus::ring_order(network_).size())) {
     const Settings& settings = session.settings;
     done_.network = network_.name;

@@ -11,6 +11,7 @@
 #include "cli/burst_options.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/simulated_network.hpp"
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "emc/framing.hpp"
@@ -18,19 +19,11 @@
 #include "harness/kernel/error.hpp"
 #include "harness/measure/frequency.hpp"
 #include "protocols/interbus/network_measurement.hpp"
-#include "protocols/interbus/paper.hpp"
 #include "reports/measurement_writer.hpp"
 
 // `fieldproof measure`: cycle time, jitter and skew of a network, theory beside measurement.
 namespace fieldproof::cli {
 namespace {
-
-interbus::NetworkDescription network_from(const Settings& settings) {
-  if (settings.is_set("network")) return interbus::NetworkDescription::load(settings.text("network"));
-  interbus::NetworkDescription network = interbus::paper_network();
-  network.cycle_time = interbus::kPaperBestCycle;
-  return network;
-}
 
 std::vector<measure::SquareWave> signals_from(const Settings& settings) {
   std::vector<measure::SquareWave> signals;
@@ -108,7 +101,7 @@ class BurstsWhileMeasuring {
 
 measure::Measurement measure_interbus(Session& session) {
   interbus::MeasurementSettings settings = measurement_from(session.settings);
-  const interbus::NetworkDescription network = network_from(session.settings);
+  const interbus::NetworkDescription network = simulated_network_from(session.settings);
   std::optional<BurstsWhileMeasuring> bursts;
   if (session.settings.is_set("bursts")) {
     bursts.emplace(session.settings, network, settings.seed).disturb(settings);

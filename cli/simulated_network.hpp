@@ -1,0 +1,12 @@
+// The network of verbs that simulate without a suite.
+#pragma once
+
+#include "cli/settings.hpp"
+#include "protocols/interbus/network.hpp"
+
+namespace fieldproof::cli {
+
+// That of --network, else the one of the cycle-time paper, cycling as its authors had set it.
+interbus::NetworkDescription simulated_network_from(const Settings& settings);
+
+}  // namespace fieldproof::cli
