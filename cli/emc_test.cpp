@@ -83,6 +83,8 @@ TEST_F(EmcVerb, HoldsACountOnATextbookChannelAgainstTheTheory) {
   const nlohmann::json document = json("channels.json");
   EXPECT_TRUE(document.at("tests").empty());
   ASSERT_EQ(document.at("channels").size(), 2U);
+  ASSERT_EQ(document.at("unverified").size(), 1U);
+  EXPECT_HOLDS(document.at("unverified").front().get<std::string>(), "reading of the header");
   for (const auto& test : document.at("channels")) {
     EXPECT_GT(test.at("ledger").at("corrupted"), 1000);
     EXPECT_GT(test.at("undetected_by_code_word"), 0);

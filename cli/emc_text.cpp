@@ -106,6 +106,15 @@ ordered_json residual_json(const emc::FrameResidual& residual, const EmcTotal& t
           {"rate_per_hour_at_ber_0.01", residual.rate_per_hour}};
 }
 
+// What a reader of the results has to know of their standing.
+std::vector<std::string> unverified_of(const EmcCampaign& campaign) {
+  if (campaign.has_bursts) return emc::caveats_of(campaign.profile);
+  return {
+      "That a flipped header level moves the end of the data, and how often a check fits then, follows from "
+      "this "
+      "project's reading of the header: the simulated stations and the theory share it."};
+}
+
 }  // namespace
 
 EmcTotal total_of(const EmcCampaign& campaign) {
@@ -194,25 +203,24 @@ std::string emc_json(const EmcCampaign& campaign) {
   }
   const EmcTotal total = total_of(campaign);
   const bool has_bursts = campaign.has_bursts;
-  const ordered_json document = {
-      {"schema", "fieldproof/emc/1"},
-      {"protocol", "interbus"},
-      {"network", campaign.network},
-      {"implementations", campaign.implementations},
-      {"profile", has_bursts ? campaign.profile.name : ""},
-      {"threshold_volts", has_bursts ? campaign.threshold_volts : 0},
-      {"unverified", has_bursts ? emc::caveats_of(campaign.profile) : std::vector<std::string>()},
-      {"criteria", std::move(criteria)},
-      {"seed", std::to_string(campaign.seed)},
-      {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
-      {"tests", std::move(tests)},
-      {"channels", std::move(channels)},
-      {"residual", residual_json(campaign.residual, total)},
-      {"total",
-       {{"corrupted", total.corrupted},
-        {"detected", total.detected},
-        {"accepted_wrong", total.accepted_wrong},
-        {"upper_bound_of_share", total.upper_bound_of_share}}}};
+  const ordered_json document = {{"schema", "fieldproof/emc/1"},
+                                 {"protocol", "interbus"},
+                                 {"network", campaign.network},
+                                 {"implementations", campaign.implementations},
+                                 {"profile", has_bursts ? campaign.profile.name : ""},
+                                 {"threshold_volts", has_bursts ? campaign.threshold_volts : 0},
+                                 {"unverified", unverified_of(campaign)},
+                                 {"criteria", std::move(criteria)},
+                                 {"seed", std::to_string(campaign.seed)},
+                                 {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
+                                 {"tests", std::move(tests)},
+                                 {"channels", std::move(channels)},
+                                 {"residual", residual_json(campaign.residual, total)},
+                                 {"total",
+                                  {{"corrupted", total.corrupted},
+                                   {"detected", total.detected},
+                                   {"accepted_wrong", total.accepted_wrong},
+                                   {"upper_bound_of_share", total.upper_bound_of_share}}}};
   return document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

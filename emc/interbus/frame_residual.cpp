@@ -79,8 +79,7 @@ PassingShifts passing_shifts(const interbus::NetworkDescription& network) {
   constexpr unsigned kEndOctet = 0;
   const bool is_status_whole_when_late =
       network.rules.end_telegrams > 0 && status_low == status_high && kEndOctet == status_low;
-  unsigned early = 0;
-  unsigned late = 0;
+  unsigned fitting = 0;
   for (unsigned prefix = 0; prefix < kPrefixes; ++prefix) {
     const std::array<std::uint8_t, 2> octets = {static_cast<std::uint8_t>(prefix >> 8),
                                                 static_cast<std::uint8_t>(prefix & 0xFF)};
@@ -89,10 +88,10 @@ PassingShifts passing_shifts(const interbus::NetworkDescription& network) {
     // The octet that would have to be the last one of the data, and the check that is sent behind it; the
     // second octet of that is where the status word begins.
     const auto sent = check.check_octets(check.update_octet(before, right[0]));
-    if (sent[0] == right[1] && sent[1] == status_high) ++early;
-    if (is_status_whole_when_late && sent[0] == right[1] && sent[1] == status_high) ++late;
+    if (sent[0] == right[1] && sent[1] == status_high) ++fitting;
   }
-  return {early / (256.0 * kPrefixes), static_cast<double>(late) / kPrefixes};
+  const double share = static_cast<double>(fitting) / kPrefixes;
+  return {share / 256, is_status_whole_when_late ? share : 0};
 }
 
 // The incomplete gamma function is the sum of the distribution's upper tail.

@@ -74,8 +74,8 @@ struct ImmunityResult {
   Criterion criterion = Criterion::d;
   ErrorLedger ledger;
   std::uint64_t longest_bad_run = 0;  // cycles of either kind
-  std::uint64_t recovery_cycles =
-      0;  // after the last pulse until a good data cycle that is put out, that one included
+  // After the last pulse until a good data cycle that is put out everywhere, that one included.
+  std::uint64_t recovery_cycles = 0;
   bool recovered_by_itself = false;
   bool recovered_after_start = false;  // where it did not by itself
   std::uint64_t bus_stops = 0;         // each was followed by a new start
