@@ -14,6 +14,8 @@ namespace {
 
 using emc::Level;
 
+constexpr double kMostVolts = 10'000;
+
 class LevelReader {
  public:
   LevelReader(const Settings& settings, std::string_view option) : settings_(settings), option_(option) {}
@@ -38,11 +40,10 @@ class LevelReader {
     const auto low = real_of(from);
     const auto high = real_of(to);
     const auto pitch = real_of(step);
-    const bool is_range = low && high && pitch && *pitch >= 1 && *low >= 0 && *low <= *high && *high < 1e6 &&
-                          (*high - *low) / *pitch < kMostTests;
+    const double most = is_free ? kMostVolts : 4;
+    const bool is_range = low && high && pitch && *low >= 1 && *low <= *high && *high <= most &&
+                          *pitch >= 1 && *pitch <= kMostVolts;
     if (!is_range || (!is_free && (*low != static_cast<unsigned>(*low) || *pitch != 1))) refuse(word);
-    const bool is_level = is_free ? *low >= 1 && *high <= 10'000 : *low >= 1 && *high <= 4;
-    if (!is_level) refuse(word);
     const auto count = static_cast<unsigned>((*high - *low) / *pitch + 1e-9) + 1;
     for (unsigned n = 0; n < count; ++n) {
       const double value = *low + n * *pitch;

@@ -16,7 +16,7 @@ namespace fieldproof::cli {
 
 inline constexpr std::size_t kMostTests = 10'000;  // of a campaign
 
-// "3", "1..4", "x:1000", "x:1000..4500:500" and several of them; at most kMostTests in one range.
+// "3", "1..4", "x:1000", "x:1000..4500:500" and several of them.
 std::vector<emc::Level> levels_from(const Settings& settings);
 std::vector<emc::Repetition> repetitions_from(const Settings& settings);
 std::vector<emc::Polarity> polarities_from(const Settings& settings);

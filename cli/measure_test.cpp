@@ -123,7 +123,8 @@ TEST_F(MeasureVerb, ABusThatStopsIsToldAndDecidesNothing) {
 }
 
 TEST_F(MeasureVerb, TakesOneDisturbanceAtATime) {
-  for (const std::string bursts : {"1..4", "0", "5", "two", "2,50kHz", "2,5kHz,plus", "2,5kHz,+,-", "x:0"}) {
+  for (const std::string bursts :
+       {"1..4", "0", "5", "two", "2,50kHz", "2,5kHz,plus", "2,5kHz,+,-", "x:0", "x:1000..4500:inf", ""}) {
     EXPECT_EQ(call({"measure", "interbus", "--bursts", bursts}).exit_code, 64) << bursts;
   }
   EXPECT_EQ(call({"measure", "interbus", "--bursts", "2", "--profile", "Z"}).exit_code, 64);

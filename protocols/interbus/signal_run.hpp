@@ -68,8 +68,7 @@ struct SignalRecord {
   std::uint64_t data_cycles = 0;
   std::uint64_t id_cycles = 0;
   std::uint64_t rejected_cycles = 0;
-  // The bus did not exchange data any more at the end: a disturbance stopped it, at a time that the last of
-  // `cycle_times` tells.
+  // A disturbance has stopped the bus: it exchanges no data at the end.
   bool has_stopped = false;
 };
 
