@@ -55,16 +55,16 @@ void CharacterCode::append(Levels& levels, unsigned data) const {
   levels.append(levels_per_bit() == 2 ? doubled(bits) : bits, levels_per_character());
 }
 
-void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& received) const {
+void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& received) {
   const unsigned length = code_.format().bits_before_stop() + 1;
-  Sampler sampler(wave, sampling_, bit_rate_);
+  sampler_.look_at(wave);
   std::size_t edge = 0;
   while ((edge = falling_edge(wave.levels, edge)) < wave.levels.size()) {
-    sampler.start(edge);
+    sampler_.start(edge);
     std::uint32_t bits = 0;
-    for (unsigned bit = 0; bit < length; ++bit) bits |= std::uint32_t{sampler.sample(bit)} << bit;
+    for (unsigned bit = 0; bit < length; ++bit) bits |= std::uint32_t{sampler_.sample(bit)} << bit;
     if ((bits & 1) != 0) {
-      edge = sampler.idle_seen();
+      edge = sampler_.idle_seen();
       continue;
     }
     const kernel::Time start = wave.time_of(edge);
@@ -72,7 +72,7 @@ void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& rec
         Received{code_.from_bits(bits), start, sampling_.decided_at(start, length - 1, bit_rate_)});
     last.character.level = static_cast<std::uint32_t>(edge);
     // With the stop bit missing the line is low: the next falling edge lies behind an idle level anyhow.
-    edge = sampler.behind(length - 1);
+    edge = sampler_.behind(length - 1);
   }
 }
 

@@ -125,15 +125,16 @@ class CharacterReceiver {
   };
 
   CharacterReceiver(const CharacterFormat& format, std::int64_t bit_rate, Sampling sampling = {})
-      : code_(format), bit_rate_(bit_rate), sampling_(sampling) {}
+      : code_(format), bit_rate_(bit_rate), sampling_(sampling), sampler_(sampling, bit_rate) {}
 
   // Appends the characters in order. One that is cut by the end of the waveform is completed with idle line.
-  void receive(const Waveform& wave, std::vector<Received>& received) const;
+  void receive(const Waveform& wave, std::vector<Received>& received);
 
  private:
   CharacterCode code_;
   std::int64_t bit_rate_;
   Sampling sampling_;
+  Sampler sampler_;
 };
 
 }  // namespace fieldproof::line

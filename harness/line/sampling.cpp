@@ -4,25 +4,32 @@
 
 namespace fieldproof::line {
 
-bool Sampling::sample(const Waveform& wave, kernel::Time edge, unsigned bit, std::int64_t bit_rate) const {
-  if (kind == Kind::mid_bit) return wave.at(instant(edge, bit, 8, bit_rate));
-  const kernel::Time first = instant(edge, bit, 7, bit_rate);
-  const kernel::Time last = instant(edge, bit, 9, bit_rate);
-  // On a quiet line the three samples lie in one level: its index is searched once.
-  const std::size_t next = wave.first_level_at(first);
-  const bool begins_here = next < wave.levels.size() && wave.time_of(next) == first;
-  const std::size_t level = begins_here ? next : next - 1;
-  const bool is_outside = first < wave.start || first >= wave.end();
-  if (!is_outside && (level + 1 >= wave.levels.size() ? last < wave.end() : last < wave.time_of(level + 1))) {
-    return wave.levels[level];
-  }
-  const int ones = int{wave.at(first)} + int{wave.at(instant(edge, bit, 8, bit_rate))} + int{wave.at(last)};
-  return ones >= 2;
+namespace {
+
+// The length of so many sixteenths of a bit in levels at `rate`.
+struct LevelCount {
+  std::size_t whole;
+  std::size_t rounded_up;
+};
+
+LevelCount levels_in(std::uint64_t sixteenths, std::int64_t rate, std::int64_t bit_rate) {
+  __extension__ using Wide = unsigned __int128;
+  const Wide product = Wide{sixteenths} * static_cast<std::uint64_t>(rate);
+  const auto divisor = static_cast<std::uint64_t>(bit_rate) * 16;
+  const auto whole = static_cast<std::size_t>(product / divisor);
+  return {whole, whole + (product % divisor != 0 ? 1 : 0)};
 }
 
-kernel::Time Sampling::idle_seen_at(const Waveform& wave, kernel::Time edge, std::int64_t bit_rate) const {
-  const kernel::Time last = decided_at(edge, 0, bit_rate);
-  return wave.at(last) ? last : instant(edge, 0, 8, bit_rate);
+}  // namespace
+
+void Sampler::fit(std::int64_t rate) {
+  rate_ = rate;
+  for (unsigned bit = 0; bit < kMostBits; ++bit) {
+    const LevelCount last = levels_in(bit * 16 + sampling_.last(), rate, bit_rate_);
+    places_.at(bit) = {levels_in(bit * 16 + sampling_.first(), rate, bit_rate_).whole,
+                       levels_in(bit * 16 + 8, rate, bit_rate_).whole, last.whole, last.rounded_up};
+  }
+  behind_first_middle_ = levels_in(8, rate, bit_rate_).rounded_up;
 }
 
 std::size_t falling_edge(const Levels& levels, std::size_t from) {

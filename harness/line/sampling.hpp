@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -12,11 +13,11 @@
 // three samples at t + (k + 7/16), (k + 8/16) and (k + 9/16) bit times. Shared by every start-stop receiver:
 // characters and telegrams.
 //
-// Contract: a sample is the level that begins at or before its instant, idle outside the waveform. Sampling
-// instants are computed from the edge and rounded once, never accumulated; where they lie on the borders of
-// levels (`Sampler`) nothing is rounded at all. The receiver's clock starts exactly at the edge: the
-// uncertainty of up to one sixteenth of a bit that a free-running sampling clock has is not modelled.
-// `bit_rate` is positive and below 2^59 bit/s.
+// Contract: a sample is the level that begins at or before its instant, idle outside the waveform. The edge
+// is the begin of a level, so how many levels later a sample is taken is a fraction of two whole numbers, the
+// same for each edge; nothing is rounded and nothing accumulated. The receiver's clock starts exactly at the
+// edge: the uncertainty of up to one sixteenth of a bit that a free-running sampling clock has is not
+// modelled. `bit_rate` is positive and below 2^59 bit/s.
 namespace fieldproof::line {
 
 struct Sampling {
@@ -29,17 +30,14 @@ struct Sampling {
     return kernel::level_time(edge, std::int64_t{bit} * 16 + sixteenth, bit_rate * 16);
   }
 
-  // What the receiver takes bit `bit` for.
-  bool sample(const Waveform& wave, kernel::Time edge, unsigned bit, std::int64_t bit_rate) const;
+  // The sixteenths of the first and of the last sample of a bit.
+  unsigned first() const { return kind == Kind::mid_bit ? 8 : 7; }
+  unsigned last() const { return kind == Kind::mid_bit ? 8 : 9; }
 
-  // The last instant that the answer of `sample` depends on: before it nothing about this bit is known.
+  // When the last sample of a bit is taken: before it nothing about this bit is known.
   kernel::Time decided_at(kernel::Time edge, unsigned bit, std::int64_t bit_rate) const {
-    return instant(edge, bit, kind == Kind::mid_bit ? 8 : 9, bit_rate);
+    return instant(edge, bit, last(), bit_rate);
   }
-
-  // From where a receiver that has refused a start bit (`sample` of bit 0 gave idle) looks for the next edge:
-  // the last sample at which it saw the line idle.
-  kernel::Time idle_seen_at(const Waveform& wave, kernel::Time edge, std::int64_t bit_rate) const;
 
   friend bool operator==(const Sampling&, const Sampling&) = default;
 };
@@ -48,63 +46,64 @@ struct Sampling {
 // line is idle, so level 0 is an edge when it is 0.
 std::size_t falling_edge(const Levels& levels, std::size_t from);
 
-// One receiver's look at one waveform, in the levels of it. `start` comes before all other questions.
+// A receiver's look at waveforms of any rate, in the levels of them. `look_at` comes before `start`, and
+// `start` before all questions; the waveform outlives them.
 class Sampler {
  public:
-  Sampler(const Waveform& wave, const Sampling& sampling, std::int64_t bit_rate)
-      : wave_(wave), sampling_(sampling), bit_rate_(bit_rate) {
-    // No number of levels per sixteenth that is whole: 0, and instants decide.
-    if (wave.rate % (16 * bit_rate) == 0) sixteenth_ = static_cast<std::size_t>(wave.rate / (16 * bit_rate));
+  // Of the longest character and telegram; a later bit is a broken invariant.
+  static constexpr unsigned kMostBits = 16;
+
+  Sampler(const Sampling& sampling, std::int64_t bit_rate) : sampling_(sampling), bit_rate_(bit_rate) {}
+
+  void look_at(const Waveform& wave) {
+    levels_ = &wave.levels;
+    if (wave.rate != rate_) fit(wave.rate);
   }
 
   // The falling edge at level `edge` starts the receiver's clock.
-  void start(std::size_t edge) {
-    edge_ = edge;
-    if (!is_on_grid()) edge_time_ = wave_.time_of(edge);
-  }
+  void start(std::size_t edge) { edge_ = edge; }
 
   // What the receiver takes bit `bit` for.
   bool sample(unsigned bit) const {
-    if (!is_on_grid()) return sampling_.sample(wave_, edge_time_, bit, bit_rate_);
-    if (sampling_.kind == Sampling::Kind::mid_bit) return at(bit, 8);
-    return int{at(bit, 7)} + int{at(bit, 8)} + int{at(bit, 9)} >= 2;
+    const Places& places = places_[bit];
+    // On a quiet line all samples lie in one level.
+    if (places.first == places.last) return at(places.first);
+    return int{at(places.first)} + int{at(places.middle)} + int{at(places.last)} >= 2;
   }
 
   // Whether all of the waveform that a bit depends on is there.
-  bool is_decided(unsigned bit) const {
-    return is_on_grid() ? level(bit, last()) <= wave_.levels.size()
-                        : sampling_.decided_at(edge_time_, bit, bit_rate_) <= wave_.end();
-  }
+  bool is_decided(unsigned bit) const { return edge_ + places_[bit].behind <= levels_->size(); }
 
-  // The first level behind the last sample of a bit: from there on the receiver looks for the next edge.
-  std::size_t behind(unsigned bit) const {
-    return is_on_grid() ? std::min(level(bit, last()), wave_.levels.size())
-                        : level_from(sampling_.decided_at(edge_time_, bit, bit_rate_));
-  }
+  // The first level that begins at or behind the last sample of a bit: from there on the receiver looks for
+  // the next edge.
+  std::size_t behind(unsigned bit) const { return within(places_[bit].behind); }
 
   // From where a receiver that has refused the start bit (its sample is idle) looks for the next edge: the
   // last sample at which it saw the line idle.
   std::size_t idle_seen() const {
-    return is_on_grid() ? std::min(level(0, at(0, last()) ? last() : 8), wave_.levels.size())
-                        : level_from(sampling_.idle_seen_at(wave_, edge_time_, bit_rate_));
+    return within(at(places_[0].last) ? places_[0].behind : behind_first_middle_);
   }
 
  private:
-  bool is_on_grid() const { return sixteenth_ != 0; }
-  unsigned last() const { return sampling_.kind == Sampling::Kind::mid_bit ? 8 : 9; }
-  std::size_t level(unsigned bit, unsigned sixteenth) const {
-    return edge_ + (std::size_t{bit} * 16 + sixteenth) * sixteenth_;
-  }
-  // Behind the edge even where half a bit rounds to nothing.
-  std::size_t level_from(kernel::Time time) const { return std::max(wave_.first_level_at(time), edge_ + 1); }
-  bool at(unsigned bit, unsigned sixteenth) const { return wave_.levels[level(bit, sixteenth)]; }
+  // Levels from the edge on.
+  struct Places {
+    std::size_t first = 0;  // that is sampled
+    std::size_t middle = 0;
+    std::size_t last = 0;
+    std::size_t behind = 0;  // the first that begins at or behind the last sample
+  };
 
-  const Waveform& wave_;
+  void fit(std::int64_t rate);
+  bool at(std::size_t place) const { return (*levels_)[edge_ + place]; }
+  std::size_t within(std::size_t place) const { return std::min(edge_ + place, levels_->size()); }
+
   Sampling sampling_;
   std::int64_t bit_rate_;
-  std::size_t sixteenth_ = 0;  // of a bit, in levels
+  std::int64_t rate_ = 0;  // that the places are for
+  std::array<Places, kMostBits> places_{};
+  std::size_t behind_first_middle_ = 0;
+  const Levels* levels_ = nullptr;
   std::size_t edge_ = 0;
-  kernel::Time edge_time_{};
 };
 
 }  // namespace fieldproof::line

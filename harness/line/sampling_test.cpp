@@ -3,53 +3,62 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace fieldproof::line {
 namespace {
 
-using kernel::Duration;
-using kernel::kMicrosecond;
-using kernel::kPicosecond;
-using kernel::kStart;
-using kernel::Time;
-
 constexpr std::int64_t kBitRate = 62'500;  // 16 us per bit, 1 us per sixteenth
 
-// A line that is low in [from, to), told in levels of one picosecond's grid: low exactly there.
-Waveform low_between(Duration from, Duration to) {
+// A line with one level per sixteenth of a bit, low in [from, to).
+Waveform low_between(std::size_t from, std::size_t to) {
   Waveform wave;
-  wave.start = kStart + from;
-  wave.rate = 1'000'000'000'000 / (to - from).count();
-  wave.levels.append(0, 1);
+  wave.rate = 16 * kBitRate;
+  wave.levels.append_idle(64);
+  wave.levels.fill(from, to, false);
   return wave;
 }
 
+bool first_bit(const Sampling& sampling, const Waveform& wave) {
+  Sampler sampler(sampling, kBitRate);
+  sampler.look_at(wave);
+  sampler.start(0);
+  return sampler.sample(0);
+}
+
 TEST(Sampling, TakesTheMajorityOfSevenEightAndNineSixteenths) {
-  const Sampling majority;
   // Low over exactly one of the three samples, over two, over all.
-  EXPECT_TRUE(majority.sample(low_between(7 * kMicrosecond, 8 * kMicrosecond), kStart, 0, kBitRate));
-  EXPECT_FALSE(majority.sample(low_between(7 * kMicrosecond, 9 * kMicrosecond), kStart, 0, kBitRate));
-  EXPECT_FALSE(majority.sample(low_between(8 * kMicrosecond, 10 * kMicrosecond), kStart, 0, kBitRate));
-  EXPECT_TRUE(majority.sample(low_between(9 * kMicrosecond, 10 * kMicrosecond), kStart, 0, kBitRate));
-  EXPECT_FALSE(majority.sample(low_between(Duration{0}, 16 * kMicrosecond), kStart, 0, kBitRate));
+  EXPECT_TRUE(first_bit({}, low_between(7, 8)));
+  EXPECT_FALSE(first_bit({}, low_between(7, 9)));
+  EXPECT_FALSE(first_bit({}, low_between(8, 10)));
+  EXPECT_TRUE(first_bit({}, low_between(9, 10)));
+  EXPECT_FALSE(first_bit({}, low_between(0, 16)));
 }
 
 TEST(Sampling, TakesOneSampleInTheMiddle) {
   const Sampling single{Sampling::Kind::mid_bit};
-  EXPECT_FALSE(single.sample(low_between(8 * kMicrosecond, 9 * kMicrosecond), kStart, 0, kBitRate));
-  EXPECT_TRUE(single.sample(low_between(7 * kMicrosecond, 8 * kMicrosecond), kStart, 0, kBitRate));
-  EXPECT_TRUE(
-      single.sample(low_between(8 * kMicrosecond + kPicosecond, 16 * kMicrosecond), kStart, 0, kBitRate));
+  EXPECT_FALSE(first_bit(single, low_between(8, 9)));
+  EXPECT_TRUE(first_bit(single, low_between(7, 8)));
+  EXPECT_TRUE(first_bit(single, low_between(9, 16)));
 }
 
 TEST(Sampling, LooksForTheNextEdgeBehindTheLastIdleSample) {
-  const Sampling majority;
-  const Time idle_at_nine =
-      majority.idle_seen_at(low_between(Duration{0}, 7 * kMicrosecond), kStart, kBitRate);
-  EXPECT_EQ(idle_at_nine, kStart + 9 * kMicrosecond);
-  const Waveform low_at_nine = low_between(9 * kMicrosecond, 10 * kMicrosecond);
-  EXPECT_EQ(majority.idle_seen_at(low_at_nine, kStart, kBitRate), kStart + 8 * kMicrosecond);
+  Sampler sampler({}, kBitRate);
+  const Waveform idle_at_nine = low_between(0, 7);
+  sampler.look_at(idle_at_nine);
+  sampler.start(0);
+  EXPECT_EQ(sampler.idle_seen(), 9U);
+  const Waveform low_at_nine = low_between(9, 10);
+  sampler.look_at(low_at_nine);
+  EXPECT_EQ(sampler.idle_seen(), 8U);
+}
+
+TEST(Sampling, DecidesWithTheLastSample) {
+  const kernel::Time edge = kernel::kStart + 3 * kernel::kMicrosecond;
+  EXPECT_EQ(Sampling{}.decided_at(edge, 2, kBitRate), edge + (32 + 9) * kernel::kMicrosecond);
+  EXPECT_EQ(Sampling{Sampling::Kind::mid_bit}.decided_at(edge, 2, kBitRate),
+            edge + (32 + 8) * kernel::kMicrosecond);
 }
 
 TEST(Sampling, FindsFallingEdges) {
@@ -63,39 +72,55 @@ TEST(Sampling, FindsFallingEdges) {
   EXPECT_EQ(falling_edge(levels, 69), 70U);
 }
 
-RC_GTEST_PROP(Sampling, AgreesWithAskingForEachSample, ()) {
-  Waveform wave;
-  wave.start = kStart + Duration{*rc::gen::inRange<std::int64_t>(0, 50'000'000)};
-  wave.rate = *rc::gen::inRange<std::int64_t>(30'000, 3'000'000);
-  for (const bool level : *rc::gen::arbitrary<std::vector<bool>>()) wave.levels.append(level ? 1 : 0, 1);
-  const Time edge = kStart + Duration{*rc::gen::inRange<std::int64_t>(0, 100'000'000)};
-  const auto bit = *rc::gen::inRange(0U, 12U);
-  const auto at = [&](unsigned sixteenth) {
-    return int{wave.at(Sampling::instant(edge, bit, sixteenth, kBitRate))};
-  };
-  RC_ASSERT(Sampling{}.sample(wave, edge, bit, kBitRate) == (at(7) + at(8) + at(9) >= 2));
-}
+// The definition, in whole numbers: level n behind the edge begins at n / rate, a sample is taken at
+// sixteenths / (16 * bit rate).
+struct SlowSampler {
+  std::int64_t rate;
+  std::int64_t begins(std::int64_t level) const { return level * 16 * kBitRate; }
+  std::int64_t taken(unsigned bit, unsigned sixteenth) const {
+    return static_cast<std::int64_t>(bit * 16 + sixteenth) * rate;
+  }
+  // The level that begins at or before the sample.
+  std::size_t level(unsigned bit, unsigned sixteenth) const {
+    std::int64_t n = 0;
+    while (begins(n + 1) <= taken(bit, sixteenth)) ++n;
+    return static_cast<std::size_t>(n);
+  }
+  // The first that begins at or behind it.
+  std::size_t behind(unsigned bit, unsigned sixteenth) const {
+    std::int64_t n = 0;
+    while (begins(n) < taken(bit, sixteenth)) ++n;
+    return static_cast<std::size_t>(n);
+  }
+};
 
-// On a grid of whole picoseconds, where instants are exact, levels and instants tell the same.
-RC_GTEST_PROP(Sampler, SeesInLevelsWhatInstantsTell, ()) {
-  const auto sixteenth = *rc::gen::element<std::int64_t>(1, 2, 5, 10);  // levels
+RC_GTEST_PROP(Sampler, SeesWhatTheDefinitionTells, ()) {
   Waveform wave;
-  wave.start = kStart + 3 * kMicrosecond;
-  wave.rate = kBitRate * 16 * sixteenth;
+  wave.rate = *rc::gen::oneOf(
+      rc::gen::inRange<std::int64_t>(10'000, 3'000'000),
+      rc::gen::map(rc::gen::inRange<std::int64_t>(1, 12), [](std::int64_t n) { return n * 16 * kBitRate; }));
   for (const bool level : *rc::gen::arbitrary<std::vector<bool>>()) {
     wave.levels.append_fill(level, *rc::gen::inRange<std::size_t>(0, 40));
   }
   wave.levels.append(0, 1);
   const Sampling sampling{*rc::gen::element(Sampling::Kind::majority_of_three, Sampling::Kind::mid_bit)};
   const auto edge = *rc::gen::inRange<std::size_t>(0, wave.levels.size());
-  const auto bit = *rc::gen::inRange(0U, 12U);
-  const Time start = wave.time_of(edge);
-  Sampler sampler(wave, sampling, kBitRate);
+  const auto bit = *rc::gen::inRange(0U, Sampler::kMostBits);
+  const SlowSampler slow{wave.rate};
+  const auto at = [&](unsigned n, unsigned sixteenth) {
+    return wave.levels[edge + slow.level(n, sixteenth)];
+  };
+  const auto within = [&](std::size_t place) { return std::min(edge + place, wave.levels.size()); };
+  Sampler sampler(sampling, kBitRate);
+  sampler.look_at(wave);
   sampler.start(edge);
-  RC_ASSERT(sampler.sample(bit) == sampling.sample(wave, start, bit, kBitRate));
-  RC_ASSERT(sampler.is_decided(bit) == (sampling.decided_at(start, bit, kBitRate) <= wave.end()));
-  RC_ASSERT(sampler.behind(bit) == wave.first_level_at(sampling.decided_at(start, bit, kBitRate)));
-  RC_ASSERT(sampler.idle_seen() == wave.first_level_at(sampling.idle_seen_at(wave, start, kBitRate)));
+  const bool is_single = sampling.kind == Sampling::Kind::mid_bit;
+  const unsigned last = is_single ? 8 : 9;
+  RC_ASSERT(sampler.sample(bit) ==
+            (is_single ? at(bit, 8) : int{at(bit, 7)} + int{at(bit, 8)} + int{at(bit, 9)} >= 2));
+  RC_ASSERT(sampler.is_decided(bit) == (edge + slow.behind(bit, last) <= wave.levels.size()));
+  RC_ASSERT(sampler.behind(bit) == within(slow.behind(bit, last)));
+  RC_ASSERT(sampler.idle_seen() == within(slow.behind(0, at(0, last) ? last : 8)));
 }
 
 RC_GTEST_PROP(Sampling, FindsTheEdgeThatASlowSearchFinds, (const std::vector<bool>& bits)) {

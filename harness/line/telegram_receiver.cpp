@@ -5,7 +5,7 @@
 namespace fieldproof::line {
 namespace {
 
-constexpr std::int64_t kJoinedLevelsPerBit = 240;
+constexpr std::int64_t kJoinedLevelsPerBit = 320;
 
 // The number of whole levels from `from` to `to` when both lie on one grid, -1 otherwise.
 std::int64_t levels_between(kernel::Time from, kernel::Time to, std::int64_t rate) {
@@ -53,29 +53,29 @@ std::size_t levels_until(kernel::Time start, kernel::Time end, std::int64_t rate
 
 TelegramReceiver::TelegramReceiver(const TelegramCode& code, std::int64_t bit_rate,
                                    TelegramReceiverOptions options)
-    : code_(code), bit_rate_(bit_rate), options_(options) {}
+    : code_(code), bit_rate_(bit_rate), options_(options), sampler_(options.sampling, bit_rate) {}
 
-bool TelegramReceiver::sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram) const {
-  Sampler sampler(wave, options_.sampling, bit_rate_);
+bool TelegramReceiver::sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram) {
+  sampler_.look_at(wave);
   while ((at = falling_edge(wave.levels, at)) < wave.levels.size()) {
-    sampler.start(at);
+    sampler_.start(at);
     // Whether it is a start bit is not known yet: the next reception may go on with it.
-    if (!sampler.is_decided(0)) return false;
+    if (!sampler_.is_decided(0)) return false;
     std::uint64_t sampled = 0;
     for (unsigned bit = 0; bit < kDataTelegramLevels; ++bit) {
-      if (sampler.sample(bit)) sampled |= std::uint64_t{1} << bit;
+      if (sampler_.sample(bit)) sampled |= std::uint64_t{1} << bit;
     }
     if ((sampled & 1) != 0) {
       if (options_.validates_start) {
-        at = sampler.idle_seen();
+        at = sampler_.idle_seen();
         continue;
       }
       sampled &= ~std::uint64_t{1};
     }
     telegram = code_.from_levels(sampled);
     telegram.level = static_cast<std::uint32_t>(at);
-    if (!sampler.is_decided(telegram.levels() - 1)) return false;
-    at = sampler.behind(telegram.levels() - 1);
+    if (!sampler_.is_decided(telegram.levels() - 1)) return false;
+    at = sampler_.behind(telegram.levels() - 1);
     while (telegram.is_stop_missing() && at < wave.levels.size() && !wave.levels[at]) ++at;
     return true;
   }
@@ -115,8 +115,8 @@ bool TelegramReceiver::join_on_grid(const Waveform& second) {
   return true;
 }
 
-// At a multiple of the sixteenths at which bits are sampled and of the tenths and twentieths in which people
-// write glitches. It does not grow when joins follow joins.
+// At a multiple of the sixty-fourths in which bursts are written, of the sixteenths at which bits are sampled
+// and of the tenths and twentieths in which people write glitches. It does not grow when joins follow joins.
 void TelegramReceiver::join_head(const Waveform& second) {
   const kernel::Time head = kernel::level_time(second.start, kDataTelegramLevels + 1, bit_rate_);
   joined_.start = pending_.start;

@@ -109,7 +109,7 @@ class TelegramReceiver {
   static bool begins_before(const Waveform& wave, std::size_t from, kernel::Time time);
   // Finds and samples the next telegram from level `at` on; false when there is none or when the end of the
   // waveform cuts it (`at` is then its first level), else `at` is where the search goes on.
-  bool sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram) const;
+  bool sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram);
   void keep(const Waveform& wave, std::size_t from);
   // Idle levels behind a cut telegram that complete it whatever it is.
   std::size_t idle_levels(const Waveform& wave) const;
@@ -122,6 +122,7 @@ class TelegramReceiver {
   const TelegramCode& code_;
   std::int64_t bit_rate_;
   TelegramReceiverOptions options_;
+  Sampler sampler_;
   bool has_pending_ = false;
   kernel::Time pending_until_{};
   Waveform pending_;
