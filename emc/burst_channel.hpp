@@ -20,7 +20,7 @@
 // over its levels, and the receiver gets one of three things:
 //   - the transmission itself, when nothing of them can be seen at a sampling instant or as an edge;
 //   - the transmission with bits flipped, when only sampled bits are wrong at their sampling instants;
-//   - the transmission at 240 levels per bit with the wrong times in it: then the receiver itself finds edges
+//   - the transmission at 64 levels per bit with the wrong times in it: then the receiver itself finds edges
 //     and samples where it does.
 // The third is the model; the first two are short cuts for a declared receiver and give what that receiver
 // would make of the third (see sampled_impact.hpp).
@@ -66,8 +66,10 @@ class BurstChannel final : public fault::Channel {
   BurstSchedule& schedule() { return schedule_; }
   const BurstSchedule& schedule() const { return schedule_; }
 
-  // Levels per bit of a rewritten transmission.
-  static constexpr std::int64_t kTicksPerBit = 240;
+  // Levels per bit of a rewritten transmission. A multiple of 16: the instants at which receivers sample are
+  // borders of ticks, so the nearest tick keeps not only the mean length of a wrong time but also the chance
+  // that it reaches over two samples of a majority.
+  static constexpr std::int64_t kTicksPerBit = 64;
 
  private:
   kernel::Time latest_end(const line::Waveform& sent);

@@ -1,7 +1,6 @@
 #include "emc/wrong_spans.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #if defined(__clang__)
 #pragma clang fp contract(off)
@@ -44,8 +43,9 @@ void WrongSpans::begin(const line::Waveform& sent, std::int64_t ticks_per_level)
 }
 
 std::int64_t WrongSpans::tick_of(kernel::Time time) const {
-  const double ticks = static_cast<double>((time - sent_->start).count()) * ticks_per_picosecond_;
-  return static_cast<std::int64_t>(std::floor(ticks + 0.5));
+  const double ticks = static_cast<double>((time - sent_->start).count()) * ticks_per_picosecond_ + 0.5;
+  const auto whole = static_cast<std::int64_t>(ticks);
+  return static_cast<double>(whole) > ticks ? whole - 1 : whole;  // towards zero is up for what is negative
 }
 
 void WrongSpans::add(kernel::Time pulse, const WrongOutput& wrong) {
