@@ -33,9 +33,10 @@ line::Waveform frame() {
 
 class BurstLine {
  public:
-  explicit BurstLine(bool has_framing)
-      : channel_(
-            emc::BurstSchedule({}, kernel::Random(1)),
+  explicit BurstLine(bool has_framing, emc::Repetition repetition = emc::Repetition::khz_5)
+      : bursts_{.repetition = repetition},
+        channel_(
+            emc::BurstSchedule(bursts_, kernel::Random(1)),
             emc::LineResponse(emc::Profile::named("A").coupling).wrong_output(1000, emc::Polarity::positive),
             {kBitRate,
              has_framing ? std::make_shared<emc::TelegramFraming>(line::TelegramLayout{}) : nullptr,
@@ -76,7 +77,7 @@ class BurstLine {
  private:
   // Frames over pulses, at any phase.
   void place_frames() {
-    emc::BurstSchedule schedule({}, kernel::Random(1));
+    emc::BurstSchedule schedule(bursts_, kernel::Random(1));
     kernel::Random random(2);
     kernel::Time pulse = kernel::kStart;
     starts_.resize(50'000);
@@ -86,6 +87,7 @@ class BurstLine {
     }
   }
 
+  emc::BurstSettings bursts_;
   trace::Trace trace_;
   emc::BurstChannel channel_;
   line::Waveform sent_;
@@ -98,8 +100,8 @@ Batch clean() {
   return [line = std::make_shared<BurstLine>(true)] { return line->pass_clean(100'000); };
 }
 
-Batch hit(bool has_framing) {
-  return [line = std::make_shared<BurstLine>(has_framing)] { return line->pass_hit(1'000); };
+Batch hit(bool has_framing, emc::Repetition repetition = emc::Repetition::khz_5) {
+  return [line = std::make_shared<BurstLine>(has_framing, repetition)] { return line->pass_hit(1'000); };
 }
 
 // Asks a coin for each bit of the frames that the bursts hit, 2 bits of a frame being hit.
@@ -182,6 +184,8 @@ const Rows kRows({{"burst channel, clean", "copy of the waveform", "transmission
                   {"burst channel, hit", "fieldproof", "hit bits", "a coin", 1, [] { return hit(true); }},
                   {"burst channel, hit", "fieldproof, each rewritten", "hit bits", "a coin", 0,
                    [] { return hit(false); }},
+                  {"burst channel, hit", "fieldproof, 100 kHz", "hit bits", "a coin", 1,
+                   [] { return hit(true, emc::Repetition::khz_100); }},
                   {"flips at 1 in 100", "a coin for each bit", "bits", "", 0, bit_by_bit},
                   {"flips at 1 in 100", "std::geometric_distribution", "bits", "", 0, standard_skips},
                   {"flips at 1 in 100", "fieldproof", "bits", "std::geometric", 1.4, own_skips}});
