@@ -218,13 +218,10 @@ void RingEmulator::on_telegram(const line::Waveform& wave, const line::Telegram&
     begin_cycle(wave, telegram);
   }
   if (cycle_count_ == 0) return;  // a check phase without a cycle
-  SeenCycle& seen = open_cycle();
-  seen.octets.push_back(telegram.data);
-  seen.headers.push_back(telegram.header);
-  seen.starts.push_back(wave.time_of(telegram.level));
+  open_cycle().octets.push_back(telegram.data);
   if (is_check) {
     if (is_id != is_id_cycle_) note_wrong_phase();
-    on_check(telegram);
+    on_check(wave, telegram);
   } else {
     on_transfer(telegram);
   }

@@ -69,8 +69,6 @@ struct SeenCycle {
   kernel::Time start{};
   kernel::Time end{};                // of the status word
   std::vector<std::uint8_t> octets;  // all data telegrams
-  std::vector<std::uint8_t> headers;
-  std::vector<kernel::Time> starts;  // of its telegrams
   std::size_t transfer_octets = 0;   // with the loopback word
 
   // Nothing when the cycle was over before.
@@ -164,7 +162,7 @@ class RingEmulator : public segment::Station {
   void begin_cycle(const line::Waveform& wave, const line::Telegram& telegram);
   void load_register(kernel::Time when);
   void on_transfer(const line::Telegram& telegram);
-  void on_check(const line::Telegram& telegram);
+  void on_check(const line::Waveform& wave, const line::Telegram& telegram);
   void finish_cycle();
   void latch(kernel::Time when);
   void apply_control_words();

@@ -52,8 +52,6 @@ void RingEmulator::begin_cycle(const line::Waveform& wave, const line::Telegram&
   seen.check_good = seen.status_clean = false;
   seen.start = seen.end = when;
   seen.octets.clear();
-  seen.headers.clear();
-  seen.starts.clear();
   seen.transfer_octets = 0;
 }
 
@@ -105,7 +103,7 @@ void RingEmulator::on_transfer(const line::Telegram& telegram) {
   ++transferred_;
 }
 
-void RingEmulator::on_check(const line::Telegram& telegram) {
+void RingEmulator::on_check(const line::Waveform& wave, const line::Telegram& telegram) {
   SeenCycle& seen = open_cycle();
   if (phase_ == Phase::transfer) {
     phase_ = Phase::check;
@@ -124,7 +122,7 @@ void RingEmulator::on_check(const line::Telegram& telegram) {
   }
   emit(telegram, octet);
   if (n + 1 != kCheckOctets) return;
-  seen.end = kernel::level_time(seen.starts.back(), telegram.levels(), rules_.bit_rate);
+  seen.end = kernel::level_time(wave.time_of(telegram.level), telegram.levels(), rules_.bit_rate);
   finish_cycle();
 }
 
