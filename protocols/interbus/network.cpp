@@ -9,12 +9,7 @@ namespace {
 constexpr unsigned kLengthCodeShift = 8;
 constexpr unsigned kLengthCodeMask = 0x1F;
 
-std::span<const LengthCode> length_codes_of(const Rules& rules) {
-  if (rules.length_codes.empty()) return published_length_codes();
-  return rules.length_codes;
-}
-
-struct Ring {
+struct RingWalk {
   const Rules& rules;
   std::vector<RingPlace> places;
 
@@ -35,9 +30,9 @@ struct Ring {
 }  // namespace
 
 std::vector<RingPlace> ring_order(const NetworkDescription& network) {
-  Ring ring{network.rules, {}};
-  ring.append(network.stations, -1, false, 0);
-  return std::move(ring.places);
+  RingWalk walk{network.rules, {}};
+  walk.append(network.stations, -1, false, 0);
+  return std::move(walk.places);
 }
 
 std::optional<unsigned> words_of_id_code(std::uint16_t id_code, const Rules& rules) {

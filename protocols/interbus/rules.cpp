@@ -78,11 +78,6 @@ std::string length_codes_text(std::span<const LengthCode> codes, bool from_memor
   return text.empty() ? "none" : text + (from_memory ? " words" : " words; other codes undefined");
 }
 
-std::span<const LengthCode> length_codes_of(const Rules& rules) {
-  if (rules.length_codes.empty()) return kPublishedLengthCodes;
-  return rules.length_codes;
-}
-
 void add_line_facts(std::vector<Fact>& table, const Rules& rules) {
   const bool is_fast = rules.bit_rate == 2'000'000;
   const std::string_view rate_source =
@@ -203,6 +198,11 @@ bool is_published_alternative(const Fact& fact, const Rules& rules) {
 
 std::span<const LengthCode> published_length_codes() {
   return kPublishedLengthCodes;
+}
+
+std::span<const LengthCode> length_codes_of(const Rules& rules) {
+  if (rules.length_codes.empty()) return published_length_codes();
+  return rules.length_codes;
 }
 
 std::vector<Fact> facts(const Rules& rules) {

@@ -86,6 +86,9 @@ struct Rules {
   std::vector<LengthCode> length_codes;  // empty: published_length_codes()
 };
 
+// The codes in force.
+std::span<const LengthCode> length_codes_of(const Rules& rules);
+
 // One line of the table of sources that README and reports print.
 struct Fact {
   std::string_view rule;    // the member of Rules; a part of it in brackets where parts differ in standing

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include "protocols/interbus/cycle_frame.hpp"
+
 namespace fieldproof::interbus {
 namespace {
 
 constexpr unsigned kCheckOctets = 2;
 constexpr unsigned kStatusOctets = 2;
 constexpr std::size_t kIdOctets = 2;
-constexpr std::size_t kLoopbackOctets = 2;
 
 std::uint8_t high(unsigned word) {
   return static_cast<std::uint8_t>(word >> 8);
