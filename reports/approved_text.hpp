@@ -13,6 +13,11 @@
 
 namespace fieldproof::reports {
 
+// A schema that this folder ships.
+inline std::filesystem::path schema_path(const std::string& name) {
+  return std::filesystem::path(FIELDPROOF_SOURCE_DIR) / "reports" / "schema" / (name + ".schema.json");
+}
+
 inline std::filesystem::path approved_path(const std::string& name) {
   return std::filesystem::path(FIELDPROOF_SOURCE_DIR) / "reports" / "approved" / name;
 }

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using kernel::as_utf8;
 
-constexpr std::string_view kSchema = "fieldproof/report/1";
+constexpr std::string_view kReportSchema = "fieldproof/report/1";
 
 // Stored documents may have comments.
 Json parsed(const std::string& text) {
@@ -49,7 +49,7 @@ std::string run_command(const RunIdentity& identity) {
 class DataWriter {
  public:
   Json write(const PageContent& content) {
-    Json json = {{"schema", kSchema},
+    Json json = {{"schema", kReportSchema},
                  {"catalogue", catalogue_json(content.catalogue)},
                  {"runs", Json::array()},
                  {"documents", Json::array()}};

@@ -20,10 +20,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::filesystem::path schema_path(const std::string& name) {
-  return std::filesystem::path(FIELDPROOF_SOURCE_DIR) / "reports" / "schema" / (name + ".schema.json");
-}
-
 const Json& schema_of(const std::string& name) {
   static std::map<std::string, Json> read;
   const auto [found, is_new] = read.try_emplace(name);

@@ -20,7 +20,7 @@ using measure::Comparison;
 using measure::Curve;
 using measure::Distribution;
 
-constexpr std::string_view kSchema = "fieldproof/measurement/1";
+constexpr std::string_view kMeasurementSchema = "fieldproof/measurement/1";
 constexpr std::size_t kBins = 64;
 
 struct Quantile {
@@ -170,7 +170,7 @@ std::string channel_text(const std::vector<measure::Trace::Edge>& edges, kernel:
 }  // namespace
 
 std::string measurement_json(const measure::Measurement& measurement) {
-  Json json = {{"schema", kSchema},
+  Json json = {{"schema", kMeasurementSchema},
                {"protocol", as_utf8(measurement.protocol)},
                {"network", as_utf8(measurement.network)},
                {"seed", fmt::format("{}", measurement.seed)},

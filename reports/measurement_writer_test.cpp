@@ -13,10 +13,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::filesystem::path schema_path(const std::string& name) {
-  return std::filesystem::path(FIELDPROOF_SOURCE_DIR) / "reports" / "schema" / (name + ".schema.json");
-}
-
 TEST(MeasurementWriter, WritesTheApprovedDocuments) {
   expect_approved("measurement.json", measurement_json(sample_measurement()));
   expect_approved("measurement.txt", measurement_text(sample_measurement()));

@@ -12,25 +12,25 @@
 namespace fieldproof::reports {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json stored() {
-  return Json::parse(sample_timeline("x"));
+OrderedJson stored() {
+  return OrderedJson::parse(sample_timeline("x"));
 }
 
-std::string time_of(const Json& packed, const Json& since) {
+std::string time_of(const OrderedJson& packed, const OrderedJson& since) {
   const auto begin = std::stoll(packed.at("begin_ps").get<std::string>());
   return std::to_string(begin + std::stoll(since.get<std::string>()));
 }
 
 TEST(PackedTimeline, SaysTheSame) {
-  const Json packed = packed_timeline(stored());
-  const auto text = [&](const Json& place) { return packed["texts"].at(place.get<std::size_t>()); };
-  EXPECT_EQ(packed["channels"], (Json{"master to slave", kHostileName}));
+  const OrderedJson packed = packed_timeline(stored());
+  const auto text = [&](const OrderedJson& place) { return packed["texts"].at(place.get<std::size_t>()); };
+  EXPECT_EQ(packed["channels"], (OrderedJson{"master to slave", kHostileName}));
   ASSERT_EQ(packed["transmissions"].size(), stored()["transmissions"].size());
   for (std::size_t n = 0; n < packed["transmissions"].size(); ++n) {
-    const Json& one = packed["transmissions"][n];
-    const Json said = stored()["transmissions"][n];
+    const OrderedJson& one = packed["transmissions"][n];
+    const OrderedJson said = stored()["transmissions"][n];
     EXPECT_EQ(one[0], said["channel"]);
     EXPECT_EQ(time_of(packed, one[1]), said["start_ps"].get<std::string>());
     const auto end = std::stoll(one[1].get<std::string>()) + std::stoll(one[2].get<std::string>());
@@ -40,7 +40,7 @@ TEST(PackedTimeline, SaysTheSame) {
     EXPECT_EQ(one[5] == 1, said["is_changed"].get<bool>());
   }
   for (std::size_t n = 0; n < stored()["observations"].size(); ++n) {
-    const Json& one = packed["observations"][n];
+    const OrderedJson& one = packed["observations"][n];
     EXPECT_EQ(time_of(packed, one[1]), stored()["observations"][n]["time_ps"].get<std::string>());
     EXPECT_EQ(text(one[2]), "output word 0");
     EXPECT_EQ(text(one[3]), "0xa5ff");
@@ -53,10 +53,10 @@ TEST(PackedTimeline, SaysTheSame) {
 
 TEST(PackedTimeline, KeepsTheWholeRangeOfTime) {
   using Limits = std::numeric_limits<std::int64_t>;
-  Json timeline = stored();
+  OrderedJson timeline = stored();
   timeline["faults"][0]["time_ps"] = std::to_string(Limits::min());
   timeline["findings"][0]["time_ps"] = std::to_string(Limits::max());
-  const Json packed = packed_timeline(timeline);
+  const OrderedJson packed = packed_timeline(timeline);
   EXPECT_EQ(packed["begin_ps"], std::to_string(Limits::min()));
   EXPECT_EQ(packed["faults"][0][1], "0");
   EXPECT_EQ(packed["findings"][0][0], std::to_string(std::numeric_limits<std::uint64_t>::max()));
@@ -64,18 +64,18 @@ TEST(PackedTimeline, KeepsTheWholeRangeOfTime) {
 
 TEST(PackedTimeline, RefusesATimeThatIsNone) {
   for (const char* wrong : {"", "1.5", "x", "9223372036854775808", "1 "}) {
-    Json timeline = stored();
+    OrderedJson timeline = stored();
     timeline["faults"][1]["time_ps"] = wrong;
     EXPECT_THROW(packed_timeline(timeline), kernel::Error) << wrong;
   }
 }
 
 TEST(PackedTimeline, OfNothingIsNothing) {
-  Json timeline = stored();
+  OrderedJson timeline = stored();
   for (const char* kind : {"transmissions", "faults", "observations", "findings", "windows"}) {
-    timeline[kind] = Json::array();
+    timeline[kind] = OrderedJson::array();
   }
-  const Json packed = packed_timeline(timeline);
+  const OrderedJson packed = packed_timeline(timeline);
   EXPECT_EQ(packed["begin_ps"], "0");
   EXPECT_TRUE(packed["texts"].empty());
 }

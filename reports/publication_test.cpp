@@ -20,9 +20,7 @@ TEST(PublicationTest, IsValidForASchemaValidator) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "publication.json";
   write_text_file(file, publication_json(sample_publication()));
-  const AjvJudgement judgement = judge_with_ajv(
-      FIELDPROOF_SOURCE_DIR,
-      std::filesystem::path(FIELDPROOF_SOURCE_DIR) / "reports/schema/publication.schema.json", {file});
+  const AjvJudgement judgement = judge_with_ajv(FIELDPROOF_SOURCE_DIR, schema_path("publication"), {file});
   if (!judgement.is_available) GTEST_SKIP() << judgement.output;
   EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
 }

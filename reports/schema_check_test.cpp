@@ -12,7 +12,7 @@
 namespace fieldproof::reports {
 namespace {
 
-constexpr std::string_view kSchema = R"({
+constexpr std::string_view kStationSchema = R"({
   "type": "object",
   "required": ["name"],
   "properties": {
@@ -29,7 +29,7 @@ constexpr std::string_view kSchema = R"({
   "definitions": {"part": {"type": "object", "required": ["id"], "properties": {"id": {"type": "integer"}}}}
 })";
 
-std::string refusal(const std::string& text, std::string_view schema = kSchema) {
+std::string refusal(const std::string& text, std::string_view schema = kStationSchema) {
   const config::Document document = config::Document::parse(text, "sample.json");
   try {
     check_against_schema(document.root(), schema);

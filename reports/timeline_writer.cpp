@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using kernel::as_utf8;
 
-constexpr std::string_view kSchema = "fieldproof/timeline/1";
+constexpr std::string_view kTimelineSchema = "fieldproof/timeline/1";
 constexpr std::size_t kMostOfAKind = 3000;
 constexpr std::size_t kMostBefore = 2500;
 // Faults that follow one another at most so late belong to one burst: pulses of 2.5 kHz do, cycles do not.
@@ -78,7 +78,7 @@ class TimelineWriter {
       std::visit([this](const auto& record) { add(record); }, recording_.records[n]);
     }
     Json json;
-    json["schema"] = kSchema;
+    json["schema"] = kTimelineSchema;
     json["case"] = as_utf8(result.id);
     json["is_cut"] = recording_.is_cut || part.from > 0 || part.to < recording_.records.size();
     json["channels"] = Json::array();

@@ -34,7 +34,7 @@ AjvJudgement judged(const std::vector<std::string>& documents) {
     write_text_file(files.back(), document);
   }
   const std::filesystem::path source = FIELDPROOF_SOURCE_DIR;
-  return judge_with_ajv(source, source / "reports/schema/timeline.schema.json", files);
+  return judge_with_ajv(source, schema_path("timeline"), files);
 }
 
 TEST(TimelineWriter, WritesTheApprovedDocument) {

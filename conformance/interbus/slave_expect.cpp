@@ -11,7 +11,7 @@ bool has_outputs(const SlaveBench& bench) {
   return bench.pics().supports("outputs") && bench.words() > 0;
 }
 
-std::string text_of(const interbus::TerminalBlock::Change& change) {
+std::string change_text(const interbus::TerminalBlock::Change& change) {
   return fmt::format("word {} went from {:04X}h to {:04X}h at {}", change.word, change.before, change.after,
                      kernel::describe(change.when));
 }
@@ -116,7 +116,7 @@ void expect_no_change(SlaveBench& bench, CaseJudge& judge, std::string_view reas
   judge.expect(bench.changes().empty(), reason, [&] {
     const auto& change = bench.changes().front();
     return Sighting{.expected = {fmt::format("no output changes: {}", why_not)},
-                    .actual = text_of(change),
+                    .actual = change_text(change),
                     .time = change.when};
   });
 }
@@ -175,7 +175,7 @@ void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<cons
       judge.expect(change.when >= window.first, "outputs_changed_before_check", [&] {
         return Sighting{.expected = {fmt::format("outputs change at or after {}, the end of the check phase",
                                                  kernel::describe(window.first))},
-                        .actual = text_of(change),
+                        .actual = change_text(change),
                         .time = change.when};
       });
       held[change.word] = change.after;
@@ -191,14 +191,14 @@ void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<cons
     judge.fail(
         comes_late ? "outputs_latched_late" : "valid_cycle_rejected",
         {.expected = {fmt::format("outputs {} until {}", text_of(wanted), kernel::describe(window.last))},
-         .actual = comes_late && next < changes.size() ? text_of(changes[next])
+         .actual = comes_late && next < changes.size() ? change_text(changes[next])
                                                        : fmt::format("outputs {}", text_of(held)),
          .time = window.last,
          .first_difference = fmt::format("data cycle {} of the train", n)});
   }
   judge.expect(next == changes.size(), "outputs_changed_without_cycle", [&] {
     return Sighting{.expected = {"no output changes behind the last cycle"},
-                    .actual = text_of(changes[next]),
+                    .actual = change_text(changes[next]),
                     .time = changes[next].when};
   });
   bench.terminals().forget_changes();

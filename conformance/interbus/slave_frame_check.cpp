@@ -16,7 +16,7 @@ constexpr std::size_t kTrain = 32;  // cycles sent as one waveform
 // Positions in the code word of loopback word, register and check.
 using Pattern = std::span<const std::uint32_t>;
 
-std::string text_of(Pattern pattern) {
+std::string pattern_text(Pattern pattern) {
   return fmt::format("bits {} of the code word flipped", fmt::join(pattern, ", "));
 }
 
@@ -137,7 +137,7 @@ class Rejections {
         return Sighting{.expected = {"the cycle is rejected: its status word leaves marked"},
                         .actual = "the cycle was accepted: its status word left unmarked",
                         .time = out ? bench_.out().start_of(out->telegrams[out->octets + 2]) : bench_.now(),
-                        .first_difference = text_of(Pattern(flipped_).subspan(first, ends_[n] - first))};
+                        .first_difference = pattern_text(Pattern(flipped_).subspan(first, ends_[n] - first))};
       });
     }
     expect_no_change(bench_, judge_, "output_changed_by_rejected_cycle", "no cycle passes its check");

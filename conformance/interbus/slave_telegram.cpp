@@ -94,19 +94,19 @@ void stop_level_missing(SlaveBench& bench, CaseJudge& judge) {
 
 // ---- glitches on the idle line ----
 
-constexpr unsigned kPerBit = 20;  // levels of a glitch's waveform
+constexpr unsigned kGlitchLevelsPerBit = 20;
 
 // One low pulse on the idle line, idle line behind it, then a data cycle, all in one waveform; pulse and idle
 // line in twentieths of a bit.
 void drive_glitch_and_cycle(SlaveBench& bench, std::size_t low, std::size_t idle,
                             std::span<const std::uint16_t> words) {
-  line::Waveform wave{bench.now(), bench.rules().bit_rate * std::int64_t{kPerBit}, {}};
-  wave.levels.append_idle(4 * kPerBit);
+  line::Waveform wave{bench.now(), bench.rules().bit_rate * std::int64_t{kGlitchLevelsPerBit}, {}};
+  wave.levels.append_idle(4 * kGlitchLevelsPerBit);
   wave.levels.append_fill(false, low);
   wave.levels.append_idle(idle);
   const line::Levels cycle = bench.direct_data_cycle(words, 2);
-  for (std::size_t n = 0; n < cycle.size(); ++n) wave.levels.append_fill(cycle[n], kPerBit);
-  wave.levels.append_idle(4 * kPerBit);
+  for (std::size_t n = 0; n < cycle.size(); ++n) wave.levels.append_fill(cycle[n], kGlitchLevelsPerBit);
+  wave.levels.append_idle(4 * kGlitchLevelsPerBit);
   bench.drive_at_receiver(wave);
 }
 
@@ -165,7 +165,7 @@ void short_glitch_is_ignored(SlaveBench& bench, CaseJudge& judge) {
       const std::string glitch =
           fmt::format("low pulse of {}/20 of a bit with {} bits of idle line behind", low, idle);
       const std::vector<std::uint16_t> words = other_words(bench);
-      drive_glitch_and_cycle(bench, low, std::size_t{idle} * kPerBit, words);
+      drive_glitch_and_cycle(bench, low, std::size_t{idle} * kGlitchLevelsPerBit, words);
       expect_nothing_before_the_cycle(bench, judge, glitch);
       expect_cycle_behind_glitch(bench, judge, words, glitch);
     }
@@ -174,11 +174,11 @@ void short_glitch_is_ignored(SlaveBench& bench, CaseJudge& judge) {
 
 void long_glitch_costs_no_cycle(SlaveBench& bench, CaseJudge& judge) {
   start(bench, judge);
-  constexpr std::size_t kLeast = std::size_t{line::kDataTelegramLevels} * kPerBit;
+  constexpr std::size_t kLeast = std::size_t{line::kDataTelegramLevels} * kGlitchLevelsPerBit;
   for (unsigned round = 0; round < bench.volume(10U, 200U); ++round) {
     // 0.6 of a bit is a start bit. The least idle line that is allowed for, a bit more, then anything.
     const std::size_t more =
-        round < 20 ? round : static_cast<std::size_t>(bench.random().below(40 * kPerBit));
+        round < 20 ? round : static_cast<std::size_t>(bench.random().below(40 * kGlitchLevelsPerBit));
     const std::vector<std::uint16_t> words = other_words(bench);
     drive_glitch_and_cycle(bench, 12, kLeast + more, words);
     expect_cycle_behind_glitch(

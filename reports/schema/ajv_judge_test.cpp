@@ -10,7 +10,7 @@
 namespace fieldproof::reports {
 namespace {
 
-constexpr const char* kSchema = R"({
+constexpr const char* kRangeSchema = R"({
   "$schema": "http://json-schema.org/draft-07/schema#",
   "type": "object",
   "properties": {
@@ -31,7 +31,7 @@ class AjvJudge : public testing::Test {
                 (std::string("fieldproof 'ajv' ") +
                  testing::UnitTest::GetInstance()->current_test_info()->name() + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
-    schema_ = write("station.schema.json", kSchema);
+    schema_ = write("station.schema.json", kRangeSchema);
     write("place.schema.json", R"({"$schema": "http://json-schema.org/draft-07/schema#", "type": "string"})");
   }
   ~AjvJudge() override { std::filesystem::remove_all(folder_); }
