@@ -139,8 +139,7 @@ constexpr const char* kNetworkCase = "interbus/network/exchange/nothing_is_rejec
 
 TEST_F(Capture, OfACleanRunShowsEveryTelegramAndNothingIsWrong) {
   const fs::path left = run(kNetworkCase, {});
-  const reports::Reading reading =
-      reports::read_with_tshark(FIELDPROOF_SOURCE_DIR, left / "trace.pcapng", kFields);
+  const reports::Reading reading = reports::read_with_tshark(kSourceFolder, left / "trace.pcapng", kFields);
   if (!reading.is_available) GTEST_SKIP() << reading.output;
   const Told told = told_in(left / "trace.txt");
   const std::vector<Packet> packets = packets_in(reading.output);
@@ -166,8 +165,7 @@ TEST_F(Capture, OfACleanRunShowsEveryTelegramAndNothingIsWrong) {
 TEST_F(Capture, OfAFaultedRunFlagsExactlyWhatWasCorrupted) {
   std::ofstream(folder_ / "plan.json") << kPlan;
   const fs::path left = run(kNetworkCase, {"--plan", "plan.json"});
-  const reports::Reading reading =
-      reports::read_with_tshark(FIELDPROOF_SOURCE_DIR, left / "trace.pcapng", kFields);
+  const reports::Reading reading = reports::read_with_tshark(kSourceFolder, left / "trace.pcapng", kFields);
   if (!reading.is_available) GTEST_SKIP() << reading.output;
   const Told told = told_in(left / "trace.txt");
   const auto timeline = nlohmann::json::parse(read(left / "timeline.json"));
@@ -205,7 +203,7 @@ TEST_F(Capture, OfDisturbedLinesIsTakenApartWithoutAMalformedPacket) {
   for (const auto& entry : fs::directory_iterator(folder_ / "run" / "cases")) {
     if (!fs::exists(entry.path() / "trace.pcapng")) continue;
     const reports::Reading reading =
-        reports::read_with_tshark(FIELDPROOF_SOURCE_DIR, entry.path() / "trace.pcapng", kFields);
+        reports::read_with_tshark(kSourceFolder, entry.path() / "trace.pcapng", kFields);
     if (!reading.is_available) GTEST_SKIP() << reading.output;
     ++captures;
     for (const Packet& packet : packets_in(reading.output)) {

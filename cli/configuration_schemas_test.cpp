@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/probe/source_folder.hpp"
 #include "reports/schema/ajv_judge.hpp"
 
 namespace fieldproof::cli {
@@ -17,12 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kSource = FIELDPROOF_SOURCE_DIR;
 const fs::path kNetwork = "protocols/interbus/network";
 const fs::path kBurstProfile = "emc/profile";
 
 fs::path with_suffix(const fs::path& stem, const char* suffix) {
-  return kSource / (stem.string() + suffix);
+  return kSourceFolder / (stem.string() + suffix);
 }
 
 std::vector<fs::path> json_files(const fs::path& folder) {
@@ -37,7 +37,7 @@ std::vector<fs::path> json_files(const fs::path& folder) {
 // Each file must be judged as `expected`: "valid" or "invalid".
 void expect_all(const fs::path& stem, const std::vector<fs::path>& files, const std::string& expected) {
   ASSERT_FALSE(files.empty());
-  const auto judgement = reports::judge_with_ajv(kSource, with_suffix(stem, ".schema.json"), files);
+  const auto judgement = reports::judge_with_ajv(kSourceFolder, with_suffix(stem, ".schema.json"), files);
   if (!judgement.is_available) GTEST_SKIP() << judgement.output;
   std::istringstream lines(judgement.output);
   std::string line;
@@ -67,8 +67,8 @@ TEST(NetworkSchemaTest, CannotSayWhatNeedsTheWholeNetwork) {
 
 TEST(NetworkSchemaTest, TakesTheNetworksOfTheExamples) {
   expect_all(kNetwork,
-             {kSource / "examples/paper.json", kSource / "examples/paper_printed_reading.json",
-              kSource / "examples/mixed_line.json"},
+             {kSourceFolder / "examples/paper.json", kSourceFolder / "examples/paper_printed_reading.json",
+              kSourceFolder / "examples/mixed_line.json"},
              "valid");
 }
 

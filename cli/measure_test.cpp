@@ -16,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-const fs::path kSource = FIELDPROOF_SOURCE_DIR;
-
 using MeasureVerb = ProgramFixture;
 
 TEST_F(MeasureVerb, PrintsTheoryBesideMeasurement) {
@@ -51,8 +49,8 @@ TEST_F(MeasureVerb, EqualCallsGiveEqualOctetsAndOtherSeedsOthers) {
 
 TEST_F(MeasureVerb, TakesANetworkAndALatchModel) {
   const Called called =
-      call({"measure", "interbus", "--network", (kSource / "examples/mixed_line.json").string(), "--signal",
-            "50Hz", "--latch", "M3", "--duration", "10s"});
+      call({"measure", "interbus", "--network", (kSourceFolder / "examples/mixed_line.json").string(),
+            "--signal", "50Hz", "--latch", "M3", "--duration", "10s"});
   EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
   for (const char* part :
        {"M3: inputs at the end of the frame before", "from robot word 15 to oven_do word 0"}) {

@@ -328,14 +328,14 @@ TEST_F(OfInterbus, CaseFileIsAsItsSchemaSays) {
   write("pics.json", R"({"items": {"outputs": true}})");
   ASSERT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json", "--out", "a"}).exit_code, 1);
   const fs::path file = case_file("a");
-  const fs::path source = FIELDPROOF_SOURCE_DIR;
-  const auto valid = reports::judge_with_ajv(source, source / "cli/case.schema.json", {file});
+  const auto valid = reports::judge_with_ajv(kSourceFolder, kSourceFolder / "cli/case.schema.json", {file});
   if (!valid.is_available) GTEST_SKIP() << valid.output;
   EXPECT_EQ(valid.exit_code, 0) << valid.output;
   std::string text = read(fs::relative(file, folder_));
   text.replace(text.find("\"volume\": \"quick\""), 17, "\"volume\": \"loud\"");
   write(fs::relative(file, folder_), text);
-  EXPECT_EQ(reports::judge_with_ajv(source, source / "cli/case.schema.json", {file}).exit_code, 1);
+  EXPECT_EQ(reports::judge_with_ajv(kSourceFolder, kSourceFolder / "cli/case.schema.json", {file}).exit_code,
+            1);
   EXPECT_EQ(real({"replay", file.string()}).exit_code, 65);
 }
 

@@ -16,6 +16,7 @@
 #include "cli/matrix_text.hpp"
 #include "cli/options.hpp"
 #include "cli/pics_file.hpp"
+#include "cli/probe/source_folder.hpp"
 #include "cli/settings.hpp"
 #include "cli/suites.hpp"
 #include "conformance/catalogue.hpp"
@@ -28,8 +29,6 @@ namespace fieldproof::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kSource = FIELDPROOF_SOURCE_DIR;
 
 // A document and who takes it.
 struct Sample {
@@ -59,7 +58,7 @@ class Schemas : public testing::Test {
       const std::optional<std::string> refusal = refusal_of(read, files.back());
       EXPECT_EQ(!refusal, sample.reader_takes) << sample.text << " " << refusal.value_or("");
     }
-    const auto judgement = reports::judge_with_ajv(kSource, kSource / schema, files);
+    const auto judgement = reports::judge_with_ajv(kSourceFolder, kSourceFolder / schema, files);
     if (!judgement.is_available) GTEST_SKIP() << judgement.output;
     std::istringstream lines(judgement.output);
     std::string line;
@@ -148,7 +147,7 @@ TEST_F(Schemas, OfAPics) {
 }
 
 nlohmann::json schema_of(const char* name) {
-  std::ifstream file(kSource / "cli" / name);
+  std::ifstream file(kSourceFolder / "cli" / name);
   return nlohmann::json::parse(file);
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/probe/called_program.hpp"
+#include "cli/probe/source_folder.hpp"
 #include "reports/approved_text.hpp"
 #include "reports/schema/ajv_judge.hpp"
 
@@ -39,11 +40,10 @@ class ProgramFixture : public testing::Test {
 
   // Asks ajv, or skips the test where it is not installed.
   void expect_valid(const std::vector<std::filesystem::path>& files, const std::string& schema) const {
-    const std::filesystem::path source = FIELDPROOF_SOURCE_DIR;
     std::vector<std::filesystem::path> here;
     for (const auto& file : files) here.push_back(folder_ / file);
-    const auto judgement =
-        reports::judge_with_ajv(source, source / "reports/schema" / (schema + ".schema.json"), here);
+    const auto judgement = reports::judge_with_ajv(
+        kSourceFolder, kSourceFolder / "reports/schema" / (schema + ".schema.json"), here);
     if (!judgement.is_available) GTEST_SKIP() << judgement.output;
     EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
   }
