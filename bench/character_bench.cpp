@@ -140,7 +140,7 @@ const Rows kRows({{"character decode", "bit by bit", "characters", "", 0, bit_by
                   {"character decode", "fieldproof", "characters", "bit by bit", 3, fast},
                   {"character decode", "fieldproof, sampled", "characters", "bit by bit", 0, sampled},
                   {"fault plan", "copy of the waveform", "transmissions", "", 0, copies},
-                  {"fault plan", "window not open", "transmissions", "copy", 2, closed_window},
+                  {"fault plan", "window not open", "transmissions", "copy", 0.5, closed_window},
                   {"fault plan", "another frame is meant", "transmissions", "copy", 0, another_frame},
                   {"fault plan", "14 flips", "transmissions", "copy", 0, flips}});
 

@@ -99,7 +99,7 @@ bool print_line(const Measured& measured, const std::vector<Measured>& table, do
     return false;
   }
   const bool missed = ratio < row.target_ratio * (1 - slack);
-  out << fmt::format("{} {}|\n", row.target_ratio, missed ? "missed " : "");
+  out << fmt::format("{:.3g} {}|\n", row.target_ratio, missed ? "missed " : "");
   return missed;
 }
 

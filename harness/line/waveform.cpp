@@ -76,7 +76,8 @@ void Levels::clear() {
 
 void Levels::resize(std::size_t size) {
   if (size < size_) {
-    *this = slice(0, size);
+    fill(size, size_, true);
+    size_ = size;
   } else {
     append_idle(size - size_);
   }
