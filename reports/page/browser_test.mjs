@@ -260,10 +260,14 @@ await check("dark is dark, and the charts are drawn again", async (page) => {
   expectEqual(await ground(), "rgb(255, 255, 255)", "the light ground");
 }, {colorScheme: "dark"});
 
-await check("paper shows every case opened, all charts and no controls", async (page) => {
+await check("paper shows every case that did not pass opened, all charts and no controls", async (page) => {
+  const quiet = cases.filter(({ verdict }) => ["pass", "not-applicable"].includes(verdict));
+  if (quiet.length > 0) await page.locator("tr.case.pass .opener, tr.case.not-applicable .opener").first().click();
   await page.emulateMedia({media: "print"});
   await page.waitForSelector("body[data-is-whole]");
-  expectEqual(await page.locator(".case-detail:visible").count(), cases.length, "open cases");
+  const opened = cases.length - quiet.length + Math.min(1, quiet.length);
+  expectEqual(await page.locator(".case-detail:visible").count(), opened, "open cases");
+  expectEqual(await page.locator("tr.case:visible").count(), cases.length, "lines of cases");
   expectEqual(await page.locator(".controls:visible, .buttons:visible, .copy:visible, nav:visible").count(), 0, "controls");
   expectEqual(await page.locator(".chart:not(:has(canvas))").count(), 0, "charts that are not drawn");
   if (withTimeLine) expect(await page.locator(`[id="detail-${withTimeLine}"] .stage rect`).first().isVisible(), "no time line");

@@ -156,8 +156,11 @@ class CaseTable {
     row.opener.focus({preventScroll: true});
   }
 
-  fillAll() {
-    for (const row of this.rows) this.fill(row);
+  // Paper shows all of what did not pass; a case that passed is a line, unless somebody opened it.
+  fillForPaper() {
+    for (const row of this.rows) {
+      if (!["pass", "not-applicable"].includes(row.result.verdict)) this.fill(row);
+    }
   }
 }
 
@@ -173,8 +176,8 @@ export function caseSection(data) {
   if (data.runs.length === 0) return null;
   const cases = new CaseTable(data);
   addEventListener("hashchange", () => cases.openAddress());
-  addEventListener("beforeprint", () => cases.fillAll());
-  matchMedia("print").addEventListener("change", () => cases.fillAll());
+  addEventListener("beforeprint", () => cases.fillForPaper());
+  matchMedia("print").addEventListener("change", () => cases.fillForPaper());
   const place = section("cases", "Cases", cases.controls(), cases.table);
   place.openAddress = () => cases.openAddress();
   return place;
