@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/pics_file.hpp"
@@ -61,10 +63,14 @@ Row row_of(const conformance::Suite& suite) {
   Row row;
   row.json["protocol"] = suite.protocol();
   row.json["roles"] = suite.roles();
-  row.json["cases"] = suite.cases().size();
+  const auto canaries =
+      static_cast<std::size_t>(std::ranges::count_if(suite.cases(), conformance::is_canary));
+  row.json["cases"] = suite.cases().size() - canaries;
+  row.json["canaries"] = canaries;
   row.json["deviations"] = suite.deviations().size();
-  row.text = fmt::format("{}  roles {}, {} cases, {} deviations", suite.protocol(),
-                         fmt::join(suite.roles(), " "), suite.cases().size(), suite.deviations().size());
+  row.text = fmt::format("{}  roles {}, {} cases ({} more must fail), {} deviations", suite.protocol(),
+                         fmt::join(suite.roles(), " "), suite.cases().size() - canaries, canaries,
+                         suite.deviations().size());
   return row;
 }
 

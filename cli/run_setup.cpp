@@ -121,7 +121,9 @@ std::string simulation_header(const Session& session, std::uint64_t seed, const 
   conformance::Setup setup;
   setup.seed = seed;
   setup.network_file = network_file;
-  return reports::run_header(identity_of(session, setup, 0), manifest_of(session, 1));
+  reports::RunIdentity identity = identity_of(session, setup, 0);
+  if (network_file.empty()) identity.network_hash = "of the cycle-time paper";
+  return reports::run_header(identity, manifest_of(session, 1));
 }
 
 kernel::Duration virtual_time_from(const Settings& settings) {
