@@ -104,22 +104,27 @@ Batch hit(bool has_framing, emc::Repetition repetition = emc::Repetition::khz_5)
   return [line = std::make_shared<BurstLine>(has_framing, repetition)] { return line->pass_hit(1'000); };
 }
 
-// Asks a coin for each bit of the frames that the bursts hit, 2 bits of a frame being hit.
-Batch naive_injector() {
-  return [sent = frame(), engine = std::mt19937_64(1), coin = std::bernoulli_distribution(2.0 / 182),
-          arrivals = std::vector<line::Waveform>()]() mutable -> std::uint64_t {
-    std::uint64_t hits = 0;
-    while (hits < 1'000) {
-      arrivals.clear();
-      line::Waveform& arrival = arrivals.emplace_back(sent);
-      for (std::size_t n = 0; n < sent.levels.size(); ++n) {
-        if (!coin(engine)) continue;
-        arrival.levels.flip(n);
-        ++hits;
-      }
-    }
-    return hits;
-  };
+// Bits of a frame that is hit, on average: those of `place_frames`.
+constexpr double kHitsAt5Khz = 1.1;
+constexpr double kHitsAt100Khz = 11.2;
+
+// Asks a coin for each bit of the frames that the bursts hit, as many bits of a frame being hit.
+Batch naive_injector(double hits_per_frame) {
+  return
+      [sent = frame(), engine = std::mt19937_64(1), coin = std::bernoulli_distribution(hits_per_frame / 182),
+       arrivals = std::vector<line::Waveform>()]() mutable -> std::uint64_t {
+        std::uint64_t hits = 0;
+        while (hits < 1'000) {
+          arrivals.clear();
+          line::Waveform& arrival = arrivals.emplace_back(sent);
+          for (std::size_t n = 0; n < sent.levels.size(); ++n) {
+            if (!coin(engine)) continue;
+            arrival.levels.flip(n);
+            ++hits;
+          }
+        }
+        return hits;
+      };
 }
 
 Batch copies() {
@@ -180,11 +185,15 @@ Batch own_skips() {
 
 const Rows kRows({{"burst channel, clean", "copy of the waveform", "transmissions", "", 0, copies},
                   {"burst channel, clean", "no pulse", "transmissions", "copy", 0.5, clean},
-                  {"burst channel, hit", "a coin for each bit", "hit bits", "", 0, naive_injector},
-                  {"burst channel, hit", "fieldproof", "hit bits", "a coin", 1, [] { return hit(true); }},
-                  {"burst channel, hit", "fieldproof, each rewritten", "hit bits", "a coin", 0,
+                  {"burst channel, hit at 5 kHz", "a coin for each bit", "hit bits", "", 0,
+                   [] { return naive_injector(kHitsAt5Khz); }},
+                  {"burst channel, hit at 5 kHz", "fieldproof", "hit bits", "a coin", 1,
+                   [] { return hit(true); }},
+                  {"burst channel, hit at 5 kHz", "fieldproof, each rewritten", "hit bits", "a coin", 0,
                    [] { return hit(false); }},
-                  {"burst channel, hit", "fieldproof, 100 kHz", "hit bits", "a coin", 1,
+                  {"burst channel, hit at 100 kHz", "a coin for each bit", "hit bits", "", 0,
+                   [] { return naive_injector(kHitsAt100Khz); }},
+                  {"burst channel, hit at 100 kHz", "fieldproof", "hit bits", "a coin", 0,
                    [] { return hit(true, emc::Repetition::khz_100); }},
                   {"flips at 1 in 100", "a coin for each bit", "bits", "", 0, bit_by_bit},
                   {"flips at 1 in 100", "std::geometric_distribution", "bits", "", 0, standard_skips},

@@ -79,8 +79,15 @@ bool BurstChannel::corrupt(const line::Waveform& sent, kernel::Time last_pulse,
   return true;
 }
 
+// At least as many as bits have, and a whole number of them to a sixteenth of a bit where the rates allow it:
+// levels of whole parts of a bit do.
 std::int64_t BurstChannel::ticks_for(std::int64_t rate) const {
-  return std::max<std::int64_t>(1, (kTicksPerBit * receiver_.bit_rate + rate - 1) / rate);
+  const std::int64_t fewest =
+      std::max<std::int64_t>(1, (kTicksPerBit * receiver_.bit_rate + rate - 1) / rate);
+  for (std::int64_t ticks = fewest; ticks < fewest + 16; ++ticks) {
+    if (rate * ticks % (16 * receiver_.bit_rate) == 0) return ticks;
+  }
+  return fewest;
 }
 
 kernel::Time BurstChannel::last_end() const {

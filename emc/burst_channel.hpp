@@ -66,9 +66,9 @@ class BurstChannel final : public fault::Channel {
   BurstSchedule& schedule() { return schedule_; }
   const BurstSchedule& schedule() const { return schedule_; }
 
-  // Levels per bit of a rewritten transmission. A multiple of 16: the instants at which receivers sample are
-  // borders of ticks, so the nearest tick keeps not only the mean length of a wrong time but also the chance
-  // that it reaches over two samples of a majority.
+  // Levels per bit of a rewritten transmission; one that is finer itself gets at least as many. A multiple of
+  // 16: the instants at which receivers sample are borders of ticks, so the nearest tick keeps not only the
+  // mean length of a wrong time but also the chance that it reaches over two samples of a majority.
   static constexpr std::int64_t kTicksPerBit = 64;
 
  private:

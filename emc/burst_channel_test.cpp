@@ -209,15 +209,39 @@ TEST_F(BurstChannelTest, WithoutWrongTimesNoPulseMatters) {
 }
 
 TEST_F(BurstChannelTest, LevelsFinerThanBitsAreRewrittenOnTheirOwnGrid) {
-  line::Waveform fine;
   const line::Waveform sent = telegram(0x00, 4, 870 * kNanosecond);
-  fine.rate = kBitRate * 20;
-  fine.start = sent.start;
-  for (std::size_t n = 0; n < sent.levels.size(); ++n) fine.levels.append_fill(sent.levels[n], 20);
-  BurstChannel channel = this->channel(forced(true, {}, 300 * kNanosecond));
-  ASSERT_TRUE(channel.pass(fine, arrivals_));
-  EXPECT_EQ(arrivals_.front().rate, kBitRate * 80) << "the multiple of 20 that is not below 64";
-  EXPECT_EQ(read(arrivals_.front()), std::vector<std::uint8_t>{0x80});
+  // Levels per bit, and the least multiple of it and of 16 that is not below 64.
+  for (const auto& [times, ticks] :
+       {std::pair<std::size_t, std::int64_t>{2, 64}, {3, 96}, {7, 112}, {10, 80}, {20, 80}}) {
+    line::Waveform fine;
+    fine.rate = kBitRate * static_cast<std::int64_t>(times);
+    fine.start = sent.start;
+    for (std::size_t n = 0; n < sent.levels.size(); ++n) fine.levels.append_fill(sent.levels[n], times);
+    BurstChannel channel = this->channel(forced(true, {}, 300 * kNanosecond));
+    arrivals_.clear();
+    ASSERT_TRUE(channel.pass(fine, arrivals_)) << times;
+    EXPECT_EQ(arrivals_.front().rate, kBitRate * ticks) << times;
+    EXPECT_EQ(read(arrivals_.front()), std::vector<std::uint8_t>{0x80}) << times;
+  }
+}
+
+// Up to a sixteenth of a bit no phase of a pulse is heard by a majority of three, however fine the levels
+// are.
+TEST_F(BurstChannelTest, AReceiverThatVotesIsImmuneOnAnyGrid) {
+  for (const std::size_t times : {1U, 3U, 7U, 10U, 20U}) {
+    for (std::int64_t phase = 0; phase < 2'000; phase += 13) {
+      const line::Waveform sent = telegram(0x00, 4, phase * kNanosecond);
+      line::Waveform fine;
+      fine.rate = kBitRate * static_cast<std::int64_t>(times);
+      fine.start = sent.start;
+      for (std::size_t n = 0; n < sent.levels.size(); ++n) fine.levels.append_fill(sent.levels[n], times);
+      BurstChannel channel =
+          this->channel(forced(true, {}, 125 * kNanosecond), {kBitRate, nullptr, {}, true, true});
+      arrivals_.clear();
+      if (!channel.pass(fine, arrivals_)) continue;
+      EXPECT_EQ(read(arrivals_.front()), std::vector<std::uint8_t>{0x00}) << times << " at " << phase;
+    }
+  }
 }
 
 // ---- the short cuts give what the receiver would make of the rewritten wave ----

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "harness/kernel/error.hpp"
 #include "reports/run_directory.hpp"
 
 namespace fieldproof::reports {
@@ -25,6 +26,18 @@ inline std::filesystem::path approved_path(const std::string& name) {
 inline void expect_approved(const std::string& name, const std::string& text) {
   if (std::getenv("FIELDPROOF_APPROVE") != nullptr) write_text_file(approved_path(name), text);
   EXPECT_EQ(text, read_text_file(approved_path(name))) << name;
+}
+
+// What a refusal of a stored file says.
+template <typename Action>
+std::string sentence_of(Action action) {
+  try {
+    action();
+  } catch (const kernel::Error& error) {
+    EXPECT_EQ(error.exit_code(), 65);
+    return error.what();
+  }
+  return "no error";
 }
 
 // A directory that is gone with its test.

@@ -14,17 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-template <typename Action>
-std::string sentence_of(Action action) {
-  try {
-    action();
-  } catch (const kernel::Error& error) {
-    EXPECT_EQ(error.exit_code(), 65);
-    return error.what();
-  }
-  return "no error";
-}
-
 RunDirectory stored_run(const fs::path& path) {
   const RunDirectory directory = RunDirectory::create_at(path, sample_manifest(), sample_run().identity);
   directory.store(sample_manifest(), sample_run());

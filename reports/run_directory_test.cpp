@@ -15,17 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-template <typename Action>
-std::string sentence_of(Action action) {
-  try {
-    action();
-  } catch (const kernel::Error& error) {
-    EXPECT_EQ(error.exit_code(), 65);
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(RunDirectory, IsNamedByTimeAndSeedAndNeverShared) {
   const TemporaryFolder folder;
   const fs::path runs = folder.path() / "runs";

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "conformance/interbus/master_cases.hpp"
+#include "protocols/interbus/cycle_frame.hpp"
 
 namespace fieldproof::conformance {
 
@@ -121,11 +122,14 @@ void clock_tolerance(MasterBench& bench, CaseJudge& judge) {
 
 void telegram_pitch(MasterBench& bench, CaseJudge& judge) {
   bench.bring_up(judge, interbus::line_of(4, 0x0603, 8));
+  bench.run_data_cycles(judge, 1);  // the one before may just have begun
   const SeenCycle& seen = bench.ring().last_cycle();
   const kernel::Duration bit = kernel::levels_duration(1, bench.rules().bit_rate);
   const kernel::Duration last_start = seen.end - seen.start - line::kDataTelegramLevels * bit;
-  const double pitch = static_cast<double>(last_start.count()) /
-                       static_cast<double>(bit.count() * static_cast<std::int64_t>(seen.octets.size() - 1));
+  const double pitch =
+      static_cast<double>(last_start.count()) /
+      static_cast<double>(bit.count() *
+                          static_cast<std::int64_t>(seen.transfer_octets + interbus::kTrailerOctets - 1));
   judge.expect_between("mean pitch of telegrams", "bit", pitch, 13 * 1.15 * 0.95, 13 * 1.15 * 1.05,
                        "pitch_off");
   judge.expect(bench.ring().statistics().longest_silence < bench.rules().silence_limit, "silence_too_long",

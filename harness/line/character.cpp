@@ -55,6 +55,9 @@ void CharacterCode::append(Levels& levels, unsigned data) const {
   levels.append(levels_per_bit() == 2 ? doubled(bits) : bits, levels_per_character());
 }
 
+// A start bit, nine data bits, parity and stop.
+static_assert(12 <= Sampler::kMostBits);
+
 void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& received) {
   const unsigned length = code_.format().bits_before_stop() + 1;
   sampler_.look_at(wave);

@@ -50,7 +50,7 @@ std::size_t falling_edge(const Levels& levels, std::size_t from);
 // `start` before all questions; the waveform outlives them.
 class Sampler {
  public:
-  // Of the longest character and telegram; a later bit is a broken invariant.
+  // More than the longest character and telegram have; nobody may ask for a later bit.
   static constexpr unsigned kMostBits = 16;
 
   Sampler(const Sampling& sampling, std::int64_t bit_rate) : sampling_(sampling), bit_rate_(bit_rate) {}

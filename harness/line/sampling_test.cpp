@@ -98,6 +98,7 @@ RC_GTEST_PROP(Sampler, SeesWhatTheDefinitionTells, ()) {
   Waveform wave;
   wave.rate = *rc::gen::oneOf(
       rc::gen::inRange<std::int64_t>(10'000, 3'000'000),
+      rc::gen::map(rc::gen::inRange<std::int64_t>(1, 40), [](std::int64_t n) { return n * kBitRate; }),
       rc::gen::map(rc::gen::inRange<std::int64_t>(1, 12), [](std::int64_t n) { return n * 16 * kBitRate; }));
   for (const bool level : *rc::gen::arbitrary<std::vector<bool>>()) {
     wave.levels.append_fill(level, *rc::gen::inRange<std::size_t>(0, 40));
@@ -112,6 +113,9 @@ RC_GTEST_PROP(Sampler, SeesWhatTheDefinitionTells, ()) {
   };
   const auto within = [&](std::size_t place) { return std::min(edge + place, wave.levels.size()); };
   Sampler sampler(sampling, kBitRate);
+  Waveform other;  // that it had looked at before
+  other.rate = *rc::gen::inRange<std::int64_t>(10'000, 3'000'000);
+  sampler.look_at(other);
   sampler.look_at(wave);
   sampler.start(edge);
   const bool is_single = sampling.kind == Sampling::Kind::mid_bit;
@@ -121,6 +125,22 @@ RC_GTEST_PROP(Sampler, SeesWhatTheDefinitionTells, ()) {
   RC_ASSERT(sampler.is_decided(bit) == (edge + slow.behind(bit, last) <= wave.levels.size()));
   RC_ASSERT(sampler.behind(bit) == within(slow.behind(bit, last)));
   RC_ASSERT(sampler.idle_seen() == within(slow.behind(0, at(0, last) ? last : 8)));
+}
+
+// 208 sixteenths times the rate have more than 64 bits.
+TEST(Sampler, BearsTheFastestLine) {
+  constexpr std::int64_t kFastest = (std::int64_t{1} << 59) - 1;
+  Waveform wave;
+  wave.rate = 4 * kFastest;  // four levels to a bit
+  wave.levels.append(0, 2);
+  wave.levels.append_idle(60);
+  Sampler sampler({}, kFastest);
+  sampler.look_at(wave);
+  sampler.start(0);
+  EXPECT_TRUE(sampler.sample(0)) << "7/16 lies in level 1, 8/16 and 9/16 in level 2";
+  EXPECT_EQ(sampler.behind(12), 51U) << "12 9/16 bits";
+  EXPECT_TRUE(sampler.is_decided(14));
+  EXPECT_FALSE(sampler.is_decided(15));
 }
 
 RC_GTEST_PROP(Sampling, FindsTheEdgeThatASlowSearchFinds, (const std::vector<bool>& bits)) {

@@ -5,6 +5,8 @@
 namespace fieldproof::line {
 namespace {
 
+static_assert(kDataTelegramLevels <= Sampler::kMostBits);
+
 constexpr std::int64_t kJoinedLevelsPerBit = 320;
 
 // The number of whole levels from `from` to `to` when both lie on one grid, -1 otherwise.
