@@ -30,7 +30,7 @@ inline void expect_approved(const std::string& name, const std::string& text) {
 
 // What a refusal of a stored file says.
 template <typename Action>
-std::string sentence_of(Action action) {
+std::string refusal_of(Action action) {
   try {
     action();
   } catch (const kernel::Error& error) {

@@ -57,7 +57,7 @@ TEST(PageContent, RefusesATimeLineThatIsNone) {
   const RunDirectory directory = stored_run(folder.path() / "run");
   for (const char* text : {"", "{}", "[]", R"({"schema": "fieldproof/timeline/2"})"}) {
     directory.write_case(kFailed, "timeline.json", text);
-    EXPECT_NE(sentence_of([&] { page_run(directory); }).find("timeline.json"), std::string::npos) << text;
+    EXPECT_NE(refusal_of([&] { page_run(directory); }).find("timeline.json"), std::string::npos) << text;
   }
 }
 
@@ -69,7 +69,7 @@ TEST(PageContent, KnowsADocumentByItsSchema) {
   EXPECT_EQ(page_document(file, kinds).name, "emc.json");
   const auto refusal = [&](const std::string& text) {
     write_text_file(file, text);
-    return sentence_of([&] { page_document(file, kinds); });
+    return refusal_of([&] { page_document(file, kinds); });
   };
   EXPECT_NE(refusal(sample_matrix().dump()).find("fieldproof/matrix/1"), std::string::npos);
   EXPECT_NE(refusal("{}").find("schema"), std::string::npos);
@@ -78,7 +78,7 @@ TEST(PageContent, KnowsADocumentByItsSchema) {
   auto part = sample_emc();
   part["tests"][3].erase("ledger");
   EXPECT_NE(refusal(part.dump()).find("/tests/3"), std::string::npos);
-  EXPECT_NE(sentence_of([&] { page_document(folder.path() / "none.json", kinds); }).find("none.json"),
+  EXPECT_NE(refusal_of([&] { page_document(folder.path() / "none.json", kinds); }).find("none.json"),
             std::string::npos);
 }
 

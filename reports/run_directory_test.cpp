@@ -63,17 +63,17 @@ TEST(RunDirectory, OfAKilledRunHasEveryJournaledVerdict) {
 TEST(RunDirectory, RefusesWhatIsNoRun) {
   const TemporaryFolder folder;
   const std::string here = folder.path().string();
-  EXPECT_EQ(sentence_of([&] { RunDirectory::open(folder.path()); }),
+  EXPECT_EQ(refusal_of([&] { RunDirectory::open(folder.path()); }),
             here + ": this is no directory of a run: it has no manifest.json");
-  EXPECT_EQ(sentence_of([&] { RunDirectory::open(folder.path() / "none"); }),
+  EXPECT_EQ(refusal_of([&] { RunDirectory::open(folder.path() / "none"); }),
             here + "/none: there is no such directory of a run");
   write_text_file(folder.path() / "file", "x");
-  EXPECT_EQ(sentence_of([&] { RunDirectory::create_at(folder.path(), {}, {}); }),
+  EXPECT_EQ(refusal_of([&] { RunDirectory::create_at(folder.path(), {}, {}); }),
             here + ": the path is taken; name one that does not exist, or an empty directory");
-  EXPECT_NE(sentence_of([&] { RunDirectory::create(folder.path() / "file", {}, {}); }), "no error");
-  EXPECT_EQ(sentence_of([&] { read_text_file(folder.path() / "none"); }),
+  EXPECT_NE(refusal_of([&] { RunDirectory::create(folder.path() / "file", {}, {}); }), "no error");
+  EXPECT_EQ(refusal_of([&] { read_text_file(folder.path() / "none"); }),
             here + "/none: the file cannot be read: No such file or directory");
-  EXPECT_EQ(sentence_of([&] { read_text_file(folder.path()); }),
+  EXPECT_EQ(refusal_of([&] { read_text_file(folder.path()); }),
             here + ": the file cannot be read: it is a folder; name a file in it");
 }
 
