@@ -701,7 +701,8 @@ TEST_F(Shown, MatrixWithAndWithoutAHole) {
 TEST_F(Shown, CasesDeviationsAndProtocols) {
   EXPECT_EQ(probe({"list", "probe/**", "--count"}).out, "4\n");
   EXPECT_HOLDS(probe({"list", "deviations"}).out, "probe/station/late  M2  answers late");
-  EXPECT_HOLDS(probe({"list", "protocols"}).out, "probe  roles station, 4 cases (1 more must fail), 2 deviations");
+  EXPECT_HOLDS(probe({"list", "protocols"}).out,
+               "probe  roles station, 4 cases (1 more must fail), 2 deviations");
   EXPECT_HOLDS(probe({"list", "+canary", "--json"}).out, "\"id\": \"probe/station/canary\"");
   const std::string explained = probe({"explain", "probe/station/data/word_is_held"}).out;
   for (const char* part : {"unverified", "swapped (M1): swaps the octets of a word", "wrong_word",
