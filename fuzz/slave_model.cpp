@@ -8,7 +8,7 @@ constexpr std::size_t kTrailer = 4;
 }  // namespace
 
 SlaveModel::SlaveModel(unsigned words, std::int64_t bit_rate, kernel::Duration silence_limit)
-    : words_(words), silence_limit_(silence_limit), receiver_(code_, bit_rate) {}
+    : words_(words), bit_rate_(bit_rate), silence_limit_(silence_limit), receiver_(code_, bit_rate) {}
 
 void SlaveModel::on_wave(const line::Waveform& wave) {
   run_until(wave.start);
@@ -25,7 +25,7 @@ void SlaveModel::run_until(kernel::Time now) {
 
 FIELDPROOF_UNINSTRUMENTED void SlaveModel::on_telegram(const line::Waveform& wave,
                                                        const line::Telegram& telegram) {
-  const kernel::Time end = wave.time_of(telegram.level + telegram.levels());
+  const kernel::Time end = kernel::level_time(wave.time_of(telegram.level), telegram.levels(), bit_rate_);
   silent_from_ = end + silence_limit_;
   if (!telegram.is_data()) return;
   const bool is_id = (telegram.header & line::kSelect) != 0;

@@ -50,6 +50,7 @@ class SlaveModel final : public segment::Tap {
   void silence(kernel::Time now);
 
   unsigned words_;
+  std::int64_t bit_rate_;
   kernel::Duration silence_limit_;
   line::TelegramCode code_{line::TelegramLayout{}};
   line::TelegramReceiver receiver_;

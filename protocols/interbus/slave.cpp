@@ -95,6 +95,8 @@ void Slave::receive(segment::PortIndex port, const line::Waveform& reception) {
   std::size_t status_end = 0;
   std::size_t data_end = 0;
   TelegramRelay& relay = relays_[kFromUpstream];
+  // Only where levels are bits.
+  const bool is_counted = reception.rate == rules().bit_rate;
   const bool is_plain = !is_deaf_ && !shifts_status_ && resynchronises();
   receivers_[kFromUpstream].receive(reception, [&](const line::Waveform& wave,
                                                    const line::Telegram& telegram) {
@@ -107,7 +109,7 @@ void Slave::receive(segment::PortIndex port, const line::Waveform& reception) {
     } else {
       on_upstream(wave, telegram);
     }
-    if (&wave != &reception) return note_life(wave, telegram);
+    if (!is_counted || &wave != &reception) return note_life(wave, telegram);
     (telegram.is_data() ? data_end : status_end) = telegram.level + telegram.levels();
   });
   relays_[kFromUpstream].close();
@@ -116,8 +118,13 @@ void Slave::receive(segment::PortIndex port, const line::Waveform& reception) {
   supervise();
 }
 
+// A telegram is as long as its bits, however wide the levels of the wave are.
+kernel::Time Slave::end_of(const line::Waveform& wave, const line::Telegram& telegram) const {
+  return kernel::level_time(wave.time_of(telegram.level), telegram.levels(), rules().bit_rate);
+}
+
 void Slave::note_life(const line::Waveform& wave, const line::Telegram& telegram) {
-  last_telegram_ = wave.time_of(telegram.level + telegram.levels());
+  last_telegram_ = end_of(wave, telegram);
   if (telegram.is_data()) last_data_ = last_telegram_;
 }
 
@@ -219,7 +226,7 @@ std::uint8_t Slave::on_check(bool id_cycle, const line::Waveform& wave, const li
   const auto clean = n == kCheckOctets ? high(rules().status_clean) : low(rules().status_clean);
   if (telegram.data != clean) upstream_clean_ = false;
   const std::uint8_t out = status_octet_to_send(telegram.data, mark, own_error_);
-  if (n + 1 == kCheckOctets + kStatusOctets) finish_cycle(wave.time_of(telegram.level + telegram.levels()));
+  if (n + 1 == kCheckOctets + kStatusOctets) finish_cycle(end_of(wave, telegram));
   return out;
 }
 
