@@ -162,6 +162,7 @@ class World final : private fieldproof::fuzz::Line, private fieldproof::segment:
   std::size_t seat_ = 0;
 
   bool is_ideal_ = false;
+  bool is_held_up_ = false;  // the last answer, by one before it that was late
   unsigned cycles_ = 0;
   unsigned ends_ = 0;
   unsigned events_ = 0;
@@ -276,7 +277,9 @@ void World::on_answer(Answer& answer) {
 
 void World::drive(Waveform& wave) {
   if (wave.levels.empty()) return;
-  wave.start = std::max({wave.start, back_->driven_until(), segment_.now()});
+  const Time in_time = wave.start;
+  wave.start = std::max({in_time, back_->driven_until(), segment_.now()});
+  is_held_up_ = wave.start > in_time;
   back_->drive(wave);
 }
 
@@ -400,8 +403,13 @@ void World::restart() {
 }
 
 void World::recover() {
-  // What was disturbed last still comes back: up to two cycles with the longest delay.
+  // What was disturbed last still comes back: up to two cycles with the longest delay. It holds up the
+  // answers behind it, each a little less than the one before.
   (void)run_until_working(2, 50 * kMillisecond);
+  for (unsigned ends = ends_ - 1; is_held_up_ && ends != ends_;) {
+    ends = ends_;
+    (void)run_until_working(1, 50 * kMillisecond);
+  }
   // Without a configuration it may have taken a shorter ring for the whole one.
   const bool was_running =
       status_.state == MasterState::run && status_.stations.size() == IdealRing::kStations;
