@@ -7,6 +7,9 @@ import { cellOf, sortableHead } from "./table.js";
 
 export const kVerdicts = ["error", "fail", "inconclusive", "warn", "pass", "not-applicable", "none"];
 
+// What a reader of paper needs no details of, unless it was opened.
+const kNeedsNoDetails = new Set(["pass", "not-applicable"]);
+
 const kWeight = new Map(kVerdicts.map((verdict, at) => [verdict, at]));
 
 export function verdictBadge(verdict) {
@@ -75,7 +78,7 @@ class CaseTable {
     row.cell = element("td", {colspan: this.columns.length});
     row.detail = element("tr", {class: "detail", id: detailId, hidden: true}, row.cell);
     const link = element("a", {class: "anchor", href: `#${encodeURI(row.address)}`, "aria-label": `Link to ${row.result.id}`}, "#");
-    row.line = element("tr", {class: `case ${row.result.verdict}`, id: row.address}, this.columns.map((column) => cellOf(column, row)));
+    row.line = element("tr", {class: `case ${row.result.verdict}${kNeedsNoDetails.has(row.result.verdict) ? " quiet" : ""}`, id: row.address}, this.columns.map((column) => cellOf(column, row)));
     row.opener.after(link);
   }
 
@@ -156,10 +159,9 @@ class CaseTable {
     row.opener.focus({preventScroll: true});
   }
 
-  // Paper shows all of what did not pass; a case that passed is a line, unless somebody opened it.
   fillForPaper() {
     for (const row of this.rows) {
-      if (!["pass", "not-applicable"].includes(row.result.verdict)) this.fill(row);
+      if (!kNeedsNoDetails.has(row.result.verdict)) this.fill(row);
     }
   }
 }

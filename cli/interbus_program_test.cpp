@@ -1,0 +1,195 @@
+// Subject: the program as its user meets it. PICS, implementations, case files and recordings of INTERBUS, as
+// fieldproof itself takes or refuses them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/probe/probe_fixture.hpp"
+#include "reports/schema/ajv_judge.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The real program on one case and on a deviation that the case catches.
+class OfInterbus : public Program {
+ protected:
+  Called real(std::vector<std::string> arguments) const {
+    Call made = call(std::move(arguments));
+    made.program = FIELDPROOF_EXE;
+    return made.run();
+  }
+  // One run of the case; the words follow.
+  Called judged(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"run", kCase, "--volume", "quick"});
+    return real(std::move(words));
+  }
+
+  const std::string kCase = "interbus/slave/frame_check/flipped_data_bit_is_rejected_marked_and_told";
+  const std::string kDeviant = "deviant:latches_in_spite_of_own_error";
+};
+
+TEST_F(OfInterbus, PicsItemThatNobodyKnowsIsRefusedWithTheNearest) {
+  write("pics.json", "{\n\"items\": {\"ouputs\": true}\n}");
+  const Called misspelled = judged({"--iut", kDeviant, "--pics", "pics.json"});
+  EXPECT_EQ(misspelled.exit_code, 65);
+  EXPECT_HOLDS(misspelled.err, "pics.json:2: /items/ouputs: ");
+  EXPECT_HOLDS(misspelled.err, "\"outputs\"");
+  for (const char* answers : {R"({"outputs": "yes"})", R"({"words": true})", R"({"words": -1})",
+                              R"({"outputs_while_outgoing_bus_is_reset": "hold"})"}) {
+    write("pics.json", std::string("{\"items\": ") + answers + "}");
+    EXPECT_EQ(judged({"--pics", "pics.json"}).exit_code, 65) << answers;
+    EXPECT_EQ(real({"list", kCase, "--pics", "pics.json"}).exit_code, 65) << answers;
+  }
+}
+
+TEST_F(OfInterbus, PicsLeavesWhatItDoesNotAnswerAsItIs) {
+  write("pics.json", R"({"items": {"reconfiguration_button": true}})");
+  EXPECT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json"}).exit_code, 1);
+  const Called listed = real({"list", "interbus/slave/**", "--pics", "pics.json"});
+  EXPECT_EQ(listed.out.find("not applicable"), std::string::npos) << listed.out;
+  write("pics.json", R"({"items": {"outputs": false}})");
+  EXPECT_HOLDS(real({"list", "interbus/slave/**", "--pics", "pics.json"}).out, "the slave has no outputs");
+}
+
+TEST_F(OfInterbus, PicsItemsAreListed) {
+  EXPECT_HOLDS(real({"list", "pics"}).out, "outputs  true or false  the slave has process data outputs\n");
+  EXPECT_HOLDS(real({"list", "pics", "--json"}).out, "\"item\": \"outputs_while_outgoing_bus_is_reset\"");
+}
+
+TEST_F(OfInterbus, OnePlaceHasOneImplementation) {
+  for (const char* other : {"slave=ref", "slave@1=ref", "ref"}) {
+    const Called twice = judged({"--iut", "slave=" + kDeviant, "--iut", other});
+    EXPECT_EQ(twice.exit_code, 64) << other;
+    EXPECT_HOLDS(twice.err, "slave=" + kDeviant);
+  }
+  // Of two slaves at two places a case for a slave would judge one only; a network has room for both.
+  EXPECT_EQ(judged({"--iut", "slave@1=" + kDeviant, "--iut", "slave@2=ref"}).exit_code, 64);
+  EXPECT_EQ(real({"run", "interbus/network/timing/cycles_do_not_jitter", "--volume", "quick", "--iut",
+                  "slave@1=ref", "--iut", "slave@2=ref"})
+                .exit_code,
+            0);
+}
+
+TEST_F(OfInterbus, PositionIsOneThatANetworkHas) {
+  EXPECT_EQ(judged({"--iut", "slave@16=ref"}).exit_code, 0);
+  for (const char* far : {"slave@513=ref", "slave@4097=ref", "slave@2147483647=ref"}) {
+    const Called called = judged({"--iut", far});
+    EXPECT_EQ(called.exit_code, 64) << far << called.err;
+    EXPECT_HOLDS(called.err, "at most 512 stations");
+  }
+}
+
+TEST_F(OfInterbus, WrongFileIsFoundBeforeAnythingIsStored) {
+  write("plan.json", "{\n\"rules\": 1}");
+  write("network.json", "{\"name\": \"n\", \"bit_rate\": \"500 kbit/s\",\n\"stations\": 1}");
+  for (const char* option : {"plan", "network"}) {
+    const Called called = judged({std::string("--") + option, std::string(option) + ".json"});
+    EXPECT_EQ(called.exit_code, 65);
+    EXPECT_HOLDS(called.err, std::string(option) + ".json:2: ");
+    EXPECT_FALSE(fs::exists(folder_ / "runs"));
+  }
+}
+
+TEST_F(OfInterbus, CaseFileIsHeldAgainstWhatThereIs) {
+  ASSERT_EQ(judged({"--iut", "slave@2=" + kDeviant, "--out", "a"}).exit_code, 1);
+  const fs::path file = fs::relative(case_file("a"), folder_);
+  const std::string good = read(file);
+  const auto refused = [&](const std::string& part, const std::string& instead) {
+    std::string text = good;
+    text.replace(text.find(part), part.size(), instead);
+    write(file, text);
+    const Called called = real({"replay", file.string()});
+    EXPECT_EQ(called.exit_code, 65) << instead << called.out;
+    EXPECT_HOLDS(called.err, "case.json:");
+    return called.err;
+  };
+  EXPECT_HOLDS(refused(kDeviant, "deviant:latches_in_spite_of_own_eror"), "latches_in_spite_of_own_error");
+  EXPECT_HOLDS(refused(kDeviant, "own"), "/implementations/0: ");
+  EXPECT_HOLDS(refused("\"role\": \"slave\"", "\"role\": \"slvae\""), "'slvae'");
+  EXPECT_HOLDS(refused("\"position\": 2", "\"position\": 513"), "at most 512 stations");
+  EXPECT_HOLDS(refused("rejected_marked_and_told", "rejected_marked_and_tol"), "/case: ");
+}
+
+TEST_F(OfInterbus, CaseFileIsAsItsSchemaSays) {
+  write("pics.json", R"({"items": {"outputs": true}})");
+  ASSERT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json", "--out", "a"}).exit_code, 1);
+  const fs::path file = case_file("a");
+  const auto valid = reports::judge_with_ajv(kSourceFolder, kSourceFolder / "cli/case.schema.json", {file});
+  if (!valid.is_available) GTEST_SKIP() << valid.output;
+  EXPECT_EQ(valid.exit_code, 0) << valid.output;
+  std::string text = read(fs::relative(file, folder_));
+  text.replace(text.find("\"volume\": \"quick\""), 17, "\"volume\": \"loud\"");
+  write(fs::relative(file, folder_), text);
+  EXPECT_EQ(reports::judge_with_ajv(kSourceFolder, kSourceFolder / "cli/case.schema.json", {file}).exit_code,
+            1);
+  EXPECT_EQ(real({"replay", file.string()}).exit_code, 65);
+}
+
+TEST_F(OfInterbus, StoredTextDoesNotSteerTheTerminal) {
+  ASSERT_EQ(judged({"--iut", kDeviant, "--out", "a"}).exit_code, 1);
+  const fs::path file = fs::relative(case_file("a"), folder_);
+  std::string text = read(file);
+  const std::size_t at = text.find("\"reason\": \"") + 11;
+  write(file, text.insert(at, "\\u001b[2J\\u009b"));
+  for (const Called& called : {real({"replay", file.string()}), real({"judge", "a"})}) {
+    EXPECT_EQ(called.out.find_first_of("\x1b\x9b"), std::string::npos) << called.out;
+  }
+  write("lab.json", "{\"volume\": \"\\u001b[2J\", \"seed\": 2}");
+  write("keys.json", "{\"s\\u009b\\u202eed\": 2}");
+  write("cases.txt", "interbus/\x1b[2J\n");
+  for (const Called& called : {real({"run", "--config", "lab.json"}), real({"run", "--config", "keys.json"}),
+                               real({"list", "@cases.txt"})}) {
+    EXPECT_GE(called.exit_code, 64);
+    EXPECT_EQ(called.err.find("\x1b"), std::string::npos) << called.err;
+    EXPECT_EQ(called.err.find("\xc2\x9b"), std::string::npos) << called.err;
+    EXPECT_EQ(called.err.find("\xe2\x80\xae"), std::string::npos) << called.err;
+  }
+}
+
+TEST_F(OfInterbus, ReplayNamesThePicsInTheCommandThatReproduces) {
+  write("pics.json", R"({"items": {"reconfiguration_button": true}})");
+  ASSERT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json", "--out", "a"}).exit_code, 1);
+  const Called called = real({"replay", case_file("a").string()});
+  EXPECT_HOLDS(called.out, "--pics ");
+  EXPECT_HOLDS(called.out, "a/pics.json");
+}
+
+TEST_F(OfInterbus, RecordingIsHeldAgainstTheRoleThatItPlays) {
+  ASSERT_EQ(judged({"--iut", kDeviant, "--out", "a"}).exit_code, 1);
+  const fs::path file = fs::relative(case_file("a"), folder_).parent_path() / "playback.txt";
+  const std::string good = read(file);
+  const auto judged_with = [&](const std::string& part, const std::string& instead) {
+    std::string text = good;
+    text.replace(text.find(part), part.size(), instead);
+    write(file, text);
+    const Called called = real({"judge", "a"});
+    EXPECT_EQ(called.exit_code, 65) << instead << called.out << called.err;
+    EXPECT_HOLDS(called.err, "playback.txt:");
+  };
+  EXPECT_EQ(real({"judge", "a"}).exit_code, 1);
+  judged_with("\"start\":", "\"start\":-9223372036854775808,\"x\":");
+  judged_with("\"when\":", "\"when\":-1,\"x\":");
+  judged_with("\"output\":{\"word\":0", "\"output\":{\"word\":2");
+  judged_with("\"drive\":", "\"cycle_end\":{\"data_cycle\":true,\"accepted\":true},\"drive\":");
+  judged_with("\"devices\":[[",
+              "\"devices\":[[{\"at\":0,\"call\":1,\"cycle_end\":{\"data_cycle\":true,"
+              "\"accepted\":true}},");
+}
+
+TEST_F(OfInterbus, PlanThatMakesTooMuchOfARunIsToldSo) {
+  // Each level of each transmission: an arrival of its own, far in the future; a thousand levels more.
+  for (const char* effect : {R"({"delay": {"duration": "1000000 s"}})", R"({"repeat": {"count": 1000}})"}) {
+    write("plan.json", std::string(R"({"rules": [{"scope": "level", "effect": )") + effect + "}]}");
+    const Called called = real({"run", "interbus/network/timing/cycles_do_not_jitter", "--volume", "quick",
+                                "--record", "none", "--plan", "plan.json"});
+    EXPECT_EQ(called.exit_code, 2) << called.err;
+    EXPECT_HOLDS(called.out, "plan_too_heavy");
+  }
+}
+
+}  // namespace
+}  // namespace fieldproof::cli

@@ -1,0 +1,149 @@
+// Subject: the program as its user meets it. Runs that are ended before their time, by a signal or a limit,
+// and what can be made of them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/probe/probe_fixture.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+using Interrupted = Program;
+
+TEST_F(Interrupted, BySigintWritesThePartialResult) {
+  Call interrupted = call({"run", "odd/slow/**", "--out", "stopped", "--jobs", "1"});
+  interrupted.signal = SIGINT;
+  interrupted.signal_after = "case_02";
+  const Called called = interrupted.run();
+  EXPECT_EQ(called.exit_code, 130);
+  EXPECT_HOLDS(called.out, "the result is incomplete: interrupted by SIGINT");
+  EXPECT_HOLDS(read("stopped/results.json"), "interrupted by SIGINT");
+  EXPECT_HOLDS(read("stopped/results.json"), "odd/slow/case_02");
+}
+
+TEST_F(Interrupted, BySigtermWritesThePartialResult) {
+  Call interrupted = call({"run", "odd/slow/**", "--out", "stopped", "--jobs", "2"});
+  interrupted.signal = SIGTERM;
+  interrupted.signal_after = "case_02";
+  EXPECT_EQ(interrupted.run().exit_code, 143);
+  EXPECT_HOLDS(read("stopped/results.json"), "interrupted by SIGTERM");
+}
+
+TEST_F(Interrupted, BySigkillKeepsEveryVerdictThatWasPrinted) {
+  Call killed = call({"run", "odd/slow/**", "--out", "killed", "--jobs", "2", "--seed", "5"});
+  killed.signal = SIGKILL;
+  killed.signal_after = "case_09";
+  const Called called = killed.run();
+  EXPECT_EQ(called.exit_code, 137);
+  const std::string journal = read("killed/journal.jsonl");
+  std::stringstream lines(called.out);
+  std::size_t printed = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t begin = line.find("odd/slow/");
+    if (begin == std::string::npos) continue;
+    ++printed;
+    EXPECT_HOLDS(journal, "\"" + line.substr(begin, 16) + "\"");
+  }
+  EXPECT_GE(printed, 10U);
+  const Called partial = probe({"diff", "killed", "killed"});
+  EXPECT_EQ(partial.exit_code, 2);
+  EXPECT_HOLDS(partial.out, "the second run is incomplete: the run did not end; ");
+
+  const Called failed = probe({"run", "--failed", "killed", "--jobs", "2"});
+  EXPECT_EQ(failed.exit_code, 1) << failed.err;
+  EXPECT_HOLDS(failed.out, "seed 5,");
+  EXPECT_HOLDS(failed.out, "fail           odd/slow/case_09");
+  EXPECT_EQ(failed.out.find("odd/slow/case_02"), std::string::npos);
+
+  const Called resumed = probe({"run", "--resume", "killed", "--jobs", "2"});
+  EXPECT_EQ(resumed.exit_code, 1) << resumed.err;
+  EXPECT_HOLDS(resumed.out, "40 of 40 selected cases judged: 30 pass, 10 fail");
+  EXPECT_EQ(resumed.out.find("pass           odd/slow/case_00"), std::string::npos);
+
+  // What was interrupted and finished is the same as what was never interrupted.
+  EXPECT_EQ(code({"run", "odd/slow/**", "--out", "whole", "--jobs", "2", "--seed", "5", "--quiet"}), 1);
+  EXPECT_EQ(read("killed/results.json"), read("whole/results.json"));
+}
+
+TEST_F(Interrupted, ByMaxTimeIsMarkedIncomplete) {
+  const Called called = probe({"run", "odd/slow/**", "--max-time", "600ms", "--jobs", "1", "--out", "short"});
+  EXPECT_EQ(called.exit_code, 1);
+  EXPECT_HOLDS(called.out, "the result is incomplete: the time of --max-time was over");
+  EXPECT_HOLDS(read("short/junit.xml"), "name=\"is_complete\"");
+}
+
+// All that was judged passes; what was not judged is no success.
+TEST_F(Interrupted, ByMaxTimeIsInconclusive) {
+  const std::vector<std::string> short_run = {"run",
+                                              "odd/slow/**",
+                                              "!odd/slow/case_*1",
+                                              "!odd/slow/case_*3",
+                                              "!odd/slow/case_*5",
+                                              "!odd/slow/case_*7",
+                                              "!odd/slow/case_*9",
+                                              "--max-time",
+                                              "300ms",
+                                              "--jobs",
+                                              "1",
+                                              "--junit",
+                                              "junit.xml"};
+  EXPECT_EQ(code(short_run), 2);
+  EXPECT_HOLDS(read("junit.xml"),
+               "<error message=\"the run is incomplete: the time of --max-time was over; ");
+  std::vector<std::string> allowed = short_run;
+  allowed.emplace_back("--allow-inconclusive");
+  EXPECT_EQ(code(allowed), 0);
+  EXPECT_HOLDS(read("junit.xml"), "errors=\"0\"");
+}
+
+TEST_F(Interrupted, RunIsResumedAsItWasAlsoFromRelativeFiles) {
+  write("plan.json", "{\"rules\": [3]}");
+  write("pics.json", "{\"items\": {\"x\": true}}");
+  EXPECT_EQ(code({"run", "probe/**", "odd/end/fails", "odd/end/warns", "--plan", "plan.json", "--pics",
+                  "pics.json", "--strict", "--fail-fast", "--out", "short"}),
+            1);
+  write("pics.json", "{\"items\": {\"x\": false}}");
+  const Called changed = probe({"run", "--resume", "short"});
+  EXPECT_EQ(changed.exit_code, 64);
+  EXPECT_HOLDS(changed.err, "the PICS has changed");
+  write("pics.json", "{\"items\": {\"x\": true} }");
+  const Called resumed = probe({"run", "--resume", "short"});
+  EXPECT_EQ(resumed.exit_code, 1) << resumed.err;
+  EXPECT_HOLDS(resumed.out, "6 of 6 selected cases judged");
+}
+
+TEST_F(Interrupted, RunKeepsWhatItsVerdictsMeanWhenItIsResumed) {
+  EXPECT_EQ(code({"run", "odd/slow/case_00", "odd/end/warns", "--strict", "--max-time", "1ms", "--jobs", "1",
+                  "--out", "short"}) != 0,
+            true);
+  const Called resumed = probe({"run", "--resume", "short"});
+  EXPECT_EQ(resumed.exit_code, 1) << resumed.out;
+  EXPECT_HOLDS(read("short/junit.xml"), "failures=\"1\"");
+}
+
+TEST_F(Interrupted, RunHasOneWriter) {
+  EXPECT_EQ(code({"run", "odd/slow/**", "--max-time", "100ms", "--jobs", "1", "--out", "short"}) != 0, true);
+  const Called both =
+      in_shell(call({"run", "--resume", "short", "--jobs", "1"}),
+               ">first.txt 2>&1 & first=$!; \"$0\" \"$@\" 2>second.txt; second=$?; wait $first; "
+               "echo $? $second >codes.txt")
+          .run();
+  EXPECT_EQ(both.exit_code, 0);
+  const std::string codes = read("codes.txt");
+  EXPECT_TRUE(codes == "1 65\n" || codes == "65 1\n") << codes;
+  EXPECT_HOLDS(read("first.txt") + read("second.txt"), "another program writes this run");
+}
+
+TEST_F(Interrupted, RunIsOnlyResumedAsItWas) {
+  EXPECT_EQ(code({"run", "odd/slow/**", "--fail-fast", "--out", "short"}), 1);
+  EXPECT_EQ(code({"run", "--resume", "short", "--seed", "2"}), 64);
+  EXPECT_EQ(code({"run", "--resume", "short", "probe/**"}), 64);
+  EXPECT_EQ(code({"run", "--resume", "short", "--failed"}), 64);
+}
+
+}  // namespace
+}  // namespace fieldproof::cli
