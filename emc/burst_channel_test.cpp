@@ -31,6 +31,19 @@ WrongOutput forced(bool forced, Duration from, Duration to) {
   return wrong;
 }
 
+// Each telegram as it was sampled.
+using Telegrams = std::vector<std::tuple<std::uint16_t, std::uint8_t>>;
+
+Telegrams heard_by(line::TelegramReceiver receiver, const std::vector<line::Waveform>& waves) {
+  Telegrams heard;
+  const auto keep = [&](const line::Waveform&, const line::Telegram& telegram) {
+    heard.emplace_back(telegram.sampled, telegram.header);
+  };
+  for (const line::Waveform& wave : waves) receiver.receive(wave, keep);
+  receiver.flush(keep);
+  return heard;
+}
+
 class FaultTimes final : public trace::Recorder {
  public:
   void on_driven(trace::Channel, const line::Waveform&) override {}
@@ -246,6 +259,35 @@ TEST_F(BurstChannelTest, AReceiverThatVotesIsImmuneOnAnyGrid) {
 
 // ---- the short cuts give what the receiver would make of the rewritten wave ----
 
+// One wrong time at each of the 64 places of each bit, from as short as a place to longer than the samples of
+// a bit lie apart.
+TEST_F(BurstChannelTest, ShortCutsGiveTheSameAtEveryPlaceOfATelegram) {
+  constexpr Duration kTick = kBit / BurstChannel::kTicksPerBit;
+  constexpr std::int64_t kPlaces = BurstChannel::kTicksPerBit * line::kDataTelegramLevels;
+  std::uint64_t spared = 0;
+  for (const auto kind : {Sampling::Kind::mid_bit, Sampling::Kind::majority_of_three}) {
+    for (const std::int64_t length : {1, 3, 5, 9, 40}) {
+      for (std::int64_t place = 0; place < kPlaces; ++place) {
+        line::Waveform sent = telegram(0xA5, 0, place * kTick);
+        sent.levels.append_idle(1);
+        code_.append(sent.levels, line::kDataTelegram, 0x3C);
+        const auto heard = [&](std::shared_ptr<const Framing> framing) {
+          const Sampling sampling{kind};
+          BurstChannel channel = this->channel(forced(false, {}, length * kTick),
+                                               {kBitRate, std::move(framing), sampling, true, true});
+          arrivals_.clear();
+          if (!channel.pass(sent, arrivals_)) arrivals_.push_back(sent);
+          spared += channel.statistics().hit_transmissions - channel.statistics().rewritten_transmissions;
+          return heard_by(line::TelegramReceiver(code_, kBitRate, {sampling, true}), arrivals_);
+        };
+        EXPECT_EQ(heard(std::make_shared<TelegramFraming>(line::TelegramLayout{})), heard(nullptr))
+            << place << " of length " << length;
+      }
+    }
+  }
+  EXPECT_GT(spared, 1000U) << "a comparison of two rewritten waves says nothing";
+}
+
 struct Line {
   std::vector<line::Waveform> waves;
   WrongOutput wrong;
@@ -270,24 +312,15 @@ WrongOutput arbitrary_wrong_output() {
   return wrong;
 }
 
-// What a real receiver of telegrams reads through a channel: each telegram as it was sampled, and roughly
-// when (a short cut keeps the grid of the bits).
-std::vector<std::tuple<std::uint16_t, std::uint8_t>> heard_through(BurstChannel& channel, const Line& line) {
-  line::TelegramReceiver receiver(line::shared_telegram_code(line::TelegramLayout{}), kBitRate,
-                                  {line.sampling, true});
-  std::vector<std::tuple<std::uint16_t, std::uint8_t>> heard;
-  const auto keep = [&](const line::Waveform&, const line::Telegram& telegram) {
-    heard.emplace_back(telegram.sampled, telegram.header);
-  };
+// What a real receiver of telegrams reads through a channel.
+Telegrams heard_through(BurstChannel& channel, const Line& line) {
+  std::vector<line::Waveform> arrivals;
   for (const line::Waveform& wave : line.waves) {
-    std::vector<line::Waveform> arrivals;
-    if (!channel.pass(wave, arrivals)) {
-      receiver.receive(wave, keep);
-    }
-    for (const line::Waveform& arrival : arrivals) receiver.receive(arrival, keep);
+    if (!channel.pass(wave, arrivals)) arrivals.push_back(wave);
   }
-  receiver.flush(keep);
-  return heard;
+  return heard_by(line::TelegramReceiver(line::shared_telegram_code(line::TelegramLayout{}), kBitRate,
+                                         {line.sampling, true}),
+                  arrivals);
 }
 
 Line arbitrary_line() {

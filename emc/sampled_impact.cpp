@@ -18,7 +18,7 @@ void SampledImpact::judge(const line::Levels& levels, const std::vector<Span>& h
     while (unit != units_.end() && unit->end() <= bit) ++unit;
     const bool is_in_unit = unit != units_.end() && unit->first <= bit;
     const std::int64_t behind_decision = place.at - static_cast<std::int64_t>(bit) * ticks_ - last_sample();
-    if (is_in_unit && (unit->role_of(bit) != BitRole::stop || behind_decision < 0)) {
+    if (is_in_unit && (unit->role_of(bit) != BitRole::stop || behind_decision <= 0)) {
       judge_in_unit(*unit, place);
     } else {
       const auto next = is_in_unit ? unit + 1 : unit;
@@ -36,9 +36,10 @@ void SampledImpact::judge_in_unit(const FramedUnit& unit, Place& place) {
   is_unclear_ = is_edge_moved || (is_wrong && role != BitRole::sampled);
   if (is_wrong) flipped_.push_back(static_cast<std::size_t>(bit));
   if (role != BitRole::stop) return pass_bit(bit, place);
-  // The receiver looks for an edge behind its last sample of a stop bit.
+  // The receiver looks for an edge behind its last sample of a stop bit; what is wrong at that instant and
+  // does not decide the bit may be one.
   const std::int64_t decided = bit * ticks_ + last_sample();
-  while (place.span < heard_->size() && (*heard_)[place.span].from < decided) {
+  while (place.span < heard_->size() && (*heard_)[place.span].from <= decided) {
     is_unclear_ = is_unclear_ || (*heard_)[place.span].to > decided;
     ++place.span;
   }
