@@ -1,5 +1,7 @@
 #include "fuzz/slave_model.hpp"
 
+#include <algorithm>
+
 #include "fuzz/reference_line.hpp"
 
 namespace fieldproof::fuzz {
@@ -14,13 +16,20 @@ void SlaveModel::on_wave(const line::Waveform& wave) {
   run_until(wave.start);
   receiver_.receive(wave,
                     [this](const line::Waveform& heard, const line::Telegram& t) { on_telegram(heard, t); });
+  // What had begun may have been no telegram.
+  end_silence(wave.start, wave.start);
 }
 
 void SlaveModel::run_until(kernel::Time now) {
-  if (receiver_.pending_until() <= now) {
+  const kernel::Time pending = receiver_.pending_until();
+  if (pending <= now) {
     receiver_.flush([this](const line::Waveform& heard, const line::Telegram& t) { on_telegram(heard, t); });
   }
-  if (silent_from_ <= now) silence(silent_from_);
+  end_silence(now, pending == kernel::kNever ? silent_from_ : std::max(silent_from_, pending));
+}
+
+void SlaveModel::end_silence(kernel::Time now, kernel::Time when) {
+  if (silent_from_ <= now && receiver_.pending_until() == kernel::kNever) silence(when);
 }
 
 FIELDPROOF_UNINSTRUMENTED void SlaveModel::on_telegram(const line::Waveform& wave,

@@ -14,7 +14,8 @@
 // What the outputs of a slave may do, from the telegrams on its forward line and from nothing else: they are
 // written at the end of a data cycle whose check (bit by bit) is right, whose status word is clean, all of
 // whose telegrams are complete and which comes after a good ID cycle without a silence in between; and they
-// become 0 after a silence. It hears the line as a tap, and predicts each writing with its instant.
+// become 0 after a silence, which the begin of a telegram ends. It hears the line as a tap, and predicts each
+// writing with its instant.
 //
 // The telegrams themselves come from a receiver of the house: that one is held to a bit-by-bit decoder by a
 // target of its own.
@@ -47,6 +48,8 @@ class SlaveModel final : public segment::Tap {
   bool is_cycle_good() const;
   void write_outputs(kernel::Time end);
   void write_all(std::uint16_t value, kernel::Time when);
+  // At `when`, if the line has been silent until `now` for too long and no telegram has begun.
+  void end_silence(kernel::Time now, kernel::Time when);
   void silence(kernel::Time now);
 
   unsigned words_;

@@ -284,11 +284,13 @@ void Slave::supervise() {
 void Slave::on_time(kernel::Time now) {
   now_ = now;
   flush_receivers(now);
-  if (silence_end_ <= now) enter_reset(now);
+  if (silence_end_ <= now && receivers_[kFromUpstream].pending_until() == kernel::kNever) enter_reset(now);
 }
 
+// A telegram that has begun before the limit is no silence any more, in however many parts it comes.
 kernel::Time Slave::next_time() const {
-  return std::min({silence_end_, receivers_[kFromUpstream].pending_until(),
+  const kernel::Time pending = receivers_[kFromUpstream].pending_until();
+  return std::min({pending == kernel::kNever ? silence_end_ : pending,
                    receivers_[kFromBranch].pending_until(), receivers_[kFromRemote].pending_until()});
 }
 

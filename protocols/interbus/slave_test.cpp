@@ -95,6 +95,13 @@ class SlaveTest : public ::testing::Test {
     return cycle({0xA5, 0x5A, octet(first >> 8), octet(first), octet(second >> 8), octet(second)}, kTransfer,
                  kCheck);
   }
+  // Sends an ID cycle and tells when the silence behind it is too long.
+  kernel::Time limit_behind_an_id_cycle() {
+    const kernel::Time begin = segment.now();
+    send(id_cycle());
+    return begin + kernel::levels_duration(8 * 13, 500'000) + 25 * kMillisecond;
+  }
+
   static std::vector<Sent> id_cycle(std::uint8_t control = 0x03) {
     return cycle({0xA5, 0x5A, 0x00, control}, kIdTransfer, kIdCheck);
   }
@@ -150,6 +157,40 @@ TEST_F(SlaveTest, SilenceResetsJustAfterTheLimitAndNotBefore) {
   EXPECT_EQ(slave.mode(), Slave::Mode::active);
   segment.run_until(end + 25 * kMillisecond);
   EXPECT_EQ(terminals.output(0), 0);
+  EXPECT_EQ(slave.mode(), Slave::Mode::reset);
+}
+
+TEST_F(SlaveTest, ATelegramThatBeginsBeforeTheLimitEndsTheSilenceInHoweverManyParts) {
+  const line::TelegramCode code{line::TelegramLayout{}};
+  line::Levels telegram;
+  code.append(telegram, 0, 0);
+  for (const std::size_t first_part : {std::size_t{2}, telegram.size()}) {
+    const kernel::Time limit = limit_behind_an_id_cycle();
+    segment.run_until(limit - 4 * kernel::kMicrosecond);
+    line::Waveform part{segment.now(), 500'000, telegram.slice(0, first_part)};
+    forward->drive(part);
+    segment.run_until(part.end());
+    if (first_part < telegram.size()) {
+      line::Waveform rest{part.end(), 500'000, telegram.slice(first_part, telegram.size() - first_part)};
+      forward->drive(rest);
+    }
+    segment.run_until(limit + 20 * kMillisecond);
+    EXPECT_EQ(slave.mode(), Slave::Mode::active) << first_part;
+    segment.run_until(limit + 26 * kMillisecond);
+    EXPECT_EQ(slave.mode(), Slave::Mode::reset) << first_part;
+  }
+}
+
+// What began before the limit and then is no telegram only puts the reset off until that is known.
+TEST_F(SlaveTest, AnEdgeBeforeTheLimitThatIsNoTelegramEndsNoSilence) {
+  const kernel::Time limit = limit_behind_an_id_cycle();
+  segment.run_until(limit - 4 * kernel::kMicrosecond);
+  line::Waveform glitch{segment.now(), 16 * 500'000, {}};
+  glitch.levels.append(0, 3);
+  forward->drive(glitch);
+  segment.run_until(limit);
+  EXPECT_EQ(slave.mode(), Slave::Mode::active);
+  segment.run_until(limit + 26 * kernel::kMicrosecond);
   EXPECT_EQ(slave.mode(), Slave::Mode::reset);
 }
 
