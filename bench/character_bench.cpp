@@ -94,7 +94,7 @@ class Passing {
  public:
   explicit Passing(fault::Rule rule)
       : installed_(fault::Plan({std::move(rule)}), trace_, kernel::Random(1)),
-        channel_(installed_.channel_for("rx", trace_.add_channel("rx"),
+        channel_(installed_.channel_for({"rx", trace_.add_channel("rx")},
                                         std::make_unique<fault::TelegramFields>(line::TelegramLayout{}))) {
     sent_ = train();
   }

@@ -14,8 +14,6 @@ namespace {
 
 using emc::Level;
 
-constexpr double kMostVolts = 10'000;
-
 class LevelReader {
  public:
   LevelReader(const Settings& settings, std::string_view option) : settings_(settings), option_(option) {}
@@ -40,9 +38,9 @@ class LevelReader {
     const auto low = real_of(from);
     const auto high = real_of(to);
     const auto pitch = real_of(step);
-    const double most = is_free ? kMostVolts : 4;
+    const double most = is_free ? Level::kMostVolts : 4;
     const bool is_range = low && high && pitch && *low >= 1 && *low <= *high && *high <= most &&
-                          *pitch >= 1 && *pitch <= kMostVolts;
+                          *pitch >= 1 && *pitch <= Level::kMostVolts;
     if (!is_range || (!is_free && (*low != static_cast<unsigned>(*low) || *pitch != 1))) refuse(word);
     const auto count = static_cast<unsigned>((*high - *low) / *pitch + 1e-9) + 1;
     for (unsigned n = 0; n < count; ++n) {
@@ -63,27 +61,24 @@ class LevelReader {
   std::vector<Level> levels_;
 };
 
-template <typename Value, std::size_t N>
-using Words = std::array<std::pair<std::string_view, Value>, N>;
-
-constexpr Words<emc::Repetition, 3> kRepetitions = {{{"5kHz", emc::Repetition::khz_5},
-                                                     {"100kHz", emc::Repetition::khz_100},
-                                                     {"2.5kHz", emc::Repetition::khz_2_5_edition_1}}};
-constexpr Words<emc::Polarity, 2> kPolarities = {
-    {{"+", emc::Polarity::positive}, {"-", emc::Polarity::negative}}};
+constexpr std::array kRepetitions = {emc::Repetition::khz_5, emc::Repetition::khz_100,
+                                     emc::Repetition::khz_2_5_edition_1};
+constexpr std::array kPolarities = {emc::Polarity::positive, emc::Polarity::negative};
 
 template <typename Value, std::size_t N>
 Value choice(const Settings& settings, std::string_view option, const std::string& word,
-             const Words<Value, N>& known) {
-  const auto found = std::ranges::find(known, word, &std::pair<std::string_view, Value>::first);
-  if (found != known.end()) return found->second;
+             const std::array<Value, N>& known) {
   std::string all;
-  for (const auto& [text, value] : known) all += (all.empty() ? "" : ", ") + std::string(text);
+  for (const Value value : known) {
+    if (word_of(value) == word) return value;
+    all += (all.empty() ? "" : ", ") + std::string(word_of(value));
+  }
   settings.refuse(option, fmt::format("'{}' is none of {}", word, all));
 }
 
 template <typename Value, std::size_t N>
-std::vector<Value> choices(const Settings& settings, std::string_view option, const Words<Value, N>& known) {
+std::vector<Value> choices(const Settings& settings, std::string_view option,
+                           const std::array<Value, N>& known) {
   std::vector<Value> chosen;
   for (const std::string& word : settings.words(option)) {
     chosen.push_back(choice(settings, option, word, known));

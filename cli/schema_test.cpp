@@ -20,6 +20,7 @@
 #include "cli/settings.hpp"
 #include "cli/suites.hpp"
 #include "conformance/catalogue.hpp"
+#include "emc/plan_disturbances.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
 #include "reports/approved_text.hpp"
@@ -95,6 +96,10 @@ std::string effect(const std::string& members) {
   return R"({"rules": [{"effect": {)" + members + "}}]}";
 }
 
+std::string disturbance(const std::string& members) {
+  return R"({"disturbances": [{)" + members + "}]}";
+}
+
 TEST_F(Schemas, OfAPlan) {
   const auto telegrams = line::TelegramCode(line::TelegramLayout{});
   expect_alike(
@@ -129,8 +134,39 @@ TEST_F(Schemas, OfAPlan) {
        bad(effect(R"("repeat": {"gap": "-0 us"})")),
        good(effect(R"("insert": {"telegram": {"data": "0x005A"}})")),
        bad(effect(R"("insert": {"telegram": {"data": "0x15A"}})")),
-       bad(effect(R"("insert": {"telegram": {"data": 256}})"))},
-      [&](const fs::path& file) { fault::load_plan(file, {.telegrams = &telegrams}); });
+       bad(effect(R"("insert": {"telegram": {"data": 256}})")),
+       bad("{}"),
+       good(R"({"disturbances": []})"),
+       bad(disturbance("")),
+       good(disturbance(R"("receiver": "a*", "from": "0 s", "to": "1 ps", "bursts": {"level": 4})")),
+       bad_to_the_reader_only(disturbance(R"("from": "2 s", "to": "1 s", "bursts": {"level": 4})")),
+       bad(disturbance(R"("bursts": {"level": 4}, "binary_symmetric": {"flip_probability": 0})")),
+       bad(disturbance(R"("bursts": {"level": 5})")),
+       bad(disturbance(R"("bursts": {"level": 4, "volts": 4})")),
+       bad(disturbance(R"("bursts": {"volts": 0.5})")),
+       good(disturbance(
+           R"("bursts": {"volts": 4500, "repetition": "2.5kHz", "polarity": "-", "profile": "B2"})")),
+       bad(disturbance(R"("bursts": {"level": 1, "profile": "b2"})")),
+       good(disturbance(R"("bursts": {"level": 1, "profile": {"name": "line_7", "based_on": "C"}})")),
+       bad(disturbance(R"("bursts": {"level": 1, "profile": {"title": "no name"}})")),
+       bad_to_the_reader_only(disturbance(R"("bursts": {"level": 1, "profile": {"name": "A"}})")),
+       good(disturbance(R"("bursts": {"level": 1, "first_burst": "1 s"})")),
+       bad_to_the_reader_only(disturbance(R"("bursts": {"level": 1, "first_burst": "1.1 s"})")),
+       good(disturbance(R"("binary_symmetric": {"flip_probability": 1})")),
+       bad(disturbance(R"("binary_symmetric": {"flip_probability": 1.1})")),
+       bad(disturbance(R"("binary_symmetric": {})")),
+       good(disturbance(R"("gilbert_elliott": {"to_bad": 0.1, "to_good": 0.2, "bad_flip": 1})")),
+       bad_to_the_reader_only(disturbance(R"("gilbert_elliott": {"to_bad": 0, "to_good": 0})")),
+       bad(disturbance(R"("gilbert_elliott": {"to_bad": 0.1})")),
+       good(disturbance(R"("gilbert_elliott": {"fitted_to": {"level": 4}})")),
+       bad(disturbance(R"("gilbert_elliott": {"fitted_to": {"level": 4}, "to_bad": 0.1})")),
+       good(disturbance(R"("flipped_bits": [{"transmission": 0, "bits": [0, 100000]}])")),
+       bad(disturbance(R"("flipped_bits": [{"transmission": 0, "bits": []}])")),
+       bad(disturbance(R"("flipped_bits": [{"transmission": 0, "bits": [100001]}])")),
+       bad_to_the_reader_only(disturbance(R"("flipped_bits": [{"transmission": 0, "bits": [1, 1]}])"))},
+      [&](const fs::path& file) {
+        fault::load_plan(file, {.telegrams = &telegrams, .disturbances = emc::plan_disturbances()});
+      });
 }
 
 TEST_F(Schemas, OfAPics) {

@@ -1,12 +1,13 @@
 #include "cli/suites.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "emc/burst_stress.hpp"
+#include "emc/plan_disturbances.hpp"
 
 namespace fieldproof::cli {
 
 Suites suites() {
   Suites all;
-  all.push_back(conformance::interbus_suite({}, emc::catalogue_stresses()));
+  all.push_back(conformance::interbus_suite({}, {emc::catalogue_stresses(), emc::plan_disturbances()}));
   return all;
 }
 

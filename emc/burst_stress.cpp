@@ -3,32 +3,15 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <mutex>
-#include <optional>
 #include <string>
 #include <utility>
 
 #include "emc/burst_channel.hpp"
 #include "emc/coupling.hpp"
+#include "emc/shared_response.hpp"
 
 namespace fieldproof::emc {
 namespace {
-
-// Shared by all channels of a profile, whatever thread asks first.
-class SharedResponse {
- public:
-  explicit SharedResponse(const Coupling& coupling) : coupling_(coupling) {}
-
-  const LineResponse& get() {
-    std::call_once(is_computed_, [this] { response_.emplace(coupling_); });
-    return *response_;
-  }
-
- private:
-  Coupling coupling_;
-  std::once_flag is_computed_;
-  std::optional<LineResponse> response_;
-};
 
 // One burst: that which the run would have drawn, moved to where the stress begins.
 BurstSchedule burst_at(kernel::Time from, BurstSettings settings, const kernel::Random& random) {

@@ -9,12 +9,6 @@
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
 
-#if defined(__clang__)
-#pragma clang fp contract(off)
-#elif defined(__GNUC__)
-#pragma GCC optimize("fp-contract=off")
-#endif
-
 namespace fieldproof::emc {
 namespace {
 

@@ -6,14 +6,6 @@
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/random.hpp"
 
-// A fused multiply-add rounds once where the product and the sum round twice: results would differ between
-// machines with and without it.
-#if defined(__clang__)
-#pragma clang fp contract(off)
-#elif defined(__GNUC__)
-#pragma GCC optimize("fp-contract=off")
-#endif
-
 namespace fieldproof::emc {
 namespace {
 

@@ -7,12 +7,6 @@
 
 #include "harness/kernel/error.hpp"
 
-#if defined(__clang__)
-#pragma clang fp contract(off)
-#elif defined(__GNUC__)
-#pragma GCC optimize("fp-contract=off")
-#endif
-
 namespace fieldproof::emc {
 namespace {
 
@@ -86,6 +80,11 @@ std::string_view text_of(Repetition repetition) {
   return kTexts.at(static_cast<std::size_t>(repetition));
 }
 
+std::string_view word_of(Repetition repetition) {
+  constexpr std::array<std::string_view, 3> kWords{"5kHz", "100kHz", "2.5kHz"};
+  return kWords.at(static_cast<std::size_t>(repetition));
+}
+
 std::string_view text_of(Polarity polarity) {
   return polarity == Polarity::positive ? "+" : "-";
 }
@@ -102,10 +101,10 @@ Level Level::standard(PortKind port, unsigned number) {
 }
 
 Level Level::free(double open_circuit_volts) {
-  if (!(open_circuit_volts >= 1 && open_circuit_volts <= 10'000)) {
-    throw kernel::Error(
-        kernel::ErrorKind::usage,
-        fmt::format("level X cannot have {} V; it takes 1 V to 10000 V.", open_circuit_volts));
+  if (!(open_circuit_volts >= kLeastVolts && open_circuit_volts <= kMostVolts)) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        fmt::format("level X cannot have {} V; it takes {} V to {} V.", open_circuit_volts,
+                                    kLeastVolts, kMostVolts));
   }
   return {0, open_circuit_volts};
 }

@@ -23,13 +23,20 @@ enum class Polarity : std::int8_t { positive = 1, negative = -1 };
 
 std::string_view text_of(Repetition repetition);  // "5 kHz"
 std::string_view text_of(Polarity polarity);      // "+"
+// As options and plans write them.
+std::string_view word_of(Repetition repetition);  // "5kHz"
+inline std::string_view word_of(Polarity polarity) {
+  return text_of(polarity);
+}
 
 // A severity level: 1 to 4 as the standard has them, or level X with a voltage of one's own.
 class Level {
  public:
   // 1..4, else a usage error.
   static Level standard(PortKind port, unsigned number);
-  // Level X, 1 V to 10 kV, else a usage error.
+  // Level X, else a usage error.
+  static constexpr double kLeastVolts = 1;
+  static constexpr double kMostVolts = 10'000;
   static Level free(double open_circuit_volts);
 
   double open_circuit_volts() const { return volts_; }

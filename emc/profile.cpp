@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
@@ -85,6 +88,10 @@ std::string read_name(const config::Value& value) {
   return std::string(name);
 }
 
+// In the order of CouplingMethod and of PulseShape.
+constexpr std::array<std::string_view, 2> kMethods{"capacitive_clamp", "coupling_network"};
+constexpr std::array<std::string_view, 2> kPulses{"standard_formula", "double_exponential"};
+
 void read_parameter(const config::Value& value, const CouplingParameter& parameter, Coupling& coupling) {
   if (std::isinf(parameter.largest) && value.is_null()) {
     coupling.*parameter.member = parameter.largest;
@@ -97,13 +104,10 @@ void read_parameter(const config::Value& value, const CouplingParameter& paramet
 void read_coupling(const config::Value& value, Coupling& coupling) {
   config::read_object(value, [&](config::ObjectReader& object) {
     if (const auto method = object.optional("method")) {
-      coupling.method =
-          method->as_choice<CouplingMethod>({{"capacitive_clamp", CouplingMethod::capacitive_clamp},
-                                             {"coupling_network", CouplingMethod::coupling_network}});
+      coupling.method = static_cast<CouplingMethod>(method->as_choice(kMethods));
     }
     if (const auto pulse = object.optional("pulse")) {
-      coupling.pulse = pulse->as_choice<PulseShape>({{"standard_formula", PulseShape::standard_formula},
-                                                     {"double_exponential", PulseShape::double_exponential}});
+      coupling.pulse = static_cast<PulseShape>(pulse->as_choice(kPulses));
     }
     for (const CouplingParameter& parameter : coupling_parameters()) {
       if (const auto member = object.optional(parameter.name)) read_parameter(*member, parameter, coupling);
@@ -131,6 +135,11 @@ const Profile& Profile::named(std::string_view name) {
   throw kernel::Error(kernel::ErrorKind::usage, sentence);
 }
 
+const Profile& Profile::named(const config::Value& name) {
+  const std::vector<std::string_view> names = names_of_built_in();
+  return named(names.at(name.as_choice(names)));
+}
+
 Profile Profile::read(const config::Value& root) {
   return config::read_object(root, [&](config::ObjectReader& object) {
     Profile profile;
@@ -138,10 +147,7 @@ Profile Profile::read(const config::Value& root) {
     profile.name = read_name(name);
     profile.title = profile.name;
     if (const auto title = object.optional("title")) profile.title = std::string(title->as_string());
-    if (const auto from = object.optional("based_on")) {
-      const std::vector<std::string_view> names = names_of_built_in();
-      profile.coupling = named(names.at(from->as_choice(names))).coupling;
-    }
+    if (const auto from = object.optional("based_on")) profile.coupling = named(*from).coupling;
     if (const auto coupling = object.optional("coupling")) read_coupling(*coupling, profile.coupling);
     try {
       check_coupling(profile.coupling);
@@ -155,6 +161,19 @@ Profile Profile::read(const config::Value& root) {
 Profile Profile::load(const std::filesystem::path& path) {
   const config::Document document = config::Document::load(path);
   return read(document.root());
+}
+
+std::string json_text(const Profile& profile) {
+  using Json = nlohmann::ordered_json;
+  if (find(profile.name) != nullptr) return Json(profile.name).dump();
+  Json coupling{{"method", kMethods.at(static_cast<std::size_t>(profile.coupling.method))},
+                {"pulse", kPulses.at(static_cast<std::size_t>(profile.coupling.pulse))}};
+  for (const CouplingParameter& parameter : coupling_parameters()) {
+    const double value = profile.coupling.*parameter.member;
+    coupling[std::string(parameter.name)] = std::isinf(value) ? Json() : Json(value);
+  }
+  coupling["forced_level"] = profile.coupling.forced_level ? 1 : 0;
+  return Json{{"name", profile.name}, {"title", profile.title}, {"coupling", std::move(coupling)}}.dump();
 }
 
 std::vector<std::string> caveats_of(const Profile& profile) {

@@ -27,10 +27,16 @@ struct Profile {
   static std::span<const Profile> built_in();
   // A built-in profile, by its name in any case of letters; else a usage error that names the nearest.
   static const Profile& named(std::string_view name);
+  // The same in a file, written exactly.
+  static const Profile& named(const config::Value& name);
 
   static Profile read(const config::Value& root);
   static Profile load(const std::filesystem::path& path);
 };
+
+// The name of a built-in profile, else an object with every parameter that `Profile::read` takes; both are
+// JSON.
+std::string json_text(const Profile& profile);
 
 // What a report must say about results of the profile: what is uncalibrated, and what that leaves standing.
 std::vector<std::string> caveats_of(const Profile& profile);

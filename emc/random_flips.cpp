@@ -17,6 +17,15 @@ double probability(double p, std::string_view of) {
                       fmt::format("{} cannot be {}; a probability is 0 to 1.", of, p));
 }
 
+// By multiplications alone, so that every machine gets the same.
+double power(double base, std::uint64_t exponent) {
+  double result = 1;
+  for (; exponent != 0; exponent /= 2, base *= base) {
+    if (exponent % 2 != 0) result *= base;
+  }
+  return result;
+}
+
 // The arrival that is being changed; made with the first change.
 line::Waveform& changed(const line::Waveform& sent, std::vector<line::Waveform>& arrivals, bool& is_changed) {
   if (!is_changed) arrivals.push_back(sent);
@@ -54,6 +63,8 @@ GilbertElliottProcess::GilbertElliottProcess(const GilbertElliott& parameters, k
       to_good_(probability(parameters.to_good, "the way to the good state")),
       good_flip_(probability(parameters.good_flip, "the flip probability of the good state")),
       bad_flip_(probability(parameters.bad_flip, "the flip probability of the bad state")),
+      bad_share_(parameters.bad_share()),
+      memory_(1 - parameters.to_bad - parameters.to_good),
       random_(random) {
   if (parameters.to_bad + parameters.to_good == 0) {
     throw kernel::Error(kernel::ErrorKind::usage,
@@ -91,11 +102,12 @@ std::optional<std::uint64_t> GilbertElliottProcess::next_flip(std::uint64_t bits
   }
 }
 
+// The state behind the bits comes from the chain of two states in closed form; how long it then stays and
+// when it flips have no memory and are drawn anew.
 void GilbertElliottProcess::skip(std::uint64_t bits) {
-  for (; bits >= stays_; enter(!is_bad_)) bits -= stays_;
-  stays_ -= bits;
-  // Flips have no memory: the way to the next one may be drawn anew.
-  clean_ = (is_bad_ ? bad_flip_ : good_flip_)(random_);
+  const double now = is_bad_ ? 1 : 0;
+  const double bad = bad_share_ + (now - bad_share_) * power(memory_, bits);
+  enter(random_.chance(std::clamp(bad, 0.0, 1.0)));
 }
 
 GilbertElliottChannel::GilbertElliottChannel(const GilbertElliott& parameters, kernel::Random random)

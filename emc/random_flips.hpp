@@ -54,7 +54,7 @@ class GilbertElliottProcess {
   // The next flip among the next `bits` bits, counted from the first of them; these bits (up to and with the
   // flip, or all) have then passed.
   std::optional<std::uint64_t> next_flip(std::uint64_t bits);
-  // So many bits pass of which nobody asks whether they flip; costs as much as the state changes.
+  // So many bits pass of which nobody asks whether they flip; costs little, however many they are.
   void skip(std::uint64_t bits);
 
   bool is_bad() const { return is_bad_; }
@@ -66,6 +66,8 @@ class GilbertElliottProcess {
   kernel::GeometricSkip to_good_;
   kernel::GeometricSkip good_flip_;
   kernel::GeometricSkip bad_flip_;
+  double bad_share_;
+  double memory_;  // how much of the state a bit leaves to the next: 1 - to_bad - to_good
   kernel::Random random_;
   bool is_bad_ = false;
   std::uint64_t stays_ = 0;  // bits that are left in this state

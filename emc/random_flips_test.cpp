@@ -136,6 +136,30 @@ RC_GTEST_PROP(GilbertElliottProperty, TheDivisionIntoQuestionsDoesNotMatter, ())
   RC_ASSERT(flips(steps) == flips({}));
 }
 
+// What is skipped has the state that it would have if it were walked through, bit by bit.
+TEST(GilbertElliottTest, SkippingIsWalking) {
+  for (const GilbertElliott& parameters : {GilbertElliott{0.02, 0.1, 0, 0}, GilbertElliott{0.9, 0.8, 0, 0}}) {
+    for (const std::uint64_t bits : {1U, 2U, 3U, 7U, 30U}) {
+      constexpr int kWays = 20'000;
+      int bad_of_skipped = 0;
+      int bad_of_walked = 0;
+      for (int n = 0; n < kWays; ++n) {
+        const kernel::Random random = kernel::Random(1).split(static_cast<std::uint64_t>(n));
+        GilbertElliottProcess skipped(parameters, random);
+        GilbertElliottProcess walked(parameters, random.split("another"));
+        // Those that begin in the bad state.
+        while (!skipped.is_bad()) skipped.next_flip(1);
+        while (!walked.is_bad()) walked.next_flip(1);
+        skipped.skip(bits);
+        walked.next_flip(bits);
+        bad_of_skipped += skipped.is_bad() ? 1 : 0;
+        bad_of_walked += walked.is_bad() ? 1 : 0;
+      }
+      EXPECT_NEAR(bad_of_skipped, bad_of_walked, 4.5 * std::sqrt(kWays / 2)) << bits;
+    }
+  }
+}
+
 TEST(GilbertElliottTest, RefusesWhatHasNoShare) {
   EXPECT_THROW(GilbertElliottProcess({0, 0, 0, 0.5}, kernel::Random(1)), kernel::Error);
   EXPECT_THROW(GilbertElliottProcess({-0.1, 0.5, 0, 0.5}, kernel::Random(1)), kernel::Error);

@@ -2,12 +2,6 @@
 
 #include <algorithm>
 
-#if defined(__clang__)
-#pragma clang fp contract(off)
-#elif defined(__GNUC__)
-#pragma GCC optimize("fp-contract=off")
-#endif
-
 namespace fieldproof::emc {
 namespace {
 

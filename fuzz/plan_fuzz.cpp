@@ -3,6 +3,7 @@
 // and the same canonical text again; whatever was read can be installed and lets a few transmissions pass,
 // and arrivals are in order and do not overlap.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -25,17 +26,34 @@ const line::TelegramCode& code() {
   return telegrams;
 }
 
+// Inverts every level of what it is asked about.
+class Inverts final : public fault::Channel {
+ public:
+  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+    line::Waveform& arrival = arrivals.emplace_back(sent);
+    arrival.levels.invert(0, arrival.levels.size());
+    return true;
+  }
+};
+
+fault::DisturbanceModel read_inverts(const config::Value& value) {
+  config::read_object(value, [](config::ObjectReader&) {});
+  return {"inverts", "{}", [](const fault::StressPlace&) { return std::make_unique<Inverts>(); }};
+}
+
+constexpr std::array<fault::DisturbanceKind, 1> kKinds{{{"inverts", read_inverts}}};
+
 fault::Plan plan_of(std::string text) {
   const config::Document document = config::Document::parse(std::move(text), "fuzz.json");
-  return fault::read_plan(document.root(), {&code()});
+  return fault::read_plan(document.root(), {&code(), kKinds});
 }
 
 void let_pass(const fault::Plan& plan) {
   trace::Trace trace;
   const trace::Channel place = trace.add_channel("rx");
   fault::InstalledPlan installed(plan, trace, kernel::Random(1));
-  fault::Channel* channel =
-      installed.channel_for("rx", place, std::make_unique<fault::TelegramFields>(line::TelegramLayout{}));
+  fault::Channel* channel = installed.channel_for(
+      {"rx", place, 500'000}, std::make_unique<fault::TelegramFields>(line::TelegramLayout{}));
   if (channel == nullptr) return;
   line::Waveform sent;
   sent.rate = 500'000;

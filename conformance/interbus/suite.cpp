@@ -40,7 +40,7 @@ std::string deviation_of(const std::string& uri, std::string_view role) {
 // What the suite was made with.
 struct Given {
   OwnStations own;
-  std::vector<fault::Stress> stresses;
+  LineDisturbances disturbances;
 };
 
 // What a run needs besides its case: the assignment of the case's role, the files that are named, and the two
@@ -48,12 +48,12 @@ struct Given {
 class Run {
  public:
   Run(const TestCase& test_case, const Setup& setup, const Given& given)
-      : test_case_(test_case), setup_(setup), own_(given.own), stresses_(given.stresses) {
+      : test_case_(test_case), setup_(setup), own_(given.own), stresses_(given.disturbances.stresses) {
     if (!setup.network_file.empty()) network_ = interbus::NetworkDescription::load(setup.network_file);
     if (!setup.plan_file.empty()) {
-      plan_ = fault::load_plan(
-          setup.plan_file, {.telegrams = &line::shared_telegram_code(network_ ? network_->rules.telegram
-                                                                              : interbus::Rules{}.telegram)});
+      const interbus::Rules rules = network_ ? network_->rules : interbus::Rules{};
+      plan_ = fault::load_plan(setup.plan_file, {.telegrams = &line::shared_telegram_code(rules.telegram),
+                                                 .disturbances = given.disturbances.of_plans});
     }
     const std::string role = test_case.role();
     for (const Assignment& assignment : setup.implementations) {
@@ -295,7 +295,7 @@ class InterbusSuite final : public Suite {
   explicit InterbusSuite(Given given) : given_(std::move(given)) {
     const auto add = [&](const auto& cases) {
       for (const auto& one : cases) {
-        if (given_.stresses.empty() && has_tag(one.test_case, kStressTag)) continue;
+        if (given_.disturbances.stresses.empty() && has_tag(one.test_case, kStressTag)) continue;
         cases_.push_back(one.test_case);
         runs_[one.test_case.id] = [&one](Run& run) { return run.run(one); };
         checks_[one.test_case.id] = [&one](Run& run) { run.check(one); };
@@ -348,8 +348,8 @@ class InterbusSuite final : public Suite {
 
 }  // namespace
 
-std::unique_ptr<Suite> interbus_suite(OwnStations own, std::vector<fault::Stress> stresses) {
-  return std::make_unique<InterbusSuite>(Given{std::move(own), std::move(stresses)});
+std::unique_ptr<Suite> interbus_suite(OwnStations own, LineDisturbances disturbances) {
+  return std::make_unique<InterbusSuite>(Given{std::move(own), std::move(disturbances)});
 }
 
 }  // namespace fieldproof::conformance

@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "conformance/test_case.hpp"
+#include "harness/fault/disturbance.hpp"
 #include "harness/fault/stress.hpp"
 #include "protocols/interbus/device.hpp"
 
@@ -21,7 +23,12 @@ struct OwnStations {
   std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)> make_master{};
 };
 
-// Cases with the tag `bursts` need stresses for the receivers; without any they are left out.
-std::unique_ptr<Suite> interbus_suite(OwnStations own = {}, std::vector<fault::Stress> stresses = {});
+// What disturbs a line. It comes from outside, because a suite has no model of a disturbance.
+struct LineDisturbances {
+  std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
+  std::span<const fault::DisturbanceKind> of_plans{};  // what a plan can name
+};
+
+std::unique_ptr<Suite> interbus_suite(OwnStations own = {}, LineDisturbances disturbances = {});
 
 }  // namespace fieldproof::conformance

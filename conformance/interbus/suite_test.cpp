@@ -152,7 +152,7 @@ TEST(InterbusSuite, CasesOfStressesAreThereWithStresses) {
   EXPECT_EQ(std::ranges::count_if(suite().cases(), has_stress_tag), 0);
   const fault::Stress deaf{"nothing arrives for 2 ms", 2 * kernel::kMillisecond,
                            [](const fault::StressPlace&) { return std::make_unique<Deaf>(); }};
-  const auto stressed = interbus_suite({}, {deaf});
+  const auto stressed = interbus_suite({}, {.stresses = {deaf}});
   EXPECT_EQ(std::ranges::count_if(stressed->cases(), has_stress_tag), 2);
   for (const TestCase& test_case : stressed->cases()) {
     if (!has_stress_tag(test_case)) continue;

@@ -144,6 +144,8 @@ class ObjectReader {
   const Value& value() const { return value_; }
   Value required(std::string_view key);
   std::optional<Value> optional(std::string_view key);
+  // There are keys that nobody has asked for so far.
+  bool has_unread() const;
 
  private:
   template <typename Read>

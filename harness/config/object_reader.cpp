@@ -44,6 +44,10 @@ const Member* ObjectReader::nearest_unread(std::string_view key) const {
   return &*std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.key == *near; });
 }
 
+bool ObjectReader::has_unread() const {
+  return std::find(read_.begin(), read_.end(), false) != read_.end();
+}
+
 void ObjectReader::finish() const {
   const auto unread = std::find(read_.begin(), read_.end(), false);
   if (unread == read_.end()) return;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "harness/fault/channel.hpp"
@@ -13,7 +14,8 @@ class ChannelChain final : public Channel {
  public:
   // The channel must outlive the chain.
   void add(Channel& channel) { channels_.push_back(&channel); }
-  bool empty() const { return channels_.empty(); }
+  std::size_t size() const { return channels_.size(); }
+  Channel* first() const { return channels_.empty() ? nullptr : channels_.front(); }
 
   bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override;
 

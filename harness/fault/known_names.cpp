@@ -13,10 +13,13 @@ namespace {
 
 class Check {
  public:
-  Check(const KnownNames& known, std::size_t rule) : known_(known), rule_(rule) {}
+  Check(const KnownNames& known, std::string_view list, std::size_t number)
+      : known_(known), list_(list), number_(number) {}
+
+  void receiver(const std::string& pattern) const { one("receiver", pattern, known_.receivers); }
 
   void when(const When& when) const {
-    one("receiver", when.receiver, known_.receivers);
+    receiver(when.receiver);
     one("frame", when.frame_kind, known_.frame_kinds);
     one("field", when.field, known_.fields);
     if (when.after) one("observation", when.after->observation, known_.observations);
@@ -30,18 +33,24 @@ class Check {
     if (std::ranges::any_of(names, [&](const std::string& name) { return fits(pattern, name); })) return;
     throw kernel::Error(
         kernel::ErrorKind::configuration,
-        fmt::format("/rules/{} of the plan: there is no {} \"{}\" here; the nearest are \"{}\"", rule_, what,
-                    pattern, fmt::join(config::nearest(pattern, names, 3), "\", \"")));
+        fmt::format("/{}/{} of the plan: there is no {} \"{}\" here; the nearest are \"{}\"", list_, number_,
+                    what, pattern, fmt::join(config::nearest(pattern, names, 3), "\", \"")));
   }
 
   const KnownNames& known_;
-  std::size_t rule_;
+  std::string_view list_;
+  std::size_t number_;
 };
 
 }  // namespace
 
 void expect_known_names(const Plan& plan, const KnownNames& known) {
-  for (std::size_t n = 0; n < plan.rules().size(); ++n) Check(known, n).when(plan.rules()[n].when);
+  for (std::size_t n = 0; n < plan.rules().size(); ++n) {
+    Check(known, "rules", n).when(plan.rules()[n].when);
+  }
+  for (std::size_t n = 0; n < plan.disturbances().size(); ++n) {
+    Check(known, "disturbances", n).receiver(plan.disturbances()[n].receiver);
+  }
 }
 
 }  // namespace fieldproof::fault

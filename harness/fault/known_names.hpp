@@ -16,8 +16,8 @@ struct KnownNames {
   std::vector<std::string> observations;
 };
 
-// Throws kernel::Error(configuration) for the first pattern of a rule that fits no known name; the sentence
-// tells the rule and the nearest names.
+// Throws kernel::Error(configuration) for the first pattern of a rule or a disturbance that fits no known
+// name; the sentence tells which one and the nearest names.
 void expect_known_names(const Plan& plan, const KnownNames& known);
 
 }  // namespace fieldproof::fault

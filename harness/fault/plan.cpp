@@ -34,6 +34,22 @@ void check_rule(const Rule& rule) {
              rule.effect);
 }
 
+// A disturbance at one receiver, in its window.
+class DisturbedReceiver final : public Channel {
+ public:
+  DisturbedReceiver(const Disturbance& disturbance, std::unique_ptr<Channel> channel)
+      : from_(disturbance.from), to_(disturbance.to), channel_(std::move(channel)) {}
+
+  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+    return sent.start >= from_ && sent.start < to_ && channel_->pass(sent, arrivals);
+  }
+
+ private:
+  kernel::Time from_;
+  kernel::Time to_;
+  std::unique_ptr<Channel> channel_;
+};
+
 }  // namespace
 
 InstalledPlan::InstalledPlan(Plan plan, trace::Trace& trace, const kernel::Random& random,
@@ -54,13 +70,28 @@ InstalledPlan::~InstalledPlan() {
   if (waits_) trace_.remove_observer(*this);
 }
 
-Channel* InstalledPlan::channel_for(std::string_view receiver, trace::Channel place,
-                                    std::unique_ptr<FieldMap> fields) {
-  auto channel = std::make_unique<RuleChannel>(trace_, place, std::move(fields), work_);
-  const kernel::Random of_receiver = random_.split(receiver);
-  for (RuleState& state : states_) channel->add(state, receiver, of_receiver.split(state.number));
-  if (!channel->has_rules()) return nullptr;
-  return channels_.emplace_back(std::move(channel)).get();
+Channel* InstalledPlan::channel_for(const Receiver& receiver, std::unique_ptr<FieldMap> fields) {
+  auto rules = std::make_unique<RuleChannel>(trace_, receiver.place, std::move(fields), work_);
+  const kernel::Random of_receiver = random_.split(receiver.name);
+  for (RuleState& state : states_) rules->add(state, receiver.name, of_receiver.split(state.number));
+  auto chain = std::make_unique<ChannelChain>();
+  if (rules->has_rules()) chain->add(*channels_.emplace_back(std::move(rules)));
+  add_disturbances(receiver, *chain);
+  if (chain->size() < 2) return chain->first();
+  return channels_.emplace_back(std::move(chain)).get();
+}
+
+void InstalledPlan::add_disturbances(const Receiver& receiver, ChannelChain& chain) {
+  const kernel::Random of_disturbances = random_.split("disturbances");
+  for (std::size_t n = 0; n < plan_.disturbances().size(); ++n) {
+    const Disturbance& disturbance = plan_.disturbances()[n];
+    if (!fits(disturbance.receiver, receiver.name)) continue;
+    FIELDPROOF_CHECK(receiver.bit_rate > 0, "a receiver that is disturbed has a bit rate");
+    auto channel = disturbance.model.make_channel(
+        {receiver.bit_rate, disturbance.from, of_disturbances.split(n), trace_, receiver.place});
+    channels_.push_back(std::make_unique<DisturbedReceiver>(disturbance, std::move(channel)));
+    chain.add(*channels_.back());
+  }
 }
 
 std::uint64_t InstalledPlan::hits(std::size_t rule) const {

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "harness/fault/channel.hpp"
+#include "harness/fault/channel_chain.hpp"
+#include "harness/fault/disturbance.hpp"
 #include "harness/fault/fields.hpp"
 #include "harness/fault/plan_work.hpp"
 #include "harness/fault/rule.hpp"
@@ -15,9 +17,9 @@
 #include "harness/kernel/random.hpp"
 #include "harness/trace/trace.hpp"
 
-// A fault plan is a list of rules. As a value it can be read from a file (plan_file.hpp), written and hashed;
-// installed on the trace of a segment it makes one channel per receiver and keeps what the rules remember:
-// hits, observations, random streams.
+// A fault plan is a list of rules and of disturbances. As a value it can be read from a file (plan_file.hpp),
+// written and hashed; installed on the trace of a segment it makes one channel per receiver and keeps what
+// the rules remember: hits, observations, random streams.
 namespace fieldproof::fault {
 
 class Plan {
@@ -25,23 +27,30 @@ class Plan {
   Plan() = default;
   explicit Plan(std::vector<Rule> rules) : rules_(std::move(rules)) {}
 
-  // Rules are asked in the order in which they were added.
+  // Rules are asked in the order in which they were added; so are disturbances, behind them.
   Plan& add(Rule rule) {
     rules_.push_back(std::move(rule));
     return *this;
   }
+  Plan& add(Disturbance disturbance) {
+    disturbances_.push_back(std::move(disturbance));
+    return *this;
+  }
   const std::vector<Rule>& rules() const { return rules_; }
-  bool empty() const { return rules_.empty(); }
+  const std::vector<Disturbance>& disturbances() const { return disturbances_; }
+  bool empty() const { return rules_.empty() && disturbances_.empty(); }
 
   friend bool operator==(const Plan&, const Plan&) = default;
 
  private:
   std::vector<Rule> rules_;
+  std::vector<Disturbance> disturbances_;
 };
 
 // Rules with their memory, for one segment and one run. Deterministic: the random stream of a rule at a
 // receiver depends on the seed, the name of the receiver and the place of the rule, not on what other rules
-// and receivers draw.
+// and receivers draw. A disturbance has one stream for all its receivers, as one generator has: what each of
+// them draws for itself its model splits by the name of the receiver.
 class InstalledPlan final : private trace::Observer {
  public:
   // `random` is split, not drawn from. The trace must outlive the plan. A plan that makes more than
@@ -50,11 +59,17 @@ class InstalledPlan final : private trace::Observer {
                 std::uint64_t most_work = PlanWork::kMostSteps);
   ~InstalledPlan() override;
 
-  // The channel of a receiver, for `Link::set_channel`; null when no rule can ever mean this receiver. Hits
-  // are told to the trace at `place`. Without a map each transmission is a frame (see TransmissionFields).
-  // The channel lives as long as the plan.
-  Channel* channel_for(std::string_view receiver, trace::Channel place,
-                       std::unique_ptr<FieldMap> fields = nullptr);
+  // Who asks for a channel.
+  struct Receiver {
+    std::string_view name;
+    trace::Channel place;       // hits are told to the trace here
+    std::int64_t bit_rate = 0;  // of what it expects; disturbances must know it
+  };
+
+  // The channel of a receiver, for `Link::set_channel`; null when nothing of the plan can ever mean it.
+  // Without a map each transmission is a frame (see TransmissionFields). The channel lives as long as the
+  // plan.
+  Channel* channel_for(const Receiver& receiver, std::unique_ptr<FieldMap> fields = nullptr);
 
   const Plan& plan() const { return plan_; }
   // How often rule number `rule` has hit.
@@ -63,14 +78,15 @@ class InstalledPlan final : private trace::Observer {
  private:
   void on_observation(trace::Channel channel, kernel::Time time, std::string_view what,
                       std::uint64_t value) override;
+  void add_disturbances(const Receiver& receiver, ChannelChain& chain);
 
   const Plan plan_;
   trace::Trace& trace_;
   kernel::Random random_;
-  std::deque<RuleState> states_;  // channels point into it
-  PlanWork work_;                 // of all receivers
-  bool waits_ = false;            // some rule waits for an observation
-  std::vector<std::unique_ptr<RuleChannel>> channels_;
+  std::deque<RuleState> states_;                    // channels point into it
+  PlanWork work_;                                   // of all receivers
+  bool waits_ = false;                              // some rule waits for an observation
+  std::vector<std::unique_ptr<Channel>> channels_;  // of the receivers, and what their chains lead through
 };
 
 }  // namespace fieldproof::fault

@@ -1,5 +1,8 @@
 #include "harness/fault/plan_file.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <array>
 #include <string_view>
 #include <utility>
@@ -12,6 +15,7 @@ using config::ObjectReader;
 using config::Value;
 
 constexpr std::size_t kMostRules = 10'000;
+constexpr std::size_t kMostDisturbances = 100;
 constexpr std::size_t kMostLevels = 100'000;
 
 std::string pattern(const Value& value) {
@@ -54,13 +58,15 @@ std::vector<When> read_whens(const Value& value) {
   return whens;
 }
 
-void read_window(ObjectReader& object, When& when) {
+// The window of a rule or of a disturbance.
+template <typename Windowed>
+void read_window(ObjectReader& object, Windowed& windowed) {
   if (const auto from = object.optional("from"))
-    when.from = kernel::kStart + from->as_duration({}, kLongestDuration);
+    windowed.from = kernel::kStart + from->as_duration({}, kLongestDuration);
   const auto to = object.optional("to");
   if (!to) return;
-  when.to = kernel::kStart + to->as_duration({}, kLongestDuration);
-  if (when.to <= when.from || when.to == kernel::kStart) {
+  windowed.to = kernel::kStart + to->as_duration({}, kLongestDuration);
+  if (windowed.to <= windowed.from || windowed.to == kernel::kStart) {
     config::fail(*to, "the window ends before it begins; write an instant behind \"from\"");
   }
 }
@@ -176,7 +182,7 @@ Effect read_effect(const Value& value, const PlanReading& reading) {
     read("insert", [&](ObjectReader& o) { return Effect(read_insert(o, reading)); });
     read("mute", [](ObjectReader& o) { return Effect(Mute{read_duration(o)}); });
     // A misspelled effect is told by the reader of the object, which knows the nearest one.
-    if (effects.empty() && value.as_members().empty()) {
+    if (effects.empty() && !object.has_unread()) {
       config::fail(value, "a rule has one effect; write for example { \"flip\": {} }");
     }
     if (effects.size() > 1) config::fail(value, "a rule has one effect; write a rule for each");
@@ -200,13 +206,49 @@ Rule read_rule(const Value& value, const PlanReading& reading) {
   });
 }
 
+DisturbanceModel read_model(ObjectReader& object, std::span<const DisturbanceKind> kinds) {
+  if (kinds.empty()) config::fail(object.value(), "this program has no disturbances; leave it out");
+  std::vector<DisturbanceModel> models;
+  std::vector<std::string_view> words;
+  for (const DisturbanceKind& kind : kinds) {
+    if (const auto member = object.optional(kind.word)) models.push_back(kind.read(*member));
+    words.push_back(kind.word);
+  }
+  if (models.size() > 1) config::fail(object.value(), "a disturbance is one thing; write one for each");
+  // A misspelled word is told by the reader of the object, which knows the nearest one.
+  if (models.empty() && !object.has_unread()) {
+    config::fail(object.value(),
+                 fmt::format("it is not said what disturbs; write one of {}", fmt::join(words, ", ")));
+  }
+  return models.empty() ? DisturbanceModel{} : std::move(models.front());
+}
+
+Disturbance read_disturbance(const Value& value, const PlanReading& reading) {
+  return config::read_object(value, [&](ObjectReader& object) {
+    Disturbance disturbance;
+    if (const auto name = object.optional("name")) disturbance.name = std::string(name->as_string());
+    if (const auto receiver = object.optional("receiver")) disturbance.receiver = pattern(*receiver);
+    read_window(object, disturbance);
+    disturbance.model = read_model(object, reading.disturbances);
+    return disturbance;
+  });
+}
+
 }  // namespace
 
+// A file that says neither what its rules are nor what disturbs is some other file.
 Plan read_plan(const Value& value, const PlanReading& reading) {
   return config::read_object(value, [&](ObjectReader& object) {
     Plan plan;
-    for (const Value& rule : object.required("rules").as_array(0, kMostRules)) {
-      plan.add(read_rule(rule, reading));
+    const auto disturbances = object.optional("disturbances");
+    const auto rules = disturbances ? object.optional("rules") : object.required("rules");
+    if (rules) {
+      for (const Value& rule : rules->as_array(0, kMostRules)) plan.add(read_rule(rule, reading));
+    }
+    if (disturbances) {
+      for (const Value& one : disturbances->as_array(0, kMostDisturbances)) {
+        plan.add(read_disturbance(one, reading));
+      }
     }
     return plan;
   });

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "harness/config/document.hpp"
@@ -15,16 +16,20 @@
 //                  "when": { "receiver": "slave@2/in", "frame": "data_cycle", "frame_number": 3,
 //                            "field": "fcs", "bit": 0 },
 //                  "effect": { "flip": {} },
-//                  "times": 1 } ] }
+//                  "times": 1 } ],
+//     "disturbances": [ { "receiver": "master/in", "from": "100 ms",
+//                         "bursts": { "level": 3, "repetition": "5kHz" } } ] }
 //
 // The canonical text of a plan has every member in one order and no member that is as it would be anyway; two
-// plans that mean the same rules in the same order have the same text and the same hash, however their files
-// were written. Reading the canonical text gives the plan again.
+// plans that mean the same in the same order have the same text and the same hash, however their files were
+// written. Reading the canonical text gives the plan again.
 namespace fieldproof::fault {
 
 struct PlanReading {
   // How an inserted telegram is written as levels; without it a plan that inserts one is refused.
   const line::TelegramCode* telegrams = nullptr;
+  // What a disturbance can be; a plan that names another one is refused.
+  std::span<const DisturbanceKind> disturbances{};
 };
 
 // The value is the whole plan: the root of a file, or a member of a larger one.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
@@ -194,6 +195,66 @@ TEST(PlanFile, TheLimitsThemselvesAreRead) {
   EXPECT_EQ(error_of(with_when("\"from\": \"2 ms\", \"to\": \"2000000001 ps\"")), "no error");
   EXPECT_EQ(error_of(with_effect("\"mute\": {\"duration\": \"1000000 s\"}")), "no error");
   EXPECT_EQ(error_of(with_effect("\"delay\": {\"duration\": \"1 ps\"}")), "no error");
+}
+
+// ---- disturbances ----
+
+// A model of a test: it forgets everything but a number.
+DisturbanceModel read_noise(const config::Value& value) {
+  const auto volts = config::read_object(
+      value, [](config::ObjectReader& object) { return object.required("volts").as_integer<int>(0, 9); });
+  return {"noise", "{\"volts\":" + std::to_string(volts) + "}", nullptr};
+}
+
+constexpr std::array<DisturbanceKind, 2> kNoises{{{"noise", read_noise}, {"hum", read_noise}}};
+
+TEST(PlanFile, ReadsDisturbancesOfTheKindsThatItIsGiven) {
+  const Plan plan = plan_of(R"({"disturbances": [
+      {"name": "a lamp", "receiver": "slave *", "from": "1 ms", "to": "2 ms", "noise": {"volts": 3}},
+      {"noise": {"volts": 0}}]})",
+                            {.disturbances = kNoises});
+  const Disturbance lamp{.name = "a lamp",
+                         .receiver = "slave *",
+                         .from = kStart + 1 * kMillisecond,
+                         .to = kStart + 2 * kMillisecond,
+                         .model = {"noise", "{\"volts\":3}", nullptr}};
+  ASSERT_EQ(plan.disturbances().size(), 2U);
+  EXPECT_EQ(plan.disturbances()[0], lamp);
+  EXPECT_EQ(plan.disturbances()[1], (Disturbance{.model = {"noise", "{\"volts\":0}", nullptr}}));
+  EXPECT_FALSE(plan.empty());
+}
+
+TEST(PlanFile, TheTextOfADisturbanceIsReadAgain) {
+  const PlanReading reading{.disturbances = kNoises};
+  const Plan plan = plan_of(R"({"rules": [{"effect": {"drop": {}}}],
+      "disturbances": [{"noise": {"volts": 3}, "to": "2000 us", "from": "0 s", "receiver": "*"}]})",
+                            reading);
+  const std::string text = canonical_text(plan);
+  EXPECT_EQ(plan_of(text, reading), plan);
+  EXPECT_NE(text.find("\"to\": \"2.000 ms\""), std::string::npos) << text;
+  EXPECT_EQ(text.find("receiver"), std::string::npos) << text;
+}
+
+TEST(PlanFile, RefusesADisturbanceThatIsNoneOfThem) {
+  const auto refusal = [](const std::string& disturbance, const PlanReading& reading) -> std::string {
+    try {
+      plan_of("{\"disturbances\": [{" + disturbance + "}]}", reading);
+    } catch (const kernel::Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const PlanReading reading{.disturbances = kNoises};
+  const std::string place = "plan.json:1: /disturbances/0";
+  EXPECT_EQ(refusal("", reading), place + ": it is not said what disturbs; write one of noise, hum");
+  EXPECT_EQ(refusal(R"("noise": {"volts": 1}, "hum": {"volts": 1})", reading),
+            place + ": a disturbance is one thing; write one for each");
+  EXPECT_TRUE(refusal(R"("noise": {"volts": 10})", reading).starts_with(place + "/noise/volts: "));
+  EXPECT_TRUE(
+      refusal(R"("noise": {"volts": 1}, "reciever": "*")", reading).ends_with("did you mean \"receiver\"?"));
+  EXPECT_TRUE(refusal(R"("noise": {"volts": 1}, "from": "2 ms", "to": "1 ms")", reading)
+                  .starts_with(place + "/to: "));
+  EXPECT_EQ(refusal(R"("receiver": "*")", {}), place + ": this program has no disturbances; leave it out");
 }
 
 TEST(PlanFile, TheSameRulesHaveTheSameTextAndHash) {

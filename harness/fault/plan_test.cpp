@@ -55,7 +55,7 @@ class Bench {
   explicit Bench(Plan plan, std::uint64_t seed = 1, std::uint64_t most_work = PlanWork::kMostSteps)
       : place(trace.add_channel("rx")), installed(std::move(plan), trace, kernel::Random(seed), most_work) {
     trace.set_recorder(&faults);
-    channel = installed.channel_for("rx", place);
+    channel = installed.channel_for({"rx", place});
   }
   std::string pass(const Waveform& sent) {
     std::vector<Waveform> arrivals;
@@ -91,9 +91,9 @@ TEST(Plan, GivesNoChannelToAReceiverThatNoRuleMeans) {
   nested.when.any_of.push_back({.receiver = "master"});
   plan.add(nested);
   InstalledPlan installed(plan, trace, kernel::Random(1));
-  EXPECT_EQ(installed.channel_for("coupler", place), nullptr);
-  EXPECT_NE(installed.channel_for("slave 1", place), nullptr);
-  EXPECT_NE(installed.channel_for("master", place), nullptr);
+  EXPECT_EQ(installed.channel_for({"coupler", place}), nullptr);
+  EXPECT_NE(installed.channel_for({"slave 1", place}), nullptr);
+  EXPECT_NE(installed.channel_for({"master", place}), nullptr);
 }
 
 TEST(Plan, EachEffectDoesWhatItSays) {
@@ -189,8 +189,8 @@ TEST(Plan, TheLimitOfHitsHoldsOverAllReceivers) {
   rule.times = 1;
   plan.add(rule);
   InstalledPlan installed(plan, trace, kernel::Random(1));
-  Channel* a = installed.channel_for("a", place);
-  Channel* b = installed.channel_for("b", place);
+  Channel* a = installed.channel_for({"a", place});
+  Channel* b = installed.channel_for({"b", place});
   std::vector<Waveform> arrivals;
   EXPECT_TRUE(b->pass(wave_of("0"), arrivals));
   EXPECT_FALSE(a->pass(wave_of("0"), arrivals));
@@ -311,7 +311,7 @@ class Train : public testing::Test {
     trace::Trace trace;
     InstalledPlan installed(std::move(plan), trace, kernel::Random(1));
     Channel* channel =
-        installed.channel_for("rx", trace.add_channel("rx"), std::make_unique<TelegramFields>(layout_));
+        installed.channel_for({"rx", trace.add_channel("rx")}, std::make_unique<TelegramFields>(layout_));
     std::vector<Waveform> arrivals;
     if (!channel->pass(sent_, arrivals)) return "as sent";
     std::string text;
@@ -366,7 +366,7 @@ TEST_F(Train, AUnitIsAskedOnceHoweverManyOfItsFieldsFit) {
   trace::Trace trace;
   InstalledPlan installed(Plan({unsure}), trace, kernel::Random(7));
   Channel* channel =
-      installed.channel_for("rx", trace.add_channel("rx"), std::make_unique<TelegramFields>(layout_));
+      installed.channel_for({"rx", trace.add_channel("rx")}, std::make_unique<TelegramFields>(layout_));
   std::vector<Waveform> arrivals;
   for (int n = 0; n < 1000; ++n) channel->pass(sent_, arrivals);
   // 4000 draws of one half: six standard deviations are 190. Draws per field would give 3938.
@@ -379,7 +379,7 @@ TEST_F(Train, EachLevelIsDrawnForItself) {
   trace::Trace trace;
   InstalledPlan installed(Plan({noise}), trace, kernel::Random(7));
   Channel* channel =
-      installed.channel_for("rx", trace.add_channel("rx"), std::make_unique<TelegramFields>(layout_));
+      installed.channel_for({"rx", trace.add_channel("rx")}, std::make_unique<TelegramFields>(layout_));
   std::vector<Waveform> arrivals;
   std::size_t wrong = 0;
   for (int n = 0; n < 500; ++n) {
@@ -405,8 +405,8 @@ RC_GTEST_PROP(Plan, DrawsOfAReceiverAndARuleAreTheirOwn, (std::uint64_t seed)) {
     Plan plan({unsure});
     if (with_other) plan.add(other);
     InstalledPlan installed(plan, trace, kernel::Random(seed));
-    Channel* noise = with_other ? installed.channel_for("another", place) : nullptr;
-    Channel* rx = installed.channel_for("rx", place);
+    Channel* noise = with_other ? installed.channel_for({"another", place}) : nullptr;
+    Channel* rx = installed.channel_for({"rx", place});
     std::string result;
     std::vector<Waveform> arrivals;
     for (int n = 0; n < 64; ++n) {
@@ -490,6 +490,92 @@ TEST(InstalledPlan, EndsARunThatItWouldNeverLetEnd) {
 TEST(InstalledPlan, ServesAnOrdinaryPlanForLong) {
   Bench bench(Plan({rule_of(Flip{}, Numbers::only(3)), rule_of(Mute{kMicrosecond})}));
   for (int n = 0; n < 20'000; ++n) EXPECT_NO_THROW(bench.pass("01010101010", n * 20 * kMicrosecond));
+}
+
+// ---- disturbances ----
+
+// Flips the level whose number is drawn, of 6, and appends the receiver's bit rate to the trace.
+class FlipsOne final : public Channel {
+ public:
+  explicit FlipsOne(const StressPlace& place) : place_(place) {}
+  bool pass(const Waveform& sent, std::vector<Waveform>& arrivals) override {
+    arrivals.push_back(sent);
+    arrivals.back().levels.flip(place_.random.below(6));
+    place_.trace.fault(place_.channel, sent.start, std::to_string(place_.bit_rate));
+    return true;
+  }
+
+ private:
+  StressPlace place_;
+};
+
+Disturbance flips_one(const std::string& receiver = "*") {
+  return {.receiver = receiver, .model = {"flips_one", "{}", [](const StressPlace& place) {
+                                            return std::make_unique<FlipsOne>(place);
+                                          }}};
+}
+
+// The receivers "a" and "b" of a plan.
+class Disturbed {
+ public:
+  explicit Disturbed(Plan plan, std::uint64_t seed = 1)
+      : a_(trace_.add_channel("a")),
+        b_(trace_.add_channel("b")),
+        installed_(std::move(plan), trace_, kernel::Random(seed)) {
+    trace_.set_recorder(&faults);
+    a = installed_.channel_for({"a", a_, kRate});
+    b = installed_.channel_for({"b", b_, kRate});
+  }
+  static std::string passed(Channel* channel, Duration start = {}) {
+    std::vector<Waveform> arrivals;
+    return channel != nullptr && channel->pass(wave_of("000000", start), arrivals) ? text(arrivals)
+                                                                                   : "as sent";
+  }
+
+  KeptFaults faults;
+  Channel* a = nullptr;
+  Channel* b = nullptr;
+
+ private:
+  trace::Trace trace_;
+  trace::Channel a_;
+  trace::Channel b_;
+  InstalledPlan installed_;
+};
+
+TEST(PlanWithDisturbances, MakesAChannelForTheReceiversThatAreMeant) {
+  Disturbed bench(Plan().add(flips_one("b")));
+  EXPECT_EQ(bench.a, nullptr);
+  EXPECT_NE(Disturbed::passed(bench.b), "as sent");
+  EXPECT_EQ(bench.faults.texts, std::vector<std::string>{std::to_string(kRate)});
+}
+
+TEST(PlanWithDisturbances, DisturbsWhatBeginsWithinTheWindow) {
+  Disturbance disturbance = flips_one();
+  disturbance.from = kStart + 10 * kMicrosecond;
+  disturbance.to = kStart + 20 * kMicrosecond;
+  Disturbed bench(Plan().add(disturbance));
+  EXPECT_EQ(Disturbed::passed(bench.a, 10 * kMicrosecond - kPicosecond), "as sent");
+  EXPECT_NE(Disturbed::passed(bench.a, 10 * kMicrosecond), "as sent");
+  EXPECT_NE(Disturbed::passed(bench.a, 20 * kMicrosecond - kPicosecond), "as sent");
+  EXPECT_EQ(Disturbed::passed(bench.a, 20 * kMicrosecond), "as sent");
+}
+
+TEST(PlanWithDisturbances, AsksTheRulesFirst) {
+  Disturbed bench(Plan().add(flips_one()).add(rule_of(Drop{})));
+  EXPECT_EQ(Disturbed::passed(bench.a), "");
+  EXPECT_TRUE(bench.faults.texts.size() == 1 && bench.faults.texts.front() != std::to_string(kRate));
+}
+
+TEST(PlanWithDisturbances, OfOneKindAreOneGeneratorForAllReceiversAndTwoAreTwo) {
+  int equal = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    Disturbed one(Plan().add(flips_one()), seed);
+    EXPECT_EQ(Disturbed::passed(one.a), Disturbed::passed(one.b));
+    Disturbed two(Plan().add(flips_one("a")).add(flips_one("b")), seed);
+    equal += Disturbed::passed(two.a) == Disturbed::passed(two.b) ? 1 : 0;
+  }
+  EXPECT_TRUE(equal > 3 && equal < 35) << equal;  // one of six
 }
 
 }  // namespace

@@ -114,12 +114,24 @@ Json json_of(const Rule& rule) {
   return json;
 }
 
+Json json_of(const Disturbance& disturbance) {
+  Json json = Json::object();
+  if (!disturbance.name.empty()) json["name"] = disturbance.name;
+  if (disturbance.receiver != "*") json["receiver"] = disturbance.receiver;
+  if (disturbance.from != kernel::kStart) json["from"] = kernel::describe(disturbance.from - kernel::kStart);
+  if (disturbance.to != kernel::kNever) json["to"] = kernel::describe(disturbance.to - kernel::kStart);
+  json[disturbance.model.kind] = Json::parse(disturbance.model.parameters);
+  return json;
+}
+
 }  // namespace
 
 std::string canonical_text(const Plan& plan) {
   Json rules = Json::array();
   for (const Rule& rule : plan.rules()) rules.push_back(json_of(rule));
-  return Json{{"rules", std::move(rules)}}.dump(2) + "\n";
+  Json json{{"rules", std::move(rules)}};
+  for (const Disturbance& one : plan.disturbances()) json["disturbances"].push_back(json_of(one));
+  return json.dump(2) + "\n";
 }
 
 std::uint64_t hash_of(const Plan& plan) {

@@ -4,14 +4,6 @@
 
 #include "harness/kernel/check.hpp"
 
-// A fused multiply-add rounds once where the product and the sum round twice: results would differ between
-// machines with and without it.
-#if defined(__clang__)
-#pragma clang fp contract(off)
-#elif defined(__GNUC__)
-#pragma GCC optimize("fp-contract=off")
-#endif
-
 namespace fieldproof::kernel {
 namespace {
 

@@ -119,8 +119,9 @@ void Ring::install(fault::InstalledPlan& plan) {
   fault::expect_known_names(plan.plan(), known_names());
   const Rules& rules = slaves_.front().configuration.rules;
   for (const Receiver& receiver : receivers()) {
-    receiver.link->set_channel(plan.channel_for(receiver.link->name(), receiver.link->trace_channel(),
-                                                std::make_unique<CycleFields>(rules, receiver.in_front)));
+    receiver.link->set_channel(
+        plan.channel_for({receiver.link->name(), receiver.link->trace_channel(), rules.bit_rate},
+                         std::make_unique<CycleFields>(rules, receiver.in_front)));
   }
 }
 

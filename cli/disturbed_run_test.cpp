@@ -1,0 +1,74 @@
+// Subject: a plan whose declared faults and disturbances work together in the joined catalogue.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <string>
+#include <variant>
+
+#include "cli/probe/source_folder.hpp"
+#include "cli/suites.hpp"
+#include "conformance/catalogue.hpp"
+#include "conformance/runner.hpp"
+#include "harness/kernel/error.hpp"
+#include "reports/approved_text.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+conformance::CaseRun run_under(const std::string& plan, std::uint64_t seed = 1) {
+  static const conformance::Catalogue catalogue(suites());
+  const auto entries = catalogue.select(std::vector<std::string>{"interbus/network/exchange/**"});
+  conformance::Setup setup;
+  setup.seed = seed;
+  setup.volume = conformance::Volume::quick;
+  setup.network_file = (kSourceFolder / "examples/paper.json").string();
+  setup.plan_file = plan;
+  return conformance::run_case(entries.front(), setup, conformance::KeptRecordings::all);
+}
+
+const std::string kExample = (kSourceFolder / "examples/disturbed_line.plan.json").string();
+
+// How often which fault stands in the trace.
+std::map<std::string, int> faults_of(const conformance::CaseRun& done) {
+  std::map<std::string, int> faults;
+  for (const trace::Record& record : done.outcome.recording.trace.records) {
+    if (const auto* fault = std::get_if<trace::Fault>(&record)) ++faults[fault->text];
+  }
+  return faults;
+}
+
+TEST(DisturbedRun, ShowsDeclaredFaultsAndDisturbancesInOneTrace) {
+  const std::map<std::string, int> faults = faults_of(run_under(kExample));
+  for (const auto& [text, count] : faults) SCOPED_TRACE(text + " " + std::to_string(count));
+  EXPECT_GT(faults.contains("burst pulse") ? faults.at("burst pulse") : 0, 20);
+  EXPECT_GE(faults.contains("flipped bit") ? faults.at("flipped bit") : 0, 5);
+  EXPECT_EQ(faults.size(), 3U);
+}
+
+TEST(DisturbedRun, IsAFunctionOfItsSeed) {
+  const auto fingerprint = [](const std::string& plan, std::uint64_t seed) {
+    return run_under(plan, seed).outcome.result.fingerprint;
+  };
+  EXPECT_EQ(fingerprint(kExample, 1), fingerprint(kExample, 1));
+  EXPECT_NE(fingerprint(kExample, 1), fingerprint(kExample, 2));
+  EXPECT_NE(fingerprint(kExample, 1), fingerprint("", 1));
+}
+
+TEST(DisturbedRun, NamesAReceiverThatIsNotThere) {
+  const reports::TemporaryFolder folder;
+  const std::string plan = (folder.path() / "plan.json").string();
+  std::ofstream(plan) << R"({"disturbances": [{"receiver": "slave@9/in", "bursts": {"level": 1}}]})";
+  try {
+    run_under(plan);
+    FAIL();
+  } catch (const kernel::Error& error) {
+    EXPECT_TRUE(std::string(error.what())
+                    .starts_with("/disturbances/0 of the plan: there is no receiver \"slave@9/in\" here; the "
+                                 "nearest are \"slave@"))
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace fieldproof::cli

@@ -1,0 +1,258 @@
+#include "emc/plan_disturbances.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "emc/burst_channel.hpp"
+#include "emc/effective_time.hpp"
+#include "emc/generator.hpp"
+#include "emc/profile.hpp"
+#include "emc/random_flips.hpp"
+#include "emc/shared_response.hpp"
+
+namespace fieldproof::emc {
+namespace {
+
+using config::ObjectReader;
+using config::Value;
+using fault::DisturbanceModel;
+using Json = nlohmann::ordered_json;
+
+// ---- bursts ----
+
+struct PlannedBursts {
+  BurstSettings settings;
+  std::optional<unsigned> level;
+  std::optional<kernel::Duration> first_burst;
+  Profile profile = Profile::named("A");
+};
+
+Level read_level(ObjectReader& object, PlannedBursts& bursts) {
+  const auto level = object.optional("level");
+  const auto volts = object.optional("volts");
+  if (level.has_value() == volts.has_value()) {
+    config::fail(object.value(),
+                 "how strong the bursts are is not clear; write either \"level\" or \"volts\"");
+  }
+  if (volts) return Level::free(volts->as_number(Level::kLeastVolts, Level::kMostVolts));
+  bursts.level = level->as_integer<unsigned>(1, 4);
+  return Level::standard(PortKind::signal, *bursts.level);
+}
+
+Profile read_profile(const Value& value) {
+  return value.is_string() ? Profile::named(value) : Profile::read(value);
+}
+
+PlannedBursts read_bursts(const Value& value) {
+  return config::read_object(value, [](ObjectReader& object) {
+    PlannedBursts bursts;
+    bursts.settings.level = read_level(object, bursts);
+    if (const auto repetition = object.optional("repetition")) {
+      bursts.settings.repetition = repetition->as_choice<Repetition>(
+          {{word_of(Repetition::khz_5), Repetition::khz_5},
+           {word_of(Repetition::khz_100), Repetition::khz_100},
+           {word_of(Repetition::khz_2_5_edition_1), Repetition::khz_2_5_edition_1}});
+    }
+    if (const auto polarity = object.optional("polarity")) {
+      bursts.settings.polarity =
+          polarity->as_choice<Polarity>({{word_of(Polarity::positive), Polarity::positive},
+                                         {word_of(Polarity::negative), Polarity::negative}});
+    }
+    if (const auto first = object.optional("first_burst")) {
+      bursts.first_burst = first->as_duration({}, kernel::kSecond);
+    }
+    if (const auto profile = object.optional("profile")) bursts.profile = read_profile(*profile);
+    return bursts;
+  });
+}
+
+Json json_of(const PlannedBursts& bursts) {
+  const BurstSettings usual;
+  Json json = Json::object();
+  if (bursts.level) {
+    json["level"] = *bursts.level;
+  } else {
+    json["volts"] = bursts.settings.level.open_circuit_volts();
+  }
+  if (bursts.settings.repetition != usual.repetition) {
+    json["repetition"] = word_of(bursts.settings.repetition);
+  }
+  if (bursts.settings.polarity != usual.polarity) json["polarity"] = word_of(bursts.settings.polarity);
+  if (bursts.first_burst) json["first_burst"] = kernel::describe(*bursts.first_burst);
+  if (bursts.profile.name != "A") json["profile"] = Json::parse(json_text(bursts.profile));
+  return json;
+}
+
+BurstSchedule schedule_of(const PlannedBursts& bursts, const fault::StressPlace& place) {
+  BurstSettings settings = bursts.settings;
+  settings.on = place.from;
+  if (bursts.first_burst) {
+    const BurstTiming drawn = BurstSchedule(settings, place.random).timing();
+    settings.on = place.from + *bursts.first_burst - drawn.phase;
+  }
+  return {settings, place.random};
+}
+
+WrongOutput wrong_output_of(const PlannedBursts& bursts, SharedResponse& response) {
+  return response.get().wrong_output(bursts.settings.level.open_circuit_volts(), bursts.settings.polarity);
+}
+
+DisturbanceModel read_burst_model(const Value& value) {
+  const PlannedBursts bursts = read_bursts(value);
+  const auto response = std::make_shared<SharedResponse>(bursts.profile.coupling);
+  return {"bursts", json_of(bursts).dump(), [bursts, response](const fault::StressPlace& place) {
+            return std::make_unique<BurstChannel>(
+                schedule_of(bursts, place), wrong_output_of(bursts, *response),
+                BurstReceiver{place.bit_rate, nullptr, line::Sampling{}, true, false}, place.trace,
+                place.channel);
+          }};
+}
+
+// ---- channels that flip bits ----
+
+// Tells the trace what a channel flipped.
+class ToldFlips final : public fault::Channel {
+ public:
+  ToldFlips(const fault::StressPlace& place, std::unique_ptr<fault::Channel> flips)
+      : trace_(place.trace), place_(place.channel), flips_(std::move(flips)) {}
+
+  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+    if (!flips_->pass(sent, arrivals)) return false;
+    const line::Levels& arrived = arrivals.back().levels;
+    for (std::size_t word = 0; word < sent.levels.word_count(); ++word) {
+      for (std::uint64_t flipped = sent.levels.words()[word] ^ arrived.words()[word]; flipped != 0;
+           flipped &= flipped - 1) {
+        const std::size_t level = 64 * word + static_cast<std::size_t>(std::countr_zero(flipped));
+        trace_.fault(place_, sent.time_of(level), "flipped bit");
+      }
+    }
+    return true;
+  }
+
+ private:
+  trace::Trace& trace_;
+  trace::Channel place_;
+  std::unique_ptr<fault::Channel> flips_;
+};
+
+// Each receiver draws for itself.
+kernel::Random random_of(const fault::StressPlace& place) {
+  return place.random.split(place.trace.channel_name(place.channel));
+}
+
+DisturbanceModel read_binary_symmetric(const Value& value) {
+  const double flips = config::read_object(
+      value, [](ObjectReader& object) { return object.required("flip_probability").as_number(0, 1); });
+  return {"binary_symmetric", Json{{"flip_probability", flips}}.dump(),
+          [flips](const fault::StressPlace& place) {
+            return std::make_unique<ToldFlips>(place,
+                                               std::make_unique<BernoulliChannel>(flips, random_of(place)));
+          }};
+}
+
+// ---- Gilbert and Elliott ----
+
+GilbertElliott read_parameters(ObjectReader& object) {
+  GilbertElliott parameters;
+  parameters.to_bad = object.required("to_bad").as_number(0, 1);
+  parameters.to_good = object.required("to_good").as_number(0, 1);
+  if (const auto flip = object.optional("good_flip")) parameters.good_flip = flip->as_number(0, 1);
+  if (const auto flip = object.optional("bad_flip")) parameters.bad_flip = flip->as_number(0, 1);
+  if (parameters.to_bad + parameters.to_good == 0) {
+    config::fail(object.value(),
+                 "neither state is ever left; write \"binary_symmetric\" for a channel of one state");
+  }
+  return parameters;
+}
+
+DisturbanceModel model_of(const GilbertElliott& parameters) {
+  const GilbertElliott usual;
+  Json json{{"to_bad", parameters.to_bad}, {"to_good", parameters.to_good}};
+  if (parameters.good_flip != usual.good_flip) json["good_flip"] = parameters.good_flip;
+  if (parameters.bad_flip != usual.bad_flip) json["bad_flip"] = parameters.bad_flip;
+  return {"gilbert_elliott", json.dump(), [parameters](const fault::StressPlace& place) {
+            return std::make_unique<ToldFlips>(
+                place, std::make_unique<GilbertElliottChannel>(parameters, random_of(place)));
+          }};
+}
+
+DisturbanceModel fitted_model(const PlannedBursts& bursts) {
+  const auto response = std::make_shared<SharedResponse>(bursts.profile.coupling);
+  return {"gilbert_elliott", Json{{"fitted_to", json_of(bursts)}}.dump(),
+          [bursts, response](const fault::StressPlace& place) {
+            const double flips = flips_per_pulse(wrong_output_of(bursts, *response), {}, place.bit_rate);
+            const GilbertElliott fitted =
+                fitted_gilbert_elliott(flips, bursts.settings.repetition, place.bit_rate);
+            return std::make_unique<ToldFlips>(
+                place, std::make_unique<GilbertElliottChannel>(fitted, random_of(place)));
+          }};
+}
+
+DisturbanceModel read_gilbert_elliott(const Value& value) {
+  return config::read_object(value, [](ObjectReader& object) {
+    const auto bursts = object.optional("fitted_to");
+    return bursts ? fitted_model(read_bursts(*bursts)) : model_of(read_parameters(object));
+  });
+}
+
+// ---- lists of bits ----
+
+constexpr std::size_t kMostBits = 100'000;
+
+using Position = BitListChannel::Position;
+
+std::vector<Position> read_positions(const Value& value) {
+  std::vector<Position> positions;
+  for (const Value& element : value.as_array(1, kMostBits)) {
+    config::read_object(element, [&](ObjectReader& object) {
+      const auto transmission = object.required("transmission").as_integer<std::uint64_t>();
+      for (const Value& bit : object.required("bits").as_array(1, kMostBits)) {
+        positions.push_back({transmission, bit.as_integer<std::uint64_t>(0, kMostBits)});
+        if (positions.size() > kMostBits) config::fail(bit, "these are too many bits; 100000 make a list");
+      }
+    });
+  }
+  std::ranges::sort(positions);
+  if (const auto twice = std::ranges::adjacent_find(positions); twice != positions.end()) {
+    config::fail(value, "a bit is named twice, which leaves it as it is; leave both out");
+  }
+  return positions;
+}
+
+Json json_of(const std::vector<Position>& positions) {
+  Json json = Json::array();
+  for (auto at = positions.begin(); at != positions.end();) {
+    Json bits = Json::array();
+    const std::uint64_t transmission = at->transmission;
+    for (; at != positions.end() && at->transmission == transmission; ++at) bits.push_back(at->bit);
+    json.push_back({{"transmission", transmission}, {"bits", std::move(bits)}});
+  }
+  return json;
+}
+
+DisturbanceModel read_flipped_bits(const Value& value) {
+  const std::vector<Position> positions = read_positions(value);
+  return {"flipped_bits", json_of(positions).dump(), [positions](const fault::StressPlace& place) {
+            return std::make_unique<ToldFlips>(place, std::make_unique<BitListChannel>(positions));
+          }};
+}
+
+constexpr std::array<fault::DisturbanceKind, 4> kKinds{{{"bursts", read_burst_model},
+                                                        {"binary_symmetric", read_binary_symmetric},
+                                                        {"gilbert_elliott", read_gilbert_elliott},
+                                                        {"flipped_bits", read_flipped_bits}}};
+
+}  // namespace
+
+std::span<const fault::DisturbanceKind> plan_disturbances() {
+  return kKinds;
+}
+
+}  // namespace fieldproof::emc

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+
+#include "harness/fault/disturbance.hpp"
+
+// What a fault plan can put on a line beside its declared faults:
+//
+//   "bursts":           { "level": 3, "repetition": "5kHz", "polarity": "+", "profile": "A" }
+//   "binary_symmetric": { "flip_probability": 1e-4 }
+//   "gilbert_elliott":  { "to_bad": 1e-5, "to_good": 1e-3, "good_flip": 0, "bad_flip": 0.1 }
+//   "gilbert_elliott":  { "fitted_to": { "level": 3 } }
+//   "flipped_bits":     [ { "transmission": 0, "bits": [5, 6] } ]
+//
+// Bursts: one generator for all receivers of the disturbance, on from the begin of its window to the end,
+// with the tolerances that it draws. The first burst comes anywhere within a burst period, or `first_burst`
+// behind the begin of the window. `volts` in place of `level` is level X. A profile is a built-in one by its
+// name, or an object as in a profile file. Receivers are not declared, so every transmission that is hit
+// reaches the receiver with its wrong times in it, and the receiver itself samples.
+//
+// The textbooks' channels draw for each receiver by itself. `fitted_to` takes mean burst, mean gap and mean
+// flip rate of these bursts for a receiver that samples each bit once. Transmissions count from 0 at each
+// receiver, within the window.
+namespace fieldproof::emc {
+
+std::span<const fault::DisturbanceKind> plan_disturbances();
+
+}  // namespace fieldproof::emc
