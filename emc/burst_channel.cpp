@@ -4,6 +4,11 @@
 #include <utility>
 
 namespace fieldproof::emc {
+namespace {
+
+constexpr TickGrid kBitGrid{BurstChannel::kTicksPerBit};
+
+}  // namespace
 
 BurstStatistics& BurstStatistics::operator+=(const BurstStatistics& other) {
   transmissions += other.transmissions;
@@ -56,11 +61,11 @@ bool BurstChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>&
 bool BurstChannel::corrupt(const line::Waveform& sent, kernel::Time last_pulse,
                            std::vector<line::Waveform>& arrivals) {
   const bool is_of_bits = sent.rate == receiver_.bit_rate;
-  spans_.begin(sent, is_of_bits ? kTicksPerBit : ticks_for(sent.rate));
+  spans_.begin(sent, is_of_bits ? kBitGrid : TickGrid(ticks_for(sent.rate)));
   pulses_.clear();
   for (kernel::Time pulse = schedule_.first_from(sent.start - reach_.to + kernel::kPicosecond);
        pulse < last_pulse; pulse = schedule_.first_from(pulse + kernel::kPicosecond)) {
-    pulses_.push_back(pulse);
+    pulses_.push_back({pulse, spans_.reach_of(pulse, reach_)});
     spans_.add(pulse, wrong_);
   }
   const std::vector<Span>& heard = spans_.resolve();
@@ -68,7 +73,7 @@ bool BurstChannel::corrupt(const line::Waveform& sent, kernel::Time last_pulse,
   ++statistics_.hit_transmissions;
   count(heard);
   const bool is_known = is_of_bits && is_in_step(sent);
-  if (is_known) impact_.judge(sent.levels, heard, kTicksPerBit);
+  if (is_known) impact_.judge(sent.levels, heard, kBitGrid);
   if (!is_known || impact_.is_unclear()) {
     rewrite(sent, heard, arrivals);
   } else {
@@ -104,25 +109,26 @@ bool BurstChannel::is_in_step(const line::Waveform& sent) const {
   return receiver_.has_whole_units && !is_out_of_step_ && sent.start >= last_end();
 }
 
-void BurstChannel::count(const std::vector<Span>& heard) {
-  const std::int64_t ticks = spans_.ticks_per_level();
-  std::int64_t counted = -1;  // the last level
-  for (const Span& span : heard) {
-    const std::int64_t first = std::max(counted + 1, span.from / ticks);
-    const std::int64_t last = (span.to - 1) / ticks;
-    if (last >= first) statistics_.wrong_levels += static_cast<std::uint64_t>(last - first + 1);
-    counted = std::max(counted, last);
-  }
-  for (const kernel::Time pulse : pulses_) {
-    if (touches(pulse, heard)) ++statistics_.pulses;
+// The pulses that reach into one of the spans. Both are in order, and all pulses reach equally far.
+template <typename Use>
+void BurstChannel::each_pulse_into(const std::vector<Span>& spans, Use&& use) const {
+  auto span = spans.begin();
+  for (const Pulse& pulse : pulses_) {
+    while (span != spans.end() && span->to <= pulse.reach.from) ++span;
+    if (span != spans.end() && span->from < pulse.reach.to) use(pulse.time);
   }
 }
 
-// Does the pulse reach into one of the spans?
-bool BurstChannel::touches(kernel::Time pulse, const std::vector<Span>& spans) const {
-  const Span reach = spans_.reach_of(pulse, reach_);
-  return std::any_of(spans.begin(), spans.end(),
-                     [&](const Span& span) { return span.from < reach.to && reach.from < span.to; });
+void BurstChannel::count(const std::vector<Span>& heard) {
+  const TickGrid& grid = spans_.grid();
+  std::int64_t counted = -1;  // the last level
+  for (const Span& span : heard) {
+    const std::int64_t first = std::max(counted + 1, grid.level_of(span.from));
+    const std::int64_t last = grid.level_of(span.to - 1);
+    if (last >= first) statistics_.wrong_levels += static_cast<std::uint64_t>(last - first + 1);
+    counted = std::max(counted, last);
+  }
+  each_pulse_into(heard, [this](kernel::Time) { ++statistics_.pulses; });
 }
 
 void BurstChannel::flip(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
@@ -130,8 +136,8 @@ void BurstChannel::flip(const line::Waveform& sent, std::vector<line::Waveform>&
   flipped_.clear();
   for (const std::size_t bit : impact_.flipped_bits()) {
     arrival.levels.flip(bit);
-    const std::int64_t begin = static_cast<std::int64_t>(bit) * kTicksPerBit;
-    flipped_.push_back({begin, begin + kTicksPerBit});
+    const auto n = static_cast<std::int64_t>(bit);
+    flipped_.push_back({kBitGrid.begin_of(n), kBitGrid.begin_of(n + 1)});
   }
   statistics_.flipped_bits += flipped_.size();
   tell(flipped_);
@@ -141,17 +147,19 @@ void BurstChannel::rewrite(const line::Waveform& sent, const std::vector<Span>& 
                            std::vector<line::Waveform>& arrivals) {
   line::Waveform& arrival = arrivals.emplace_back();
   arrival.start = sent.start;
-  arrival.rate = sent.rate * spans_.ticks_per_level();
-  append_stretched(sent.levels, spans_.ticks_per_level(), heard, arrival.levels);
+  const std::int64_t ticks = spans_.grid().per_level();
+  arrival.rate = sent.rate * ticks;
+  arrival.levels.append_stretched(sent.levels, static_cast<std::size_t>(ticks));
+  for (const Span& span : heard) {
+    arrival.levels.invert(static_cast<std::size_t>(span.from), static_cast<std::size_t>(span.to));
+  }
   ++statistics_.rewritten_transmissions;
   tell(heard);
   is_out_of_step_ = true;
 }
 
 void BurstChannel::tell(const std::vector<Span>& changed) {
-  for (const kernel::Time pulse : pulses_) {
-    if (touches(pulse, changed)) trace_.fault(place_, pulse, "burst pulse");
-  }
+  each_pulse_into(changed, [this](kernel::Time pulse) { trace_.fault(place_, pulse, "burst pulse"); });
 }
 
 }  // namespace fieldproof::emc

@@ -79,7 +79,8 @@ class BurstChannel final : public fault::Channel {
   bool is_far_behind_last(const line::Waveform& sent) const;
   bool is_in_step(const line::Waveform& sent) const;
   void count(const std::vector<Span>& heard);
-  bool touches(kernel::Time pulse, const std::vector<Span>& spans) const;
+  template <typename Use>
+  void each_pulse_into(const std::vector<Span>& spans, Use&& use) const;
   void flip(const line::Waveform& sent, std::vector<line::Waveform>& arrivals);
   void rewrite(const line::Waveform& sent, const std::vector<Span>& heard,
                std::vector<line::Waveform>& arrivals);
@@ -104,7 +105,11 @@ class BurstChannel final : public fault::Channel {
   bool is_out_of_step_ = false;  // perhaps, since a transmission was rewritten
 
   // Of the transmission that passes.
-  std::vector<kernel::Time> pulses_;
+  struct Pulse {
+    kernel::Time time;
+    Span reach;
+  };
+  std::vector<Pulse> pulses_;
   WrongSpans spans_;
   SampledImpact impact_;
   std::vector<Span> flipped_;

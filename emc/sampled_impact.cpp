@@ -4,41 +4,41 @@
 
 namespace fieldproof::emc {
 
-void SampledImpact::judge(const line::Levels& levels, const std::vector<Span>& heard,
-                          std::int64_t ticks_per_bit) {
+void SampledImpact::judge(const line::Levels& levels, const std::vector<Span>& heard, const TickGrid& grid) {
   heard_ = &heard;
-  ticks_ = ticks_per_bit;
+  grid_ = grid;
   flipped_.clear();
   units_.clear();
   is_unclear_ = framing_ == nullptr || !framing_->find(levels, units_);
   auto unit = units_.begin();
   Place place{0, heard.empty() ? 0 : heard.front().from};
   while (!is_unclear_ && place.span < heard.size()) {
-    const auto bit = static_cast<std::size_t>(place.at / ticks_);
+    const auto bit = static_cast<std::size_t>(grid_.level_of(place.at));
     while (unit != units_.end() && unit->end() <= bit) ++unit;
     const bool is_in_unit = unit != units_.end() && unit->first <= bit;
-    const std::int64_t behind_decision = place.at - static_cast<std::int64_t>(bit) * ticks_ - last_sample();
+    const std::int64_t behind_decision =
+        place.at - grid_.begin_of(static_cast<std::int64_t>(bit)) - last_sample();
     if (is_in_unit && (unit->role_of(bit) != BitRole::stop || behind_decision <= 0)) {
       judge_in_unit(*unit, place);
     } else {
       const auto next = is_in_unit ? unit + 1 : unit;
       const std::size_t idle_until = next == units_.end() ? levels.size() : next->first;
-      judge_on_idle_line(static_cast<std::int64_t>(idle_until) * ticks_, place);
+      judge_on_idle_line(grid_.begin_of(static_cast<std::int64_t>(idle_until)), place);
     }
   }
 }
 
 void SampledImpact::judge_in_unit(const FramedUnit& unit, Place& place) {
-  const std::int64_t bit = place.at / ticks_;
+  const std::int64_t bit = grid_.level_of(place.at);
   const BitRole role = unit.role_of(static_cast<std::size_t>(bit));
-  const bool is_edge_moved = role == BitRole::start && place.at == bit * ticks_;
+  const bool is_edge_moved = role == BitRole::start && place.at == grid_.begin_of(bit);
   const bool is_wrong = is_sampled_wrong(bit, place.span);
   is_unclear_ = is_edge_moved || (is_wrong && role != BitRole::sampled);
   if (is_wrong) flipped_.push_back(static_cast<std::size_t>(bit));
   if (role != BitRole::stop) return pass_bit(bit, place);
   // The receiver looks for an edge behind its last sample of a stop bit; what is wrong at that instant and
   // does not decide the bit may be one.
-  const std::int64_t decided = bit * ticks_ + last_sample();
+  const std::int64_t decided = grid_.begin_of(bit) + last_sample();
   while (place.span < heard_->size() && (*heard_)[place.span].from <= decided) {
     is_unclear_ = is_unclear_ || (*heard_)[place.span].to > decided;
     ++place.span;
@@ -48,7 +48,7 @@ void SampledImpact::judge_in_unit(const FramedUnit& unit, Place& place) {
 
 // Goes on behind the bit.
 void SampledImpact::pass_bit(std::int64_t bit, Place& place) const {
-  const std::int64_t end = (bit + 1) * ticks_;
+  const std::int64_t end = grid_.begin_of(bit + 1);
   while (place.span < heard_->size() && (*heard_)[place.span].to <= end) ++place.span;
   if (place.span < heard_->size()) place.at = std::max(end, (*heard_)[place.span].from);
 }
@@ -66,7 +66,7 @@ void SampledImpact::judge_on_idle_line(std::int64_t idle_until, Place& place) {
 }
 
 bool SampledImpact::is_sampled_wrong(std::int64_t bit, std::size_t first_span) const {
-  const std::int64_t begin = bit * ticks_;
+  const std::int64_t begin = grid_.begin_of(bit);
   const bool middle = is_wrong_at(begin + sixteenths(8), first_span);
   if (sampling_.kind == line::Sampling::Kind::mid_bit) return middle;
   const int wrong = int{is_wrong_at(begin + sixteenths(7), first_span)} + int{middle} +

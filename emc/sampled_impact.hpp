@@ -30,14 +30,14 @@ class SampledImpact {
   SampledImpact(const Framing* framing, line::Sampling sampling, bool validates_start)
       : framing_(framing), sampling_(sampling), validates_start_(validates_start) {}
 
-  // `heard` is in `ticks_per_bit` parts of a bit, a multiple of 16, and lies within the levels.
-  void judge(const line::Levels& levels, const std::vector<Span>& heard, std::int64_t ticks_per_bit);
+  // `heard` is on a grid with a multiple of 16 ticks in a bit, and lies within the levels.
+  void judge(const line::Levels& levels, const std::vector<Span>& heard, const TickGrid& grid);
 
   bool is_unclear() const { return is_unclear_; }
   const std::vector<std::size_t>& flipped_bits() const { return flipped_; }  // in order
 
  private:
-  std::int64_t sixteenths(std::int64_t count) const { return count * ticks_ / 16; }
+  std::int64_t sixteenths(std::int64_t count) const { return count * (grid_.per_level() / 16); }
   std::int64_t first_sample() const {
     return sixteenths(sampling_.kind == line::Sampling::Kind::mid_bit ? 8 : 7);
   }
@@ -63,7 +63,7 @@ class SampledImpact {
 
   std::vector<FramedUnit> units_;
   const std::vector<Span>* heard_ = nullptr;
-  std::int64_t ticks_ = 16;
+  TickGrid grid_{16};
   bool is_unclear_ = false;
   std::vector<std::size_t> flipped_;
 };

@@ -28,11 +28,11 @@ void join(std::vector<Span>& spans) {
 
 }  // namespace
 
-void WrongSpans::begin(const line::Waveform& sent, std::int64_t ticks_per_level) {
+void WrongSpans::begin(const line::Waveform& sent, const TickGrid& grid) {
   sent_ = &sent;
-  ticks_per_level_ = ticks_per_level;
+  grid_ = grid;
   ticks_per_picosecond_ =
-      static_cast<double>(sent.rate * ticks_per_level) / static_cast<double>(kernel::kSecond.count());
+      static_cast<double>(sent.rate * grid.per_level()) / static_cast<double>(kernel::kSecond.count());
   for (auto& spans : of_level_) spans.clear();
 }
 
@@ -63,31 +63,16 @@ void WrongSpans::resolve(bool level) {
   std::vector<Span>& spans = of_level_[level ? 1 : 0];
   join(spans);
   const line::Levels& levels = sent_->levels;
-  const std::int64_t end = static_cast<std::int64_t>(levels.size()) * ticks_per_level_;
+  const std::int64_t end = grid_.begin_of(static_cast<std::int64_t>(levels.size()));
   for (const Span& span : spans) {
     const std::int64_t from = std::max<std::int64_t>(0, span.from);
     const std::int64_t to = std::min(end, span.to);
     for (std::int64_t at = from; at < to;) {
-      const std::int64_t bit = at / ticks_per_level_;
-      const std::int64_t next = std::min(to, (bit + 1) * ticks_per_level_);
-      if (levels[static_cast<std::size_t>(bit)] == level) heard_.push_back({at, next});
+      const std::int64_t n = grid_.level_of(at);
+      const std::int64_t next = std::min(to, grid_.begin_of(n + 1));
+      if (levels[static_cast<std::size_t>(n)] == level) heard_.push_back({at, next});
       at = next;
     }
-  }
-}
-
-void append_stretched(const line::Levels& levels, std::int64_t ticks_per_level,
-                      const std::vector<Span>& inverted, line::Levels& stretched) {
-  const auto ticks = static_cast<std::size_t>(ticks_per_level);
-  const std::size_t begin = stretched.size();
-  stretched.append_idle(levels.size() * ticks);
-  for (std::size_t first = 0; first < levels.size();) {
-    const std::size_t end = levels.end_of_run(first);
-    if (!levels[first]) stretched.fill(begin + first * ticks, begin + end * ticks, false);
-    first = end;
-  }
-  for (const Span& span : inverted) {
-    stretched.invert(begin + static_cast<std::size_t>(span.from), begin + static_cast<std::size_t>(span.to));
   }
 }
 

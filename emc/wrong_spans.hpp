@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,10 +25,29 @@ struct Span {
   friend bool operator==(const Span&, const Span&) = default;
 };
 
+// Ticks and the levels that they lie in. A power of two divides faster than another number does.
+class TickGrid {
+ public:
+  explicit constexpr TickGrid(std::int64_t per_level)
+      : per_level_(per_level),
+        shift_(std::has_single_bit(static_cast<std::uint64_t>(per_level))
+                   ? std::countr_zero(static_cast<std::uint64_t>(per_level))
+                   : -1) {}
+
+  std::int64_t per_level() const { return per_level_; }
+  // Of a tick from 0 on.
+  std::int64_t level_of(std::int64_t tick) const { return shift_ < 0 ? tick / per_level_ : tick >> shift_; }
+  std::int64_t begin_of(std::int64_t level) const { return level * per_level_; }
+
+ private:
+  std::int64_t per_level_;
+  int shift_;
+};
+
 class WrongSpans {
  public:
   // Forgets everything; what is added then belongs to `sent`.
-  void begin(const line::Waveform& sent, std::int64_t ticks_per_level);
+  void begin(const line::Waveform& sent, const TickGrid& grid);
 
   // The effect of a pulse. Pulses are added in order.
   void add(kernel::Time pulse, const WrongOutput& wrong);
@@ -41,21 +61,17 @@ class WrongSpans {
     return {tick_of(pulse + hull.from), tick_of(pulse + hull.to)};
   }
 
-  std::int64_t ticks_per_level() const { return ticks_per_level_; }
+  const TickGrid& grid() const { return grid_; }
 
  private:
   std::int64_t tick_of(kernel::Time time) const;
   void resolve(bool level);
 
   const line::Waveform* sent_ = nullptr;
-  std::int64_t ticks_per_level_ = 1;
+  TickGrid grid_{1};
   double ticks_per_picosecond_ = 0;
   std::array<std::vector<Span>, 2> of_level_;
   std::vector<Span> heard_;
 };
-
-// The levels at `ticks_per_level` times the rate, inverted in the spans.
-void append_stretched(const line::Levels& levels, std::int64_t ticks_per_level,
-                      const std::vector<Span>& inverted, line::Levels& stretched);
 
 }  // namespace fieldproof::emc

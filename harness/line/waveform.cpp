@@ -60,6 +60,21 @@ void Levels::append(const Levels& other, std::size_t first, std::size_t count) {
   }
 }
 
+void Levels::append_stretched(const Levels& other, std::size_t times) {
+  const std::size_t begin = size_;
+  append_idle(other.size() * times);
+  if (times == kWordLevels && begin % kWordLevels == 0) {
+    std::uint64_t* word = words_.data() + begin / kWordLevels;
+    for (std::size_t n = 0; n < other.size(); ++n) *word++ = other[n] ? ~std::uint64_t{0} : 0;
+    return;
+  }
+  for (std::size_t first = 0; first < other.size();) {
+    const std::size_t end = other.end_of_run(first);
+    if (!other[first]) fill(begin + first * times, begin + end * times, false);
+    first = end;
+  }
+}
+
 void Levels::flip(std::size_t n) {
   FIELDPROOF_CHECK(n < size_, "a level that is flipped lies in the waveform");
   words_[n / 64] ^= std::uint64_t{1} << (n % 64);

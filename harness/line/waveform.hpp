@@ -74,6 +74,8 @@ class Levels {
   void append(const Levels& other);
   // Levels [first, first + count) of the other, idle beyond its end.
   void append(const Levels& other, std::size_t first, std::size_t count);
+  // Each level of the other `times` times, at least once.
+  void append_stretched(const Levels& other, std::size_t times);
 
   // Positions at or beyond the end are a broken invariant.
   void flip(std::size_t n);
@@ -104,6 +106,7 @@ class Levels {
 
  private:
   static constexpr std::size_t kInitialLevels = 256;
+  static constexpr std::size_t kWordLevels = 64;
 
   static constexpr std::uint64_t mask(unsigned count) {
     return count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;

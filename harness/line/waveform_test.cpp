@@ -63,6 +63,20 @@ RC_GTEST_PROP(LevelsProperty, SlicesAndConcatenationsAreThoseOfTheText,
   RC_ASSERT(both.text() == first.text() + "111");
 }
 
+// 64 times is a case of its own when it begins with a word.
+RC_GTEST_PROP(LevelsProperty, StretchingIsWritingEachLevelSeveralTimes, (std::vector<bool> bits)) {
+  const std::size_t times = *rc::gen::element<std::size_t>(1, 2, 3, 63, 64, 65, 128);
+  const std::size_t before = *rc::gen::element<std::size_t>(0, 1, 64);
+  Levels stretched;
+  stretched.append_idle(before);
+  std::string expected = stretched.text();
+  stretched.append_stretched(levels_of(bits), times);
+  for (const bool bit : bits) expected.append(times, bit ? '1' : '0');
+  RC_ASSERT(stretched.text() == expected);
+  stretched.append_idle(1);
+  RC_ASSERT(stretched.text() == expected + "1");
+}
+
 TEST(Levels, FillsFromAnyPlaceForAnyLength) {
   for (const std::size_t begin : {0U, 1U, 63U, 64U, 65U}) {
     for (const std::size_t count : {0U, 1U, 62U, 63U, 64U, 65U, 128U, 1000U}) {
