@@ -16,7 +16,7 @@ constexpr std::array kOptions = {
     Option{"seed", value, "N", "1", "run verify matrix residual measure paper emc", "seed of the run, 0 to 2^64-1", false, true},
     Option{"volume", value, "quick|full", "full", "run verify", "how many repetitions a case makes", false, true},
     Option{"network", value, "FILE", "", "run verify measure emc", "network description instead of the suite's own", false, true},
-    Option{"plan", value, "FILE", "", "run verify", "plan of declared faults", false, true},
+    Option{"plan", value, "FILE", "", "run verify", "plan of declared faults and disturbances", false, true},
     Option{"pics", value, "FILE", "", "run verify list", "what the implementation declares about itself", false, true},
     Option{"jobs", value, "N", "all cores", "run verify matrix emc", "threads; the results are the same for any number"},
     Option{"out", value, "DIR", "runs/<utc>-<seed>", "run", "directory of the run"},

@@ -160,6 +160,10 @@ TEST_F(Schemas, OfAPlan) {
        bad(disturbance(R"("gilbert_elliott": {"to_bad": 0.1})")),
        good(disturbance(R"("gilbert_elliott": {"fitted_to": {"level": 4}})")),
        bad(disturbance(R"("gilbert_elliott": {"fitted_to": {"level": 4}, "to_bad": 0.1})")),
+       bad_to_the_reader_only(
+           disturbance(R"("gilbert_elliott": {"fitted_to": {"level": 4, "first_burst": "0 s"}})")),
+       bad_to_the_reader_only(
+           disturbance(R"("bursts": {"level": 1, "profile": {"name": "a", "coupling": 5}})")),
        good(disturbance(R"("flipped_bits": [{"transmission": 0, "bits": [0, 100000]}])")),
        bad(disturbance(R"("flipped_bits": [{"transmission": 0, "bits": []}])")),
        bad(disturbance(R"("flipped_bits": [{"transmission": 0, "bits": [100001]}])")),

@@ -7,17 +7,19 @@
 #include <utility>
 
 #include "emc/burst_channel.hpp"
+#include "emc/computed_once.hpp"
 #include "emc/coupling.hpp"
-#include "emc/shared_response.hpp"
 
 namespace fieldproof::emc {
 namespace {
 
-// One burst: that which the run would have drawn, moved to where the stress begins.
+using SharedResponse = ComputedOnce<LineResponse>;
+
+// One burst, with the tolerances of a run.
 BurstSchedule burst_at(kernel::Time from, BurstSettings settings, const kernel::Random& random) {
-  const BurstTiming drawn = BurstSchedule(settings, random).timing();
-  settings.on = from - drawn.phase;
-  settings.off = from + drawn.period / 2;
+  settings.on = from;
+  settings.off = from + BurstSchedule(settings, random).timing().period / 2;
+  settings.first_burst = kernel::Duration::zero();
   return {settings, random};
 }
 
@@ -42,7 +44,8 @@ fault::Stress stress(const std::shared_ptr<SharedResponse>& response, const Burs
 }  // namespace
 
 std::vector<fault::Stress> burst_stresses(const Profile& profile, std::span<const Level> levels) {
-  const auto response = std::make_shared<SharedResponse>(profile.coupling);
+  const auto response =
+      std::make_shared<SharedResponse>([coupling = profile.coupling] { return LineResponse(coupling); });
   std::vector<fault::Stress> stresses;
   for (const Level& level : levels) {
     for (const Repetition repetition : {Repetition::khz_5, Repetition::khz_100}) {

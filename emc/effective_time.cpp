@@ -55,10 +55,10 @@ GilbertElliott fitted_gilbert_elliott(double flips_per_pulse, Repetition repetit
   };
   const kernel::Duration burst = timing.pulses * timing.pitch;
   GilbertElliott fitted;
-  fitted.to_good = 1 / bits(burst);
-  fitted.to_bad = 1 / bits(timing.period - burst);
+  fitted.to_good = std::min(1.0, 1 / bits(burst));
+  fitted.to_bad = std::min(1.0, 1 / bits(timing.period - burst));
   fitted.good_flip = 0;
-  fitted.bad_flip = flips_per_pulse * static_cast<double>(timing.pulses) / bits(burst);
+  fitted.bad_flip = std::min(1.0, flips_per_pulse * static_cast<double>(timing.pulses) / bits(burst));
   return fitted;
 }
 

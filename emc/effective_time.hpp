@@ -24,7 +24,8 @@ kernel::Duration effective_time(std::span<const Interval> wrong, line::Sampling 
 double flips_per_pulse(const WrongOutput& wrong, line::Sampling sampling, std::int64_t bit_rate);
 
 // The Gilbert-Elliott channel with the mean burst, the mean gap and the mean flip rate of nominal bursts on a
-// line. What it does not have: the pitch of the pulses, the length of the burst.
+// line. What it does not have: the pitch of the pulses, the length of the burst. Where a burst is shorter
+// than a bit, or flips more than once in it, the probability is 1.
 GilbertElliott fitted_gilbert_elliott(double flips_per_pulse, Repetition repetition, std::int64_t bit_rate);
 
 }  // namespace fieldproof::emc

@@ -94,5 +94,16 @@ TEST(EffectiveTimeTest, TheFitHasTheParametersCalculated) {
   EXPECT_NEAR(fast.bit_error_rate(), 3.75e-5, 1e-12);
 }
 
+// At a hundred bits a second a burst lies within one bit.
+TEST(FittedGilbertElliottTest, HasProbabilitiesAtAnyBitRate) {
+  for (const std::int64_t bit_rate : {1, 2, 100, 10'000}) {
+    const GilbertElliott fitted = fitted_gilbert_elliott(1.9, Repetition::khz_100, bit_rate);
+    for (const double p : {fitted.to_bad, fitted.to_good, fitted.good_flip, fitted.bad_flip}) {
+      EXPECT_TRUE(p >= 0 && p <= 1) << p << " at " << bit_rate;
+    }
+    GilbertElliottProcess(fitted, kernel::Random(1));
+  }
+}
+
 }  // namespace
 }  // namespace fieldproof::emc

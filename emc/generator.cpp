@@ -56,6 +56,7 @@ BurstTiming draw(const BurstSettings& settings, kernel::Random random) {
   timing.pulses = pulses_within(nominal.duration, nominal.pitch);
   timing.period = kPeriod;
   timing.sweep_steps = 1;
+  timing.phase = settings.first_burst.value_or(kernel::Duration::zero());
   if (settings.clock == GeneratorClock::commensurable_with_the_line_to_show_the_artefact) return timing;
   if (settings.tolerances != Tolerances::none) timing.pitch = scaled(nominal.pitch, 1 / factor(random));
   if (settings.tolerances == Tolerances::rate_duration_and_period) {
@@ -65,7 +66,8 @@ BurstTiming draw(const BurstSettings& settings, kernel::Random random) {
   if (settings.has_jitter || settings.tolerances == Tolerances::none) {
     timing.jitter = timing.pitch * kJitterPerMille / 1000;
   }
-  timing.phase = kernel::Duration{random.between(0, timing.period.count() - 1)};
+  timing.phase =
+      settings.first_burst.value_or(kernel::Duration{random.between(0, timing.period.count() - 1)});
   if (settings.phase == BurstPhase::swept) {
     timing.sweep_steps = std::max(1U, settings.sweep_steps);
     timing.sweep = timing.pitch / timing.sweep_steps;
@@ -115,20 +117,22 @@ std::string Level::text() const {
 
 BurstSchedule::BurstSchedule(const BurstSettings& settings, const kernel::Random& random)
     : timing_(draw(settings, random.split("burst timing"))),
-      on_(settings.on),
+      first_number_(settings.first_burst ? 0 : -1),
+      origin_(settings.on),
+      on_(settings.first_burst ? settings.on - timing_.jitter : settings.on),
       off_(settings.off),
       jitter_(random.split("pulse jitter")) {}
 
 kernel::Time BurstSchedule::burst_begin(std::int64_t burst) const {
   const std::int64_t step = burst < 0 ? timing_.sweep_steps - 1 : burst % timing_.sweep_steps;
-  return on_ + timing_.phase + burst * timing_.period + step * timing_.sweep;
+  return origin_ + timing_.phase + burst * timing_.period + step * timing_.sweep;
 }
 
 std::int64_t BurstSchedule::burst_before(kernel::Time time) const {
-  // The burst that runs when the generator is switched on has number -1; there is none before it.
+  // A burst that runs when the generator is switched on has number -1; there is none before it.
   const kernel::Duration behind =
-      time - on_ - timing_.phase - timing_.sweep * timing_.sweep_steps - timing_.jitter;
-  return std::max<std::int64_t>(-1, floor_quotient(behind, timing_.period));
+      time - origin_ - timing_.phase - timing_.sweep * timing_.sweep_steps - timing_.jitter;
+  return std::max(first_number_, floor_quotient(behind, timing_.period));
 }
 
 void BurstSchedule::begin_burst(std::int64_t burst) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -78,6 +79,9 @@ struct BurstSettings {
   // Each pulse strays from its place. Where no tolerances are drawn it does so whatever is said here.
   bool has_jitter = true;
   BurstPhase phase = BurstPhase::asynchronous;
+  // The first burst begins so long behind `on`, and none runs when the generator is switched on; drawn where
+  // nothing is said.
+  std::optional<kernel::Duration> first_burst{};
   unsigned sweep_steps = 16;
   GeneratorClock clock = GeneratorClock::its_own;
   // Pulses come from `on` on, before `off`.
@@ -134,7 +138,9 @@ class BurstSchedule {
   kernel::Time pulse_here() const;
 
   BurstTiming timing_;
-  kernel::Time on_;
+  std::int64_t first_number_;  // of a burst
+  kernel::Time origin_;
+  kernel::Time on_;  // no pulse comes before
   kernel::Time off_;
   kernel::Random jitter_;
   // The pulse that was found last, or where its search stands.

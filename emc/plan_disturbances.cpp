@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "emc/burst_channel.hpp"
+#include "emc/computed_once.hpp"
 #include "emc/effective_time.hpp"
 #include "emc/generator.hpp"
 #include "emc/profile.hpp"
 #include "emc/random_flips.hpp"
-#include "emc/shared_response.hpp"
 
 namespace fieldproof::emc {
 namespace {
@@ -30,7 +30,6 @@ using Json = nlohmann::ordered_json;
 struct PlannedBursts {
   BurstSettings settings;
   std::optional<unsigned> level;
-  std::optional<kernel::Duration> first_burst;
   Profile profile = Profile::named("A");
 };
 
@@ -66,7 +65,7 @@ PlannedBursts read_bursts(const Value& value) {
                                          {word_of(Polarity::negative), Polarity::negative}});
     }
     if (const auto first = object.optional("first_burst")) {
-      bursts.first_burst = first->as_duration({}, kernel::kSecond);
+      bursts.settings.first_burst = first->as_duration({}, kernel::kSecond);
     }
     if (const auto profile = object.optional("profile")) bursts.profile = read_profile(*profile);
     return bursts;
@@ -85,7 +84,7 @@ Json json_of(const PlannedBursts& bursts) {
     json["repetition"] = word_of(bursts.settings.repetition);
   }
   if (bursts.settings.polarity != usual.polarity) json["polarity"] = word_of(bursts.settings.polarity);
-  if (bursts.first_burst) json["first_burst"] = kernel::describe(*bursts.first_burst);
+  if (bursts.settings.first_burst) json["first_burst"] = kernel::describe(*bursts.settings.first_burst);
   if (bursts.profile.name != "A") json["profile"] = Json::parse(json_text(bursts.profile));
   return json;
 }
@@ -93,23 +92,23 @@ Json json_of(const PlannedBursts& bursts) {
 BurstSchedule schedule_of(const PlannedBursts& bursts, const fault::StressPlace& place) {
   BurstSettings settings = bursts.settings;
   settings.on = place.from;
-  if (bursts.first_burst) {
-    const BurstTiming drawn = BurstSchedule(settings, place.random).timing();
-    settings.on = place.from + *bursts.first_burst - drawn.phase;
-  }
   return {settings, place.random};
 }
 
-WrongOutput wrong_output_of(const PlannedBursts& bursts, SharedResponse& response) {
-  return response.get().wrong_output(bursts.settings.level.open_circuit_volts(), bursts.settings.polarity);
+// The same at all receivers.
+std::shared_ptr<ComputedOnce<WrongOutput>> wrong_output_of(const PlannedBursts& bursts) {
+  return std::make_shared<ComputedOnce<WrongOutput>>([bursts] {
+    const double volts = bursts.settings.level.open_circuit_volts();
+    return LineResponse(bursts.profile.coupling).wrong_output(volts, bursts.settings.polarity);
+  });
 }
 
 DisturbanceModel read_burst_model(const Value& value) {
   const PlannedBursts bursts = read_bursts(value);
-  const auto response = std::make_shared<SharedResponse>(bursts.profile.coupling);
-  return {"bursts", json_of(bursts).dump(), [bursts, response](const fault::StressPlace& place) {
+  return {"bursts", json_of(bursts).dump(),
+          [bursts, wrong = wrong_output_of(bursts)](const fault::StressPlace& place) {
             return std::make_unique<BurstChannel>(
-                schedule_of(bursts, place), wrong_output_of(bursts, *response),
+                schedule_of(bursts, place), wrong->get(),
                 BurstReceiver{place.bit_rate, nullptr, line::Sampling{}, true, false}, place.trace,
                 place.channel);
           }};
@@ -117,29 +116,45 @@ DisturbanceModel read_burst_model(const Value& value) {
 
 // ---- channels that flip bits ----
 
-// Tells the trace what a channel flipped.
-class ToldFlips final : public fault::Channel {
+// A channel that flips bits, whatever the levels of a transmission are (behind bursts they are parts of
+// bits), and tells the trace which.
+class BitFlips final : public fault::Channel {
  public:
-  ToldFlips(const fault::StressPlace& place, std::unique_ptr<fault::Channel> flips)
-      : trace_(place.trace), place_(place.channel), flips_(std::move(flips)) {}
+  BitFlips(const fault::StressPlace& place, std::unique_ptr<fault::Channel> flips)
+      : bit_rate_(place.bit_rate), trace_(place.trace), place_(place.channel), flips_(std::move(flips)) {}
 
   bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
-    if (!flips_->pass(sent, arrivals)) return false;
-    const line::Levels& arrived = arrivals.back().levels;
-    for (std::size_t word = 0; word < sent.levels.word_count(); ++word) {
-      for (std::uint64_t flipped = sent.levels.words()[word] ^ arrived.words()[word]; flipped != 0;
-           flipped &= flipped - 1) {
-        const std::size_t level = 64 * word + static_cast<std::size_t>(std::countr_zero(flipped));
-        trace_.fault(place_, sent.time_of(level), "flipped bit");
-      }
-    }
+    const bool is_finer = sent.rate > bit_rate_ && sent.rate % bit_rate_ == 0;
+    const auto levels = static_cast<std::size_t>(is_finer ? sent.rate / bit_rate_ : 1);
+    bits_.start = sent.start;
+    bits_.rate = is_finer ? bit_rate_ : sent.rate;
+    bits_.levels.clear();
+    bits_.levels.append_idle((sent.levels.size() + levels - 1) / levels);
+    flipped_.clear();
+    if (!flips_->pass(bits_, flipped_)) return false;
+    invert(arrivals.emplace_back(sent).levels, levels);
     return true;
   }
 
  private:
+  // Where a bit is flipped the idle line is low.
+  void invert(line::Levels& arrival, std::size_t levels_per_bit) {
+    const line::Levels& bits = flipped_.front().levels;
+    for (std::size_t word = 0; word < bits.word_count(); ++word) {
+      for (std::uint64_t flipped = ~bits.words()[word]; flipped != 0; flipped &= flipped - 1) {
+        const std::size_t bit = 64 * word + static_cast<std::size_t>(std::countr_zero(flipped));
+        arrival.invert(bit * levels_per_bit, std::min(arrival.size(), (bit + 1) * levels_per_bit));
+        trace_.fault(place_, bits_.time_of(bit), "flipped bit");
+      }
+    }
+  }
+
+  std::int64_t bit_rate_;
   trace::Trace& trace_;
   trace::Channel place_;
   std::unique_ptr<fault::Channel> flips_;
+  line::Waveform bits_;
+  std::vector<line::Waveform> flipped_;
 };
 
 // Each receiver draws for itself.
@@ -150,11 +165,10 @@ kernel::Random random_of(const fault::StressPlace& place) {
 DisturbanceModel read_binary_symmetric(const Value& value) {
   const double flips = config::read_object(
       value, [](ObjectReader& object) { return object.required("flip_probability").as_number(0, 1); });
-  return {"binary_symmetric", Json{{"flip_probability", flips}}.dump(),
-          [flips](const fault::StressPlace& place) {
-            return std::make_unique<ToldFlips>(place,
-                                               std::make_unique<BernoulliChannel>(flips, random_of(place)));
-          }};
+  return {
+      "binary_symmetric", Json{{"flip_probability", flips}}.dump(), [flips](const fault::StressPlace& place) {
+        return std::make_unique<BitFlips>(place, std::make_unique<BernoulliChannel>(flips, random_of(place)));
+      }};
 }
 
 // ---- Gilbert and Elliott ----
@@ -178,33 +192,38 @@ DisturbanceModel model_of(const GilbertElliott& parameters) {
   if (parameters.good_flip != usual.good_flip) json["good_flip"] = parameters.good_flip;
   if (parameters.bad_flip != usual.bad_flip) json["bad_flip"] = parameters.bad_flip;
   return {"gilbert_elliott", json.dump(), [parameters](const fault::StressPlace& place) {
-            return std::make_unique<ToldFlips>(
+            return std::make_unique<BitFlips>(
                 place, std::make_unique<GilbertElliottChannel>(parameters, random_of(place)));
           }};
 }
 
 DisturbanceModel fitted_model(const PlannedBursts& bursts) {
-  const auto response = std::make_shared<SharedResponse>(bursts.profile.coupling);
   return {"gilbert_elliott", Json{{"fitted_to", json_of(bursts)}}.dump(),
-          [bursts, response](const fault::StressPlace& place) {
-            const double flips = flips_per_pulse(wrong_output_of(bursts, *response), {}, place.bit_rate);
+          [bursts, wrong = wrong_output_of(bursts)](const fault::StressPlace& place) {
+            const double flips = flips_per_pulse(wrong->get(), {}, place.bit_rate);
             const GilbertElliott fitted =
                 fitted_gilbert_elliott(flips, bursts.settings.repetition, place.bit_rate);
-            return std::make_unique<ToldFlips>(
+            return std::make_unique<BitFlips>(
                 place, std::make_unique<GilbertElliottChannel>(fitted, random_of(place)));
           }};
 }
 
 DisturbanceModel read_gilbert_elliott(const Value& value) {
   return config::read_object(value, [](ObjectReader& object) {
-    const auto bursts = object.optional("fitted_to");
-    return bursts ? fitted_model(read_bursts(*bursts)) : model_of(read_parameters(object));
+    const auto fitted_to = object.optional("fitted_to");
+    if (!fitted_to) return model_of(read_parameters(object));
+    const PlannedBursts bursts = read_bursts(*fitted_to);
+    if (bursts.settings.first_burst) {
+      config::fail(*fitted_to, "the states come by chance and not at a time; leave out \"first_burst\"");
+    }
+    return fitted_model(bursts);
   });
 }
 
 // ---- lists of bits ----
 
-constexpr std::size_t kMostBits = 100'000;
+constexpr std::size_t kMostBits = 10'000;  // of a list
+constexpr std::uint64_t kLastBit = 100'000;
 
 using Position = BitListChannel::Position;
 
@@ -214,8 +233,8 @@ std::vector<Position> read_positions(const Value& value) {
     config::read_object(element, [&](ObjectReader& object) {
       const auto transmission = object.required("transmission").as_integer<std::uint64_t>();
       for (const Value& bit : object.required("bits").as_array(1, kMostBits)) {
-        positions.push_back({transmission, bit.as_integer<std::uint64_t>(0, kMostBits)});
-        if (positions.size() > kMostBits) config::fail(bit, "these are too many bits; 100000 make a list");
+        positions.push_back({transmission, bit.as_integer<std::uint64_t>(0, kLastBit)});
+        if (positions.size() > kMostBits) config::fail(bit, "these are too many bits; 10000 make a list");
       }
     });
   }
@@ -238,9 +257,9 @@ Json json_of(const std::vector<Position>& positions) {
 }
 
 DisturbanceModel read_flipped_bits(const Value& value) {
-  const std::vector<Position> positions = read_positions(value);
-  return {"flipped_bits", json_of(positions).dump(), [positions](const fault::StressPlace& place) {
-            return std::make_unique<ToldFlips>(place, std::make_unique<BitListChannel>(positions));
+  const auto positions = std::make_shared<const std::vector<Position>>(read_positions(value));
+  return {"flipped_bits", json_of(*positions).dump(), [positions](const fault::StressPlace& place) {
+            return std::make_unique<BitFlips>(place, std::make_unique<BitListChannel>(positions));
           }};
 }
 

@@ -18,9 +18,11 @@
 // name, or an object as in a profile file. Receivers are not declared, so every transmission that is hit
 // reaches the receiver with its wrong times in it, and the receiver itself samples.
 //
-// The textbooks' channels draw for each receiver by itself. `fitted_to` takes mean burst, mean gap and mean
-// flip rate of these bursts for a receiver that samples each bit once. Transmissions count from 0 at each
-// receiver, within the window.
+// The textbooks' channels draw for each receiver by itself, and flip bits of the receiver's bit rate, also
+// where bursts have divided them. `fitted_to` takes mean burst, mean gap and mean flip rate of these bursts
+// for a receiver with the majority of three (see fitted_gilbert_elliott). What arrives at a receiver in the
+// window counts from 0 as a transmission: what a rule drops does not, what it repeats does. Positions that do
+// not come do nothing.
 namespace fieldproof::emc {
 
 std::span<const fault::DisturbanceKind> plan_disturbances();

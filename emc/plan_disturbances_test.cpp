@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -71,13 +72,17 @@ class TwoReceivers final : private trace::Recorder {
   const std::vector<Time>& faults(int receiver) const {
     return faults_.at(static_cast<std::size_t>(receiver));
   }
+  // Of these the flipped bits.
+  const std::vector<Time>& flips(int receiver) const { return flips_.at(static_cast<std::size_t>(receiver)); }
   std::uint64_t sent_bits() const { return sent_bits_; }
 
  private:
   void on_driven(trace::Channel, const line::Waveform&) override {}
   void on_observation(trace::Channel, Time, std::string_view, std::uint64_t) override {}
-  void on_fault(trace::Channel channel, Time time, std::string_view) override {
-    faults_.at(channel == places_[0] ? 0 : 1).push_back(time);
+  void on_fault(trace::Channel channel, Time time, std::string_view what) override {
+    const std::size_t receiver = channel == places_[0] ? 0 : 1;
+    faults_.at(receiver).push_back(time);
+    if (what == "flipped bit") flips_.at(receiver).push_back(time);
   }
 
   trace::Trace trace_;
@@ -85,6 +90,7 @@ class TwoReceivers final : private trace::Recorder {
   fault::InstalledPlan plan_;
   std::array<fault::Channel*, 2> channels_;
   std::array<std::vector<Time>, 2> faults_;
+  std::array<std::vector<Time>, 2> flips_;
   std::vector<line::Waveform> arrivals_;
   std::uint64_t sent_bits_ = 0;
 };
@@ -129,12 +135,14 @@ TEST(PlanDisturbances, RefuseWhatMeansNothing) {
   is_refused(R"("gilbert_elliott": {"to_bad": 0, "to_good": 0})", "gilbert_elliott", "ever left");
   is_refused(R"("gilbert_elliott": {"fitted_to": {"level": 1}, "to_bad": 1})", "gilbert_elliott/to_bad",
              "known");
+  is_refused(R"("gilbert_elliott": {"fitted_to": {"level": 1, "first_burst": "0 s"}})",
+             "gilbert_elliott/fitted_to", "leave out");
   is_refused(R"("flipped_bits": [])", "flipped_bits", "");
   is_refused(R"("flipped_bits": [{"transmission": 1, "bits": [2]}, {"transmission": 1, "bits": [2]}])",
              "flipped_bits", "twice");
 }
 
-// A file in which one character is another one is a plan or is refused at a place.
+// A file in which one character is another one is a plan that works, or is refused at a place.
 RC_GTEST_PROP(PlanDisturbancesProperty, ATypingErrorIsReadOrRefused, ()) {
   std::string members = *rc::gen::element<std::string>(
       R"("bursts": {"volts": 1000, "repetition": "100kHz", "polarity": "-", "first_burst": "1 ms",
@@ -145,6 +153,19 @@ RC_GTEST_PROP(PlanDisturbancesProperty, ATypingErrorIsReadOrRefused, ()) {
   members.at(*rc::gen::inRange<std::size_t>(0, members.size())) = *rc::gen::inRange<char>(32, 127);
   const std::string refusal = refusal_of(members);
   RC_ASSERT(refusal == "none" || refusal.starts_with("plan.json:"));
+  if (refusal == "none") TwoReceivers(members).send(kStart, kStart + 2 * kMillisecond);
+}
+
+TEST(PlanDisturbances, OfAnyStrengthHaveAChannel) {
+  for (const char* bursts :
+       {R"({"volts": 10000, "repetition": "100kHz", "profile": {"name": "slow", "coupling":
+                                 {"recovery_ns": 10000, "common_mode_limit_v": 1}}})",
+        R"({"volts": 1})"}) {
+    for (const char* kind : {"\"bursts\": ", "\"gilbert_elliott\": {\"fitted_to\": "}) {
+      const std::string end = kind[1] == 'g' ? "}" : "";
+      TwoReceivers(std::string(kind) + bursts + end).send(kStart, kStart + 400 * kMillisecond);
+    }
+  }
 }
 
 // ---- bursts ----
@@ -164,6 +185,17 @@ TEST(PlannedBursts, BeginWhereTheyAreWanted) {
     line.send(kStart, kStart + 110 * kMillisecond);
     ASSERT_FALSE(line.faults(0).empty());
     EXPECT_NEAR(static_cast<double>((line.faults(0).front() - kStart).count()), 103e9, 0.1e9);
+  }
+}
+
+// Also where another burst would have run when the generator was switched on.
+TEST(PlannedBursts, DoNotComeBeforeTheFirst) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    TwoReceivers line(R"("from": "10 ms", "bursts": {"level": 4, "first_burst": "400 ms"})", seed);
+    line.send(kStart, kStart + 409 * kMillisecond);
+    EXPECT_TRUE(line.faults(0).empty()) << seed;
+    line.send(kStart + 409 * kMillisecond, kStart + 420 * kMillisecond);
+    EXPECT_FALSE(line.faults(0).empty()) << seed;
   }
 }
 
@@ -203,6 +235,24 @@ TEST(PlannedFlips, OfAFittedGilbertElliottChannelAreAsManyAsThePulsesWouldFlip) 
   const double pulses = 75 * 600 / 0.3;
   // The states last geometrically, which scatters more than the flips themselves.
   EXPECT_NEAR(static_cast<double>(line.faults(0).size()) / (per_pulse * pulses), 1, 0.1);
+}
+
+// Levels of what bursts have rewritten are parts of bits.
+TEST(PlannedFlips, BehindBurstsAreStillBits) {
+  const auto flips_beside = [](const std::string& first, const std::string& then) {
+    TwoReceivers line(first + "}, {" + then);
+    line.send(kStart, kStart + 20 * kMillisecond);
+    return line.flips(0);
+  };
+  const std::string bursts = R"("bursts": {"level": 4, "first_burst": "0 s"})";
+  for (const std::string flips :
+       {R"("flipped_bits": [{"transmission": 1, "bits": [0, 64]}, {"transmission": 2, "bits": [17]}])",
+        R"("binary_symmetric": {"flip_probability": 0.01})"}) {
+    // The streams are those of the places in the plan, so an idle disturbance takes the place of the bursts.
+    const std::string nothing = R"("binary_symmetric": {"flip_probability": 0})";
+    EXPECT_EQ(flips_beside(bursts, flips), flips_beside(nothing, flips));
+    EXPECT_FALSE(flips_beside(bursts, flips).empty());
+  }
 }
 
 TEST(PlannedFlips, OfAListAreThoseOfTheListAndNoOthers) {

@@ -15,6 +15,8 @@
 namespace fieldproof::emc {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 Profile profile_a() {
   Profile profile{"A", "unshielded, not isolated", {}};
   profile.coupling.common_mode_limit_v = 12;
@@ -164,7 +166,6 @@ Profile Profile::load(const std::filesystem::path& path) {
 }
 
 std::string json_text(const Profile& profile) {
-  using Json = nlohmann::ordered_json;
   if (find(profile.name) != nullptr) return Json(profile.name).dump();
   Json coupling{{"method", kMethods.at(static_cast<std::size_t>(profile.coupling.method))},
                 {"pulse", kPulses.at(static_cast<std::size_t>(profile.coupling.pulse))}};

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::emc {
@@ -139,15 +140,16 @@ bool GilbertElliottChannel::pass(const line::Waveform& sent, std::vector<line::W
   return is_changed;
 }
 
-BitListChannel::BitListChannel(std::vector<Position> positions) : positions_(std::move(positions)) {
-  std::sort(positions_.begin(), positions_.end());
+BitListChannel::BitListChannel(Positions positions) : positions_(std::move(positions)) {
+  FIELDPROOF_CHECK(std::ranges::is_sorted(*positions_), "the bits of a list are in order");
 }
 
 bool BitListChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
   const std::uint64_t number = passed_++;
   bool is_changed = false;
-  for (; next_ < positions_.size() && positions_[next_].transmission == number; ++next_) {
-    const std::uint64_t bit = positions_[next_].bit;
+  const std::vector<Position>& positions = *positions_;
+  for (; next_ < positions.size() && positions[next_].transmission == number; ++next_) {
+    const std::uint64_t bit = positions[next_].bit;
     if (bit >= sent.levels.size()) {
       ++missed_;
       continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,8 +12,9 @@
 // The channels of the textbooks, for comparison: bits flip by chance, whatever the wave and the receiver are.
 // A level of a transmission is a bit.
 //
-// Both walk from flip to flip by geometric skips, so that a clean transmission costs a comparison and a
-// subtraction, however long it is.
+// They walk from flip to flip by geometric skips: a clean transmission costs the binary symmetric channel a
+// comparison and a subtraction, however long it is, and that of Gilbert and Elliott a look at the idle time
+// in front of it.
 namespace fieldproof::emc {
 
 // The binary symmetric channel: each bit flips with probability p, independently.
@@ -102,8 +104,10 @@ class BitListChannel final : public fault::Channel {
     friend auto operator<=>(const Position&, const Position&) = default;
   };
 
-  // In any order; a position that is named twice flips twice.
-  explicit BitListChannel(std::vector<Position> positions);
+  using Positions = std::shared_ptr<const std::vector<Position>>;
+
+  // In order, shared by the receivers of a list; a position that is named twice flips twice.
+  explicit BitListChannel(Positions positions);
 
   bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override;
 
@@ -111,7 +115,7 @@ class BitListChannel final : public fault::Channel {
   std::uint64_t missed_bits() const { return missed_; }
 
  private:
-  std::vector<Position> positions_;  // ordered
+  Positions positions_;
   std::size_t next_ = 0;
   std::uint64_t passed_ = 0;
   std::uint64_t flipped_ = 0;

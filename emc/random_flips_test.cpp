@@ -189,15 +189,19 @@ TEST(GilbertElliottChannelTest, IdleTimePasses) {
 
 // ---- bit lists ----
 
+BitListChannel::Positions list(std::vector<BitListChannel::Position> positions) {
+  return std::make_shared<const std::vector<BitListChannel::Position>>(std::move(positions));
+}
+
 TEST(BitListChannelTest, FlipsExactlyTheBitsOfTheList) {
-  BitListChannel channel({{2, 5}, {0, 0}, {2, 0}, {0, 99}});
+  BitListChannel channel(list({{0, 0}, {0, 99}, {2, 0}, {2, 5}}));
   EXPECT_EQ(flips_of(channel, {100, 100, 100, 100}), (std::vector<std::uint64_t>{0, 99, 200, 205}));
   EXPECT_EQ(channel.flipped_bits(), 4U);
   EXPECT_EQ(channel.missed_bits(), 0U);
 }
 
 TEST(BitListChannelTest, CountsWhatLiesBehindTheEnd) {
-  BitListChannel channel({{0, 100}, {1, 99}, {1, 100}});
+  BitListChannel channel(list({{0, 100}, {1, 99}, {1, 100}}));
   EXPECT_EQ(flips_of(channel, {100, 100}), std::vector<std::uint64_t>{199});
   EXPECT_EQ(channel.missed_bits(), 2U);
 }

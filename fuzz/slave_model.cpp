@@ -29,7 +29,7 @@ void SlaveModel::run_until(kernel::Time now) {
 }
 
 void SlaveModel::end_silence(kernel::Time now, kernel::Time when) {
-  if (silent_from_ <= now && receiver_.pending_until() == kernel::kNever) silence(when);
+  if (silent_from_ <= now && receiver_.pending_from() >= silent_from_) silence(when);
 }
 
 FIELDPROOF_UNINSTRUMENTED void SlaveModel::on_telegram(const line::Waveform& wave,

@@ -34,20 +34,44 @@ void check_rule(const Rule& rule) {
              rule.effect);
 }
 
+void check_disturbance(const Disturbance& disturbance) {
+  FIELDPROOF_CHECK(disturbance.model.make_channel != nullptr, "a disturbance has a model");
+}
+
 // A disturbance at one receiver, in its window.
 class DisturbedReceiver final : public Channel {
  public:
-  DisturbedReceiver(const Disturbance& disturbance, std::unique_ptr<Channel> channel)
-      : from_(disturbance.from), to_(disturbance.to), channel_(std::move(channel)) {}
+  DisturbedReceiver(const Disturbance& disturbance, std::unique_ptr<Channel> channel,
+                    const trace::Trace& trace, PlanWork& work)
+      : from_(disturbance.from),
+        to_(disturbance.to),
+        channel_(std::move(channel)),
+        trace_(trace),
+        work_(work) {}
 
   bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
-    return sent.start >= from_ && sent.start < to_ && channel_->pass(sent, arrivals);
+    if (sent.start < from_ || sent.start >= to_) return false;
+    const std::uint64_t records = trace_.record_count();
+    const std::size_t first = arrivals.size();
+    const bool is_changed = channel_->pass(sent, arrivals);
+    spend(trace_.record_count() - records, arrivals, first);
+    return is_changed;
   }
 
  private:
+  // What it told, and what it made of the transmission.
+  void spend(std::uint64_t told, const std::vector<line::Waveform>& arrivals, std::size_t first) {
+    constexpr std::uint64_t kStepsOfARecord = 16;
+    std::uint64_t steps = 1 + kStepsOfARecord * told;
+    for (std::size_t n = first; n < arrivals.size(); ++n) steps += arrivals[n].levels.word_count();
+    work_.spend(steps);
+  }
+
   kernel::Time from_;
   kernel::Time to_;
   std::unique_ptr<Channel> channel_;
+  const trace::Trace& trace_;
+  PlanWork& work_;
 };
 
 }  // namespace
@@ -63,6 +87,7 @@ InstalledPlan::InstalledPlan(Plan plan, trace::Trace& trace, const kernel::Rando
     each_after(rule.when, [&](const After& after) { state.afters.push_back({&after}); });
     waits_ = waits_ || !state.afters.empty();
   }
+  for (const Disturbance& disturbance : plan_.disturbances()) check_disturbance(disturbance);
   if (waits_) trace_.add_observer(*this);
 }
 
@@ -89,7 +114,7 @@ void InstalledPlan::add_disturbances(const Receiver& receiver, ChannelChain& cha
     FIELDPROOF_CHECK(receiver.bit_rate > 0, "a receiver that is disturbed has a bit rate");
     auto channel = disturbance.model.make_channel(
         {receiver.bit_rate, disturbance.from, of_disturbances.split(n), trace_, receiver.place});
-    channels_.push_back(std::make_unique<DisturbedReceiver>(disturbance, std::move(channel)));
+    channels_.push_back(std::make_unique<DisturbedReceiver>(disturbance, std::move(channel), trace_, work_));
     chain.add(*channels_.back());
   }
 }

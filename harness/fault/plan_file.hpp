@@ -21,7 +21,7 @@
 //                         "bursts": { "level": 3, "repetition": "5kHz" } } ] }
 //
 // The canonical text of a plan has every member in one order and no member that is as it would be anyway; two
-// plans that mean the same in the same order have the same text and the same hash, however their files were
+// plans that say the same in the same order have the same text and the same hash, however their files were
 // written. Reading the canonical text gives the plan again.
 namespace fieldproof::fault {
 

@@ -567,6 +567,22 @@ TEST(PlanWithDisturbances, AsksTheRulesFirst) {
   EXPECT_TRUE(bench.faults.texts.size() == 1 && bench.faults.texts.front() != std::to_string(kRate));
 }
 
+TEST(PlanWithDisturbances, CanBeTooHeavy) {
+  trace::Trace trace;
+  const trace::Channel place = trace.add_channel("a");
+  InstalledPlan installed(Plan().add(flips_one()), trace, kernel::Random(1), 100);
+  Channel* channel = installed.channel_for({"a", place, kRate});
+  std::vector<Waveform> arrivals;
+  // One question, one record of 16 steps, one word that arrives.
+  for (int n = 0; n < 5; ++n) channel->pass(wave_of("000000"), arrivals);
+  EXPECT_THROW(channel->pass(wave_of("000000"), arrivals), PlanTooHeavy);
+}
+
+TEST(PlanWithDisturbances, HaveModels) {
+  trace::Trace trace;
+  EXPECT_THROW(InstalledPlan(Plan().add(Disturbance{}), trace, kernel::Random(1)), kernel::BrokenInvariant);
+}
+
 TEST(PlanWithDisturbances, OfOneKindAreOneGeneratorForAllReceiversAndTwoAreTwo) {
   int equal = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {

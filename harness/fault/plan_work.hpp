@@ -5,8 +5,8 @@
 
 // How much a plan of faults may make of a run. A plan of a few lines can ask for so much (a repetition of
 // each level, a thousand times) that its case would never end; then the case is told so instead. What is
-// counted are questions to rules, hits, and what arrives because of them, never time: the same plan is too
-// heavy at the same instant of every run.
+// counted are questions to rules, hits, what disturbances tell, and what arrives because of them, never time:
+// the same plan is too heavy at the same instant of every run.
 namespace fieldproof::fault {
 
 // Thrown in the middle of a run when a plan makes more of it than can be served; no defect of the line, of

@@ -47,7 +47,8 @@ class TelegramReceiver {
     low_until_ = kernel::kNever;
   }
 
-  // The end of a telegram that is not complete, kNever when there is none.
+  // The begin and the end of a telegram that is not complete, kNever when there is none.
+  kernel::Time pending_from() const { return has_pending_ ? pending_.start : kernel::kNever; }
   kernel::Time pending_until() const { return has_pending_ ? pending_until_ : kernel::kNever; }
 
   // Completes a pending telegram with the idle line.

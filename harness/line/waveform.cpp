@@ -61,6 +61,7 @@ void Levels::append(const Levels& other, std::size_t first, std::size_t count) {
 }
 
 void Levels::append_stretched(const Levels& other, std::size_t times) {
+  FIELDPROOF_CHECK(times > 0 && &other != this, "levels are stretched once at least, and into others");
   const std::size_t begin = size_;
   append_idle(other.size() * times);
   if (times == kWordLevels && begin % kWordLevels == 0) {

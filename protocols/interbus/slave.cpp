@@ -284,13 +284,17 @@ void Slave::supervise() {
 void Slave::on_time(kernel::Time now) {
   now_ = now;
   flush_receivers(now);
-  if (silence_end_ <= now && receivers_[kFromUpstream].pending_until() == kernel::kNever) enter_reset(now);
+  if (silence_end_ <= now && !is_silence_ending()) enter_reset(now);
 }
 
 // A telegram that has begun before the limit is no silence any more, in however many parts it comes.
+bool Slave::is_silence_ending() const {
+  return receivers_[kFromUpstream].pending_from() < silence_end_;
+}
+
 kernel::Time Slave::next_time() const {
   const kernel::Time pending = receivers_[kFromUpstream].pending_until();
-  return std::min({pending == kernel::kNever ? silence_end_ : pending,
+  return std::min({is_silence_ending() ? pending : std::min(pending, silence_end_),
                    receivers_[kFromBranch].pending_until(), receivers_[kFromRemote].pending_until()});
 }
 

@@ -119,6 +119,7 @@ class Slave : public SlaveDevice {
   void switch_return_ways();
   void supervise();
   void flush_receivers(kernel::Time now);
+  bool is_silence_ending() const;
   kernel::Time end_of(const line::Waveform& wave, const line::Telegram& telegram) const;
   void note_life(const line::Waveform& wave, const line::Telegram& telegram);
   kernel::Duration delay_to(const segment::Port* port, segment::PortIndex from) const;

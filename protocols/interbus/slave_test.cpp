@@ -194,6 +194,20 @@ TEST_F(SlaveTest, AnEdgeBeforeTheLimitThatIsNoTelegramEndsNoSilence) {
   EXPECT_EQ(slave.mode(), Slave::Mode::reset);
 }
 
+// Nor do many of them, each of which begins before it is known what the one before was.
+TEST_F(SlaveTest, ATrainOfEdgesThatAreNoTelegramsEndsNoSilence) {
+  const kernel::Time limit = limit_behind_an_id_cycle();
+  segment.run_until(limit - 4 * kernel::kMicrosecond);
+  line::Waveform glitch{segment.now(), 16 * 500'000, {}};
+  glitch.levels.append(0, 3);
+  for (int n = 0; n < 100; ++n) {
+    glitch.start = segment.now();
+    forward->drive(glitch);
+    segment.run_for(20 * kernel::kMicrosecond);
+  }
+  EXPECT_EQ(slave.mode(), Slave::Mode::reset);
+}
+
 TEST_F(SlaveTest, NoiseBehindASilenceResetsNothingAnew) {
   send(id_cycle());
   segment.run_for(30 * kMillisecond);
