@@ -55,6 +55,17 @@ TEST(DisturbedRun, IsAFunctionOfItsSeed) {
   EXPECT_NE(fingerprint(kExample, 1), fingerprint("", 1));
 }
 
+TEST(DisturbedRun, IsToldToRestOnAModelThatIsNotCalibrated) {
+  conformance::Setup setup;
+  const auto suite = std::move(suites().front());
+  EXPECT_TRUE(suite->caveats(setup).empty());
+  setup.plan_file = kExample;
+  const std::vector<std::string> caveats = suite->caveats(setup);
+  ASSERT_EQ(caveats.size(), 3U);
+  EXPECT_NE(caveats.front().find("profile A (unshielded, not isolated) is a model of this project"),
+            std::string::npos);
+}
+
 TEST(DisturbedRun, NamesAReceiverThatIsNotThere) {
   const reports::TemporaryFolder folder;
   const std::string plan = (folder.path() / "plan.json").string();

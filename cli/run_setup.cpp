@@ -97,6 +97,9 @@ reports::RunIdentity identity_of(const Session& session, const conformance::Setu
   identity.plan_hash = file_hash(setup.plan_file);
   identity.network_hash = file_hash(setup.network_file);
   if (setup.pics) identity.pics_hash = hash_text(pics_text(*setup.pics));
+  for (const auto& suite : session.catalogue.suites()) {
+    for (std::string& caveat : suite->caveats(setup)) identity.caveats.push_back(std::move(caveat));
+  }
   identity.selectors = session.operands;
   for (const conformance::Assignment& assignment : setup.implementations) {
     identity.implementations.push_back({assignment.role, assignment.position, assignment.uri});

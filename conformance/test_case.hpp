@@ -131,6 +131,8 @@ class Suite {
   virtual std::optional<judge::Pics> declared_pics(const TestCase&, const Setup& setup) const {
     return setup.pics;
   }
+  // What a report must say about all results under this setup; sentences.
+  virtual std::vector<std::string> caveats(const Setup&) const { return {}; }
   // Throws the kernel::Error of `run` for files and places of this setup, without running anything.
   virtual void check(const TestCase&, const Setup&) const {}
 };

@@ -111,7 +111,8 @@ DisturbanceModel read_burst_model(const Value& value) {
                 schedule_of(bursts, place), wrong->get(),
                 BurstReceiver{place.bit_rate, nullptr, line::Sampling{}, true, false}, place.trace,
                 place.channel);
-          }};
+          },
+          caveats_of(bursts.profile)};
 }
 
 // ---- channels that flip bits ----
@@ -205,7 +206,8 @@ DisturbanceModel fitted_model(const PlannedBursts& bursts) {
                 fitted_gilbert_elliott(flips, bursts.settings.repetition, place.bit_rate);
             return std::make_unique<BitFlips>(
                 place, std::make_unique<GilbertElliottChannel>(fitted, random_of(place)));
-          }};
+          },
+          caveats_of(bursts.profile)};
 }
 
 DisturbanceModel read_gilbert_elliott(const Value& value) {
@@ -222,19 +224,20 @@ DisturbanceModel read_gilbert_elliott(const Value& value) {
 
 // ---- lists of bits ----
 
-constexpr std::size_t kMostBits = 10'000;  // of a list
+constexpr std::size_t kMostListedBits = 10'000;  // of a list
 constexpr std::uint64_t kLastBit = 100'000;
 
 using Position = BitListChannel::Position;
 
 std::vector<Position> read_positions(const Value& value) {
   std::vector<Position> positions;
-  for (const Value& element : value.as_array(1, kMostBits)) {
+  for (const Value& element : value.as_array(1, kMostListedBits)) {
     config::read_object(element, [&](ObjectReader& object) {
       const auto transmission = object.required("transmission").as_integer<std::uint64_t>();
-      for (const Value& bit : object.required("bits").as_array(1, kMostBits)) {
+      for (const Value& bit : object.required("bits").as_array(1, kMostListedBits)) {
         positions.push_back({transmission, bit.as_integer<std::uint64_t>(0, kLastBit)});
-        if (positions.size() > kMostBits) config::fail(bit, "these are too many bits; 10000 make a list");
+        if (positions.size() > kMostListedBits)
+          config::fail(bit, "these are too many bits; 10000 make a list");
       }
     });
   }

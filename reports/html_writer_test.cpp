@@ -38,6 +38,7 @@ PageContent page_with(const std::string& text) {
   run.stored.manifest = sample_manifest();
   run.stored.run = sample_run();
   run.stored.run.identity.implementations[0].uri = text;
+  run.stored.run.identity.caveats = {text};
   run.stored.run.cases = {sample_failure()};
   run.stored.run.cases[0].log = text;
   run.stored.run.cases[0].findings[0].actual = text;

@@ -47,6 +47,7 @@ Json identity_to_json(const RunIdentity& identity) {
           {"plan_hash", as_utf8(identity.plan_hash)},
           {"network_hash", as_utf8(identity.network_hash)},
           {"pics_hash", as_utf8(identity.pics_hash)},
+          {"caveats", strings_to_json(identity.caveats)},
           {"selectors", strings_to_json(identity.selectors)},
           {"implementations", std::move(implementations)},
           {"reproduce_options", as_utf8(identity.reproduce_options)},
@@ -113,6 +114,7 @@ RunIdentity identity_from(const Value& value) {
     identity.plan_hash = text_in(object, "plan_hash");
     identity.network_hash = text_in(object, "network_hash");
     if (const auto hash = object.optional("pics_hash")) identity.pics_hash = hash->as_string();
+    if (const auto caveats = object.optional("caveats")) identity.caveats = judge::texts_from(*caveats);
     identity.selectors = judge::texts_from(object.required("selectors"));
     identity.implementations = implementations_from(object.required("implementations"));
     identity.reproduce_options = text_in(object, "reproduce_options");

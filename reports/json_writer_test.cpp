@@ -143,10 +143,12 @@ RC_GTEST_PROP(JsonWriter, ReadsBackWhatItWrote, ()) {
   run.identity.incomplete_because = *kernel::arbitrary_text();
   run.identity.reproduce_options = *kernel::arbitrary_text();
   run.identity.seed = *judge::arbitrary_word();
+  run.identity.caveats = {*kernel::arbitrary_text(), "b"};
   const std::string text = results_json(run);
   const reports::Run read = run_from_json(text, "test");
   RC_ASSERT(results_json(read) == text);
   RC_ASSERT(read.identity.seed == run.identity.seed);
+  RC_ASSERT(read.identity.caveats.size() == 2 && read.identity.caveats[1] == "b");
   RC_ASSERT(KeyCheck("results").wrong(Json::parse(text)).empty());
 }
 

@@ -31,10 +31,11 @@ struct RunIdentity {
   std::string tool_version;
   std::string suite_version;
   std::uint64_t seed = 1;
-  std::string volume;        // of the repetitions: "quick", "full"
-  std::string plan_hash;     // of the declared faults; empty: none
-  std::string network_hash;  // of the network file; empty: the suites' own networks
-  std::string pics_hash;     // of the answers of the PICS; empty: none
+  std::string volume;                // of the repetitions: "quick", "full"
+  std::string plan_hash;             // of the declared faults; empty: none
+  std::string network_hash;          // of the network file; empty: the suites' own networks
+  std::vector<std::string> caveats;  // what must be said about all results of the run; sentences
+  std::string pics_hash;             // of the answers of the PICS; empty: none
   std::vector<std::string> selectors;
   std::vector<Implementation> implementations;
   // Every option of the command line that decides the outcome, quoted for a shell, without the selector:

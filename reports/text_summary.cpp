@@ -190,6 +190,7 @@ std::string summary_text(const Run& run, const TextOptions& options) {
   if (const std::size_t unverified = unverified_verdicts(run); unverified > 0) {
     out += fmt::format("{} of these verdicts rest on an unverified source\n", unverified);
   }
+  for (const std::string& caveat : run.identity.caveats) out += "unverified: " + escaped_line(caveat) + "\n";
   const CaseResult* worst = worst_case(run);
   if (worst == nullptr) return out;
   return out + "reproduce: " + escaped_line(reproduce_command(run.identity, worst->id)) + "\n";

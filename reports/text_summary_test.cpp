@@ -47,6 +47,14 @@ TEST(TextSummary, PaintsOnlyWhenAsked) {
             "\x1b[31mfail          \x1b[0m a/b  (r)\n");
 }
 
+TEST(TextSummary, TellsTheCaveatsBehindTheCounts) {
+  reports::Run run = sample_run();
+  run.identity.caveats = {"A model.", "Another one."};
+  const std::string text = summary_text(run, {false, 0});
+  EXPECT_NE(text.find("\nunverified: A model.\nunverified: Another one.\nreproduce: "), std::string::npos)
+      << text;
+}
+
 TEST(TextSummary, EscapesWhatChangesATerminal) {
   EXPECT_EQ(escaped_line("\x1b[2J\r\n\t\x7f"), "\\x1B[2J\\x0D\\x0A\\x09\\x7F");
   EXPECT_EQ(escaped_line("\xc2\x9b\xe2\x80\xae\xef\xbb\xbf"), "\\u{009B}\\u{202E}\\u{FEFF}");
@@ -61,6 +69,7 @@ RC_GTEST_PROP(TextSummary, LetsNoControlCharacterPass, ()) {
   run.cases.back().verdict = judge::Verdict::fail;
   run.identity.incomplete_because = *kernel::arbitrary_text();
   run.identity.reproduce_options = *kernel::arbitrary_text();
+  run.identity.caveats = {*kernel::arbitrary_text()};
   const std::string text = summary_text(run, {false, 100});
   RC_ASSERT(std::none_of(text.begin(), text.end(),
                          [](char c) { return (c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7F; }));

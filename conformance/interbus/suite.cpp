@@ -43,6 +43,11 @@ struct Given {
   LineDisturbances disturbances;
 };
 
+fault::Plan load_plan(const Setup& setup, const interbus::Rules& rules, const Given& given) {
+  return fault::load_plan(setup.plan_file, {.telegrams = &line::shared_telegram_code(rules.telegram),
+                                            .disturbances = given.disturbances.of_plans});
+}
+
 // What a run needs besides its case: the assignment of the case's role, the files that are named, and the two
 // recorders. Made anew for each run, so runs share nothing.
 class Run {
@@ -51,9 +56,7 @@ class Run {
       : test_case_(test_case), setup_(setup), own_(given.own), stresses_(given.disturbances.stresses) {
     if (!setup.network_file.empty()) network_ = interbus::NetworkDescription::load(setup.network_file);
     if (!setup.plan_file.empty()) {
-      const interbus::Rules rules = network_ ? network_->rules : interbus::Rules{};
-      plan_ = fault::load_plan(setup.plan_file, {.telegrams = &line::shared_telegram_code(rules.telegram),
-                                                 .disturbances = given.disturbances.of_plans});
+      plan_ = load_plan(setup, network_ ? network_->rules : interbus::Rules{}, given);
     }
     const std::string role = test_case.role();
     for (const Assignment& assignment : setup.implementations) {
@@ -325,6 +328,12 @@ class InterbusSuite final : public Suite {
     const auto slave_case = slave_cases_.find(test_case.id);
     if (!setup.pics || slave_case == slave_cases_.end()) return setup.pics;
     return Run(test_case, setup, given_).pics(*slave_case->second);
+  }
+
+  // These do not depend on how the network writes its telegrams.
+  std::vector<std::string> caveats(const Setup& setup) const override {
+    if (setup.plan_file.empty()) return {};
+    return load_plan(setup, interbus::Rules{}, given_).caveats();
   }
 
   void check(const TestCase& test_case, const Setup& setup) const override {

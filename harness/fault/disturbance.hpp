@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "harness/config/document.hpp"
 #include "harness/fault/channel.hpp"
@@ -20,6 +21,7 @@ struct DisturbanceModel {
   std::string parameters;  // a JSON value in one order, without what is as it would be anyway
   // At a receiver, from the begin of the window on.
   std::function<std::unique_ptr<Channel>(const StressPlace&)> make_channel;
+  std::vector<std::string> caveats{};  // what a report must say about results under it; sentences
 
   // Equal words mean equal channels.
   friend bool operator==(const DisturbanceModel& a, const DisturbanceModel& b) {

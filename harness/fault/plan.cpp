@@ -1,5 +1,6 @@
 #include "harness/fault/plan.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "harness/fault/cases.hpp"
@@ -75,6 +76,16 @@ class DisturbedReceiver final : public Channel {
 };
 
 }  // namespace
+
+std::vector<std::string> Plan::caveats() const {
+  std::vector<std::string> all;
+  for (const Disturbance& disturbance : disturbances_) {
+    for (const std::string& caveat : disturbance.model.caveats) {
+      if (std::ranges::find(all, caveat) == all.end()) all.push_back(caveat);
+    }
+  }
+  return all;
+}
 
 InstalledPlan::InstalledPlan(Plan plan, trace::Trace& trace, const kernel::Random& random,
                              std::uint64_t most_work)

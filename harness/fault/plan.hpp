@@ -39,6 +39,8 @@ class Plan {
   const std::vector<Rule>& rules() const { return rules_; }
   const std::vector<Disturbance>& disturbances() const { return disturbances_; }
   bool empty() const { return rules_.empty() && disturbances_.empty(); }
+  // Those of the disturbances, each once.
+  std::vector<std::string> caveats() const;
 
   friend bool operator==(const Plan&, const Plan&) = default;
 

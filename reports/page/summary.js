@@ -73,6 +73,7 @@ function runPart(run, isJoined) {
     trouble.push(notice(element("strong", {}, "This run is incomplete"), `: ${results.run.incomplete_because || "it did not end"}. `,
         `${part(counts.not_run, counts.selected)} selected cases have no verdict.`));
   }
+  for (const caveat of results.run.caveats ?? []) trouble.push(notice(element("strong", {}, "Unverified"), `: ${caveat}`));
   if (run.journal_was_torn) trouble.push(notice("The last line of its journal was torn; that result is lost."));
   return element("article", {class: `run ${results.headline}`},
       isJoined ? element("h3", {}, run.name) : null,
