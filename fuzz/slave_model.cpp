@@ -21,11 +21,12 @@ void SlaveModel::on_wave(const line::Waveform& wave) {
 }
 
 void SlaveModel::run_until(kernel::Time now) {
+  end_silence(now, silent_from_);
   const kernel::Time pending = receiver_.pending_until();
-  if (pending <= now) {
-    receiver_.flush([this](const line::Waveform& heard, const line::Telegram& t) { on_telegram(heard, t); });
-  }
-  end_silence(now, pending == kernel::kNever ? silent_from_ : std::max(silent_from_, pending));
+  if (pending > now) return;
+  receiver_.flush([this](const line::Waveform& heard, const line::Telegram& t) { on_telegram(heard, t); });
+  // What had begun before the limit may have been no telegram.
+  end_silence(now, std::max(silent_from_, pending));
 }
 
 void SlaveModel::end_silence(kernel::Time now, kernel::Time when) {
