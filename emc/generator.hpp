@@ -35,9 +35,9 @@ class Level {
  public:
   // 1..4, else a usage error.
   static Level standard(PortKind port, unsigned number);
-  // Level X, else a usage error.
   static constexpr double kLeastVolts = 1;
   static constexpr double kMostVolts = 10'000;
+  // Level X with a voltage between these, else a usage error.
   static Level free(double open_circuit_volts);
 
   double open_circuit_volts() const { return volts_; }
