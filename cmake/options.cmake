@@ -11,7 +11,7 @@ option(FIELDPROOF_BENCHMARKS "Build the benchmarks where Google Benchmark is ins
 option(FIELDPROOF_FUZZ "Build the libFuzzer programs (clang only)" OFF)
 option(FIELDPROOF_COVERAGE "Count executed lines and branches (g++ only)" OFF)
 option(FIELDPROOF_PRECOMPILE "Precompile GoogleTest and RapidCheck once for all test programs" ON)
-option(FIELDPROOF_UNITY "Compile several sources of a library, and of large test programs, at once: less time for all, more for one file" OFF)
+option(FIELDPROOF_UNITY "Compile several sources at once: less time for all, more for one file" OFF)
 set(FIELDPROOF_SANITIZE "" CACHE STRING "Sanitizers for everything, e.g. address,undefined or thread")
 
 add_library(fieldproof_warnings INTERFACE)

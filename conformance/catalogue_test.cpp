@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "conformance/invented_case.hpp"
 #include "conformance/suite_of_functions.hpp"
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
@@ -17,23 +18,15 @@ Outcome pass(const TestCase&, const Setup&) {
   return outcome;
 }
 
-TestCase named(std::string id, std::vector<std::string> tags = {}, std::vector<Catch> catches = {}) {
-  TestCase test_case;
-  test_case.id = std::move(id);
-  test_case.tags = std::move(tags);
-  test_case.catches = std::move(catches);
-  return test_case;
-}
-
 Catalogue sample() {
   auto suite = std::make_unique<SuiteOfFunctions>("ring", std::vector<std::string>{"slave", "master"});
   suite->add({"swapped", "M1", "slave", "octets swapped"});
   suite->add({"late", "M2", "slave", "answers late"});
   suite->add({"late", "M3", "master", "polls late"});
-  suite->add(named("ring/slave/data/word_is_latched", {"must"}, {{"swapped", "wrong_word"}}), pass);
-  suite->add(named("ring/slave/data/word_is_held", {"must", "timing"}), pass);
-  suite->add(named("ring/slave/canary", {"canary", "must"}), pass);
-  suite->add(named("ring/master/poll/comes_first", {"timing"}), pass);
+  suite->add(invented_case("ring/slave/data/word_is_latched", {"must"}, {{"swapped", "wrong_word"}}), pass);
+  suite->add(invented_case("ring/slave/data/word_is_held", {"must", "timing"}), pass);
+  suite->add(invented_case("ring/slave/canary", {"canary", "must"}), pass);
+  suite->add(invented_case("ring/master/poll/comes_first", {"timing"}), pass);
   std::vector<std::unique_ptr<Suite>> suites;
   suites.push_back(std::move(suite));
   return Catalogue(std::move(suites));
@@ -136,11 +129,11 @@ TEST(Catalogue, BrokenSuitesAreFoundAtOnce) {
     suites.push_back(std::move(suite));
     return Catalogue(std::move(suites));
   };
-  EXPECT_NO_THROW(make(named("ring/slave/a"), named("ring/slave/b")));
-  EXPECT_THROW(make(named("ring/slave/a"), named("ring/slave/a")), kernel::BrokenInvariant);
-  EXPECT_THROW(make(named("ring/slave/a"), named("bus/slave/b")), kernel::BrokenInvariant);
-  EXPECT_THROW(make(named("ring/slave/a"), named("ring/master/b")), kernel::BrokenInvariant);
-  EXPECT_THROW(make(named("ring/slave/a"), named("ring/slave/b", {}, {{"unknown", "x"}})),
+  EXPECT_NO_THROW(make(invented_case("ring/slave/a"), invented_case("ring/slave/b")));
+  EXPECT_THROW(make(invented_case("ring/slave/a"), invented_case("ring/slave/a")), kernel::BrokenInvariant);
+  EXPECT_THROW(make(invented_case("ring/slave/a"), invented_case("bus/slave/b")), kernel::BrokenInvariant);
+  EXPECT_THROW(make(invented_case("ring/slave/a"), invented_case("ring/master/b")), kernel::BrokenInvariant);
+  EXPECT_THROW(make(invented_case("ring/slave/a"), invented_case("ring/slave/b", {}, {{"unknown", "x"}})),
                kernel::BrokenInvariant);
 }
 

@@ -3,20 +3,13 @@
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 
+#include "conformance/invented_case.hpp"
 #include "conformance/suite_of_functions.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
 using judge::Verdict;
-
-TestCase named(std::string id, std::vector<std::string> tags = {}) {
-  TestCase test_case;
-  test_case.id = std::move(id);
-  test_case.purpose = "P-1";
-  test_case.tags = std::move(tags);
-  return test_case;
-}
 
 Outcome outcome_of(Verdict verdict, std::string reason = {}) {
   Outcome outcome;
@@ -29,14 +22,14 @@ Outcome outcome_of(Verdict verdict, std::string reason = {}) {
 const SuiteOfFunctions& registered_suite() {
   static const SuiteOfFunctions& suite = []() -> const SuiteOfFunctions& {
     static SuiteOfFunctions made("registered", {"slave"});
-    made.add(named("registered/slave/data/word_is_latched"), [](const TestCase&, const Setup& setup) {
+    made.add(invented_case("registered/slave/data/word_is_latched"), [](const TestCase&, const Setup& setup) {
       EXPECT_EQ(setup.implementations.at(0).uri, "deviant:mine");
       return outcome_of(Verdict::pass);
     });
-    made.add(named("registered/slave/option/is_missing"), [](const TestCase&, const Setup&) {
+    made.add(invented_case("registered/slave/option/is_missing"), [](const TestCase&, const Setup&) {
       return outcome_of(Verdict::not_applicable, "has no such option");
     });
-    made.add(named("registered/slave/canary", {"canary"}),
+    made.add(invented_case("registered/slave/canary", {"canary"}),
              [](const TestCase&, const Setup&) { return outcome_of(Verdict::fail, "canary"); });
     return made;
   }();
@@ -87,7 +80,7 @@ TEST(GoogleTestCatalogue, FailureTellsTheWholeFinding) {
   finding.first_difference = "bit 3";
   finding.decode = {"telegram 7"};
   result.findings = {finding};
-  const std::string message = failure_message(named("registered/slave/x"), result);
+  const std::string message = failure_message(invented_case("registered/slave/x"), result);
   for (const char* part : {"registered/slave/x (P-1): fail, seed of the case 99", "wrong_word", "3.000 us",
                            "the word is latched after the check", "a book, table 5 (unverified)",
                            "0x1234 | 0x0000", "0x3412", "bit 3", "telegram 7"}) {

@@ -16,17 +16,17 @@ using kernel::kMillisecond;
 using kernel::kStart;
 using kernel::Time;
 
-constexpr std::int64_t kBitRate = 500'000;
+constexpr std::int64_t kStressedRate = 500'000;
 
 class BurstStress : public testing::Test {
  protected:
   // Which transmissions of ten bits, sent end to end around `from`, were changed.
   std::vector<Time> changes(const fault::Stress& stress, Time from, std::uint64_t seed) {
-    const auto channel =
-        stress.make_channel({kBitRate, from, kernel::Random(seed), trace_, trace_.add_channel("receiver")});
+    const auto channel = stress.make_channel(
+        {kStressedRate, from, kernel::Random(seed), trace_, trace_.add_channel("receiver")});
     std::vector<Time> changed;
     line::Waveform sent;
-    sent.rate = kBitRate;
+    sent.rate = kStressedRate;
     sent.levels.append(0b0101010101, 10);
     std::vector<line::Waveform> arrivals;
     for (sent.start = from - 2 * kMillisecond; sent.start < from + stress.duration + 10 * kMillisecond;

@@ -32,14 +32,11 @@ using kernel::kSecond;
 using kernel::kStart;
 using line::Sampling;
 
-constexpr std::int64_t kBitRate = 500'000;
+constexpr std::int64_t kPaperRate = 500'000;
 constexpr std::size_t kFrameBits = 182;
 constexpr Duration kCycle = 814'800 * kNanosecond;
 constexpr double kPulsesPerSecond = 250;
 constexpr double kActivity = 364.0 / 814.8;
-
-constexpr Sampling kMajority{Sampling::Kind::majority_of_three};
-constexpr Sampling kSingle{Sampling::Kind::mid_bit};
 
 // The output is forced to 0 for a time from `delay` behind each pulse on.
 WrongOutput forced_low(Duration tau, Duration delay = {}) {
@@ -50,9 +47,9 @@ WrongOutput forced_low(Duration tau, Duration delay = {}) {
 
 struct Scenario {
   WrongOutput wrong;
-  Sampling sampling = kSingle;
+  Sampling sampling = line::kMidBit;
   Repetition repetition = Repetition::khz_5;
-  std::int64_t bit_rate = kBitRate;
+  std::int64_t bit_rate = kPaperRate;
   GeneratorClock clock = GeneratorClock::its_own;
   Tolerances tolerances = Tolerances::rate_duration_and_period;
   bool has_jitter = true;
@@ -104,7 +101,7 @@ void add_run(const Scenario& scenario, const kernel::Random& random, Outcome& ou
   wave.rate = scenario.bit_rate;
   refill(wave, data);
   // As many frames per bit at every rate.
-  const Duration cycle = kCycle * kBitRate / scenario.bit_rate;
+  const Duration cycle = kCycle * kPaperRate / scenario.bit_rate;
   const kernel::Time end = kStart + scenario.seconds_per_run * kSecond;
   int run = 0;
   for (wave.start = kStart; wave.start < end; wave.start += cycle) {
@@ -174,7 +171,7 @@ TEST(ClosedFormsTest, OneSampleFlipsInProportionToTheWrongTime) {
 TEST(ClosedFormsTest, TheVotingReceiverSeesItsEffectiveTime) {
   for (const auto& [tau, effective] :
        {std::pair{100, 0}, {125, 0}, {150, 50}, {200, 150}, {250, 250}, {300, 300}}) {
-    const Scenario scenario{.wrong = forced_low(tau * kNanosecond), .sampling = kMajority};
+    const Scenario scenario{.wrong = forced_low(tau * kNanosecond), .sampling = line::kMajorityOfThree};
     const double formula = kPulsesPerSecond * kActivity * effective / 4000;
     const double simulated = simulate(scenario).flips_per_second();
     expect_figure(fmt::format("flips/s, 3 votes, {} ns, 5 kHz", tau), formula, simulated);
@@ -188,7 +185,8 @@ TEST(ClosedFormsTest, TheVotingReceiverIsImmuneUpToASixteenthOfABit) {
                                          {375'000, 150 * kNanosecond},
                                          {62'500, 1000 * kNanosecond},
                                          {19'200, 3250 * kNanosecond}}) {
-    Scenario scenario{.wrong = forced_low(immune), .sampling = kMajority, .bit_rate = bit_rate, .runs = 20};
+    Scenario scenario{
+        .wrong = forced_low(immune), .sampling = line::kMajorityOfThree, .bit_rate = bit_rate, .runs = 20};
     const double flips = simulate(scenario).flips;
     print_row(fmt::format("flips, 3 votes, {} at {} bit/s", ns_text(immune), bit_rate), 0, flips);
     EXPECT_EQ(flips, 0) << bit_rate;
@@ -296,11 +294,11 @@ TEST(ClosedFormsTest, TheReceiverOfTelegramsHearsAsManyBadCycles) {
     const BurstSettings settings;
     trace::Trace trace;
     const auto framing = std::make_shared<TelegramFraming>(line::TelegramLayout{});
-    BurstChannel channel({settings, random}, wrong, {kBitRate, framing, kMajority, true, true}, trace,
-                         trace.add_channel("rx"));
+    BurstChannel channel({settings, random}, wrong, {kPaperRate, framing, line::kMajorityOfThree, true, true},
+                         trace, trace.add_channel("rx"));
     kernel::Random data = random.split("data");
     line::Waveform wave;
-    wave.rate = kBitRate;
+    wave.rate = kPaperRate;
     std::vector<line::Waveform> arrivals;
     const kernel::Time end = kStart + 60 * kSecond;
     for (wave.start = kStart; wave.start < end; wave.start += kCycle) {
@@ -314,7 +312,7 @@ TEST(ClosedFormsTest, TheReceiverOfTelegramsHearsAsManyBadCycles) {
       arrivals.clear();
       if (!channel.pass(wave, arrivals)) continue;
       std::vector<std::uint8_t> heard;
-      line::TelegramReceiver receiver(code, kBitRate);
+      line::TelegramReceiver receiver(code, kPaperRate);
       bool is_intact = true;
       const auto keep = [&](const line::Waveform&, const line::Telegram& telegram) {
         heard.push_back(telegram.data);
@@ -345,8 +343,9 @@ TEST(ClosedFormsTest, ProfilesFlipWhatTheirEffectiveTimeSays) {
     const LineResponse response(Profile::named(name).coupling);
     for (const Polarity polarity : {Polarity::positive, Polarity::negative}) {
       const WrongOutput wrong = response.wrong_output(2000, polarity);
-      const double formula = kPulsesPerSecond * kActivity * flips_per_pulse(wrong, kMajority, kBitRate);
-      const Outcome outcome = simulate({.wrong = wrong, .sampling = kMajority});
+      const double formula =
+          kPulsesPerSecond * kActivity * flips_per_pulse(wrong, line::kMajorityOfThree, kPaperRate);
+      const Outcome outcome = simulate({.wrong = wrong, .sampling = line::kMajorityOfThree});
       expect_figure(fmt::format("flips/s, profile {}{} at 2 kV", name, text_of(polarity)), formula,
                     outcome.flips_per_second());
     }
@@ -376,8 +375,8 @@ TEST(ClosedFormsTest, TheFittedGilbertElliottChannelHasTheRateAndLosesThePitch) 
   const WrongOutput wrong = forced_low(300 * kNanosecond);
   trace::Trace trace;
   const trace::Channel place = trace.add_channel("rx");
-  const GilbertElliott fitted =
-      fitted_gilbert_elliott(flips_per_pulse(wrong, kSingle, kBitRate), Repetition::khz_100, kBitRate);
+  const GilbertElliott fitted = fitted_gilbert_elliott(flips_per_pulse(wrong, line::kMidBit, kPaperRate),
+                                                       Repetition::khz_100, kPaperRate);
   std::array<double, 2> flips{};
   std::array<double, 2> neighbours{};
   for (std::uint64_t run = 0; run < 400; ++run) {
@@ -386,11 +385,11 @@ TEST(ClosedFormsTest, TheFittedGilbertElliottChannelHasTheRateAndLosesThePitch) 
     settings.repetition = Repetition::khz_100;
     settings.tolerances = Tolerances::rate;
     BurstChannel bursts({settings, random}, wrong,
-                        {kBitRate, std::make_shared<SynchronousFraming>(), kSingle, true, true}, trace,
-                        place);
+                        {kPaperRate, std::make_shared<SynchronousFraming>(), line::kMidBit, true, true},
+                        trace, place);
     GilbertElliottChannel textbook(fitted, random.split("states"));
     line::Waveform wave;
-    wave.rate = kBitRate;
+    wave.rate = kPaperRate;
     kernel::Random data = random.split("data");
     for (std::size_t n = 0; n < kBits; n += 64) wave.levels.append(data.next(), 64);
     const std::array<fault::Channel*, 2> channels{&bursts, &textbook};

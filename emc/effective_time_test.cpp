@@ -12,9 +12,6 @@ using kernel::Duration;
 using kernel::kNanosecond;
 using line::Sampling;
 
-constexpr Sampling kMajority{Sampling::Kind::majority_of_three};
-constexpr Sampling kSingle{Sampling::Kind::mid_bit};
-
 Duration effective(Duration tau, Sampling sampling, std::int64_t bit_rate = 500'000) {
   const std::vector<Interval> wrong{{40 * kNanosecond, 40 * kNanosecond + tau}};
   return effective_time(wrong, sampling, bit_rate);
@@ -22,15 +19,16 @@ Duration effective(Duration tau, Sampling sampling, std::int64_t bit_rate = 500'
 
 // At 500 kbit/s a sixteenth of a bit is 125 ns.
 TEST(EffectiveTimeTest, FollowsThePiecewiseForm) {
-  for (int tau = 1; tau <= 124; ++tau) EXPECT_EQ(effective(tau * kNanosecond, kMajority), Duration{}) << tau;
-  EXPECT_EQ(effective(125 * kNanosecond, kMajority), Duration{});
-  EXPECT_EQ(effective(126 * kNanosecond, kMajority), 2 * kNanosecond);
-  EXPECT_EQ(effective(150 * kNanosecond, kMajority), 50 * kNanosecond);
-  EXPECT_EQ(effective(249 * kNanosecond, kMajority), 248 * kNanosecond);
-  EXPECT_EQ(effective(250 * kNanosecond, kMajority), 250 * kNanosecond);
-  EXPECT_EQ(effective(700 * kNanosecond, kMajority), 700 * kNanosecond);
+  for (int tau = 1; tau <= 124; ++tau)
+    EXPECT_EQ(effective(tau * kNanosecond, line::kMajorityOfThree), Duration{}) << tau;
+  EXPECT_EQ(effective(125 * kNanosecond, line::kMajorityOfThree), Duration{});
+  EXPECT_EQ(effective(126 * kNanosecond, line::kMajorityOfThree), 2 * kNanosecond);
+  EXPECT_EQ(effective(150 * kNanosecond, line::kMajorityOfThree), 50 * kNanosecond);
+  EXPECT_EQ(effective(249 * kNanosecond, line::kMajorityOfThree), 248 * kNanosecond);
+  EXPECT_EQ(effective(250 * kNanosecond, line::kMajorityOfThree), 250 * kNanosecond);
+  EXPECT_EQ(effective(700 * kNanosecond, line::kMajorityOfThree), 700 * kNanosecond);
   for (const int tau : {1, 100, 300, 1000}) {
-    EXPECT_EQ(effective(tau * kNanosecond, kSingle), tau * kNanosecond);
+    EXPECT_EQ(effective(tau * kNanosecond, line::kMidBit), tau * kNanosecond);
   }
 }
 
@@ -40,8 +38,8 @@ TEST(EffectiveTimeTest, ImmunityEndsAtASixteenthOfABit) {
                                          {375'000, 166 * kNanosecond},
                                          {62'500, 1000 * kNanosecond},
                                          {19'200, 3255 * kNanosecond}}) {
-    EXPECT_EQ(effective(immune, kMajority, bit_rate), Duration{});
-    EXPECT_GT(effective(immune + kNanosecond, kMajority, bit_rate), Duration{});
+    EXPECT_EQ(effective(immune, line::kMajorityOfThree, bit_rate), Duration{});
+    EXPECT_GT(effective(immune + kNanosecond, line::kMajorityOfThree, bit_rate), Duration{});
   }
 }
 
@@ -69,16 +67,16 @@ RC_GTEST_PROP(EffectiveTimeProperty, IsWhatCountingPhasesGives, ()) {
     single += is_wrong(phase) * kNanosecond;
     if (is_wrong(phase) + is_wrong(phase + pitch) + is_wrong(phase + 2 * pitch) >= 2) majority += kNanosecond;
   }
-  RC_ASSERT(effective_time(wrong, kMajority, 500'000) == majority);
-  RC_ASSERT(effective_time(wrong, kSingle, 500'000) == single);
+  RC_ASSERT(effective_time(wrong, line::kMajorityOfThree, 500'000) == majority);
+  RC_ASSERT(effective_time(wrong, line::kMidBit, 500'000) == single);
 }
 
 TEST(EffectiveTimeTest, FlipsPerPulseAreHalfOfTheTimeForOneLevel) {
   WrongOutput wrong;
   wrong.of_level[1] = {{{}, 300 * kNanosecond}};
-  EXPECT_DOUBLE_EQ(flips_per_pulse(wrong, kSingle, 500'000), 0.075);
+  EXPECT_DOUBLE_EQ(flips_per_pulse(wrong, line::kMidBit, 500'000), 0.075);
   wrong.of_level[0] = wrong.of_level[1];
-  EXPECT_DOUBLE_EQ(flips_per_pulse(wrong, kMajority, 500'000), 0.15);
+  EXPECT_DOUBLE_EQ(flips_per_pulse(wrong, line::kMajorityOfThree, 500'000), 0.15);
 }
 
 TEST(EffectiveTimeTest, TheFitHasTheParametersCalculated) {

@@ -26,11 +26,8 @@ Duration half_bit(std::int64_t bit_rate) {
 
 // The receiver's clock ticks in half bits, and it samples each once.
 BurstReceiver receiver_of(std::int64_t bit_rate, bool has_short_cuts) {
-  return {2 * bit_rate,
-          has_short_cuts ? std::make_shared<SynchronousFraming>() : nullptr,
-          {line::Sampling::Kind::mid_bit},
-          true,
-          true};
+  return {2 * bit_rate, has_short_cuts ? std::make_shared<SynchronousFraming>() : nullptr, line::kMidBit,
+          true, true};
 }
 
 // What pulses come to on a line that is never idle, for each of them.

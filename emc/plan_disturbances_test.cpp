@@ -27,7 +27,7 @@ using kernel::kStart;
 using kernel::Time;
 
 constexpr std::int64_t kBitRate = 500'000;
-constexpr std::size_t kBits = 182;
+constexpr std::size_t kSentBits = 182;
 
 fault::Plan plan_of(const std::string& members) {
   const auto document = config::Document::parse("{\"disturbances\": [{" + members + "}]}", "plan.json");
@@ -59,13 +59,13 @@ class TwoReceivers final : private trace::Recorder {
   void send(Time from, Time to) {
     line::Waveform sent;
     sent.rate = kBitRate;
-    sent.levels.append_idle(kBits);
+    sent.levels.append_idle(kSentBits);
     for (sent.start = from; sent.start < to; sent.start = sent.end()) {
       for (fault::Channel* channel : channels_) {
         arrivals_.clear();
         if (channel != nullptr) channel->pass(sent, arrivals_);
       }
-      sent_bits_ += kBits;
+      sent_bits_ += kSentBits;
     }
   }
 

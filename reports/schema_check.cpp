@@ -16,7 +16,7 @@ namespace {
 
 using config::Value;
 using config::ValueKind;
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 struct TypeName {
   ValueKind kind;
@@ -38,7 +38,7 @@ bool has_type(const Value& value, const std::string& type) {
 }
 
 // Values that schemas name one by one are strings, numbers, booleans and null.
-bool is_equal(const Value& value, const json& allowed) {
+bool is_equal(const Value& value, const Json& allowed) {
   if (allowed.is_string()) return value.is_string() && value.as_string() == allowed.get<std::string>();
   if (allowed.is_boolean())
     return value.kind() == ValueKind::boolean && value.as_bool() == allowed.get<bool>();
@@ -50,14 +50,14 @@ bool is_equal(const Value& value, const json& allowed) {
 
 class Check {
  public:
-  explicit Check(const json& root) : root_(root) {}
+  explicit Check(const Json& root) : root_(root) {}
 
-  void hold(const Value& value, const json& schema) const {
+  void hold(const Value& value, const Json& schema) const {
     for (const auto& [keyword, rule] : schema.items()) hold(value, schema, keyword, rule);
   }
 
  private:
-  void hold(const Value& value, const json& schema, const std::string& keyword, const json& rule) const {
+  void hold(const Value& value, const Json& schema, const std::string& keyword, const Json& rule) const {
     if (keyword == "type") {
       hold_type(value, rule);
     } else if (keyword == "required") {
@@ -82,20 +82,20 @@ class Check {
     }
   }
 
-  static void hold_type(const Value& value, const json& rule) {
-    const json types = rule.is_array() ? rule : json::array({rule});
+  static void hold_type(const Value& value, const Json& rule) {
+    const Json types = rule.is_array() ? rule : Json::array({rule});
     std::string names;
-    for (const json& type : types) {
+    for (const Json& type : types) {
       if (has_type(value, type.get<std::string>())) return;
       names += (names.empty() ? "" : " or ") + type.get<std::string>();
     }
     config::fail(value, fmt::format("the value must be of the type {}", names));
   }
 
-  static void hold_required(const Value& value, const json& rule) {
+  static void hold_required(const Value& value, const Json& rule) {
     if (!value.is_object()) return;
     const auto members = value.as_members();
-    for (const json& key : rule) {
+    for (const Json& key : rule) {
       const auto name = key.get<std::string>();
       if (std::ranges::find(members, name, &config::Member::key) == members.end()) {
         config::fail(value, fmt::format("the key \"{}\" is missing", name));
@@ -103,7 +103,7 @@ class Check {
     }
   }
 
-  void hold_properties(const Value& value, const json& rule) const {
+  void hold_properties(const Value& value, const Json& rule) const {
     if (!value.is_object()) return;
     for (const config::Member& member : value.as_members()) {
       const auto known = rule.find(std::string(member.key));
@@ -111,7 +111,7 @@ class Check {
     }
   }
 
-  static void refuse_unlisted(const Value& value, const json& properties) {
+  static void refuse_unlisted(const Value& value, const Json& properties) {
     if (!value.is_object()) return;
     for (const config::Member& member : value.as_members()) {
       if (properties.contains(std::string(member.key))) continue;
@@ -120,14 +120,14 @@ class Check {
     }
   }
 
-  static void hold_choice(const Value& value, const json& rule) {
-    const json choices = rule.is_array() ? rule : json::array({rule});
-    if (std::ranges::any_of(choices, [&](const json& allowed) { return is_equal(value, allowed); })) return;
+  static void hold_choice(const Value& value, const Json& rule) {
+    const Json choices = rule.is_array() ? rule : Json::array({rule});
+    if (std::ranges::any_of(choices, [&](const Json& allowed) { return is_equal(value, allowed); })) return;
     config::fail(value, fmt::format("the value must be one of {}", choices.dump()));
   }
 
-  void hold_any(const Value& value, const json& rule) const {
-    for (const json& one : rule) {
+  void hold_any(const Value& value, const Json& rule) const {
+    for (const Json& one : rule) {
       try {
         return hold(value, one);
       } catch (const kernel::Error&) {
@@ -136,7 +136,7 @@ class Check {
     }
   }
 
-  static void hold_bound(const Value& value, const std::string& keyword, const json& rule) {
+  static void hold_bound(const Value& value, const std::string& keyword, const Json& rule) {
     static constexpr std::array<std::string_view, 6> kSilent = {"$schema", "title",       "description",
                                                                 "pattern", "definitions", "default"};
     if (std::ranges::find(kSilent, keyword) != kSilent.end()) return;
@@ -151,18 +151,18 @@ class Check {
     if (!holds) config::fail(value, fmt::format("the number must keep the {} {}", keyword, rule.dump()));
   }
 
-  const json& target_of(const std::string& reference) const {
+  const Json& target_of(const std::string& reference) const {
     FIELDPROOF_CHECK(reference.starts_with("#/"), "a shipped schema refers into itself");
-    return root_.at(json::json_pointer(reference.substr(1)));
+    return root_.at(Json::json_pointer(reference.substr(1)));
   }
 
-  const json& root_;
+  const Json& root_;
 };
 
 }  // namespace
 
 void check_against_schema(const Value& value, std::string_view schema) {
-  const json root = json::parse(schema);
+  const Json root = Json::parse(schema);
   Check(root).hold(value, root);
 }
 

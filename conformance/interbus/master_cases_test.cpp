@@ -114,7 +114,7 @@ struct TakesUncertainCodes final : interbus::Master {
   }
 };
 
-const MasterCase& case_of(std::string_view id) {
+const MasterCase& master_case_of(std::string_view id) {
   const auto found =
       std::ranges::find(master_cases(), id, [](const MasterCase& c) { return c.test_case.id; });
   EXPECT_NE(found, master_cases().end()) << id;
@@ -129,7 +129,7 @@ judge::CaseResult run(std::string_view id, MasterBench::MakeMaster make_master, 
                       std::string_view answer = "", Volume volume = Volume::quick) {
   judge::Pics pics;
   if (!item.empty()) pics.declare(std::string(item), std::string(answer));
-  const MasterCase& one = case_of(id);
+  const MasterCase& one = master_case_of(id);
   CaseJudge judge(one.test_case);
   MasterBench bench(std::move(make_master), 1, volume, std::move(pics));
   return judge.run_procedure([&](CaseJudge& j) { one.procedure(bench, j); });

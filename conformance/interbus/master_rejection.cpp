@@ -118,8 +118,8 @@ void marked_status(MasterBench& bench, CaseJudge& judge) {
 // All patterns of four bits within the user octets that the frame check cannot see.
 std::vector<std::vector<CycleFaults::Flip>> weight_four_patterns() {
   std::vector<std::vector<CycleFaults::Flip>> patterns;
-  const line::FrameCheckParameters* check = line::find_frame_check(interbus::Rules{}.frame_check);
-  for (const line::FourBits& bits : line::weight_four_code_words(*check, 8 * kUserOctets)) {
+  const line::FrameCheckParameters& check = line::frame_check_named(interbus::Rules{}.frame_check);
+  for (const line::FourBits& bits : line::weight_four_code_words(check, 8 * kUserOctets)) {
     std::vector<CycleFaults::Flip>& flips = patterns.emplace_back();
     for (const unsigned bit : bits) {
       flips.push_back({bit / 8, static_cast<std::uint8_t>(0x80U >> bit % 8), false});

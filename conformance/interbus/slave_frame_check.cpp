@@ -226,7 +226,7 @@ void weight_four_code_words_are_accepted(SlaveBench& bench, CaseJudge& judge) {
   bench.bring_up();
   const auto span = static_cast<unsigned>(std::min<std::size_t>(64, bench.code_word_bits()));
   const auto offset = static_cast<std::uint32_t>(bench.code_word_bits() - span);
-  const line::FrameCheckParameters& parameters = *line::find_frame_check(bench.rules().frame_check);
+  const line::FrameCheckParameters& parameters = line::frame_check_named(bench.rules().frame_check);
   const auto patterns = line::weight_four_code_words(parameters, span);
   FIELDPROOF_CHECK(parameters.poly != 0x1021 || span != 64 || patterns.size() == 84,
                    "1021h has 84 code words of weight four in 64 bits");

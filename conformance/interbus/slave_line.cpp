@@ -1,4 +1,5 @@
 #include "conformance/interbus/slave_line.hpp"
+#include "protocols/interbus/cycle_frame.hpp"
 
 #include <fmt/format.h>
 
@@ -105,8 +106,7 @@ void TrainWriter::status(std::size_t count) {
 
 const CyclePlace& TrainWriter::cycle(bool is_id_cycle, std::span<const std::uint8_t> octets,
                                      std::uint16_t check, std::uint16_t status_word) {
-  const auto transfer = static_cast<std::uint8_t>(line::kDataTelegram | (is_id_cycle ? line::kSelect : 0));
-  const auto trailer = static_cast<std::uint8_t>(transfer | line::kControl);
+  const auto [transfer, trailer] = interbus::cycle_headers(is_id_cycle);
   const std::size_t pitch = line::kDataTelegramLevels + gap_ + status_between_ * status_pitch_;
   cycles_.push_back({levels_.size(), pitch, octets.size(), data_telegrams_, is_id_cycle});
   const auto put = [this](std::uint8_t header, int octet) {

@@ -14,10 +14,9 @@ std::uint16_t reversed(unsigned value) {
 }
 
 const line::FrameCheckParameters& parameters_of(const interbus::Rules& rules) {
-  const line::FrameCheckParameters* parameters = line::find_frame_check(rules.frame_check);
-  FIELDPROOF_CHECK(parameters != nullptr && parameters->width == 16,
-                   "the frame check of the rules is a 16-bit one of the catalogue");
-  return *parameters;
+  const line::FrameCheckParameters& parameters = line::frame_check_named(rules.frame_check);
+  FIELDPROOF_CHECK(parameters.width == 16, "the frame check of the rules is a 16-bit one");
+  return parameters;
 }
 
 }  // namespace

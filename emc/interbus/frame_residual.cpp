@@ -28,9 +28,9 @@ void find_worst(const DualWeights& dual, FrameResidual& residual) {
 }
 
 const line::FrameCheckParameters& frame_check_of(const interbus::NetworkDescription& network) {
-  const line::FrameCheckParameters* check = line::find_frame_check(network.rules.frame_check);
-  FIELDPROOF_CHECK(check != nullptr && check->width <= 16, "the network has a frame check of up to 16 bits");
-  return *check;
+  const line::FrameCheckParameters& check = line::frame_check_named(network.rules.frame_check);
+  FIELDPROOF_CHECK(check.width <= 16, "the network has a frame check of up to 16 bits");
+  return check;
 }
 
 unsigned protected_bits(const interbus::NetworkDescription& network) {

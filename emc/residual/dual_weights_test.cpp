@@ -13,10 +13,6 @@
 namespace fieldproof::emc {
 namespace {
 
-const line::FrameCheckParameters& named(std::string_view name) {
-  return *line::find_frame_check(name);
-}
-
 // The 2^r words one after the other, each from the one before by one parity: an independent way that knows
 // neither cycles nor windows.
 std::vector<std::uint64_t> weights_by_gray_code(const line::FrameCheckParameters& p, unsigned bits) {
@@ -54,7 +50,9 @@ TEST(DualWeights, AreThoseOfAllSumsForChecksOfSixteenBits) {
   for (const std::string_view name : {"CRC-16/IBM-3740", "CRC-16/PROFIBUS", "CRC-16/MODBUS", "CRC-16/DECT-R",
                                       "CRC-16/LJ1200", "CRC-16/TELEDISK", "CRC-15/CAN"}) {
     for (const unsigned bits : {17U, 130U, 256U}) {
-      EXPECT_EQ(dual_weights(named(name), bits).count, weights_by_gray_code(named(name), bits)) << name;
+      EXPECT_EQ(dual_weights(line::frame_check_named(name), bits).count,
+                weights_by_gray_code(line::frame_check_named(name), bits))
+          << name;
     }
   }
 }
@@ -63,14 +61,16 @@ TEST(DualWeights, AreThoseOfAllSumsForChecksOfSixteenBits) {
 TEST(DualWeights, AreThoseOfAllSumsForChecksOfTwentyFourBits) {
   for (const std::string_view name : {"CRC-24/OPENPGP", "CRC-24/BLE", "CRC-24/FLEXRAY-A"}) {
     for (const unsigned bits : {25U, 64U, 150U}) {
-      EXPECT_EQ(dual_weights(named(name), bits).count, weights_by_gray_code(named(name), bits)) << name;
+      EXPECT_EQ(dual_weights(line::frame_check_named(name), bits).count,
+                weights_by_gray_code(line::frame_check_named(name), bits))
+          << name;
     }
   }
 }
 
 // Windows that reach beyond a block of the walk, and beyond the whole cycle.
 TEST(DualWeights, HaveTheirMeanAndSpreadAtTheLongestTelegram) {
-  const DualWeights dual = dual_weights(named("CRC-16/IBM-3740"), kMostBits);
+  const DualWeights dual = dual_weights(line::frame_check_named("CRC-16/IBM-3740"), kMostBits);
   // Any two columns that differ are independent, so the mean is n / 2 and the variance n / 4, but the order
   // of x is 32767: each column stands there four times, the first four a fifth time.
   const std::uint64_t order = 32767;
@@ -91,7 +91,7 @@ TEST(DualWeights, HaveTheirMeanAndSpreadAtTheLongestTelegram) {
 }
 
 TEST(DualWeights, TellsItsProgress) {
-  const line::FrameCheckParameters& p = named("CRC-16/IBM-3740");
+  const line::FrameCheckParameters& p = line::frame_check_named("CRC-16/IBM-3740");
   std::uint64_t last = 0;
   dual_weights(p, 100, [&](std::uint64_t done) {
     EXPECT_GT(done, last);
@@ -99,14 +99,14 @@ TEST(DualWeights, TellsItsProgress) {
   });
   EXPECT_EQ(last, words_to_weigh(p));
   EXPECT_EQ(words_to_weigh(p), 1U << 15);  // the factor x + 1 is not walked
-  EXPECT_EQ(words_to_weigh(named("CRC-16/PROFIBUS")), 1U << 16);
+  EXPECT_EQ(words_to_weigh(line::frame_check_named("CRC-16/PROFIBUS")), 1U << 16);
 }
 
 TEST(DualWeights, RefuseWhatIsTooWideOrTooLong) {
-  EXPECT_THROW(dual_weights(named("CRC-40/GSM"), 100), kernel::Error);
-  EXPECT_THROW(dual_weights(named("CRC-8/SMBUS"), 0), kernel::Error);
-  EXPECT_THROW(dual_weights(named("CRC-8/SMBUS"), kMostBits + 1), kernel::Error);
-  EXPECT_NO_THROW(dual_weights(named("CRC-8/SMBUS"), kMostBits));
+  EXPECT_THROW(dual_weights(line::frame_check_named("CRC-40/GSM"), 100), kernel::Error);
+  EXPECT_THROW(dual_weights(line::frame_check_named("CRC-8/SMBUS"), 0), kernel::Error);
+  EXPECT_THROW(dual_weights(line::frame_check_named("CRC-8/SMBUS"), kMostBits + 1), kernel::Error);
+  EXPECT_NO_THROW(dual_weights(line::frame_check_named("CRC-8/SMBUS"), kMostBits));
 }
 
 }  // namespace

@@ -12,10 +12,6 @@
 namespace fieldproof::emc {
 namespace {
 
-const line::FrameCheckParameters& named(std::string_view name) {
-  return *line::find_frame_check(name);
-}
-
 // sum A_k p^k (1 - p)^(n - k): every term is positive, nothing cancels.
 double by_weights(const DualWeights& dual, double ber) {
   const std::vector<BigCount> words = code_word_counts(dual, dual.bits);
@@ -33,7 +29,7 @@ TEST(ResidualError, IsTheSumOverTheWeights) {
   for (const std::string_view name : {"CRC-16/IBM-3740", "CRC-16/PROFIBUS", "CRC-16/MODBUS", "CRC-15/CAN",
                                       "CRC-8/SMBUS", "CRC-21/CAN-FD"}) {
     for (const unsigned bits : {22U, 48U, 120U, 600U}) {
-      const DualWeights dual = dual_weights(named(name), bits);
+      const DualWeights dual = dual_weights(line::frame_check_named(name), bits);
       for (const double ber : {1e-15, 1e-9, 1e-5, 1e-3, 1e-2, 0.1, 0.49}) {
         const double expected = by_weights(dual, ber);
         EXPECT_NEAR(undetected_error_probability(dual, ber), expected, 1e-11 * expected)
@@ -45,7 +41,7 @@ TEST(ResidualError, IsTheSumOverTheWeights) {
 
 // Printed with two digits beside the weights they are made from. [calc]
 TEST(ResidualError, HasTheFirstTermOfTheTable) {
-  const DualWeights dual = dual_weights(named("CRC-16/IBM-3740"), 64);
+  const DualWeights dual = dual_weights(line::frame_check_named("CRC-16/IBM-3740"), 64);
   const auto first_term = [](double p) { return 84 * std::pow(p, 4) * std::pow(1 - p, 60); };
   EXPECT_NEAR(first_term(1e-3), 7.9e-11, 0.05e-11);
   EXPECT_NEAR(undetected_error_probability(dual, 1e-3), first_term(1e-3), 1e-3 * first_term(1e-3));
@@ -55,26 +51,28 @@ TEST(ResidualError, HasTheFirstTermOfTheTable) {
 
 TEST(ResidualError, AtOneHalfIsThatOfNoise) {
   for (const unsigned bits : {17U, 40U, 2200U}) {
-    EXPECT_DOUBLE_EQ(undetected_error_probability(dual_weights(named("CRC-16/MODBUS"), bits), 0.5),
-                     0x1p-16 - std::ldexp(1.0, -static_cast<int>(bits)));
+    EXPECT_DOUBLE_EQ(
+        undetected_error_probability(dual_weights(line::frame_check_named("CRC-16/MODBUS"), bits), 0.5),
+        0x1p-16 - std::ldexp(1.0, -static_cast<int>(bits)));
   }
 }
 
 TEST(ResidualError, IsZeroWhereNothingCanBeWrong) {
-  EXPECT_EQ(undetected_error_probability(dual_weights(named("CRC-16/MODBUS"), 2200), 0), 0);
-  EXPECT_EQ(undetected_error_probability(dual_weights(named("CRC-16/MODBUS"), 16), 0.3), 0);
-  EXPECT_EQ(undetected_share_of_corrupted(dual_weights(named("CRC-16/MODBUS"), 2200), 0), 0);
+  EXPECT_EQ(undetected_error_probability(dual_weights(line::frame_check_named("CRC-16/MODBUS"), 2200), 0), 0);
+  EXPECT_EQ(undetected_error_probability(dual_weights(line::frame_check_named("CRC-16/MODBUS"), 16), 0.3), 0);
+  EXPECT_EQ(undetected_share_of_corrupted(dual_weights(line::frame_check_named("CRC-16/MODBUS"), 2200), 0),
+            0);
 }
 
 TEST(ResidualError, RefusesRatesThatAreNone) {
-  const DualWeights dual = dual_weights(named("CRC-8/SMBUS"), 40);
+  const DualWeights dual = dual_weights(line::frame_check_named("CRC-8/SMBUS"), 40);
   for (const double ber : {-0.1, 0.51, 0.9e-15, std::nan("")}) {
     EXPECT_THROW(undetected_error_probability(dual, ber), kernel::Error) << ber;
   }
 }
 
 TEST(ResidualError, ShareOfCorruptedIsConditional) {
-  const DualWeights dual = dual_weights(named("CRC-16/MODBUS"), 80);
+  const DualWeights dual = dual_weights(line::frame_check_named("CRC-16/MODBUS"), 80);
   const double corrupted = 1 - std::pow(1 - 0.01, 80);
   EXPECT_NEAR(
       undetected_share_of_corrupted(dual, 0.01) * corrupted / undetected_error_probability(dual, 0.01), 1,
@@ -83,14 +81,15 @@ TEST(ResidualError, ShareOfCorruptedIsConditional) {
 
 // With one bit of message the generator is the only code word: p^4 (1 - p)^13 has its maximum at 4 / 17.
 TEST(ResidualError, WorstRateOfASingleCodeWordIsItsShareOfOnes) {
-  const WorstError worst = worst_undetected_error(dual_weights(named("CRC-16/IBM-3740"), 17));
+  const WorstError worst =
+      worst_undetected_error(dual_weights(line::frame_check_named("CRC-16/IBM-3740"), 17));
   EXPECT_NEAR(worst.ber, 4.0 / 17, 1e-6);
   EXPECT_NEAR(worst.probability / (std::pow(4.0 / 17, 4) * std::pow(13.0 / 17, 13)), 1, 1e-12);
   EXPECT_FALSE(worst.rises_throughout);
 }
 
 TEST(ResidualError, WorstRateIsNotTheGreatestBeyondTheOrderOfX) {
-  const DualWeights dual = dual_weights(named("CRC-16/PROFIBUS"), 4128);
+  const DualWeights dual = dual_weights(line::frame_check_named("CRC-16/PROFIBUS"), 4128);
   const WorstError worst = worst_undetected_error(dual);
   EXPECT_FALSE(worst.rises_throughout);
   EXPECT_GT(worst.probability, 2 * 0x1p-16);
@@ -113,7 +112,7 @@ TEST(ResidualError, BoundForProperPolynomialsIsTheTailOfTheFlips) {
 
 // A proper polynomial without the factor x + 1: the formula holds but for its fourth digit.
 TEST(ResidualError, BoundForProperPolynomialsNearlyHoldsForOne) {
-  const DualWeights proper = dual_weights(named("CRC-16/PROFIBUS"), 64);
+  const DualWeights proper = dual_weights(line::frame_check_named("CRC-16/PROFIBUS"), 64);
   ASSERT_TRUE(worst_undetected_error(proper).rises_throughout);
   const unsigned distance = *hamming_distance(proper);
   for (double ber = 1e-6; ber <= 0.5; ber *= 1.5) {
@@ -126,10 +125,11 @@ TEST(ResidualError, BoundForProperPolynomialsNearlyHoldsForOne) {
 // What the formula is too good for: all hidden patterns have even weights, so there are twice as many of
 // them; and a short telegram exceeds even 2^-16.
 TEST(ResidualError, BoundForProperPolynomialsDoesNotHoldWithAFactorXPlusOne) {
-  const DualWeights proper = dual_weights(named("CRC-16/IBM-3740"), 300);
+  const DualWeights proper = dual_weights(line::frame_check_named("CRC-16/IBM-3740"), 300);
   ASSERT_TRUE(worst_undetected_error(proper).rises_throughout);
   EXPECT_NEAR(undetected_error_probability(proper, 1e-5) / proper_polynomial_bound(16, 300, 4, 1e-5), 2, 0.5);
-  const WorstError improper = worst_undetected_error(dual_weights(named("CRC-16/IBM-3740"), 48));
+  const WorstError improper =
+      worst_undetected_error(dual_weights(line::frame_check_named("CRC-16/IBM-3740"), 48));
   EXPECT_FALSE(improper.rises_throughout);
   EXPECT_GT(improper.probability, 3 * 0x1p-16);
 }

@@ -11,10 +11,6 @@
 namespace fieldproof::emc {
 namespace {
 
-const line::FrameCheckParameters& named(std::string_view name) {
-  return *line::find_frame_check(name);
-}
-
 // Five standard deviations of a binomial count around its expectation.
 void expect_count(std::uint64_t count, double probability, std::uint64_t chances) {
   const double expected = probability * static_cast<double>(chances);
@@ -27,8 +23,9 @@ TEST(ResidualSimulation, CountsWhatIsExact) {
     constexpr unsigned kBits = 60;
     constexpr double kBer = 0.1;
     const CountedErrors counted =
-        count_undetected_errors(named(name), kBits, kBer, kSamples, kernel::Random(7));
-    const double exact = undetected_error_probability(dual_weights(named(name), kBits), kBer);
+        count_undetected_errors(line::frame_check_named(name), kBits, kBer, kSamples, kernel::Random(7));
+    const double exact =
+        undetected_error_probability(dual_weights(line::frame_check_named(name), kBits), kBer);
     EXPECT_EQ(counted.samples, kSamples);
     EXPECT_GT(exact * kSamples, 30) << "too few to say anything";
     expect_count(counted.undetected, exact, kSamples);
@@ -37,18 +34,22 @@ TEST(ResidualSimulation, CountsWhatIsExact) {
 }
 
 TEST(ResidualSimulation, CountsNothingOnAQuietLineAndEverythingWithoutARate) {
-  const CountedErrors quiet = count_undetected_errors(named("CRC-8/SMBUS"), 60, 0, 1000, kernel::Random(7));
+  const CountedErrors quiet =
+      count_undetected_errors(line::frame_check_named("CRC-8/SMBUS"), 60, 0, 1000, kernel::Random(7));
   EXPECT_EQ(quiet.corrupted, 0U);
   // Every bit flipped in 15 bits: x^15 + 1 over x + 1, which the polynomial does not divide.
-  const CountedErrors all = count_undetected_errors(named("CRC-8/SMBUS"), 15, 1, 1000, kernel::Random(7));
+  const CountedErrors all =
+      count_undetected_errors(line::frame_check_named("CRC-8/SMBUS"), 15, 1, 1000, kernel::Random(7));
   EXPECT_EQ(all.corrupted, 1000U);
   EXPECT_EQ(all.undetected, 0U);
   // In 127 bits, the order of x, it does not either, but in twice as many.
-  EXPECT_EQ(count_undetected_errors(named("CRC-8/SMBUS"), 254, 1, 10, kernel::Random(7)).undetected, 10U);
+  EXPECT_EQ(count_undetected_errors(line::frame_check_named("CRC-8/SMBUS"), 254, 1, 10, kernel::Random(7))
+                .undetected,
+            10U);
 }
 
 TEST(ResidualSimulation, SamplesTheShareOfEachWeight) {
-  const line::FrameCheckParameters& p = named("CRC-16/IBM-3740");
+  const line::FrameCheckParameters& p = line::frame_check_named("CRC-16/IBM-3740");
   const SampledErrors sampled = sample_undetected_errors(p, 64, 1e-2, 340'000, kernel::Random(3));
   EXPECT_EQ(sampled.looked_up, 2U);
   const std::vector<BigCount> words = code_word_counts(dual_weights(p, 64), 64);
@@ -65,7 +66,7 @@ TEST(ResidualSimulation, SamplesTheShareOfEachWeight) {
 }
 
 TEST(ResidualSimulation, ReachesWhatCountingDoesNot) {
-  const line::FrameCheckParameters& p = named("CRC-24/BLE");
+  const line::FrameCheckParameters& p = line::frame_check_named("CRC-24/BLE");
   const DualWeights dual = dual_weights(p, 512);
   for (const double ber : {1e-4, 1e-2}) {
     const SampledErrors sampled = sample_undetected_errors(p, 512, ber, 2'200'000, kernel::Random(11));
@@ -78,7 +79,7 @@ TEST(ResidualSimulation, ReachesWhatCountingDoesNot) {
 }
 
 TEST(ResidualSimulation, LooksUpOneFlipInLongTelegrams) {
-  const line::FrameCheckParameters& p = named("CRC-16/MODBUS");
+  const line::FrameCheckParameters& p = line::frame_check_named("CRC-16/MODBUS");
   const SampledErrors sampled = sample_undetected_errors(p, 5000, 1e-4, 1'700'000, kernel::Random(5));
   EXPECT_EQ(sampled.looked_up, 1U);
   const double exact = undetected_error_probability(dual_weights(p, 5000), 1e-4);
@@ -87,7 +88,7 @@ TEST(ResidualSimulation, LooksUpOneFlipInLongTelegrams) {
 }
 
 TEST(ResidualSimulation, RepeatsWithItsSeed) {
-  const line::FrameCheckParameters& p = named("CRC-16/MODBUS");
+  const line::FrameCheckParameters& p = line::frame_check_named("CRC-16/MODBUS");
   const auto once = [&](std::uint64_t seed) {
     return sample_undetected_errors(p, 100, 1e-2, 20'000, kernel::Random(seed)).probability;
   };

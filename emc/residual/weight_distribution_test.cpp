@@ -18,10 +18,6 @@ constexpr std::string_view kInterbus = "CRC-16/IBM-3740";
 constexpr std::string_view kProfibus = "CRC-16/PROFIBUS";
 constexpr std::string_view kModbus = "CRC-16/MODBUS";
 
-const line::FrameCheckParameters& named(std::string_view name) {
-  return *line::find_frame_check(name);
-}
-
 std::string word_of(std::string_view name) {
   std::string word(name);
   std::erase_if(word, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); });
@@ -63,10 +59,11 @@ TEST(WeightDistribution, HasOnlyTheTelegramItselfWhereThereIsNoRoomForAMessage) 
   for (const unsigned bits : {1U, 15U, 16U}) {
     std::vector<BigCount> words(bits + 1);
     words[0] = 1;
-    EXPECT_EQ(code_word_counts(dual_weights(named(kInterbus), bits), bits), words);
-    EXPECT_EQ(hamming_distance(dual_weights(named(kInterbus), bits)), std::nullopt);
+    EXPECT_EQ(code_word_counts(dual_weights(line::frame_check_named(kInterbus), bits), bits), words);
+    EXPECT_EQ(hamming_distance(dual_weights(line::frame_check_named(kInterbus), bits)), std::nullopt);
   }
-  EXPECT_EQ(hamming_distance(dual_weights(named(kInterbus), 17)), 4U);  // the generator has four terms
+  EXPECT_EQ(hamming_distance(dual_weights(line::frame_check_named(kInterbus), 17)),
+            4U);  // the generator has four terms
 }
 
 RC_GTEST_PROP(WeightDistribution, SumsUpToAllMessagesAtAnyLength, ()) {
@@ -99,7 +96,7 @@ class WeightsTwoAndFour : public testing::TestWithParam<WeightFour> {};
 
 TEST_P(WeightsTwoAndFour, AreThoseOfTheTable) {
   const auto& [name, bits, two, four] = GetParam();
-  const std::vector<BigCount> words = code_word_counts(dual_weights(named(name), bits), 4);
+  const std::vector<BigCount> words = code_word_counts(dual_weights(line::frame_check_named(name), bits), 4);
   EXPECT_EQ(words, (std::vector<BigCount>{1, 0, two, name == kProfibus && bits > 2759 ? words[3] : 0, four}));
 }
 
@@ -108,7 +105,8 @@ TEST_P(WeightsTwoAndFour, AreThoseOfTheTable) {
 TEST_P(WeightsTwoAndFour, AreThoseOfCountingPairs) {
   const auto& [name, bits, two, four] = GetParam();
   std::vector<std::uint64_t> remainders;
-  for (unsigned i = 0; i < bits; ++i) remainders.push_back(line::power_of_x(named(name), i));
+  for (unsigned i = 0; i < bits; ++i)
+    remainders.push_back(line::power_of_x(line::frame_check_named(name), i));
   std::vector<std::uint64_t> pairs(1U << 16);
   for (unsigned i = 0; i < bits; ++i) {
     for (unsigned j = i + 1; j < bits; ++j) ++pairs[remainders[i] ^ remainders[j]];
@@ -148,7 +146,7 @@ void PrintTo(const HammingDistances& row, std::ostream* out) {
 class HammingDistance : public testing::TestWithParam<HammingDistances> {};
 
 TEST_P(HammingDistance, HoldsUpToTheListedLengthAndNoFurther) {
-  const line::FrameCheckParameters& p = named(GetParam().name);
+  const line::FrameCheckParameters& p = line::frame_check_named(GetParam().name);
   unsigned distance = 3;
   for (const unsigned data_bits : GetParam().data_bits) {
     if (data_bits > 0) {
@@ -174,7 +172,8 @@ INSTANTIATE_TEST_SUITE_P(WeightDistribution, HammingDistance,
 
 // One row of the same table for 32 bits; the others take minutes and are in the README.
 TEST(WeightDistribution, OfThirtyTwoBitsHasTheListedDistance) {
-  const std::vector<BigCount> words = code_word_counts(dual_weights(named("CRC-32"), 268 + 32), 6);
+  const std::vector<BigCount> words =
+      code_word_counts(dual_weights(line::frame_check_named("CRC-32"), 268 + 32), 6);
   EXPECT_EQ((std::vector<BigCount>(words.begin(), words.begin() + 6)),
             (std::vector<BigCount>{1, 0, 0, 0, 0, 0}));
   EXPECT_GT(words[6], 0);

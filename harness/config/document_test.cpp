@@ -14,7 +14,7 @@
 namespace fieldproof::config {
 namespace {
 
-std::string error_of(std::string text, const Limits& limits = {}) {
+std::string parse_error(std::string text, const Limits& limits = {}) {
   try {
     const Document document = Document::parse(std::move(text), "x.json", limits);
   } catch (const kernel::Error& error) {
@@ -38,7 +38,7 @@ void PrintTo(const BadText& bad, std::ostream* out) {
 class BadTexts : public testing::TestWithParam<BadText> {};
 
 TEST_P(BadTexts, AreRefusedWithTheirPlace) {
-  const std::string error = error_of(GetParam().text);
+  const std::string error = parse_error(GetParam().text);
   EXPECT_TRUE(error.starts_with(GetParam().begins)) << error;
   EXPECT_NE(error.find(GetParam().contains), std::string::npos) << error;
 }
@@ -104,16 +104,16 @@ TEST(Document, AcceptsCommentsAndAByteOrderMark) {
 
 TEST(Document, AcceptsTheLimitAndRefusesOneMore) {
   const Limits small{.size = 10, .depth = 3};
-  EXPECT_EQ(error_of("[[[ 2 ]]]", small), "no error");
-  EXPECT_EQ(error_of("[[[  2 ]]]", small), "no error");
-  EXPECT_NE(error_of("[[[   2 ]]]", small).find("has 11 octets; at most 10"), std::string::npos);
-  EXPECT_TRUE(error_of("[{\"a\":[]}]", small).starts_with("no error"));
-  const std::string deeper = error_of("[\n[[\n[]]]]", small);
+  EXPECT_EQ(parse_error("[[[ 2 ]]]", small), "no error");
+  EXPECT_EQ(parse_error("[[[  2 ]]]", small), "no error");
+  EXPECT_NE(parse_error("[[[   2 ]]]", small).find("has 11 octets; at most 10"), std::string::npos);
+  EXPECT_TRUE(parse_error("[{\"a\":[]}]", small).starts_with("no error"));
+  const std::string deeper = parse_error("[\n[[\n[]]]]", small);
   EXPECT_TRUE(deeper.starts_with("x.json:3:1: /0/0/0: more than 3 objects and arrays")) << deeper;
 }
 
 TEST(Document, RefusesAMillionBracketsWithoutRecursion) {
-  const std::string error = error_of(std::string(1'000'000, '['));
+  const std::string error = parse_error(std::string(1'000'000, '['));
   EXPECT_NE(error.find("more than 64 objects and arrays inside each other"), std::string::npos) << error;
 }
 
@@ -125,8 +125,8 @@ TEST(Document, DeepDocumentsAreReadWithoutRecursionWhenAsked) {
 }
 
 TEST(Document, KeepsHostileNamesPrintable) {
-  const std::string error = error_of("{\"a\\u001b\": [" + std::string(5000, 'x') + "]}");
-  EXPECT_EQ(error_of("{\"\\u009b\\u202e\": 1, \"\\u009b\\u202e\": 2}").find_first_of("\xC2\xE2"),
+  const std::string error = parse_error("{\"a\\u001b\": [" + std::string(5000, 'x') + "]}");
+  EXPECT_EQ(parse_error("{\"\\u009b\\u202e\": 1, \"\\u009b\\u202e\": 2}").find_first_of("\xC2\xE2"),
             std::string::npos);
   EXPECT_NE(error.find("/a\\x1B/0"), std::string::npos) << error;
   EXPECT_LT(error.size(), 600U);

@@ -23,7 +23,7 @@ Station station(const Value& value) {
   });
 }
 
-std::string error_of(const std::string& text) {
+std::string station_error(const std::string& text) {
   const Document document = Document::parse(text, "x.json");
   try {
     (void)station(document.root());
@@ -43,31 +43,32 @@ TEST(ObjectReader, ReadsRequiredAndOptionalKeysInAnyOrder) {
 }
 
 TEST(ObjectReader, RefusesAnUnknownKeyWithTheNearestKnownOne) {
-  EXPECT_EQ(error_of("{\"name\": \"a\",\n\"lenght\": 16}"),
+  EXPECT_EQ(station_error("{\"name\": \"a\",\n\"lenght\": 16}"),
             "x.json:2: /lenght: key \"lenght\" is not known here; did you mean \"length\"?");
-  EXPECT_EQ(error_of("{\"name\": \"a\", \"colour\": 16}"),
+  EXPECT_EQ(station_error("{\"name\": \"a\", \"colour\": 16}"),
             "x.json:1: /colour: key \"colour\" is not known here; known are name, length");
 }
 
 TEST(ObjectReader, NamesTheNearestWrittenKeyWhenOneIsMissing) {
-  EXPECT_EQ(error_of("{}"), "x.json:1: the top level: key \"name\" is missing; add it");
-  EXPECT_EQ(error_of("{\n\"length\": 1,\n\"Name\": \"a\"}"),
+  EXPECT_EQ(station_error("{}"), "x.json:1: the top level: key \"name\" is missing; add it");
+  EXPECT_EQ(station_error("{\n\"length\": 1,\n\"Name\": \"a\"}"),
             "x.json:1: the top level: key \"name\" is missing; \"Name\" on line 3 is near to it");
 }
 
 TEST(ObjectReader, NamesTheFirstOfManyUnknownKeys) {
   std::string text = "{\"name\": \"a\"";
   for (int n = 0; n < 20'000; ++n) text += ",\n\"" + std::to_string(n) + std::string(300, 'n') + "\": 0";
-  EXPECT_TRUE(error_of(text + "}").starts_with("x.json:2: /0nnn"));
-  EXPECT_NE(error_of("{\"nome\": 1, " + text.substr(14) + "}").find("\"nome\" on line 1"), std::string::npos);
+  EXPECT_TRUE(station_error(text + "}").starts_with("x.json:2: /0nnn"));
+  EXPECT_NE(station_error("{\"nome\": 1, " + text.substr(14) + "}").find("\"nome\" on line 1"),
+            std::string::npos);
 }
 
 TEST(ObjectReader, RefusesWhatIsNoObject) {
-  EXPECT_EQ(error_of("[]"), "x.json:1: the top level: this is an array; write an object");
+  EXPECT_EQ(station_error("[]"), "x.json:1: the top level: this is an array; write an object");
 }
 
 TEST(ObjectReader, AllowsASchemaAtTheTopLevelOnly) {
-  EXPECT_EQ(error_of(R"({"$schema": "station.schema.json", "name": "a"})"), "no error");
+  EXPECT_EQ(station_error(R"({"$schema": "station.schema.json", "name": "a"})"), "no error");
   const Document document = Document::parse(R"([{"$schema": "x", "name": "a"}])", "x.json");
   EXPECT_THROW((void)station(document.root().as_array()[0]), kernel::Error);
 }

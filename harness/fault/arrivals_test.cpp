@@ -1,4 +1,5 @@
 #include "harness/fault/arrivals.hpp"
+#include "harness/line/written_wave.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -12,16 +13,8 @@ using kernel::Duration;
 using kernel::kMicrosecond;
 using kernel::kPicosecond;
 using kernel::kStart;
+using line::wave_of;
 using line::Waveform;
-
-// One microsecond per level.
-Waveform wave_of(const std::string& levels, Duration start = {}) {
-  Waveform wave;
-  wave.start = kStart + start;
-  wave.rate = 1'000'000;
-  for (const char level : levels) wave.levels.append(level == '1' ? 1 : 0, 1);
-  return wave;
-}
 
 TEST(ArrivalWriter, JoinsPiecesWithoutAGap) {
   const Waveform sent = wave_of("01100");

@@ -114,13 +114,11 @@ Force read_force(ObjectReader& object) {
 }
 
 line::Levels read_levels(const Value& value) {
-  line::Levels levels;
   const std::string_view text = value.as_string();
   if (text.empty() || text.size() > kMostLevels || text.find_first_not_of("01") != std::string_view::npos) {
     config::fail(value, "levels are written as 0 and 1, the first level first, for example \"0101\"");
   }
-  for (const char level : text) levels.append(level == '1' ? 1 : 0, 1);
-  return levels;
+  return line::Levels::of_text(text);
 }
 
 line::Levels read_telegram(const Value& value, const PlanReading& reading) {

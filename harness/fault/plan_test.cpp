@@ -7,6 +7,7 @@
 
 #include "harness/fault/telegram_fields.hpp"
 #include "harness/kernel/check.hpp"
+#include "harness/line/written_wave.hpp"
 
 namespace fieldproof::fault {
 namespace {
@@ -15,18 +16,10 @@ using kernel::Duration;
 using kernel::kMicrosecond;
 using kernel::kPicosecond;
 using kernel::kStart;
+using line::wave_of;
 using line::Waveform;
 
 constexpr std::int64_t kRate = 1'000'000;  // one microsecond per level
-constexpr std::uint8_t kData = line::kDataTelegram;
-
-Waveform wave_of(const std::string& levels, Duration start = {}) {
-  Waveform wave;
-  wave.start = kStart + start;
-  wave.rate = kRate;
-  for (const char level : levels) wave.levels.append(level == '1' ? 1 : 0, 1);
-  return wave;
-}
 
 // "@3 0101 @9 11": start in microseconds and levels of each arrival.
 std::string text(const std::vector<Waveform>& arrivals) {
@@ -305,7 +298,7 @@ class Train : public testing::Test {
  protected:
   Train() : code_(layout_) {
     sent_.rate = kRate;
-    for (std::uint8_t n = 0; n < 4; ++n) code_.append(sent_.levels, kData, n);
+    for (std::uint8_t n = 0; n < 4; ++n) code_.append(sent_.levels, line::kDataTelegram, n);
   }
   std::string octets(Plan plan) {
     trace::Trace trace;
@@ -348,7 +341,7 @@ TEST_F(Train, IsTornWhereATelegramIsDropped) {
 TEST_F(Train, StaysOneTrainWhereATelegramIsRepeatedOrInserted) {
   EXPECT_EQ(octets(Plan({rule(Repeat{}, Scope::unit, "data", Numbers::only(2))})), "@0 0 1 2 2 3;");
   line::Levels telegram;
-  code_.append(telegram, kData, 99);
+  code_.append(telegram, line::kDataTelegram, 99);
   EXPECT_EQ(octets(Plan({rule(Insert{telegram, true}, Scope::unit, "*", Numbers::only(3))})),
             "@0 0 1 2 3 99;");
 }

@@ -6,6 +6,7 @@
 
 #include "harness/fault/channel_chain.hpp"
 #include "harness/kernel/check.hpp"
+#include "harness/line/written_wave.hpp"
 
 namespace fieldproof::fault {
 namespace {
@@ -13,15 +14,8 @@ namespace {
 using kernel::Duration;
 using kernel::kMicrosecond;
 using kernel::kStart;
+using line::wave_of;
 using line::Waveform;
-
-Waveform wave_of(const std::string& levels, Duration start = {}) {
-  Waveform wave;
-  wave.start = kStart + start;
-  wave.rate = 1'000'000;
-  for (const char level : levels) wave.levels.append(level == '1' ? 1 : 0, 1);
-  return wave;
-}
 
 std::string pass(Channel& channel, const Waveform& sent) {
   std::vector<Waveform> arrivals;

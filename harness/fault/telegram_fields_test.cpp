@@ -8,8 +8,6 @@
 namespace fieldproof::fault {
 namespace {
 
-constexpr std::uint8_t kData = line::kDataTelegram;
-
 std::string text(const Span& span) {
   return std::to_string(span.unit) + " " + std::string(span.field) + " " + std::to_string(span.first) + "+" +
          std::to_string(span.count);
@@ -20,7 +18,7 @@ TEST(TelegramFields, LieWhereTheCodePutsThem) {
   layout.header = {line::HeaderLevel::flag, line::HeaderLevel::select, line::HeaderLevel::control};
   const line::TelegramCode code(layout);
   line::Waveform train;
-  code.append(train.levels, kData | line::kSelect, 0x5A);
+  code.append(train.levels, line::kDataTelegram | line::kSelect, 0x5A);
   train.levels.append_idle(3);
   code.append(train.levels, line::kControl, 0);
   TelegramFields fields(layout);
@@ -42,7 +40,7 @@ RC_GTEST_PROP(TelegramFields, FlippingAFieldChangesThatFieldOnly, (std::uint8_t 
   const line::TelegramLayout layout;
   const line::TelegramCode code(layout);
   line::Waveform train;
-  code.append(train.levels, kData, octet);
+  code.append(train.levels, line::kDataTelegram, octet);
   TelegramFields fields(layout);
   std::vector<Span> spans;
   fields.locate(train, spans);
@@ -52,7 +50,7 @@ RC_GTEST_PROP(TelegramFields, FlippingAFieldChangesThatFieldOnly, (std::uint8_t 
   train.levels.flip(data.first + bit);
   const line::Telegram changed = code.from_levels(train.levels.window(0));
   RC_ASSERT(changed.data == (octet ^ (0x80U >> bit)));
-  RC_ASSERT(changed.header == kData);
+  RC_ASSERT(changed.header == line::kDataTelegram);
 }
 
 }  // namespace

@@ -112,12 +112,11 @@ TEST(CharacterReceiver, RefusesAStartThatIsNotLowInMostOfItsMiddle) {
     return !received(kPlain, wave, sampling).empty();
   };
   const Sampling majority;
-  const Sampling single{Sampling::Kind::mid_bit};
   EXPECT_FALSE(is_taken(7 * kMicrosecond, majority));
   EXPECT_FALSE(is_taken(8 * kMicrosecond, majority));
   EXPECT_TRUE(is_taken(8 * kMicrosecond + kMicrosecond / 100, majority));
-  EXPECT_FALSE(is_taken(8 * kMicrosecond, single));
-  EXPECT_TRUE(is_taken(8 * kMicrosecond + kMicrosecond / 100, single));
+  EXPECT_FALSE(is_taken(8 * kMicrosecond, kMidBit));
+  EXPECT_TRUE(is_taken(8 * kMicrosecond + kMicrosecond / 100, kMidBit));
 }
 
 TEST(CharacterReceiver, FindsACharacterBehindARefusedGlitch) {
@@ -155,13 +154,12 @@ TEST(CharacterReceiver, AGlitchJustBeforeTheStartShiftsTheSamplingGrid) {
 // (middle). A faster sender's stop bit ends at 10 of its bits: 10/9.5 = 1.0526; a slower one's begins at 9:
 // 9/9.5.
 TEST(CharacterReceiver, BearsRatesUpToBothLimits) {
-  const Sampling single{Sampling::Kind::mid_bit};
   const std::vector<unsigned> sent{0x00};
-  EXPECT_EQ(heard(kPlain, kBitRate * 948 / 1000, sent, single), "0 ");
-  EXPECT_EQ(heard(kPlain, kBitRate * 947 / 1000, sent, single), "0! ");
+  EXPECT_EQ(heard(kPlain, kBitRate * 948 / 1000, sent, kMidBit), "0 ");
+  EXPECT_EQ(heard(kPlain, kBitRate * 947 / 1000, sent, kMidBit), "0! ");
   const std::vector<unsigned> two{0x80, 0x80};
-  EXPECT_EQ(heard(kPlain, kBitRate * 1052 / 1000, two, single), "128 128 ");
-  EXPECT_NE(heard(kPlain, kBitRate * 1053 / 1000, two, single), "128 128 ");
+  EXPECT_EQ(heard(kPlain, kBitRate * 1052 / 1000, two, kMidBit), "128 128 ");
+  EXPECT_NE(heard(kPlain, kBitRate * 1053 / 1000, two, kMidBit), "128 128 ");
 }
 
 RC_GTEST_PROP(Character, RoundTripsInEveryFormat, (const std::vector<std::uint16_t>& data)) {

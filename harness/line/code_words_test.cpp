@@ -14,10 +14,6 @@
 namespace fieldproof::line {
 namespace {
 
-const FrameCheckParameters& named(std::string_view name) {
-  return *find_frame_check(name);
-}
-
 // Flips one bit of a code word, counted in line order.
 void flip(std::vector<std::uint8_t>& word, std::size_t position, bool least_first) {
   const std::size_t in_octet = least_first ? position % 8 : 7 - position % 8;
@@ -57,7 +53,7 @@ class WeightFourCounts : public testing::TestWithParam<WeightFour> {};
 // loopback word: 16 + 8 n + 16 bits.
 TEST_P(WeightFourCounts, AreExact) {
   const auto& [name, codeword_bits, count] = GetParam();
-  const std::vector<FourBits> words = weight_four_code_words(named(name), codeword_bits);
+  const std::vector<FourBits> words = weight_four_code_words(frame_check_named(name), codeword_bits);
   EXPECT_EQ(words.size(), count);
   EXPECT_EQ(std::set<FourBits>(words.begin(), words.end()).size(), count);
 }
@@ -80,16 +76,17 @@ INSTANTIATE_TEST_SUITE_P(CodeWords, WeightFourCounts,
 
 TEST(CodeWords, OfWeightFourAreWhatTheEngineDoesNotDetect) {
   for (const std::string_view name : {kInterbus, kModbus}) {
-    for (const FourBits& bits : weight_four_code_words(named(name), 96)) {
-      EXPECT_FALSE(is_detected(named(name), 12, {bits[0], bits[1], bits[2], bits[3]})) << name << bits[0];
-      EXPECT_TRUE(is_detected(named(name), 12, {bits[0], bits[1], bits[2]})) << name << bits[0];
+    for (const FourBits& bits : weight_four_code_words(frame_check_named(name), 96)) {
+      EXPECT_FALSE(is_detected(frame_check_named(name), 12, {bits[0], bits[1], bits[2], bits[3]}))
+          << name << bits[0];
+      EXPECT_TRUE(is_detected(frame_check_named(name), 12, {bits[0], bits[1], bits[2]})) << name << bits[0];
     }
   }
 }
 
 TEST(CodeWords, ContainTheGeneratorItself) {
   // x^16 + x^12 + x^5 + 1, its last term on the last bit.
-  const std::vector<FourBits> words = weight_four_code_words(named(kInterbus), 48);
+  const std::vector<FourBits> words = weight_four_code_words(frame_check_named(kInterbus), 48);
   EXPECT_TRUE(std::binary_search(words.begin(), words.end(), FourBits{31, 35, 42, 47}));
 }
 
@@ -98,7 +95,7 @@ class SixteenBitCheck : public testing::TestWithParam<std::string_view> {};
 // Every pattern of one, two and three flips in a code word of 64 bits, judged by the engine and not by
 // theory.
 TEST_P(SixteenBitCheck, DetectsUpToThreeFlips) {
-  const FrameCheckParameters& p = named(GetParam());
+  const FrameCheckParameters& p = frame_check_named(GetParam());
   const FrameCheck16 check(p);
   std::vector<FrameCheck16::State> flip_at(64);
   for (std::size_t position = 0; position < flip_at.size(); ++position) {
@@ -121,7 +118,7 @@ TEST_P(SixteenBitCheck, DetectsUpToThreeFlips) {
 // All bursts of at most 16 bits (first and last flipped, anything between) are detected wherever they start;
 // of those of exactly 17 bits one in 2^15 is not.
 TEST_P(SixteenBitCheck, DetectsBurstsUpToItsWidth) {
-  const FrameCheckParameters& p = named(GetParam());
+  const FrameCheckParameters& p = frame_check_named(GetParam());
   const FrameCheck16 check(p);
   std::size_t undetected_of_17 = 0;
   for (std::uint32_t pattern = 1; pattern < (1U << 17); pattern += 2) {
@@ -157,7 +154,7 @@ class HammingDistance : public testing::TestWithParam<HammingDistances> {};
 // The header check of MS/TP, x^8 + x^7 + 1, is in no catalogue.
 FrameCheckParameters row_of(std::string_view name) {
   if (name == "MS/TP header") return {"MS/TP header", 8, 0x81, 0, true, true, 0, 0, 0, false, ""};
-  return named(name);
+  return frame_check_named(name);
 }
 
 TEST_P(HammingDistance, HoldsUpToTheListedLengthAndNoFurther) {

@@ -79,6 +79,12 @@ const FrameCheckParameters* find_frame_check(std::string_view name) {
   return nullptr;
 }
 
+const FrameCheckParameters& frame_check_named(std::string_view name) {
+  const FrameCheckParameters* const found = find_frame_check(name);
+  FIELDPROOF_CHECK(found != nullptr, "the catalogue has a frame check of that name");
+  return *found;
+}
+
 std::vector<std::string_view> frame_check_names() {
   std::vector<std::string_view> names;
   for (const FrameCheckParameters& parameters : frame_check_catalogue()) {

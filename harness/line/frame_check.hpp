@@ -41,6 +41,8 @@ std::span<const FrameCheckParameters> frame_check_catalogue();
 
 // The set with that name or alias, nullptr when there is none. Letters match in either case.
 const FrameCheckParameters* find_frame_check(std::string_view name);
+// The same where the name is known to be one; else a broken invariant.
+const FrameCheckParameters& frame_check_named(std::string_view name);
 
 // Every name and alias in the order of the catalogue, e.g. to tell which ones are near an unknown one.
 std::vector<std::string_view> frame_check_names();

@@ -107,7 +107,7 @@ TEST(FrameCheck16, IsSharedAndRefusesWhatIsNotSixteenBits) {
   EXPECT_EQ(&shared_frame_check_16("X-25"), &shared_frame_check_16("crc-16/ibm-sdlc"));
   EXPECT_THROW(shared_frame_check_16("CRC-15/CAN"), kernel::Error);
   EXPECT_THROW(shared_frame_check_16("nothing"), kernel::Error);
-  EXPECT_THROW(FrameCheck16(*find_frame_check("CRC-15/CAN")), kernel::BrokenInvariant);
+  EXPECT_THROW(FrameCheck16(frame_check_named("CRC-15/CAN")), kernel::BrokenInvariant);
 }
 
 }  // namespace

@@ -132,14 +132,14 @@ TEST(FrameCheckCatalogue, SaysWhichRowsOnlyOneCatalogueLists) {
 }
 
 TEST(FrameCheck, RefusesImpossibleParameters) {
-  FrameCheckParameters row = *find_frame_check("CRC-16/ARC");
+  FrameCheckParameters row = frame_check_named("CRC-16/ARC");
   row.width = 2;
   EXPECT_THROW(FrameCheck{row}, kernel::BrokenInvariant);
   row.width = 129;
   EXPECT_THROW(FrameCheck{row}, kernel::BrokenInvariant);
   row.width = 15;  // the polynomial no longer fits
   EXPECT_THROW(FrameCheck{row}, kernel::BrokenInvariant);
-  row = *find_frame_check("CRC-16/ARC");
+  row = frame_check_named("CRC-16/ARC");
   row.poly = 0x8004;
   EXPECT_THROW(FrameCheck{row}, kernel::BrokenInvariant);
 }
@@ -147,7 +147,7 @@ TEST(FrameCheck, RefusesImpossibleParameters) {
 RC_GTEST_PROP(FrameCheck, AppendedCheckMakesACodeWordAndAnyOtherTailDoesNot,
               (std::vector<std::uint8_t> message, std::uint8_t flip)) {
   for (const char* name : {"CRC-16/IBM-3740", "CRC-16/PROFIBUS", "CRC-16/MODBUS", "CRC-32", "CRC-24/BLE"}) {
-    const FrameCheck check(*find_frame_check(name));
+    const FrameCheck check(frame_check_named(name));
     std::vector<std::uint8_t> word = message;
     check.append_check(word);
     RC_ASSERT(word.size() == message.size() + check.parameters().width / 8);

@@ -9,16 +9,16 @@
 namespace fieldproof::line {
 namespace {
 
-constexpr std::int64_t kBitRate = 31'250;
+constexpr std::int64_t kManchesterRate = 31'250;
 
 using enum Symbol;
 
 std::vector<Symbol> heard(const Levels& halves, const ManchesterLayout& layout = {}, std::size_t times = 1) {
   Waveform wave;
-  wave.rate = 2 * kBitRate * static_cast<std::int64_t>(times);
+  wave.rate = 2 * kManchesterRate * static_cast<std::int64_t>(times);
   for (std::size_t n = 0; n < halves.size(); ++n) wave.levels.append_fill(halves[n], times);
   std::vector<Symbol> symbols;
-  ManchesterReceiver(layout, kBitRate).receive(wave, symbols);
+  ManchesterReceiver(layout, kManchesterRate).receive(wave, symbols);
   return symbols;
 }
 
@@ -66,11 +66,11 @@ TEST(ManchesterReceiver, GivesNoSymbolForHalfABit) {
 // Written so that the quarter points lie in the right level and their neighbours do not.
 TEST(ManchesterReceiver, TakesEachHalfInItsMiddle) {
   Waveform wave;
-  wave.rate = 16 * kBitRate;
+  wave.rate = 16 * kManchesterRate;
   wave.levels.append_fill(false, 16);
   wave.levels.set(4, true);  // the level that begins at a quarter of the bit
   std::vector<Symbol> symbols;
-  const ManchesterReceiver receiver({}, kBitRate);
+  const ManchesterReceiver receiver({}, kManchesterRate);
   receiver.receive(wave, symbols);
   EXPECT_EQ(symbols, std::vector<Symbol>{one});
   wave.levels.set(4, false);

@@ -42,6 +42,9 @@ struct Sampling {
   friend bool operator==(const Sampling&, const Sampling&) = default;
 };
 
+inline constexpr Sampling kMajorityOfThree{Sampling::Kind::majority_of_three};
+inline constexpr Sampling kMidBit{Sampling::Kind::mid_bit};
+
 // The first level at or after `from` that is 0 behind a level that is 1, or size(). In front of level 0 the
 // line is idle, so level 0 is an edge when it is 0.
 std::size_t falling_edge(const Levels& levels, std::size_t from);

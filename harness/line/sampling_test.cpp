@@ -9,19 +9,19 @@
 namespace fieldproof::line {
 namespace {
 
-constexpr std::int64_t kBitRate = 62'500;  // 16 us per bit, 1 us per sixteenth
+constexpr std::int64_t kSampledRate = 62'500;  // 16 us per bit, 1 us per sixteenth
 
 // A line with one level per sixteenth of a bit, low in [from, to).
 Waveform low_between(std::size_t from, std::size_t to) {
   Waveform wave;
-  wave.rate = 16 * kBitRate;
+  wave.rate = 16 * kSampledRate;
   wave.levels.append_idle(64);
   wave.levels.fill(from, to, false);
   return wave;
 }
 
 bool first_bit(const Sampling& sampling, const Waveform& wave) {
-  Sampler sampler(sampling, kBitRate);
+  Sampler sampler(sampling, kSampledRate);
   sampler.look_at(wave);
   sampler.start(0);
   return sampler.sample(0);
@@ -37,14 +37,13 @@ TEST(Sampling, TakesTheMajorityOfSevenEightAndNineSixteenths) {
 }
 
 TEST(Sampling, TakesOneSampleInTheMiddle) {
-  const Sampling single{Sampling::Kind::mid_bit};
-  EXPECT_FALSE(first_bit(single, low_between(8, 9)));
-  EXPECT_TRUE(first_bit(single, low_between(7, 8)));
-  EXPECT_TRUE(first_bit(single, low_between(9, 16)));
+  EXPECT_FALSE(first_bit(kMidBit, low_between(8, 9)));
+  EXPECT_TRUE(first_bit(kMidBit, low_between(7, 8)));
+  EXPECT_TRUE(first_bit(kMidBit, low_between(9, 16)));
 }
 
 TEST(Sampling, LooksForTheNextEdgeBehindTheLastIdleSample) {
-  Sampler sampler({}, kBitRate);
+  Sampler sampler({}, kSampledRate);
   const Waveform idle_at_nine = low_between(0, 7);
   sampler.look_at(idle_at_nine);
   sampler.start(0);
@@ -56,9 +55,8 @@ TEST(Sampling, LooksForTheNextEdgeBehindTheLastIdleSample) {
 
 TEST(Sampling, DecidesWithTheLastSample) {
   const kernel::Time edge = kernel::kStart + 3 * kernel::kMicrosecond;
-  EXPECT_EQ(Sampling{}.decided_at(edge, 2, kBitRate), edge + (32 + 9) * kernel::kMicrosecond);
-  EXPECT_EQ(Sampling{Sampling::Kind::mid_bit}.decided_at(edge, 2, kBitRate),
-            edge + (32 + 8) * kernel::kMicrosecond);
+  EXPECT_EQ(Sampling{}.decided_at(edge, 2, kSampledRate), edge + (32 + 9) * kernel::kMicrosecond);
+  EXPECT_EQ(kMidBit.decided_at(edge, 2, kSampledRate), edge + (32 + 8) * kernel::kMicrosecond);
 }
 
 TEST(Sampling, FindsFallingEdges) {
@@ -76,7 +74,7 @@ TEST(Sampling, FindsFallingEdges) {
 // sixteenths / (16 * bit rate).
 struct SlowSampler {
   std::int64_t rate;
-  std::int64_t begins(std::int64_t level) const { return level * 16 * kBitRate; }
+  std::int64_t begins(std::int64_t level) const { return level * 16 * kSampledRate; }
   std::int64_t taken(unsigned bit, unsigned sixteenth) const {
     return static_cast<std::int64_t>(bit * 16 + sixteenth) * rate;
   }
@@ -98,8 +96,9 @@ RC_GTEST_PROP(Sampler, SeesWhatTheDefinitionTells, ()) {
   Waveform wave;
   wave.rate = *rc::gen::oneOf(
       rc::gen::inRange<std::int64_t>(10'000, 3'000'000),
-      rc::gen::map(rc::gen::inRange<std::int64_t>(1, 40), [](std::int64_t n) { return n * kBitRate; }),
-      rc::gen::map(rc::gen::inRange<std::int64_t>(1, 12), [](std::int64_t n) { return n * 16 * kBitRate; }));
+      rc::gen::map(rc::gen::inRange<std::int64_t>(1, 40), [](std::int64_t n) { return n * kSampledRate; }),
+      rc::gen::map(rc::gen::inRange<std::int64_t>(1, 12),
+                   [](std::int64_t n) { return n * 16 * kSampledRate; }));
   for (const bool level : *rc::gen::arbitrary<std::vector<bool>>()) {
     wave.levels.append_fill(level, *rc::gen::inRange<std::size_t>(0, 40));
   }
@@ -112,7 +111,7 @@ RC_GTEST_PROP(Sampler, SeesWhatTheDefinitionTells, ()) {
     return wave.levels[edge + slow.level(n, sixteenth)];
   };
   const auto within = [&](std::size_t place) { return std::min(edge + place, wave.levels.size()); };
-  Sampler sampler(sampling, kBitRate);
+  Sampler sampler(sampling, kSampledRate);
   Waveform other;  // that it had looked at before
   other.rate = *rc::gen::inRange<std::int64_t>(10'000, 3'000'000);
   sampler.look_at(other);

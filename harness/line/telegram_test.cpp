@@ -12,8 +12,8 @@
 namespace fieldproof::line {
 namespace {
 
-constexpr std::int64_t kBitRate = 500'000;
-const kernel::Duration kBit = kernel::levels_duration(1, kBitRate);
+constexpr std::int64_t kTelegramRate = 500'000;
+const kernel::Duration kBit = kernel::levels_duration(1, kTelegramRate);
 
 const TelegramCode& code() {
   static const TelegramCode code{TelegramLayout{}};
@@ -45,7 +45,7 @@ std::vector<Seen> hear(TelegramReceiver& receiver, const std::vector<Waveform>& 
 }
 
 std::vector<Seen> hear(const std::vector<Waveform>& waves, TelegramReceiverOptions options = {}) {
-  TelegramReceiver receiver(code(), kBitRate, options);
+  TelegramReceiver receiver(code(), kTelegramRate, options);
   return hear(receiver, waves);
 }
 
@@ -78,7 +78,7 @@ std::vector<Seen> hear_bit_by_bit(const Waveform& wave) {
 }
 
 Waveform random_wave() {
-  Waveform wave{kernel::kStart, kBitRate, {}};
+  Waveform wave{kernel::kStart, kTelegramRate, {}};
   for (const auto word : *rc::gen::arbitrary<std::vector<std::uint32_t>>())
     wave.levels.append(word, word % 33);
   return wave;
@@ -122,7 +122,7 @@ TEST(TelegramCode, TheLayoutCanBeExchanged) {
 }
 
 RC_GTEST_PROP(TelegramProperty, EveryTelegramComesBack, (std::vector<std::uint16_t> words)) {
-  Waveform wave{kernel::kStart, kBitRate, {}};
+  Waveform wave{kernel::kStart, kTelegramRate, {}};
   std::vector<Seen> sent;
   for (const std::uint16_t word : words) {
     wave.levels.append_idle((word >> 11) % 20);
@@ -153,14 +153,14 @@ RC_GTEST_PROP(TelegramProperty, ItMakesNoDifferenceHowASenderDividesItsLevels, (
   while (at < wave.levels.size()) {
     const std::size_t count = std::min(*rc::gen::inRange<std::size_t>(1, 60), wave.levels.size() - at);
     const unsigned times = *rc::gen::element(1U, 1U, 4U);
-    parts.push_back(refined({wave.time_of(at), kBitRate, wave.levels.slice(at, count)}, times));
+    parts.push_back(refined({wave.time_of(at), kTelegramRate, wave.levels.slice(at, count)}, times));
     at += count;
   }
   RC_ASSERT(hear(parts) == hear({wave}));
 }
 
 TEST(TelegramReceiver, AWaveformMayEndInTheMiddleOfAStartBit) {
-  Waveform bits{kernel::kStart, kBitRate, {}};
+  Waveform bits{kernel::kStart, kTelegramRate, {}};
   code().append(bits.levels, kDataTelegram, 0x0F);
   const Waveform wave = refined(bits, 20);
   for (std::size_t cut = 1; cut < 20; ++cut) {
@@ -172,7 +172,7 @@ TEST(TelegramReceiver, AWaveformMayEndInTheMiddleOfAStartBit) {
 
 TEST(TelegramReceiver, GlitchesShorterThanHalfABitAreNoStart) {
   for (unsigned width = 1; width < 20; ++width) {  // twentieths of a bit
-    Waveform wave{kernel::kStart, kBitRate * 20, {}};
+    Waveform wave{kernel::kStart, kTelegramRate * 20, {}};
     wave.levels.append_fill(false, width);
     wave.levels.append_idle(20 * 20);
     // Two of the samples at 7/16, 8/16 and 9/16 must be low: the pulse must outlast 8/16 = 10/20.
@@ -182,7 +182,7 @@ TEST(TelegramReceiver, GlitchesShorterThanHalfABitAreNoStart) {
 }
 
 TEST(TelegramReceiver, AcceptsOnePerCentAndLosesSixPerCentOfRate) {
-  Waveform wave{kernel::kStart, kBitRate, {}};
+  Waveform wave{kernel::kStart, kTelegramRate, {}};
   for (int i = 0; i < 20; ++i) code().append(wave.levels, kDataTelegram, 0x55);
   const auto data_at = [&](std::int64_t rate) {
     Waveform other = wave;
@@ -194,17 +194,17 @@ TEST(TelegramReceiver, AcceptsOnePerCentAndLosesSixPerCentOfRate) {
     return data;
   };
   const std::vector<std::uint8_t> expected(20, 0x55);
-  EXPECT_EQ(data_at(kBitRate * 99 / 100), expected);
-  EXPECT_EQ(data_at(kBitRate * 101 / 100), expected);
-  EXPECT_NE(data_at(kBitRate * 94 / 100), expected);
-  EXPECT_NE(data_at(kBitRate * 106 / 100), expected);
+  EXPECT_EQ(data_at(kTelegramRate * 99 / 100), expected);
+  EXPECT_EQ(data_at(kTelegramRate * 101 / 100), expected);
+  EXPECT_NE(data_at(kTelegramRate * 94 / 100), expected);
+  EXPECT_NE(data_at(kTelegramRate * 106 / 100), expected);
 }
 
 TEST(TelegramReceiver, ATelegramMayGoOnAtAnotherRate) {
-  Waveform wave{kernel::kStart, kBitRate, {}};
+  Waveform wave{kernel::kStart, kTelegramRate, {}};
   const std::vector<std::uint8_t> sent{0x55, 0x00, 0xFF, 0x33};
   for (const std::uint8_t data : sent) code().append(wave.levels, kDataTelegram, data);
-  for (const std::int64_t rate : {kBitRate * 99 / 100, kBitRate * 101 / 100, kBitRate + 1}) {
+  for (const std::int64_t rate : {kTelegramRate * 99 / 100, kTelegramRate * 101 / 100, kTelegramRate + 1}) {
     for (std::size_t cut = 1; cut < wave.levels.size(); ++cut) {
       const Waveform first{wave.start, wave.rate, wave.levels.slice(0, cut)};
       const Waveform second{wave.time_of(cut), rate, wave.levels.slice(cut, wave.levels.size() - cut)};
@@ -220,7 +220,7 @@ TEST(TelegramReceiver, ATelegramMayGoOnAtAnotherRate) {
 
 // A minute at one level in a second would be 10^10 levels at the rate of the telegram before it.
 TEST(TelegramReceiver, ACutTelegramMayBeFollowedByAVerySlowLine) {
-  Waveform wave{kernel::kStart, kBitRate, {}};
+  Waveform wave{kernel::kStart, kTelegramRate, {}};
   code().append(wave.levels, kDataTelegram, 0x0F);
   const Waveform first{wave.start, wave.rate, wave.levels.slice(0, 9)};
   Waveform slow{wave.time_of(9), 1, {}};
@@ -231,8 +231,8 @@ TEST(TelegramReceiver, ACutTelegramMayBeFollowedByAVerySlowLine) {
 }
 
 TEST(TelegramReceiver, ACutTelegramIsCompletedByTheIdleLine) {
-  TelegramReceiver receiver(code(), kBitRate);
-  Waveform wave{kernel::kStart, kBitRate, {}};
+  TelegramReceiver receiver(code(), kTelegramRate);
+  Waveform wave{kernel::kStart, kTelegramRate, {}};
   code().append(wave.levels, kDataTelegram, 0x0F);
   wave.levels.resize(6);
   std::vector<Seen> seen;

@@ -112,6 +112,12 @@ std::string Levels::text() const {
   return text;
 }
 
+Levels Levels::of_text(std::string_view text) {
+  Levels levels;
+  for (const char level : text) levels.append(level == '1' ? 1 : 0, 1);
+  return levels;
+}
+
 bool operator==(const Levels& a, const Levels& b) {
   return a.size_ == b.size_ && std::equal(a.words(), a.words() + a.word_count(), b.words());
 }

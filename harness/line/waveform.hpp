@@ -101,6 +101,8 @@ class Levels {
   Levels slice(std::size_t first, std::size_t count) const;
 
   std::string text() const;  // "0101…", the first level first
+  // The levels that are written so; what is no '1' is a 0.
+  static Levels of_text(std::string_view text);
 
   friend bool operator==(const Levels& a, const Levels& b);
 

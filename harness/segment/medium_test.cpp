@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/fault/scripted_channel.hpp"
+#include "harness/line/written_wave.hpp"
 #include "harness/segment/monitor.hpp"
 
 namespace fieldproof::segment {
@@ -18,14 +19,7 @@ using kernel::Duration;
 using kernel::kMicrosecond;
 using kernel::kStart;
 using kernel::Time;
-
-line::Waveform wave_of(const std::string& levels, Duration start, std::int64_t rate = 1'000'000) {
-  line::Waveform wave;
-  wave.start = kStart + start;
-  wave.rate = rate;
-  for (const char level : levels) wave.levels.append(level == '1' ? 1 : 0, 1);
-  return wave;
-}
+using line::wave_of;
 
 std::string micros(Time time) {
   return std::to_string((time - kStart) / kMicrosecond);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/kernel/error.hpp"
+#include "harness/line/written_wave.hpp"
 
 namespace fieldproof::segment {
 namespace {
@@ -38,12 +39,6 @@ class Listener final : public Station {
   Segment& segment_;
 };
 
-line::Waveform wave_at(kernel::Time start, const std::string& levels) {
-  line::Waveform wave{start, 1'000'000, {}};
-  for (const char level : levels) wave.levels.append(level == '1' ? 1 : 0, 1);
-  return wave;
-}
-
 // Gives each transmission twice, the second one later; loses those that are longer than four levels.
 class Echo final : public fault::Channel {
  public:
@@ -64,7 +59,7 @@ class SegmentTest : public ::testing::Test {
   Link& link = segment.connect("a/in", seat, 3, 5 * kMicrosecond);
 
   void drive(kernel::Time start, const std::string& levels) {
-    line::Waveform wave = wave_at(start, levels);
+    line::Waveform wave = line::wave_of(levels, start - kStart);
     link.drive(wave);
     EXPECT_TRUE(wave.levels.empty());
     EXPECT_EQ(wave.rate, 1'000'000);
@@ -118,7 +113,7 @@ TEST_F(SegmentTest, OverlapsAreCounted) {
 
 TEST_F(SegmentTest, NobodyDrivesInThePast) {
   segment.run_until(kStart + kMicrosecond);
-  line::Waveform wave = wave_at(kStart, "0");
+  line::Waveform wave = line::wave_of("0");
   try {
     link.drive(wave);
     FAIL() << "a wave in the past was taken";
@@ -127,7 +122,7 @@ TEST_F(SegmentTest, NobodyDrivesInThePast) {
     EXPECT_EQ(error.kind(), kernel::ErrorKind::implementation);
     EXPECT_NE(std::string(error.what()).find(link.name()), std::string::npos) << error.what();
   }
-  wave = wave_at(kStart + kMicrosecond, "0");
+  wave = line::wave_of("0", kMicrosecond);
   EXPECT_NO_THROW(link.drive(wave));
 }
 
@@ -152,7 +147,7 @@ TEST_F(SegmentTest, EqualHistoriesHaveEqualFingerprintsAndOthersHaveNot) {
     Segment other;
     Listener station(other);
     Link& to = other.connect("x", other.attach(station, "x"), 0, {});
-    line::Waveform wave = wave_at(kStart + shift, levels);
+    line::Waveform wave = line::wave_of(levels, shift);
     to.drive(wave);
     return other.trace().fingerprint();
   };

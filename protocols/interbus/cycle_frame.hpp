@@ -34,6 +34,9 @@ constexpr CycleHeaders cycle_headers(bool is_id_cycle) {
   return {transfer, static_cast<std::uint8_t>(transfer | line::kControl)};
 }
 
+inline constexpr CycleHeaders kDataCycle = cycle_headers(false);
+inline constexpr CycleHeaders kIdCycle = cycle_headers(true);
+
 class CycleWriter {
  public:
   explicit CycleWriter(const Rules& rules);

@@ -21,7 +21,7 @@ TEST(CycleWriter, puts_telegrams_at_the_mean_pitch_without_drift) {
   const CycleWriter writer(rules);
   const std::vector<std::uint8_t> octets(1026, 0x5A);
   line::Levels levels;
-  writer.append_frame(levels, octets, 0x1234, cycle_headers(false));
+  writer.append_frame(levels, octets, 0x1234, kDataCycle);
   const auto telegrams = telegrams_of(writer, levels);
   ASSERT_EQ(telegrams.size(), writer.telegram_count(1024));
   for (std::size_t k = 0; k < telegrams.size(); ++k) {
@@ -38,7 +38,7 @@ TEST(CycleWriter, writes_phases_check_status_and_end_telegrams) {
   const CycleWriter writer(rules);
   const std::array<std::uint8_t, 4> octets{0xA5, 0x5A, 0x12, 0x34};
   line::Levels levels;
-  writer.append_frame(levels, octets, 0xBEEF, cycle_headers(true));
+  writer.append_frame(levels, octets, 0xBEEF, kIdCycle);
   const auto telegrams = telegrams_of(writer, levels);
   ASSERT_EQ(telegrams.size(), 10U);
   const std::array<std::uint8_t, 10> expected{0xA5, 0x5A, 0x12, 0x34, 0xBE, 0xEF, 0, 0, 0, 0};
@@ -63,7 +63,7 @@ TEST(CycleWriter, status_telegrams_end_before_the_next_cycle) {
 
 TEST(ReturnedCycle, keeps_octets_and_what_differs) {
   ReturnedCycle returned;
-  const CycleHeaders headers = cycle_headers(false);
+  const CycleHeaders headers = kDataCycle;
   returned.begin(6, 2, false);
   for (std::uint8_t n = 0; n < 6; ++n) {
     const std::uint8_t header = n < 2 ? headers.transfer : headers.check;

@@ -8,14 +8,10 @@
 #include <vector>
 
 #include "harness/line/telegram.hpp"
+#include "protocols/interbus/cycle_frame.hpp"
 
 namespace fieldproof::interbus {
 namespace {
-
-constexpr std::uint8_t kTransfer = line::kDataTelegram;
-constexpr std::uint8_t kCheck = line::kDataTelegram | line::kControl;
-constexpr std::uint8_t kIdTransfer = kTransfer | line::kSelect;
-constexpr std::uint8_t kIdCheck = kCheck | line::kSelect;
 
 // CRC-16/IBM-3740 bit by bit, as the catalogue words it.
 unsigned check_of(const std::vector<std::uint8_t>& octets) {
@@ -51,8 +47,8 @@ class CycleNotationTest : public ::testing::Test {
 };
 
 TEST_F(CycleNotationTest, TellsACycleByItsFields) {
-  put(kIdTransfer, {0x01, 0xBE, 0xA5, 0x5A, 0x00, 0x03});
-  put_check(kIdCheck, check_of({0x01, 0xBE, 0xA5, 0x5A, 0x00, 0x03}), 0);
+  put(kIdCycle.transfer, {0x01, 0xBE, 0xA5, 0x5A, 0x00, 0x03});
+  put_check(kIdCycle.check, check_of({0x01, 0xBE, 0xA5, 0x5A, 0x00, 0x03}), 0);
   put(0, {0, 0});
   const trace::Told told = tell();
   EXPECT_EQ(
@@ -69,8 +65,8 @@ TEST_F(CycleNotationTest, EveryFlippedOctetMakesTheCheckWrong) {
   for (std::size_t n = 0; n < good.size(); ++n) {
     std::vector<std::uint8_t> bad = good;
     bad[n] ^= 0x10;
-    put(kTransfer, bad);
-    put_check(kCheck, check, 0xFFFF);
+    put(kDataCycle.transfer, bad);
+    put_check(kDataCycle.check, check, 0xFFFF);
     const trace::Told told = tell();
     EXPECT_TRUE(told.is_check_wrong) << n;
     EXPECT_NE(told.text.find(fmt::format("FCS {:04X} wrong ({:04X} fits), status word FFFF marked", check,
@@ -81,20 +77,20 @@ TEST_F(CycleNotationTest, EveryFlippedOctetMakesTheCheckWrong) {
 }
 
 TEST_F(CycleNotationTest, ACycleGoesOnInTheNextTransmission) {
-  put(kTransfer, {0xA5, 0x5A, 0x12});
+  put(kDataCycle.transfer, {0xA5, 0x5A, 0x12});
   EXPECT_EQ(tell().text, "data cycle: SL 0, LBW A55A, data 12");
-  put(kTransfer, {0x34, 0x56, 0x78});
-  put_check(kCheck, check_of({0xA5, 0x5A, 0x12, 0x34, 0x56, 0x78}), 0);
+  put(kDataCycle.transfer, {0x34, 0x56, 0x78});
+  put_check(kDataCycle.check, check_of({0xA5, 0x5A, 0x12, 0x34, 0x56, 0x78}), 0);
   const trace::Told told = tell();
   EXPECT_EQ(told.text,
             fmt::format("data cycle goes on: SL 0, data 1234 5678, FCS {:04X} ok, status word 0000",
                         check_of({0xA5, 0x5A, 0x12, 0x34, 0x56, 0x78})));
-  put(kCheck, {0, 0});
+  put(kDataCycle.check, {0, 0});
   EXPECT_EQ(tell().text, "data cycle goes on: SL 0, end 0000");
 }
 
 TEST_F(CycleNotationTest, ACheckWithoutItsCycleIsNotJudged) {
-  put_check(kCheck, 0x1234, 0);
+  put_check(kDataCycle.check, 0x1234, 0);
   const trace::Told told = tell();
   EXPECT_EQ(told.text, "data cycle: SL 0, FCS 1234, status word 0000");
   EXPECT_FALSE(told.is_check_wrong);
@@ -102,8 +98,8 @@ TEST_F(CycleNotationTest, ACheckWithoutItsCycleIsNotJudged) {
 
 TEST_F(CycleNotationTest, ATrainIsToldToItsSixteenthPart) {
   for (int n = 0; n < 18; ++n) {
-    put(kTransfer, {0xA5, 0x5A});
-    put_check(kCheck, n == 17 ? 0 : check_of({0xA5, 0x5A}), 0);
+    put(kDataCycle.transfer, {0xA5, 0x5A});
+    put_check(kDataCycle.check, n == 17 ? 0 : check_of({0xA5, 0x5A}), 0);
   }
   const trace::Told told = tell();
   EXPECT_TRUE(told.text.ends_with("; and 2 parts more")) << told.text;
@@ -112,7 +108,7 @@ TEST_F(CycleNotationTest, ATrainIsToldToItsSixteenthPart) {
 
 TEST_F(CycleNotationTest, ALongCycleIsToldToItsSixtyFourthWord) {
   std::vector<std::uint8_t> octets(2 * 65, 0);
-  put(kTransfer, octets);
+  put(kDataCycle.transfer, octets);
   EXPECT_TRUE(tell().text.ends_with(" 0000 and 1 words more"));
 }
 

@@ -8,7 +8,7 @@ void LiveNetwork::Listener::on_wave(const line::Waveform& wave) {
   code.decode(wave.levels, 0, [&](const line::Telegram& telegram) {
     if (!telegram.is_data() || !is_first) return;
     is_first = false;
-    if (telegram.header == cycle_headers(false).transfer) starts.push_back(wave.time_of(telegram.level));
+    if (telegram.header == kDataCycle.transfer) starts.push_back(wave.time_of(telegram.level));
   });
 }
 

@@ -92,7 +92,7 @@ void Master::write_data_cycle() {
     *at++ = low(sent_words_[word]);
   }
   const std::span<const std::uint8_t> sent(octets_.data(), size);
-  constexpr CycleHeaders headers = cycle_headers(false);
+  constexpr CycleHeaders headers = kDataCycle;
   writer_.append_frame(wave_.levels, sent, check_of(sent, headers), headers);
   returned_.begin(data_telegrams_, size, false);
   deadline_ = cycle_start_ + std::min(cycle_time_, return_time(data_frame_));
@@ -113,7 +113,7 @@ void Master::write_id_cycle() {
     const std::uint16_t acknowledge = in_run ? acknowledged_[n] : std::uint16_t{0};
     put(static_cast<std::uint16_t>(topology_.control_words()[n] | acknowledge));
   }
-  CycleHeaders headers = cycle_headers(true);
+  CycleHeaders headers = kIdCycle;
   headers.transfer = static_cast<std::uint8_t>((headers.transfer & ~line::kSelect) | id_select());
   headers.check = static_cast<std::uint8_t>((headers.check & ~line::kSelect) | id_select());
   writer_.append_frame(wave_.levels, octets_, check_of(octets_, headers), headers);

@@ -131,7 +131,7 @@ std::unique_ptr<OneStation> in_state(MasterState state) {
 
 using Event = void (*)(OneStation&);
 
-struct Row {
+struct StateRow {
   const char* name;
   Event event;
 };
@@ -145,7 +145,7 @@ void cycles(OneStation& line, Answer answer, unsigned count) {
 
 constexpr unsigned kMany = 8;  // more than a recognition of one station and more than the limit of bad cycles
 
-const Row kRows[] = {
+const StateRow kRows[] = {
     {"start", [](OneStation& line) { line.master().start(line.now()); }},
     {"stop", [](OneStation& line) { line.master().stop(line.now()); }},
     {"stop, then cycle",
@@ -179,7 +179,7 @@ TEST(MasterStates, every_state_with_every_event) {
   std::string table = fmt::format("\n{:<16}", "");
   for (const MasterState state : kStates) table += fmt::format("| {:<14}", name(state));
   end_row(table);
-  for (const Row& row : kRows) {
+  for (const StateRow& row : kRows) {
     table += fmt::format("{:<16}", row.name);
     for (const MasterState state : kStates) {
       const auto line = in_state(state);

@@ -38,7 +38,7 @@ double in_cycles(double picoseconds) {
 }
 
 // The table of the skew model, written down as numbers: square waves with a duty of one half at 0.814 ms.
-struct Row {
+struct RecordedRow {
   std::int64_t hertz;
   double high_in_cycles;
   double shortest_ms;
@@ -49,15 +49,15 @@ struct Row {
   double lost;
 };
 
-constexpr Row kTable[] = {
+constexpr RecordedRow kRecordedTable[] = {
     {50, 12.285, 9.768, 10.582, 0.451, 0.488, 0.529, 0}, {150, 4.095, 3.256, 4.070, 0.293, 0.488, 0.611, 0},
     {200, 3.071, 2.442, 3.256, 0.257, 0.488, 0.651, 0},  {500, 1.229, 0.814, 1.628, 0.420, 0.407, 0.814, 0},
     {614, 1.0004, 0.814, 1.628, 0.020, 0.500, 1.0, 0},   {700, 0.878, 0.814, 0.814, 0, 0.570, 0.570, 0.1225}};
 
-class GridTest : public testing::TestWithParam<Row> {};
+class GridTest : public testing::TestWithParam<RecordedRow> {};
 
 TEST_P(GridTest, TheNetworkDoesWhatTheTableSays) {
-  const Row& row = GetParam();
+  const RecordedRow& row = GetParam();
   // At 614 Hz one pulse in 2500 is two cycles long.
   const SignalRecord record =
       run_at(row.hertz, LatchModel::frame_edges, row.hertz == 614 ? 60 * kSecond : 20 * kSecond);
@@ -76,10 +76,10 @@ TEST_P(GridTest, TheNetworkDoesWhatTheTableSays) {
   EXPECT_NEAR(in_cycles(widths.mean()) * came, row.high_in_cycles, 0.02);
 }
 
-std::string row_name(const testing::TestParamInfo<Row>& row) {
+std::string row_name(const testing::TestParamInfo<RecordedRow>& row) {
   return std::to_string(row.param.hertz) + "Hz";
 }
-INSTANTIATE_TEST_SUITE_P(Table, GridTest, testing::ValuesIn(kTable), row_name);
+INSTANTIATE_TEST_SUITE_P(Table, GridTest, testing::ValuesIn(kRecordedTable), row_name);
 
 struct LatchRow {
   LatchModel latch;

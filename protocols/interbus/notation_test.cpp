@@ -6,12 +6,10 @@
 
 #include "harness/line/telegram.hpp"
 #include "protocols/interbus/cycle_fields.hpp"
+#include "protocols/interbus/cycle_frame.hpp"
 
 namespace fieldproof::interbus {
 namespace {
-
-constexpr std::uint8_t kTransfer = line::kDataTelegram;
-constexpr std::uint8_t kCheck = line::kDataTelegram | line::kControl;
 
 class NotationTest : public ::testing::Test {
  protected:
@@ -19,8 +17,8 @@ class NotationTest : public ::testing::Test {
     for (const std::uint8_t octet : octets) code.append(wave.levels, header, octet);
   }
   void put_cycle() {
-    put(kTransfer, {0xA5, 0x5A, 0x12, 0x34});
-    put(kCheck, {0xBE, 0xEF, 0x00, 0x00});
+    put(kDataCycle.transfer, {0xA5, 0x5A, 0x12, 0x34});
+    put(kDataCycle.check, {0xBE, 0xEF, 0x00, 0x00});
   }
 
   Rules rules;
@@ -35,10 +33,10 @@ TEST_F(NotationTest, WritesACycleInWords) {
 }
 
 TEST_F(NotationTest, ShowsWhatIsBroken) {
-  put(kTransfer, {0xA5});
+  put(kDataCycle.transfer, {0xA5});
   wave.levels.flip(12);
   wave.levels.append_idle(1);
-  put(kTransfer, {0x5A});
+  put(kDataCycle.transfer, {0x5A});
   wave.levels.append_idle(2);
   wave.levels.append(0b0100, 4);
   EXPECT_EQ(describe(wave, rules), "data A5!5A | cut, last levels " + wave.levels.text());

@@ -92,7 +92,7 @@ Statistics simulate_widths(double frequency_hz) {
   return found;
 }
 
-struct Row {
+struct SkewRow {
   double frequency_hz;
   double high_in_cycles;
   std::int64_t cycles;
@@ -101,12 +101,12 @@ struct Row {
 };
 
 // The table of the specification, three printed digits.
-constexpr Row kTable[] = {{50, 12.285, 12, 0.451, 0}, {150, 4.095, 4, 0.293, 0},
-                          {200, 3.071, 3, 0.257, 0},  {500, 1.229, 1, 0.420, 0},
-                          {614, 1.0004, 1, 0.020, 0}, {700, 0.878, 0, 0.328, 0.1225}};
+constexpr SkewRow kSkewTable[] = {{50, 12.285, 12, 0.451, 0}, {150, 4.095, 4, 0.293, 0},
+                                  {200, 3.071, 3, 0.257, 0},  {500, 1.229, 1, 0.420, 0},
+                                  {614, 1.0004, 1, 0.020, 0}, {700, 0.878, 0, 0.328, 0.1225}};
 
 TEST(PulseWidthTest, ClosedFormsGiveTheTable) {
-  for (const Row& row : kTable) {
+  for (const SkewRow& row : kSkewTable) {
     SCOPED_TRACE(row.frequency_hz);
     const PulseWidth width = pulse_width(half_period(row.frequency_hz), kBestCycle);
     EXPECT_NEAR(ratio(width.mean, kBestCycle), row.high_in_cycles, 5e-4);
@@ -127,7 +127,7 @@ TEST(PulseWidthTest, WidthsAreThoseOfTheTable) {
 }
 
 TEST(PulseWidthTest, SimulationFindsTheClosedForms) {
-  for (const Row& row : kTable) {
+  for (const SkewRow& row : kSkewTable) {
     SCOPED_TRACE(row.frequency_hz);
     const PulseWidth width = pulse_width(half_period(row.frequency_hz), kBestCycle);
     const Statistics found = simulate_widths(row.frequency_hz);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/segment/segment.hpp"
+#include "protocols/interbus/cycle_frame.hpp"
 #include "protocols/interbus/terminal_block.hpp"
 
 namespace fieldproof::interbus {
@@ -18,11 +19,6 @@ struct Sent {
   std::uint8_t header;
   std::uint8_t data;
 };
-
-constexpr std::uint8_t kTransfer = line::kDataTelegram;
-constexpr std::uint8_t kCheck = line::kDataTelegram | line::kControl;
-constexpr std::uint8_t kIdTransfer = line::kDataTelegram | line::kSelect;
-constexpr std::uint8_t kIdCheck = line::kDataTelegram | line::kSelect | line::kControl;
 
 // The master's place, in the hands of a test.
 class Hand final : public segment::Station {
@@ -92,8 +88,8 @@ class SlaveTest : public ::testing::Test {
   }
   static std::vector<Sent> data_cycle(std::uint16_t first, std::uint16_t second) {
     const auto octet = [](unsigned value) { return static_cast<std::uint8_t>(value & 0xFF); };
-    return cycle({0xA5, 0x5A, octet(first >> 8), octet(first), octet(second >> 8), octet(second)}, kTransfer,
-                 kCheck);
+    return cycle({0xA5, 0x5A, octet(first >> 8), octet(first), octet(second >> 8), octet(second)},
+                 kDataCycle.transfer, kDataCycle.check);
   }
   // Sends an ID cycle and tells when the silence behind it is too long.
   kernel::Time limit_behind_an_id_cycle() {
@@ -103,7 +99,7 @@ class SlaveTest : public ::testing::Test {
   }
 
   static std::vector<Sent> id_cycle(std::uint8_t control = 0x03) {
-    return cycle({0xA5, 0x5A, 0x00, control}, kIdTransfer, kIdCheck);
+    return cycle({0xA5, 0x5A, 0x00, control}, kIdCycle.transfer, kIdCycle.check);
   }
   std::vector<std::uint8_t> octets_heard() const {
     std::vector<std::uint8_t> octets;
@@ -240,13 +236,13 @@ TEST_F(SlaveTest, AWrongBitIsMarkedNotLatchedAndToldInTheNextIdCycle) {
 TEST_F(SlaveTest, ATransferShorterThanTheRegisterIsAnError) {
   send(id_cycle());
   send(data_cycle(0xCAFE, 0xBEEF));
-  send(cycle({0x83}, kTransfer, kCheck));
+  send(cycle({0x83}, kDataCycle.transfer, kDataCycle.check));
   EXPECT_EQ(terminals.output(0), 0xCAFE);
   EXPECT_EQ(terminals.output(1), 0xBEEF);
   EXPECT_EQ(octets_heard().back(), 0xFF);
-  send(cycle({0xA5, 0x5A, 0x00, 0x11, 0x22}, kTransfer, kCheck));
+  send(cycle({0xA5, 0x5A, 0x00, 0x11, 0x22}, kDataCycle.transfer, kDataCycle.check));
   EXPECT_EQ(terminals.output(0), 0xCAFE);
-  send(cycle({0xA5, 0x5A, 0x00, 0x11, 0x22, 0x33}, kTransfer, kCheck));
+  send(cycle({0xA5, 0x5A, 0x00, 0x11, 0x22, 0x33}, kDataCycle.transfer, kDataCycle.check));
   EXPECT_EQ(terminals.output(0), 0x0011);
 }
 
@@ -255,16 +251,20 @@ TEST_F(SlaveTest, EveryStateWithEveryEvent) {
   using Event = std::pair<std::string, std::vector<Sent>>;
   const std::vector<Event> to_state = {
       {"pause", {}},
-      {"data_transfer", {{kTransfer, 0xA5}}},
-      {"data_check", {{kTransfer, 0xA5}, {kCheck, 0}}},
-      {"id_transfer", {{kIdTransfer, 0xA5}}},
-      {"id_check", {{kIdTransfer, 0xA5}, {kIdCheck, 0}}},
+      {"data_transfer", {{kDataCycle.transfer, 0xA5}}},
+      {"data_check", {{kDataCycle.transfer, 0xA5}, {kDataCycle.check, 0}}},
+      {"id_transfer", {{kIdCycle.transfer, 0xA5}}},
+      {"id_check", {{kIdCycle.transfer, 0xA5}, {kIdCycle.check, 0}}},
   };
   const std::vector<Event> events = {
-      {"status telegram", {{0, 0}}},         {"data telegram", {{kTransfer, 1}}},
-      {"check of data", {{kCheck, 1}}},      {"ID telegram", {{kIdTransfer, 1}}},
-      {"check of ID", {{kIdCheck, 1}}},      {"good ID cycle", id_cycle()},
-      {"good data cycle", data_cycle(1, 2)}, {"silence", {}},
+      {"status telegram", {{0, 0}}},
+      {"data telegram", {{kDataCycle.transfer, 1}}},
+      {"check of data", {{kDataCycle.check, 1}}},
+      {"ID telegram", {{kIdCycle.transfer, 1}}},
+      {"check of ID", {{kIdCycle.check, 1}}},
+      {"good ID cycle", id_cycle()},
+      {"good data cycle", data_cycle(1, 2)},
+      {"silence", {}},
   };
   std::string table;
   for (const bool active : {false, true}) {
