@@ -17,7 +17,8 @@ std::vector<Entry> burst_cases() {
   return catalogue.select(std::vector<std::string>{"+" + std::string(conformance::kStressTag)});
 }
 
-conformance::CaseRun run(const Entry& entry, const std::string& uri, std::uint64_t seed, int position = 0) {
+conformance::CaseRun run_burst_case(const Entry& entry, const std::string& uri, std::uint64_t seed,
+                                    int position = 0) {
   conformance::Setup setup;
   setup.seed = seed;
   setup.volume = conformance::Volume::quick;
@@ -29,7 +30,7 @@ TEST(BurstCases, ReferencesPass) {
   ASSERT_EQ(burst_cases().size(), 2U);
   for (const Entry& entry : burst_cases()) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      const judge::CaseResult result = run(entry, "ref", seed).outcome.result;
+      const judge::CaseResult result = run_burst_case(entry, "ref", seed).outcome.result;
       EXPECT_EQ(result.verdict, judge::Verdict::pass)
           << result.id << " seed " << seed << ": " << result.reason;
     }
@@ -41,7 +42,7 @@ TEST(BurstCases, CatchWhatTheyDeclare) {
     EXPECT_FALSE(entry.test_case->catches.empty());
     for (const conformance::Catch& caught : entry.test_case->catches) {
       for (const int position : {1, 2}) {
-        const auto result = run(entry, "deviant:" + caught.deviation, 1, position).outcome.result;
+        const auto result = run_burst_case(entry, "deviant:" + caught.deviation, 1, position).outcome.result;
         EXPECT_EQ(result.verdict, judge::Verdict::fail) << result.id << " " << caught.deviation;
         EXPECT_EQ(result.reason, caught.reason) << result.id << " " << caught.deviation;
       }

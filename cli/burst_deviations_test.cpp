@@ -106,7 +106,7 @@ bool shows(Sign sign, const ImmunityResult& result, const ImmunityResult& refere
   return false;
 }
 
-emc::ImmunityResult run(Line line, const emc::InterbusStations& stations = {}) {
+emc::ImmunityResult run_immunity(Line line, const emc::InterbusStations& stations = {}) {
   static const emc::LineResponse response(emc::Profile::named("A").coupling);
   emc::ImmunitySettings settings;
   settings.bursts.level = emc::Level::standard(emc::PortKind::signal, 4);
@@ -120,7 +120,7 @@ emc::ImmunityResult run(Line line, const emc::InterbusStations& stations = {}) {
 }
 
 const ImmunityResult& reference(Line line) {
-  static const std::array references = {run(Line::bursts), run(Line::flips)};
+  static const std::array references = {run_immunity(Line::bursts), run_immunity(Line::flips)};
   return references.at(static_cast<std::size_t>(line));
 }
 
@@ -145,7 +145,7 @@ TEST(BurstDeviations, ReferencesHaveNoneOfTheSigns) {
 
 TEST(BurstDeviations, MastersAreSeen) {
   for (const Row& row : kOfMasters) {
-    EXPECT_TRUE(shows(row.sign, run(row.line, with_master(row.deviation)), reference(row.line)))
+    EXPECT_TRUE(shows(row.sign, run_immunity(row.line, with_master(row.deviation)), reference(row.line)))
         << row.deviation;
   }
 }
@@ -153,7 +153,7 @@ TEST(BurstDeviations, MastersAreSeen) {
 TEST(BurstDeviations, SlavesAreSeenAtOneOfTheTwoPlaces) {
   for (const Row& row : kOfSlaves) {
     const auto is_seen = [&](int at) {
-      return shows(row.sign, run(row.line, with_slave(at, row.deviation)), reference(row.line));
+      return shows(row.sign, run_immunity(row.line, with_slave(at, row.deviation)), reference(row.line));
     };
     EXPECT_TRUE(is_seen(1) || is_seen(2)) << row.deviation;
   }

@@ -87,7 +87,7 @@ std::string channel_line(const EmcTest& test) {
                      ledger.wrong_cycles, test.expected_wrong_cycles(), test.chance_of_count());
 }
 
-std::string residual_text(const emc::FrameResidual& residual, const EmcTotal& total) {
+std::string frame_residual_text(const emc::FrameResidual& residual, const EmcTotal& total) {
   return fmt::format(
       "{} over {} bits lets at most {:.3g} of the corrupted cycles pass (exact, at the worst bit-error rate, "
       "{:.2g}): of these {:.3g}\n"
@@ -96,7 +96,7 @@ std::string residual_text(const emc::FrameResidual& residual, const EmcTotal& to
       residual.rate_per_hour);
 }
 
-ordered_json residual_json(const emc::FrameResidual& residual, const EmcTotal& total) {
+ordered_json frame_residual_json(const emc::FrameResidual& residual, const EmcTotal& total) {
   return {{"frame_check", residual.frame_check},
           {"bits", residual.bits},
           {"worst_ber", residual.worst_ber},
@@ -177,7 +177,7 @@ std::string emc_summary(const EmcCampaign& campaign) {
       "{:.3g} pass "
       "unseen (one-sided 95 %)\n",
       total.corrupted, total.detected, total.accepted_wrong, total.upper_bound_of_share);
-  text += residual_text(campaign.residual, total);
+  text += frame_residual_text(campaign.residual, total);
   if (!campaign.has_bursts) return text;
   text += fmt::format("profile {} ({}): a receiver can be wrong from {:.0f} V on\n", campaign.profile.name,
                       reports::escaped_line(campaign.profile.title), campaign.threshold_volts);
@@ -215,7 +215,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                                  {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
                                  {"tests", std::move(tests)},
                                  {"channels", std::move(channels)},
-                                 {"residual", residual_json(campaign.residual, total)},
+                                 {"residual", frame_residual_json(campaign.residual, total)},
                                  {"total",
                                   {{"corrupted", total.corrupted},
                                    {"detected", total.detected},

@@ -37,8 +37,8 @@ NetworkDescription at_cycle(NetworkDescription network, Duration cycle) {
   return network;
 }
 
-SignalRecord run(const NetworkDescription& network, const PaperSettings& settings,
-                 measure::Frequency frequency, Duration duration) {
+SignalRecord record_at(const NetworkDescription& network, const PaperSettings& settings,
+                       measure::Frequency frequency, Duration duration) {
   interbus::SignalSettings signal;
   signal.wave.frequency = frequency;
   signal.duration = duration;
@@ -48,7 +48,8 @@ SignalRecord run(const NetworkDescription& network, const PaperSettings& setting
 
 // The cycle time that a network runs at, from a second of it.
 Duration measured_cycle(const NetworkDescription& network, const PaperSettings& settings) {
-  const SignalRecord record = run(network, settings, measure::Frequency::from_hertz(50), kernel::kSecond);
+  const SignalRecord record =
+      record_at(network, settings, measure::Frequency::from_hertz(50), kernel::kSecond);
   return Duration{std::llround(record.cycle_times.total().mean())};
 }
 
@@ -112,7 +113,7 @@ PublishedSection interbus_highest_frequency(const PaperSettings& settings) {
                           std::abs(highest - interbus::kPaperHighestFrequencyHz) < 0.5});
   for (const std::int64_t hertz : {614, 620, 700}) {
     const SignalRecord record =
-        run(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
+        record_at(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
     const measure::EdgeSkew& skew = record.paths.front().skew;
     const double expected =
         interbus::pulse_width(record.settings.wave.high(), interbus::kPaperBestCycle).lost_probability;
@@ -134,7 +135,7 @@ PublishedSection interbus_square_waves(const PaperSettings& settings) {
       "towards the highest frequency. Latch model M2.";
   for (const std::int64_t hertz : interbus::kPaperSignalsHz) {
     const SignalRecord record =
-        run(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
+        record_at(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
     const interbus::PathRecord& path = record.paths.front();
     const auto delays = path.skew.rise_delays.total();
     const auto widths = path.skew.widths.total();

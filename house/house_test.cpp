@@ -36,13 +36,15 @@ TEST_P(House, Keeps) {
 
 INSTANTIATE_TEST_SUITE_P(
     Rules, House,
-    testing::Values(
-        Rule{"IncludeDirections", check_include_directions}, Rule{"IncludePaths", check_include_paths},
-        Rule{"HeadersOpenOnce", check_headers_open_once}, Rule{"Names", check_names},
-        Rule{"NoUmbrellaHeaders", check_umbrella_headers}, Rule{"Namespaces", check_namespaces},
-        Rule{"Determinism", check_determinism}, Rule{"DeterminismExceptions", check_determinism_exceptions},
-        Rule{"LineLengths", check_line_lengths}, Rule{"TestSubjects", check_test_subjects},
-        Rule{"ReadmeHeadings", check_readme_headings}, Rule{"ForbiddenWords", check_forbidden_words}),
+    testing::Values(Rule{"IncludeDirections", check_include_directions},
+                    Rule{"IncludePaths", check_include_paths},
+                    Rule{"HeadersOpenOnce", check_headers_open_once}, Rule{"Names", check_names},
+                    Rule{"NoUmbrellaHeaders", check_umbrella_headers}, Rule{"Namespaces", check_namespaces},
+                    Rule{"HiddenNames", check_hidden_names}, Rule{"Determinism", check_determinism},
+                    Rule{"DeterminismExceptions", check_determinism_exceptions},
+                    Rule{"LineLengths", check_line_lengths}, Rule{"TestSubjects", check_test_subjects},
+                    Rule{"ReadmeHeadings", check_readme_headings},
+                    Rule{"ForbiddenWords", check_forbidden_words}),
     [](const auto& rule) { return std::string(rule.param.name); });
 
 }  // namespace

@@ -24,6 +24,9 @@ Complaints check_headers_open_once(const std::vector<File>& files);
 Complaints check_names(const std::vector<File>& files);
 Complaints check_umbrella_headers(const std::vector<File>& files);
 Complaints check_namespaces(const std::vector<File>& files);
+// A name of an unnamed namespace that a header of the same namespace has, too: within a unit of several
+// sources the others would get it instead of the header's, without a word of the compiler.
+Complaints check_hidden_names(const std::vector<File>& files);
 Complaints check_determinism(const std::vector<File>& files);
 // An exception to check_determinism that nothing needs any more. It is about the whole tree, not a part of
 // it.

@@ -161,5 +161,43 @@ TEST(ToText, NamesFileAndLine) {
   EXPECT_EQ(to_text({{"a/b.cpp", 3, "no."}}), "a/b.cpp:3: no.\n");
 }
 
+TEST(HiddenNames, AnUnnamedNamespaceRepeatsNoNameOfAHeader) {
+  const auto complaints_of = [](const std::string& declaration, std::string_view name_space = "emc") {
+    const File header{"emc/y.hpp",
+                      "namespace fieldproof::emc {\ninline constexpr int kMost = 4;\n"
+                      "NetworkDescription network_of(int n);\nstruct Row {\n  int member;\n};\n"
+                      "template <class T>\nclass List {};\nusing Json = nlohmann::json;\n"
+                      "std::span<const Row> table();\n}  // namespace fieldproof::emc\n"};
+    const File source{"emc/x.cpp", "namespace fieldproof::" + std::string(name_space) +
+                                       " {\nnamespace {\n\n" + declaration +
+                                       "\n}  // namespace\n\nint kMost_outside = 0;\n}\n"};
+    return check_hidden_names({header, source});
+  };
+  for (const char* declaration :
+       {"constexpr int kMost = 5;", "NetworkDescription network_of(const std::string& name) {\n}",
+        "struct Row {\n};", "class List final : public Base {\n};", "using Json = nlohmann::ordered_json;",
+        "const std::vector<std::pair<int, Row>>& table() {\n}",
+        "template <class Row>\nRow network_of(Row r) {\n}", "enum class Row : std::uint8_t { a };"}) {
+    const Complaints complaints = complaints_of(declaration);
+    ASSERT_EQ(complaints.size(), 1U) << declaration;
+    EXPECT_GE(complaints.front().line, 4) << declaration;
+    EXPECT_NE(complaints.front().sentence.find("emc/y.hpp"), std::string::npos);
+    EXPECT_TRUE(complaints_of(declaration, "cli").empty()) << declaration;
+  }
+  for (const char* other : {"constexpr int kMore = 5;", "using enum Row;", "int member = 0;", "  Row row;",
+                            "// struct Row {", "void f() {\n  const int kMost = 3;\n}"}) {
+    EXPECT_TRUE(complaints_of(other).empty()) << other;
+  }
+}
+
+TEST(HiddenNames, WhatStandsBehindTheUnnamedNamespaceIsTheHeadersOwn) {
+  const File header{"emc/y.hpp", "namespace fieldproof::emc {\nint count();\n}\n"};
+  EXPECT_TRUE(check_hidden_names({header,
+                                  {"emc/y.cpp",
+                                   "namespace fieldproof::emc {\nnamespace {\n}  // namespace\n"
+                                   "int count() {\n}\n}\n"}})
+                  .empty());
+}
+
 }  // namespace
 }  // namespace fieldproof::house

@@ -24,7 +24,7 @@ std::string data_of(const std::string& page) {
   return page.substr(begin, page.find(kClose, begin) - begin);
 }
 
-std::size_t count(const std::string& text, std::string_view part) {
+std::size_t occurrences(const std::string& text, std::string_view part) {
   std::size_t found = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
   return found;
@@ -67,17 +67,17 @@ TEST(HtmlWriter, EqualContentsAreEqualBytes) {
 TEST(HtmlWriter, NothingIsAskedForFromAnywhere) {
   const std::string page = html_page({});
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
-  EXPECT_EQ(count(page, " src="), 0U);
-  EXPECT_EQ(count(page, "@import"), 0U);
+  EXPECT_EQ(occurrences(page, " src="), 0U);
+  EXPECT_EQ(occurrences(page, "@import"), 0U);
   EXPECT_NE(page.find("Permission is hereby granted"), std::string::npos) << "the licence of uPlot";
 }
 
 TEST(HtmlWriter, TextNeverEndsItsElement) {
-  const std::size_t scripts = count(html_page({}), kClose);
+  const std::size_t scripts = occurrences(html_page({}), kClose);
   for (const std::string text : {"</script>", "</SCRIPT >", "<!--", "<!--<script>", "]]>", "\x01\x1b[31m\x7f",
                                  "\xff\xfe", "\xed\xa0\x80", "\xe2\x80\xa8", "\"\\", "-->"}) {
     const std::string page = html_page(page_with(text));
-    EXPECT_EQ(count(page, kClose), scripts) << text;
+    EXPECT_EQ(occurrences(page, kClose), scripts) << text;
     const std::string data = data_of(page);
     EXPECT_EQ(data.find('<'), std::string::npos) << text;
     const Json run = Json::parse(data)["runs"][0];

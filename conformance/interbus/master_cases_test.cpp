@@ -125,8 +125,9 @@ constexpr std::string_view kRequest = "interbus/master/timing/request_below_the_
 constexpr std::string_view kStop = "interbus/master/supervision/stop_clears_outputs_and_restart_identifies";
 constexpr std::string_view kCut = "interbus/master/ring_change/cut_ring_is_located";
 
-judge::CaseResult run(std::string_view id, MasterBench::MakeMaster make_master, std::string_view item = "",
-                      std::string_view answer = "", Volume volume = Volume::quick) {
+judge::CaseResult run_master_case(std::string_view id, MasterBench::MakeMaster make_master,
+                                  std::string_view item = "", std::string_view answer = "",
+                                  Volume volume = Volume::quick) {
   judge::Pics pics;
   if (!item.empty()) pics.declare(std::string(item), std::string(answer));
   const MasterCase& one = master_case_of(id);
@@ -139,26 +140,32 @@ TEST(MasterSuite, RightMastersThatDifferFromTheReferencePass) {
   const auto expect_pass = [](const judge::CaseResult& result) {
     EXPECT_EQ(result.verdict, judge::Verdict::pass) << told(result);
   };
-  expect_pass(run(kRequest, make<RefusesShortRequest>()));
-  expect_pass(run(kStop, make<StatusAfterStop>()));
-  expect_pass(run("interbus/master/timing/cycle_time_equals_the_formula", make<SlightlySlow>()));
-  expect_pass(run("interbus/master/identification/length_codes_are_decoded", make<TakesUncertainCodes>(), "",
-                  "", Volume::full));
+  expect_pass(run_master_case(kRequest, make<RefusesShortRequest>()));
+  expect_pass(run_master_case(kStop, make<StatusAfterStop>()));
+  expect_pass(run_master_case("interbus/master/timing/cycle_time_equals_the_formula", make<SlightlySlow>()));
+  expect_pass(run_master_case("interbus/master/identification/length_codes_are_decoded",
+                              make<TakesUncertainCodes>(), "", "", Volume::full));
 }
 
 TEST(MasterSuite, WhatIsDeclaredIsRequired) {
-  EXPECT_EQ(run(kRequest, make<RefusesShortRequest>(), "request_below_minimum", "refused").reason, "");
-  EXPECT_EQ(run(kRequest, make<RefusesShortRequest>(), "request_below_minimum", "clipped").reason,
+  EXPECT_EQ(run_master_case(kRequest, make<RefusesShortRequest>(), "request_below_minimum", "refused").reason,
+            "");
+  EXPECT_EQ(run_master_case(kRequest, make<RefusesShortRequest>(), "request_below_minimum", "clipped").reason,
             "request_not_clipped");
-  EXPECT_EQ(run(kRequest, make<interbus::Master>(), "request_below_minimum", "clipped").reason, "");
-  EXPECT_EQ(run(kRequest, make<interbus::Master>(), "request_below_minimum", "refused").reason,
+  EXPECT_EQ(run_master_case(kRequest, make<interbus::Master>(), "request_below_minimum", "clipped").reason,
+            "");
+  EXPECT_EQ(run_master_case(kRequest, make<interbus::Master>(), "request_below_minimum", "refused").reason,
             "request_not_refused");
-  EXPECT_EQ(run(kStop, make<StatusAfterStop>(), "line_after_stop", "status_telegrams").reason, "");
-  EXPECT_EQ(run(kStop, make<StatusAfterStop>(), "line_after_stop", "silent").reason, "not_silent");
-  EXPECT_EQ(run(kStop, make<interbus::Master>(), "line_after_stop", "silent").reason, "");
-  EXPECT_EQ(run(kStop, make<interbus::Master>(), "line_after_stop", "status_telegrams").reason, "not_silent");
-  EXPECT_EQ(run(kCut, make<interbus::Master>(), "outputs_after_bus_stop", "zero").reason, "");
-  EXPECT_EQ(run(kCut, make<interbus::Master>(), "outputs_after_bus_stop", "held").reason, "outputs_not_safe");
+  EXPECT_EQ(run_master_case(kStop, make<StatusAfterStop>(), "line_after_stop", "status_telegrams").reason,
+            "");
+  EXPECT_EQ(run_master_case(kStop, make<StatusAfterStop>(), "line_after_stop", "silent").reason,
+            "not_silent");
+  EXPECT_EQ(run_master_case(kStop, make<interbus::Master>(), "line_after_stop", "silent").reason, "");
+  EXPECT_EQ(run_master_case(kStop, make<interbus::Master>(), "line_after_stop", "status_telegrams").reason,
+            "not_silent");
+  EXPECT_EQ(run_master_case(kCut, make<interbus::Master>(), "outputs_after_bus_stop", "zero").reason, "");
+  EXPECT_EQ(run_master_case(kCut, make<interbus::Master>(), "outputs_after_bus_stop", "held").reason,
+            "outputs_not_safe");
 }
 
 // Drives its tenth wave 20 us before it is asked.
@@ -177,7 +184,7 @@ struct DrivesEarly final : interbus::Master, private segment::Port {
 };
 
 TEST(MasterSuite, AMasterThatDrivesInThePastFailsItsCase) {
-  const judge::CaseResult result = run(kStop, make<DrivesEarly>());
+  const judge::CaseResult result = run_master_case(kStop, make<DrivesEarly>());
   EXPECT_EQ(result.verdict, judge::Verdict::fail);
   EXPECT_EQ(result.reason, "implementation_misbehaves");
   ASSERT_EQ(result.findings.size(), 1U);

@@ -22,8 +22,8 @@ using Suffered = MasterBench::Suffered;
 constexpr std::size_t kUserOctets = 4;  // of the ring that most of these cases use
 constexpr int kTelegrams = 6 + static_cast<int>(kUserOctets);
 
-Suffered expect_rejected(MasterBench& bench, CaseJudge& judge, CycleFaults faults, std::string_view reason,
-                         const std::string& what) {
+Suffered expect_cycle_rejected(MasterBench& bench, CaseJudge& judge, CycleFaults faults,
+                               std::string_view reason, const std::string& what) {
   const Suffered suffered = bench.suffer(judge, std::move(faults));
   judge.expect(!suffered.is_told_accepted, reason,
                [&] { return Sighting{{what + ": rejected"}, "the cycle is accepted"}; });
@@ -45,8 +45,8 @@ void damaged_loopback(MasterBench& bench, CaseJudge& judge) {
     CycleFaults faults;
     faults.flips = {{kUserOctets, static_cast<std::uint8_t>(mask >> 8), true},
                     {kUserOctets + 1, static_cast<std::uint8_t>(mask & 0xFF), true}};
-    expect_rejected(bench, judge, std::move(faults), "damaged_loopback_accepted",
-                    fmt::format("loopback word with {} bit errors", errors));
+    expect_cycle_rejected(bench, judge, std::move(faults), "damaged_loopback_accepted",
+                          fmt::format("loopback word with {} bit errors", errors));
   }
 }
 
@@ -56,8 +56,9 @@ void displaced_loopback(MasterBench& bench, CaseJudge& judge) {
     bench.ring().set_input(1, static_cast<std::uint16_t>(bench.random().next()));
     CycleFaults faults;
     faults.longer_bits = bits;
-    const Suffered suffered = expect_rejected(bench, judge, std::move(faults), "displaced_loopback_accepted",
-                                              fmt::format("loopback word {} bits late", bits));
+    const Suffered suffered =
+        expect_cycle_rejected(bench, judge, std::move(faults), "displaced_loopback_accepted",
+                              fmt::format("loopback word {} bits late", bits));
     judge.expect(suffered.id_cycles > 0, "no_id_cycle_after_error", "an ID cycle follows on the line",
                  "data cycles only");
   }
@@ -74,12 +75,12 @@ void wrong_count(MasterBench& bench, CaseJudge& judge) {
   for (int n = 0; n < kTelegrams; ++n) {
     CycleFaults lost;
     lost.dropped = n;
-    expect_rejected(bench, judge, std::move(lost), "wrong_count_accepted",
-                    fmt::format("telegram {} lost", n));
+    expect_cycle_rejected(bench, judge, std::move(lost), "wrong_count_accepted",
+                          fmt::format("telegram {} lost", n));
     CycleFaults twice;
     twice.duplicated = n;
-    expect_rejected(bench, judge, std::move(twice), "wrong_count_accepted",
-                    fmt::format("telegram {} twice", n));
+    expect_cycle_rejected(bench, judge, std::move(twice), "wrong_count_accepted",
+                          fmt::format("telegram {} twice", n));
   }
 }
 
@@ -90,8 +91,8 @@ void bad_check(MasterBench& bench, CaseJudge& judge) {
     for (unsigned bit = 0; bit < 8; ++bit) {
       CycleFaults faults;
       faults.flips = {{octet, static_cast<std::uint8_t>(1U << bit), false}};
-      expect_rejected(bench, judge, std::move(faults), "bad_check_accepted",
-                      fmt::format("bit {} of octet {} changed behind the last station", bit, octet));
+      expect_cycle_rejected(bench, judge, std::move(faults), "bad_check_accepted",
+                            fmt::format("bit {} of octet {} changed behind the last station", bit, octet));
     }
   }
 }
@@ -101,8 +102,8 @@ void marked_status(MasterBench& bench, CaseJudge& judge) {
   for (int station = 0; station < 4; ++station) {
     CycleFaults faults;
     faults.marked_by = station;
-    const Suffered suffered = expect_rejected(bench, judge, std::move(faults), "marked_status_accepted",
-                                              fmt::format("status word marked by station {}", station));
+    const Suffered suffered = expect_cycle_rejected(bench, judge, std::move(faults), "marked_status_accepted",
+                                                    fmt::format("status word marked by station {}", station));
     const auto status = bench.status();
     judge.expect_equal(suffered.id_cycles, 1U, "no_id_cycle_after_error",
                        "ID cycles that follow on the line");
@@ -184,8 +185,8 @@ void missing_stop(MasterBench& bench, CaseJudge& judge) {
   for (int n = 0; n < kTelegrams; ++n) {
     CycleFaults faults;
     faults.stop_missing = n;
-    expect_rejected(bench, judge, std::move(faults), "framing_error_accepted",
-                    fmt::format("telegram {} without stop bit", n));
+    expect_cycle_rejected(bench, judge, std::move(faults), "framing_error_accepted",
+                          fmt::format("telegram {} without stop bit", n));
   }
 }
 
@@ -194,13 +195,13 @@ void extra_telegram(MasterBench& bench, CaseJudge& judge) {
   for (int n = 0; n < kTelegrams; ++n) {
     CycleFaults faults;
     faults.inserted = n;
-    expect_rejected(bench, judge, std::move(faults), "extra_telegram_accepted",
-                    fmt::format("a telegram inserted in front of telegram {}", n));
+    expect_cycle_rejected(bench, judge, std::move(faults), "extra_telegram_accepted",
+                          fmt::format("a telegram inserted in front of telegram {}", n));
   }
   CycleFaults trailing;
   trailing.trailing_telegram = true;
-  expect_rejected(bench, judge, std::move(trailing), "extra_telegram_accepted",
-                  "a telegram behind the last one");
+  expect_cycle_rejected(bench, judge, std::move(trailing), "extra_telegram_accepted",
+                        "a telegram behind the last one");
 }
 
 void flipped_flag(MasterBench& bench, CaseJudge& judge) {
@@ -214,14 +215,14 @@ void flipped_flag(MasterBench& bench, CaseJudge& judge) {
     for (int n = 0; n < kTelegrams; ++n) {
       CycleFaults faults;
       faults.flag_flipped = n;
-      expect_rejected(bench, judge, std::move(faults), "flipped_flag_accepted",
-                      fmt::format("flag of telegram {} changed", n));
+      expect_cycle_rejected(bench, judge, std::move(faults), "flipped_flag_accepted",
+                            fmt::format("flag of telegram {} changed", n));
     }
   }
   CycleFaults status;
   status.status_flag_flipped = true;
-  expect_rejected(bench, judge, std::move(status), "flipped_flag_accepted",
-                  "flag of the status telegram behind the cycle changed");
+  expect_cycle_rejected(bench, judge, std::move(status), "flipped_flag_accepted",
+                        "flag of the status telegram behind the cycle changed");
 }
 
 // That a cycle ends when the loopback word is back, and that a telegram has 5 bits of head, was read; that a

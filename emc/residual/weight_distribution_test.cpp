@@ -18,7 +18,7 @@ constexpr std::string_view kInterbus = "CRC-16/IBM-3740";
 constexpr std::string_view kProfibus = "CRC-16/PROFIBUS";
 constexpr std::string_view kModbus = "CRC-16/MODBUS";
 
-std::string word_of(std::string_view name) {
+std::string letters_of(std::string_view name) {
   std::string word(name);
   std::erase_if(word, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); });
   return word;
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
                     WeightFour{kModbus, 64, 0, 364}, WeightFour{kModbus, 96, 0, 1165},
                     WeightFour{kModbus, 160, 0, 4434}, WeightFour{kModbus, 544, 0, 181'035},
                     WeightFour{kModbus, 4128, 0, 369'300'322}),
-    [](const auto& row) { return word_of(row.param.name) + "_" + std::to_string(row.param.bits); });
+    [](const auto& row) { return letters_of(row.param.name) + "_" + std::to_string(row.param.bits); });
 
 struct HammingDistances {
   std::string_view name;
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(WeightDistribution, HammingDistance,
                                          HammingDistances{"CRC-17/CAN-FD", {238, 238, 238, 238, 2, 2, 2, 2}},
                                          HammingDistances{"CRC-21/CAN-FD",
                                                           {1002, 1002, 1002, 1002, 8, 8, 0, 0}}),
-                         [](const auto& row) { return word_of(row.param.name); });
+                         [](const auto& row) { return letters_of(row.param.name); });
 
 // One row of the same table for 32 bits; the others take minutes and are in the README.
 TEST(WeightDistribution, OfThirtyTwoBitsHasTheListedDistance) {

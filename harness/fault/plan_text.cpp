@@ -88,7 +88,7 @@ Json details_of(const Effect& effect) {
   return json;
 }
 
-std::string_view word_of(Scope scope) {
+std::string_view scope_word(Scope scope) {
   switch (scope) {
     case Scope::level:
       return "level";
@@ -108,7 +108,7 @@ Json json_of(const Rule& rule) {
   Json json = Json::object();
   if (!rule.name.empty()) json["name"] = rule.name;
   if (rule.when != When{}) json["when"] = json_of(rule.when);
-  if (rule.scope != Scope::field) json["scope"] = word_of(rule.scope);
+  if (rule.scope != Scope::field) json["scope"] = scope_word(rule.scope);
   json["effect"][std::string(fault::word_of(rule.effect))] = details_of(rule.effect);
   if (rule.times != kUnlimited) json["times"] = rule.times;
   return json;

@@ -19,7 +19,7 @@ StationDescription station(std::string name, std::uint16_t id) {
 }
 
 // A coupler with a 16-bit input and a 16-bit output module behind its second interface.
-NetworkDescription paper_network() {
+NetworkDescription coupler_and_modules() {
   NetworkDescription network;
   network.name = "paper";
   StationDescription coupler = station("coupler", 0x0008);
@@ -54,7 +54,7 @@ struct Bench {
 };
 
 TEST(Master, brings_up_the_network_of_the_paper_with_its_cycle_time) {
-  Bench bench(paper_network());
+  Bench bench(coupler_and_modules());
   bench.run_for(100 * kernel::kMillisecond);
   const MasterStatus status = bench.master.status();
   EXPECT_EQ(status.configuration_error, "");
@@ -72,7 +72,7 @@ TEST(Master, brings_up_the_network_of_the_paper_with_its_cycle_time) {
 }
 
 TEST(Master, needs_the_longer_printed_cycle_with_two_end_telegrams) {
-  NetworkDescription network = paper_network();
+  NetworkDescription network = coupler_and_modules();
   network.rules.end_telegrams = 2;
   Bench bench(network);
   bench.run_for(100 * kernel::kMillisecond);
@@ -81,7 +81,7 @@ TEST(Master, needs_the_longer_printed_cycle_with_two_end_telegrams) {
 }
 
 TEST(Master, copies_inputs_to_outputs) {
-  Bench bench(paper_network());
+  Bench bench(coupler_and_modules());
   bench.run_for(50 * kernel::kMillisecond);
   bench.ring->terminals(2).set_input(0, 0xBEEF);
   bench.run_for(3 * kernel::kMillisecond);

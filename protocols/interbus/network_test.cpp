@@ -46,7 +46,7 @@ std::string with_stations(const std::string& stations, const std::string& more =
   return R"({"name": "x", "bit_rate": "500 kbit/s", "stations": [)" + stations + "]" + more + "}";
 }
 
-NetworkDescription line_of(unsigned stations, std::uint16_t id_code) {
+NetworkDescription stations_in_line(unsigned stations, std::uint16_t id_code) {
   NetworkDescription network;
   for (unsigned n = 0; n < stations; ++n) {
     network.stations.push_back({"s" + std::to_string(n), id_code, 0, false, {}});
@@ -168,8 +168,8 @@ TEST(IdCodeTest, DirectionBits) {
 }
 
 TEST(NetworkLimitsTest, ProgramsMayBuildWhatAFileMayNot) {
-  EXPECT_EQ(check(line_of(512, 0x0008)), std::nullopt);
-  const NetworkDescription too_long = line_of(513, 0x0008);
+  EXPECT_EQ(check(stations_in_line(512, 0x0008)), std::nullopt);
+  const NetworkDescription too_long = stations_in_line(513, 0x0008);
   EXPECT_EQ(ring_order(too_long).size(), 513U);
   const auto violation = check(too_long);
   ASSERT_TRUE(violation);
@@ -178,19 +178,19 @@ TEST(NetworkLimitsTest, ProgramsMayBuildWhatAFileMayNot) {
 }
 
 TEST(NetworkLimitsTest, PointsEndAt4096) {
-  EXPECT_EQ(check(line_of(256, 0x0103)), std::nullopt);
-  const auto violation = check(line_of(257, 0x0103));
+  EXPECT_EQ(check(stations_in_line(256, 0x0103)), std::nullopt);
+  const auto violation = check(stations_in_line(257, 0x0103));
   ASSERT_TRUE(violation);
   EXPECT_EQ(violation->pointer, "/stations/256");
 }
 
 TEST(NetworkLimitsTest, NamelessAndBrokenStationsAreFound) {
-  NetworkDescription network = line_of(1, 0x0103);
+  NetworkDescription network = stations_in_line(1, 0x0103);
   network.stations[0].name.clear();
   EXPECT_EQ(check(network)->pointer, "/stations/0/name");
-  network = line_of(1, 0x2103);
+  network = stations_in_line(1, 0x2103);
   EXPECT_EQ(check(network)->pointer, "/stations/0/id_code");
-  network = line_of(1, 0x0103);
+  network = stations_in_line(1, 0x0103);
   network.stations[0].cable_m = -1;
   EXPECT_EQ(check(network)->pointer, "/stations/0/cable");
 }

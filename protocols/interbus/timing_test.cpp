@@ -1,4 +1,5 @@
 #include "protocols/interbus/timing.hpp"
+#include "protocols/interbus/paper.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,13 +20,6 @@ Duration one_station(Formula formula, unsigned user_octets) {
   input.user_octets = user_octets;
   input.remote_stations = 1;
   return cycle_time(formula, input);
-}
-
-NetworkDescription paper_network() {
-  NetworkDescription network;
-  network.stations = {
-      {"coupler", 0x0008, 0, false, {{"di", 0x01BE, 0, true, {}}, {"do", 0x01BD, 0, true, {}}}}};
-  return network;
 }
 
 TEST(CycleTimeTest, FormulasGiveThePublishedTable) {
