@@ -63,8 +63,10 @@ bool BurstChannel::corrupt(const line::Waveform& sent, kernel::Time last_pulse,
   const bool is_of_bits = sent.rate == receiver_.bit_rate;
   spans_.begin(sent, is_of_bits ? kBitGrid : TickGrid(ticks_for(sent.rate)));
   pulses_.clear();
-  for (kernel::Time pulse = schedule_.first_from(sent.start - reach_.to + kernel::kPicosecond);
-       pulse < last_pulse; pulse = schedule_.first_from(pulse + kernel::kPicosecond)) {
+  kernel::Time from = sent.start - reach_.to + kernel::kPicosecond;
+  while (schedule_.has_pulse_in(from, last_pulse)) {
+    const kernel::Time pulse = schedule_.first_from(from);
+    from = pulse + kernel::kPicosecond;
     pulses_.push_back({pulse, spans_.reach_of(pulse, reach_)});
     spans_.add(pulse, wrong_);
   }

@@ -12,20 +12,21 @@ TelegramFraming::TelegramFraming(const line::TelegramLayout& layout)
   flag_bit_ = 2U << (flag - layout.header.begin());
 }
 
-bool TelegramFraming::find(const line::Levels& levels, std::vector<FramedUnit>& units) const {
+bool TelegramFraming::find(const line::Levels& levels, std::size_t until,
+                           std::vector<FramedUnit>& units) const {
   bool is_whole = true;
-  const std::size_t end = code_.decode(levels, 0, [&](const line::Telegram& telegram) {
+  const std::size_t end = code_.decode_until(levels, 0, until, [&](const line::Telegram& telegram) {
     units.push_back({telegram.level, telegram.levels(), true, flag_bit_});
     is_whole = is_whole && !telegram.is_stop_missing();
   });
-  return is_whole && end == levels.size();
+  return is_whole && (end == levels.size() || end > until);
 }
 
 CharacterFraming::CharacterFraming(const line::CharacterFormat& format) : code_(format) {
   FIELDPROOF_CHECK(code_.levels_per_bit() == 1, "a character whose bits are framed has whole stop bits");
 }
 
-bool CharacterFraming::find(const line::Levels& levels, std::vector<FramedUnit>& units) const {
+bool CharacterFraming::find(const line::Levels& levels, std::size_t, std::vector<FramedUnit>& units) const {
   bool is_whole = true;
   const std::size_t end = code_.decode(levels, 0, [&](const line::Character& character) {
     units.push_back({character.level, longest_unit(), true, 0});
@@ -34,7 +35,7 @@ bool CharacterFraming::find(const line::Levels& levels, std::vector<FramedUnit>&
   return is_whole && end == levels.size();
 }
 
-bool SynchronousFraming::find(const line::Levels& levels, std::vector<FramedUnit>& units) const {
+bool SynchronousFraming::find(const line::Levels& levels, std::size_t, std::vector<FramedUnit>& units) const {
   if (!levels.empty()) units.push_back({0, levels.size(), false, 0});
   return true;
 }

@@ -164,25 +164,30 @@ void BurstSchedule::jump_to(kernel::Time wanted) {
 void BurstSchedule::seek(kernel::Time from) {
   constexpr std::int64_t kNear = 16;  // steps that cost less than a jump
   const kernel::Time wanted = std::max(from, on_);
+  known_from_ = from;
   if (wanted >= off_) {
-    known_from_ = from;
     next_ = kernel::kNever;
+    is_drawn_ = true;
     return;
   }
-  if (from > next_ && from - next_ <= kNear * timing_.pitch) {
-    step();
-  } else {
+  if (wanted <= next_ || wanted - next_ > kNear * timing_.pitch) {
     jump_to(wanted);
+  } else if (is_drawn_) {
+    step();
   }
+  is_drawn_ = false;
   // Pulses that come too early however they stray are not drawn.
   while (begin_ + number_ * timing_.pitch < wanted - timing_.jitter) step();
+  next_ = std::max(wanted, begin_ + number_ * timing_.pitch - timing_.jitter);
+}
+
+// The first pulse that is wanted and not too early.
+void BurstSchedule::draw_pulse() {
+  const kernel::Time wanted = std::max(known_from_, on_);
   kernel::Time at = pulse_here();
-  while (at < wanted) {
-    step();
-    at = pulse_here();
-  }
-  known_from_ = from;
+  for (; at < wanted; at = pulse_here()) step();
   next_ = at < off_ ? at : kernel::kNever;
+  is_drawn_ = true;
 }
 
 BurstSchedule::Window BurstSchedule::window_of(kernel::Time pulse) const {

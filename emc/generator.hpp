@@ -114,9 +114,15 @@ class BurstSchedule {
   // The first pulse at or after `from`; kNever when there is none.
   kernel::Time first_from(kernel::Time from) {
     if (from < known_from_ || from > next_) seek(from);
+    if (!is_drawn_) draw_pulse();
     return next_;
   }
-  bool has_pulse_in(kernel::Time from, kernel::Time to) { return first_from(from) < to; }
+  // Draws no pulse that is too late however it strays.
+  bool has_pulse_in(kernel::Time from, kernel::Time to) {
+    if (from < known_from_ || from > next_) seek(from);
+    if (!is_drawn_ && next_ < to) draw_pulse();
+    return next_ < to;
+  }
 
   const BurstTiming& timing() const { return timing_; }
 
@@ -135,6 +141,7 @@ class BurstSchedule {
   void jump_to(kernel::Time wanted);
   void step();
   void begin_burst(std::int64_t burst);
+  void draw_pulse();
   kernel::Time pulse_here() const;
 
   BurstTiming timing_;
@@ -147,9 +154,10 @@ class BurstSchedule {
   std::int64_t burst_ = 0;
   kernel::Time begin_{};  // of that burst
   std::int64_t number_ = 0;
-  // No pulse lies in [known_from_, next_).
+  // No pulse lies in [known_from_, next_); next_ is one when it is drawn.
   kernel::Time known_from_ = kernel::kNever;
   kernel::Time next_ = kernel::kNever;
+  bool is_drawn_ = true;
 };
 
 }  // namespace fieldproof::emc

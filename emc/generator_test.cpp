@@ -230,6 +230,9 @@ RC_GTEST_PROP(BurstScheduleProperty, AnswersDoNotDependOnTheQuestionsBefore, ())
     const kernel::Time from = kStart + kernel::Duration{question};
     const auto expected = std::lower_bound(pulses.begin(), pulses.end(), from);
     RC_ASSERT(expected != pulses.end());
+    const kernel::Time to = from + kernel::Duration{*rc::gen::inRange<std::int64_t>(0, kMillisecond.count())};
+    RC_ASSERT(asked.has_pulse_in(from, to) == (*expected < to));
+    if (*rc::gen::arbitrary<bool>()) continue;  // nothing is drawn where the look was enough
     RC_ASSERT(asked.first_from(from) == *expected);
     RC_ASSERT(!asked.has_pulse_in(from, *expected));
     RC_ASSERT(asked.has_pulse_in(from, *expected + kPicosecond));

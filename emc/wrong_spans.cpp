@@ -36,12 +36,6 @@ void WrongSpans::begin(const line::Waveform& sent, const TickGrid& grid) {
   for (auto& spans : of_level_) spans.clear();
 }
 
-std::int64_t WrongSpans::tick_of(kernel::Time time) const {
-  const double ticks = static_cast<double>((time - sent_->start).count()) * ticks_per_picosecond_ + 0.5;
-  const auto whole = static_cast<std::int64_t>(ticks);
-  return static_cast<double>(whole) > ticks ? whole - 1 : whole;  // towards zero is up for what is negative
-}
-
 void WrongSpans::add(kernel::Time pulse, const WrongOutput& wrong) {
   for (std::size_t level = 0; level < 2; ++level) {
     for (const Interval& interval : wrong.of_level[level]) {

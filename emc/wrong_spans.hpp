@@ -64,7 +64,11 @@ class WrongSpans {
   const TickGrid& grid() const { return grid_; }
 
  private:
-  std::int64_t tick_of(kernel::Time time) const;
+  std::int64_t tick_of(kernel::Time time) const {
+    const double ticks = static_cast<double>((time - sent_->start).count()) * ticks_per_picosecond_ + 0.5;
+    const auto whole = static_cast<std::int64_t>(ticks);
+    return static_cast<double>(whole) > ticks ? whole - 1 : whole;  // towards zero is up for what is negative
+  }
   void resolve(bool level);
 
   const line::Waveform* sent_ = nullptr;

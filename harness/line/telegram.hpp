@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -85,10 +86,18 @@ class TelegramCode {
   // start of a telegram that is cut by the end of the levels, or size().
   template <typename Sink>
   std::size_t decode(const Levels& levels, std::size_t at, Sink&& sink) const {
+    return decode_until(levels, at, levels.size(), sink);
+  }
+
+  // The same for who wants the telegrams that begin up to level `until`, and bears a few behind it. What is
+  // given, when it lies in the levels behind `until`, is where to go on: no telegram begins in between.
+  template <typename Sink>
+  std::size_t decode_until(const Levels& levels, std::size_t at, std::size_t until, Sink&& sink) const {
     const std::size_t size = levels.size();
+    const std::size_t last = std::min(size, until + kDataTelegramLevels);
     // As many telegrams as a window holds are taken out of it: what one telegram costs is then a few shifts
     // of a register and not a look-up that waits for the one before it.
-    while (at + kDataTelegramLevels <= size) {
+    while (at + kDataTelegramLevels <= last) {
       std::uint64_t window = levels.window(at);
       auto left = static_cast<unsigned>(size - at < 64 ? size - at : 64);  // levels of the line in the window
       while (true) {
@@ -110,7 +119,7 @@ class TelegramCode {
         window >>= length;
       }
     }
-    return decode_end(levels, at, sink);
+    return last < size ? std::min(at, size) : decode_end(levels, at, sink);
   }
 
  private:

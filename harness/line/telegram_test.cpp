@@ -140,6 +140,24 @@ RC_GTEST_PROP(TelegramProperty, AnyLevelsDecodeAsBitByBit, ()) {
   RC_ASSERT(hear({wave}) == hear_bit_by_bit(wave));
 }
 
+RC_GTEST_PROP(TelegramProperty, ASearchThatEndsEarlyGivesTheFirstOfThemAll, ()) {
+  const Waveform wave = random_wave();
+  const auto until = *rc::gen::inRange<std::size_t>(0, wave.levels.size() + 30);
+  std::vector<Telegram> all;
+  std::vector<Telegram> first;
+  const std::size_t end = code().decode(wave.levels, 0, [&](const Telegram& t) { all.push_back(t); });
+  const std::size_t next =
+      code().decode_until(wave.levels, 0, until, [&](const Telegram& t) { first.push_back(t); });
+  RC_ASSERT(first.size() <= all.size());
+  RC_ASSERT(std::equal(first.begin(), first.end(), all.begin()));
+  if (next < wave.levels.size() && next != end) RC_ASSERT(next > until);
+  // It goes on there.
+  std::vector<Telegram> rest;
+  RC_ASSERT(code().decode(wave.levels, next, [&](const Telegram& t) { rest.push_back(t); }) == end);
+  first.insert(first.end(), rest.begin(), rest.end());
+  RC_ASSERT(first == all);
+}
+
 RC_GTEST_PROP(TelegramProperty, TheSamplingReceiverAgreesOnBitWideLevels, ()) {
   const Waveform wave = random_wave();
   const auto times = *rc::gen::inRange(2U, 25U);
