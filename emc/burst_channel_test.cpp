@@ -348,6 +348,11 @@ Line arbitrary_line() {
     at = wave.end() + Duration{draws.between(0, 40'000'000)};
     line.waves.push_back(std::move(wave));
   }
+  // No other comes behind the last one: it may be cut in the middle of a unit, or have any level wrong.
+  line::Levels& last = line.waves.back().levels;
+  if (*rc::gen::arbitrary<bool>())
+    last.resize(last.size() - draws.below(std::min<std::size_t>(13, last.size())));
+  if (*rc::gen::arbitrary<bool>()) last.set(draws.below(last.size()), false);
   return line;
 }
 

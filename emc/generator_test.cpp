@@ -219,6 +219,10 @@ RC_GTEST_PROP(BurstScheduleProperty, AnswersDoNotDependOnTheQuestionsBefore, ())
   settings.phase = *rc::gen::element(BurstPhase::asynchronous, BurstPhase::swept);
   settings.tolerances =
       *rc::gen::element(Tolerances::none, Tolerances::rate, Tolerances::rate_duration_and_period);
+  const auto instant = [] { return kernel::Duration{*rc::gen::inRange<std::int64_t>(0, kSecond.count())}; };
+  if (*rc::gen::arbitrary<bool>()) settings.on = kStart + instant();
+  if (*rc::gen::arbitrary<bool>()) settings.off = kStart + instant();
+  if (*rc::gen::arbitrary<bool>()) settings.first_burst = instant();
   const kernel::Random random(*rc::gen::arbitrary<std::uint64_t>());
   BurstSchedule walked(settings, random);
   const auto pulses = pulses_of(walked, kStart, kStart + 2 * kSecond);
@@ -228,14 +232,16 @@ RC_GTEST_PROP(BurstScheduleProperty, AnswersDoNotDependOnTheQuestionsBefore, ())
       rc::gen::inRange<std::int64_t>(-kMillisecond.count(), kSecond.count()));
   for (const std::int64_t question : questions) {
     const kernel::Time from = kStart + kernel::Duration{question};
-    const auto expected = std::lower_bound(pulses.begin(), pulses.end(), from);
-    RC_ASSERT(expected != pulses.end());
-    const kernel::Time to = from + kernel::Duration{*rc::gen::inRange<std::int64_t>(0, kMillisecond.count())};
-    RC_ASSERT(asked.has_pulse_in(from, to) == (*expected < to));
+    const auto found = std::lower_bound(pulses.begin(), pulses.end(), from);
+    const kernel::Time expected = found == pulses.end() ? kernel::kNever : *found;
+    const kernel::Time to = *rc::gen::element(
+        from + kernel::Duration{*rc::gen::inRange<std::int64_t>(0, kMillisecond.count())}, expected);
+    RC_ASSERT(asked.has_pulse_in(from, to) == (expected < to));
+    if (*rc::gen::arbitrary<bool>()) asked = BurstSchedule(asked);
     if (*rc::gen::arbitrary<bool>()) continue;  // nothing is drawn where the look was enough
-    RC_ASSERT(asked.first_from(from) == *expected);
-    RC_ASSERT(!asked.has_pulse_in(from, *expected));
-    RC_ASSERT(asked.has_pulse_in(from, *expected + kPicosecond));
+    RC_ASSERT(asked.first_from(from) == expected);
+    RC_ASSERT(!asked.has_pulse_in(from, expected));
+    if (expected < kernel::kNever) RC_ASSERT(asked.has_pulse_in(from, expected + kPicosecond));
   }
 }
 

@@ -9,11 +9,11 @@ void SampledImpact::judge(const line::Levels& levels, const std::vector<Span>& h
   grid_ = grid;
   flipped_.clear();
   units_.clear();
-  is_unclear_ = false;
-  if (heard.empty()) return;
+  is_unclear_ = framing_ == nullptr;
+  if (is_unclear_ || heard.empty()) return;
   // The bits behind the last wrong time matter as far as a glitch in it may pass for a start.
   const auto until = static_cast<std::size_t>(grid_.level_of(heard.back().to - 1)) + 2;
-  is_unclear_ = framing_ == nullptr || !framing_->find(levels, until, units_);
+  is_unclear_ = !framing_->find(levels, until, units_);
   auto unit = units_.begin();
   Place place{0, heard.front().from};
   while (!is_unclear_ && place.span < heard.size()) {

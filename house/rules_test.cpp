@@ -190,13 +190,21 @@ TEST(HiddenNames, AnUnnamedNamespaceRepeatsNoNameOfAHeader) {
   }
 }
 
-TEST(HiddenNames, WhatStandsBehindTheUnnamedNamespaceIsTheHeadersOwn) {
-  const File header{"emc/y.hpp", "namespace fieldproof::emc {\nint count();\n}\n"};
-  EXPECT_TRUE(check_hidden_names({header,
-                                  {"emc/y.cpp",
-                                   "namespace fieldproof::emc {\nnamespace {\n}  // namespace\n"
-                                   "int count() {\n}\n}\n"}})
-                  .empty());
+TEST(HiddenNames, ANamespaceEndsWithItsBraceWhateverStandsBehindIt) {
+  const File header{
+      "emc/y.hpp",
+      "namespace fieldproof::emc {\nnamespace inner {\nint size();\n}\n[[noreturn]] int count();\n}\n"};
+  const auto complaints_of = [&](const std::string& text) {
+    return check_hidden_names({header, {"emc/y.cpp", "namespace fieldproof::emc {\n" + text + "}\n"}}).size();
+  };
+  EXPECT_EQ(complaints_of("namespace {\nint f() {\n}\n}  // namespace\nint count() {\n}\n"), 0U);
+  EXPECT_EQ(complaints_of("namespace {\nconstexpr int kOne = 1;\n}\n\nint count() {\n}\n"), 0U);
+  EXPECT_EQ(complaints_of("namespace {\nint f() {\n}\nint count() {\n}\n}\n"), 1U);
+  EXPECT_EQ(complaints_of("namespace {\nint size() {\n}\n}\n"), 0U) << "the header's is an inner one";
+  EXPECT_EQ(complaints_of("namespace {\nnamespace inner {\nint size() {\n}\n}\n}\n"), 1U);
+  EXPECT_EQ(complaints_of("namespace {\n[[nodiscard]] int count() {\n}\n}\n"), 1U);
+  EXPECT_EQ(complaints_of("namespace {\nconst std::vector<int> count =\n    table();\n}\n"), 1U);
+  EXPECT_EQ(complaints_of("namespace {\nenum struct count { a };\n}\n"), 1U);
 }
 
 }  // namespace

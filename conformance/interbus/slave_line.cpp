@@ -1,9 +1,10 @@
 #include "conformance/interbus/slave_line.hpp"
-#include "protocols/interbus/cycle_frame.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "protocols/interbus/cycle_frame.hpp"
 
 namespace fieldproof::conformance {
 

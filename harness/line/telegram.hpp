@@ -94,7 +94,7 @@ class TelegramCode {
   template <typename Sink>
   std::size_t decode_until(const Levels& levels, std::size_t at, std::size_t until, Sink&& sink) const {
     const std::size_t size = levels.size();
-    const std::size_t last = std::min(size, until + kDataTelegramLevels);
+    const std::size_t last = until < size ? std::min(size, until + kDataTelegramLevels) : size;
     // As many telegrams as a window holds are taken out of it: what one telegram costs is then a few shifts
     // of a register and not a look-up that waits for the one before it.
     while (at + kDataTelegramLevels <= last) {
