@@ -120,8 +120,7 @@ class BurstSchedule {
   // Draws no pulse that is too late however it strays.
   bool has_pulse_in(kernel::Time from, kernel::Time to) {
     if (from < known_from_ || from > next_) seek(from);
-    if (!is_drawn_ && next_ < to) draw_pulse();
-    return next_ < to;
+    return next_ < to && (is_drawn_ || first_from(from) < to);
   }
 
   const BurstTiming& timing() const { return timing_; }
