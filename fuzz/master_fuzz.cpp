@@ -146,6 +146,7 @@ class World final : private fieldproof::fuzz::Line, private fieldproof::segment:
   void take_inputs();
   void step();
   bool is_working() const;
+  bool knows_ring() const;
   bool run_until_working(unsigned cycles, Duration most);
   void start();
   void restart();
@@ -382,6 +383,15 @@ bool World::is_working() const {
          master_.input(1) == ring_.input(1);
 }
 
+// Without a configuration it may have taken a shorter ring, or forged ID codes, for what is there.
+bool World::knows_ring() const {
+  if (status_.stations.size() != IdealRing::kStations) return false;
+  for (std::size_t n = 0; n < IdealRing::kStations; ++n) {
+    if (status_.stations[n].id_code != IdealRing::id_code(n)) return false;
+  }
+  return true;
+}
+
 bool World::run_until_working(unsigned cycles, Duration most) {
   const unsigned last = ends_ + cycles;
   const Time end = segment_.now() + most;
@@ -410,9 +420,7 @@ void World::recover() {
     ends = ends_;
     (void)run_until_working(1, 50 * kMillisecond);
   }
-  // Without a configuration it may have taken a shorter ring for the whole one.
-  const bool was_running =
-      status_.state == MasterState::run && status_.stations.size() == IdealRing::kStations;
+  const bool was_running = status_.state == MasterState::run && knows_ring();
   bool works = run_until_working(Rules{}.published_recovery_cycles, 50 * kMillisecond);
   const MasterState state = status_.state;
   FIELDPROOF_CHECK(works || !was_running || state != MasterState::run,

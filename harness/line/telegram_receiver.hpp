@@ -98,8 +98,8 @@ class TelegramReceiver {
       }
     }
     const std::size_t next = wave.first_level_at(joined.time_of(at));
-    // A low line behind a missing stop bit is no start bit.
-    return at == joined.levels.size() && telegram.is_stop_missing() ? next_idle(wave.levels, next) : next;
+    const bool stays_low = at == joined.levels.size() && !joined.levels[at - 1];
+    return stays_low ? next_idle(wave.levels, next) : next;
   }
 
   // Where the search in a waveform begins: a low line that goes on from the one before has no edge.

@@ -177,6 +177,27 @@ RC_GTEST_PROP(TelegramProperty, ItMakesNoDifferenceHowASenderDividesItsLevels, (
   RC_ASSERT(hear(parts) == hear({wave}));
 }
 
+// The last sample of a stop bit sees the line idle, the two before it do not: the next edge counts.
+TEST(TelegramReceiver, ALineThatRisesWithinAMissingStopBitMayFallAgain) {
+  constexpr unsigned kTimes = 16;
+  Waveform bits{kernel::kStart, kTelegramRate, {}};
+  code().append(bits.levels, 0, 0);
+  bits.levels.set(bits.levels.size() - 1, false);
+  Waveform wave = refined(bits, kTimes);
+  wave.levels.set(wave.levels.size() - kTimes + 9, true);  // its third sample
+  wave.levels.resize(wave.levels.size() - kTimes + 10);
+  const std::size_t cut = wave.levels.size();
+  code().append(bits.levels, kDataTelegram, 0x0F);
+  wave.levels.append(refined({kernel::kStart, kTelegramRate, bits.levels.slice(5, 13)}, kTimes).levels);
+  const std::vector<Seen> heard = hear({wave});
+  ASSERT_EQ(heard.size(), 2U);
+  EXPECT_EQ(heard[0].header, kStopMissing);
+  EXPECT_EQ(heard[1], (Seen{wave.time_of(cut), kDataTelegram, 0x0F}));
+  const Waveform first{wave.start, wave.rate, wave.levels.slice(0, cut)};
+  const Waveform second{wave.time_of(cut), wave.rate, wave.levels.slice(cut, wave.levels.size() - cut)};
+  EXPECT_EQ(hear({first, second}), heard);
+}
+
 TEST(TelegramReceiver, AWaveformMayEndInTheMiddleOfAStartBit) {
   Waveform bits{kernel::kStart, kTelegramRate, {}};
   code().append(bits.levels, kDataTelegram, 0x0F);
