@@ -179,13 +179,13 @@ RC_GTEST_PROP(TelegramProperty, ItMakesNoDifferenceHowASenderDividesItsLevels, (
 
 // The last sample of a stop bit sees the line idle, the two before it do not: the next edge counts.
 TEST(TelegramReceiver, ALineThatRisesWithinAMissingStopBitMayFallAgain) {
-  constexpr unsigned kTimes = 16;
+  constexpr unsigned kTimes = 20;  // the last sample lies within a level, the search goes on behind it
   Waveform bits{kernel::kStart, kTelegramRate, {}};
   code().append(bits.levels, 0, 0);
   bits.levels.set(bits.levels.size() - 1, false);
   Waveform wave = refined(bits, kTimes);
-  wave.levels.set(wave.levels.size() - kTimes + 9, true);  // its third sample
-  wave.levels.resize(wave.levels.size() - kTimes + 10);
+  wave.levels.set(wave.levels.size() - kTimes + 11, true);  // its third sample
+  wave.levels.resize(wave.levels.size() - kTimes + 12);
   const std::size_t cut = wave.levels.size();
   code().append(bits.levels, kDataTelegram, 0x0F);
   wave.levels.append(refined({kernel::kStart, kTelegramRate, bits.levels.slice(5, 13)}, kTimes).levels);
