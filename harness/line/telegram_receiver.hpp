@@ -98,6 +98,7 @@ class TelegramReceiver {
       }
     }
     const std::size_t next = wave.first_level_at(joined.time_of(at));
+    // Where they end on a low line that goes on, the next edge is behind it.
     const bool stays_low = at == joined.levels.size() && !joined.levels[at - 1];
     return stays_low ? next_idle(wave.levels, next) : next;
   }
