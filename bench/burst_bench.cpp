@@ -91,7 +91,7 @@ class BurstLine {
   trace::Trace trace_;
   emc::BurstChannel channel_;
   line::Waveform sent_;
-  std::vector<line::Waveform> arrivals_;
+  line::Waveforms arrivals_;
   std::vector<kernel::Time> starts_;
   std::size_t placed_ = 0;
 };
@@ -112,11 +112,11 @@ constexpr double kHitsAt100Khz = 11.2;
 Batch naive_injector(double hits_per_frame) {
   return
       [sent = frame(), engine = std::mt19937_64(1), coin = std::bernoulli_distribution(hits_per_frame / 182),
-       arrivals = std::vector<line::Waveform>()]() mutable -> std::uint64_t {
+       arrivals = line::Waveforms()]() mutable -> std::uint64_t {
         std::uint64_t hits = 0;
         while (hits < 1'000) {
           arrivals.clear();
-          line::Waveform& arrival = arrivals.emplace_back(sent);
+          line::Waveform& arrival = arrivals.add(sent);
           for (std::size_t n = 0; n < sent.levels.size(); ++n) {
             if (!coin(engine)) continue;
             arrival.levels.flip(n);
@@ -141,13 +141,13 @@ constexpr std::uint64_t kFrames = 2'000;
 
 Batch bit_by_bit() {
   return [sent = frame(), engine = std::mt19937_64(1), coin = std::bernoulli_distribution(kErrorRate),
-          arrivals = std::vector<line::Waveform>()]() mutable -> std::uint64_t {
+          arrivals = line::Waveforms()]() mutable -> std::uint64_t {
     for (std::uint64_t frames = 0; frames < kFrames; ++frames) {
       arrivals.clear();
       bool is_changed = false;
       for (std::size_t n = 0; n < sent.levels.size(); ++n) {
         if (!coin(engine)) continue;
-        if (!is_changed) arrivals.push_back(sent);
+        if (!is_changed) arrivals.add(sent);
         is_changed = true;
         arrivals.back().levels.flip(n);
       }
@@ -158,12 +158,12 @@ Batch bit_by_bit() {
 
 Batch standard_skips() {
   return [sent = frame(), engine = std::mt19937_64(1),
-          skip = std::geometric_distribution<std::int64_t>(kErrorRate),
-          arrivals = std::vector<line::Waveform>(), left = std::int64_t{0}]() mutable -> std::uint64_t {
+          skip = std::geometric_distribution<std::int64_t>(kErrorRate), arrivals = line::Waveforms(),
+          left = std::int64_t{0}]() mutable -> std::uint64_t {
     const auto size = static_cast<std::int64_t>(sent.levels.size());
     for (std::uint64_t frames = 0; frames < kFrames; ++frames) {
       arrivals.clear();
-      if (left < size) arrivals.push_back(sent);
+      if (left < size) arrivals.add(sent);
       for (; left < size; left += skip(engine) + 1)
         arrivals.back().levels.flip(static_cast<std::size_t>(left));
       left -= size;
@@ -174,7 +174,7 @@ Batch standard_skips() {
 
 Batch own_skips() {
   return [sent = frame(), channel = std::make_shared<emc::BernoulliChannel>(kErrorRate, kernel::Random(1)),
-          arrivals = std::vector<line::Waveform>()]() mutable -> std::uint64_t {
+          arrivals = line::Waveforms()]() mutable -> std::uint64_t {
     for (std::uint64_t frames = 0; frames < kFrames; ++frames) {
       arrivals.clear();
       channel->pass(sent, arrivals);

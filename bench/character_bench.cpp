@@ -112,7 +112,7 @@ class Passing {
   fault::InstalledPlan installed_;
   fault::Channel* channel_;
   line::Waveform sent_;
-  std::vector<line::Waveform> arrivals_;
+  line::Waveforms arrivals_;
 };
 
 Batch passing(fault::Rule rule, std::size_t count) {

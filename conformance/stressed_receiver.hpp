@@ -39,7 +39,7 @@ class StressedReceiver final : private fault::Channel {
   std::uint64_t changed() const { return changed_; }
 
  private:
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     const bool is_changed = channel_->pass(sent, arrivals);
     if (is_changed) ++changed_;
     return is_changed;

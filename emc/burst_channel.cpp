@@ -45,21 +45,22 @@ kernel::Time BurstChannel::latest_end(const line::Waveform& sent) {
   return sent.start + longest_level_ * static_cast<std::int64_t>(sent.levels.size());
 }
 
-bool BurstChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+bool BurstChannel::pass(const line::Waveform& sent, line::Waveforms& arrivals) {
   ++statistics_.transmissions;
   if (is_out_of_step_ && is_far_behind_last(sent)) is_out_of_step_ = false;
-  const kernel::Time last_pulse = latest_end(sent) - reach_.from;
+  const kernel::Time latest = latest_end(sent);
+  const kernel::Time last_pulse = latest - reach_.from;
   const bool is_changed = reach_.from < reach_.to &&
                           schedule_.has_pulse_in(sent.start - reach_.to + kernel::kPicosecond, last_pulse) &&
                           corrupt(sent, last_pulse, arrivals);
   last_start_ = sent.start;
   last_levels_ = sent.levels.size();
   last_rate_ = sent.rate;
+  last_latest_end_ = latest;
   return is_changed;
 }
 
-bool BurstChannel::corrupt(const line::Waveform& sent, kernel::Time last_pulse,
-                           std::vector<line::Waveform>& arrivals) {
+bool BurstChannel::corrupt(const line::Waveform& sent, kernel::Time last_pulse, line::Waveforms& arrivals) {
   const bool is_of_bits = sent.rate == receiver_.bit_rate;
   spans_.begin(sent, is_of_bits ? kBitGrid : TickGrid(ticks_for(sent.rate)));
   pulses_.clear();
@@ -67,8 +68,7 @@ bool BurstChannel::corrupt(const line::Waveform& sent, kernel::Time last_pulse,
   while (schedule_.has_pulse_in(from, last_pulse)) {
     const kernel::Time pulse = schedule_.first_from(from);
     from = pulse + kernel::kPicosecond;
-    pulses_.push_back({pulse, spans_.reach_of(pulse, reach_)});
-    spans_.add(pulse, wrong_);
+    pulses_.push_back({pulse, spans_.add(pulse, wrong_)});
   }
   const std::vector<Span>& heard = spans_.resolve();
   if (heard.empty()) return false;
@@ -103,7 +103,8 @@ kernel::Time BurstChannel::last_end() const {
 
 // So far that no receiver is still busy with a unit of the transmission before.
 bool BurstChannel::is_far_behind_last(const line::Waveform& sent) const {
-  return last_rate_ == 0 || sent.start >= last_end() + longest_unit_;
+  return last_rate_ == 0 || sent.start >= last_latest_end_ + longest_unit_ ||
+         sent.start >= last_end() + longest_unit_;
 }
 
 bool BurstChannel::is_in_step(const line::Waveform& sent) const {
@@ -133,8 +134,8 @@ void BurstChannel::count(const std::vector<Span>& heard) {
   each_pulse_into(heard, [this](kernel::Time) { ++statistics_.pulses; });
 }
 
-void BurstChannel::flip(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
-  line::Waveform& arrival = arrivals.emplace_back(sent);
+void BurstChannel::flip(const line::Waveform& sent, line::Waveforms& arrivals) {
+  line::Waveform& arrival = arrivals.add(sent);
   flipped_.clear();
   for (const std::size_t bit : impact_.flipped_bits()) {
     arrival.levels.flip(bit);
@@ -146,8 +147,8 @@ void BurstChannel::flip(const line::Waveform& sent, std::vector<line::Waveform>&
 }
 
 void BurstChannel::rewrite(const line::Waveform& sent, const std::vector<Span>& heard,
-                           std::vector<line::Waveform>& arrivals) {
-  line::Waveform& arrival = arrivals.emplace_back();
+                           line::Waveforms& arrivals) {
+  line::Waveform& arrival = arrivals.add();
   arrival.start = sent.start;
   const std::int64_t ticks = spans_.grid().per_level();
   arrival.rate = sent.rate * ticks;

@@ -60,7 +60,7 @@ class BurstChannel final : public fault::Channel {
   BurstChannel(BurstSchedule schedule, WrongOutput wrong, BurstReceiver receiver, trace::Trace& trace,
                trace::Channel place);
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override;
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override;
 
   const BurstStatistics& statistics() const { return statistics_; }
   BurstSchedule& schedule() { return schedule_; }
@@ -73,7 +73,7 @@ class BurstChannel final : public fault::Channel {
 
  private:
   kernel::Time latest_end(const line::Waveform& sent);
-  bool corrupt(const line::Waveform& sent, kernel::Time last_pulse, std::vector<line::Waveform>& arrivals);
+  bool corrupt(const line::Waveform& sent, kernel::Time last_pulse, line::Waveforms& arrivals);
   std::int64_t ticks_for(std::int64_t rate) const;
   kernel::Time last_end() const;
   bool is_far_behind_last(const line::Waveform& sent) const;
@@ -81,9 +81,8 @@ class BurstChannel final : public fault::Channel {
   void count(const std::vector<Span>& heard);
   template <typename Use>
   void each_pulse_into(const std::vector<Span>& spans, Use&& use) const;
-  void flip(const line::Waveform& sent, std::vector<line::Waveform>& arrivals);
-  void rewrite(const line::Waveform& sent, const std::vector<Span>& heard,
-               std::vector<line::Waveform>& arrivals);
+  void flip(const line::Waveform& sent, line::Waveforms& arrivals);
+  void rewrite(const line::Waveform& sent, const std::vector<Span>& heard, line::Waveforms& arrivals);
   void tell(const std::vector<Span>& changed);
 
   BurstSchedule schedule_;
@@ -98,7 +97,8 @@ class BurstChannel final : public fault::Channel {
   std::int64_t known_rate_ = 0;
   kernel::Duration longest_level_{};  // at that rate
 
-  // The transmission before; its end is computed when it is asked for.
+  // The transmission before; its end is computed when the bound does not decide.
+  kernel::Time last_latest_end_{};
   kernel::Time last_start_{};
   std::size_t last_levels_ = 0;
   std::int64_t last_rate_ = 0;   // 0: there was none

@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -34,7 +35,7 @@ WrongOutput forced(bool forced, Duration from, Duration to) {
 // Each telegram as it was sampled.
 using Telegrams = std::vector<std::tuple<std::uint16_t, std::uint8_t>>;
 
-Telegrams heard_by(line::TelegramReceiver receiver, const std::vector<line::Waveform>& waves) {
+Telegrams heard_by(line::TelegramReceiver receiver, std::span<const line::Waveform> waves) {
   Telegrams heard;
   const auto keep = [&](const line::Waveform&, const line::Telegram& telegram) {
     heard.emplace_back(telegram.sampled, telegram.header);
@@ -94,7 +95,7 @@ class BurstChannelTest : public testing::Test {
   FaultTimes faults_;
   BurstSchedule schedule_{BurstSettings{}, kernel::Random(1)};
   kernel::Time pulse_ = BurstSchedule(schedule_).first_from(kStart + kernel::kSecond);
-  std::vector<line::Waveform> arrivals_;
+  line::Waveforms arrivals_;
 };
 
 TEST_F(BurstChannelTest, AWrongTimeAtTheSamplesOfABitFlipsIt) {
@@ -276,7 +277,7 @@ TEST_F(BurstChannelTest, ShortCutsGiveTheSameAtEveryPlaceOfATelegram) {
           BurstChannel channel = this->channel(forced(false, {}, length * kTick),
                                                {kBitRate, std::move(framing), sampling, true, true});
           arrivals_.clear();
-          if (!channel.pass(sent, arrivals_)) arrivals_.push_back(sent);
+          if (!channel.pass(sent, arrivals_)) arrivals_.add(sent);
           spared += channel.statistics().hit_transmissions - channel.statistics().rewritten_transmissions;
           return heard_by(line::TelegramReceiver(code_, kBitRate, {sampling, true}), arrivals_);
         };
@@ -314,9 +315,9 @@ WrongOutput arbitrary_wrong_output() {
 
 // What a real receiver of telegrams reads through a channel.
 Telegrams heard_through(BurstChannel& channel, const Line& line) {
-  std::vector<line::Waveform> arrivals;
+  line::Waveforms arrivals;
   for (const line::Waveform& wave : line.waves) {
-    if (!channel.pass(wave, arrivals)) arrivals.push_back(wave);
+    if (!channel.pass(wave, arrivals)) arrivals.add(wave);
   }
   return heard_by(line::TelegramReceiver(line::shared_telegram_code(line::TelegramLayout{}), kBitRate,
                                          {line.sampling, true}),
@@ -396,10 +397,10 @@ RC_GTEST_PROP(BurstChannelProperty, ShortCutsGiveWhatTheReceiverOfCharactersMake
   BurstChannel full(schedule, wrong, {kBitRate, nullptr, {}, true, true}, trace, place);
   line::CharacterReceiver receiver(format, kBitRate);
   const auto heard_through = [&](BurstChannel& channel) {
-    std::vector<line::Waveform> arrivals;
-    if (!channel.pass(wave, arrivals)) arrivals.push_back(wave);
+    line::Waveforms arrivals;
+    if (!channel.pass(wave, arrivals)) arrivals.add(wave);
     std::vector<line::CharacterReceiver::Received> received;
-    receiver.receive(arrivals.at(0), received);
+    receiver.receive(arrivals.front(), received);
     std::vector<std::tuple<std::uint16_t, bool, bool>> heard;
     for (const auto& one : received) {
       heard.emplace_back(one.character.data, one.character.is_parity_wrong, one.character.is_stop_missing);

@@ -28,7 +28,7 @@ class BurstStress : public testing::Test {
     line::Waveform sent;
     sent.rate = kStressedRate;
     sent.levels.append(0b0101010101, 10);
-    std::vector<line::Waveform> arrivals;
+    line::Waveforms arrivals;
     for (sent.start = from - 2 * kMillisecond; sent.start < from + stress.duration + 10 * kMillisecond;
          sent.start = sent.end()) {
       arrivals.clear();

@@ -96,7 +96,7 @@ void add_run(const Scenario& scenario, const kernel::Random& random, Outcome& ou
       {scenario.bit_rate, std::make_shared<SynchronousFraming>(), scenario.sampling, true, true}, trace,
       trace.add_channel("rx"));
   kernel::Random data = random.split("data");
-  std::vector<line::Waveform> arrivals;
+  line::Waveforms arrivals;
   line::Waveform wave;
   wave.rate = scenario.bit_rate;
   refill(wave, data);
@@ -299,7 +299,7 @@ TEST(ClosedFormsTest, TheReceiverOfTelegramsHearsAsManyBadCycles) {
     kernel::Random data = random.split("data");
     line::Waveform wave;
     wave.rate = kPaperRate;
-    std::vector<line::Waveform> arrivals;
+    line::Waveforms arrivals;
     const kernel::Time end = kStart + 60 * kSecond;
     for (wave.start = kStart; wave.start < end; wave.start += kCycle) {
       if (!channel.schedule().has_pulse_in(wave.start, wave.start + kCycle)) continue;
@@ -394,11 +394,11 @@ TEST(ClosedFormsTest, TheFittedGilbertElliottChannelHasTheRateAndLosesThePitch) 
     for (std::size_t n = 0; n < kBits; n += 64) wave.levels.append(data.next(), 64);
     const std::array<fault::Channel*, 2> channels{&bursts, &textbook};
     for (std::size_t which = 0; which < 2; ++which) {
-      std::vector<line::Waveform> arrivals;
+      line::Waveforms arrivals;
       if (!channels.at(which)->pass(wave, arrivals)) continue;
       std::size_t last = kBits;
       for (std::size_t word = 0; word < wave.levels.word_count(); ++word) {
-        std::uint64_t changed = wave.levels.words()[word] ^ arrivals.at(0).levels.words()[word];
+        std::uint64_t changed = wave.levels.words()[word] ^ arrivals.front().levels.words()[word];
         for (; changed != 0; changed &= changed - 1) {
           const std::size_t at = 64 * word + static_cast<std::size_t>(std::countr_zero(changed));
           ++flips.at(which);

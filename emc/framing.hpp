@@ -43,9 +43,11 @@ class Framing {
   Framing& operator=(const Framing&) = delete;
   virtual ~Framing() = default;
 
-  // Appends the units of levels that are one bit each, in order, at least those that begin up to level
-  // `until`. False when one of them is cut or broken: then nothing can be said without the receiver.
-  virtual bool find(const line::Levels& levels, std::size_t until, std::vector<FramedUnit>& units) const = 0;
+  // Appends the units of levels that are one bit each, in order, at least those that end behind level `from`
+  // and begin up to level `until`. False when one up to there is cut or broken: then nothing can be said
+  // without the receiver.
+  virtual bool find(const line::Levels& levels, std::size_t from, std::size_t until,
+                    std::vector<FramedUnit>& units) const = 0;
   // The bits that the longest unit has.
   virtual std::size_t longest_unit() const = 0;
 };
@@ -53,7 +55,8 @@ class Framing {
 class TelegramFraming final : public Framing {
  public:
   explicit TelegramFraming(const line::TelegramLayout& layout);
-  bool find(const line::Levels& levels, std::size_t until, std::vector<FramedUnit>& units) const override;
+  bool find(const line::Levels& levels, std::size_t from, std::size_t until,
+            std::vector<FramedUnit>& units) const override;
   std::size_t longest_unit() const override { return line::kDataTelegramLevels; }
 
  private:
@@ -65,7 +68,8 @@ class TelegramFraming final : public Framing {
 class CharacterFraming final : public Framing {
  public:
   explicit CharacterFraming(const line::CharacterFormat& format);
-  bool find(const line::Levels& levels, std::size_t until, std::vector<FramedUnit>& units) const override;
+  bool find(const line::Levels& levels, std::size_t from, std::size_t until,
+            std::vector<FramedUnit>& units) const override;
   std::size_t longest_unit() const override { return code_.format().bits_before_stop() + 1; }
 
  private:
@@ -75,7 +79,8 @@ class CharacterFraming final : public Framing {
 // A receiver whose bit clock stands for the whole transmission, however it came by it.
 class SynchronousFraming final : public Framing {
  public:
-  bool find(const line::Levels& levels, std::size_t until, std::vector<FramedUnit>& units) const override;
+  bool find(const line::Levels& levels, std::size_t from, std::size_t until,
+            std::vector<FramedUnit>& units) const override;
   std::size_t longest_unit() const override { return 0; }
 };
 

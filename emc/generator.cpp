@@ -146,7 +146,7 @@ kernel::Time BurstSchedule::pulse_here() const {
   if (timing_.jitter == kernel::Duration::zero()) return place;
   const auto name = static_cast<std::uint64_t>((burst_ + 1) * timing_.pulses + number_);
   const std::int64_t most = timing_.jitter.count();
-  return place + kernel::Duration{jitter_.split(name).between(-most, most)};
+  return place + kernel::Duration{jitter_[name].between(-most, most)};
 }
 
 void BurstSchedule::step() {

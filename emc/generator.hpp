@@ -148,7 +148,7 @@ class BurstSchedule {
   kernel::Time origin_;
   kernel::Time on_;  // no pulse comes before
   kernel::Time off_;
-  kernel::Random jitter_;
+  kernel::RandomChildren jitter_;  // of each pulse
   // The pulse that was found last, or where its search stands.
   std::int64_t burst_ = 0;
   kernel::Time begin_{};  // of that burst

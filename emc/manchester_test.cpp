@@ -85,7 +85,7 @@ class ManchesterLine {
     sent_.clear();
     heard_.clear();
     receiver_.receive(wave_, sent_);
-    receiver_.receive(arrivals_.at(0), heard_);
+    receiver_.receive(arrivals_.front(), heard_);
     for (std::size_t n = 0; n < sent_.size(); ++n) {
       if (!line::is_data(heard_[n])) {
         ++violations_;
@@ -101,7 +101,7 @@ class ManchesterLine {
   line::ManchesterCode code_{{}};
   line::ManchesterReceiver receiver_;
   line::Waveform wave_;
-  std::vector<line::Waveform> arrivals_;
+  line::Waveforms arrivals_;
   std::vector<line::Symbol> sent_;
   std::vector<line::Symbol> heard_;
   std::uint64_t pulses_ = 0;
@@ -184,10 +184,10 @@ RC_GTEST_PROP(ManchesterProperty, ShortCutsGiveWhatTheReceiverMakesOfTheWrongWav
   const auto heard_with = [&](bool has_short_cuts) {
     BurstChannel channel(schedule, wrong, receiver_of(bit_rate, has_short_cuts), trace,
                          trace.add_channel(has_short_cuts ? "quick" : "full"));
-    std::vector<line::Waveform> arrivals;
-    if (!channel.pass(wave, arrivals)) arrivals.push_back(wave);
+    line::Waveforms arrivals;
+    if (!channel.pass(wave, arrivals)) arrivals.add(wave);
     std::vector<line::Symbol> symbols;
-    line::ManchesterReceiver({}, bit_rate).receive(arrivals.at(0), symbols);
+    line::ManchesterReceiver({}, bit_rate).receive(arrivals.front(), symbols);
     return symbols;
   };
   RC_ASSERT(heard_with(true) == heard_with(false));

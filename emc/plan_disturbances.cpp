@@ -124,7 +124,7 @@ class BitFlips final : public fault::Channel {
   BitFlips(const fault::StressPlace& place, std::unique_ptr<fault::Channel> flips)
       : bit_rate_(place.bit_rate), trace_(place.trace), place_(place.channel), flips_(std::move(flips)) {}
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     const bool is_finer = sent.rate > bit_rate_ && sent.rate % bit_rate_ == 0;
     const auto levels = static_cast<std::size_t>(is_finer ? sent.rate / bit_rate_ : 1);
     bits_.start = sent.start;
@@ -133,7 +133,7 @@ class BitFlips final : public fault::Channel {
     bits_.levels.append_idle((sent.levels.size() + levels - 1) / levels);
     flipped_.clear();
     if (!flips_->pass(bits_, flipped_)) return false;
-    invert(arrivals.emplace_back(sent).levels, levels);
+    invert(arrivals.add(sent).levels, levels);
     return true;
   }
 
@@ -155,7 +155,7 @@ class BitFlips final : public fault::Channel {
   trace::Channel place_;
   std::unique_ptr<fault::Channel> flips_;
   line::Waveform bits_;
-  std::vector<line::Waveform> flipped_;
+  line::Waveforms flipped_;
 };
 
 // Each receiver draws for itself.

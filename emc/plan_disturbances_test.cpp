@@ -91,7 +91,7 @@ class TwoReceivers final : private trace::Recorder {
   std::array<fault::Channel*, 2> channels_;
   std::array<std::vector<Time>, 2> faults_;
   std::array<std::vector<Time>, 2> flips_;
-  std::vector<line::Waveform> arrivals_;
+  line::Waveforms arrivals_;
   std::uint64_t sent_bits_ = 0;
 };
 

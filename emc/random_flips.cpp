@@ -28,8 +28,8 @@ double power(double base, std::uint64_t exponent) {
 }
 
 // The arrival that is being changed; made with the first change.
-line::Waveform& changed(const line::Waveform& sent, std::vector<line::Waveform>& arrivals, bool& is_changed) {
-  if (!is_changed) arrivals.push_back(sent);
+line::Waveform& changed(const line::Waveform& sent, line::Waveforms& arrivals, bool& is_changed) {
+  if (!is_changed) arrivals.add(sent);
   is_changed = true;
   return arrivals.back();
 }
@@ -39,13 +39,13 @@ line::Waveform& changed(const line::Waveform& sent, std::vector<line::Waveform>&
 BernoulliChannel::BernoulliChannel(double flip_probability, kernel::Random random)
     : skip_(probability(flip_probability, "the flip probability")), random_(random), clean_(skip_(random_)) {}
 
-bool BernoulliChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+bool BernoulliChannel::pass(const line::Waveform& sent, line::Waveforms& arrivals) {
   const std::uint64_t size = sent.levels.size();
   if (clean_ >= size) {
     clean_ -= size;
     return false;
   }
-  line::Waveform& arrival = arrivals.emplace_back(sent);
+  line::Waveform& arrival = arrivals.add(sent);
   std::uint64_t at = clean_;
   while (true) {
     arrival.levels.flip(at);
@@ -126,7 +126,7 @@ void GilbertElliottChannel::pass_idle_time(const line::Waveform& sent) {
   passed_until_ = std::max(passed_until_, sent.end());
 }
 
-bool GilbertElliottChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+bool GilbertElliottChannel::pass(const line::Waveform& sent, line::Waveforms& arrivals) {
   pass_idle_time(sent);
   const std::uint64_t size = sent.levels.size();
   bool is_changed = false;
@@ -144,7 +144,7 @@ BitListChannel::BitListChannel(Positions positions) : positions_(std::move(posit
   FIELDPROOF_CHECK(std::ranges::is_sorted(*positions_), "the bits of a list are in order");
 }
 
-bool BitListChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+bool BitListChannel::pass(const line::Waveform& sent, line::Waveforms& arrivals) {
   const std::uint64_t number = passed_++;
   bool is_changed = false;
   const std::vector<Position>& positions = *positions_;

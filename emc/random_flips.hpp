@@ -23,7 +23,7 @@ class BernoulliChannel final : public fault::Channel {
   // p out of 0..1 is a usage error.
   BernoulliChannel(double flip_probability, kernel::Random random);
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override;
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override;
 
   std::uint64_t flipped_bits() const { return flipped_; }
 
@@ -81,7 +81,7 @@ class GilbertElliottChannel final : public fault::Channel {
  public:
   GilbertElliottChannel(const GilbertElliott& parameters, kernel::Random random);
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override;
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override;
 
   std::uint64_t flipped_bits() const { return flipped_; }
 
@@ -109,7 +109,7 @@ class BitListChannel final : public fault::Channel {
   // In order, shared by the receivers of a list; a position that is named twice flips twice.
   explicit BitListChannel(Positions positions);
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override;
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override;
 
   std::uint64_t flipped_bits() const { return flipped_; }
   std::uint64_t missed_bits() const { return missed_; }

@@ -24,12 +24,12 @@ std::vector<std::uint64_t> flips_of(fault::Channel& channel, const std::vector<s
   std::vector<std::uint64_t> flips;
   std::uint64_t passed = 0;
   for (const std::size_t size : sizes) {
-    std::vector<line::Waveform> arrivals;
+    line::Waveforms arrivals;
     const line::Waveform sent = wave_of(size);
     if (channel.pass(sent, arrivals)) {
       EXPECT_EQ(arrivals.size(), 1U);
       for (std::size_t n = 0; n < size; ++n) {
-        if (!arrivals.at(0).levels[n]) flips.push_back(passed + n);
+        if (!arrivals.front().levels[n]) flips.push_back(passed + n);
       }
     } else {
       EXPECT_TRUE(arrivals.empty());
@@ -177,7 +177,7 @@ TEST(GilbertElliottChannelTest, IdleTimePasses) {
     for (int n = 0; n < 2000; ++n) {
       line::Waveform wave = wave_of(100);
       wave.start = kernel::kStart + n * 3600 * kernel::kSecond;
-      std::vector<line::Waveform> arrivals;
+      line::Waveforms arrivals;
       const bool is_hit = channel.pass(wave, arrivals);
       changes += is_hit && was_hit;
       was_hit = is_hit;

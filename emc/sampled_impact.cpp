@@ -12,8 +12,9 @@ void SampledImpact::judge(const line::Levels& levels, const std::vector<Span>& h
   is_unclear_ = framing_ == nullptr;
   if (is_unclear_ || heard.empty()) return;
   // The bits behind the last wrong time matter as far as a glitch in it may pass for a start.
+  const auto from = static_cast<std::size_t>(grid_.level_of(heard.front().from));
   const auto until = static_cast<std::size_t>(grid_.level_of(heard.back().to - 1)) + 2;
-  is_unclear_ = !framing_->find(levels, until, units_);
+  is_unclear_ = !framing_->find(levels, from, until, units_);
   auto unit = units_.begin();
   Place place{0, heard.front().from};
   while (!is_unclear_ && place.span < heard.size()) {
@@ -70,19 +71,18 @@ void SampledImpact::judge_on_idle_line(std::int64_t idle_until, Place& place) {
 }
 
 bool SampledImpact::is_sampled_wrong(std::int64_t bit, std::size_t first_span) const {
-  const std::int64_t begin = grid_.begin_of(bit);
-  const bool middle = is_wrong_at(begin + sixteenths(8), first_span);
-  if (sampling_.kind == line::Sampling::Kind::mid_bit) return middle;
-  const int wrong = int{is_wrong_at(begin + sixteenths(7), first_span)} + int{middle} +
-                    int{is_wrong_at(begin + sixteenths(9), first_span)};
-  return wrong >= 2;
-}
-
-bool SampledImpact::is_wrong_at(std::int64_t tick, std::size_t first_span) const {
-  for (std::size_t n = first_span; n < heard_->size() && (*heard_)[n].from <= tick; ++n) {
-    if (tick < (*heard_)[n].to) return true;
+  const std::int64_t middle = grid_.begin_of(bit) + sixteenths(8);
+  const std::int64_t apart = sixteenths(1);
+  bool before = false;
+  bool at = false;
+  bool behind = false;
+  for (std::size_t n = first_span; n < heard_->size() && (*heard_)[n].from <= middle + apart; ++n) {
+    before |= (*heard_)[n].has(middle - apart);
+    at |= (*heard_)[n].has(middle);
+    behind |= (*heard_)[n].has(middle + apart);
   }
-  return false;
+  if (sampling_.kind == line::Sampling::Kind::mid_bit) return at;
+  return (before && at) || (at && behind) || (before && behind);
 }
 
 }  // namespace fieldproof::emc

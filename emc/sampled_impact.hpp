@@ -55,7 +55,6 @@ class SampledImpact {
   void judge_on_idle_line(std::int64_t idle_until, Place& place);
   void pass_bit(std::int64_t bit, Place& place) const;
   bool is_sampled_wrong(std::int64_t bit, std::size_t first_span) const;
-  bool is_wrong_at(std::int64_t tick, std::size_t first_span) const;
 
   const Framing* framing_;
   line::Sampling sampling_;

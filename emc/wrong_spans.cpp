@@ -1,6 +1,7 @@
 #include "emc/wrong_spans.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace fieldproof::emc {
 namespace {
@@ -9,9 +10,7 @@ bool begins_earlier(const Span& a, const Span& b) {
   return a.from < b.from;
 }
 
-// Orders spans and joins those that touch. One pulse after the other they mostly are in order.
-void join(std::vector<Span>& spans) {
-  if (spans.size() < 2) return;
+void join_several(std::vector<Span>& spans) {
   if (!std::is_sorted(spans.begin(), spans.end(), begins_earlier)) {
     std::sort(spans.begin(), spans.end(), begins_earlier);
   }
@@ -26,6 +25,11 @@ void join(std::vector<Span>& spans) {
   spans.resize(last + 1);
 }
 
+// Orders spans and joins those that touch. One pulse after the other they mostly are in order.
+inline void join(std::vector<Span>& spans) {
+  if (spans.size() > 1) join_several(spans);
+}
+
 }  // namespace
 
 void WrongSpans::begin(const line::Waveform& sent, const TickGrid& grid) {
@@ -36,13 +40,16 @@ void WrongSpans::begin(const line::Waveform& sent, const TickGrid& grid) {
   for (auto& spans : of_level_) spans.clear();
 }
 
-void WrongSpans::add(kernel::Time pulse, const WrongOutput& wrong) {
+Span WrongSpans::add(kernel::Time pulse, const WrongOutput& wrong) {
+  Span reach{std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::min()};
   for (std::size_t level = 0; level < 2; ++level) {
     for (const Interval& interval : wrong.of_level[level]) {
       const Span span{tick_of(pulse + interval.from), tick_of(pulse + interval.to)};
+      reach = {std::min(reach.from, span.from), std::max(reach.to, span.to)};
       if (span.from < span.to) of_level_[level].push_back(span);
     }
   }
+  return reach;
 }
 
 const std::vector<Span>& WrongSpans::resolve() {

@@ -22,6 +22,9 @@ struct Span {
   std::int64_t from;
   std::int64_t to;
 
+  // Both comparisons are made: branches on a tick can't be predicted.
+  bool has(std::int64_t tick) const { return (from <= tick) & (tick < to); }
+
   friend bool operator==(const Span&, const Span&) = default;
 };
 
@@ -49,17 +52,12 @@ class WrongSpans {
   // Forgets everything; what is added then belongs to `sent`.
   void begin(const line::Waveform& sent, const TickGrid& grid);
 
-  // The effect of a pulse. Pulses are added in order.
-  void add(kernel::Time pulse, const WrongOutput& wrong);
+  // The effect of a pulse; gives the ticks from its first to its last wrong one. Pulses are added in order.
+  Span add(kernel::Time pulse, const WrongOutput& wrong);
 
   // Takes out what is not heard: where the driven level is not the one that is mistaken. What is left is when
   // the line is heard as the opposite of what it is; ordered, apart, within the transmission.
   const std::vector<Span>& resolve();
-
-  // The ticks that a pulse can reach.
-  Span reach_of(kernel::Time pulse, const Interval& hull) const {
-    return {tick_of(pulse + hull.from), tick_of(pulse + hull.to)};
-  }
 
   const TickGrid& grid() const { return grid_; }
 

@@ -29,8 +29,8 @@ const line::TelegramCode& code() {
 // Inverts every level of what it is asked about.
 class Inverts final : public fault::Channel {
  public:
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
-    line::Waveform& arrival = arrivals.emplace_back(sent);
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
+    line::Waveform& arrival = arrivals.add(sent);
     arrival.levels.invert(0, arrival.levels.size());
     return true;
   }
@@ -58,7 +58,7 @@ void let_pass(const fault::Plan& plan) {
   line::Waveform sent;
   sent.rate = 500'000;
   for (std::uint8_t n = 0; n < 4; ++n) code().append(sent.levels, line::kDataTelegram, n);
-  std::vector<line::Waveform> arrivals;
+  line::Waveforms arrivals;
   for (int n = 0; n < 4; ++n) {
     arrivals.clear();
     trace.observe(place, sent.start, "running");

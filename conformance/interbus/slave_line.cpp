@@ -9,17 +9,13 @@
 namespace fieldproof::conformance {
 
 void LineView::on_wave(const line::Waveform& wave) {
-  if (wave_count_ == waves_.size()) waves_.emplace_back();
-  line::Waveform& copy = waves_[wave_count_++];
-  copy.start = wave.start;
-  copy.rate = wave.rate;
-  copy.levels.clear();
-  copy.levels.append(wave.levels);
+  waves_.add(wave);
 }
 
 void LineView::clear() {
   decode();
-  wave_count_ = decoded_ = 0;
+  waves_.clear();
+  decoded_ = 0;
   origins_.clear();
   telegrams_.clear();
   data_telegrams_.clear();
@@ -30,7 +26,7 @@ void LineView::decode() {
   const auto sink = [this](const line::Waveform& wave, const line::Telegram& telegram) {
     keep(wave, telegram);
   };
-  for (; decoded_ < wave_count_; ++decoded_) {
+  for (; decoded_ < waves_.size(); ++decoded_) {
     origin_of_ = nullptr;
     receiver_.receive(waves_[decoded_], sink);
   }
@@ -70,7 +66,7 @@ kernel::Time LineView::end_of(const SeenTelegram& telegram) const {
 
 std::size_t LineView::overlap_count() const {
   std::size_t count = 0;
-  for (std::size_t n = 1; n < wave_count_; ++n) {
+  for (std::size_t n = 1; n < waves_.size(); ++n) {
     if (waves_[n].start < waves_[n - 1].end()) ++count;
   }
   return count;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/line/telegram_receiver.hpp"
+#include "harness/line/waveforms.hpp"
 #include "harness/segment/station.hpp"
 #include "protocols/interbus/rules.hpp"
 
@@ -37,7 +38,7 @@ class LineView final : public segment::Tap {
   void clear();
 
   // Since the last clear, in order of time.
-  std::span<const line::Waveform> waves() const { return {waves_.data(), wave_count_}; }
+  std::span<const line::Waveform> waves() const { return waves_; }
   std::span<const SeenTelegram> telegrams();
   std::span<const SeenTelegram> data_telegrams();
   std::size_t status_count() {
@@ -66,8 +67,7 @@ class LineView final : public segment::Tap {
 
   std::int64_t bit_rate_;
   line::TelegramReceiver receiver_;
-  std::vector<line::Waveform> waves_;  // buffers beyond wave_count_ are kept
-  std::size_t wave_count_ = 0;
+  line::Waveforms waves_;
   std::size_t decoded_ = 0;
   std::vector<Origin> origins_;
   const line::Waveform* origin_of_ = nullptr;  // of the last origin, while it is decoded

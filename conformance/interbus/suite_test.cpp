@@ -144,7 +144,7 @@ TEST(InterbusSuite, AStationOfTheCallersIsJudged) {
 
 // A receiver behind a cable that loses whatever is sent.
 class Deaf final : public fault::Channel {
-  bool pass(const line::Waveform&, std::vector<line::Waveform>&) override { return true; }
+  bool pass(const line::Waveform&, line::Waveforms&) override { return true; }
 };
 
 TEST(InterbusSuite, CasesOfStressesAreThereWithStresses) {

@@ -146,7 +146,7 @@ class CountedChannel final : public fault::Channel {
  public:
   explicit CountedChannel(std::unique_ptr<fault::Channel> channel) : channel_(std::move(channel)) {}
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     ++statistics_.transmissions;
     const bool is_changed = channel_->pass(sent, arrivals);
     if (is_changed) {

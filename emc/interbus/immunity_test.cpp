@@ -115,10 +115,10 @@ class FlipsControlOfLastOctet final : public fault::Channel {
  public:
   explicit FlipsControlOfLastOctet(bool is_on) : is_on_(is_on) {}
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     const auto last = last_of_data(sent);
     if (!is_on_ || !last || ++cycles_ % 4 != 0) return false;
-    line::Waveform& arrival = arrivals.emplace_back(sent);
+    line::Waveform& arrival = arrivals.add(sent);
     arrival.levels.flip(*last + control_);
     return true;
   }

@@ -21,7 +21,7 @@ void ArrivalWriter::write(const line::Levels& levels, Piece part, std::size_t at
     arrivals_.back().levels.append(levels, part.first, part.count);
     return;
   }
-  line::Waveform& arrival = arrivals_.emplace_back();
+  line::Waveform& arrival = arrivals_.add();
   arrival.start = start;
   arrival.rate = sent_.rate;
   arrival.levels.append(levels, part.first, part.count);
@@ -32,10 +32,10 @@ void ArrivalWriter::finish() {
   for (std::size_t i = first_arrival_; i + 1 < arrivals_.size(); ++i) {
     cut_back(arrivals_[i], arrivals_[i + 1].start);
   }
-  std::erase_if(arrivals_, [](const line::Waveform& arrival) { return arrival.levels.empty(); });
+  arrivals_.drop_empty();
 }
 
-void order_by_start(std::vector<line::Waveform>& waves, std::size_t first) {
+void order_by_start(line::Waveforms& waves, std::size_t first) {
   const auto begin = waves.begin() + static_cast<std::ptrdiff_t>(first);
   const auto is_before = [](const line::Waveform& a, const line::Waveform& b) { return a.start < b.start; };
   // Mostly they are in order, and sorting would take a buffer.

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "harness/kernel/time.hpp"
-#include "harness/line/waveform.hpp"
+#include "harness/line/waveforms.hpp"
 
 // What arrives of a transmission that a fault takes apart: pieces of its levels, each at its own time. Pieces
 // that follow each other without a gap become one arrival again, so an inserted telegram gives one train.
@@ -29,7 +28,7 @@ struct Piece {
 
 class ArrivalWriter {
  public:
-  ArrivalWriter(const line::Waveform& sent, std::vector<line::Waveform>& arrivals)
+  ArrivalWriter(const line::Waveform& sent, line::Waveforms& arrivals)
       : sent_(sent), arrivals_(arrivals), first_arrival_(arrivals.size()) {}
 
   // What is written from now on arrives later (or earlier) than it was sent, in addition to what holds.
@@ -52,14 +51,14 @@ class ArrivalWriter {
   static constexpr kernel::Duration kFarthest{4'000'000'000'000'000'000};
 
   const line::Waveform& sent_;
-  std::vector<line::Waveform>& arrivals_;
+  line::Waveforms& arrivals_;
   std::size_t first_arrival_;
   std::int64_t shift_levels_ = 0;
   kernel::Duration shift_time_{};
 };
 
 // Orders the waveforms from index `first` on by their start; equal starts stay in order.
-void order_by_start(std::vector<line::Waveform>& waves, std::size_t first);
+void order_by_start(line::Waveforms& waves, std::size_t first);
 
 // Takes away the levels that begin before `from`; the start moves to the first level that is left.
 void cut_front(line::Waveform& wave, kernel::Time from);

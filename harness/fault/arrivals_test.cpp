@@ -15,10 +15,11 @@ using kernel::kPicosecond;
 using kernel::kStart;
 using line::wave_of;
 using line::Waveform;
+using line::Waveforms;
 
 TEST(ArrivalWriter, JoinsPiecesWithoutAGap) {
   const Waveform sent = wave_of("01100");
-  std::vector<Waveform> arrivals;
+  Waveforms arrivals;
   ArrivalWriter writer(sent, arrivals);
   writer.write({0, 2});
   writer.write(wave_of("11").levels, {0, 2}, 2);
@@ -32,7 +33,7 @@ TEST(ArrivalWriter, JoinsPiecesWithoutAGap) {
 
 TEST(ArrivalWriter, LetsTheLaterArrivalWinFromItsStartOn) {
   const Waveform sent = wave_of("0000011111");
-  std::vector<Waveform> arrivals;
+  Waveforms arrivals;
   ArrivalWriter writer(sent, arrivals);
   writer.write({0, 5}, 3 * kMicrosecond);
   writer.write({5, 5});
@@ -72,7 +73,7 @@ RC_GTEST_PROP(Arrivals, NeverOverlapAndAreInOrder, ()) {
   Waveform sent;
   sent.rate = *rc::gen::inRange<std::int64_t>(1'000, 20'000'000);
   sent.levels.append(*rc::gen::arbitrary<std::uint64_t>(), 60);
-  std::vector<Waveform> arrivals;
+  Waveforms arrivals;
   ArrivalWriter writer(sent, arrivals);
   std::size_t at = 0;
   while (at < 60) {

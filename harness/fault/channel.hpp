@@ -1,8 +1,6 @@
 #pragma once
 
-#include <vector>
-
-#include "harness/line/waveform.hpp"
+#include "harness/line/waveforms.hpp"
 
 // What lies between a transmission and one receiver. A link or a medium asks the channel of each receiver
 // once per transmission; a receiver without a channel gets what was driven. A plan of declared faults and a
@@ -20,7 +18,7 @@ class Channel {
   // receiver gets exactly `sent`. Gives true after having appended to `arrivals` what it gets instead, in
   // order of their start: nothing when it is lost, several when it is repeated or torn. No arrival starts
   // before `sent.start`.
-  virtual bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) = 0;
+  virtual bool pass(const line::Waveform& sent, line::Waveforms& arrivals) = 0;
 };
 
 }  // namespace fieldproof::fault

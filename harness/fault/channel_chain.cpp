@@ -1,14 +1,12 @@
 #include "harness/fault/channel_chain.hpp"
 
-#include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "harness/fault/arrivals.hpp"
 
 namespace fieldproof::fault {
 
-bool ChannelChain::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+bool ChannelChain::pass(const line::Waveform& sent, line::Waveforms& arrivals) {
   bool is_changed = false;
   for (Channel* channel : channels_) {
     if (!is_changed) {
@@ -18,13 +16,13 @@ bool ChannelChain::pass(const line::Waveform& sent, std::vector<line::Waveform>&
     }
     behind_.clear();
     for (line::Waveform& wave : before_) {
-      if (!channel->pass(wave, behind_)) behind_.push_back(std::move(wave));
+      if (!channel->pass(wave, behind_)) behind_.take(wave);
     }
     std::swap(before_, behind_);
   }
   if (!is_changed) return false;
   order_by_start(before_, 0);
-  std::move(before_.begin(), before_.end(), std::back_inserter(arrivals));
+  for (line::Waveform& wave : before_) arrivals.take(wave);
   before_.clear();
   return true;
 }

@@ -17,12 +17,12 @@ class ChannelChain final : public Channel {
   std::size_t size() const { return channels_.size(); }
   Channel* first() const { return channels_.empty() ? nullptr : channels_.front(); }
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override;
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override;
 
  private:
   std::vector<Channel*> channels_;
-  std::vector<line::Waveform> before_;  // kept for their buffers
-  std::vector<line::Waveform> behind_;
+  line::Waveforms before_;
+  line::Waveforms behind_;
 };
 
 }  // namespace fieldproof::fault

@@ -27,9 +27,9 @@ constexpr std::size_t kLevels = 6;
 class FlipsOne final : public Channel {
  public:
   explicit FlipsOne(const StressPlace& place) : place_(place) {}
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     EXPECT_EQ(place_.bit_rate, kBitRate);
-    arrivals.push_back(sent);
+    arrivals.add(sent);
     arrivals.back().levels.flip(place_.random.below(kLevels));
     place_.trace.fault(place_.channel, sent.start, "flipped");
     return true;
@@ -58,7 +58,7 @@ class TwoReceivers {
   static std::string passed(Channel* channel, Duration start = {}) {
     line::Waveform sent{kStart + start, kBitRate, {}};
     sent.levels.append_fill(false, kLevels);
-    std::vector<line::Waveform> arrivals;
+    line::Waveforms arrivals;
     if (channel == nullptr || !channel->pass(sent, arrivals)) return "as sent";
     std::string levels;
     for (const line::Waveform& arrival : arrivals) levels += arrival.levels.text();

@@ -50,7 +50,7 @@ class DisturbedReceiver final : public Channel {
         trace_(trace),
         work_(work) {}
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     if (sent.start < from_ || sent.start >= to_) return false;
     const std::uint64_t records = trace_.record_count();
     const std::size_t first = arrivals.size();
@@ -61,7 +61,7 @@ class DisturbedReceiver final : public Channel {
 
  private:
   // What it told, and what it made of the transmission.
-  void spend(std::uint64_t told, const std::vector<line::Waveform>& arrivals, std::size_t first) {
+  void spend(std::uint64_t told, const line::Waveforms& arrivals, std::size_t first) {
     constexpr std::uint64_t kStepsOfARecord = 16;
     std::uint64_t steps = 1 + kStepsOfARecord * told;
     for (std::size_t n = first; n < arrivals.size(); ++n) steps += arrivals[n].levels.word_count();

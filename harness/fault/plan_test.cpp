@@ -18,11 +18,12 @@ using kernel::kPicosecond;
 using kernel::kStart;
 using line::wave_of;
 using line::Waveform;
+using line::Waveforms;
 
 constexpr std::int64_t kRate = 1'000'000;  // one microsecond per level
 
 // "@3 0101 @9 11": start in microseconds and levels of each arrival.
-std::string text(const std::vector<Waveform>& arrivals) {
+std::string text(const Waveforms& arrivals) {
   std::string result;
   for (const Waveform& arrival : arrivals) {
     const Duration start = arrival.start - kStart;
@@ -51,7 +52,7 @@ class Bench {
     channel = installed.channel_for({"rx", place});
   }
   std::string pass(const Waveform& sent) {
-    std::vector<Waveform> arrivals;
+    Waveforms arrivals;
     if (channel == nullptr || !channel->pass(sent, arrivals)) return "as sent";
     return text(arrivals);
   }
@@ -184,7 +185,7 @@ TEST(Plan, TheLimitOfHitsHoldsOverAllReceivers) {
   InstalledPlan installed(plan, trace, kernel::Random(1));
   Channel* a = installed.channel_for({"a", place});
   Channel* b = installed.channel_for({"b", place});
-  std::vector<Waveform> arrivals;
+  Waveforms arrivals;
   EXPECT_TRUE(b->pass(wave_of("0"), arrivals));
   EXPECT_FALSE(a->pass(wave_of("0"), arrivals));
 }
@@ -305,7 +306,7 @@ class Train : public testing::Test {
     InstalledPlan installed(std::move(plan), trace, kernel::Random(1));
     Channel* channel =
         installed.channel_for({"rx", trace.add_channel("rx")}, std::make_unique<TelegramFields>(layout_));
-    std::vector<Waveform> arrivals;
+    Waveforms arrivals;
     if (!channel->pass(sent_, arrivals)) return "as sent";
     std::string text;
     for (const Waveform& arrival : arrivals) {
@@ -360,7 +361,7 @@ TEST_F(Train, AUnitIsAskedOnceHoweverManyOfItsFieldsFit) {
   InstalledPlan installed(Plan({unsure}), trace, kernel::Random(7));
   Channel* channel =
       installed.channel_for({"rx", trace.add_channel("rx")}, std::make_unique<TelegramFields>(layout_));
-  std::vector<Waveform> arrivals;
+  Waveforms arrivals;
   for (int n = 0; n < 1000; ++n) channel->pass(sent_, arrivals);
   // 4000 draws of one half: six standard deviations are 190. Draws per field would give 3938.
   EXPECT_NEAR(static_cast<double>(installed.hits(0)), 2000.0, 190.0);
@@ -373,7 +374,7 @@ TEST_F(Train, EachLevelIsDrawnForItself) {
   InstalledPlan installed(Plan({noise}), trace, kernel::Random(7));
   Channel* channel =
       installed.channel_for({"rx", trace.add_channel("rx")}, std::make_unique<TelegramFields>(layout_));
-  std::vector<Waveform> arrivals;
+  Waveforms arrivals;
   std::size_t wrong = 0;
   for (int n = 0; n < 500; ++n) {
     arrivals.clear();
@@ -401,7 +402,7 @@ RC_GTEST_PROP(Plan, DrawsOfAReceiverAndARuleAreTheirOwn, (std::uint64_t seed)) {
     Channel* noise = with_other ? installed.channel_for({"another", place}) : nullptr;
     Channel* rx = installed.channel_for({"rx", place});
     std::string result;
-    std::vector<Waveform> arrivals;
+    Waveforms arrivals;
     for (int n = 0; n < 64; ++n) {
       if (noise != nullptr) noise->pass(wave_of("0"), arrivals);
       arrivals.clear();
@@ -436,8 +437,8 @@ RC_GTEST_PROP(Plan, ArrivalsNeverOverlap, (std::uint64_t seed)) {
     sent.start = now;
     sent.rate = kRate;
     sent.levels.append(random.next(), 20);
-    std::vector<Waveform> arrivals;
-    if (!bench.channel->pass(sent, arrivals)) arrivals.push_back(sent);
+    Waveforms arrivals;
+    if (!bench.channel->pass(sent, arrivals)) arrivals.add(sent);
     for (const Waveform& arrival : arrivals) {
       RC_ASSERT(arrival.start >= sent.start);
       for (const auto& [from, to] : heard) RC_ASSERT(arrival.start >= to || arrival.end() <= from);

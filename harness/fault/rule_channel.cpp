@@ -67,7 +67,7 @@ void RuleChannel::add(RuleState& state, std::string_view receiver, const kernel:
   rules_.push_back({&state, std::move(condition), random, conditions_in(state.rule->when)});
 }
 
-bool RuleChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+bool RuleChannel::pass(const line::Waveform& sent, line::Waveforms& arrivals) {
   claims_.clear();
   is_edited_ = false;
   forget_before(sent.start);
@@ -228,7 +228,7 @@ line::Levels& RuleChannel::levels_to_change(const line::Waveform& sent) {
   return edited_.levels;
 }
 
-void RuleChannel::write(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+void RuleChannel::write(const line::Waveform& sent, line::Waveforms& arrivals) {
   ArrivalWriter writer(sent, arrivals);
   std::size_t written = 0;
   for (const Claim& claim : claims_) {
@@ -264,8 +264,7 @@ void RuleChannel::forget_before(kernel::Time time) {
 }
 
 // Holds the new arrivals against the mutes and against what was promised by earlier transmissions.
-void RuleChannel::settle(const line::Waveform& sent, std::vector<line::Waveform>& arrivals,
-                         std::size_t first) {
+void RuleChannel::settle(const line::Waveform& sent, line::Waveforms& arrivals, std::size_t first) {
   if (!mutes_.empty()) silence(arrivals, first);
   work_.spend((arrivals.size() - first) * (kStepsOfAnArrival + promised_.size()));
   const kernel::Time end = sent.end();
@@ -284,10 +283,10 @@ void RuleChannel::settle(const line::Waveform& sent, std::vector<line::Waveform>
   }
   std::sort(promised_.begin(), promised_.end(),
             [](const Interval& a, const Interval& b) { return a.from < b.from; });
-  std::erase_if(arrivals, [](const line::Waveform& arrival) { return arrival.levels.empty(); });
+  arrivals.drop_empty();
 }
 
-void RuleChannel::silence(std::vector<line::Waveform>& arrivals, std::size_t first) const {
+void RuleChannel::silence(line::Waveforms& arrivals, std::size_t first) const {
   for (const Interval& mute : mutes_) {
     const std::size_t count = arrivals.size();
     for (std::size_t i = first; i < count; ++i) {
@@ -295,7 +294,7 @@ void RuleChannel::silence(std::vector<line::Waveform>& arrivals, std::size_t fir
       line::Waveform behind = arrivals[i];
       cut_front(behind, mute.to);
       cut_back(arrivals[i], mute.from);
-      if (!behind.levels.empty()) arrivals.push_back(std::move(behind));
+      if (!behind.levels.empty()) arrivals.take(behind);
     }
   }
   order_by_start(arrivals, first);

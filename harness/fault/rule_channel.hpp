@@ -39,7 +39,7 @@ class RuleChannel final : public Channel {
   void add(RuleState& state, std::string_view receiver, const kernel::Random& random);
   bool has_rules() const { return !rules_.empty(); }
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override;
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override;
 
  private:
   struct BoundRule {
@@ -66,10 +66,10 @@ class RuleChannel final : public Channel {
   void enter(BoundRule& bound, const Span& span, Piece part, const line::Waveform& sent);
   void change_levels(const Rule& rule, Piece part, const line::Waveform& sent);
   line::Levels& levels_to_change(const line::Waveform& sent);
-  void write(const line::Waveform& sent, std::vector<line::Waveform>& arrivals);
+  void write(const line::Waveform& sent, line::Waveforms& arrivals);
   void forget_before(kernel::Time time);
-  void settle(const line::Waveform& sent, std::vector<line::Waveform>& arrivals, std::size_t first);
-  void silence(std::vector<line::Waveform>& arrivals, std::size_t first) const;
+  void settle(const line::Waveform& sent, line::Waveforms& arrivals, std::size_t first);
+  void silence(line::Waveforms& arrivals, std::size_t first) const;
   void mute(Interval interval);
 
   trace::Trace& trace_;

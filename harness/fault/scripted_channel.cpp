@@ -51,7 +51,7 @@ void ScriptedChannel::disarm() {
   stored_.clear();
 }
 
-bool ScriptedChannel::pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) {
+bool ScriptedChannel::pass(const line::Waveform& sent, line::Waveforms& arrivals) {
   const std::uint64_t number = passed_++;
   const auto is_meant = [&](const Order& order) { return order.transmission == number; };
   if (std::none_of(orders_.begin(), orders_.end(), is_meant)) return false;
@@ -126,7 +126,7 @@ void ScriptedChannel::add_cut(const Order& order) {
   cuts_.insert(behind, cut);
 }
 
-void ScriptedChannel::write(std::vector<line::Waveform>& arrivals) {
+void ScriptedChannel::write(line::Waveforms& arrivals) {
   ArrivalWriter writer(changed_, arrivals);
   std::size_t written = 0;
   for (const Cut& cut : cuts_) {

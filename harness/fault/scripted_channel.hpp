@@ -71,7 +71,7 @@ class ScriptedChannel final : public Channel {
   // Transmissions that have passed so far.
   std::uint64_t passed() const { return passed_; }
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override;
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override;
 
  private:
   enum class Kind : std::uint8_t {
@@ -109,7 +109,7 @@ class ScriptedChannel final : public Channel {
   static bool is_cut(Kind kind) { return kind >= Kind::drop && kind <= Kind::insert; }
   void change(const Order& order);
   void add_cut(const Order& order);
-  void write(std::vector<line::Waveform>& arrivals);
+  void write(line::Waveforms& arrivals);
   void find_telegrams(const line::Levels& levels);
 
   const line::TelegramCode* code_;

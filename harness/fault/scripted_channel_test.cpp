@@ -16,9 +16,10 @@ using kernel::kMicrosecond;
 using kernel::kStart;
 using line::wave_of;
 using line::Waveform;
+using line::Waveforms;
 
 std::string pass(Channel& channel, const Waveform& sent) {
-  std::vector<Waveform> arrivals;
+  Waveforms arrivals;
   if (!channel.pass(sent, arrivals)) return "as sent";
   std::string text;
   for (const Waveform& arrival : arrivals) {
@@ -71,7 +72,7 @@ TEST(ScriptedChannel, TakesTransmissionsApart) {
 TEST(ScriptedChannel, ChangesTheRateFromTheStartOn) {
   ScriptedChannel channel;
   channel.on_next().rate(2'000'000).drop(1, 2);
-  std::vector<Waveform> arrivals;
+  Waveforms arrivals;
   ASSERT_TRUE(channel.pass(wave_of("0000"), arrivals));
   ASSERT_EQ(arrivals.size(), 2U);
   EXPECT_EQ(arrivals[1].rate, 2'000'000);
@@ -85,7 +86,7 @@ TEST(ScriptedChannel, FindsTelegrams) {
   const auto octets = [&](auto order) {
     ScriptedChannel channel(&code);
     order(channel.on_next());
-    std::vector<Waveform> arrivals;
+    Waveforms arrivals;
     EXPECT_TRUE(channel.pass(train, arrivals));
     std::string text;
     for (const Waveform& arrival : arrivals) {

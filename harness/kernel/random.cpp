@@ -68,7 +68,7 @@ double log_of_fraction(std::uint64_t n) {
 }  // namespace
 
 Random Random::split(std::string_view label) const {
-  return Random(child_seed(seed_, kLabelled, hash_of(label)));
+  return Random(child_seed(branch_seed(seed_, kLabelled), hash_of(label)));
 }
 
 std::uint64_t Random::geometric(double p) {

@@ -31,7 +31,7 @@ class Random {
 
   // Child streams. A label and an index never name the same child by construction of the mixing.
   Random split(std::string_view label) const;
-  Random split(std::uint64_t index) const { return Random(child_seed(seed_, kIndexed, index)); }
+  Random split(std::uint64_t index) const { return Random(child_seed(branch_seed(seed_, kIndexed), index)); }
 
   // 64 uniform bits.
   std::uint64_t next() {
@@ -88,6 +88,7 @@ class Random {
   }
 
  private:
+  friend class RandomChildren;
   __extension__ using Wide = unsigned __int128;
 
   // SplitMix64: a counter in steps of the golden ratio, each value scrambled.
@@ -103,12 +104,28 @@ class Random {
   static constexpr std::uint64_t kLabelled = 0x6C6162656C6C6564;
   static constexpr std::uint64_t kIndexed = 0x696E646578656421;
 
-  static constexpr std::uint64_t child_seed(std::uint64_t parent, std::uint64_t kind, std::uint64_t name) {
-    return scramble(scramble(scramble(parent + kGolden) ^ kind) + scramble(name + kGolden));
+  // All children of one kind have the branch in common.
+  static constexpr std::uint64_t branch_seed(std::uint64_t parent, std::uint64_t kind) {
+    return scramble(scramble(parent + kGolden) ^ kind);
+  }
+  static constexpr std::uint64_t child_seed(std::uint64_t branch, std::uint64_t name) {
+    return scramble(branch + scramble(name + kGolden));
   }
 
   std::array<std::uint64_t, 4> state_;
   std::uint64_t seed_;
+};
+
+// The children of one stream by index, for a loop that asks for many of them: each is that of `split`.
+class RandomChildren {
+ public:
+  explicit RandomChildren(const Random& parent)
+      : branch_(Random::branch_seed(parent.seed(), Random::kIndexed)) {}
+
+  Random operator[](std::uint64_t index) const { return Random(Random::child_seed(branch_, index)); }
+
+ private:
+  std::uint64_t branch_;
 };
 
 // Geometric draws for one fixed probability: how many units pass untouched before the next hit. Walking a

@@ -193,6 +193,7 @@ RC_GTEST_PROP(Random, SplitDependsOnTheSeedAndTheNameOnly,
   for (unsigned k = 0; k < drawn; ++k) used.next();
   RC_ASSERT(fresh.split(label).next() == used.split(label).next());
   RC_ASSERT(fresh.split(index).next() == used.split(index).next());
+  RC_ASSERT(fresh.split(index).next() == RandomChildren(used)[index].next());
   RC_ASSERT(fresh.split(label).seed() != seed);
   RC_ASSERT(fresh.split(index).seed() != fresh.split(index + 1).seed());
   RC_ASSERT(fresh.split(label).seed() != fresh.split(label + "x").seed());

@@ -1,6 +1,7 @@
 #include "harness/line/waveform.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "harness/kernel/check.hpp"
 
@@ -19,6 +20,29 @@ void change_words(std::uint64_t* words, std::size_t first, std::size_t end, Chan
     mask = ~std::uint64_t{0};
   }
   change(*last, mask & (~std::uint64_t{0} >> (63 - (end - 1) % 64)));
+}
+
+// Four levels as a word each: taken from a table four words are copied at once, where one by one each of
+// them waits for its shift.
+constexpr std::size_t kLevelsAtOnce = 4;
+using WordsAtOnce = std::array<std::uint64_t, kLevelsAtOnce>;
+
+constexpr auto kWordsOfLevels = [] {
+  std::array<WordsAtOnce, 1U << kLevelsAtOnce> table{};
+  for (std::size_t levels = 0; levels < table.size(); ++levels) {
+    for (std::size_t n = 0; n < kLevelsAtOnce; ++n) table[levels][n] = (levels >> n & 1) != 0 ? ~0ULL : 0;
+  }
+  return table;
+}();
+
+// Each of `count` packed levels as a word of equal levels.
+void write_as_words(const std::uint64_t* levels, std::size_t count, std::uint64_t* words) {
+  std::size_t n = 0;
+  for (; n + kLevelsAtOnce <= count; n += kLevelsAtOnce) {
+    const WordsAtOnce& at_once = kWordsOfLevels[levels[n / 64] >> (n % 64) & (kWordsOfLevels.size() - 1)];
+    std::copy(at_once.begin(), at_once.end(), words + n);
+  }
+  for (; n < count; ++n) words[n] = 0 - (levels[n / 64] >> (n % 64) & 1);
 }
 
 }  // namespace
@@ -65,8 +89,7 @@ void Levels::append_stretched(const Levels& other, std::size_t times) {
   const std::size_t begin = size_;
   append_idle(other.size() * times);
   if (times == kWordLevels && begin % kWordLevels == 0) {
-    std::uint64_t* word = words_.data() + begin / kWordLevels;
-    for (std::size_t n = 0; n < other.size(); ++n) *word++ = other[n] ? ~std::uint64_t{0} : 0;
+    write_as_words(other.words(), other.size(), words_.data() + begin / kWordLevels);
     return;
   }
   for (std::size_t first = 0; first < other.size();) {

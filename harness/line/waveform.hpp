@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/kernel/time.hpp"
@@ -22,6 +23,20 @@ namespace fieldproof::line {
 class Levels {
  public:
   Levels() { reserve(kInitialLevels); }
+  Levels(const Levels&) = default;
+  Levels& operator=(const Levels&) = default;
+  // What is moved from is memory: it is cleared before it is filled again.
+  Levels(Levels&& other) noexcept
+      : words_(std::move(other.words_)),
+        capacity_(std::exchange(other.capacity_, 0)),
+        size_(std::exchange(other.size_, 0)) {}
+  Levels& operator=(Levels&& other) noexcept {
+    std::swap(words_, other.words_);
+    std::swap(capacity_, other.capacity_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+  ~Levels() = default;
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }

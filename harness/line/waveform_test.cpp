@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <utility>
 #include <vector>
 
 namespace fieldproof::line {
@@ -100,6 +101,16 @@ TEST(Levels, ClearLeavesAnIdleLine) {
   levels.clear();
   levels.append_idle(1000);
   EXPECT_EQ(levels.text(), std::string(1000, '1'));
+}
+
+TEST(Levels, MayBeFilledAgainWhenTheyWereMovedAway) {
+  Levels levels = Levels::of_text("0101");
+  const Levels taken = std::move(levels);
+  EXPECT_EQ(taken.text(), "0101");
+  levels.clear();  // NOLINT(bugprone-use-after-move): by contract
+  EXPECT_TRUE(levels.empty());
+  levels.append(0b001, 3);
+  EXPECT_EQ(levels.text(), "100");
 }
 
 TEST(Levels, FlipBehindTheEndIsABrokenInvariant) {

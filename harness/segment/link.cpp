@@ -74,7 +74,7 @@ void Link::arrive(InFlight& flight) {
   }
   segment_.trace().changed(trace_channel_, flight.wave.start - delay_, flight.wave, arrivals_);
   // Taken out while the receiver is told, because what it drives may come through this link again.
-  std::vector<line::Waveform> arrivals = std::move(arrivals_);
+  line::Waveforms arrivals = std::move(arrivals_);
   for (line::Waveform& arrival : arrivals) {
     if (arrival.start == segment_.now()) {
       deliver(arrival);

@@ -67,7 +67,7 @@ class Link final : public Port, private kernel::Timer {
   std::size_t head_ = 0;
   std::size_t tail_ = 0;
   InFlight arriving_;  // what the receiver is being told
-  std::vector<line::Waveform> arrivals_;
+  line::Waveforms arrivals_;
   kernel::Time driven_until_{kernel::Duration::min()};
   std::uint64_t overlap_count_ = 0;
 };

@@ -100,7 +100,7 @@ void MediumPort::tell_group(std::size_t count, kernel::Time end) {
 }
 
 void MediumPort::pass(const line::Waveform& wave, kernel::Time now) {
-  std::vector<line::Waveform> arrivals = std::exchange(arrivals_, {});
+  line::Waveforms arrivals = std::exchange(arrivals_, {});
   if (channel_ == nullptr || !channel_->pass(wave, arrivals)) {
     tell(wave);
   } else {

@@ -107,7 +107,7 @@ class MediumPort final : public Port {
   std::vector<Flight> flights_;  // ordered by start
   std::vector<Flight> own_;      // what this place drives and does not hear
   std::vector<Flight> group_;
-  std::vector<line::Waveform> arrivals_;
+  line::Waveforms arrivals_;
   std::vector<line::Waveform> late_;  // changed by the channel so that they end later; ordered by end
 };
 

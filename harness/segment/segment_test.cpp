@@ -42,10 +42,10 @@ class Listener final : public Station {
 // Gives each transmission twice, the second one later; loses those that are longer than four levels.
 class Echo final : public fault::Channel {
  public:
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     if (sent.levels.size() > 4) return true;
-    arrivals.push_back(sent);
-    arrivals.push_back(sent);
+    arrivals.add(sent);
+    arrivals.add(sent);
     arrivals.back().start += 50 * kMicrosecond;
     return true;
   }

@@ -65,15 +65,14 @@ class Divider final : public fault::Channel {
  public:
   explicit Divider(std::uint64_t seed) : random_(seed) {}
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     std::vector<std::size_t> cuts{0};
     code_.decode(sent.levels, 0, [&](const line::Telegram& t) {
       if (t.level > 0 && random_.chance(0.2)) cuts.push_back(t.level);
     });
     cuts.push_back(sent.levels.size());
     for (std::size_t n = 0; n + 1 < cuts.size(); ++n) {
-      arrivals.push_back(
-          {sent.time_of(cuts[n]), sent.rate, sent.levels.slice(cuts[n], cuts[n + 1] - cuts[n])});
+      arrivals.add({sent.time_of(cuts[n]), sent.rate, sent.levels.slice(cuts[n], cuts[n + 1] - cuts[n])});
     }
     return true;
   }
@@ -93,7 +92,7 @@ class OneFlip final : public fault::Channel {
   }
   bool is_armed() const { return is_armed_; }
 
-  bool pass(const line::Waveform& sent, std::vector<line::Waveform>& arrivals) override {
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     if (!is_armed_) return false;
     std::vector<line::Telegram> data;
     code_.decode(sent.levels, 0, [&](const line::Telegram& t) {
@@ -101,7 +100,7 @@ class OneFlip final : public fault::Channel {
     });
     if (data.empty()) return false;
     is_armed_ = false;
-    arrivals.push_back(sent);
+    arrivals.add(sent);
     arrivals.back().levels.flip(data[telegram_ % data.size()].level + level_);
     return true;
   }

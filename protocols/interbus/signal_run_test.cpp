@@ -95,7 +95,7 @@ TEST(SignalRunTest, TheTraceIsThatOfTheFirstTrain) {
 // Loses every n-th transmission that reaches the master.
 class LossyReturn final : public fault::Channel {
  public:
-  bool pass(const line::Waveform&, std::vector<line::Waveform>&) override { return ++count_ % 50 == 0; }
+  bool pass(const line::Waveform&, line::Waveforms&) override { return ++count_ % 50 == 0; }
 
  private:
   int count_ = 0;
