@@ -46,6 +46,32 @@ TEST(DisturbedRun, ShowsDeclaredFaultsAndDisturbancesInOneTrace) {
   EXPECT_EQ(faults.size(), 3U);
 }
 
+TEST(DisturbedRun, TellsWhatEachPartOfThePlanDid) {
+  const conformance::CaseRun done = run_under(kExample);
+  const std::vector<judge::PlannedFault>& planned = done.outcome.result.planned_faults;
+  ASSERT_EQ(planned.size(), 4U);
+  EXPECT_EQ(planned[0].place, "/rules/0");
+  EXPECT_EQ(planned[0].name, "the master misses a transmission now and then");
+  EXPECT_EQ(planned[1].place, "/disturbances/0");
+  EXPECT_EQ(planned[1].name, "welder");
+  EXPECT_GT(planned[1].hits, 10U);
+  EXPECT_EQ(planned[3].place, "/disturbances/2");
+  EXPECT_EQ(planned[3].hits, 1U) << "five bits of one transmission";
+  const auto lost = faults_of(done).size() == 3 ? planned[0].hits : 0;
+  EXPECT_GT(lost, 0U);
+}
+
+TEST(DisturbedRun, TellsThatARuleNeverHit) {
+  const reports::TemporaryFolder folder;
+  const std::string plan = (folder.path() / "plan.json").string();
+  std::ofstream(plan)
+      << R"({"rules": [{"when": {"from": "1000 s"}, "scope": "transmission", "effect": {"drop": {}}}]})";
+  const conformance::CaseRun done = run_under(plan);
+  EXPECT_EQ(done.outcome.result.verdict, judge::Verdict::pass);
+  ASSERT_EQ(done.outcome.result.planned_faults.size(), 1U);
+  EXPECT_EQ(done.outcome.result.planned_faults.front().hits, 0U);
+}
+
 TEST(DisturbedRun, IsAFunctionOfItsSeed) {
   const auto fingerprint = [](const std::string& plan, std::uint64_t seed) {
     return run_under(plan, seed).outcome.result.fingerprint;

@@ -27,6 +27,21 @@ judge::Verdict headline(const Run& run) {
   return heaviest;
 }
 
+std::vector<judge::PlannedFault> planned_faults(const Run& run) {
+  std::vector<judge::PlannedFault> all;
+  for (const judge::CaseResult& result : run.cases) {
+    for (const judge::PlannedFault& fault : result.planned_faults) {
+      const auto known = std::ranges::find(all, fault.place, &judge::PlannedFault::place);
+      if (known == all.end()) {
+        all.push_back(fault);
+      } else {
+        known->hits += fault.hits;
+      }
+    }
+  }
+  return all;
+}
+
 std::string reproduce_command(const RunIdentity& identity, const std::string& case_id) {
   std::string command = "fieldproof run " + shell_quoted(case_id);
   if (!identity.reproduce_options.empty()) command += " " + identity.reproduce_options;

@@ -82,6 +82,9 @@ Counts count(const Run& run);
 // The heaviest verdict of the run; none when there are no results.
 judge::Verdict headline(const Run& run);
 
+// What the parts of the plan of faults did in all cases together, in the order of the plan.
+std::vector<judge::PlannedFault> planned_faults(const Run& run);
+
 // The command that runs this case again: "fieldproof run interbus/slave/x --seed 7".
 std::string reproduce_command(const RunIdentity& identity, const std::string& case_id);
 

@@ -100,6 +100,19 @@ std::size_t unverified_verdicts(const Run& run) {
   }));
 }
 
+// A part of a plan that never took effect may be a slip of its writer, and a pass then says less than it
+// seems.
+std::string planned_faults_text(const Run& run) {
+  std::string out;
+  for (const judge::PlannedFault& fault : planned_faults(run)) {
+    const std::string name = fault.name.empty() ? "" : " (" + fault.name + ")";
+    out +=
+        fmt::format("plan {}: {}\n", escaped_line(fault.place + name),
+                    fault.hits == 0 ? "never took effect" : fmt::format("took effect {} times", fault.hits));
+  }
+  return out;
+}
+
 // The heaviest case that does not pass, the first one of those in the catalogue.
 const CaseResult* worst_case(const Run& run) {
   const auto worst =
@@ -190,6 +203,7 @@ std::string summary_text(const Run& run, const TextOptions& options) {
   if (const std::size_t unverified = unverified_verdicts(run); unverified > 0) {
     out += fmt::format("{} of these verdicts rest on an unverified source\n", unverified);
   }
+  out += planned_faults_text(run);
   for (const std::string& caveat : run.identity.caveats) out += "unverified: " + escaped_line(caveat) + "\n";
   const CaseResult* worst = worst_case(run);
   if (worst == nullptr) return out;

@@ -55,6 +55,16 @@ TEST(TextSummary, TellsTheCaveatsBehindTheCounts) {
       << text;
 }
 
+TEST(TextSummary, TellsWhatThePlanOfFaultsDidInAllCases) {
+  reports::Run run = sample_run();
+  run.cases.at(0).planned_faults = {{"/rules/0", "", 2}, {"/rules/1", "a slip", 0}};
+  run.cases.at(1).planned_faults = {{"/rules/0", "", 3}, {"/rules/1", "a slip", 0}};
+  const std::string text = summary_text(run, {false, 0});
+  EXPECT_NE(text.find("\nplan /rules/0: took effect 5 times\nplan /rules/1 (a slip): never took effect\n"),
+            std::string::npos)
+      << text;
+}
+
 TEST(TextSummary, EscapesWhatChangesATerminal) {
   EXPECT_EQ(escaped_line("\x1b[2J\r\n\t\x7f"), "\\x1B[2J\\x0D\\x0A\\x09\\x7F");
   EXPECT_EQ(escaped_line("\xc2\x9b\xe2\x80\xae\xef\xbb\xbf"), "\\u{009B}\\u{202E}\\u{FEFF}");

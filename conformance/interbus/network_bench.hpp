@@ -11,6 +11,7 @@
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/line_watch.hpp"
+#include "conformance/planned_faults.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/segment/segment.hpp"
@@ -70,6 +71,8 @@ class NetworkBench {
   // Starts of the data cycles on the master's output since `forget_starts`, as the lower tester decoded them.
   const std::vector<kernel::Time>& data_cycle_starts() const { return listener_.starts; }
   void forget_starts() { listener_.starts.clear(); }
+
+  std::vector<judge::PlannedFault> planned_faults() const { return conformance::planned_faults(plan_.get()); }
 
  private:
   struct Listener final : segment::Tap {

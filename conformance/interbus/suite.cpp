@@ -289,6 +289,7 @@ Outcome Run::run(const NetworkCase& network_case) {
     bench.line_watch().judge(j);
   });
   finish(outcome, bench.segment().trace(), bench.segment().now());
+  outcome.result.planned_faults = bench.planned_faults();
   keep(outcome);
   return outcome;
 }

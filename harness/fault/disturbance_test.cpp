@@ -94,6 +94,18 @@ TEST(PlanWithDisturbances, DisturbsWhatBeginsWithinTheWindow) {
   EXPECT_EQ(TwoReceivers::passed(line.a, 20 * kMicrosecond), "as sent");
 }
 
+TEST(PlanWithDisturbances, CountsWhatEachOfThemChangesAtAllReceivers) {
+  trace::Trace trace;
+  InstalledPlan installed(Plan().add(flips_one()).add(flips_one("b")).add(flips_one("c")), trace,
+                          kernel::Random(1));
+  Channel* const a = installed.channel_for({"a", trace.add_channel("a"), kBitRate});
+  Channel* const b = installed.channel_for({"b", trace.add_channel("b"), kBitRate});
+  for (Channel* channel : {a, b, b}) TwoReceivers::passed(channel);
+  EXPECT_EQ(installed.changes(0), 3U);
+  EXPECT_EQ(installed.changes(1), 2U);
+  EXPECT_EQ(installed.changes(2), 0U);
+}
+
 TEST(PlanWithDisturbances, AsksTheRulesFirst) {
   Rule drop;
   drop.effect = Drop{};

@@ -42,11 +42,12 @@ void check_disturbance(const Disturbance& disturbance) {
 // A disturbance at one receiver, in its window.
 class DisturbedReceiver final : public Channel {
  public:
-  DisturbedReceiver(const Disturbance& disturbance, std::unique_ptr<Channel> channel,
+  DisturbedReceiver(const Disturbance& disturbance, std::unique_ptr<Channel> channel, std::uint64_t& changes,
                     const trace::Trace& trace, PlanWork& work)
       : from_(disturbance.from),
         to_(disturbance.to),
         channel_(std::move(channel)),
+        changes_(changes),
         trace_(trace),
         work_(work) {}
 
@@ -55,6 +56,7 @@ class DisturbedReceiver final : public Channel {
     const std::uint64_t records = trace_.record_count();
     const std::size_t first = arrivals.size();
     const bool is_changed = channel_->pass(sent, arrivals);
+    if (is_changed) ++changes_;
     spend(trace_.record_count() - records, arrivals, first);
     return is_changed;
   }
@@ -71,6 +73,7 @@ class DisturbedReceiver final : public Channel {
   kernel::Time from_;
   kernel::Time to_;
   std::unique_ptr<Channel> channel_;
+  std::uint64_t& changes_;
   const trace::Trace& trace_;
   PlanWork& work_;
 };
@@ -99,6 +102,7 @@ InstalledPlan::InstalledPlan(Plan plan, trace::Trace& trace, const kernel::Rando
     waits_ = waits_ || !state.afters.empty();
   }
   for (const Disturbance& disturbance : plan_.disturbances()) check_disturbance(disturbance);
+  changes_.resize(plan_.disturbances().size());
   if (waits_) trace_.add_observer(*this);
 }
 
@@ -125,7 +129,8 @@ void InstalledPlan::add_disturbances(const Receiver& receiver, ChannelChain& cha
     FIELDPROOF_CHECK(receiver.bit_rate > 0, "a receiver that is disturbed has a bit rate");
     auto channel = disturbance.model.make_channel(
         {receiver.bit_rate, disturbance.from, of_disturbances.split(n), trace_, receiver.place});
-    channels_.push_back(std::make_unique<DisturbedReceiver>(disturbance, std::move(channel), trace_, work_));
+    channels_.push_back(
+        std::make_unique<DisturbedReceiver>(disturbance, std::move(channel), changes_[n], trace_, work_));
     chain.add(*channels_.back());
   }
 }

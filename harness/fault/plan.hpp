@@ -76,6 +76,8 @@ class InstalledPlan final : private trace::Observer {
   const Plan& plan() const { return plan_; }
   // How often rule number `rule` has hit.
   std::uint64_t hits(std::size_t rule) const;
+  // How many transmissions disturbance number `disturbance` has changed, at all receivers.
+  std::uint64_t changes(std::size_t disturbance) const { return changes_.at(disturbance); }
 
  private:
   void on_observation(trace::Channel channel, kernel::Time time, std::string_view what,
@@ -86,6 +88,7 @@ class InstalledPlan final : private trace::Observer {
   trace::Trace& trace_;
   kernel::Random random_;
   std::deque<RuleState> states_;                    // channels point into it
+  std::deque<std::uint64_t> changes_;               // of each disturbance; channels point into it
   PlanWork work_;                                   // of all receivers
   bool waits_ = false;                              // some rule waits for an observation
   std::vector<std::unique_ptr<Channel>> channels_;  // of the receivers, and what their chains lead through

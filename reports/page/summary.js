@@ -55,7 +55,7 @@ function setUp({ results, manifest }) {
     ["Volume", run.volume],
     ["Suite", run.suite_version],
     ["fieldproof", `${run.tool_version}, ${manifest.build.type}, ${manifest.build.compiler}`],
-    ["Plan of faults", run.plan_hash || "none"],
+    ["Plan of faults", planText(results)],
     ["Network", run.network_hash || "the suite's own"],
     ["PICS", run.pics_hash || "none"],
     ["Started", manifest.started],
@@ -65,6 +65,21 @@ function setUp({ results, manifest }) {
   ]);
 }
 
+// What the parts of the plan did in all cases together. Hits are decimal texts, beyond what a number holds exactly.
+function plannedFaults(cases) {
+  const faults = new Map();
+  for (const { place, name, hits } of cases.flatMap((one) => one.planned_faults ?? [])) {
+    const title = name ? `${place} (${name})` : place;
+    faults.set(title, (faults.get(title) ?? 0n) + BigInt(hits));
+  }
+  return [...faults];
+}
+
+function planText(results) {
+  const hits = plannedFaults(results.cases).map(([title, count]) => `${title}: ${count} hits`);
+  return [results.run.plan_hash || "none", ...hits].join("; ");
+}
+
 function runPart(run, isJoined) {
   const { results } = run;
   const { counts } = results;
@@ -72,6 +87,9 @@ function runPart(run, isJoined) {
   if (!results.run.complete) {
     trouble.push(notice(element("strong", {}, "This run is incomplete"), `: ${results.run.incomplete_because || "it did not end"}. `,
         `${part(counts.not_run, counts.selected)} selected cases have no verdict.`));
+  }
+  for (const [title, hits] of plannedFaults(results.cases)) {
+    if (hits === 0n) trouble.push(notice(element("strong", {}, "A planned fault never took effect"), `: ${title}`));
   }
   for (const caveat of results.run.caveats ?? []) trouble.push(notice(element("strong", {}, "Unverified"), `: ${caveat}`));
   if (run.journal_was_torn) trouble.push(notice("The last line of its journal was torn; that result is lost."));
