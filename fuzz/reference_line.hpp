@@ -61,8 +61,9 @@ FIELDPROOF_UNINSTRUMENTED void hear_bit_by_bit(const line::Levels& levels, Sink&
 FIELDPROOF_UNINSTRUMENTED inline std::uint16_t check_bit_by_bit(std::span<const std::uint8_t> octets,
                                                                 std::uint16_t state = 0xFFFF) {
   unsigned sum = state;
-  for (std::size_t n = 0; n < octets.size() * 8; ++n) {
-    const unsigned bit = static_cast<unsigned>(octets[n / 8] >> (7 - n % 8)) & 1U;
+  const std::uint8_t* const data = octets.data();  // the functions of a span are instrumented
+  for (std::size_t n = 0, bits = octets.size() * 8; n < bits; ++n) {
+    const unsigned bit = static_cast<unsigned>(data[n / 8] >> (7 - n % 8)) & 1U;
     const unsigned leaves = (sum >> 15 ^ bit) & 1U;
     sum = (sum << 1 ^ (leaves != 0 ? 0x1021U : 0U)) & 0xFFFFU;
   }
