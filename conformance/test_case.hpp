@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/fault/plan_part.hpp"
 #include "harness/judge/finding.hpp"
 #include "harness/judge/pics.hpp"
 #include "harness/trace/notation.hpp"
@@ -133,6 +134,8 @@ class Suite {
   }
   // What a report must say about all results under this setup; sentences.
   virtual std::vector<std::string> caveats(const Setup&) const { return {}; }
+  // The parts of the setup's plan of faults, in the order in which results count their hits.
+  virtual std::vector<fault::PlanPart> plan_parts(const Setup&) const { return {}; }
   // Throws the kernel::Error of `run` for files and places of this setup, without running anything.
   virtual void check(const TestCase&, const Setup&) const {}
 };

@@ -85,6 +85,7 @@ class ManchesterLine {
     sent_.clear();
     heard_.clear();
     receiver_.receive(wave_, sent_);
+    ASSERT_EQ(arrivals_.size(), 1U);
     receiver_.receive(arrivals_.front(), heard_);
     for (std::size_t n = 0; n < sent_.size(); ++n) {
       if (!line::is_data(heard_[n])) {

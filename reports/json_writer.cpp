@@ -40,11 +40,16 @@ Json identity_to_json(const RunIdentity& identity) {
     implementations.push_back(
         {{"role", as_utf8(one.role)}, {"position", one.position}, {"uri", as_utf8(one.uri)}});
   }
+  Json plan = Json::array();
+  for (const fault::PlanPart& part : identity.plan) {
+    plan.push_back({{"place", as_utf8(part.place)}, {"name", as_utf8(part.name)}});
+  }
   return {{"tool_version", as_utf8(identity.tool_version)},
           {"suite_version", as_utf8(identity.suite_version)},
           {"seed", decimal(identity.seed)},
           {"volume", as_utf8(identity.volume)},
           {"plan_hash", as_utf8(identity.plan_hash)},
+          {"plan", std::move(plan)},
           {"network_hash", as_utf8(identity.network_hash)},
           {"pics_hash", as_utf8(identity.pics_hash)},
           {"caveats", strings_to_json(identity.caveats)},
@@ -66,6 +71,18 @@ Json counts_to_json(const Counts& counts) {
           {"judged", counts.judged},
           {"not_run", counts.not_run()},
           {"by_verdict", std::move(by_verdict)}};
+}
+
+Json planned_faults_to_json(const std::vector<PlannedFault>& faults) {
+  Json json = Json::array();
+  for (const PlannedFault& fault : faults) {
+    json.push_back({{"place", as_utf8(fault.part.place)},
+                    {"name", as_utf8(fault.part.name)},
+                    {"hits", decimal(fault.hits)},
+                    {"cases_hit", fault.cases_hit},
+                    {"cases", fault.cases}});
+  }
+  return json;
 }
 
 using config::ObjectReader;
@@ -104,6 +121,16 @@ std::vector<Implementation> implementations_from(const Value& list) {
   return implementations;
 }
 
+std::vector<fault::PlanPart> plan_from(const Value& list) {
+  std::vector<fault::PlanPart> plan;
+  for (const Value& one : list.as_array()) {
+    plan.push_back(config::read_open_object(one, [](ObjectReader& object) {
+      return fault::PlanPart{text_in(object, "place"), text_in(object, "name")};
+    }));
+  }
+  return plan;
+}
+
 RunIdentity identity_from(const Value& value) {
   return config::read_open_object(value, [](ObjectReader& object) {
     RunIdentity identity;
@@ -112,6 +139,7 @@ RunIdentity identity_from(const Value& value) {
     identity.seed = judge::unsigned_from(object.required("seed"));
     if (const auto volume = object.optional("volume")) identity.volume = volume->as_string();
     identity.plan_hash = text_in(object, "plan_hash");
+    if (const auto plan = object.optional("plan")) identity.plan = plan_from(*plan);
     identity.network_hash = text_in(object, "network_hash");
     if (const auto hash = object.optional("pics_hash")) identity.pics_hash = hash->as_string();
     if (const auto caveats = object.optional("caveats")) identity.caveats = judge::texts_from(*caveats);
@@ -146,6 +174,7 @@ std::string results_json(const Run& run) {
                {"run", identity_to_json(run.identity)},
                {"headline", name(headline(run))},
                {"counts", counts_to_json(count(run))},
+               {"planned_faults", planned_faults_to_json(planned_faults(run))},
                {"cases", Json::array()}};
   for (const judge::CaseResult& result : run.cases) {
     json["cases"].push_back(judge::to_json(result, judge::WallTime::apart));

@@ -1,6 +1,7 @@
 #include "reports/results.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 
 namespace fieldproof::reports {
@@ -27,19 +28,18 @@ judge::Verdict headline(const Run& run) {
   return heaviest;
 }
 
-std::vector<judge::PlannedFault> planned_faults(const Run& run) {
-  std::vector<judge::PlannedFault> all;
+std::vector<PlannedFault> planned_faults(const Run& run) {
+  std::vector<PlannedFault> faults;
+  for (const fault::PlanPart& part : run.identity.plan) faults.push_back({.part = part});
   for (const judge::CaseResult& result : run.cases) {
-    for (const judge::PlannedFault& fault : result.planned_faults) {
-      const auto known = std::ranges::find(all, fault.place, &judge::PlannedFault::place);
-      if (known == all.end()) {
-        all.push_back(fault);
-      } else {
-        known->hits += fault.hits;
-      }
+    for (std::size_t n = 0; n < std::min(faults.size(), result.planned_hits.size()); ++n) {
+      const std::uint64_t hits = result.planned_hits[n];
+      faults[n].hits += std::min(hits, std::numeric_limits<std::uint64_t>::max() - faults[n].hits);
+      faults[n].cases_hit += hits > 0 ? 1 : 0;
+      ++faults[n].cases;
     }
   }
-  return all;
+  return faults;
 }
 
 std::string reproduce_command(const RunIdentity& identity, const std::string& case_id) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/fault/plan_part.hpp"
 #include "harness/judge/finding.hpp"
 
 namespace fieldproof::reports {
@@ -31,11 +32,12 @@ struct RunIdentity {
   std::string tool_version;
   std::string suite_version;
   std::uint64_t seed = 1;
-  std::string volume;                // of the repetitions: "quick", "full"
-  std::string plan_hash;             // of the declared faults; empty: none
-  std::string network_hash;          // of the network file; empty: the suites' own networks
-  std::vector<std::string> caveats;  // what must be said about all results of the run; sentences
-  std::string pics_hash;             // of the answers of the PICS; empty: none
+  std::string volume;                 // of the repetitions: "quick", "full"
+  std::string plan_hash;              // of the declared faults; empty: none
+  std::vector<fault::PlanPart> plan;  // its parts, in the order of CaseResult::planned_hits
+  std::string network_hash;           // of the network file; empty: the suites' own networks
+  std::vector<std::string> caveats;   // what must be said about all results of the run; sentences
+  std::string pics_hash;              // of the answers of the PICS; empty: none
   std::vector<std::string> selectors;
   std::vector<Implementation> implementations;
   // Every option of the command line that decides the outcome, quoted for a shell, without the selector:
@@ -82,8 +84,14 @@ Counts count(const Run& run);
 // The heaviest verdict of the run; none when there are no results.
 judge::Verdict headline(const Run& run);
 
-// What the parts of the plan of faults did in all cases together, in the order of the plan.
-std::vector<judge::PlannedFault> planned_faults(const Run& run);
+// What a part of the plan of faults did in the cases that ran under it.
+struct PlannedFault {
+  fault::PlanPart part;
+  std::uint64_t hits = 0;     // in all of them; the largest number stands for more
+  std::size_t cases_hit = 0;  // in which it hit at all
+  std::size_t cases = 0;
+};
+std::vector<PlannedFault> planned_faults(const Run& run);
 
 // The command that runs this case again: "fieldproof run interbus/slave/x --seed 7".
 std::string reproduce_command(const RunIdentity& identity, const std::string& case_id);

@@ -50,6 +50,8 @@ inline Run sample_run() {
   run.identity.suite_version = "interbus 1";
   run.identity.seed = 7;
   run.identity.volume = "full";
+  run.identity.plan_hash = "0011223344556677";
+  run.identity.plan = {{"/rules/0", "a loose plug"}, {"/disturbances/0", "</script><b>welder"}};
   run.identity.pics_hash = "00112233445566ff";
   run.identity.selectors = {"interbus/**"};
   run.identity.implementations = {{"slave", 3, "deviant:accepts_bad_check"}};
@@ -65,6 +67,8 @@ inline Run sample_run() {
                sample_case("interbus/master/stop/branch_is_left", Verdict::not_applicable,
                            "the implementation declares no branch"),
                sample_case("interbus/master/stop/none", Verdict::none)};
+  run.cases[0].planned_hits = {12, 0};
+  run.cases[1].planned_hits = {0, 0};
   return run;
 }
 

@@ -100,15 +100,21 @@ std::size_t unverified_verdicts(const Run& run) {
   }));
 }
 
-// A part of a plan that never took effect may be a slip of its writer, and a pass then says less than it
-// seems.
+// A part of a plan that never hit may be a slip of its writer, and a pass then says less than it seems.
 std::string planned_faults_text(const Run& run) {
+  constexpr std::size_t kMostLines = 20;
+  std::vector<PlannedFault> faults = planned_faults(run);
+  std::ranges::stable_partition(faults, [](const PlannedFault& fault) { return fault.cases_hit == 0; });
   std::string out;
-  for (const judge::PlannedFault& fault : planned_faults(run)) {
-    const std::string name = fault.name.empty() ? "" : " (" + fault.name + ")";
-    out +=
-        fmt::format("plan {}: {}\n", escaped_line(fault.place + name),
-                    fault.hits == 0 ? "never took effect" : fmt::format("took effect {} times", fault.hits));
+  for (const PlannedFault& fault : std::span(faults).first(std::min(kMostLines, faults.size()))) {
+    const std::string name = fault.part.name.empty() ? "" : " (" + fault.part.name + ")";
+    out += fmt::format("plan {}: ", escaped_line(fault.part.place + name));
+    out += fault.cases_hit == 0
+               ? fmt::format("never hit in {} cases\n", fault.cases)
+               : fmt::format("hit {} times, in {} of {} cases\n", fault.hits, fault.cases_hit, fault.cases);
+  }
+  if (faults.size() > kMostLines) {
+    out += fmt::format("plan: {} more parts are in results.json\n", faults.size() - kMostLines);
   }
   return out;
 }

@@ -55,14 +55,26 @@ TEST(TextSummary, TellsTheCaveatsBehindTheCounts) {
       << text;
 }
 
-TEST(TextSummary, TellsWhatThePlanOfFaultsDidInAllCases) {
+TEST(TextSummary, TellsWhatThePlanOfFaultsDidAndFirstWhatNeverHit) {
   reports::Run run = sample_run();
-  run.cases.at(0).planned_faults = {{"/rules/0", "", 2}, {"/rules/1", "a slip", 0}};
-  run.cases.at(1).planned_faults = {{"/rules/0", "", 3}, {"/rules/1", "a slip", 0}};
+  run.identity.plan = {{"/rules/0", ""}, {"/rules/1", "a slip"}, {"/disturbances/0", "welder"}};
+  run.cases.at(0).planned_hits = {2, 0, 0};
+  run.cases.at(1).planned_hits = {3, 0, 7};
   const std::string text = summary_text(run, {false, 0});
-  EXPECT_NE(text.find("\nplan /rules/0: took effect 5 times\nplan /rules/1 (a slip): never took effect\n"),
+  EXPECT_NE(text.find("\nplan /rules/1 (a slip): never hit in 2 cases\n"
+                      "plan /rules/0: hit 5 times, in 2 of 2 cases\n"
+                      "plan /disturbances/0 (welder): hit 7 times, in 1 of 2 cases\n"),
             std::string::npos)
       << text;
+}
+
+TEST(TextSummary, EndsALongPlan) {
+  reports::Run run = sample_run();
+  run.identity.plan.assign(10'000, {"/rules/0", "a"});
+  run.cases.at(0).planned_hits.assign(10'000, 1);
+  const std::string text = summary_text(run, {false, 0});
+  EXPECT_LT(std::ranges::count(text, '\n'), 40);
+  EXPECT_NE(text.find("plan: 9980 more parts are in results.json\n"), std::string::npos);
 }
 
 TEST(TextSummary, EscapesWhatChangesATerminal) {
@@ -80,6 +92,7 @@ RC_GTEST_PROP(TextSummary, LetsNoControlCharacterPass, ()) {
   run.identity.incomplete_because = *kernel::arbitrary_text();
   run.identity.reproduce_options = *kernel::arbitrary_text();
   run.identity.caveats = {*kernel::arbitrary_text()};
+  run.identity.plan = {{*kernel::arbitrary_text(), *kernel::arbitrary_text()}};
   const std::string text = summary_text(run, {false, 100});
   RC_ASSERT(std::none_of(text.begin(), text.end(),
                          [](char c) { return (c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7F; }));

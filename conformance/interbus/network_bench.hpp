@@ -11,7 +11,6 @@
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/line_watch.hpp"
-#include "conformance/planned_faults.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/segment/segment.hpp"
@@ -72,7 +71,9 @@ class NetworkBench {
   const std::vector<kernel::Time>& data_cycle_starts() const { return listener_.starts; }
   void forget_starts() { listener_.starts.clear(); }
 
-  std::vector<judge::PlannedFault> planned_faults() const { return conformance::planned_faults(plan_.get()); }
+  std::vector<std::uint64_t> planned_hits() const {
+    return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
+  }
 
  private:
   struct Listener final : segment::Tap {

@@ -13,7 +13,6 @@
 #include "conformance/interbus/slave_line.hpp"
 #include "conformance/interbus/slave_model.hpp"
 #include "conformance/line_watch.hpp"
-#include "conformance/planned_faults.hpp"
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/channel_chain.hpp"
@@ -136,7 +135,9 @@ class SlaveBench final : private segment::Station {
   void begin_stress(const fault::Stress& stress);
   void end_stress() { stressed_.end(); }
   std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
-  std::vector<judge::PlannedFault> planned_faults() const { return conformance::planned_faults(plan_.get()); }
+  std::vector<std::uint64_t> planned_hits() const {
+    return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
+  }
   // The code word whose last bits are loopback word, register and check: its bit n, as a level of the train.
   // The stations in front of the IUT put their registers before it.
   std::size_t code_word_bits() const { return 8 * (2 + 2 * words() + 2); }

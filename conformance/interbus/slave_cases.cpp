@@ -94,7 +94,7 @@ judge::CaseResult run_slave_case(const SlaveCase& slave_case, const SlaveSetting
   result.seed = setting.seed;
   result.fingerprint = bench.segment().trace().fingerprint();
   result.virtual_time = bench.now() - kernel::kStart;
-  result.planned_faults = bench.planned_faults();
+  result.planned_hits = bench.planned_hits();
   return result;
 }
 

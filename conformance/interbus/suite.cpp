@@ -289,7 +289,7 @@ Outcome Run::run(const NetworkCase& network_case) {
     bench.line_watch().judge(j);
   });
   finish(outcome, bench.segment().trace(), bench.segment().now());
-  outcome.result.planned_faults = bench.planned_faults();
+  outcome.result.planned_hits = bench.planned_hits();
   keep(outcome);
   return outcome;
 }
@@ -335,6 +335,11 @@ class InterbusSuite final : public Suite {
   std::vector<std::string> caveats(const Setup& setup) const override {
     if (setup.plan_file.empty()) return {};
     return load_plan(setup, interbus::Rules{}, given_).caveats();
+  }
+
+  std::vector<fault::PlanPart> plan_parts(const Setup& setup) const override {
+    if (setup.plan_file.empty()) return {};
+    return load_plan(setup, interbus::Rules{}, given_).parts();
   }
 
   void check(const TestCase& test_case, const Setup& setup) const override {

@@ -1,5 +1,7 @@
 #include "harness/fault/plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -80,6 +82,18 @@ class DisturbedReceiver final : public Channel {
 
 }  // namespace
 
+std::vector<PlanPart> Plan::parts() const {
+  constexpr std::size_t kLongestName = 100;
+  std::vector<PlanPart> parts;
+  const auto add = [&](std::string_view list, std::size_t n, const std::string& name) {
+    parts.push_back({fmt::format("/{}/{}", list, n),
+                     name.size() <= kLongestName ? name : name.substr(0, kLongestName) + "..."});
+  };
+  for (std::size_t n = 0; n < rules_.size(); ++n) add("rules", n, rules_[n].name);
+  for (std::size_t n = 0; n < disturbances_.size(); ++n) add("disturbances", n, disturbances_[n].name);
+  return parts;
+}
+
 std::vector<std::string> Plan::caveats() const {
   std::vector<std::string> all;
   for (const Disturbance& disturbance : disturbances_) {
@@ -137,6 +151,13 @@ void InstalledPlan::add_disturbances(const Receiver& receiver, ChannelChain& cha
 
 std::uint64_t InstalledPlan::hits(std::size_t rule) const {
   return states_.at(rule).hits;
+}
+
+std::vector<std::uint64_t> InstalledPlan::hits_of_parts() const {
+  std::vector<std::uint64_t> hits;
+  for (const RuleState& state : states_) hits.push_back(state.hits);
+  hits.insert(hits.end(), changes_.begin(), changes_.end());
+  return hits;
 }
 
 void InstalledPlan::on_observation(trace::Channel channel, kernel::Time time, std::string_view what,

@@ -11,6 +11,7 @@
 #include "harness/fault/channel_chain.hpp"
 #include "harness/fault/disturbance.hpp"
 #include "harness/fault/fields.hpp"
+#include "harness/fault/plan_part.hpp"
 #include "harness/fault/plan_work.hpp"
 #include "harness/fault/rule.hpp"
 #include "harness/fault/rule_channel.hpp"
@@ -39,6 +40,8 @@ class Plan {
   const std::vector<Rule>& rules() const { return rules_; }
   const std::vector<Disturbance>& disturbances() const { return disturbances_; }
   bool empty() const { return rules_.empty() && disturbances_.empty(); }
+  // Rules, then disturbances.
+  std::vector<PlanPart> parts() const;
   // Those of the disturbances, each once.
   std::vector<std::string> caveats() const;
 
@@ -74,10 +77,12 @@ class InstalledPlan final : private trace::Observer {
   Channel* channel_for(const Receiver& receiver, std::unique_ptr<FieldMap> fields = nullptr);
 
   const Plan& plan() const { return plan_; }
-  // How often rule number `rule` has hit.
+  // How often rule number `rule` has hit: a rule that forces a level that stands already hits too.
   std::uint64_t hits(std::size_t rule) const;
-  // How many transmissions disturbance number `disturbance` has changed, at all receivers.
+  // How many waves disturbance number `disturbance` has changed, at all receivers.
   std::uint64_t changes(std::size_t disturbance) const { return changes_.at(disturbance); }
+  // Both, in the order of `Plan::parts`.
+  std::vector<std::uint64_t> hits_of_parts() const;
 
  private:
   void on_observation(trace::Channel channel, kernel::Time time, std::string_view what,

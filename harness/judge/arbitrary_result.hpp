@@ -64,12 +64,6 @@ inline rc::Gen<Measurement> arbitrary_measurement() {
                                      rc::gen::set(&Measurement::high, arbitrary_number()));
 }
 
-inline rc::Gen<PlannedFault> arbitrary_planned_fault() {
-  return rc::gen::build<PlannedFault>(rc::gen::set(&PlannedFault::place, kernel::arbitrary_text()),
-                                      rc::gen::set(&PlannedFault::name, kernel::arbitrary_text()),
-                                      rc::gen::set(&PlannedFault::hits, arbitrary_word()));
-}
-
 inline rc::Gen<CaseResult> arbitrary_result() {
   const auto duration =
       rc::gen::map(rc::gen::arbitrary<std::int64_t>(), [](std::int64_t ps) { return kernel::Duration{ps}; });
@@ -84,8 +78,8 @@ inline rc::Gen<CaseResult> arbitrary_result() {
           rc::gen::set(&CaseResult::findings, rc::gen::container<std::vector<Finding>>(arbitrary_finding())),
           rc::gen::set(&CaseResult::measurements,
                        rc::gen::container<std::vector<Measurement>>(arbitrary_measurement())),
-          rc::gen::set(&CaseResult::planned_faults,
-                       rc::gen::container<std::vector<PlannedFault>>(arbitrary_planned_fault())),
+          rc::gen::set(&CaseResult::planned_hits,
+                       rc::gen::container<std::vector<std::uint64_t>>(arbitrary_word())),
           rc::gen::set(&CaseResult::seed, arbitrary_word()),
           rc::gen::set(&CaseResult::fingerprint, arbitrary_word()),
           rc::gen::set(&CaseResult::virtual_time, duration),

@@ -34,13 +34,6 @@ struct Measurement {
   double high = 0;
 };
 
-// A part of the plan of faults that a case ran under.
-struct PlannedFault {
-  std::string place;       // in the plan, a JSON pointer: "/rules/0"
-  std::string name;        // as the plan gives it; may be empty
-  std::uint64_t hits = 0;  // of a rule; of a disturbance: the transmissions that it changed
-};
-
 struct CaseResult {
   std::string id;
   Verdict verdict = Verdict::none;
@@ -49,9 +42,11 @@ struct CaseResult {
   Reference reference;
   std::vector<Finding> findings;
   std::vector<Measurement> measurements;
-  std::vector<PlannedFault> planned_faults{};  // of the whole plan, in its order; none without a plan
-  std::uint64_t seed = 0;                      // seed of this case, derived from the run's seed and the id
-  std::uint64_t fingerprint = 0;               // of the whole trace
+  // Under a plan of faults: how often each of its parts hit, in its order; of a disturbance the waves that it
+  // changed.
+  std::vector<std::uint64_t> planned_hits{};
+  std::uint64_t seed = 0;         // seed of this case, derived from the run's seed and the id
+  std::uint64_t fingerprint = 0;  // of the whole trace
   kernel::Duration virtual_time{};
   std::uint64_t wall_time_us = 0;  // the only field that differs between two equal runs
   std::string log;                 // of the implementation, bounded

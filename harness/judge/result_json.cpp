@@ -49,12 +49,6 @@ Json measurement_to_json(const Measurement& measurement) {
           {"high", number_to_json(measurement.high)}};
 }
 
-Json planned_fault_to_json(const PlannedFault& fault) {
-  return {{"place", kernel::as_utf8(fault.place)},
-          {"name", kernel::as_utf8(fault.name)},
-          {"hits", fmt::format("{}", fault.hits)}};
-}
-
 template <typename T, typename ToJson>
 Json list_to_json(const std::vector<T>& items, ToJson to_json) {
   Json json = Json::array();
@@ -138,13 +132,6 @@ Measurement measurement_from(const Value& value) {
   });
 }
 
-PlannedFault planned_fault_from(const Value& value) {
-  return config::read_open_object(value, [](ObjectReader& object) {
-    return PlannedFault{text_in(object, "place"), text_in(object, "name"),
-                        unsigned_from(object.required("hits"))};
-  });
-}
-
 }  // namespace
 
 nlohmann::ordered_json number_to_json(double value) {
@@ -170,8 +157,9 @@ nlohmann::ordered_json to_json(const CaseResult& result, WallTime wall_time) {
                {"fingerprint", fingerprint_text(result.fingerprint)},
                {"virtual_time_ps", fmt::format("{}", result.virtual_time.count())},
                {"log", kernel::as_utf8(result.log)}};
-  if (!result.planned_faults.empty()) {
-    json["planned_faults"] = list_to_json(result.planned_faults, planned_fault_to_json);
+  if (!result.planned_hits.empty()) {
+    json["planned_hits"] =
+        list_to_json(result.planned_hits, [](std::uint64_t hits) { return fmt::format("{}", hits); });
   }
   if (wall_time == WallTime::included) json["wall_time_us"] = fmt::format("{}", result.wall_time_us);
   return json;
@@ -206,8 +194,8 @@ CaseResult case_result_from(const Value& value) {
     result.virtual_time =
         kernel::Duration{integer_from<std::int64_t>(object.required("virtual_time_ps"), 10)};
     result.log = text_in(object, "log");
-    if (const auto planned = object.optional("planned_faults")) {
-      result.planned_faults = list_from(*planned, planned_fault_from);
+    if (const auto hits = object.optional("planned_hits")) {
+      result.planned_hits = list_from(*hits, [](const Value& one) { return unsigned_from(one); });
     }
     if (const auto time = object.optional("wall_time_us")) result.wall_time_us = unsigned_from(*time);
     return result;

@@ -109,6 +109,7 @@ void Levels::set(std::size_t n, bool level) {
 }
 
 void Levels::clear() {
+  if (capacity_ == 0) grow(0);  // they were moved away
   std::fill_n(words_.begin(), word_count(), ~std::uint64_t{0});
   size_ = 0;
 }

@@ -109,6 +109,7 @@ TEST(Levels, MayBeFilledAgainWhenTheyWereMovedAway) {
   EXPECT_EQ(taken.text(), "0101");
   levels.clear();  // NOLINT(bugprone-use-after-move): by contract
   EXPECT_TRUE(levels.empty());
+  EXPECT_EQ(levels.window(0), ~std::uint64_t{0});
   levels.append(0b001, 3);
   EXPECT_EQ(levels.text(), "100");
 }

@@ -83,6 +83,13 @@ async function openFirst(page) {
 
 const ticks = (stage) => stage.locator("text.tick").allTextContents().then((texts) => texts.join("|"));
 
+await check("the plan of faults says what it did, and what of it never hit", async (page) => {
+  const faults = firstRun?.results.planned_faults ?? [];
+  const text = await page.locator("body").innerText();
+  for (const fault of faults.slice(0, 20)) expect(text.includes(`${fault.place}${fault.name ? ` (${fault.name})` : ""}: `), `${fault.place} is named`);
+  expectEqual(text.includes("Planned faults that never hit"), faults.some((fault) => fault.cases_hit === 0), "the notice");
+});
+
 await check("the page is whole, asks for nothing and holds no other script", async (page) => {
   await whole(page);
   expectEqual(await page.locator("script").count(), 3, "scripts");

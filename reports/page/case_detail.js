@@ -85,13 +85,23 @@ function storyPart(story) {
     ["Deviations that it catches", story.catches.length ? lines(story.catches, "") : ""]]);
 }
 
+// Which parts of the run's plan of faults hit in this case.
+function plannedHitsText(hits, plan = []) {
+  if (!hits) return "";
+  const kMost = 20;
+  const hit = plan.flatMap(({ place }, at) => (hits[at] !== undefined && hits[at] !== "0" ? [`${place} ${hits[at]} times`] : []));
+  if (hit.length === 0) return "no part of it hit";
+  return `hit by ${hit.slice(0, kMost).join(", ")}${hit.length > kMost ? ` and ${number(hit.length - kMost)} more parts` : ""}`;
+}
+
 // `row` is {result, more, story, run}.
 export function caseDetail(row) {
   const { result, more, story } = row;
   const parts = [
     element("p", {class: "requirement"}, result.requirement || "No requirement is stated."),
     definitions([["Source", sourceText(result.reference)], ["Purpose", result.purpose],
-      [result.verdict === "not-applicable" ? "Why it does not apply" : "Reason", result.reason]]),
+      [result.verdict === "not-applicable" ? "Why it does not apply" : "Reason", result.reason],
+      ["Plan of faults", plannedHitsText(result.planned_hits, row.run.results.run.plan)]]),
     storyPart(story),
     result.findings.map((finding, at) => findingPart(finding, result, at, result.findings.length)),
     timeLinePart(more),

@@ -65,19 +65,28 @@ function setUp({ results, manifest }) {
   ]);
 }
 
-// What the parts of the plan did in all cases together. Hits are decimal texts, beyond what a number holds exactly.
-function plannedFaults(cases) {
-  const faults = new Map();
-  for (const { place, name, hits } of cases.flatMap((one) => one.planned_faults ?? [])) {
-    const title = name ? `${place} (${name})` : place;
-    faults.set(title, (faults.get(title) ?? 0n) + BigInt(hits));
-  }
-  return [...faults];
+function planPart(fault) {
+  const title = fault.name ? `${fault.place} (${fault.name})` : fault.place;
+  return fault.cases_hit === 0 ? `${title}: never hit in ${plural(fault.cases, "case")}`
+      : `${title}: hit ${fault.hits} times, in ${part(fault.cases_hit, fault.cases)} cases`;
 }
 
+// Of a long plan as many parts as a reader looks through.
 function planText(results) {
-  const hits = plannedFaults(results.cases).map(([title, count]) => `${title}: ${count} hits`);
-  return [results.run.plan_hash || "none", ...hits].join("; ");
+  const faults = results.planned_faults ?? [];
+  const kMost = 20;
+  return [results.run.plan_hash || "none",
+    faults.length ? element("ul", {class: "plain"}, faults.slice(0, kMost).map((fault) => element("li", {}, planPart(fault)))) : null,
+    faults.length > kMost ? `${number(faults.length - kMost)} more parts are in results.json` : null];
+}
+
+// A part of a plan that never hit may be a slip of its writer, and a pass then says less than it seems.
+function idleFaults(results) {
+  const faults = results.planned_faults ?? [];
+  const idle = faults.filter((fault) => fault.cases_hit === 0);
+  if (idle.length === 0) return null;
+  const named = idle.slice(0, 3).map((fault) => fault.place).join(", ") + (idle.length > 3 ? ", ..." : "");
+  return notice(element("strong", {}, "Planned faults that never hit"), `: ${part(idle.length, faults.length)} parts of the plan (${named})`);
 }
 
 function runPart(run, isJoined) {
@@ -88,9 +97,7 @@ function runPart(run, isJoined) {
     trouble.push(notice(element("strong", {}, "This run is incomplete"), `: ${results.run.incomplete_because || "it did not end"}. `,
         `${part(counts.not_run, counts.selected)} selected cases have no verdict.`));
   }
-  for (const [title, hits] of plannedFaults(results.cases)) {
-    if (hits === 0n) trouble.push(notice(element("strong", {}, "A planned fault never took effect"), `: ${title}`));
-  }
+  trouble.push(idleFaults(results));
   for (const caveat of results.run.caveats ?? []) trouble.push(notice(element("strong", {}, "Unverified"), `: ${caveat}`));
   if (run.journal_was_torn) trouble.push(notice("The last line of its journal was torn; that result is lost."));
   return element("article", {class: `run ${results.headline}`},
