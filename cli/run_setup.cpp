@@ -99,7 +99,8 @@ reports::RunIdentity identity_of(const Session& session, const conformance::Setu
   if (setup.pics) identity.pics_hash = hash_text(pics_text(*setup.pics));
   for (const auto& suite : session.catalogue.suites()) {
     for (std::string& caveat : suite->caveats(setup)) identity.caveats.push_back(std::move(caveat));
-    for (fault::PlanPart& part : suite->plan_parts(setup)) identity.plan.push_back(std::move(part));
+    // One file for all suites: any of them names its parts.
+    if (identity.plan.empty()) identity.plan = suite->plan_parts(setup);
   }
   identity.selectors = session.operands;
   for (const conformance::Assignment& assignment : setup.implementations) {

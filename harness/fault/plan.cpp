@@ -80,14 +80,21 @@ class DisturbedReceiver final : public Channel {
   PlanWork& work_;
 };
 
+// Cut in front of a character of UTF-8, not within one.
+std::string shortened(const std::string& name) {
+  constexpr std::size_t kLongest = 100;
+  if (name.size() <= kLongest) return name;
+  std::size_t end = kLongest;
+  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0U) == 0x80U) --end;
+  return name.substr(0, end) + "...";
+}
+
 }  // namespace
 
 std::vector<PlanPart> Plan::parts() const {
-  constexpr std::size_t kLongestName = 100;
   std::vector<PlanPart> parts;
   const auto add = [&](std::string_view list, std::size_t n, const std::string& name) {
-    parts.push_back({fmt::format("/{}/{}", list, n),
-                     name.size() <= kLongestName ? name : name.substr(0, kLongestName) + "..."});
+    parts.push_back({fmt::format("/{}/{}", list, n), shortened(name)});
   };
   for (std::size_t n = 0; n < rules_.size(); ++n) add("rules", n, rules_[n].name);
   for (std::size_t n = 0; n < disturbances_.size(); ++n) add("disturbances", n, disturbances_[n].name);

@@ -175,6 +175,21 @@ TEST(Plan, ARuleIsSpentAfterItsHits) {
   EXPECT_EQ(bench.installed.hits(0), 2U);
 }
 
+TEST(Plan, NamesItsPartsAndCutsALongNameBetweenCharacters) {
+  Plan plan;
+  Rule rule;
+  rule.name = "short";
+  plan.add(rule);
+  rule.name = std::string(99, 'a') + "\xC3\xA4" + "b";  // the second octet of a letter would be the last one
+  plan.add(rule);
+  const std::vector<PlanPart> parts = plan.parts();
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].place, "/rules/0");
+  EXPECT_EQ(parts[0].name, "short");
+  EXPECT_EQ(parts[1].place, "/rules/1");
+  EXPECT_EQ(parts[1].name, std::string(99, 'a') + "...");
+}
+
 TEST(Plan, TheLimitOfHitsHoldsOverAllReceivers) {
   trace::Trace trace;
   const trace::Channel place = trace.add_channel("a");
