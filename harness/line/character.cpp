@@ -58,6 +58,15 @@ void CharacterCode::append(Levels& levels, unsigned data) const {
 // A start bit, nine data bits, parity and stop.
 static_assert(12 <= Sampler::kMostBits);
 
+kernel::Time CharacterReceiver::busy_until(const Waveform& wave, const Received& received) const {
+  if (!received.character.is_stop_missing) {
+    return kernel::level_time(received.start, code_.format().half_bits(), 2 * bit_rate_);
+  }
+  std::size_t level = sampler_.behind(code_.format().bits_before_stop());
+  while (level < wave.levels.size() && !wave.levels[level]) ++level;
+  return std::max(received.end, wave.time_of(level));
+}
+
 void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& received) {
   const unsigned length = code_.format().bits_before_stop() + 1;
   sampler_.look_at(wave);
@@ -72,8 +81,9 @@ void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& rec
     }
     const kernel::Time start = wave.time_of(edge);
     Received& last = received.emplace_back(
-        Received{code_.from_bits(bits), start, sampling_.decided_at(start, length - 1, bit_rate_)});
+        Received{code_.from_bits(bits), start, sampling_.decided_at(start, length - 1, bit_rate_), {}});
     last.character.level = static_cast<std::uint32_t>(edge);
+    last.busy_until = busy_until(wave, last);
     // With the stop bit missing the line is low: the next falling edge lies behind an idle level anyhow.
     edge = sampler_.behind(length - 1);
   }

@@ -122,6 +122,9 @@ class CharacterReceiver {
     Character character;
     kernel::Time start;  // the edge of its start bit
     kernel::Time end;    // when its stop bit has been sampled: before that nobody knows it
+    // The end of its last bit by the clock of the receiver; with the stop bit missing, when the line is idle
+    // again, or the end of the waveform. Silence is counted from here.
+    kernel::Time busy_until;
   };
 
   CharacterReceiver(const CharacterFormat& format, std::int64_t bit_rate, Sampling sampling = {})
@@ -131,6 +134,8 @@ class CharacterReceiver {
   void receive(const Waveform& wave, std::vector<Received>& received);
 
  private:
+  kernel::Time busy_until(const Waveform& wave, const Received& received) const;
+
   CharacterCode code_;
   std::int64_t bit_rate_;
   Sampling sampling_;

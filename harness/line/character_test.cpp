@@ -191,5 +191,23 @@ RC_GTEST_PROP(CharacterReceiver, FindsWhatTheFastDecoderFindsInBitWideLevels,
   RC_ASSERT(received(format, wave, sampling) == decoded(format, wave.levels));
 }
 
+TEST(CharacterReceiver, SaysHowLongACharacterKeepsTheLineBusy) {
+  constexpr Duration kBit = 16 * kMicrosecond;
+  const CharacterFormat nine{9, Parity::none, StopBits::one};
+  Waveform wave;
+  wave.rate = kBitRate;
+  CharacterCode(nine).append(wave.levels, 0x1FF);
+  wave.levels.append_fill(false, 40);  // a break
+  wave.levels.append_idle(3);
+  CharacterCode(nine).append(wave.levels, 0x100);
+  std::vector<CharacterReceiver::Received> received;
+  CharacterReceiver(nine, kBitRate).receive(wave, received);
+  ASSERT_EQ(received.size(), 3U);
+  EXPECT_EQ(received[0].busy_until, kStart + 11 * kBit);  // to the end of its stop bit
+  EXPECT_TRUE(received[1].character.is_break);
+  EXPECT_EQ(received[1].busy_until, kStart + 51 * kBit);  // until the line is let go
+  EXPECT_EQ(received[2].busy_until, kStart + 65 * kBit);
+}
+
 }  // namespace
 }  // namespace fieldproof::line

@@ -2,67 +2,25 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
-#include <vector>
+#include <utility>
 
+#include "harness/segment/process_words.hpp"
 #include "protocols/interbus/device.hpp"
 
-// The terminals of a simulated slave: inputs that are constant or a signal in time, outputs with the instants
-// at which they changed.
+// The terminals of a simulated slave: its process words, and what it can be told about its periphery.
 namespace fieldproof::interbus {
 
-class TerminalBlock : public Terminals {
+class TerminalBlock : public Terminals, public segment::ProcessWords {
  public:
-  using Signal = std::function<std::uint16_t(kernel::Time)>;
   using Condition = std::function<bool(kernel::Time)>;
+  using ProcessWords::output;
+  using ProcessWords::ProcessWords;
 
-  struct Change {
-    kernel::Time when;
-    unsigned word;
-    std::uint16_t before;
-    std::uint16_t after;
-  };
-
-  explicit TerminalBlock(unsigned words) : inputs_(words), signals_(words), outputs_(words), writes_(words) {}
-
-  void set_input(unsigned word, std::uint16_t value) { inputs_.at(word) = value; }
-  void set_signal(unsigned word, Signal signal) { signals_.at(word) = std::move(signal); }
   void set_peripheral_fault(Condition condition) { peripheral_fault_ = std::move(condition); }
   void set_reconfiguration(Condition condition) { reconfiguration_ = std::move(condition); }
 
-  // What was written last; its instant may lie ahead, because a station works through a whole reception when
-  // it begins.
-  std::uint16_t output(unsigned word) const { return outputs_.at(word); }
-  // What stands at the terminals at `now`, which is not before the write that came before the last one.
-  std::uint16_t output_at(unsigned word, kernel::Time now) const {
-    return writes_.at(word).when <= now ? outputs_[word] : writes_[word].before;
-  }
-  const std::vector<std::uint16_t>& outputs() const { return outputs_; }
-
-  // Changes of outputs since `forget_changes`, at most kMostChanges of them; and how often any output was
-  // written, changed or not.
-  static constexpr std::size_t kMostChanges = 65'536;
-  // Called at each change as it is written.
-  void on_change(std::function<void(const Change&)> hook) { on_change_ = std::move(hook); }
-  const std::vector<Change>& changes() const { return changes_; }
-  void forget_changes() { changes_.clear(); }
-  std::uint64_t write_count() const { return write_count_; }
-  kernel::Time last_write() const { return last_write_; }
-
-  std::uint16_t input(unsigned word, kernel::Time when) override {
-    return signals_[word] ? signals_[word](when) : inputs_[word];
-  }
-  void output(unsigned word, std::uint16_t value, kernel::Time when) override {
-    ++write_count_;
-    last_write_ = when;
-    std::uint16_t& held = outputs_.at(word);
-    writes_[word] = {when, held};
-    if (held == value) return;
-    const Change change{when, word, held, value};
-    if (changes_.size() < kMostChanges) changes_.push_back(change);
-    if (on_change_) on_change_(change);
-    held = value;
-  }
+  std::uint16_t input(unsigned word, kernel::Time when) override { return ProcessWords::input(word, when); }
+  void output(unsigned word, std::uint16_t value, kernel::Time when) override { write(word, value, when); }
   bool has_peripheral_fault(kernel::Time when) override {
     return peripheral_fault_ && peripheral_fault_(when);
   }
@@ -71,21 +29,8 @@ class TerminalBlock : public Terminals {
   }
 
  private:
-  std::vector<std::uint16_t> inputs_;
-  std::vector<Signal> signals_;
-  struct Write {
-    kernel::Time when{};
-    std::uint16_t before = 0;
-  };
-
-  std::vector<std::uint16_t> outputs_;
-  std::vector<Write> writes_;  // the last one of each word
   Condition peripheral_fault_;
   Condition reconfiguration_;
-  std::vector<Change> changes_;
-  std::function<void(const Change&)> on_change_;
-  std::uint64_t write_count_ = 0;
-  kernel::Time last_write_{};
 };
 
 }  // namespace fieldproof::interbus

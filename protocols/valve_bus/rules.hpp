@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/judge/verdict.hpp"
+#include "harness/kernel/time.hpp"
+#include "harness/line/character.hpp"
+
+// Every number and every genuine option of the RS-485 bus for pneumatic valves, one member each, with source
+// and standing in `facts`. A station takes its numbers from here and from nowhere else, so a deviation may be
+// the reference with one number changed.
+//
+// The paper gives the frames, the addresses, the block check and the bit rate; it gives no character format,
+// no timing and no delimiter of frames. What was added to make a bus of it stands in this one table and is
+// marked as the project's own choice: nothing here is a standard.
+namespace fieldproof::valve_bus {
+
+enum class CharacterProfile : std::uint8_t {
+  ninth_bit_one,  // P0: start, 8 data bits, a ninth bit that is 1, stop; receivers ignore the ninth bit
+  even_parity,    // P1: start, 8 data bits, even parity, stop
+  eight_bits,     // P2: start, 8 data bits, stop
+};
+
+// What the two octets of data mean at a node.
+enum class DataProfile : std::uint8_t {
+  boards,            // DATA0: valves 1..8 of drive board 0, DATA1: valves 9..16 of board 1
+  double_solenoids,  // DATA0: coils A of 8 valves with two coils, DATA1: their coils B
+};
+
+struct Rules {
+  // Line.
+  std::int64_t bit_rate = 375'000;  // bit/s
+  CharacterProfile characters = CharacterProfile::ninth_bit_one;
+  unsigned longest_gap_half_characters = 3;  // inside a frame
+  unsigned delimiter_half_characters = 7;    // of silence, between frames
+  unsigned driver_on_bits = 1;               // at least, in front of the first start bit
+  unsigned driver_off_bits = 2;              // at most, behind the last stop bit
+
+  // Frames.
+  unsigned first_address = 1;
+  unsigned last_address = 99;
+  unsigned write_command = 0;
+  unsigned read_command = 1;
+  DataProfile data = DataProfile::boards;
+
+  // Node. Times begin with the delimiter behind the command.
+  kernel::Duration turn_round_span = 2 * kernel::kMillisecond;  // within which a response begins
+  kernel::Duration actuation_limit = 2 * kernel::kMillisecond;
+  kernel::Duration output_skew = 1 * kernel::kMicrosecond;  // of the outputs that one command changes
+  bool answers_writes = false;    // the option ACK: a node answers a write with what it has taken
+  kernel::Duration loss_limit{};  // valves off without a command for so long; zero: they hold
+
+  // Host.
+  kernel::Duration response_wait = 3 * kernel::kMillisecond;   // behind the delimiter
+  kernel::Duration write_distance = 1 * kernel::kMillisecond;  // behind the delimiter, to the next frame
+  unsigned read_attempts = 3;
+  kernel::Duration refresh = 50 * kernel::kMillisecond;
+  unsigned fifo_octets = 512;
+  kernel::Duration partial_command_limit = 100 * kernel::kMillisecond;
+
+  // Network.
+  unsigned unit_loads = 32;  // of a segment, host and repeaters included
+  unsigned max_nodes = 256;
+  unsigned max_length_m = 1000;  // without a repeater
+  kernel::Duration repeater_delay = 10 * kernel::kMicrosecond;
+  std::int64_t cable_delay_ps_per_m = 5'000;
+
+  friend bool operator==(const Rules&, const Rules&) = default;
+};
+
+// What a receiver takes for a character. Of P0 the ninth bit is data bit 8.
+line::CharacterFormat character_format(const Rules& rules);
+// A character as the line code writes it: with the ninth bit, where there is one.
+unsigned written_character(const Rules& rules, std::uint8_t octet);
+// "P0", "P1", "P2".
+std::string_view text_of(CharacterProfile profile);
+
+// `count` half characters, bits.
+kernel::Duration half_characters(const Rules& rules, unsigned count);
+kernel::Duration bits(const Rules& rules, std::int64_t count);
+
+inline kernel::Duration character_time(const Rules& rules) {
+  return half_characters(rules, 2);
+}
+inline kernel::Duration longest_gap(const Rules& rules) {
+  return half_characters(rules, rules.longest_gap_half_characters);
+}
+inline kernel::Duration delimiter(const Rules& rules) {
+  return half_characters(rules, rules.delimiter_half_characters);
+}
+
+// The bit rates of the DIP switches, position by position: what a timer at 12 MHz makes of its reload values.
+std::span<const std::int64_t> dip_bit_rates();
+
+// One line of the table of sources that README and reports print.
+struct Fact {
+  std::string_view rule;    // the member of Rules
+  std::string value;        // as a person reads it, with unit
+  std::string_view source;  // in own words
+  judge::Standing standing;
+};
+
+// Every member of Rules in the order above. A value that differs from the reference's has the standing `own`.
+std::vector<Fact> facts(const Rules& rules);
+
+}  // namespace fieldproof::valve_bus
