@@ -1,5 +1,6 @@
 #include "cli/suites.hpp"
 #include "conformance/interbus/suite.hpp"
+#include "conformance/valve_bus/suite.hpp"
 #include "emc/burst_stress.hpp"
 #include "emc/plan_disturbances.hpp"
 
@@ -8,6 +9,7 @@ namespace fieldproof::cli {
 Suites suites() {
   Suites all;
   all.push_back(conformance::interbus_suite({}, {emc::catalogue_stresses(), emc::plan_disturbances()}));
+  all.push_back(conformance::valve_bus_suite({{}, emc::plan_disturbances()}));
   return all;
 }
 

@@ -14,9 +14,8 @@ LineWatch::LineWatch(kernel::Duration shortest_transmission) {
   rules_.most_transmissions = static_cast<std::size_t>(kWindow / shortest_transmission) + 1;
 }
 
-void LineWatch::watch(segment::Link& link, trace::Trace& trace) {
-  places_.push_back({link.name(), segment::LineMonitor(rules_, trace, link.trace_channel())});
-  link.tap_driven(places_.back().monitor);
+segment::LineMonitor& LineWatch::add(const std::string& line, trace::Trace& trace, trace::Channel place) {
+  return places_.emplace_back(Place{line, segment::LineMonitor(rules_, trace, place)}).monitor;
 }
 
 void LineWatch::judge(CaseJudge& judge) const {

@@ -5,7 +5,6 @@
 
 #include "conformance/judging.hpp"
 #include "harness/kernel/time.hpp"
-#include "harness/segment/link.hpp"
 #include "harness/segment/monitor.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -19,8 +18,12 @@ class LineWatch {
   // each is too short to overlap the next.
   explicit LineWatch(kernel::Duration shortest_transmission);
 
-  // What is driven into the link from now on. The link must outlive the segment's last run.
-  void watch(segment::Link& link, trace::Trace& trace);
+  // What is driven into the line from now on: a link, or a station's place on a bus. It must outlive the
+  // segment's last run.
+  template <typename Line>
+  void watch(Line& line, trace::Trace& trace) {
+    line.tap_driven(add(line.name(), trace, line.trace_channel()));
+  }
 
   // Fails the case at the first violation, with `transmissions_overlap` or `station_babbles`. For the end of
   // a procedure.
@@ -32,8 +35,10 @@ class LineWatch {
     segment::LineMonitor monitor;
   };
 
+  segment::LineMonitor& add(const std::string& line, trace::Trace& trace, trace::Channel place);
+
   segment::MonitorRules rules_;
-  std::deque<Place> places_;  // a link keeps the address of its tap
+  std::deque<Place> places_;  // a line keeps the address of its tap
 };
 
 }  // namespace fieldproof::conformance

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "harness/fault/stress.hpp"
-#include "harness/segment/link.hpp"
+#include "harness/segment/receiver.hpp"
 
 // The receiver of an implementation under the stresses of a case: one at a time, between quiet times. While
-// it is quiet the link is as it was.
+// it is quiet it is as it was.
 namespace fieldproof::conformance {
 
 // The tag of a case that cannot be run without stresses; a suite that was given none leaves it out.
@@ -23,16 +23,16 @@ class StressedReceiver final : private fault::Channel {
   std::span<const fault::Stress> stresses() const { return stresses_; }
 
   // From now on. Equal streams give equal disturbances.
-  void begin(const fault::Stress& stress, segment::Link& link, const fault::StressPlace& place) {
+  void begin(const fault::Stress& stress, segment::Receiver& receiver, const fault::StressPlace& place) {
     end();
     channel_ = stress.make_channel(place);
-    link_ = &link;
-    before_ = link.channel();
-    link.set_channel(this);
+    receiver_ = &receiver;
+    before_ = receiver.channel();
+    receiver.set_channel(this);
   }
   void end() {
-    if (link_ != nullptr) link_->set_channel(before_);
-    link_ = nullptr;
+    if (receiver_ != nullptr) receiver_->set_channel(before_);
+    receiver_ = nullptr;
   }
 
   // Transmissions that arrived otherwise than they were sent, under all stresses.
@@ -47,7 +47,7 @@ class StressedReceiver final : private fault::Channel {
 
   std::span<const fault::Stress> stresses_;
   std::unique_ptr<fault::Channel> channel_;
-  segment::Link* link_ = nullptr;
+  segment::Receiver* receiver_ = nullptr;
   fault::Channel* before_ = nullptr;
   std::uint64_t changed_ = 0;
 };

@@ -45,7 +45,7 @@ struct TestCase {
   // Roles of implementations that the case judges besides its own: those of the parts of a network.
   std::vector<std::string> parts{};
   // Nothing, or the sentence that says why the case does not apply to such an implementation.
-  std::function<std::optional<std::string>(const judge::Pics&)> not_applicable;
+  std::function<std::optional<std::string>(const judge::Pics&)> not_applicable{};
 
   std::string role() const;  // second part of the id
   // What a finding with this reason rests on.

@@ -4,15 +4,19 @@
 
 #include "conformance/gtest_catalogue.hpp"
 #include "conformance/interbus/suite.hpp"
+#include "conformance/valve_bus/suite.hpp"
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   using namespace fieldproof::conformance;
-  const auto interbus = interbus_suite();
-  register_with_googletest(*interbus, [](const TestCase&) {
+  const auto at_quick_volume = [](const TestCase&) {
     fieldproof::conformance::Setup setup;
     setup.volume = Volume::quick;
     return setup;
-  });
+  };
+  const auto interbus = interbus_suite();
+  const auto valve_bus = valve_bus_suite();
+  register_with_googletest(*interbus, at_quick_volume);
+  register_with_googletest(*valve_bus, at_quick_volume);
   return RUN_ALL_TESTS();
 }

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string_view>
 
+#include "conformance/assigned.hpp"
+#include "conformance/case_recorder.hpp"
 #include "conformance/interbus/master_cases.hpp"
 #include "conformance/interbus/master_deviations.hpp"
 #include "conformance/interbus/network_bench.hpp"
@@ -22,19 +24,8 @@
 namespace fieldproof::conformance {
 namespace {
 
-constexpr std::string_view kRecorded = "recorded:";
-constexpr std::string_view kDeviant = "deviant:";
-constexpr std::string_view kOwn = "own";
-
 [[noreturn]] void refuse(const std::string& sentence) {
   throw kernel::Error(kernel::ErrorKind::usage, sentence);
-}
-
-std::string deviation_of(const std::string& uri, std::string_view role) {
-  if (!uri.starts_with(kDeviant)) {
-    refuse(fmt::format("\"{}\" is no INTERBUS {}; use ref or deviant:NAME", uri, role));
-  }
-  return uri.substr(kDeviant.size());
 }
 
 // What the suite was made with.
@@ -58,12 +49,9 @@ class Run {
     if (!setup.plan_file.empty()) {
       plan_ = load_plan(setup, network_ ? network_->rules : interbus::Rules{}, given);
     }
-    const std::string role = test_case.role();
-    for (const Assignment& assignment : setup.implementations) {
-      if (assignment.role.empty() || assignment.role == role) assigned_ = assignment;
-    }
-    if (assigned_.uri.starts_with(kRecorded)) {
-      played_back_ = DeviceRecording::load(assigned_.uri.substr(kRecorded.size()));
+    assigned_ = assigned_to(test_case, setup);
+    if (assigned_.uri.starts_with(kRecordedUri)) {
+      played_back_ = DeviceRecording::load(assigned_.uri.substr(kRecordedUri.size()));
     }
   }
 
@@ -100,14 +88,13 @@ class Run {
   std::optional<DeviceRecording> played_back_;
   std::size_t played_back_devices_ = 0;
   DeviceRecording recording_;
-  std::optional<trace::BoundedRecorder> recorder_;
-  std::shared_ptr<const trace::Notation> notation_;
+  CaseRecorder recorder_;
 };
 
 Run::MakeSlave Run::slave_maker(const std::string& uri) const {
-  if (uri == "ref") return std::make_unique<interbus::Slave, const interbus::SlaveConfiguration&>;
-  if (uri == kOwn && own_.make_slave) return own_.make_slave;
-  return [name = deviation_of(uri, "slave")](const interbus::SlaveConfiguration& configuration) {
+  if (uri == kReferenceUri) return std::make_unique<interbus::Slave, const interbus::SlaveConfiguration&>;
+  if (uri == kOwnUri && own_.make_slave) return own_.make_slave;
+  return [name = deviation_of(uri, "INTERBUS slave")](const interbus::SlaveConfiguration& configuration) {
     return make_slave_deviation(name, configuration);
   };
 }
@@ -120,7 +107,7 @@ std::unique_ptr<interbus::SlaveDevice> Run::make_slave(const interbus::SlaveConf
 
 std::unique_ptr<interbus::MasterDevice> Run::make_master(const interbus::MasterConfiguration& configuration) {
   if (played_back_) return played_back_master(*played_back_, played_back_devices_++);
-  auto device = assigned_.uri == kOwn && own_.make_master
+  auto device = assigned_.uri == kOwnUri && own_.make_master
                     ? own_.make_master(configuration)
                     : conformance::make_master(assigned_.uri)(configuration);
   return setup_.record ? recorded(std::move(device), recording_) : std::move(device);
@@ -134,16 +121,13 @@ void Run::finish(Outcome& outcome, const trace::Trace& trace, kernel::Time now) 
 }
 
 trace::Recorder& Run::recorder_of(const trace::Trace& trace, const interbus::Rules& rules) {
-  notation_ = std::make_shared<interbus::CycleNotation>(rules);
-  return recorder_.emplace(trace);
+  return recorder_.start(trace, std::make_shared<interbus::CycleNotation>(rules));
 }
 
 void Run::keep(Outcome& outcome) {
-  if (!recorder_) return;
+  recorder_.keep(outcome);
   Recording& kept = outcome.recording;
-  kept.trace = recorder_->take();
-  kept.notation = std::move(notation_);
-  kept.truncated = kept.trace.is_cut || recording_.is_truncated();
+  kept.truncated = kept.truncated || recording_.is_truncated();
   if (recording_.device_count() > 0) kept.playback = recording_.text();
 }
 
@@ -222,15 +206,15 @@ NetworkParts Run::network_parts(std::size_t stations) {
   NetworkParts parts;
   std::map<int, MakeSlave> slaves;
   for (const Assignment& assignment : setup_.implementations) {
-    if (assignment.uri == "ref") continue;
+    if (assignment.uri == kReferenceUri) continue;
     if (assignment.role == "slave") {
       slaves[assignment.position == 0 ? 1 : assignment.position] = slave_maker(assignment.uri);
     } else if (assignment.role == "master") {
-      parts.make_master = assignment.uri == kOwn && own_.make_master
+      parts.make_master = assignment.uri == kOwnUri && own_.make_master
                               ? own_.make_master
                               : conformance::make_master(assignment.uri);
     } else {
-      parts = deviating_network(deviation_of(assignment.uri, "network"), stations);
+      parts = deviating_network(deviation_of(assignment.uri, "INTERBUS network"), stations);
     }
   }
   if (slaves.empty()) return parts;

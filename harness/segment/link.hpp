@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/fault/channel.hpp"
 #include "harness/kernel/scheduler.hpp"
+#include "harness/segment/receiver.hpp"
 #include "harness/segment/station.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -16,7 +16,7 @@ namespace fieldproof::segment {
 
 class Segment;
 
-class Link final : public Port, private kernel::Timer {
+class Link final : public Port, public Receiver, private kernel::Timer {
  public:
   // Made by Segment::connect.
   Link(Segment& segment, std::string name, std::size_t receiver, PortIndex port, kernel::Duration delay);
@@ -27,8 +27,6 @@ class Link final : public Port, private kernel::Timer {
   trace::Channel trace_channel() const { return trace_channel_; }
   kernel::Duration delay() const { return delay_; }
 
-  void set_channel(fault::Channel* channel) { channel_ = channel; }
-  fault::Channel* channel() const { return channel_; }
   void tap_driven(Tap& tap) { driven_taps_.push_back(&tap); }
   void tap_arrived(Tap& tap) { arrived_taps_.push_back(&tap); }
 
@@ -60,7 +58,6 @@ class Link final : public Port, private kernel::Timer {
   trace::Channel trace_channel_;
   kernel::SlotId slot_;
   bool connected_ = true;
-  fault::Channel* channel_ = nullptr;
   std::vector<Tap*> driven_taps_;
   std::vector<Tap*> arrived_taps_;
   std::vector<InFlight> queue_;  // sorted by arrival from head_ on; before head_ lie buffers for reuse

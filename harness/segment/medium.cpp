@@ -149,6 +149,7 @@ void Medium::drive(MediumPort& from, line::Waveform& wave) {
   expect_not_past(from.name(), wave, segment_.now());
   segment_.trace().driven(from.trace_channel_, wave);
   for (Tap* tap : driven_taps_) tap->on_wave(wave);
+  for (Tap* tap : from.driven_taps_) tap->on_wave(wave);
   if (wave.levels.empty()) return;
   if (free_.empty()) free_.push_back(&transmissions_.emplace_back());
   MediumPort::Transmission& transmission = *free_.back();

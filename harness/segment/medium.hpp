@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/fault/channel.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/scheduler.hpp"
+#include "harness/segment/receiver.hpp"
 #include "harness/segment/segment.hpp"
 #include "harness/segment/station.hpp"
 #include "harness/trace/trace.hpp"
@@ -52,7 +52,7 @@ class ContentionWatcher {
 class Medium;
 
 // A place on the medium.
-class MediumPort final : public Port {
+class MediumPort final : public Port, public Receiver {
  public:
   // Made by Medium::attach.
   MediumPort(Medium& medium, std::string_view name, std::size_t station, PortIndex port,
@@ -67,9 +67,10 @@ class MediumPort final : public Port {
   const std::string& name() const;
   trace::Channel trace_channel() const { return trace_channel_; }
 
-  void set_channel(fault::Channel* channel) { channel_ = channel; }
   // Hears what the station is told.
   void tap_arrived(Tap& tap) { taps_.push_back(&tap); }
+  // Hears what the station drives, when it is given to the port.
+  void tap_driven(Tap& tap) { driven_taps_.push_back(&tap); }
 
  private:
   friend class Medium;
@@ -102,8 +103,8 @@ class MediumPort final : public Port {
   kernel::Duration position_;
   bool hears_itself_;
   kernel::Random random_;
-  fault::Channel* channel_ = nullptr;
   std::vector<Tap*> taps_;
+  std::vector<Tap*> driven_taps_;
   std::vector<Flight> flights_;  // ordered by start
   std::vector<Flight> own_;      // what this place drives and does not hear
   std::vector<Flight> group_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -43,18 +44,25 @@ Response response_of(std::span<const std::uint8_t> octets);
 struct HeardCharacter {
   kernel::Time start{};
   kernel::Time busy_until{};
-  std::uint8_t octet = 0;
-  bool is_good = false;  // parity and stop bit
+  std::uint16_t data = 0;  // with the ninth bit, where there is one
+  bool is_parity_wrong = false;
+  bool is_stop_missing = false;
+
+  std::uint8_t octet() const { return static_cast<std::uint8_t>(data); }
+  bool is_good() const { return !is_parity_wrong && !is_stop_missing; }
 };
 
 class FrameCollector {
  public:
   explicit FrameCollector(const Rules& rules)
-      : longest_gap_(longest_gap(rules)), delimiter_(delimiter(rules)) {}
+      : longest_gap_(longest_gap(rules)), delimiter_(delimiter(rules)), notice_(character_notice(rules)) {}
 
   bool is_empty() const { return frame_.count == 0; }
   // When the frame that is being collected ends if nothing more comes; kNever without one.
   kernel::Time ends_at() const { return is_empty() ? kernel::kNever : frame_.busy_until + delimiter_; }
+
+  // When it is known to have ended: a character that began within the delimiter has been heard by then.
+  kernel::Time known_at() const { return is_empty() ? kernel::kNever : ends_at() + notice_; }
 
   // A character that comes later than the delimiter begins a new frame; take the old one first.
   void add(const HeardCharacter& character) {
@@ -63,9 +71,9 @@ class FrameCollector {
     } else if (character.start - frame_.busy_until > longest_gap_) {
       frame_.is_spoilt = true;
     }
-    if (frame_.count < CollectedFrame::kMostOctets) frame_.octets[frame_.count] = character.octet;
+    if (frame_.count < CollectedFrame::kMostOctets) frame_.octets[frame_.count] = character.octet();
     ++frame_.count;
-    if (!character.is_good) frame_.is_spoilt = true;
+    if (!character.is_good()) frame_.is_spoilt = true;
     frame_.busy_until = character.busy_until;
   }
 
@@ -75,6 +83,7 @@ class FrameCollector {
  private:
   kernel::Duration longest_gap_;
   kernel::Duration delimiter_;
+  kernel::Duration notice_;
   CollectedFrame frame_;
 };
 
@@ -94,8 +103,8 @@ class CharacterCodec {
     received_.clear();
     receiver_.receive(wave, received_);
     for (const line::CharacterReceiver::Received& one : received_) {
-      sink(HeardCharacter{one.start, one.busy_until, static_cast<std::uint8_t>(one.character.data),
-                          one.character.is_good()});
+      sink(HeardCharacter{one.start, one.busy_until, one.character.data, one.character.is_parity_wrong,
+                          one.character.is_stop_missing});
     }
   }
 
@@ -110,20 +119,30 @@ class CharacterCodec {
     unsigned behind = 0;
   };
 
-  // Drives the characters one behind the other, the first start bit at `start`.
-  void drive(segment::Port& line, std::span<const std::uint8_t> octets, kernel::Time start,
-             const DriverTime& driver) {
+  // Drives the characters one behind the other, the first start bit at `start`. Gives the end.
+  kernel::Time drive(segment::Port& line, std::span<const std::uint8_t> octets, kernel::Time start,
+                     const DriverTime& driver) {
+    return drive(line, octets, start, driver, rules_.bit_rate);
+  }
+  // The same with the clock of a sender whose bit rate is another.
+  kernel::Time drive(segment::Port& line, std::span<const std::uint8_t> octets, kernel::Time start,
+                     const DriverTime& driver, std::int64_t bit_rate) {
     const std::int64_t length = code_.levels_per_character();
+    kernel::Time end{kernel::Duration::min()};
     for (std::size_t n = 0; n < octets.size(); ++n) {
       const unsigned before = n == 0 ? driver.before : 0;
       wave_.levels.clear();
-      wave_.rate = rules_.bit_rate;
-      wave_.start = kernel::level_time(start, static_cast<std::int64_t>(n) * length - before, wave_.rate);
+      wave_.rate = bit_rate;
+      // Rounded from the beginning, but not into the character before.
+      wave_.start = std::max(
+          end, kernel::level_time(start, static_cast<std::int64_t>(n) * length - before, wave_.rate));
       wave_.levels.append_idle(before);
       append(wave_.levels, octets.subspan(n, 1));
       if (n + 1 == octets.size()) wave_.levels.append_idle(driver.behind);
+      end = wave_.end();
       line.drive(wave_);
     }
+    return end;
   }
 
  private:

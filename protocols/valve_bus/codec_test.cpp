@@ -80,12 +80,12 @@ RC_GTEST_PROP(ValveBusCodec, HearsWhatItWrites, (const Octets& octets)) {
   codec.append(wave.levels, octets);
   Octets heard;
   codec.hear(wave, [&](const HeardCharacter& character) {
-    RC_ASSERT(character.is_good);
+    RC_ASSERT(character.is_good());
     RC_ASSERT(character.start == kernel::level_time(wave.start,
                                                     static_cast<std::int64_t>(heard.size()) *
                                                         character_format(rules).half_bits() / 2,
                                                     rules.bit_rate));
-    heard.push_back(character.octet);
+    heard.push_back(character.octet());
   });
   RC_ASSERT(heard == octets);
 }
@@ -99,8 +99,8 @@ TEST(ValveBusCodec, IgnoresTheNinthBitAndRequiresTheStopBit) {
   const auto is_good = [&] {
     bool good = false;
     codec.hear(wave, [&](const HeardCharacter& character) {
-      EXPECT_EQ(character.octet, 0x5A);
-      good = character.is_good;
+      EXPECT_EQ(character.octet(), 0x5A);
+      good = character.is_good();
     });
     return good;
   };
@@ -121,7 +121,7 @@ std::vector<CollectedFrame> collected(const Octets& octets, const std::vector<ke
       collector.clear();
     }
     const kernel::Time end = start + character_time(rules);
-    collector.add({start, end, octets[n], true});
+    collector.add({.start = start, .busy_until = end, .data = octets[n]});
     start = end + (n < gaps.size() ? gaps[n] : kernel::Duration{});
   }
   if (!collector.is_empty()) frames.push_back(collector.frame());

@@ -47,7 +47,7 @@ void Node::receive(segment::PortIndex, const line::Waveform& reception) {
     if (collector_.ends_at() <= character.start) end_frame(now);
     HeardCharacter heard = judged(character);
     // The receiver is off: what comes now is not heard, so what it belongs to is not whole.
-    if (heard.start < driving_until_) heard.is_good = false;
+    if (heard.start < driving_until_) heard.is_stop_missing = true;
     on_character(heard);
   });
 }
@@ -60,7 +60,7 @@ void Node::on_character(const HeardCharacter& character) {
 
 void Node::on_time(kernel::Time now) {
   if (state_ == NodeState::off) return;
-  if (collector_.ends_at() <= now) end_frame(now);
+  if (collector_.known_at() <= now) end_frame(now);
   if (answer_ && driver_on_at(*answer_) <= now) {
     const Answer answer = *answer_;
     answer_.reset();
@@ -77,7 +77,7 @@ void Node::on_time(kernel::Time now) {
 
 kernel::Time Node::next_time() const {
   if (state_ == NodeState::off) return kernel::kNever;
-  kernel::Time next = std::min(collector_.ends_at(), loss_at());
+  kernel::Time next = std::min(collector_.known_at(), loss_at());
   if (answer_) next = std::min(next, driver_on_at(*answer_));
   return next;
 }

@@ -7,8 +7,8 @@
 #include "protocols/valve_bus/codec.hpp"
 #include "protocols/valve_bus/device.hpp"
 
-// The reference local node: it listens, takes a command for its address behind the delimiter, drives its
-// valves or answers with its limit switches.
+// The reference local node: it listens, takes a command for its address when the silence behind it is sure,
+// drives its valves or answers with its limit switches.
 //
 //   off ──power──▶ waiting ──character──▶ collecting ──silence of 3.5 characters──▶ waiting    (valves, or
 //   nothing)
@@ -59,6 +59,10 @@ class Node : public NodeDevice {
   virtual void on_power_up(kernel::Time) {}
 
   // ---- actions ----
+  // What has been collected is over.
+  void end_frame(kernel::Time now);
+  segment::Port& line() { return *line_; }
+  CharacterCodec& codec() { return codec_; }
   virtual void actuate(std::uint16_t valves, kernel::Time now);
   // The first start bit at `start`, or now where that has passed.
   void answer_at(const Response& response, kernel::Time start);
@@ -71,7 +75,6 @@ class Node : public NodeDevice {
     kernel::Time start;  // of its first start bit
   };
 
-  void end_frame(kernel::Time now);
   kernel::Time driver_on_at(const Answer& answer) const;
   kernel::Time loss_at() const;
 

@@ -66,7 +66,7 @@ class NodeTest : public testing::Test, private segment::Station, private segment
     heard_.push_back(wave);
     codec_.hear(wave, [&](const HeardCharacter& character) {
       start_bits_.push_back(character.start);
-      answer_.push_back(character.octet);
+      answer_.push_back(character.octet());
     });
   }
   void on_time(kernel::Time) override {}
@@ -74,9 +74,9 @@ class NodeTest : public testing::Test, private segment::Station, private segment
   void on_wave(const line::Waveform&) override {}
 };
 
-TEST_F(NodeTest, DrivesItsValvesBehindTheDelimiter) {
+TEST_F(NodeTest, DrivesItsValvesWhenTheSilenceIsSure) {
   send(Command{1, 0, 0xA5, 0x3C});
-  wait(delimiter({}) - kernel::kNanosecond);  // positions are rounded, to picoseconds
+  wait(delimiter({}) + character_notice({}) - kernel::kNanosecond);  // positions are rounded, to picoseconds
   EXPECT_EQ(boards_.valves(), 0);
   wait(2 * kernel::kNanosecond);
   EXPECT_EQ(boards_.valves(), 0x3CA5);
@@ -97,11 +97,20 @@ TEST_F(NodeTest, AnswersAReadWithItsLimitSwitches) {
 
 TEST_F(NodeTest, LeavesTheAnswerWhenSomethingElseIsSaid) {
   send(Command{1, 1, 0, 0});
-  wait(delimiter({}) + 20 * kMicrosecond);
+  wait(delimiter({}) + 40 * kMicrosecond);
   EXPECT_EQ(node_->state(), NodeState::answering);
   send(Command{2, 0, 0, 0});
   wait(3 * kMillisecond);
   EXPECT_TRUE(answer_.empty());
+}
+
+// The second command begins within the delimiter of the first, and is heard when that is over.
+TEST_F(NodeTest, TakesNoFrameThatAnotherFollowsTooClosely) {
+  send(Command{1, 0, 0xFF, 0xFF});
+  wait(delimiter({}) - kMicrosecond);
+  send(Command{1, 0, 0xFF, 0xFF});
+  wait(5 * kMillisecond);
+  EXPECT_EQ(boards_.valves(), 0);
 }
 
 TEST_F(NodeTest, DoesNotHearWhatComesWhileItDrives) {
@@ -189,16 +198,16 @@ TEST_F(NodeTest, HasAStateForEachEvent) {
   tell("power up");
   send(Octets{1});
   tell("character");
-  wait(delimiter({}) + kernel::kNanosecond);
+  wait(delimiter({}) + character_notice({}) + kernel::kNanosecond);
   tell("silence behind part of a frame");
   send(Command{2, 1, 0, 0});
-  wait(delimiter({}) + kernel::kNanosecond);
+  wait(delimiter({}) + character_notice({}) + kernel::kNanosecond);
   tell("silence behind a read of another node");
   send(Command{1, 0, 0, 0});
-  wait(delimiter({}) + kernel::kNanosecond);
+  wait(delimiter({}) + character_notice({}) + kernel::kNanosecond);
   tell("silence behind a write of its own");
   send(Command{1, 1, 0, 0});
-  wait(delimiter({}) + kernel::kNanosecond);
+  wait(delimiter({}) + character_notice({}) + kernel::kNanosecond);
   tell("silence behind a read of its own");
   wait(200 * kMicrosecond);
   tell("turn-round over");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace fieldproof::valve_bus {
@@ -119,6 +120,18 @@ kernel::Duration half_characters(const Rules& rules, unsigned count) {
 
 kernel::Duration bits(const Rules& rules, std::int64_t count) {
   return kernel::levels_duration(count, rules.bit_rate);
+}
+
+kernel::Duration character_notice(const Rules& rules) {
+  return character_time(rules) + bits(rules, 1);
+}
+
+kernel::Duration turn_round_span(const Rules& rules) {
+  return std::max(rules.turn_round_span, 2 * character_notice(rules));
+}
+
+kernel::Duration actuation_limit(const Rules& rules) {
+  return std::max(rules.actuation_limit, 2 * character_notice(rules));
 }
 
 std::span<const std::int64_t> dip_bit_rates() {

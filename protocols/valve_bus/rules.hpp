@@ -93,6 +93,14 @@ inline kernel::Duration delimiter(const Rules& rules) {
   return half_characters(rules, rules.delimiter_half_characters);
 }
 
+// A receiver learns of a character when it is over, so of silence it is only sure a character later; a bit
+// more is for a sender whose clock is slow.
+kernel::Duration character_notice(const Rules& rules);
+// What a node may take behind the delimiter, to begin its response and to move its valves: the span and the
+// limit of the rules, or twice the notice at bit rates at which that is longer.
+kernel::Duration turn_round_span(const Rules& rules);
+kernel::Duration actuation_limit(const Rules& rules);
+
 // The bit rates of the DIP switches, position by position: what a timer at 12 MHz makes of its reload values.
 std::span<const std::int64_t> dip_bit_rates();
 

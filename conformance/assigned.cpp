@@ -1,0 +1,26 @@
+#include "conformance/assigned.hpp"
+
+#include <fmt/format.h>
+
+#include "harness/kernel/error.hpp"
+
+namespace fieldproof::conformance {
+
+Assignment assigned_to(const TestCase& test_case, const Setup& setup) {
+  Assignment assigned;
+  const std::string role = test_case.role();
+  for (const Assignment& assignment : setup.implementations) {
+    if (assignment.role.empty() || assignment.role == role) assigned = assignment;
+  }
+  return assigned;
+}
+
+std::string deviation_of(const std::string& uri, std::string_view what) {
+  if (!uri.starts_with(kDeviantUri)) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        fmt::format("\"{}\" is no {}; use ref or deviant:NAME", uri, what));
+  }
+  return uri.substr(kDeviantUri.size());
+}
+
+}  // namespace fieldproof::conformance

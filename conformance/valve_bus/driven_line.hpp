@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "harness/line/character.hpp"
+#include "harness/line/waveform.hpp"
+#include "harness/segment/station.hpp"
+
+// The lower tester's ear for what one station drives on an RS-485 line: transmissions from the instant at
+// which its driver comes on to that at which it goes off, with the characters in them. It decodes with the
+// receiver of the harness, by no code of the stations that it judges.
+namespace fieldproof::conformance {
+
+struct DrivenCharacter {
+  kernel::Time start;       // of its start bit
+  kernel::Time busy_until;  // end of its last stop bit
+  std::uint16_t data = 0;   // all data bits
+  bool is_good = false;
+
+  std::uint8_t octet() const { return static_cast<std::uint8_t>(data); }
+};
+
+struct Transmission {
+  kernel::Time driver_on;
+  kernel::Time driver_off;
+  std::vector<DrivenCharacter> characters;
+
+  std::vector<std::uint8_t> octets() const;
+  // The longest silence between two characters; zero with fewer.
+  kernel::Duration longest_gap() const;
+};
+
+class DrivenLine final : public segment::Tap {
+ public:
+  DrivenLine(const line::CharacterFormat& format, std::int64_t bit_rate) : receiver_(format, bit_rate) {}
+
+  void on_wave(const line::Waveform& wave) override { waves_.push_back(wave); }
+  void clear() { waves_.clear(); }
+  bool empty() const { return waves_.empty(); }
+
+  // Since the last clear. Waves that follow each other without a gap are one transmission.
+  std::vector<Transmission> transmissions();
+
+ private:
+  void add(const line::Waveform& wave, Transmission& transmission);
+
+  line::CharacterReceiver receiver_;
+  std::vector<line::CharacterReceiver::Received> received_;
+  std::vector<line::Waveform> waves_;
+};
+
+}  // namespace fieldproof::conformance

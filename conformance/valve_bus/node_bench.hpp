@@ -1,0 +1,167 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "conformance/line_watch.hpp"
+#include "conformance/stressed_receiver.hpp"
+#include "conformance/test_case.hpp"
+#include "conformance/valve_bus/driven_line.hpp"
+#include "harness/fault/plan.hpp"
+#include "harness/judge/pics.hpp"
+#include "harness/kernel/random.hpp"
+#include "harness/segment/medium.hpp"
+#include "harness/segment/segment.hpp"
+#include "protocols/valve_bus/codec.hpp"
+#include "protocols/valve_bus/device.hpp"
+#include "protocols/valve_bus/valve_block.hpp"
+
+// The bench of one case for a local node of the valve bus: a line with the implementation under test (IUT),
+// the lower tester in the place of the host module and of all other nodes, and the upper tester at the IUT's
+// boards.
+//
+// The lower tester drives what the case says, character by character, and hears what the IUT drives as it
+// leaves it. Verdicts rest on that and on the valves. Each case begins with a node that has been powered for
+// a while and holds all valves off.
+namespace fieldproof::conformance {
+
+// What a case needs around the IUT.
+struct NodeNeeds {
+  std::optional<unsigned> tens{};  // of the address switches; absent: those of the PICS
+  std::optional<unsigned> units{};
+  std::optional<unsigned> boards{};
+  std::optional<valve_bus::CharacterProfile> characters{};
+  kernel::Duration distance{};  // propagation between tester and IUT
+  bool is_powered = true;       // when the case begins
+};
+
+// Who plays, and how.
+struct NodeSetting {
+  using MakeNode = std::function<std::unique_ptr<valve_bus::NodeDevice>(const valve_bus::NodeConfiguration&)>;
+
+  MakeNode make_node;  // null: the reference
+  std::uint64_t seed = 1;
+  Volume volume = Volume::full;
+  std::optional<judge::Pics> pics;
+  fault::Plan plan{};
+  std::span<const fault::Stress> stresses{};
+  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
+  std::function<trace::Recorder*(const trace::Trace&, const valve_bus::Rules&)> make_recorder;
+};
+
+// What a PICS of a node may answer.
+std::vector<judge::PicsItem> node_pics_items();
+// What the node of the bench declares: an answer to each of these items.
+judge::Pics declared_node();
+// The configuration of the IUT under these needs; `pics` has an answer to each item.
+valve_bus::NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& pics);
+
+class NodeBench final : private segment::Station {
+ public:
+  using Octets = std::vector<std::uint8_t>;
+
+  NodeBench(const NodeNeeds& needs, const NodeSetting& setting);
+
+  const valve_bus::Rules& rules() const { return configuration_.rules; }
+  const valve_bus::NodeConfiguration& configuration() const { return configuration_; }
+  const judge::Pics& pics() const { return pics_; }
+  std::uint8_t address() const;
+  kernel::Random& random() { return random_; }
+  std::uint8_t random_octet() { return static_cast<std::uint8_t>(random_.below(256)); }
+  template <typename Count>
+  Count volume(Count quick, Count full) const {
+    return volume_ == Volume::quick ? quick : full;
+  }
+  kernel::Time now() const { return segment_.now(); }
+  segment::Segment& segment() { return segment_; }
+  kernel::Duration bits(std::int64_t count) const { return valve_bus::bits(rules(), count); }
+  kernel::Duration characters(double count) const;
+  kernel::Duration delimiter() const { return valve_bus::delimiter(rules()); }
+  // How much later what is driven reaches the IUT.
+  kernel::Duration distance() const { return distance_; }
+
+  // ---- upper tester ----
+  valve_bus::ValveBlock& boards() { return boards_; }
+  std::uint16_t valves() { return boards_.output_at(0, now()); }
+  // The valves that DATA0 and DATA1 drive at this node.
+  std::uint16_t valves_of(std::uint8_t data0, std::uint8_t data1) const;
+  void set_power(bool is_on);
+
+  // ---- lower tester ----
+  // The octets without a gap, from now on, and runs until they are over. Gives that instant.
+  kernel::Time send(std::span<const std::uint8_t> octets);
+  kernel::Time send(std::initializer_list<std::uint8_t> octets) {
+    return send(std::span(octets.begin(), octets.size()));
+  }
+  kernel::Time send(const valve_bus::Command& command) { return send(octets_of(command)); }
+  // The octets of a write that moves every valve.
+  std::array<std::uint8_t, valve_bus::kCommandOctets> telling_write();
+  // A valid command for the IUT.
+  kernel::Time write(std::uint8_t data0, std::uint8_t data1);
+  kernel::Time read();
+  // Silence. What has been sent is over by then.
+  void wait(kernel::Duration duration);
+  // As long as the IUT may take to act on what it has heard, and to have said it.
+  void settle() { wait(settling_); }
+  // Levels as they are, from now on, at any rate; runs until they are over.
+  void drive(line::Waveform& wave);
+  // The character as levels, one a bit.
+  line::Levels levels_of(std::uint8_t octet) const;
+  // Other sender's clock: the rate of characters that are sent from now on; 1 is nominal.
+  void set_clock(double factor) { clock_ = factor; }
+  // Gives a character to the line while the IUT may be driving; does not run.
+  void interject(std::span<const std::uint8_t> octets, kernel::Time start);
+
+  // What the IUT has driven since `forget`.
+  std::vector<Transmission> answers() { return driven_.transmissions(); }
+  bool has_driven() const { return !driven_.empty(); }
+  void forget();
+
+  // ---- stress ----
+  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
+  void begin_stress(const fault::Stress& stress);
+  void end_stress() { stressed_.end(); }
+  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
+  std::vector<std::uint64_t> planned_hits() const {
+    return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
+  }
+
+  const LineWatch& line_watch() const { return line_watch_; }
+  // The last transmissions of the IUT, in words.
+  std::vector<std::string> decode_lines();
+
+ private:
+  void receive(segment::PortIndex, const line::Waveform&) override {}
+  void on_time(kernel::Time) override {}
+  kernel::Time next_time() const override { return kernel::kNever; }
+
+  judge::Pics pics_;
+  valve_bus::NodeConfiguration configuration_;
+  kernel::Duration distance_;
+  Volume volume_;
+  kernel::Random random_;
+  segment::Segment segment_;
+  segment::Medium line_;
+  valve_bus::CharacterCodec codec_;
+  valve_bus::ValveBlock boards_;
+  std::unique_ptr<valve_bus::NodeDevice> node_;
+  std::size_t tester_seat_;
+  std::size_t node_seat_;
+  segment::MediumPort* tester_ = nullptr;
+  segment::MediumPort* place_ = nullptr;  // of the IUT
+  DrivenLine driven_;
+  LineWatch line_watch_;
+  std::unique_ptr<fault::InstalledPlan> plan_;
+  StressedReceiver stressed_;
+  std::uint64_t stress_number_ = 0;
+  kernel::Duration settling_;
+  double clock_ = 1.0;
+};
+
+}  // namespace fieldproof::conformance

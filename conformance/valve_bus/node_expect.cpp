@@ -1,0 +1,184 @@
+#include "conformance/valve_bus/node_expect.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace fieldproof::conformance {
+namespace {
+
+using Change = segment::ProcessWords::Change;
+
+std::string valves_text(std::uint16_t valves) {
+  return fmt::format("valves {:02X} {:02X}", valves & 0xFF, valves >> 8);
+}
+
+std::string change_text(const Change& change) {
+  return fmt::format("{} became {:02X} {:02X} at {}", valves_text(change.before), change.after & 0xFF,
+                     change.after >> 8, kernel::describe(change.when));
+}
+
+std::string octets_text(const std::vector<std::uint8_t>& octets) {
+  return fmt::format("{:02X}", fmt::join(octets, " "));
+}
+
+// What a right node says about itself while it drives.
+void expect_driver(NodeBench& bench, CaseJudge& judge, const Transmission& answer) {
+  const valve_bus::Rules& rules = bench.rules();
+  const kernel::Duration before = answer.characters.front().start - answer.driver_on;
+  const kernel::Duration behind = answer.driver_off - answer.characters.back().busy_until;
+  judge.expect(before + kRounding >= bench.bits(rules.driver_on_bits), "driver_on_late", [&] {
+    return Sighting{
+        {fmt::format("the driver is on at least {} bit before the start bit", rules.driver_on_bits)},
+        fmt::format("{} before it", kernel::describe(before)),
+        answer.driver_on};
+  });
+  judge.expect(behind <= bench.bits(rules.driver_off_bits) + kRounding, "driver_not_released", [&] {
+    return Sighting{
+        {fmt::format("the driver is off at most {} bits behind the last stop bit", rules.driver_off_bits)},
+        fmt::format("{} behind it", kernel::describe(behind)),
+        answer.driver_off};
+  });
+  judge.expect(answer.longest_gap() <= valve_bus::longest_gap(rules) + kRounding, "gap_in_answer", [&] {
+    return Sighting{{fmt::format("at most {} between two characters of an answer",
+                                 kernel::describe(valve_bus::longest_gap(rules)))},
+                    kernel::describe(answer.longest_gap()),
+                    answer.characters.front().start};
+  });
+}
+
+void expect_octets(CaseJudge& judge, const Transmission& answer, std::uint8_t data0, std::uint8_t data1) {
+  const std::vector<std::uint8_t> octets = answer.octets();
+  const std::array<std::uint8_t, 3> wanted{data0, data1, static_cast<std::uint8_t>(data0 ^ data1)};
+  const auto sighting = [&](std::string difference) {
+    return [&, difference] {
+      return Sighting{.expected = {fmt::format("{:02X}", fmt::join(wanted, " "))},
+                      .actual = octets_text(octets),
+                      .time = answer.driver_on,
+                      .first_difference = difference};
+    };
+  };
+  judge.expect(octets.size() == wanted.size(), "answer_length_wrong", sighting("number of octets"));
+  judge.expect(std::ranges::all_of(answer.characters, &DrivenCharacter::is_good), "answer_garbled",
+               sighting("parity or stop bit"));
+  judge.expect(octets[0] == wanted[0], "answer_data_wrong", sighting("DATA0"));
+  judge.expect(octets[1] == wanted[1], "answer_data_wrong", sighting("DATA1"));
+  judge.expect(octets[2] == wanted[2], "answer_check_wrong", sighting("BCC"));
+}
+
+// `end`: of the command's last stop bit, at the tester; the answer is judged where the IUT drives it.
+Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, std::uint8_t data1,
+                               kernel::Time end) {
+  const std::vector<Transmission> answers = bench.answers();
+  judge.expect(!answers.empty() && !answers.front().characters.empty(), "no_answer",
+               "one answer of three octets", "the node did not say anything");
+  const Transmission& answer = answers.front();
+  judge.expect(answers.size() == 1, "answered_twice", [&] {
+    return Sighting{{"one answer"}, fmt::format("{} transmissions", answers.size()), answers[1].driver_on};
+  });
+  expect_octets(judge, answer, data0, data1);
+  const kernel::Duration turn_round = answer.characters.front().start - (end + bench.distance());
+  const kernel::Duration least = bench.delimiter();
+  const kernel::Duration most = least + turn_round_span(bench.rules());
+  const auto sighting = [&] {
+    return Sighting{{fmt::format("the first start bit {} to {} behind the last stop bit of the command",
+                                 kernel::describe(least), kernel::describe(most))},
+                    kernel::describe(turn_round),
+                    answer.characters.front().start};
+  };
+  judge.expect(turn_round + kRounding >= least, "answer_too_early", sighting);
+  judge.expect(turn_round <= most + kRounding, "answer_too_late", sighting);
+  expect_driver(bench, judge, answer);
+  return answer;
+}
+
+}  // namespace
+
+void expect_valves(NodeBench& bench, CaseJudge& judge, std::uint16_t valves, std::string_view reason) {
+  judge.expect(bench.valves() == valves, reason,
+               [&] { return Sighting{{valves_text(valves)}, valves_text(bench.valves())}; });
+}
+
+void expect_no_valve_moved(NodeBench& bench, CaseJudge& judge, std::string_view reason,
+                           std::string_view why_not) {
+  judge.expect(bench.boards().changes().empty(), reason, [&] {
+    const Change& change = bench.boards().changes().front();
+    return Sighting{{fmt::format("no valve moves: {}", why_not)}, change_text(change), change.when};
+  });
+}
+
+void expect_silence(NodeBench& bench, CaseJudge& judge, std::string_view reason, std::string_view why_not) {
+  judge.expect(!bench.has_driven(), reason, [&] {
+    const Transmission first = bench.answers().front();
+    return Sighting{{fmt::format("the node does not drive the line: {}", why_not)},
+                    fmt::format("it said {}", octets_text(first.octets())),
+                    first.driver_on};
+  });
+}
+
+void expect_ignored(NodeBench& bench, CaseJudge& judge, std::string_view reason, std::string_view why_not) {
+  expect_no_valve_moved(bench, judge, reason, why_not);
+  expect_silence(bench, judge, reason, why_not);
+}
+
+void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, std::uint8_t data1,
+                        kernel::Time end) {
+  const std::uint16_t wanted = bench.valves_of(data0, data1);
+  const kernel::Time arrived = end + bench.distance();
+  const auto& changes = bench.boards().changes();
+  if (bench.valves() != wanted) {
+    judge.fail(changes.empty() ? "write_not_taken" : "valves_wrong",
+               {{valves_text(wanted)}, valves_text(bench.valves())});
+  }
+  if (!changes.empty()) {
+    const Change& first = changes.front();
+    const Change& last = changes.back();
+    judge.expect(first.when + kRounding >= arrived, "valves_too_early", [&] {
+      return Sighting{{"no valve moves before the check has come"}, change_text(first), first.when};
+    });
+    const kernel::Duration limit = bench.delimiter() + actuation_limit(bench.rules());
+    judge.expect(last.when - arrived <= limit + kRounding, "valves_too_late", [&] {
+      return Sighting{
+          {fmt::format("the valves move at most {} behind the last stop bit", kernel::describe(limit))},
+          change_text(last),
+          last.when};
+    });
+    judge.expect(last.when - first.when <= bench.rules().output_skew, "valves_one_by_one", [&] {
+      return Sighting{{fmt::format("all valves move within {}", kernel::describe(bench.rules().output_skew))},
+                      fmt::format("within {}", kernel::describe(last.when - first.when)),
+                      last.when};
+    });
+  }
+  if (bench.rules().answers_writes) {
+    expect_one_answer(bench, judge, data0, data1, end);
+  } else {
+    expect_silence(bench, judge, "write_answered", "a write is not answered");
+  }
+}
+
+Transmission expect_answer(NodeBench& bench, CaseJudge& judge, std::uint16_t switches, kernel::Time end) {
+  const std::uint16_t seen = bench.configuration().boards == 1 ? switches & 0xFF : switches;
+  return expect_one_answer(bench, judge, static_cast<std::uint8_t>(seen & 0xFF),
+                           static_cast<std::uint8_t>(seen >> 8), end);
+}
+
+void expect_serves(NodeBench& bench, CaseJudge& judge) {
+  constexpr std::string_view kReason = "does_not_recover";
+  bench.settle();
+  const auto frame = bench.telling_write();
+  bench.send(frame);
+  bench.settle();
+  expect_valves(bench, judge, bench.valves_of(frame[2], frame[3]), kReason);
+  bench.forget();
+  const auto switches = static_cast<std::uint16_t>(bench.random().below(0x10000));
+  bench.boards().set_input(0, switches);
+  const kernel::Time end = bench.read();
+  bench.settle();
+  judge.expect(bench.has_driven(), kReason, "a read is answered", "the node did not say anything");
+  expect_answer(bench, judge, switches, end);
+  bench.forget();
+}
+
+}  // namespace fieldproof::conformance
