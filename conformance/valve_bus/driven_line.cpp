@@ -6,7 +6,7 @@ namespace fieldproof::conformance {
 namespace {
 
 // Waves that follow each other have starts that are rounded each for itself.
-constexpr kernel::Duration kRounding = kernel::kNanosecond;
+constexpr kernel::Duration kRoundedStart = kernel::kNanosecond;
 
 }  // namespace
 
@@ -33,10 +33,10 @@ std::vector<Transmission> DrivenLine::transmissions() {
   };
   for (const line::Waveform& wave : waves_) {
     const bool follows = !together.levels.empty() && wave.rate == together.rate &&
-                         std::chrono::abs(wave.start - together.end()) <= kRounding;
+                         std::chrono::abs(wave.start - together.end()) <= kRoundedStart;
     if (!follows) {
       finish();
-      if (all.empty() || wave.start - all.back().driver_off > kRounding) {
+      if (all.empty() || wave.start - all.back().driver_off > kRoundedStart) {
         all.push_back({wave.start, wave.end(), {}});
       }
       together.start = wave.start;

@@ -7,7 +7,7 @@
 namespace fieldproof::valve_bus {
 namespace {
 
-std::string text_of(const HeardCharacter& character) {
+std::string character_text(const HeardCharacter& character) {
   return fmt::format("{:02X}{}", character.octet(), character.is_good() ? "" : "!");
 }
 
@@ -23,7 +23,7 @@ class FrameTeller final : public trace::Teller {
       if (collector_.ends_at() <= character.start) collector_.clear();
       collector_.add(character);
       if (!told.text.empty()) told.text += ' ';
-      told.text += text_of(character);
+      told.text += character_text(character);
       told.text += frame_text(told.is_check_wrong);
     });
     return told;
@@ -52,7 +52,7 @@ std::string FrameNotation::brief(const line::Waveform& wave) const {
   std::string text;
   CharacterCodec(rules_).hear(wave, [&](const HeardCharacter& character) {
     if (!text.empty()) text += ' ';
-    text += text_of(character);
+    text += character_text(character);
   });
   return text.empty() ? "no character" : text;
 }
