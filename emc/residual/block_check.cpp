@@ -15,7 +15,7 @@ void require_block(const BlockCheck& check) {
   if (check.octets >= 1 && check.octets <= most) return;
   throw kernel::Error(
       kernel::ErrorKind::usage,
-      fmt::format("a block check{} is over 1 to {} octets, its own with them, and not over {}",
+      fmt::format("a block check{} is over 1 to {} octets, its own with them, and not over {}.",
                   check.has_parity ? " of characters with parity" : "", most, check.octets));
 }
 

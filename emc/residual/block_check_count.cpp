@@ -21,11 +21,11 @@ class BlockFrame {
   BlockFrame(const BlockCheck& check, std::span<const std::uint8_t> message)
       : octets_(check.octets), has_parity_(check.has_parity), width_(check.bits_per_octet()) {
     if (octets_ < 1 || check.bits() > kMostFrameBits) {
-      refuse(fmt::format("patterns are tried on frames of 1 to {} bits, and these are {}", kMostFrameBits,
+      refuse(fmt::format("patterns are tried on frames of 1 to {} bits, and these are {}.", kMostFrameBits,
                          check.bits()));
     }
     if (!message.empty() && message.size() + 1 != octets_) {
-      refuse(fmt::format("a frame of {} octets takes a message of {}, and this one has {}", octets_,
+      refuse(fmt::format("a frame of {} octets takes a message of {}, and this one has {}.", octets_,
                          octets_ - 1, message.size()));
     }
     std::uint8_t sum = 0;
@@ -73,7 +73,7 @@ void require_few_patterns(unsigned bits, unsigned most_flips) {
     of_weight = of_weight * (bits - k) / (k + 1);
   }
   if (patterns > kMostPatterns) {
-    refuse(fmt::format("{} patterns of up to {} flips are too many to try; {} is the limit", patterns.str(),
+    refuse(fmt::format("{} patterns of up to {} flips are too many to try; {} is the limit.", patterns.str(),
                        most_flips, kMostPatterns));
   }
 }
@@ -107,12 +107,12 @@ CountedBursts count_block_check_bursts(const BlockCheck& check, unsigned length,
   const BlockFrame frame(check, message);
   const unsigned bits = check.bits();
   if (length < 1 || length > bits) {
-    refuse(fmt::format("a burst in a frame of {} bits has 1 to {} bits, and not {}", bits, bits, length));
+    refuse(fmt::format("a burst in a frame of {} bits has 1 to {} bits, and not {}.", bits, bits, length));
   }
   const std::uint64_t inner = length < 3 ? 1 : std::uint64_t{1} << (length - 2);
   const std::uint64_t places = bits - length + 1;
   if (inner > kMostPatterns / places) {
-    refuse(fmt::format("there are too many bursts of {} bits to try; {} patterns are the limit", length,
+    refuse(fmt::format("there are too many bursts of {} bits to try; {} patterns are the limit.", length,
                        kMostPatterns));
   }
   const std::uint64_t ends = std::uint64_t{1} | std::uint64_t{1} << (length - 1);
