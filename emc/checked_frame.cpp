@@ -38,7 +38,7 @@ std::unique_ptr<const Framing> framing_of(const CheckedFrameFormat& format) {
   return std::make_unique<const CharacterFraming>(format.character);
 }
 
-const CheckedFrameFormat& required(const CheckedFrameFormat& format) {
+CheckedFrameFormat required(CheckedFrameFormat format) {
   if (format.characters < 2 || format.characters > CheckedFrame::kMostCharacters) {
     throw kernel::Error(kernel::ErrorKind::usage,
                         fmt::format("a frame with a check cannot have {} characters; it has 2 to {}.",

@@ -39,7 +39,7 @@ CheckedFrameFormat format_of(const CharacterFormat& character) {
 }
 
 // Pulses in the middle of these bits.
-FrameFate fate_of(const CheckedFrameFormat& format, ForcedLevel forced, std::vector<HitBit> bits,
+FrameFate fate_of(const CheckedFrameFormat& format, ForcedLevel forced, const std::vector<HitBit>& bits,
                   Duration wrong_time = 300 * kNanosecond) {
   CheckedFrame frame(format, pulse_effects(forced, wrong_time));
   const std::int64_t length = format.character.half_bits() / 2;

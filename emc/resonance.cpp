@@ -34,7 +34,7 @@ void require_pulses(const PulseTrain& pulses) {
 }
 
 kernel::Duration rounded(double picoseconds) {
-  return kernel::Duration{static_cast<std::int64_t>(picoseconds + 0.5)};
+  return kernel::Duration{std::llround(picoseconds)};
 }
 
 // Frames one after the other, each at a place of its own in a burst.
@@ -127,7 +127,7 @@ FrameCounts count_frames_under_pulses(const CheckedFrameFormat& format, const Pu
   require_pulses(pulses);
   // By the rate in thousandths, so that a rate draws the same in every scan.
   FramesUnderPulses line(format, pulses,
-                         random.split(static_cast<std::uint64_t>(pulses.rate_hz * 1000 + 0.5)));
+                         random.split(static_cast<std::uint64_t>(std::llround(pulses.rate_hz * 1000))));
   FrameCounts counts{pulses.rate_hz, frames, 0, 0};
   for (std::uint64_t n = 0; n < frames; ++n) {
     const FrameFate fate = line.next();
