@@ -8,6 +8,7 @@
 #include <set>
 
 #include "harness/config/nearest.hpp"
+#include "harness/iut/pool.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::cli {
@@ -117,9 +118,10 @@ Assignment parse_implementation(const std::string& text, const Catalogue& catalo
   check_position(text, assignment, suites_with(text, assignment.role, catalogue));
   if (assignment.uri.starts_with(kDeviant)) {
     resolve_deviation(assignment, catalogue, among);
-  } else if (assignment.uri != "ref") {
+  } else if (assignment.uri != "ref" && !iut::DevicePool::is_meant(assignment.uri)) {
     refuse(text,
-           "there is no such kind of implementation; write ref, deviant:NAME or ROLE@POSITION=deviant:NAME");
+           "there is no such kind of implementation; write ref, deviant:NAME, exec:PROGRAM, unix:PATH, "
+           "tcp:HOST:PORT, or one of them behind ROLE= or ROLE@POSITION=");
   }
   return assignment;
 }
@@ -153,7 +155,7 @@ std::optional<std::string> obstacle(const Assignment& assignment, const Suite& s
     return fmt::format("the position {} is out of range; a network has at most {} stations",
                        assignment.position, suite.last_position());
   }
-  if (assignment.uri == "ref") return std::nullopt;
+  if (assignment.uri == "ref" || iut::DevicePool::is_meant(assignment.uri)) return std::nullopt;
   if (!assignment.uri.starts_with(kDeviant)) {
     return fmt::format("'{}' is no implementation that can be run again; write ref or deviant:NAME",
                        assignment.uri);

@@ -1,4 +1,6 @@
 #include "cli/suites.hpp"
+
+#include "cli/attachments.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "emc/burst_stress.hpp"
@@ -9,7 +11,7 @@ namespace fieldproof::cli {
 Suites suites() {
   Suites all;
   all.push_back(conformance::interbus_suite({}, {emc::catalogue_stresses(), emc::plan_disturbances()}));
-  all.push_back(conformance::valve_bus_suite({{}, emc::plan_disturbances()}));
+  all.push_back(conformance::valve_bus_suite({attached_nodes(), emc::plan_disturbances()}));
   return all;
 }
 

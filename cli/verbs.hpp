@@ -34,6 +34,7 @@ int emc_protocol(Session& session);
 int measure_protocol(Session& session);
 int paper(Session& session);
 int report(Session& session);
+int station(Session& session);
 
 struct Verb {
   std::string_view name;

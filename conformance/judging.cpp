@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/fault/plan_work.hpp"
+#include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::conformance {
@@ -58,6 +59,10 @@ judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>
     procedure(*this);
   } catch (const CaseEnded&) {
     // The finding that ended it is kept.
+  } catch (const iut::Misbehaviour& done) {
+    Sighting sighting{{"an implementation that answers, in time and to the point"}, done.what()};
+    sighting.decode = done.evidence();
+    add(judge::Verdict::fail, done.reason(), std::move(sighting));
   } catch (const kernel::Error& failure) {
     if (failure.kind() != kernel::ErrorKind::implementation) throw;
     // It drives in the past, or has gone: nothing can be made of it, and that is its fault.

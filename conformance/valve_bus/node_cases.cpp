@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <optional>
 #include <utility>
 
 namespace fieldproof::conformance {
@@ -43,18 +44,21 @@ const std::vector<NodeCase>& node_cases() {
 }
 
 judge::CaseResult run_node_case(const NodeCase& node_case, const NodeSetting& setting) {
-  NodeBench bench(node_case.needs, setting);
+  // Made within the procedure: what an implementation does when it is powered is its verdict, too.
+  std::optional<NodeBench> bench;
   CaseJudge judge(node_case.test_case);
-  judge.use_clock([&] { return bench.now(); });
-  judge.use_decode([&] { return bench.decode_lines(); });
+  judge.use_clock([&] { return bench ? bench->now() : kernel::kStart; });
+  judge.use_decode([&] { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
   judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
-    node_case.procedure(bench, j);
-    bench.line_watch().judge(j);
+    bench.emplace(node_case.needs, setting);
+    node_case.procedure(*bench, j);
+    bench->line_watch().judge(j);
   });
   result.seed = setting.seed;
-  result.fingerprint = bench.segment().trace().fingerprint();
-  result.virtual_time = bench.now() - kernel::kStart;
-  result.planned_hits = bench.planned_hits();
+  if (!bench) return result;
+  result.fingerprint = bench->segment().trace().fingerprint();
+  result.virtual_time = bench->now() - kernel::kStart;
+  result.planned_hits = bench->planned_hits();
   return result;
 }
 

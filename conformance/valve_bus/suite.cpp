@@ -71,20 +71,20 @@ class ValveBusSuite final : public Suite {
     setting.volume = setup.volume;
     setting.pics = setup.pics;
     if (!setup.plan_file.empty()) setting.plan = load(setup);
-    setting.make_node =
-        [this, uri = assigned_to(test_case, setup).uri](const valve_bus::NodeConfiguration& configuration) {
-          return make_node(uri, configuration);
-        };
+    setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
+                         seed = setup.seed](const valve_bus::NodeConfiguration& configuration) {
+      return make_node({uri, id, seed}, configuration);
+    };
     return setting;
   }
 
-  std::unique_ptr<valve_bus::NodeDevice> make_node(const std::string& uri,
+  std::unique_ptr<valve_bus::NodeDevice> make_node(const ValveBusGiven::Wanted& wanted,
                                                    const valve_bus::NodeConfiguration& configuration) const {
-    if (uri == kReferenceUri) return std::make_unique<valve_bus::Node>(configuration);
+    if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Node>(configuration);
     if (given_.make_node) {
-      if (auto node = given_.make_node(uri, configuration)) return node;
+      if (auto node = given_.make_node(wanted, configuration)) return node;
     }
-    return make_node_deviation(deviation_of(uri, "node of the valve bus"), configuration);
+    return make_node_deviation(deviation_of(wanted.uri, "node of the valve bus"), configuration);
   }
 
   ValveBusGiven given_;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "conformance/test_case.hpp"
@@ -16,9 +18,15 @@
 namespace fieldproof::conformance {
 
 struct ValveBusGiven {
+  // Who plays the node of one case.
+  struct Wanted {
+    const std::string& uri;
+    const std::string& case_id;
+    std::uint64_t seed;
+  };
   // The node that such a URI means; null for a URI of another kind.
   using MakeNode = std::function<std::unique_ptr<valve_bus::NodeDevice>(
-      const std::string& uri, const valve_bus::NodeConfiguration& configuration)>;
+      const Wanted& wanted, const valve_bus::NodeConfiguration& configuration)>;
 
   MakeNode make_node{};
   std::span<const fault::DisturbanceKind> disturbances{};  // what a plan can name

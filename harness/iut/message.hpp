@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/iut/device.hpp"
+
+// The messages between the bench and an implementation in another process, on one stream in each direction.
+// README.md of this folder describes them so that they can be written from that page alone.
+//
+//   message   length (u32, of what follows), type (u8), content
+//   u8 u16 u32 u64 i64   little endian; a time is an i64 of picoseconds since the case began, never = 2^63 -
+//   1 text      length (u16), octets of UTF-8
+//
+// Contract: a reader refuses what is no such message with MessageError and never reads past it.
+namespace fieldproof::iut {
+
+inline constexpr std::uint16_t kMessageVersion = 1;
+inline constexpr std::size_t kMessageHead = 4;             // octets of the length
+inline constexpr std::size_t kLongestMessage = 1U << 20U;  // octets behind the length
+
+enum class MessageType : std::uint8_t {
+  // From the bench.
+  hello = 1,
+  echo = 2,
+  case_begin = 3,
+  power = 4,
+  receive_characters = 5,
+  receive_levels = 6,
+  on_time = 7,
+  case_end = 8,
+  value = 9,
+  // From the implementation.
+  capabilities = 129,
+  echoed = 130,
+  done = 131,
+  unsupported = 132,
+  transmit_characters = 133,
+  transmit_levels = 134,
+  write = 135,
+  read = 136,
+};
+
+// "done", "transmit characters"; "type 77".
+std::string name(MessageType type);
+
+class MessageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class MessageWriter {
+ public:
+  // Forgets the message before.
+  MessageWriter& begin(MessageType type);
+  MessageWriter& u8(std::uint8_t value) { return number(value, 1); }
+  MessageWriter& u16(std::uint16_t value) { return number(value, 2); }
+  MessageWriter& u32(std::uint32_t value) { return number(value, 4); }
+  MessageWriter& u64(std::uint64_t value) { return number(value, 8); }
+  MessageWriter& i64(std::int64_t value) { return number(static_cast<std::uint64_t>(value), 8); }
+  MessageWriter& time(kernel::Time value) { return i64(value.time_since_epoch().count()); }
+  // Cut at the longest that the form has.
+  MessageWriter& text(std::string_view value);
+  MessageWriter& octets(std::span<const std::uint8_t> value);
+
+  // The whole message, ready to be sent.
+  std::span<const std::uint8_t> finish();
+
+ private:
+  MessageWriter& number(std::uint64_t value, unsigned octets) {
+    for (unsigned n = 0; n < octets; ++n) bytes_.push_back(static_cast<std::uint8_t>(value >> (8 * n)));
+    return *this;
+  }
+
+  std::vector<std::uint8_t> bytes_;
+};
+
+// Reads one message behind its length. All throw MessageError for content that is not there.
+class MessageReader {
+ public:
+  explicit MessageReader(std::span<const std::uint8_t> bytes);
+
+  MessageType type() const { return type_; }
+  std::uint8_t u8() { return static_cast<std::uint8_t>(number(1)); }
+  std::uint16_t u16() { return static_cast<std::uint16_t>(number(2)); }
+  std::uint32_t u32() { return static_cast<std::uint32_t>(number(4)); }
+  std::uint64_t u64() { return number(8); }
+  std::int64_t i64() { return static_cast<std::int64_t>(number(8)); }
+  kernel::Time time() { return kernel::Time{kernel::Duration{i64()}}; }
+  std::string text();
+  std::span<const std::uint8_t> rest();
+  // There is nothing more.
+  void finish() const;
+
+ private:
+  std::uint64_t number(std::size_t octets);
+  std::span<const std::uint8_t> take(std::size_t octets);
+
+  std::span<const std::uint8_t> bytes_;
+  MessageType type_{};
+};
+
+// ---- contents that have a shape of their own ----
+
+// Messages are ready to be sent when these return.
+std::span<const std::uint8_t> write_case_begin(MessageWriter& writer, const CaseBegin& begin);
+CaseBegin read_case_begin(MessageReader& reader);
+
+std::span<const std::uint8_t> write_reception(MessageWriter& writer, unsigned port,
+                                              std::span<const Character> characters, kernel::Time now);
+struct ReceivedCharacters {
+  unsigned port = 0;
+  kernel::Time now{};
+  std::vector<Character> characters;
+};
+ReceivedCharacters read_reception(MessageReader& reader);
+
+std::span<const std::uint8_t> write_transmission(MessageWriter& writer, const Transmission& transmission);
+Transmission read_transmission(MessageReader& reader);
+
+// receive_levels and transmit_levels.
+std::span<const std::uint8_t> write_levels(MessageWriter& writer, MessageType type, unsigned port,
+                                           const line::Waveform& wave);
+unsigned read_levels(MessageReader& reader, line::Waveform& wave);
+
+}  // namespace fieldproof::iut

@@ -1,0 +1,184 @@
+#include "harness/iut/message_device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "harness/kernel/untrusted_text.hpp"
+
+namespace fieldproof::iut {
+namespace {
+
+using std::chrono::milliseconds;
+
+std::string octets_text(std::span<const std::uint8_t> message) {
+  constexpr std::size_t kMost = 32;
+  std::string text = "message:";
+  for (const std::uint8_t octet : message.first(std::min(message.size(), kMost)))
+    text += fmt::format(" {:02X}", octet);
+  return message.size() > kMost ? text + " ..." : text;
+}
+
+}  // namespace
+
+MessageDevice::MessageDevice(Peer peer, const RoleName& role, const PeerLimits& limits)
+    : peer_(std::move(peer)), limits_(limits) {
+  writer_.begin(MessageType::hello).u16(kMessageVersion).text(role.protocol).text(role.role);
+  const auto message = expect(writer_.finish(), MessageType::capabilities, limits_.start);
+  try {
+    MessageReader reader(message);
+    const std::uint16_t version = reader.u16();
+    if (version != kMessageVersion) {
+      throw kernel::Error(kernel::ErrorKind::implementation,
+                          fmt::format("{} speaks version {} of the messages; this program speaks version {}",
+                                      peer_.what(), version, kMessageVersion));
+    }
+    const std::uint8_t kind = reader.u8();
+    if (kind != static_cast<std::uint8_t>(UnitKind::characters) &&
+        kind != static_cast<std::uint8_t>(UnitKind::levels)) {
+      throw MessageError(fmt::format("unit {}; there are 1 (characters) and 2 (levels)", kind));
+    }
+    unit_kind_ = static_cast<UnitKind>(kind);
+    own_name_ = kernel::escaped_line(reader.text());
+    reader.finish();
+  } catch (const MessageError& error) {
+    refuse(message, error.what());
+  }
+}
+
+void MessageDevice::test_itself() {
+  constexpr std::array<std::uint8_t, 8> kEcho{0x00, 0xFF, 0x0A, 0x0D, 0x1A, 0x7F, 0x80, 0x55};
+  writer_.begin(MessageType::echo).octets(kEcho);
+  const auto message = expect(writer_.finish(), MessageType::echoed, limits_.call);
+  if (!std::ranges::equal(message.subspan(1), kEcho)) {
+    throw kernel::Error(
+        kernel::ErrorKind::implementation,
+        fmt::format("{} does not send an echo back as it came ({}); its output may not be binary",
+                    peer_.what(), octets_text(message)));
+  }
+  // A bench of its own: whoever takes this case has not looked at its name.
+  class NoBench final : public Bench {
+    void transmit(const Transmission&) override {}
+    void transmit(unsigned, line::Waveform&) override {}
+    void write(Item, std::uint64_t, kernel::Time) override {}
+    std::uint64_t read(Item, kernel::Time) override { return 0; }
+  } none;
+  if (begin({"self_test/unknown/case", 0, {}}, none)) {
+    throw kernel::Error(
+        kernel::ErrorKind::implementation,
+        fmt::format("{} takes the case 'self_test/unknown/case', which is none of its protocol; it "
+                    "should answer 'unsupported'",
+                    peer_.what()));
+  }
+}
+
+bool MessageDevice::is_quiet() {
+  return peer_.is_alive() && !peer_.has_more();
+}
+
+bool MessageDevice::begin(const CaseBegin& begin, Bench& bench) {
+  bench_ = &bench;
+  next_time_ = kernel::kNever;
+  return call(write_case_begin(writer_, begin), limits_.call);
+}
+
+void MessageDevice::set_power(bool is_on, kernel::Time now) {
+  writer_.begin(MessageType::power).u8(is_on ? 1 : 0).time(now);
+  call(writer_.finish(), limits_.call);
+}
+
+void MessageDevice::receive(unsigned port, std::span<const Character> characters, kernel::Time now) {
+  call(write_reception(writer_, port, characters, now), limits_.call);
+}
+
+void MessageDevice::receive(unsigned port, const line::Waveform& reception) {
+  call(write_levels(writer_, MessageType::receive_levels, port, reception), limits_.call);
+}
+
+void MessageDevice::on_time(kernel::Time now) {
+  writer_.begin(MessageType::on_time).time(now);
+  call(writer_.finish(), limits_.call);
+}
+
+void MessageDevice::end() {
+  writer_.begin(MessageType::case_end);
+  call(writer_.finish(), limits_.call);
+  bench_ = nullptr;
+}
+
+bool MessageDevice::call(std::span<const std::uint8_t> message, milliseconds limit) {
+  peer_.send(message, limit);
+  for (unsigned actions = 0; actions <= kMostActions; ++actions) {
+    const auto answer = peer_.receive(limit);
+    try {
+      MessageReader reader(answer);
+      if (reader.type() == MessageType::done) {
+        next_time_ = reader.time();
+        reader.finish();
+        return true;
+      }
+      if (reader.type() == MessageType::unsupported) {
+        bench_ = nullptr;
+        return false;
+      }
+      serve(reader);
+    } catch (const MessageError& error) {
+      refuse(answer, error.what());
+    }
+  }
+  peer_.blame(reasons::kFloods, fmt::format("has done more than {} things within one call", kMostActions));
+}
+
+void MessageDevice::serve(MessageReader& reader) {
+  if (bench_ == nullptr) {
+    throw MessageError(
+        fmt::format("'{}' is nothing that an implementation says without a case", name(reader.type())));
+  }
+  switch (reader.type()) {
+    case MessageType::transmit_characters:
+      bench_->transmit(read_transmission(reader));
+      return;
+    case MessageType::transmit_levels: {
+      const unsigned port = read_levels(reader, wave_);
+      bench_->transmit(port, wave_);
+      return;
+    }
+    case MessageType::write: {
+      const Item item = reader.u16();
+      const std::uint64_t value = reader.u64();
+      const kernel::Time when = reader.time();
+      reader.finish();
+      bench_->write(item, value, when);
+      return;
+    }
+    case MessageType::read: {
+      const Item item = reader.u16();
+      const kernel::Time when = reader.time();
+      reader.finish();
+      writer_.begin(MessageType::value).u64(bench_->read(item, when));
+      peer_.send(writer_.finish(), limits_.call);
+      return;
+    }
+    default:
+      throw MessageError(
+          fmt::format("'{}' is nothing that an implementation says here", name(reader.type())));
+  }
+}
+
+std::span<const std::uint8_t> MessageDevice::expect(std::span<const std::uint8_t> message, MessageType answer,
+                                                    milliseconds limit) {
+  peer_.send(message, limit);
+  const auto received = peer_.receive(limit);
+  if (static_cast<MessageType>(received.front()) != answer) {
+    refuse(received, fmt::format("'{}' is expected", name(answer)));
+  }
+  return received;
+}
+
+void MessageDevice::refuse(std::span<const std::uint8_t> message, const std::string& why) {
+  const std::vector<std::string> evidence{octets_text(message)};
+  peer_.blame(reasons::kGarbage, fmt::format("sends what is no message: {}", why), evidence);
+}
+
+}  // namespace fieldproof::iut

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/iut/misbehaviour.hpp"
+#include "harness/iut/process.hpp"
+
+// The other end of a stream of messages: a process at its standard streams, or who listens at a socket. It is
+// supervised: what it does not do in time, or does too much, is Misbehaviour with its evidence, and behind
+// that the peer is of no use any more.
+//
+// Limits: the log (its standard error) is kept up to kKeptLog octets, the last ones.
+namespace fieldproof::iut {
+
+struct PeerLimits {
+  std::chrono::milliseconds start{5'000};  // for its first answer
+  std::chrono::milliseconds call{2'000};   // for each other one
+};
+
+class Peer {
+ public:
+  static constexpr std::size_t kKeptLog = 64U * 1024;
+
+  // `what` names it in sentences: "exec:./node".
+  static Peer spawned(std::string what, const std::vector<std::string>& command);
+  static Peer at_unix_socket(std::string what, const std::string& path);
+  static Peer at_tcp_port(std::string what, const std::string& host, const std::string& port,
+                          std::chrono::milliseconds patience);
+
+  void send(std::span<const std::uint8_t> message, std::chrono::milliseconds limit);
+  // The next message, without its length. Valid until the next call.
+  std::span<const std::uint8_t> receive(std::chrono::milliseconds limit);
+  // Whether there is anything to read although nothing was asked.
+  bool has_more();
+
+  // It is there and has not ended by itself.
+  bool is_alive();
+  // Its log since the last time, as text of unknown origin.
+  std::string take_log();
+  const std::string& what() const { return what_; }
+  // Whoever it is, it cannot be used any more.
+  void end();
+
+  // Misbehaviour with what is known of it: the last lines of its log stand behind the evidence.
+  [[noreturn]] void blame(std::string_view reason, const std::string& sentence,
+                          std::vector<std::string> evidence = {});
+
+ private:
+  explicit Peer(std::string what) : what_(std::move(what)) {}
+
+  using Clock = std::chrono::steady_clock;
+  void fill(Clock::time_point until);
+  void read_log();
+  [[noreturn]] void blame_end();
+  int input() { return process_ ? process_->from_output().number() : socket_.number(); }
+  int output() { return process_ ? process_->to_input().number() : socket_.number(); }
+
+  std::string what_;
+  std::optional<Process> process_;
+  Descriptor socket_;
+  std::vector<std::uint8_t> buffer_;
+  std::size_t begin_ = 0;  // of what has not been taken
+  std::size_t end_ = 0;
+  std::string log_;
+};
+
+}  // namespace fieldproof::iut

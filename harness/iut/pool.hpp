@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/iut/message_device.hpp"
+
+// The implementations that one URI means: one for each case that runs at the same time, used again for the
+// next case as long as it behaves.
+//
+//   exec:./program ARGUMENTS    a process; started as often as cases run side by side
+//   unix:/path, tcp:host:port   who listens there; connected to as often
+//
+// Contract: `take` gives a device that has said hello; the first one of a pool has also tested itself. One
+// that died or spoke while no case ran is told as Misbehaviour by the `take` that meets it, and replaced
+// after that. After kMostFailedStarts starts in a row that failed nothing is started any more.
+namespace fieldproof::iut {
+
+class DevicePool {
+ public:
+  static constexpr unsigned kMostFailedStarts = 3;
+
+  // Throws kernel::Error(usage) for a URI that is none of these.
+  DevicePool(std::string uri, RoleName role, PeerLimits limits = {});
+
+  // Of one case. It goes back by itself; one that was not ended well is not used again.
+  class Lease {
+   public:
+    Lease(DevicePool& pool, std::unique_ptr<MessageDevice> device)
+        : pool_(&pool), device_(std::move(device)) {}
+    Lease(Lease&&) noexcept = default;
+    Lease& operator=(Lease&&) = delete;
+    ~Lease();
+    MessageDevice& operator*() const { return *device_; }
+    MessageDevice* operator->() const { return device_.get(); }
+    // The case has ended as it should.
+    void set_reusable() { is_reusable_ = true; }
+
+   private:
+    DevicePool* pool_;
+    std::unique_ptr<MessageDevice> device_;
+    bool is_reusable_ = false;
+  };
+
+  Lease take();
+  const std::string& uri() const { return uri_; }
+
+  // Is it the URI of an implementation in another process?
+  static bool is_meant(std::string_view uri);
+
+ private:
+  Peer open() const;
+  std::unique_ptr<MessageDevice> started();
+
+  std::string uri_;
+  RoleName role_;
+  PeerLimits limits_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<MessageDevice>> idle_;
+  bool is_tested_ = false;
+  unsigned failed_starts_ = 0;
+  std::string last_failure_;
+};
+
+}  // namespace fieldproof::iut

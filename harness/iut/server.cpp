@@ -1,0 +1,181 @@
+#include "harness/iut/server.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "harness/kernel/error.hpp"
+
+namespace fieldproof::iut {
+namespace {
+
+[[noreturn]] void refuse_bench(const std::string& why) {
+  throw kernel::Error(kernel::ErrorKind::implementation,
+                      fmt::format("what comes from the bench is no message: {}", why));
+}
+
+// Blocking, both ways: a server has nothing else to do.
+class MessagePipe {
+ public:
+  MessagePipe(int input, int output) : input_(input), output_(output) {}
+
+  // Empty at the end of the stream between two messages.
+  std::span<const std::uint8_t> receive() {
+    if (!wait_for(kMessageHead)) return {};
+    std::size_t length = 0;
+    for (std::size_t n = 0; n < kMessageHead; ++n) length |= std::size_t{buffer_[begin_ + n]} << (8 * n);
+    if (length == 0 || length > kLongestMessage) refuse_bench(fmt::format("a length of {} octets", length));
+    if (!wait_for(kMessageHead + length)) refuse_bench("it ends in the middle");
+    const auto message = std::span<const std::uint8_t>(buffer_).subspan(begin_ + kMessageHead, length);
+    begin_ += kMessageHead + length;
+    return message;
+  }
+
+  void send(std::span<const std::uint8_t> message) {
+    while (!message.empty()) {
+      const ssize_t sent = ::write(output_, message.data(), message.size());
+      if (sent < 0 && errno == EINTR) continue;
+      if (sent <= 0) refuse_bench("it has gone");
+      message = message.subspan(static_cast<std::size_t>(sent));
+    }
+  }
+
+ private:
+  bool wait_for(std::size_t octets) {
+    constexpr std::size_t kChunk = 64U * 1024;
+    while (end_ - begin_ < octets) {
+      if (begin_ == end_) begin_ = end_ = 0;
+      if (buffer_.size() - end_ < kChunk) buffer_.resize(end_ + kChunk);
+      const ssize_t count = ::read(input_, buffer_.data() + end_, buffer_.size() - end_);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      end_ += static_cast<std::size_t>(count);
+    }
+    return true;
+  }
+
+  int input_;
+  int output_;
+  std::vector<std::uint8_t> buffer_;
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+};
+
+class Server final : private Bench {
+ public:
+  Server(int input, int output, const MakeDevice& make_device, std::string_view own_name)
+      : pipe_(input, output), make_device_(make_device), own_name_(own_name) {}
+
+  void run() {
+    while (true) {
+      const auto message = pipe_.receive();
+      if (message.empty()) return;
+      try {
+        MessageReader reader(message);
+        answer(reader);
+      } catch (const MessageError& error) {
+        refuse_bench(error.what());
+      }
+    }
+  }
+
+ private:
+  void answer(MessageReader& reader) {
+    if (reader.type() == MessageType::hello) return hello(reader);
+    if (reader.type() == MessageType::echo) {
+      const auto octets = reader.rest();
+      writer_.begin(MessageType::echoed).octets(octets);
+      return pipe_.send(writer_.finish());
+    }
+    if (device_ == nullptr) throw MessageError("the first one is 'hello'");
+    if (reader.type() == MessageType::case_begin) {
+      const CaseBegin begin = read_case_begin(reader);
+      const bool is_meant = begin.id.starts_with(fmt::format("{}/{}/", role_.protocol, role_.role));
+      if (!is_meant || !device_->begin(begin, *this)) {
+        writer_.begin(MessageType::unsupported);
+        return pipe_.send(writer_.finish());
+      }
+    } else {
+      pass_on(reader);
+    }
+    writer_.begin(MessageType::done).time(device_->next_time());
+    pipe_.send(writer_.finish());
+  }
+
+  void hello(MessageReader& reader) {
+    reader.u16();  // the bench refuses a version that is not its own
+    role_.protocol = reader.text();
+    role_.role = reader.text();
+    reader.finish();
+    device_ = make_device_(role_);
+    if (device_ == nullptr) {
+      throw kernel::Error(
+          kernel::ErrorKind::implementation,
+          fmt::format("the bench asks for a {}/{}, which is not served here", role_.protocol, role_.role));
+    }
+    writer_.begin(MessageType::capabilities).u16(kMessageVersion);
+    writer_.u8(static_cast<std::uint8_t>(device_->unit_kind())).text(own_name_);
+    pipe_.send(writer_.finish());
+  }
+
+  void pass_on(MessageReader& reader) {
+    switch (reader.type()) {
+      case MessageType::power: {
+        const bool is_on = reader.u8() != 0;
+        return device_->set_power(is_on, reader.time());
+      }
+      case MessageType::receive_characters: {
+        const ReceivedCharacters received = read_reception(reader);
+        return device_->receive(received.port, received.characters, received.now);
+      }
+      case MessageType::receive_levels: {
+        const unsigned port = read_levels(reader, wave_);
+        return device_->receive(port, wave_);
+      }
+      case MessageType::on_time:
+        return device_->on_time(reader.time());
+      case MessageType::case_end:
+        return device_->end();
+      default:
+        throw MessageError(fmt::format("'{}' is nothing that a bench says here", name(reader.type())));
+    }
+  }
+
+  void transmit(const Transmission& transmission) override {
+    pipe_.send(write_transmission(writer_, transmission));
+  }
+  void transmit(unsigned port, line::Waveform& wave) override {
+    pipe_.send(write_levels(writer_, MessageType::transmit_levels, port, wave));
+    wave.levels.clear();
+  }
+  void write(Item item, std::uint64_t value, kernel::Time when) override {
+    writer_.begin(MessageType::write).u16(item).u64(value).time(when);
+    pipe_.send(writer_.finish());
+  }
+  std::uint64_t read(Item item, kernel::Time when) override {
+    writer_.begin(MessageType::read).u16(item).time(when);
+    pipe_.send(writer_.finish());
+    const auto message = pipe_.receive();
+    if (message.empty()) refuse_bench("it has gone");
+    MessageReader reader(message);
+    if (reader.type() != MessageType::value) throw MessageError("a 'value' is expected");
+    return reader.u64();
+  }
+
+  MessagePipe pipe_;
+  const MakeDevice& make_device_;
+  std::string_view own_name_;
+  RoleName role_;
+  std::unique_ptr<Device> device_;
+  MessageWriter writer_;
+  line::Waveform wave_;
+};
+
+}  // namespace
+
+void serve(int input, int output, const MakeDevice& make_device, std::string_view own_name) {
+  Server(input, output, make_device, own_name).run();
+}
+
+}  // namespace fieldproof::iut

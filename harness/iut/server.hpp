@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "harness/iut/message_device.hpp"
+
+// The implementation's side of the messages: serves a device of ours to a bench on a pair of descriptors. It
+// is how a built-in station, or a shared library, runs in a process of its own.
+namespace fieldproof::iut {
+
+// Makes the device of a role; null for one that it does not have.
+using MakeDevice = std::function<std::unique_ptr<Device>(const RoleName& role)>;
+
+// Until the bench closes its end. `input` and `output` may be one descriptor. Throws
+// kernel::Error(implementation) when the bench does not keep to the protocol.
+void serve(int input, int output, const MakeDevice& make_device, std::string_view own_name);
+
+}  // namespace fieldproof::iut
