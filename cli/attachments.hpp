@@ -1,9 +1,17 @@
 #pragma once
 
+#include <string_view>
+
 #include "conformance/valve_bus/suite.hpp"
 
-// Implementations outside the program, for the suites: what `exec:`, `unix:` and `tcp:` mean.
+// Implementations outside the program, for the suites:
+//
+//   exec:./program ARGUMENTS     a process
+//   unix:/path, tcp:HOST:PORT    who listens there
+//   plugin:./library.so          a shared library, in a process of its own; with ?in-process in this one
 namespace fieldproof::cli {
+
+bool is_attachment(std::string_view uri);
 
 // Implementations of one URI are kept from case to case, and as many are opened as cases run side by side.
 conformance::ValveBusGiven::MakeNode attached_nodes();

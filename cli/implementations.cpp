@@ -1,5 +1,7 @@
 #include "cli/implementations.hpp"
 
+#include "cli/attachments.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,7 +10,6 @@
 #include <set>
 
 #include "harness/config/nearest.hpp"
-#include "harness/iut/pool.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::cli {
@@ -118,10 +119,10 @@ Assignment parse_implementation(const std::string& text, const Catalogue& catalo
   check_position(text, assignment, suites_with(text, assignment.role, catalogue));
   if (assignment.uri.starts_with(kDeviant)) {
     resolve_deviation(assignment, catalogue, among);
-  } else if (assignment.uri != "ref" && !iut::DevicePool::is_meant(assignment.uri)) {
+  } else if (assignment.uri != "ref" && !is_attachment(assignment.uri)) {
     refuse(text,
-           "there is no such kind of implementation; write ref, deviant:NAME, exec:PROGRAM, unix:PATH, "
-           "tcp:HOST:PORT, or one of them behind ROLE= or ROLE@POSITION=");
+           "there is no such kind of implementation; write ref, deviant:NAME, plugin:LIBRARY, exec:PROGRAM, "
+           "unix:PATH, tcp:HOST:PORT, or one of them behind ROLE= or ROLE@POSITION=");
   }
   return assignment;
 }
@@ -155,7 +156,7 @@ std::optional<std::string> obstacle(const Assignment& assignment, const Suite& s
     return fmt::format("the position {} is out of range; a network has at most {} stations",
                        assignment.position, suite.last_position());
   }
-  if (assignment.uri == "ref" || iut::DevicePool::is_meant(assignment.uri)) return std::nullopt;
+  if (assignment.uri == "ref" || is_attachment(assignment.uri)) return std::nullopt;
   if (!assignment.uri.starts_with(kDeviant)) {
     return fmt::format("'{}' is no implementation that can be run again; write ref or deviant:NAME",
                        assignment.uri);

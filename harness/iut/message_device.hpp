@@ -17,7 +17,8 @@ struct RoleName {
 
 class MessageDevice final : public Device {
  public:
-  // Messages of an implementation within one call; more are a flood.
+  // Messages of an implementation within one call, and calls at one instant that it asks for; more are a
+  // flood.
   static constexpr unsigned kMostActions = 10'000;
 
   // Says hello. Throws Misbehaviour for a peer that does not answer as it should, and
@@ -57,6 +58,8 @@ class MessageDevice final : public Device {
   MessageWriter writer_;
   Bench* bench_ = nullptr;
   kernel::Time next_time_ = kernel::kNever;
+  kernel::Time last_call_{};
+  unsigned calls_at_once_ = 0;
   line::Waveform wave_;
 };
 

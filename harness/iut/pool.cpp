@@ -45,7 +45,7 @@ bool DevicePool::is_meant(std::string_view uri) {
 DevicePool::DevicePool(std::string uri, RoleName role, PeerLimits limits)
     : uri_(std::move(uri)), role_(std::move(role)), limits_(limits) {
   if (uri_.starts_with(kExec)) {
-    words_of(uri_.substr(kExec.size()));
+    command_ = words_of(uri_.substr(kExec.size()));
   } else if (uri_.starts_with(kTcp)) {
     host_and_port(uri_);
   } else if (!uri_.starts_with(kUnix)) {
@@ -56,7 +56,7 @@ DevicePool::DevicePool(std::string uri, RoleName role, PeerLimits limits)
 }
 
 Peer DevicePool::open() const {
-  if (uri_.starts_with(kExec)) return Peer::spawned(uri_, words_of(uri_.substr(kExec.size())));
+  if (!command_.empty()) return Peer::spawned(uri_, command_);
   if (uri_.starts_with(kUnix)) return Peer::at_unix_socket(uri_, uri_.substr(kUnix.size()));
   const HostAndPort parts = host_and_port(uri_);
   return Peer::at_tcp_port(uri_, parts.host, parts.port, limits_.start);

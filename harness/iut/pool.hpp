@@ -25,6 +25,9 @@ class DevicePool {
 
   // Throws kernel::Error(usage) for a URI that is none of these.
   DevicePool(std::string uri, RoleName role, PeerLimits limits = {});
+  // Processes of this command, whatever the URI is by which people know them.
+  DevicePool(std::string uri, RoleName role, std::vector<std::string> command, PeerLimits limits = {})
+      : uri_(std::move(uri)), role_(std::move(role)), command_(std::move(command)), limits_(limits) {}
 
   // Of one case. It goes back by itself; one that was not ended well is not used again.
   class Lease {
@@ -57,6 +60,7 @@ class DevicePool {
 
   std::string uri_;
   RoleName role_;
+  std::vector<std::string> command_;  // empty: who listens at the URI
   PeerLimits limits_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<MessageDevice>> idle_;

@@ -115,15 +115,20 @@ kernel::Time AttachedNode::next_time() const {
 
 // ---- what the implementation does ----
 
-void AttachedNode::drive_idle(kernel::Time from, kernel::Time to) {
+kernel::Time AttachedNode::drive_idle(kernel::Time from, kernel::Time to) {
   constexpr std::int64_t kFiner = 16;  // the driver comes and goes between bits, too
   line::Waveform idle;
   idle.start = from;
   idle.rate = configuration_.rules.bit_rate * kFiner;
-  // Rounded to the nearest sixteenth.
-  const auto half = kernel::levels_duration(1, 2 * idle.rate);
-  idle.levels.append_idle(static_cast<std::size_t>(kernel::levels_within(to - from + half, idle.rate)));
-  if (!idle.levels.empty()) line_->drive(idle);
+  const kernel::Duration half = kernel::levels_duration(1, 2 * idle.rate);
+  auto count = static_cast<std::size_t>(kernel::levels_within(to - from + half, idle.rate));
+  // The nearest sixteenth, but not into what follows.
+  if (kernel::level_time(from, static_cast<std::int64_t>(count), idle.rate) > to + kernel::kNanosecond)
+    --count;
+  idle.levels.append_idle(count);
+  const kernel::Time end = idle.end();
+  if (count > 0) line_->drive(idle);
+  return std::max(to, end);
 }
 
 void AttachedNode::transmit(const iut::Transmission& transmission) {
@@ -142,9 +147,9 @@ void AttachedNode::transmit(const iut::Transmission& transmission) {
                                   kernel::describe(transmission.driver_off),
                                   kernel::describe(transmission.start), kernel::describe(end)));
   }
-  drive_idle(transmission.driver_on, transmission.start);
-  const kernel::Time driven = codec_.drive_characters(*line_, transmission.characters, transmission.start);
-  drive_idle(std::max(driven, transmission.start), transmission.driver_off);
+  const kernel::Time start = drive_idle(transmission.driver_on, transmission.start);
+  const kernel::Time driven = codec_.drive_characters(*line_, transmission.characters, start);
+  drive_idle(driven, std::max(driven, transmission.driver_off));
 }
 
 void AttachedNode::transmit(unsigned port, line::Waveform& wave) {

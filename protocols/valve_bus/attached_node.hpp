@@ -53,7 +53,8 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(iut::Item item, kernel::Time when) override;
-  void drive_idle(kernel::Time from, kernel::Time to);
+  // The driver on and nothing said. Gives the end: `to`, or what rounding makes of it.
+  kernel::Time drive_idle(kernel::Time from, kernel::Time to);
 
   NodeAttachment attachment_;
   NodeConfiguration configuration_;

@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""A local node of the RS-485 valve bus, to be judged; harness/iut/README.md describes the messages.
+
+On standard input and output, for --iut 'exec:python3 node.py', or, with a path, at a socket there."""
+import socketserver
+import struct
+import sys
+
+NEVER = 2**63 - 1
+SECOND = 10**12  # times are picoseconds
+HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE, ON_TIME = 1, 2, 3, 4, 5, 7
+CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT, WRITE, READ = 129, 130, 131, 132, 133, 135, 136
+VALVES, LIMIT_SWITCHES = 0, 1
+
+class Stream:
+    def __init__(self, source, sink):
+        self.source, self.sink = source, sink
+
+    def receive(self):
+        head = self.source.read(4)
+        return self.source.read(struct.unpack("<I", head)[0]) if len(head) == 4 else sys.exit(0)
+
+    def send(self, kind, form="", *values):
+        content = struct.pack("<" + form, *values)
+        self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
+        self.sink.flush()
+
+
+class Node:
+    def __init__(self, stream, settings):
+        self.stream, self.settings = stream, settings
+        self.bit = SECOND // settings["bit_rate"]
+        self.half = (10 if settings["characters"] == 2 else 11) * SECOND // (2 * settings["bit_rate"])  # a character
+        self.address = 10 * settings["address_tens"] + settings["address_units"]
+        self.power(False, 0)
+
+    def power(self, is_on, now):
+        self.is_on, self.last_command = is_on, now
+        self.frame, self.is_spoilt, self.busy_until = [], False, 0
+        self.answer, self.driving_until = None, 0
+
+    def receive(self, start, busy_until, data, flags, now):  # a character that is over
+        if not self.is_on:
+            return
+        gap = start - self.busy_until
+        if self.frame and gap >= 7 * self.half:
+            self.end_frame(now)
+        self.answer = None  # somebody else talks
+        if flags or start < self.driving_until or self.frame and gap > 3 * self.half + 1000:
+            self.is_spoilt = True
+        self.frame = self.frame[:5] + [data & 0xFF]  # six octets are as wrong as a hundred
+        self.busy_until = busy_until
+
+    def silence_known(self):  # a character that began within the delimiter is over by then
+        return self.busy_until + 9 * self.half + self.bit if self.frame else NEVER
+
+    def lost(self):
+        limit = self.settings["loss_limit_ms"]
+        return self.last_command + limit * SECOND // 1000 if limit else NEVER
+
+    def next_time(self):
+        answer = self.answer[0] - self.bit if self.answer else NEVER
+        return min(self.silence_known(), self.lost(), answer) if self.is_on else NEVER
+
+    def on_time(self, now):
+        if now >= self.silence_known():
+            self.end_frame(now)
+        if self.answer and now >= self.answer[0] - self.bit:
+            start, octets = max(self.answer[0], now + self.bit), self.answer[1]
+            self.answer, self.driving_until = None, start + 6 * self.half + 2 * self.bit
+            ninth = 0x100 if self.settings["characters"] == 0 else 0
+            self.stream.send(TRANSMIT, "BqqqH3H", 0, start - self.bit, start, self.driving_until, 3,
+                             *(ninth | octet for octet in octets))
+        if now >= self.lost():
+            self.last_command = now
+            self.stream.send(WRITE, "HQq", VALVES, 0, now)
+
+    def end_frame(self, now):
+        frame, is_spoilt, self.frame, self.is_spoilt = self.frame, self.is_spoilt, [], False
+        if is_spoilt or len(frame) != 5 or frame[0] ^ frame[1] ^ frame[2] ^ frame[3] != frame[4]:
+            return
+        if frame[0] != self.address or self.address == 0:
+            return
+        self.last_command = now
+        boards = 0xFF if self.settings["boards"] == 1 else 0xFFFF
+        if frame[1] == 0:
+            self.stream.send(WRITE, "HQq", VALVES, (frame[2] | frame[3] << 8) & boards, now)
+            if self.settings["answers_writes"]:
+                self.answer_with(frame[2], frame[3])
+        elif frame[1] == 1:
+            self.stream.send(READ, "Hq", LIMIT_SWITCHES, now)
+            switches = struct.unpack("<xQ", self.stream.receive())[0] & boards
+            self.answer_with(switches & 0xFF, switches >> 8)
+
+    def answer_with(self, data0, data1):
+        self.answer = (self.busy_until + 7 * self.half + SECOND // 10000, [data0, data1, data0 ^ data1])
+
+
+def text_at(content, at):
+    end = at + 2 + struct.unpack_from("<H", content, at)[0]
+    return content[at + 2:end].decode(), end
+
+
+def node_for(stream, content):
+    name, at = text_at(content, 1)
+    settings, count = {}, struct.unpack_from("<8xH", content, at)[0]
+    at += 10
+    for _ in range(count):
+        key, at = text_at(content, at)
+        settings[key] = struct.unpack_from("<q", content, at)[0]
+        at += 8
+    return Node(stream, settings) if name.startswith("valve_bus/node/") else None
+
+
+def serve(stream):
+    node = None
+    while True:
+        message = stream.receive()
+        kind = message[0]
+        if kind == HELLO:
+            stream.send(CAPABILITIES, "HBH20s", 1, 1, 20, b"valve node in Python")
+            continue
+        if kind == ECHO:
+            stream.send(ECHOED, f"{len(message) - 1}s", message[1:])
+            continue
+        if kind == CASE_BEGIN:
+            node = node_for(stream, message)
+        elif kind == POWER:
+            node.power(*struct.unpack("<x?q", message))
+        elif kind == RECEIVE:
+            now, count = struct.unpack_from("<xxqH", message)
+            for n in range(count):
+                node.receive(*struct.unpack_from("<qqHB", message, 12 + 19 * n), now)
+        elif kind == ON_TIME:
+            node.on_time(struct.unpack("<xq", message)[0])
+        if node is None:
+            stream.send(UNSUPPORTED)
+        else:
+            stream.send(DONE, "q", node.next_time())
+
+
+class Connection(socketserver.StreamRequestHandler):
+    def handle(self):
+        serve(Stream(self.rfile, self.wfile))
+
+
+if len(sys.argv) > 1:  # cases may run side by side, each with a connection of its own
+    socketserver.ThreadingUnixStreamServer(sys.argv[1], Connection).serve_forever()
+serve(Stream(sys.stdin.buffer, sys.stdout.buffer))

@@ -1,0 +1,148 @@
+/*
+ * The node as a process; harness/iut/README.md describes the messages:
+ *
+ *   cc -I. -o valve_node examples/valve_node/process.c examples/valve_node/valve_node.c
+ *   fieldproof run valve_bus/node/read/is_answered --iut 'exec:./valve_node'
+ * An argument names a deviation.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "examples/valve_node/valve_node.h"
+
+enum { HELLO = 1, ECHO, CASE_BEGIN, POWER, RECEIVE, ON_TIME = 7, CASE_END, VALUE };
+enum { CAPABILITIES = 129, ECHOED, DONE, UNSUPPORTED, TRANSMIT, WRITE = 135, READ };
+
+static unsigned char *message, *at; /* the last one that came, and how far it has been read */
+static unsigned char out[64], *end; /* the one that goes, and how far it has been written */
+static unsigned length;
+
+static fieldproof_word number(unsigned octets) {
+  fieldproof_word value = 0;
+  unsigned n;
+  for (n = 0; n < octets; ++n) value |= (fieldproof_word)*at++ << (8 * n);
+  return value;
+}
+
+static unsigned next_message(void) { /* its type */
+  unsigned char head[4];
+  if (fread(head, 1, 4, stdin) != 4) exit(0); /* the bench has gone */
+  length = head[0] | (unsigned)head[1] << 8 | (unsigned)head[2] << 16 | (unsigned)head[3] << 24;
+  message = (unsigned char *)realloc(message, length + 1);
+  if (message == 0 || fread(message, 1, length, stdin) != length) exit(1);
+  at = message + 1;
+  return message[0];
+}
+
+static char *text(void) {
+  const unsigned octets = (unsigned)number(2);
+  char *copy = (char *)calloc(octets + 1, 1);
+  memcpy(copy, at, octets);
+  at += octets;
+  return copy;
+}
+
+static void put(fieldproof_word value, unsigned octets) {
+  for (; octets > 0; --octets, value >>= 8) *end++ = (unsigned char)(value & 0xFF);
+}
+
+static void begin_message(unsigned type) { end = out + 4, put(type, 1); }
+
+static void send_message(void) {
+  const unsigned octets = (unsigned)(end - out);
+  end = out;
+  put(octets - 4, 4);
+  fwrite(out, 1, octets, stdout);
+  fflush(stdout);
+}
+
+static void transmit(void *context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
+                     fieldproof_time driver_off, const unsigned short *characters, unsigned count) {
+  (void)context;
+  begin_message(TRANSMIT);
+  put(port, 1), put((fieldproof_word)driver_on, 8), put((fieldproof_word)start, 8), put((fieldproof_word)driver_off, 8);
+  put(count, 2);
+  for (; count > 0; --count) put(*characters++, 2);
+  send_message();
+}
+
+static void write_item(void *context, unsigned item, fieldproof_word value, fieldproof_time when) {
+  (void)context;
+  begin_message(WRITE);
+  put(item, 2), put(value, 8), put((fieldproof_word)when, 8);
+  send_message();
+}
+
+static fieldproof_word read_item(void *context, unsigned item, fieldproof_time when) {
+  (void)context;
+  begin_message(READ);
+  put(item, 2), put((fieldproof_word)when, 8);
+  send_message();
+  return next_message() == VALUE ? number(8) : 0;
+}
+
+static int begin_case(valve_node *node) {
+  fieldproof_setting settings[32];
+  fieldproof_case test_case;
+  char *id = text();
+  const int is_served = strncmp(id, "valve_bus/node/", 15) == 0;
+  test_case.seed = number(8);
+  test_case.setting_count = (unsigned)number(2);
+  if (test_case.setting_count <= 32 && is_served) {
+    unsigned n;
+    for (n = 0; n < test_case.setting_count; ++n) {
+      settings[n].name = text();
+      settings[n].value = (fieldproof_time)number(8);
+    }
+    test_case.id = id;
+    test_case.settings = settings;
+    valve_node_begin(node, &test_case);
+    for (n = 0; n < test_case.setting_count; ++n) free((void *)settings[n].name);
+  }
+  free(id);
+  return is_served;
+}
+
+static void receive(valve_node *node) {
+  const fieldproof_time now = (++at, (fieldproof_time)number(8)); /* behind the port: a node has one */
+  unsigned count = (unsigned)number(2);
+  for (; count > 0; --count) {
+    fieldproof_character character;
+    character.start = (fieldproof_time)number(8);
+    character.busy_until = (fieldproof_time)number(8);
+    character.data = (unsigned short)number(2);
+    character.flags = (unsigned short)number(1);
+    valve_node_receive(node, &character, now);
+  }
+}
+
+static void answer(valve_node *node, unsigned type) {
+  int is_served = 1, is_on;
+  if (type == HELLO) {
+    begin_message(CAPABILITIES);
+    put(1, 2), put(FIELDPROOF_CHARACTERS, 1), put(4, 2), memcpy(end, "node", 4), end += 4;
+  } else if (type == ECHO) {
+    begin_message(ECHOED);
+    memcpy(end, at, length - 1 < 32 ? length - 1 : 32), end += length - 1 < 32 ? length - 1 : 32;
+  } else {
+    if (type == CASE_BEGIN) is_served = begin_case(node);
+    if (type == POWER) is_on = number(1) != 0, valve_node_power(node, is_on, (fieldproof_time)number(8));
+    if (type == RECEIVE) receive(node);
+    if (type == ON_TIME) valve_node_on_time(node, (fieldproof_time)number(8));
+    begin_message(is_served ? DONE : UNSUPPORTED);
+    if (is_served) put((fieldproof_word)valve_node_next_time(node), 8);
+  }
+  send_message();
+}
+
+int main(int argc, char **argv) {
+  static fieldproof_bench bench;
+  static valve_node node;
+  int n;
+  bench.transmit = transmit, bench.write = write_item, bench.read = read_item;
+  node.bench = &bench;
+  for (n = 0; argc > 1 && n < DEVIATIONS; ++n)
+    if (strcmp(valve_deviation_name((valve_deviation)n), argv[1]) == 0) node.deviation = (valve_deviation)n;
+  for (;;) answer(&node, next_message());
+}

@@ -1,0 +1,212 @@
+#include "harness/iut/plugin.hpp"
+
+#define BOOST_DLL_USE_STD_FS
+#include <fmt/format.h>
+
+#include <boost/dll/shared_library.hpp>
+#include <cstdio>
+#include <exception>
+#include <vector>
+
+#include "harness/iut/fieldproof_plugin.h"
+#include "harness/iut/misbehaviour.hpp"
+#include "harness/kernel/check.hpp"
+#include "harness/kernel/untrusted_text.hpp"
+
+namespace fieldproof::iut {
+namespace {
+
+constexpr unsigned kMostActions = 10'000;  // within one call, and calls at one instant
+
+[[noreturn]] void refuse_library(const std::string& path, const std::string& why) {
+  throw kernel::Error(kernel::ErrorKind::implementation, fmt::format("plugin:{}: {}", path, why));
+}
+
+fieldproof_time ticks_of(kernel::Time time) {
+  return time.time_since_epoch().count();
+}
+kernel::Time time_of(fieldproof_time ticks) {
+  return kernel::Time{kernel::Duration{ticks}};
+}
+
+class PluginDevice final : public Device {
+ public:
+  PluginDevice(const std::string& path, const std::string& protocol, const std::string& role) : path_(path) {
+    boost::dll::fs::error_code error;
+    library_.load(path, error, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+    if (error)
+      refuse_library(path, fmt::format("cannot be loaded: {}", kernel::escaped_line(error.message())));
+    if (!library_.has("fieldproof_plugin")) refuse_library(path, "does not export 'fieldproof_plugin'");
+    const auto& entry = library_.get<const fieldproof_implementation*(unsigned)>("fieldproof_plugin");
+    implementation_ = entry(FIELDPROOF_PLUGIN_VERSION);
+    check();
+    bench_.version = FIELDPROOF_PLUGIN_VERSION;
+    bench_.size = sizeof bench_;
+    bench_.context = this;
+    bench_.transmit = &on_transmit;
+    bench_.transmit_levels = &on_transmit_levels;
+    bench_.write = &on_write;
+    bench_.read = &on_read;
+    bench_.log = &on_log;
+    self_ = implementation_->create(protocol.c_str(), role.c_str(), &bench_);
+    if (self_ == nullptr)
+      refuse_library(path, fmt::format("does not serve the role '{}/{}'", protocol, role));
+  }
+  ~PluginDevice() override { implementation_->destroy(self_); }
+
+  UnitKind unit_kind() const override {
+    return implementation_->unit == FIELDPROOF_LEVELS ? UnitKind::levels : UnitKind::characters;
+  }
+
+  bool begin(const CaseBegin& begin, Bench& bench) override {
+    std::vector<fieldproof_setting> settings;
+    for (const auto& [name, value] : begin.settings) settings.push_back({name.c_str(), value});
+    const fieldproof_case test_case{begin.id.c_str(), begin.seed, settings.data(),
+                                    static_cast<unsigned>(settings.size())};
+    case_bench_ = &bench;
+    bool is_served = false;
+    call([&] { is_served = implementation_->begin(self_, &test_case) != 0; });
+    return is_served;
+  }
+  void set_power(bool is_on, kernel::Time now) override {
+    call([&] { implementation_->set_power(self_, is_on ? 1 : 0, ticks_of(now)); });
+  }
+  void receive(unsigned port, std::span<const Character> characters, kernel::Time now) override {
+    characters_.clear();
+    for (const Character& one : characters) {
+      const int flags = (one.is_parity_wrong ? FIELDPROOF_PARITY_WRONG : 0) |
+                        (one.is_stop_missing ? FIELDPROOF_STOP_MISSING : 0);
+      characters_.push_back(
+          {ticks_of(one.start), ticks_of(one.busy_until), one.data, static_cast<unsigned short>(flags)});
+    }
+    call([&] {
+      implementation_->receive(self_, port, characters_.data(), static_cast<unsigned>(characters_.size()),
+                               ticks_of(now));
+    });
+  }
+  void receive(unsigned port, const line::Waveform& reception) override {
+    const std::size_t count = reception.levels.size();
+    packed_.clear();
+    for (std::size_t n = 0; n < count; n += 8) {
+      packed_.push_back(static_cast<unsigned char>(reception.levels.window(n) & 0xFF));
+    }
+    call([&] {
+      implementation_->receive_levels(self_, port, ticks_of(reception.start), reception.rate, packed_.data(),
+                                      static_cast<unsigned>(count), ticks_of(reception.end()));
+    });
+  }
+  void on_time(kernel::Time now) override {
+    calls_at_once_ = now == last_call_ ? calls_at_once_ + 1 : 0;
+    last_call_ = now;
+    if (calls_at_once_ > kMostActions) {
+      throw Misbehaviour(
+          reasons::kFloods,
+          fmt::format("plugin:{} asks to be called at {} again and again; its next time must lie "
+                      "behind the one that has come",
+                      path_, kernel::describe(now)));
+    }
+    call([&] { implementation_->on_time(self_, ticks_of(now)); });
+  }
+  kernel::Time next_time() const override { return next_time_; }
+  void end() override {
+    case_bench_ = nullptr;
+    implementation_->end(self_);
+  }
+
+ private:
+  void check() const {
+    if (implementation_ == nullptr || implementation_->version != FIELDPROOF_PLUGIN_VERSION) {
+      refuse_library(
+          path_, fmt::format("is not made for version {} of fieldproof_plugin.h", FIELDPROOF_PLUGIN_VERSION));
+    }
+    const fieldproof_implementation& it = *implementation_;
+    if (it.size < sizeof it) refuse_library(path_, "has a shorter table of functions than its version has");
+    const bool has_receive =
+        it.unit == FIELDPROOF_LEVELS ? it.receive_levels != nullptr : it.receive != nullptr;
+    if (it.create == nullptr || it.destroy == nullptr || it.begin == nullptr || it.set_power == nullptr ||
+        !has_receive || it.on_time == nullptr || it.next_time == nullptr || it.end == nullptr) {
+      refuse_library(path_, "leaves a function out of its table");
+    }
+  }
+
+  // An exception must not pass through the implementation: it is kept until the call is over.
+  template <typename Call>
+  void call(Call&& call) {
+    actions_ = 0;
+    call();
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+    next_time_ = time_of(implementation_->next_time(self_));
+  }
+
+  template <typename Act>
+  static void act(void* context, Act&& act) {
+    auto& self = *static_cast<PluginDevice*>(context);
+    if (self.failure_ || self.case_bench_ == nullptr) return;
+    try {
+      if (++self.actions_ > kMostActions) {
+        throw Misbehaviour(
+            reasons::kFloods,
+            fmt::format("plugin:{} has done more than {} things within one call", self.path_, kMostActions));
+      }
+      act(*self.case_bench_);
+    } catch (...) {
+      self.failure_ = std::current_exception();
+    }
+  }
+
+  static void on_transmit(void* context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
+                          fieldproof_time driver_off, const unsigned short* characters, unsigned count) {
+    act(context, [&](Bench& bench) {
+      Transmission transmission{port, time_of(driver_on), time_of(start), time_of(driver_off), {}};
+      transmission.characters.assign(characters, characters + count);
+      bench.transmit(transmission);
+    });
+  }
+  static void on_transmit_levels(void* context, unsigned port, fieldproof_time start, fieldproof_time rate,
+                                 const unsigned char* levels, unsigned count) {
+    act(context, [&](Bench& bench) {
+      constexpr fieldproof_time kGreatestRate = 100'000'000'000;
+      if (rate < 1 || rate > kGreatestRate) {
+        throw Misbehaviour(reasons::kImpossible,
+                           fmt::format("the implementation drives {} levels per second", rate));
+      }
+      line::Waveform wave;
+      wave.start = time_of(start);
+      wave.rate = rate;
+      for (unsigned n = 0; n < count; n += 8) wave.levels.append(levels[n / 8], std::min(8U, count - n));
+      bench.transmit(port, wave);
+    });
+  }
+  static void on_write(void* context, unsigned item, fieldproof_word value, fieldproof_time when) {
+    act(context, [&](Bench& bench) { bench.write(static_cast<Item>(item), value, time_of(when)); });
+  }
+  static fieldproof_word on_read(void* context, unsigned item, fieldproof_time when) {
+    std::uint64_t value = 0;
+    act(context, [&](Bench& bench) { value = bench.read(static_cast<Item>(item), time_of(when)); });
+    return value;
+  }
+  static void on_log(void*, const char* text) { std::fprintf(stderr, "%s\n", text); }
+
+  std::string path_;
+  boost::dll::shared_library library_;
+  const fieldproof_implementation* implementation_ = nullptr;
+  fieldproof_bench bench_{};
+  void* self_ = nullptr;
+  Bench* case_bench_ = nullptr;
+  kernel::Time next_time_ = kernel::kNever;
+  kernel::Time last_call_{};
+  unsigned calls_at_once_ = 0;
+  unsigned actions_ = 0;
+  std::exception_ptr failure_;
+  std::vector<fieldproof_character> characters_;
+  std::vector<unsigned char> packed_;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> load_plugin(const std::string& path, const std::string& protocol,
+                                    const std::string& role) {
+  return std::make_unique<PluginDevice>(path, protocol, role);
+}
+
+}  // namespace fieldproof::iut
