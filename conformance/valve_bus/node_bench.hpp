@@ -132,6 +132,8 @@ class NodeBench final : private segment::Station {
     return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
   }
 
+  // The case is over.
+  void finish() { node_->end(); }
   const LineWatch& line_watch() const { return line_watch_; }
   // The last transmissions of the IUT, in words.
   std::vector<std::string> decode_lines();

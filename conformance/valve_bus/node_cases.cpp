@@ -53,6 +53,7 @@ judge::CaseResult run_node_case(const NodeCase& node_case, const NodeSetting& se
     bench.emplace(node_case.needs, setting);
     node_case.procedure(*bench, j);
     bench->line_watch().judge(j);
+    bench->finish();
   });
   result.seed = setting.seed;
   if (!bench) return result;

@@ -81,20 +81,20 @@ bool MessageDevice::begin(const CaseBegin& begin, Bench& bench) {
   bench_ = &bench;
   next_time_ = kernel::kNever;
   calls_at_once_ = 0;
-  return call(write_case_begin(writer_, begin), limits_.call);
+  return call(write_case_begin(writer_, begin), CanRefuse::yes);
 }
 
 void MessageDevice::set_power(bool is_on, kernel::Time now) {
   writer_.begin(MessageType::power).u8(is_on ? 1 : 0).time(now);
-  call(writer_.finish(), limits_.call);
+  call(writer_.finish());
 }
 
 void MessageDevice::receive(unsigned port, std::span<const Character> characters, kernel::Time now) {
-  call(write_reception(writer_, port, characters, now), limits_.call);
+  call(write_reception(writer_, port, characters, now));
 }
 
 void MessageDevice::receive(unsigned port, const line::Waveform& reception) {
-  call(write_levels(writer_, MessageType::receive_levels, port, reception), limits_.call);
+  call(write_levels(writer_, MessageType::receive_levels, port, reception));
 }
 
 void MessageDevice::on_time(kernel::Time now) {
@@ -108,16 +108,24 @@ void MessageDevice::on_time(kernel::Time now) {
                     kernel::describe(now)));
   }
   writer_.begin(MessageType::on_time).time(now);
-  call(writer_.finish(), limits_.call);
+  call(writer_.finish());
 }
 
 void MessageDevice::end() {
   writer_.begin(MessageType::case_end);
-  call(writer_.finish(), limits_.call);
+  call(writer_.finish());
   bench_ = nullptr;
+  if (peer_.has_more()) refuse_unasked();
 }
 
-bool MessageDevice::call(std::span<const std::uint8_t> message, milliseconds limit) {
+void MessageDevice::refuse_unasked() {
+  peer_.blame(reasons::kGarbage,
+              "says something that it was not asked for: each call is answered once, by 'done'");
+}
+
+bool MessageDevice::call(std::span<const std::uint8_t> message, CanRefuse can_refuse) {
+  const milliseconds limit = limits_.call;
+  if (peer_.has_read_more()) refuse_unasked();
   peer_.send(message, limit);
   for (unsigned actions = 0; actions <= kMostActions; ++actions) {
     const auto answer = peer_.receive(limit);
@@ -128,7 +136,7 @@ bool MessageDevice::call(std::span<const std::uint8_t> message, milliseconds lim
         reader.finish();
         return true;
       }
-      if (reader.type() == MessageType::unsupported) {
+      if (reader.type() == MessageType::unsupported && can_refuse == CanRefuse::yes) {
         bench_ = nullptr;
         return false;
       }

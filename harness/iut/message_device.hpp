@@ -45,7 +45,9 @@ class MessageDevice final : public Device {
 
  private:
   // Sends the message and serves the implementation until it is done; false for `unsupported`.
-  bool call(std::span<const std::uint8_t> message, std::chrono::milliseconds limit);
+  enum class CanRefuse : std::uint8_t { no, yes };
+  bool call(std::span<const std::uint8_t> message, CanRefuse can_refuse = CanRefuse::no);
+  [[noreturn]] void refuse_unasked();
   void serve(MessageReader& reader);
   std::span<const std::uint8_t> expect(std::span<const std::uint8_t> message, MessageType answer,
                                        std::chrono::milliseconds limit);

@@ -125,6 +125,9 @@ std::span<const std::uint8_t> Peer::receive(milliseconds limit) {
   const auto wait_for = [&](std::size_t octets) {
     while (end_ - begin_ < octets) {
       if (remaining(until) == 0) {
+        // Its descendants may keep the stream open when it has gone.
+        if (process_ && process_->has_ended(milliseconds(0)))
+          blame(reasons::kCrashed, process_->how_it_ended());
         blame(reasons::kHangs, fmt::format("has not answered within {} ms", limit.count()));
       }
       fill(until);
@@ -145,7 +148,7 @@ std::span<const std::uint8_t> Peer::receive(milliseconds limit) {
 }
 
 bool Peer::has_more() {
-  if (begin_ != end_) return true;
+  if (has_read_more()) return true;
   pollfd wait{input(), POLLIN, 0};
   return ::poll(&wait, 1, 0) > 0 && (wait.revents & POLLIN) != 0;
 }

@@ -35,8 +35,10 @@ class Peer {
   void send(std::span<const std::uint8_t> message, std::chrono::milliseconds limit);
   // The next message, without its length. Valid until the next call.
   std::span<const std::uint8_t> receive(std::chrono::milliseconds limit);
-  // Whether there is anything to read although nothing was asked.
+  // Whether there is anything to read although nothing was asked; of what has come, without asking the
+  // system.
   bool has_more();
+  bool has_read_more() const { return begin_ != end_; }
 
   // It is there and has not ended by itself.
   bool is_alive();

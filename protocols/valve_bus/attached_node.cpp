@@ -60,13 +60,18 @@ AttachedNode::AttachedNode(NodeAttachment attachment, const NodeConfiguration& c
 }
 
 AttachedNode::~AttachedNode() {
-  if (!is_well_) return;
   try {
-    attachment_.device->end();
-    if (attachment_.on_well_ended) attachment_.on_well_ended();
+    end();
   } catch (const kernel::Error&) {
-    // It is not used again. The case is over and judged; the next one begins with a new implementation.
+    // The case has ended before, with a verdict; the next one begins with a new implementation.
   }
+}
+
+void AttachedNode::end() {
+  if (!is_well_ || has_ended_) return;
+  has_ended_ = true;
+  call([&](iut::Device& device) { device.end(); });
+  if (attachment_.on_well_ended) attachment_.on_well_ended();
 }
 
 // One that did not keep to the protocol once is not called again.
@@ -131,7 +136,12 @@ kernel::Time AttachedNode::drive_idle(kernel::Time from, kernel::Time to) {
   return std::max(to, end);
 }
 
+void AttachedNode::require_wired() const {
+  if (line_ == nullptr) refuse_impossible("acts before its case has begun");
+}
+
 void AttachedNode::transmit(const iut::Transmission& transmission) {
+  require_wired();
   if (transmission.port != 0)
     refuse_impossible(fmt::format("drives port {}; a node has port 0", transmission.port));
   const std::size_t count = transmission.characters.size();
@@ -153,6 +163,7 @@ void AttachedNode::transmit(const iut::Transmission& transmission) {
 }
 
 void AttachedNode::transmit(unsigned port, line::Waveform& wave) {
+  require_wired();
   if (port != 0) refuse_impossible(fmt::format("drives port {}; a node has port 0", port));
   const bool is_near = wave.start.time_since_epoch() <= kFarthestAhead;
   if (!is_near || wave.end() - wave.start > kLongestDrive) {
@@ -163,6 +174,7 @@ void AttachedNode::transmit(unsigned port, line::Waveform& wave) {
 }
 
 void AttachedNode::write(iut::Item item, std::uint64_t value, kernel::Time when) {
+  require_wired();
   if (item != kValves || value > 0xFFFF) {
     refuse_impossible(
         fmt::format("writes {} to item {}; a node has 16 valves, item {}", value, item, kValves));
@@ -173,6 +185,7 @@ void AttachedNode::write(iut::Item item, std::uint64_t value, kernel::Time when)
 }
 
 std::uint64_t AttachedNode::read(iut::Item item, kernel::Time when) {
+  require_wired();
   if (item != kLimitSwitches) {
     refuse_impossible(
         fmt::format("reads item {}; a node has its limit switches, item {}", item, kLimitSwitches));

@@ -45,10 +45,12 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
   void on_time(kernel::Time now) override;
   kernel::Time next_time() const override;
+  void end() override;
 
  private:
   template <typename Call>
   void call(Call&& call);
+  void require_wired() const;
   void transmit(const iut::Transmission& transmission) override;
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
@@ -64,6 +66,7 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   std::vector<iut::Character> characters_;
   kernel::Time last_write_{};
   bool is_well_ = true;
+  bool has_ended_ = false;
 };
 
 class ServedNode final : public iut::Device, private segment::Port, private NodeBoards {

@@ -1,0 +1,205 @@
+// A node that is right until a call in the case that it is told, and then does the worst: what the bench
+// makes of implementations that crash, hang, flood or talk nonsense is tested with it.
+//
+//   hostile_node ACT CALL CASE     "segv receive data_is_not_looked_at"
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "harness/iut/server.hpp"
+#include "protocols/valve_bus/attached_node.hpp"
+#include "protocols/valve_bus/node.hpp"
+
+namespace fieldproof {
+namespace {
+
+void say(std::string_view octets) {
+  while (!octets.empty()) {
+    const ssize_t count = ::write(STDOUT_FILENO, octets.data(), octets.size());
+    if (count <= 0) ::_exit(9);
+    octets.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
+void say(std::span<const std::uint8_t> message) {
+  say(std::string_view(reinterpret_cast<const char*>(message.data()), message.size()));
+}
+
+[[noreturn]] void hang() {
+  while (true) ::pause();
+}
+
+class Hostile final : public iut::Device {
+ public:
+  Hostile(std::string act, std::string call, std::string in_case)
+      : act_(std::move(act)),
+        call_(std::move(call)),
+        in_case_(std::move(in_case)),
+        right_([](const auto& configuration) { return std::make_unique<valve_bus::Node>(configuration); }) {}
+
+  iut::UnitKind unit_kind() const override { return right_.unit_kind(); }
+  bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override {
+    bench_ = &bench;
+    is_time_stuck_ = false;
+    is_due_ = begin.id.find(in_case_) != std::string::npos;
+    const bool is_served = right_.begin(begin, bench);
+    do_worst("begin", {});
+    return is_served;
+  }
+  void set_power(bool is_on, kernel::Time now) override {
+    right_.set_power(is_on, now);
+    do_worst("power", now);
+  }
+  void receive(unsigned, std::span<const iut::Character>, kernel::Time) override {}
+  void receive(unsigned port, const line::Waveform& reception) override {
+    right_.receive(port, reception);
+    do_worst("receive", reception.end());
+  }
+  void on_time(kernel::Time now) override {
+    right_.on_time(now);
+    do_worst("on_time", now);
+  }
+  kernel::Time next_time() const override { return is_time_stuck_ ? now_ : right_.next_time(); }
+  void end() override {
+    right_.end();
+    do_worst("end", now_);
+  }
+
+ private:
+  void do_worst(std::string_view call, kernel::Time now) {
+    now_ = now;
+    if (!is_due_ || call != call_) return;
+    is_due_ = false;
+    const auto found = acts().find(act_);
+    if (found == acts().end()) ::_exit(64);
+    found->second(*this);
+  }
+
+  void transmit(unsigned port, kernel::Duration on, kernel::Duration start, kernel::Duration off) {
+    bench_->transmit(iut::Transmission{port, now_ + on, now_ + start, now_ + off, {0x155}});
+  }
+  template <typename Fill>
+  static void message(iut::MessageType type, Fill fill) {
+    iut::MessageWriter writer;
+    writer.begin(type);
+    fill(writer);
+    say(writer.finish());
+  }
+
+  static const std::map<std::string, std::function<void(Hostile&)>, std::less<>>& acts();
+
+  std::string act_;
+  std::string call_;
+  std::string in_case_;
+  valve_bus::ServedNode right_;
+  iut::Bench* bench_ = nullptr;
+  kernel::Time now_{};
+  bool is_due_ = false;
+  bool is_time_stuck_ = false;
+};
+
+const std::map<std::string, std::function<void(Hostile&)>, std::less<>>& Hostile::acts() {
+  using kernel::kMicrosecond;
+  using kernel::kMillisecond;
+  static const std::map<std::string, std::function<void(Hostile&)>, std::less<>> all = {
+      {"exit_0", [](Hostile&) { ::_exit(0); }},
+      {"exit_3", [](Hostile&) { ::_exit(3); }},
+      {"abort", [](Hostile&) { std::abort(); }},
+      {"segv", [](Hostile&) { ::raise(SIGSEGV); }},
+      {"kill", [](Hostile&) { ::raise(SIGKILL); }},
+      {"term", [](Hostile&) { ::raise(SIGTERM); }},
+      {"floating_point", [](Hostile&) { ::raise(SIGFPE); }},
+      {"last_words",
+       [](Hostile&) {
+         std::fputs("stack smashed \x1b[31m at 0xdead\n", stderr);
+         std::abort();
+       }},
+      {"close_output",
+       [](Hostile&) {
+         ::close(STDOUT_FILENO);
+         hang();
+       }},
+      {"leave_a_child",
+       [](Hostile&) {
+         if (::fork() == 0) hang();
+         ::_exit(0);
+       }},
+      {"hang", [](Hostile&) { hang(); }},
+      {"hang_for_all_signals",
+       [](Hostile&) {
+         for (int signal = 1; signal < 32; ++signal) ::signal(signal, SIG_IGN);
+         hang();
+       }},
+      {"spin",
+       [](Hostile&) {
+         const std::atomic<bool> for_ever{true};
+         while (for_ever) {
+         }
+       }},
+      {"flood_the_log",
+       [](Hostile&) {
+         const std::string line(4000, 'x');
+         while (true) std::fprintf(stderr, "%s\n", line.c_str());
+       }},
+      {"no_length", [](Hostile&) { say(std::string_view("\0\0\0\0", 4)); }},
+      {"endless_length", [](Hostile&) { say("\xFF\xFF\xFF\x7F"); }},
+      {"unknown_type", [](Hostile&) { say(std::string_view("\x01\0\0\0\x4D", 5)); }},
+      {"cut_content", [](Hostile&) { message(iut::MessageType::write, [](auto& writer) { writer.u8(1); }); }},
+      {"content_too_long",
+       [](Hostile&) { message(iut::MessageType::done, [](auto& w) { w.u64(0).u64(0); }); }},
+      {"words_of_the_bench", [](Hostile&) { message(iut::MessageType::case_end, [](auto&) {}); }},
+      {"printed_text", [](Hostile&) { say("Hello, world\n"); }},
+      {"half_a_message",
+       [](Hostile&) {
+         say(std::string_view("\x09\0\0\0\x83\0\0", 7));
+         hang();
+       }},
+      {"answers_twice",
+       [](Hostile&) { message(iut::MessageType::done, [](auto& writer) { writer.i64(0); }); }},
+      {"refuses_in_the_middle",
+       [](Hostile&) {
+         message(iut::MessageType::unsupported, [](auto&) {});
+         hang();
+       }},
+      {"flood",
+       [](Hostile& node) {
+         for (int n = 0; n < 20'000; ++n) node.bench_->write(valve_bus::kValves, 0, node.now_);
+       }},
+      {"time_stands_still", [](Hostile& node) { node.is_time_stuck_ = true; }},
+      {"drives_in_the_past",
+       [](Hostile& node) { node.transmit(0, -kMillisecond, -kMillisecond, kMillisecond); }},
+      {"drives_backwards",
+       [](Hostile& node) { node.transmit(0, kMillisecond, 10 * kMicrosecond, 5 * kMicrosecond); }},
+      {"drives_for_ever",
+       [](Hostile& node) { node.transmit(0, kMicrosecond, 2 * kMicrosecond, 100'000 * kernel::kSecond); }},
+      {"drives_another_port",
+       [](Hostile& node) { node.transmit(7, kMicrosecond, 5 * kMicrosecond, kMillisecond); }},
+      {"writes_what_is_not_there", [](Hostile& node) { node.bench_->write(77, 1, node.now_); }},
+      {"writes_too_much", [](Hostile& node) { node.bench_->write(valve_bus::kValves, 0x10000, node.now_); }},
+      {"reads_what_is_not_there", [](Hostile& node) { node.bench_->read(77, node.now_); }},
+  };
+  return all;
+}
+
+}  // namespace
+}  // namespace fieldproof
+
+int main(int argc, char** argv) {
+  using namespace fieldproof;
+  if (argc != 4) return 64;
+  try {
+    iut::serve(
+        STDIN_FILENO, STDOUT_FILENO,
+        [&](const iut::RoleName&) { return std::make_unique<Hostile>(argv[1], argv[2], argv[3]); },
+        "hostile node");
+  } catch (const std::exception&) {
+    return 5;  // the bench does not listen any more
+  }
+}

@@ -1,0 +1,152 @@
+#include <dirent.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "conformance/catalogue.hpp"
+#include "conformance/runner.hpp"
+#include "conformance/valve_bus/suite.hpp"
+#include "harness/iut/pool.hpp"
+#include "protocols/valve_bus/attached_node.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::string_view kCaseOfTheWorst = "valve_bus/node/read/is_answered";
+
+struct Worst {
+  std::string act;
+  std::string reason;
+};
+
+const std::vector<Worst>& worst_acts() {
+  static const std::vector<Worst> all = {
+      {"exit_0", "implementation_crashed"},
+      {"exit_3", "implementation_crashed"},
+      {"abort", "implementation_crashed"},
+      {"segv", "implementation_crashed"},
+      {"kill", "implementation_crashed"},
+      {"term", "implementation_crashed"},
+      {"floating_point", "implementation_crashed"},
+      {"last_words", "implementation_crashed"},
+      {"leave_a_child", "implementation_crashed"},
+      {"close_output", "implementation_gone"},
+      {"hang", "implementation_hangs"},
+      {"hang_for_all_signals", "implementation_hangs"},
+      {"spin", "implementation_hangs"},
+      {"flood_the_log", "implementation_hangs"},
+      {"half_a_message", "implementation_hangs"},
+      {"no_length", "implementation_sends_garbage"},
+      {"endless_length", "implementation_sends_garbage"},
+      {"unknown_type", "implementation_sends_garbage"},
+      {"cut_content", "implementation_sends_garbage"},
+      {"content_too_long", "implementation_sends_garbage"},
+      {"words_of_the_bench", "implementation_sends_garbage"},
+      {"printed_text", "implementation_sends_garbage"},
+      {"answers_twice", "implementation_sends_garbage"},
+      {"refuses_in_the_middle", "implementation_sends_garbage"},
+      {"flood", "implementation_floods"},
+      {"time_stands_still", "implementation_floods"},
+      {"drives_in_the_past", "implementation_misbehaves"},
+      {"drives_backwards", "implementation_asks_the_impossible"},
+      {"drives_for_ever", "implementation_asks_the_impossible"},
+      {"drives_another_port", "implementation_asks_the_impossible"},
+      {"writes_what_is_not_there", "implementation_asks_the_impossible"},
+      {"writes_too_much", "implementation_asks_the_impossible"},
+      {"reads_what_is_not_there", "implementation_asks_the_impossible"},
+  };
+  return all;
+}
+
+// Before a case has begun it may be refused, and nothing may be done yet.
+std::string expected_reason(const Worst& worst, std::string_view call) {
+  if (call == "begin" && worst.act == "refuses_in_the_middle") return "implementation_refuses_case";
+  if (call == "begin" && (worst.act == "drives_in_the_past" || worst.act == "flood")) {
+    return "implementation_asks_the_impossible";
+  }
+  return worst.reason;
+}
+
+std::size_t open_descriptors() {
+  const std::filesystem::directory_iterator all("/proc/self/fd");
+  return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+}
+
+// Processes of the hostile program, whoever their parent is.
+std::size_t hostile_processes(const std::string& mark) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream file(entry.path() / "cmdline");
+    const std::string line{std::istreambuf_iterator<char>(file), {}};
+    if (line.find(mark) != std::string::npos && line.find("hostile_node") != std::string::npos) ++count;
+  }
+  return count;
+}
+
+// The run of three cases of which the second meets the worst; what the reference does is what the others are.
+class HostileNode : public testing::TestWithParam<std::string> {
+ protected:
+  std::vector<judge::CaseResult> run(const std::string& act) {
+    const std::string uri =
+        fmt::format("exec:{} {} {} {}", FIELDPROOF_HOSTILE_NODE, act, GetParam(), "read/is_answered");
+    iut::PeerLimits limits;
+    limits.call = std::chrono::milliseconds(250);
+    iut::DevicePool pool(uri, {"valve_bus", "node"}, limits);
+    const auto suite =
+        valve_bus_suite({[&](const ValveBusGiven::Wanted& wanted, const auto& configuration) {
+                           const auto lease = std::make_shared<iut::DevicePool::Lease>(pool.take());
+                           return std::make_unique<valve_bus::AttachedNode>(
+                               valve_bus::NodeAttachment{&**lease, lease, [lease] { lease->set_reusable(); }},
+                               configuration, wanted.case_id, wanted.seed);
+                         },
+                         {}});
+    conformance::Setup setup;
+    setup.volume = Volume::quick;
+    setup.implementations = {{"node", 0, uri}};
+    std::vector<judge::CaseResult> results;
+    for (const TestCase& one : suite->cases()) {
+      if (one.id != "valve_bus/node/write/drives_the_valves" && one.id != kCaseOfTheWorst &&
+          one.id != "valve_bus/node/command/undefined_commands_are_ignored") {
+        continue;
+      }
+      results.push_back(run_case({suite.get(), &one}, setup).outcome.result);
+    }
+    return results;
+  }
+};
+
+// The time that each may take: the limit of a call, and what a loaded machine adds.
+constexpr auto kPatience = std::chrono::seconds(20);
+
+TEST_P(HostileNode, CostsItsOwnVerdictAndNoOther) {
+  const std::size_t descriptors = open_descriptors();
+  for (const Worst& worst : worst_acts()) {
+    // Behind the end of a case nobody asks for a next time.
+    if (worst.act == "time_stands_still" && GetParam() == "end") continue;
+    SCOPED_TRACE(fmt::format("{} in {}", worst.act, GetParam()));
+    const auto begin = std::chrono::steady_clock::now();
+    const std::vector<judge::CaseResult> results = run(worst.act);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, kPatience);
+    ASSERT_EQ(results.size(), 3U);
+    EXPECT_EQ(results[0].verdict, judge::Verdict::pass) << results[0].reason;
+    EXPECT_EQ(results[1].verdict, judge::Verdict::fail);
+    EXPECT_EQ(results[1].reason, expected_reason(worst, GetParam()));
+    EXPECT_EQ(results[2].verdict, judge::Verdict::pass) << results[2].reason;
+    EXPECT_EQ(open_descriptors(), descriptors);
+    EXPECT_EQ(hostile_processes(worst.act), 0U);
+    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(InEachCall, HostileNode, testing::Values("begin", "power", "receive", "end"),
+                         [](const auto& call) { return call.param; });
+
+}  // namespace
+}  // namespace fieldproof::conformance
