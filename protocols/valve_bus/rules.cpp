@@ -134,6 +134,10 @@ kernel::Duration actuation_limit(const Rules& rules) {
   return std::max(rules.actuation_limit, 2 * character_notice(rules));
 }
 
+kernel::Duration response_time_out(const Rules& rules) {
+  return delimiter(rules) + std::max(rules.response_wait, turn_round_span(rules) + character_notice(rules));
+}
+
 std::span<const std::int64_t> dip_bit_rates() {
   // 12 MHz / 32 and / 64 (mode 2), then 12 MHz / (12 * 16 * n) and / (12 * 32 * n) with n = 1, 1, 3, 3,
   // 13, 13.

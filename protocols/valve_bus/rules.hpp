@@ -101,6 +101,10 @@ kernel::Duration character_notice(const Rules& rules);
 kernel::Duration turn_round_span(const Rules& rules);
 kernel::Duration actuation_limit(const Rules& rules);
 
+// How long a host waits behind its last stop bit for the first start bit of the response: a delimiter and the
+// wait of the rules, or what a node may take and a notice of it where that is longer.
+kernel::Duration response_time_out(const Rules& rules);
+
 // The bit rates of the DIP switches, position by position: what a timer at 12 MHz makes of its reload values.
 std::span<const std::int64_t> dip_bit_rates();
 
