@@ -155,7 +155,8 @@ class Campaign {
   bool run() {
     const emc::LineResponse response(done_.profile.coupling);
     done_.threshold_volts = response.threshold_volts();
-    session_.terminal.print(simulation_header(session_, done_.seed, session_.settings.text("network")));
+    session_.terminal.print(
+        simulation_header(session_, done_.seed, session_.settings.text("network"), kCycleTimePaper));
     session_.terminal.print(emc_table_head(done_.has_bursts));
     conformance::OrderedWork<emc::ImmunityResult> work;
     work.count = planned_.size();

@@ -109,7 +109,8 @@ measure::Measurement measure_interbus(Session& session) {
     session.settings.refuse("profile", "a profile is one of bursts; say which with --bursts");
   }
   settings.on_progress = [&](std::size_t done) { session.terminal.progress(done); };
-  session.terminal.print(simulation_header(session, settings.seed, session.settings.text("network")));
+  session.terminal.print(
+      simulation_header(session, settings.seed, session.settings.text("network"), kCycleTimePaper));
   session.terminal.begin_progress(settings.signals.size(), "signals");
   measure::Measurement measured = interbus::measure_network(network, settings);
   session.terminal.end_progress();

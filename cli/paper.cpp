@@ -1,13 +1,16 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/paper_sections.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/simulated_network.hpp"
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "harness/kernel/error.hpp"
@@ -24,25 +27,31 @@ struct Section {
 struct Paper {
   std::string_view name;
   std::string_view title;
+  std::string_view network;  // that its sections simulate
 };
 
 constexpr std::array kPapers = {
-    Paper{"interbus", "J.-H. Park, The Study on the Cycling Time for Interbus, 2004"},
+    Paper{"interbus", "J.-H. Park, The Study on the Cycling Time for Interbus, 2004", kCycleTimePaper},
+    Paper{"valve_bus",
+          "D.-S. Kim, H.-S. Seo and W.-H. Lee, pneumatic control systems by fieldbus communication",
+          "of the valve bus"},
 };
 
 // In the order in which they are printed.
 constexpr std::array kSections = {
-    Section{"interbus", &interbus_cycle_times},
-    Section{"interbus", &interbus_highest_frequency},
-    Section{"interbus", &interbus_square_waves},
-    Section{"interbus", &interbus_bursts},
+    Section{"interbus", &interbus_cycle_times},   Section{"interbus", &interbus_highest_frequency},
+    Section{"interbus", &interbus_square_waves},  Section{"interbus", &interbus_bursts},
+    Section{"valve_bus", &valve_bus_cycle_times}, Section{"valve_bus", &valve_bus_block_check},
+    Section{"valve_bus", &valve_bus_resonance},
 };
 
 const Paper& paper_named(const std::string& name) {
   const auto found = std::ranges::find(kPapers, name, &Paper::name);
   if (found != kPapers.end()) return *found;
+  std::vector<std::string_view> names;
+  for (const Paper& paper : kPapers) names.push_back(paper.name);
   throw kernel::Error(kernel::ErrorKind::usage,
-                      fmt::format("there is no paper '{}'; there is 'interbus'", name));
+                      fmt::format("there is no paper '{}'; there are '{}'", name, fmt::join(names, "', '")));
 }
 
 }  // namespace
@@ -52,7 +61,7 @@ int paper(Session& session) {
   PaperSettings settings;
   settings.seed = session.settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
   settings.duration = virtual_time_from(session.settings);
-  session.terminal.print(simulation_header(session, settings.seed, ""));
+  session.terminal.print(simulation_header(session, settings.seed, "", chosen.network));
   reports::Publication publication{std::string(chosen.title), settings.seed, {}};
   session.terminal.begin_progress(
       static_cast<std::size_t>(std::ranges::count(kSections, chosen.name, &Section::paper)), "sections");

@@ -20,4 +20,9 @@ reports::PublishedSection interbus_highest_frequency(const PaperSettings& settin
 reports::PublishedSection interbus_square_waves(const PaperSettings& settings);
 reports::PublishedSection interbus_bursts(const PaperSettings& settings);
 
+// Kim, Seo and Lee, the RS-485 bus for pneumatic valves.
+reports::PublishedSection valve_bus_cycle_times(const PaperSettings& settings);
+reports::PublishedSection valve_bus_block_check(const PaperSettings& settings);
+reports::PublishedSection valve_bus_resonance(const PaperSettings& settings);
+
 }  // namespace fieldproof::cli

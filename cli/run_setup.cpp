@@ -122,12 +122,13 @@ reports::Manifest manifest_of(const Session& session, unsigned jobs) {
   return manifest;
 }
 
-std::string simulation_header(const Session& session, std::uint64_t seed, const std::string& network_file) {
+std::string simulation_header(const Session& session, std::uint64_t seed, const std::string& network_file,
+                              std::string_view own_network) {
   conformance::Setup setup;
   setup.seed = seed;
   setup.network_file = network_file;
   reports::RunIdentity identity = identity_of(session, setup, 0);
-  if (network_file.empty()) identity.network_hash = "of the cycle-time paper";
+  if (network_file.empty()) identity.network_hash = own_network;
   return reports::run_header(identity, manifest_of(session, 1));
 }
 

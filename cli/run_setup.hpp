@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/verbs.hpp"
@@ -23,8 +24,10 @@ reports::RunIdentity identity_of(const Session& session, const conformance::Setu
                                  std::size_t selected);
 reports::Manifest manifest_of(const Session& session, unsigned jobs);
 
-// The first line of what a verb prints that simulates without a suite.
-std::string simulation_header(const Session& session, std::uint64_t seed, const std::string& network_file);
+// The first line of what a verb prints that simulates without a suite; `own_network` is what it simulates
+// where no file says otherwise.
+std::string simulation_header(const Session& session, std::uint64_t seed, const std::string& network_file,
+                              std::string_view own_network);
 
 // The virtual time of `--duration`, 1 ms to 1 h.
 kernel::Duration virtual_time_from(const Settings& settings);

@@ -8,8 +8,6 @@
 namespace fieldproof::valve_bus {
 namespace {
 
-// What it takes to work out an answer, behind the delimiter.
-constexpr kernel::Duration kProcessing = 100 * kernel::kMicrosecond;
 constexpr unsigned kDriverBehindBits = 1;
 constexpr unsigned kOneBoard = 1;
 constexpr std::uint16_t kFirstBoard = 0x00FF;
@@ -144,7 +142,7 @@ Response Node::response(kernel::Time now) {
 }
 
 kernel::Duration Node::turn_round() const {
-  return delimiter(rules()) + kProcessing;
+  return delimiter(rules()) + kNodeProcessing;
 }
 
 std::uint8_t Node::response_check(const Response& response) const {

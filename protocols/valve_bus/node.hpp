@@ -21,6 +21,9 @@
 // Every decision that a wrong implementation takes otherwise has a name and can be overridden one by one.
 namespace fieldproof::valve_bus {
 
+// What it takes the reference node to work out an answer, behind the delimiter.
+inline constexpr kernel::Duration kNodeProcessing = 100 * kernel::kMicrosecond;
+
 enum class NodeState : std::uint8_t { off, waiting, collecting, answering };
 
 class Node : public NodeDevice {
