@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,7 +37,13 @@ class DrivenLine final : public segment::Tap {
  public:
   DrivenLine(const line::CharacterFormat& format, std::int64_t bit_rate) : receiver_(format, bit_rate) {}
 
-  void on_wave(const line::Waveform& wave) override { waves_.push_back(wave); }
+  void on_wave(const line::Waveform& wave) override {
+    waves_.push_back(wave);
+    if (waves_.size() < 2 * most_) return;
+    waves_.erase(waves_.begin(), waves_.end() - static_cast<std::ptrdiff_t>(most_));
+  }
+  // Keeps the last so many waves at least, and at most twice as many; before that it keeps all.
+  void keep_last(std::size_t most) { most_ = most; }
   void clear() { waves_.clear(); }
   bool empty() const { return waves_.empty(); }
 
@@ -49,6 +56,7 @@ class DrivenLine final : public segment::Tap {
   line::CharacterReceiver receiver_;
   std::vector<line::CharacterReceiver::Received> received_;
   std::vector<line::Waveform> waves_;
+  std::size_t most_ = std::size_t{1} << 40U;
 };
 
 }  // namespace fieldproof::conformance

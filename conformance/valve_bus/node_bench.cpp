@@ -17,6 +17,7 @@ using valve_bus::Rules;
 constexpr unsigned kAddress = 5;
 constexpr std::int64_t kLeastBitRate = 1'200;
 constexpr std::int64_t kMostBitRate = 1'000'000;
+constexpr std::size_t kSentWaves = 30;  // five or six frames
 constexpr kernel::Duration kWarmUp = 20 * kernel::kMillisecond;
 
 CharacterProfile profile_named(const std::string& name) {
@@ -24,6 +25,14 @@ CharacterProfile profile_named(const std::string& name) {
     if (name == text_of(profile)) return profile;
   }
   return CharacterProfile::eight_bits;
+}
+
+std::string characters_text(const Transmission& transmission) {
+  std::string text;
+  for (const DrivenCharacter& character : transmission.characters) {
+    text += fmt::format(" {:02X}{}", character.octet(), character.is_good ? "" : "!");
+  }
+  return text.empty() ? " no character" : text;
 }
 
 std::unique_ptr<valve_bus::NodeDevice> made(const NodeSetting& setting,
@@ -88,12 +97,15 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting)
       tester_seat_(segment_.attach(*this, "tester")),
       node_seat_(segment_.attach(*node_, "node")),
       driven_(character_format(rules()), rules().bit_rate),
+      sent_(character_format(rules()), rules().bit_rate),
       line_watch_(bits(character_format(rules()).half_bits() / 2)),
       stressed_(setting.stresses) {
   tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
   place_ = &line_.attach("node/in", node_seat_, 0, distance_);
   if (setting.make_recorder) segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules()));
   place_->tap_driven(driven_);
+  tester_->tap_driven(sent_);
+  sent_.keep_last(kSentWaves);
   line_watch_.watch(*place_, segment_.trace());
   const trace::Channel valves = segment_.trace().add_channel("node/valves");
   boards_.on_change([this, valves](const segment::ProcessWords::Change& change) {
@@ -190,19 +202,17 @@ void NodeBench::begin_stress(const fault::Stress& stress) {
 }
 
 std::vector<std::string> NodeBench::decode_lines() {
-  constexpr std::size_t kMostLines = 24;
+  constexpr std::size_t kMostLines = 12;
   std::vector<std::string> lines;
-  const std::vector<Transmission> all = answers();
-  const std::size_t first = all.size() - std::min(all.size(), kMostLines);
-  for (const Transmission& transmission : std::span(all).subspan(first)) {
-    std::string text;
-    for (const DrivenCharacter& character : transmission.characters) {
-      text += fmt::format(" {:02X}{}", character.octet(), character.is_good ? "" : "!");
+  const auto tell = [&](std::string_view who, const std::vector<Transmission>& all) {
+    const std::size_t first = all.size() - std::min(all.size(), kMostLines);
+    for (const Transmission& one : std::span(all).subspan(first)) {
+      lines.push_back(fmt::format("{} {} to {}:{}", who, kernel::describe(one.driver_on),
+                                  kernel::describe(one.driver_off), characters_text(one)));
     }
-    lines.push_back(fmt::format("node, driver on {} to {}:{}", kernel::describe(transmission.driver_on),
-                                kernel::describe(transmission.driver_off),
-                                text.empty() ? " no character" : text));
-  }
+  };
+  tell("tester drove", sent_.transmissions());
+  tell("node drove", answers());
   const std::uint16_t valves = boards_.valves();
   lines.push_back(fmt::format("valves {:02X} {:02X}", valves & 0xFF, valves >> 8));
   return lines;

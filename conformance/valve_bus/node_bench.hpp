@@ -135,7 +135,7 @@ class NodeBench final : private segment::Station {
   // The case is over.
   void finish() { node_->end(); }
   const LineWatch& line_watch() const { return line_watch_; }
-  // The last transmissions of the IUT, in words.
+  // The last transmissions of the tester and of the IUT, in words.
   std::vector<std::string> decode_lines();
 
  private:
@@ -158,6 +158,7 @@ class NodeBench final : private segment::Station {
   segment::MediumPort* tester_ = nullptr;
   segment::MediumPort* place_ = nullptr;  // of the IUT
   DrivenLine driven_;
+  DrivenLine sent_;  // by the tester; the last of it
   LineWatch line_watch_;
   std::unique_ptr<fault::InstalledPlan> plan_;
   StressedReceiver stressed_;
