@@ -98,12 +98,14 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting)
       node_seat_(segment_.attach(*node_, "node")),
       driven_(character_format(rules()), rules().bit_rate),
       sent_(character_format(rules()), rules().bit_rate),
+      arrived_(rules()),
       line_watch_(bits(character_format(rules()).half_bits() / 2)),
       stressed_(setting.stresses) {
   tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
   place_ = &line_.attach("node/in", node_seat_, 0, distance_);
   if (setting.make_recorder) segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules()));
   place_->tap_driven(driven_);
+  place_->tap_arrived(arrived_);
   tester_->tap_driven(sent_);
   sent_.keep_last(kSentWaves);
   line_watch_.watch(*place_, segment_.trace());
@@ -192,6 +194,7 @@ void NodeBench::interject(std::span<const std::uint8_t> octets, kernel::Time sta
 
 void NodeBench::forget() {
   driven_.clear();
+  arrived_.clear();
   boards_.forget_changes();
 }
 

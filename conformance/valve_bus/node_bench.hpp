@@ -12,6 +12,7 @@
 #include "conformance/line_watch.hpp"
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
+#include "conformance/valve_bus/arrived_frames.hpp"
 #include "conformance/valve_bus/driven_line.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/judge/pics.hpp"
@@ -121,6 +122,8 @@ class NodeBench final : private segment::Station {
   // What the IUT has driven since `forget`.
   std::vector<Transmission> answers() { return driven_.transmissions(); }
   bool has_driven() const { return !driven_.empty(); }
+  // What has arrived at the IUT since then.
+  std::span<const ArrivedFrame> arrived() const { return arrived_.frames(); }
   void forget();
 
   // ---- stress ----
@@ -159,6 +162,7 @@ class NodeBench final : private segment::Station {
   segment::MediumPort* place_ = nullptr;  // of the IUT
   DrivenLine driven_;
   DrivenLine sent_;  // by the tester; the last of it
+  ArrivedFrames arrived_;
   LineWatch line_watch_;
   std::unique_ptr<fault::InstalledPlan> plan_;
   StressedReceiver stressed_;

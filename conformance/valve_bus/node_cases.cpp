@@ -32,8 +32,9 @@ NodeCase canary() {
 const std::vector<NodeCase>& node_cases() {
   static const std::vector<NodeCase> cases = [] {
     std::vector<NodeCase> all;
-    for (auto chapter : {node_write_cases, node_read_cases, node_address_cases, node_check_cases,
-                         node_framing_cases, node_timing_cases, node_line_cases, node_power_cases}) {
+    for (auto chapter :
+         {node_write_cases, node_read_cases, node_address_cases, node_check_cases, node_framing_cases,
+          node_timing_cases, node_line_cases, node_power_cases, node_immunity_cases}) {
       std::vector<NodeCase> cases_of_chapter = chapter();
       std::move(cases_of_chapter.begin(), cases_of_chapter.end(), std::back_inserter(all));
     }

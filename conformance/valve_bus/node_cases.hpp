@@ -33,6 +33,7 @@ std::vector<NodeCase> node_framing_cases();
 std::vector<NodeCase> node_timing_cases();
 std::vector<NodeCase> node_line_cases();
 std::vector<NodeCase> node_power_cases();
+std::vector<NodeCase> node_immunity_cases();
 
 namespace valve_sources {
 judge::Reference paper(std::string place);       // the paper that describes the bus

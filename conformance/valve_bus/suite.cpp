@@ -18,6 +18,7 @@ class ValveBusSuite final : public Suite {
  public:
   explicit ValveBusSuite(ValveBusGiven given) : given_(std::move(given)) {
     for (const NodeCase& one : node_cases()) {
+      if (given_.stresses.empty() && has_tag(one.test_case, kStressTag)) continue;
       cases_.push_back(one.test_case);
       node_cases_[one.test_case.id] = &one;
     }
@@ -70,6 +71,7 @@ class ValveBusSuite final : public Suite {
     setting.seed = setup.seed;
     setting.volume = setup.volume;
     setting.pics = setup.pics;
+    setting.stresses = given_.stresses;
     if (!setup.plan_file.empty()) setting.plan = load(setup);
     setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
                          seed = setup.seed](const valve_bus::NodeConfiguration& configuration) {

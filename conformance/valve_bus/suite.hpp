@@ -9,6 +9,7 @@
 
 #include "conformance/test_case.hpp"
 #include "harness/fault/disturbance.hpp"
+#include "harness/fault/stress.hpp"
 #include "protocols/valve_bus/device.hpp"
 
 // The suite of the RS-485 bus for pneumatic valves: the cases for local nodes, and their deviations.
@@ -30,6 +31,7 @@ struct ValveBusGiven {
 
   MakeNode make_node{};
   std::span<const fault::DisturbanceKind> disturbances{};  // what a plan can name
+  std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
 };
 
 std::unique_ptr<Suite> valve_bus_suite(ValveBusGiven given = {});
