@@ -11,7 +11,8 @@ namespace fieldproof::cli {
 Suites suites() {
   Suites all;
   all.push_back(conformance::interbus_suite({}, {emc::catalogue_stresses(), emc::plan_disturbances()}));
-  all.push_back(conformance::valve_bus_suite({attached_nodes(), emc::plan_disturbances()}));
+  all.push_back(conformance::valve_bus_suite(
+      {.make_node = attached_nodes(), .disturbances = emc::plan_disturbances()}));
   return all;
 }
 
