@@ -84,7 +84,7 @@ valve_bus::Command HostFrame::command() const {
 std::string text_of(const Told& told) {
   const std::string when = kernel::describe(told.when);
   if (const auto* error = std::get_if<valve_bus::HostError>(&told.what)) {
-    return fmt::format("error of {:02X}: {}, at {}", error->id, text_of(error->kind), when);
+    return fmt::format("error of {:02X}: {}, at {}", error->id, describe(error->kind), when);
   }
   const auto& response = std::get<valve_bus::HostResponse>(told.what);
   return fmt::format("response of {:02X}: {:02X} {:02X}{}, at {}", response.id, response.data0,

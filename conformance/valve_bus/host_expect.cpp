@@ -133,7 +133,7 @@ void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id, const 
 void expect_error(HostBench& bench, CaseJudge& judge, const HostError& error, std::string_view told_data) {
   const auto told = bench.next_told(bench.patience());
   const auto sighting = [&] {
-    return Sighting{{fmt::format("an error of {:02X}: {}", error.id, text_of(error.kind))}, told_text(told)};
+    return Sighting{{fmt::format("an error of {:02X}: {}", error.id, describe(error.kind))}, told_text(told)};
   };
   judge.expect(response_told(told) == nullptr, told_data, sighting);
   judge.expect(told.has_value(), "error_not_told", sighting);

@@ -14,7 +14,7 @@ constexpr int kLatePercent = 5;
 
 }  // namespace
 
-std::string_view text_of(HostErrorKind kind) {
+std::string_view describe(HostErrorKind kind) {
   constexpr std::array<std::string_view, 9> kNames{"refused ID",   "refused command",  "no response",
                                                    "bad response", "not acknowledged", "readback mismatch",
                                                    "line busy",    "FIFO overflow",    "part of a command"};
