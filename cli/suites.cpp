@@ -11,8 +11,9 @@ namespace fieldproof::cli {
 Suites suites() {
   Suites all;
   all.push_back(conformance::interbus_suite({}, {emc::catalogue_stresses(), emc::plan_disturbances()}));
-  all.push_back(
-      conformance::valve_bus_suite({attached_nodes(), emc::plan_disturbances(), emc::catalogue_stresses()}));
+  all.push_back(conformance::valve_bus_suite({.make_node = attached_nodes(),
+                                              .disturbances = emc::plan_disturbances(),
+                                              .stresses = emc::catalogue_stresses()}));
   return all;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "harness/line/character.hpp"
@@ -46,6 +47,13 @@ class DrivenLine final : public segment::Tap {
   void keep_last(std::size_t most) { most_ = most; }
   void clear() { waves_.clear(); }
   bool empty() const { return waves_.empty(); }
+  std::size_t waves() const { return waves_.size(); }
+  // What was driven since the last clear, and clears.
+  std::vector<line::Waveform> take() { return std::exchange(waves_, {}); }
+  // From now on it expects characters of another kind.
+  void listen(const line::CharacterFormat& format, std::int64_t bit_rate) {
+    receiver_ = line::CharacterReceiver(format, bit_rate);
+  }
 
   // Since the last clear. Waves that follow each other without a gap are one transmission.
   std::vector<Transmission> transmissions();

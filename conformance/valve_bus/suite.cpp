@@ -4,10 +4,13 @@
 
 #include "conformance/assigned.hpp"
 #include "conformance/case_recorder.hpp"
+#include "conformance/valve_bus/host_cases.hpp"
+#include "conformance/valve_bus/host_deviations.hpp"
 #include "conformance/valve_bus/node_cases.hpp"
 #include "conformance/valve_bus/node_deviations.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
+#include "protocols/valve_bus/host.hpp"
 #include "protocols/valve_bus/node.hpp"
 #include "protocols/valve_bus/notation.hpp"
 
@@ -22,13 +25,23 @@ class ValveBusSuite final : public Suite {
       cases_.push_back(one.test_case);
       node_cases_[one.test_case.id] = &one;
     }
+    for (const HostCase& one : host_cases()) {
+      cases_.push_back(one.test_case);
+      host_cases_[one.test_case.id] = &one;
+    }
+    deviations_ = node_deviations();
+    deviations_.insert(deviations_.end(), host_deviations().begin(), host_deviations().end());
   }
 
   std::string_view protocol() const override { return "valve_bus"; }
-  std::vector<std::string> roles() const override { return {"node"}; }
+  std::vector<std::string> roles() const override { return {"node", "host"}; }
   const std::vector<TestCase>& cases() const override { return cases_; }
-  const std::vector<Deviation>& deviations() const override { return node_deviations(); }
-  std::vector<judge::PicsItem> pics_items() const override { return node_pics_items(); }
+  const std::vector<Deviation>& deviations() const override { return deviations_; }
+  std::vector<judge::PicsItem> pics_items() const override {
+    std::vector<judge::PicsItem> all = node_pics_items();
+    for (judge::PicsItem& item : host_pics_items()) all.push_back(std::move(item));
+    return all;
+  }
 
   std::vector<std::string> caveats(const Setup& setup) const override {
     return setup.plan_file.empty() ? std::vector<std::string>{} : load(setup).caveats();
@@ -40,23 +53,31 @@ class ValveBusSuite final : public Suite {
   void check(const TestCase& test_case, const Setup& setup) const override {
     if (!setup.network_file.empty()) {
       throw kernel::Error(kernel::ErrorKind::usage,
-                          "cases for a node of the valve bus make the line that they need; leave out the "
-                          "network, and say in a PICS what the node is");
+                          "cases of the valve bus make the line that they need; leave out the network, and "
+                          "say in a PICS what the implementation is");
     }
-    const NodeSetting setting = setting_of(test_case, setup);
-    setting.make_node(node_configuration({}, declared_node()));
+    if (is_of_host(test_case)) {
+      host_setting(test_case, setup).make_host(host_configuration({}, declared_host()));
+    } else {
+      node_setting(test_case, setup).make_node(node_configuration({}, declared_node()));
+    }
   }
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
-    NodeSetting setting = setting_of(test_case, setup);
     CaseRecorder recorder;
-    if (setup.record) {
-      setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
-        return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
-      };
-    }
+    const auto with_recorder = [&](auto setting) {
+      if (setup.record) {
+        setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
+          return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
+        };
+      }
+      return setting;
+    };
     Outcome outcome;
-    outcome.result = run_node_case(*node_cases_.at(test_case.id), setting);
+    outcome.result =
+        is_of_host(test_case)
+            ? run_host_case(*host_cases_.at(test_case.id), with_recorder(host_setting(test_case, setup)))
+            : run_node_case(*node_cases_.at(test_case.id), with_recorder(node_setting(test_case, setup)));
     recorder.keep(outcome);
     return outcome;
   }
@@ -66,16 +87,34 @@ class ValveBusSuite final : public Suite {
     return fault::load_plan(setup.plan_file, {.disturbances = given_.disturbances});
   }
 
-  NodeSetting setting_of(const TestCase& test_case, const Setup& setup) const {
-    NodeSetting setting;
+  bool is_of_host(const TestCase& test_case) const { return host_cases_.contains(test_case.id); }
+
+  // What the setup says, of either role.
+  template <typename Setting>
+  Setting setting_of(const Setup& setup) const {
+    Setting setting;
     setting.seed = setup.seed;
     setting.volume = setup.volume;
     setting.pics = setup.pics;
     setting.stresses = given_.stresses;
     if (!setup.plan_file.empty()) setting.plan = load(setup);
+    return setting;
+  }
+
+  NodeSetting node_setting(const TestCase& test_case, const Setup& setup) const {
+    NodeSetting setting = setting_of<NodeSetting>(setup);
     setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
                          seed = setup.seed](const valve_bus::NodeConfiguration& configuration) {
       return make_node({uri, id, seed}, configuration);
+    };
+    return setting;
+  }
+
+  HostSetting host_setting(const TestCase& test_case, const Setup& setup) const {
+    HostSetting setting = setting_of<HostSetting>(setup);
+    setting.make_host = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
+                         seed = setup.seed](const valve_bus::HostConfiguration& configuration) {
+      return make_host({uri, id, seed}, configuration);
     };
     return setting;
   }
@@ -89,9 +128,20 @@ class ValveBusSuite final : public Suite {
     return make_node_deviation(deviation_of(wanted.uri, "node of the valve bus"), configuration);
   }
 
+  std::unique_ptr<valve_bus::HostDevice> make_host(const ValveBusGiven::Wanted& wanted,
+                                                   const valve_bus::HostConfiguration& configuration) const {
+    if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Host>(configuration);
+    if (given_.make_host) {
+      if (auto host = given_.make_host(wanted, configuration)) return host;
+    }
+    return make_host_deviation(deviation_of(wanted.uri, "host of the valve bus"), configuration);
+  }
+
   ValveBusGiven given_;
   std::vector<TestCase> cases_;
+  std::vector<Deviation> deviations_;
   std::map<std::string, const NodeCase*, std::less<>> node_cases_;
+  std::map<std::string, const HostCase*, std::less<>> host_cases_;
 };
 
 }  // namespace

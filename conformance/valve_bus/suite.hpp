@@ -12,24 +12,28 @@
 #include "harness/fault/stress.hpp"
 #include "protocols/valve_bus/device.hpp"
 
-// The suite of the RS-485 bus for pneumatic valves: the cases for local nodes, and their deviations.
+// The suite of the RS-485 bus for pneumatic valves: the cases for local nodes and for
+// host modules, and their deviations.
 //
 // Implementations of a role: `ref`, `deviant:NAME`, and what the makers of implementations that the suite was
 // given can make of their URI.
 namespace fieldproof::conformance {
 
 struct ValveBusGiven {
-  // Who plays the node of one case.
+  // Who plays the role of one case.
   struct Wanted {
     const std::string& uri;
     const std::string& case_id;
     std::uint64_t seed;
   };
-  // The node that such a URI means; null for a URI of another kind.
+  // The node, the host that such a URI means; null for a URI of another kind.
   using MakeNode = std::function<std::unique_ptr<valve_bus::NodeDevice>(
       const Wanted& wanted, const valve_bus::NodeConfiguration& configuration)>;
+  using MakeHost = std::function<std::unique_ptr<valve_bus::HostDevice>(
+      const Wanted& wanted, const valve_bus::HostConfiguration& configuration)>;
 
   MakeNode make_node{};
+  MakeHost make_host{};
   std::span<const fault::DisturbanceKind> disturbances{};  // what a plan can name
   std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
 };

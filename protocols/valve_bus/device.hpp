@@ -77,7 +77,7 @@ enum class HostErrorKind : std::uint8_t {
 };
 
 // "refused ID", "no response" ...
-std::string_view text_of(HostErrorKind kind);
+std::string_view describe(HostErrorKind kind);
 
 struct HostError {
   std::uint8_t id = 0;

@@ -14,7 +14,7 @@ constexpr int kLatePercent = 5;
 
 }  // namespace
 
-std::string_view text_of(HostErrorKind kind) {
+std::string_view describe(HostErrorKind kind) {
   constexpr std::array<std::string_view, 9> kNames{"refused ID",   "refused command",  "no response",
                                                    "bad response", "not acknowledged", "readback mismatch",
                                                    "line busy",    "FIFO overflow",    "part of a command"};
@@ -167,8 +167,8 @@ kernel::Time Host::window_closes_at() const {
 
 kernel::Time Host::busy_limit_at() const {
   if (state_ != HostState::idle || collector_.is_empty()) return kernel::kNever;
-  const kernel::Time since = std::max({work_since(), collector_.frame().start, busy_told_});
-  return since == kernel::kNever ? since : since + time_out();
+  const kernel::Time since = std::max({work_since(), collector_.frame().start, waits_since_});
+  return since == kernel::kNever ? since : since + longest_talk();
 }
 
 void Host::end_frame(kernel::Time now) {
@@ -324,6 +324,7 @@ void Host::repeat_or_fail(HostErrorKind kind, kernel::Time now) {
   }
   ++exchange_->attempt;
   ++counted(exchange_->command.id).retries;
+  waits_since_ = now;
   state_ = HostState::idle;
 }
 
@@ -344,7 +345,7 @@ void Host::on_stray(const CollectedFrame&, kernel::Time) {
 
 // The line does not fall silent, so nothing can be sent. The PC is told as if it had been.
 void Host::on_line_busy(kernel::Time now) {
-  busy_told_ = now;
+  waits_since_ = now;
   if (!exchange_) exchange_ = next_exchange(now);
   if (!exchange_) return;
   const Command& command = exchange_->command;

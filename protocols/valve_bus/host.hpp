@@ -96,6 +96,8 @@ class Host : public HostDevice {
   virtual bool awaits_response(const Exchange& exchange) const;
   virtual kernel::Duration time_out() const { return response_time_out(rules_); }
   virtual bool may_repeat(const Exchange& exchange) const;
+  // A line that is not silent for so long is not waited for.
+  virtual kernel::Duration longest_talk() const { return time_out(); }
   // What is left for a late response behind the last attempt.
   virtual kernel::Duration late_span() const;
 
@@ -167,8 +169,8 @@ class Host : public HostDevice {
   bool is_rejected_ = false;    // what came in the window
   bool is_late_ = false;        // what would come now, of last_id_
   std::uint8_t last_id_ = 0;
-  kernel::Time busy_told_{kernel::Duration::min()};
-  bool was_refresh_ = false;  // the last exchange
+  kernel::Time waits_since_{kernel::Duration::min()};  // for the line, with its present attempt
+  bool was_refresh_ = false;                           // the last exchange
 
   std::array<std::optional<Response>, kIds> known_{};
   std::array<HostCounters, kIds> counters_{};

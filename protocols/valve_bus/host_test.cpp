@@ -74,7 +74,7 @@ class HostTest : public testing::Test, private segment::Station, private HostApp
              (response.is_old ? " old\n" : "\n");
   }
   void on_error(const HostError& error, kernel::Time) override {
-    told_ += fmt(error.id) + ": " + std::string(text_of(error.kind)) + "\n";
+    told_ += fmt(error.id) + ": " + std::string(describe(error.kind)) + "\n";
   }
   static std::string fmt(unsigned octet) {
     constexpr std::string_view kDigits = "0123456789ABCDEF";

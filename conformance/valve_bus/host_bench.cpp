@@ -1,0 +1,298 @@
+#include "conformance/valve_bus/host_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "protocols/valve_bus/host.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using valve_bus::HostConfiguration;
+
+constexpr kernel::Duration kHostWarmUp = 20 * kernel::kMillisecond;
+constexpr std::size_t kHistoryLines = 24;
+
+valve_bus::CharacterProfile characters_named(const std::string& name) {
+  using enum valve_bus::CharacterProfile;
+  for (const auto profile : {ninth_bit_one, even_parity}) {
+    if (name == text_of(profile)) return profile;
+  }
+  return eight_bits;
+}
+
+std::unique_ptr<valve_bus::HostDevice> host_made(const HostSetting& setting,
+                                                 const HostConfiguration& configuration) {
+  if (setting.make_host) return setting.make_host(configuration);
+  return std::make_unique<valve_bus::Host>(configuration);
+}
+
+std::string frame_text(const HostFrame& frame) {
+  std::string text = fmt::format("host, driver on {} to {}:", kernel::describe(frame.sent.driver_on),
+                                 kernel::describe(frame.sent.driver_off));
+  for (const DrivenCharacter& character : frame.sent.characters) {
+    text += fmt::format(" {:02X}{}", character.octet(), character.is_good ? "" : "!");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<judge::PicsItem> host_pics_items() {
+  using enum judge::PicsKind;
+  return {
+      {"dip", number, "position of the host's DIP switches, which is its bit rate", 7},
+      {"dip_can_be_set", truth, "the bench can turn the DIP switches of the host"},
+      {"hears_itself", truth, "the host's receiver stays on while it drives"},
+      {"verifies_writes", truth, "the host reads behind each write and compares"},
+      {"takes_early_responses", truth, "a response within 10 bits of its request is taken"},
+  };
+}
+
+judge::Pics declared_host() {
+  judge::Pics pics;
+  pics.declare("dip", std::int64_t{0});
+  pics.declare("dip_can_be_set", true);
+  pics.declare("characters", std::string(text_of(valve_bus::Rules{}.characters)));
+  pics.declare("hears_itself", false);
+  pics.declare("acknowledges_writes", false);
+  pics.declare("verifies_writes", false);
+  pics.declare("takes_early_responses", false);
+  pics.declare("power_can_be_switched", true);
+  return pics;
+}
+
+HostConfiguration host_configuration(const HostNeeds& needs, const judge::Pics& pics) {
+  HostConfiguration configuration;
+  configuration.dip = needs.dip.value_or(static_cast<unsigned>(pics.number("dip", 0)));
+  configuration.hears_itself = needs.hears_itself.value_or(pics.supports("hears_itself"));
+  configuration.verifies_writes = needs.verifies_writes.value_or(pics.supports("verifies_writes"));
+  valve_bus::Rules& rules = configuration.rules;
+  rules.characters = needs.characters.value_or(characters_named(pics.text("characters", "P0")));
+  rules.answers_writes = needs.acknowledged_writes.value_or(pics.supports("acknowledges_writes"));
+  return configuration;
+}
+
+valve_bus::Command HostFrame::command() const {
+  const std::vector<std::uint8_t> octets = sent.octets();
+  return valve_bus::command_of(octets);
+}
+
+std::string text_of(const Told& told) {
+  const std::string when = kernel::describe(told.when);
+  if (const auto* error = std::get_if<valve_bus::HostError>(&told.what)) {
+    return fmt::format("error of {:02X}: {}, at {}", error->id, describe(error->kind), when);
+  }
+  const auto& response = std::get<valve_bus::HostResponse>(told.what);
+  return fmt::format("response of {:02X}: {:02X} {:02X}{}, at {}", response.id, response.data0,
+                     response.data1, response.is_old ? ", old" : "", when);
+}
+
+HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting)
+    : pics_(setting.pics.value_or(judge::Pics{}).completed_by(declared_host())),
+      configuration_(host_configuration(needs, pics_)),
+      volume_(setting.volume),
+      random_(setting.seed),
+      line_(segment_, "line", segment::ContentionRule::noise, random_),
+      codec_(rules()),
+      host_(host_made(setting, configuration_)),
+      tester_seat_(segment_.attach(*this, "tester")),
+      host_seat_(segment_.attach(*host_, "host")),
+      driven_(character_format(rules()), rules().bit_rate),
+      line_watch_(kernel::levels_duration(character_format(rules()).half_bits() / 2,
+                                          valve_bus::dip_bit_rates().front())),
+      writes_(256) {
+  tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
+  place_ = &line_.attach("host/in", host_seat_, 0, {}, configuration_.hears_itself);
+  adopt_rate(configuration_.dip);
+  if (setting.make_recorder) segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules()));
+  place_->tap_driven(driven_);
+  line_watch_.watch(*place_, segment_.trace());
+  if (!setting.plan.empty()) {
+    plan_ = std::make_unique<fault::InstalledPlan>(setting.plan, segment_.trace(), random_.split("plan"));
+    place_->set_channel(plan_->channel_for({"host/in", place_->trace_channel(), rules().bit_rate}));
+  }
+  host_->wire(*place_, *this);
+  set_power(true);
+  wait(kHostWarmUp);
+  forget();
+}
+
+void HostBench::adopt_rate(unsigned dip) {
+  const auto rates = valve_bus::dip_bit_rates();
+  configuration_.rules.bit_rate = rates[dip % rates.size()];
+  codec_ = valve_bus::CharacterCodec(rules());
+  driven_.listen(character_format(rules()), rules().bit_rate);
+  patience_ = 4 * (time_out() + characters(16)) + 10 * kernel::kMillisecond;
+}
+
+std::uint8_t HostBench::random_id() {
+  return static_cast<std::uint8_t>(random_.between(rules().first_address, rules().last_address));
+}
+
+kernel::Duration HostBench::characters(double count) const {
+  const auto one = static_cast<double>(character_time(rules()).count());
+  return kernel::Duration{std::llround(count * one)};
+}
+
+// ---- upper tester ----
+
+void HostBench::set_power(bool is_on) {
+  host_->set_power(is_on, now());
+  segment_.refresh(host_seat_);
+}
+
+void HostBench::restart(unsigned dip) {
+  set_power(false);
+  wait(patience_);
+  host_->set_dip(dip);
+  set_power(true);
+  adopt_rate(dip);
+  wait(kHostWarmUp);
+  writes_.assign(writes_.size(), std::nullopt);
+  forget();
+}
+
+void HostBench::write(std::span<const std::uint8_t> octets) {
+  host_->write(octets, now());
+  segment_.refresh(host_seat_);
+}
+
+void HostBench::order(const valve_bus::Command& command) {
+  write({command.id, command.command, command.data0, command.data1});
+}
+
+std::optional<Told> HostBench::next_told(kernel::Duration within) {
+  const kernel::Time limit = now() + within;
+  while (told_.empty() && segment_.scheduler().next() <= limit) segment_.step();
+  if (told_.empty()) {
+    segment_.run_until(limit);
+    return std::nullopt;
+  }
+  const Told first = told_.front();
+  told_.pop_front();
+  return first;
+}
+
+void HostBench::on_response(const valve_bus::HostResponse& response, kernel::Time when) {
+  told_.push_back({when, response});
+  note(told_.back());
+}
+
+void HostBench::on_error(const valve_bus::HostError& error, kernel::Time when) {
+  told_.push_back({when, error});
+  note(told_.back());
+}
+
+// ---- lower tester ----
+
+bool HostBench::has_driven_by(kernel::Time limit) {
+  const std::size_t before = driven_.waves();
+  while (driven_.waves() == before && segment_.scheduler().next() <= limit) segment_.step();
+  return driven_.waves() > before;
+}
+
+// Until the frame that has begun is over: with its last octet, or with a silence that no frame has in it.
+void HostBench::collect() {
+  std::vector<Transmission> seen = driven_.transmissions();
+  while (seen.back().characters.size() < valve_bus::kCommandOctets &&
+         has_driven_by(seen.back().driver_off + longest_gap(rules()))) {
+    seen = driven_.transmissions();
+  }
+  last_waves_ = driven_.take();
+  frames_.insert(frames_.end(), seen.begin(), seen.end());
+}
+
+std::optional<HostFrame> HostBench::next_frame(kernel::Duration within) {
+  const kernel::Time limit = now() + within;
+  if (frames_.empty()) {
+    if (driven_.empty() && !has_driven_by(limit)) {
+      segment_.run_until(limit);
+      return std::nullopt;
+    }
+    collect();
+  }
+  HostFrame frame = frame_of(std::move(frames_.front()));
+  frames_.pop_front();
+  segment_.run_until(std::max(now(), frame.end));
+  note(frame);
+  last_end_ = frame.end;
+  return frame;
+}
+
+HostFrame HostBench::frame_of(Transmission sent) {
+  HostFrame frame{std::move(sent), {}, {}, kernel::Duration::max()};
+  const auto& characters = frame.sent.characters;
+  frame.start = characters.empty() ? frame.sent.driver_on : characters.front().start;
+  frame.end = characters.empty() ? frame.sent.driver_off : characters.back().busy_until;
+  frame.silence = frame.start - last_end_;
+  for (const Span& span : said_) {
+    if (span.start < frame.start) frame.silence = std::min(frame.silence, frame.start - span.end);
+  }
+  std::erase_if(said_, [&](const Span& span) { return span.end < frame.start; });
+  return frame;
+}
+
+kernel::Time HostBench::answer(std::span<const std::uint8_t> octets, kernel::Duration turn_round) {
+  const kernel::Time start = std::max(now(), last_end_ + turn_round);
+  const kernel::Time end = codec_.drive(*tester_, octets, start, {});
+  said_.push_back({start, end});
+  return end;
+}
+
+void HostBench::answer_levels(const line::Levels& levels, kernel::Duration turn_round) {
+  line::Waveform wave;
+  wave.start = std::max(now(), last_end_ + turn_round);
+  wave.rate = rules().bit_rate;
+  wave.levels = levels;
+  said_.push_back({wave.start, wave.end()});
+  tester_->drive(wave);
+}
+
+kernel::Time HostBench::say(std::span<const std::uint8_t> octets) {
+  const kernel::Time end = codec_.drive(*tester_, octets, now(), {});
+  said_.push_back({now(), end});
+  segment_.run_until(end);
+  return end;
+}
+
+line::Levels HostBench::levels_of(std::uint8_t octet, valve_bus::CharacterProfile profile) const {
+  valve_bus::Rules other = rules();
+  other.characters = profile;
+  line::Levels levels;
+  valve_bus::CharacterCodec(other).append(levels, std::span(&octet, 1));
+  return levels;
+}
+
+void HostBench::note_write(const valve_bus::Command& command) {
+  if (command.command == rules().write_command) writes_.at(command.id) = command;
+}
+
+bool HostBench::is_refresh(const valve_bus::Command& command) const {
+  return writes_.at(command.id) == command;
+}
+
+void HostBench::forget() {
+  frames_.clear();
+  told_.clear();
+  driven_.clear();
+}
+
+void HostBench::note(std::variant<HostFrame, Told> seen) {
+  if (history_.size() == kHistoryLines) history_.pop_front();
+  history_.push_back(std::move(seen));
+}
+
+std::vector<std::string> HostBench::decode_lines() const {
+  std::vector<std::string> lines;
+  for (const auto& seen : history_) {
+    const auto* frame = std::get_if<HostFrame>(&seen);
+    lines.push_back(frame != nullptr ? frame_text(*frame) : text_of(std::get<Told>(seen)));
+  }
+  return lines;
+}
+
+}  // namespace fieldproof::conformance

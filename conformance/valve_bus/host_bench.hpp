@@ -1,0 +1,201 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "conformance/line_watch.hpp"
+#include "conformance/test_case.hpp"
+#include "conformance/valve_bus/driven_line.hpp"
+#include "harness/fault/plan.hpp"
+#include "harness/judge/pics.hpp"
+#include "harness/kernel/random.hpp"
+#include "harness/segment/medium.hpp"
+#include "harness/segment/segment.hpp"
+#include "protocols/valve_bus/codec.hpp"
+#include "protocols/valve_bus/device.hpp"
+
+// The bench of one case for a host module of the valve bus: a line with the implementation under test (IUT),
+// the lower tester in the place of all nodes, and the upper tester in the place of the PC.
+//
+// The lower tester hears what the IUT drives as it leaves it, frame by frame, and answers what the case says
+// when it says so. Verdicts rest on that and on what the PC is told. Each case begins with a host that has
+// been powered for a while and has nothing to do.
+namespace fieldproof::conformance {
+
+// What a case needs of the IUT and around it; absent: as the PICS says.
+struct HostNeeds {
+  std::optional<unsigned> dip{};
+  std::optional<valve_bus::CharacterProfile> characters{};
+  std::optional<bool> hears_itself{};
+  std::optional<bool> acknowledged_writes{};
+  std::optional<bool> verifies_writes{};
+};
+
+// Who plays, and how.
+struct HostSetting {
+  using MakeHost = std::function<std::unique_ptr<valve_bus::HostDevice>(const valve_bus::HostConfiguration&)>;
+
+  MakeHost make_host;  // null: the reference
+  std::uint64_t seed = 1;
+  Volume volume = Volume::full;
+  std::optional<judge::Pics> pics;
+  fault::Plan plan{};
+  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
+  std::function<trace::Recorder*(const trace::Trace&, const valve_bus::Rules&)> make_recorder;
+};
+
+// What a PICS of a host may answer besides what that of a node may.
+std::vector<judge::PicsItem> host_pics_items();
+// What the host of the bench declares: an answer to each item that is looked at.
+judge::Pics declared_host();
+// The configuration of the IUT under these needs; `pics` has an answer to each item.
+valve_bus::HostConfiguration host_configuration(const HostNeeds& needs, const judge::Pics& pics);
+
+// A frame that the IUT has sent.
+struct HostFrame {
+  Transmission sent;
+  kernel::Time start;        // of its first start bit
+  kernel::Time end;          // of its last stop bit
+  kernel::Duration silence;  // in front of it, at the IUT
+
+  // The octets in front of the check. For frames of five octets only.
+  valve_bus::Command command() const;
+};
+
+// What the PC was told.
+struct Told {
+  kernel::Time when;
+  std::variant<valve_bus::HostResponse, valve_bus::HostError> what;
+};
+
+std::string text_of(const Told& told);
+
+class HostBench final : private segment::Station, private valve_bus::HostApplication {
+ public:
+  HostBench(const HostNeeds& needs, const HostSetting& setting);
+
+  // With the bit rate of the DIP switches as they were at power-up.
+  const valve_bus::Rules& rules() const { return configuration_.rules; }
+  const judge::Pics& pics() const { return pics_; }
+  kernel::Random& random() { return random_; }
+  std::uint8_t random_octet() { return static_cast<std::uint8_t>(random_.below(256)); }
+  std::uint8_t random_id();
+  template <typename Count>
+  Count volume(Count quick, Count full) const {
+    return volume_ == Volume::quick ? quick : full;
+  }
+  kernel::Time now() const { return segment_.now(); }
+  segment::Segment& segment() { return segment_; }
+  kernel::Duration bits(std::int64_t count) const { return valve_bus::bits(rules(), count); }
+  kernel::Duration characters(double count) const;
+  kernel::Duration delimiter() const { return valve_bus::delimiter(rules()); }
+  kernel::Duration time_out() const { return valve_bus::response_time_out(rules()); }
+  // Of a node that is neither quick nor slow.
+  kernel::Duration turn_round() const { return delimiter() + 150 * kernel::kMicrosecond; }
+  // In which a host that has been asked for something says it, or tells the PC that it cannot.
+  kernel::Duration patience() const { return patience_; }
+
+  // ---- upper tester: the PC ----
+  void write(std::span<const std::uint8_t> octets);
+  void write(std::initializer_list<std::uint8_t> octets) { write(std::span(octets.begin(), octets.size())); }
+  void order(const valve_bus::Command& command);
+  std::size_t fifo_room() const { return host_->fifo_room(); }
+  bool has_overflowed() const { return host_->has_overflowed(); }
+  valve_bus::HostCounters counters(std::uint8_t id) const { return host_->counters(id); }
+  // The next thing that the PC is told, waiting at most so long.
+  std::optional<Told> next_told(kernel::Duration within);
+  bool was_told() const { return !told_.empty(); }
+
+  void set_dip(unsigned position) { host_->set_dip(position); }
+  // Power off and on, with the switches so; what was seen is forgotten.
+  void restart(unsigned dip);
+
+  // ---- lower tester: the nodes ----
+  // The next frame that the IUT sends, waiting at most so long. Runs to the end of its last stop bit.
+  std::optional<HostFrame> next_frame(kernel::Duration within);
+  // Levels as the IUT drove them in the frame that was got last.
+  const std::vector<line::Waveform>& last_waves() const { return last_waves_; }
+  // Gives the line the octets, the first start bit so long behind the last frame's last stop bit. Does not
+  // run. Gives their end.
+  kernel::Time answer(std::span<const std::uint8_t> octets, kernel::Duration turn_round);
+  kernel::Time answer(const valve_bus::Response& response) { return answer(response, turn_round()); }
+  kernel::Time answer(const valve_bus::Response& response, kernel::Duration turn_round) {
+    return answer(octets_of(response), turn_round);
+  }
+  // Levels as they are, one a bit, at the same place.
+  void answer_levels(const line::Levels& levels, kernel::Duration turn_round);
+  // The octets without a gap, from now on; runs to their end.
+  kernel::Time say(std::span<const std::uint8_t> octets);
+  // The character as levels, one a bit, in a format that may be another.
+  line::Levels levels_of(std::uint8_t octet, valve_bus::CharacterProfile profile) const;
+  line::Levels levels_of(std::uint8_t octet) const { return levels_of(octet, rules().characters); }
+  void wait(kernel::Duration duration) { segment_.run_for(duration); }
+
+  // What the nodes have been told to do by the frames that were got: to know a refresh.
+  void note_write(const valve_bus::Command& command);
+  bool is_refresh(const valve_bus::Command& command) const;
+
+  // Frames and what was told, up to now; what the nodes were told to do is kept.
+  void forget();
+
+  std::vector<std::uint64_t> planned_hits() const {
+    return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
+  }
+  const LineWatch& line_watch() const { return line_watch_; }
+  // The last frames of the IUT, and what the PC was told, in words.
+  std::vector<std::string> decode_lines() const;
+
+ private:
+  // What the nodes said, at the IUT.
+  struct Span {
+    kernel::Time start;
+    kernel::Time end;
+  };
+
+  void receive(segment::PortIndex, const line::Waveform&) override {}
+  void on_time(kernel::Time) override {}
+  kernel::Time next_time() const override { return kernel::kNever; }
+  void on_response(const valve_bus::HostResponse& response, kernel::Time when) override;
+  void on_error(const valve_bus::HostError& error, kernel::Time when) override;
+
+  void adopt_rate(unsigned dip);
+  void set_power(bool is_on);
+  bool has_driven_by(kernel::Time limit);
+  void collect();
+  HostFrame frame_of(Transmission sent);
+  void note(std::variant<HostFrame, Told> seen);
+
+  judge::Pics pics_;
+  valve_bus::HostConfiguration configuration_;
+  Volume volume_;
+  kernel::Random random_;
+  segment::Segment segment_;
+  segment::Medium line_;
+  valve_bus::CharacterCodec codec_;
+  std::unique_ptr<valve_bus::HostDevice> host_;
+  std::size_t tester_seat_;
+  std::size_t host_seat_;
+  segment::MediumPort* tester_ = nullptr;
+  segment::MediumPort* place_ = nullptr;  // of the IUT
+  DrivenLine driven_;
+  LineWatch line_watch_;
+  std::unique_ptr<fault::InstalledPlan> plan_;
+  kernel::Duration patience_{};
+
+  std::deque<Transmission> frames_;  // that the case has not got yet
+  std::vector<line::Waveform> last_waves_;
+  std::vector<Span> said_;
+  kernel::Time last_end_{};  // of the last stop bit of the frame that was got last
+  std::deque<Told> told_;
+  std::vector<std::optional<valve_bus::Command>> writes_;
+  std::deque<std::variant<HostFrame, Told>> history_;  // the last of both
+};
+
+}  // namespace fieldproof::conformance

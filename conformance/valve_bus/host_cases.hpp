@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "conformance/judging.hpp"
+#include "conformance/test_case.hpp"
+#include "conformance/valve_bus/host_bench.hpp"
+
+// The test cases for a host module of the valve bus, RH-01 to RH-35 of the catalogue of test purposes, and a
+// canary.
+namespace fieldproof::conformance {
+
+struct HostCase {
+  TestCase test_case;
+  std::function<void(HostBench&, CaseJudge&)> procedure;
+  HostNeeds needs{};
+};
+
+const std::vector<HostCase>& host_cases();
+
+// One run on a bench of its own. The result has verdict, findings, measurements, seed, fingerprint and
+// virtual time; wall time is the caller's to fill.
+judge::CaseResult run_host_case(const HostCase& host_case, const HostSetting& setting);
+
+// The chapters, each in its own file.
+std::vector<HostCase> host_request_cases();
+std::vector<HostCase> host_response_cases();
+std::vector<HostCase> host_retry_cases();
+std::vector<HostCase> host_fifo_cases();
+std::vector<HostCase> host_timing_cases();
+std::vector<HostCase> host_line_cases();
+std::vector<HostCase> host_cycle_cases();
+std::vector<HostCase> host_dip_cases();
+
+// Applies only to a host of which the PICS says so, or says the contrary.
+std::function<std::optional<std::string>(const judge::Pics&)> for_host_with(std::string item,
+                                                                            std::string sentence);
+std::function<std::optional<std::string>(const judge::Pics&)> for_host_without(std::string item,
+                                                                               std::string sentence);
+
+}  // namespace fieldproof::conformance
