@@ -81,20 +81,20 @@ bool MessageDevice::begin(const CaseBegin& begin, Bench& bench) {
   bench_ = &bench;
   next_time_ = kernel::kNever;
   calls_at_once_ = 0;
-  return call(write_case_begin(writer_, begin), limits_.call);
+  return call(write_case_begin(writer_, begin), Refusal::allowed);
 }
 
 void MessageDevice::set_power(bool is_on, kernel::Time now) {
   writer_.begin(MessageType::power).u8(is_on ? 1 : 0).time(now);
-  call(writer_.finish(), limits_.call);
+  call(writer_.finish());
 }
 
 void MessageDevice::receive(unsigned port, std::span<const Character> characters, kernel::Time now) {
-  call(write_reception(writer_, port, characters, now), limits_.call);
+  call(write_reception(writer_, port, characters, now));
 }
 
 void MessageDevice::receive(unsigned port, const line::Waveform& reception) {
-  call(write_levels(writer_, MessageType::receive_levels, port, reception), limits_.call);
+  call(write_levels(writer_, MessageType::receive_levels, port, reception));
 }
 
 void MessageDevice::on_time(kernel::Time now) {
@@ -108,19 +108,21 @@ void MessageDevice::on_time(kernel::Time now) {
                     kernel::describe(now)));
   }
   writer_.begin(MessageType::on_time).time(now);
-  call(writer_.finish(), limits_.call);
+  call(writer_.finish());
 }
 
 void MessageDevice::end() {
+  bench_ = nullptr;  // the case is over: there is nothing to act on any more
   writer_.begin(MessageType::case_end);
-  call(writer_.finish(), limits_.call);
-  bench_ = nullptr;
+  call(writer_.finish());
 }
 
-bool MessageDevice::call(std::span<const std::uint8_t> message, milliseconds limit) {
-  peer_.send(message, limit);
+bool MessageDevice::call(std::span<const std::uint8_t> message, Refusal refusal) {
+  // One limit for all that happens within the call: what comes drop by drop is as bad as what never comes.
+  const auto begin = Peer::Clock::now();
+  peer_.send(message, limits_.call);
   for (unsigned actions = 0; actions <= kMostActions; ++actions) {
-    const auto answer = peer_.receive(limit);
+    const auto answer = peer_.receive(limits_.call, begin);
     try {
       MessageReader reader(answer);
       if (reader.type() == MessageType::done) {
@@ -128,7 +130,8 @@ bool MessageDevice::call(std::span<const std::uint8_t> message, milliseconds lim
         reader.finish();
         return true;
       }
-      if (reader.type() == MessageType::unsupported) {
+      if (reader.type() == MessageType::unsupported && refusal == Refusal::allowed) {
+        reader.finish();
         bench_ = nullptr;
         return false;
       }

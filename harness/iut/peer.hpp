@@ -24,6 +24,8 @@ struct PeerLimits {
 
 class Peer {
  public:
+  using Clock = std::chrono::steady_clock;
+
   static constexpr std::size_t kKeptLog = 64U * 1024;
 
   // `what` names it in sentences: "exec:./node".
@@ -33,9 +35,10 @@ class Peer {
                           std::chrono::milliseconds patience);
 
   void send(std::span<const std::uint8_t> message, std::chrono::milliseconds limit);
-  // The next message, without its length. Valid until the next call.
-  std::span<const std::uint8_t> receive(std::chrono::milliseconds limit);
-  // Whether there is anything to read although nothing was asked.
+  // The next message, without its length, within the limit behind `begin`. Valid until the next call.
+  std::span<const std::uint8_t> receive(std::chrono::milliseconds limit,
+                                        Clock::time_point begin = Clock::now());
+  // Whether there is anything to read although nothing was asked; of a peer that is alive.
   bool has_more();
 
   // It is there and has not ended by itself.
@@ -53,7 +56,6 @@ class Peer {
  private:
   explicit Peer(std::string what) : what_(std::move(what)) {}
 
-  using Clock = std::chrono::steady_clock;
   void fill(Clock::time_point until);
   void read_log();
   [[noreturn]] void blame_end();
