@@ -36,6 +36,7 @@ const std::map<std::string, Names, std::less<>>& directions() {
       {"cli", with({"protocols", "reports", "conformance", "emc"}, bench_ground)},
       {"bench", with({"protocols", "reports", "conformance", "emc"}, bench_ground)},
       {"house", {}},
+      {"examples", {"iut"}},  // the header of plug-ins
   };
   return table;
 }

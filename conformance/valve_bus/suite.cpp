@@ -96,13 +96,13 @@ class ValveBusSuite final : public Suite {
     setting.seed = setup.seed;
     setting.volume = setup.volume;
     setting.pics = setup.pics;
-    setting.stresses = given_.stresses;
     if (!setup.plan_file.empty()) setting.plan = load(setup);
     return setting;
   }
 
   NodeSetting node_setting(const TestCase& test_case, const Setup& setup) const {
     NodeSetting setting = setting_of<NodeSetting>(setup);
+    setting.stresses = given_.stresses;
     setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
                          seed = setup.seed](const valve_bus::NodeConfiguration& configuration) {
       return make_node({uri, id, seed}, configuration);

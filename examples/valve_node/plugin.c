@@ -11,48 +11,66 @@
 #include "examples/valve_node/valve_node.h"
 
 static valve_deviation wanted_deviation(void) {
-  const char *name = getenv("VALVE_NODE");
+  const char* name = getenv("VALVE_NODE");
   int n;
   for (n = 0; name != 0 && n < DEVIATIONS; ++n)
     if (strcmp(valve_deviation_name((valve_deviation)n), name) == 0) return (valve_deviation)n;
   return RIGHT;
 }
 
-static void *create(const char *protocol, const char *role, const fieldproof_bench *bench) {
-  valve_node *node = 0;
+static void* create(const char* protocol, const char* role, const fieldproof_bench* bench) {
+  valve_node* node = 0;
   if (strcmp(protocol, "valve_bus") != 0 || strcmp(role, "node") != 0) return 0;
-  node = (valve_node *)calloc(1, sizeof(valve_node));
+  node = (valve_node*)calloc(1, sizeof(valve_node));
   if (node == 0) return 0;
   node->bench = bench;
   node->deviation = wanted_deviation();
   return node;
 }
 
-static int begin(void *self, const fieldproof_case *test_case) {
-  const char *prefix = "valve_bus/node/";
+static int begin(void* self, const fieldproof_case* test_case) {
+  const char* prefix = "valve_bus/node/";
   if (strncmp(test_case->id, prefix, strlen(prefix)) != 0) return 0;
-  valve_node_begin((valve_node *)self, test_case);
+  valve_node_begin((valve_node*)self, test_case);
   return 1;
 }
 
-static void set_power(void *self, int is_on, fieldproof_time now) { valve_node_power((valve_node *)self, is_on, now); }
+static void set_power(void* self, int is_on, fieldproof_time now) {
+  valve_node_power((valve_node*)self, is_on, now);
+}
 
-static void receive(void *self, unsigned port, const fieldproof_character *characters, unsigned count,
+static void receive(void* self, unsigned port, const fieldproof_character* characters, unsigned count,
                     fieldproof_time now) {
   unsigned n;
   (void)port;
-  for (n = 0; n < count; ++n) valve_node_receive((valve_node *)self, &characters[n], now);
+  for (n = 0; n < count; ++n) valve_node_receive((valve_node*)self, &characters[n], now);
 }
 
-static void on_time(void *self, fieldproof_time now) { valve_node_on_time((valve_node *)self, now); }
+static void on_time(void* self, fieldproof_time now) {
+  valve_node_on_time((valve_node*)self, now);
+}
 
-static fieldproof_time next_time(void *self) { return valve_node_next_time((valve_node *)self); }
+static fieldproof_time next_time(void* self) {
+  return valve_node_next_time((valve_node*)self);
+}
 
-static void end(void *self) { (void)self; }
+static void end(void* self) {
+  (void)self;
+}
 
-const fieldproof_implementation *fieldproof_plugin(unsigned version) {
-  static const fieldproof_implementation implementation = {
-      FIELDPROOF_PLUGIN_VERSION, sizeof(fieldproof_implementation), "valve node in C", FIELDPROOF_CHARACTERS,
-      create, free, begin, set_power, receive, 0, on_time, next_time, end};
+const fieldproof_implementation* fieldproof_plugin(unsigned version) {
+  static const fieldproof_implementation implementation = {FIELDPROOF_PLUGIN_VERSION,
+                                                           sizeof(fieldproof_implementation),
+                                                           "valve node in C",
+                                                           FIELDPROOF_CHARACTERS,
+                                                           create,
+                                                           free,
+                                                           begin,
+                                                           set_power,
+                                                           receive,
+                                                           0,
+                                                           on_time,
+                                                           next_time,
+                                                           end};
   return version == FIELDPROOF_PLUGIN_VERSION ? &implementation : 0;
 }

@@ -29,15 +29,15 @@ static unsigned next_message(void) { /* its type */
   unsigned char head[4];
   if (fread(head, 1, 4, stdin) != 4) exit(0); /* the bench has gone */
   length = head[0] | (unsigned)head[1] << 8 | (unsigned)head[2] << 16 | (unsigned)head[3] << 24;
-  message = (unsigned char *)realloc(message, length + 1);
+  message = (unsigned char*)realloc(message, length + 1);
   if (message == 0 || fread(message, 1, length, stdin) != length) exit(1);
   at = message + 1;
   return message[0];
 }
 
-static char *text(void) {
+static char* text(void) {
   const unsigned octets = (unsigned)number(2);
-  char *copy = (char *)calloc(octets + 1, 1);
+  char* copy = (char*)calloc(octets + 1, 1);
   memcpy(copy, at, octets);
   at += octets;
   return copy;
@@ -47,7 +47,9 @@ static void put(fieldproof_word value, unsigned octets) {
   for (; octets > 0; --octets, value >>= 8) *end++ = (unsigned char)(value & 0xFF);
 }
 
-static void begin_message(unsigned type) { end = out + 4, put(type, 1); }
+static void begin_message(unsigned type) {
+  end = out + 4, put(type, 1);
+}
 
 static void send_message(void) {
   const unsigned octets = (unsigned)(end - out);
@@ -57,24 +59,25 @@ static void send_message(void) {
   fflush(stdout);
 }
 
-static void transmit(void *context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
-                     fieldproof_time driver_off, const unsigned short *characters, unsigned count) {
+static void transmit(void* context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
+                     fieldproof_time driver_off, const unsigned short* characters, unsigned count) {
   (void)context;
   begin_message(TRANSMIT);
-  put(port, 1), put((fieldproof_word)driver_on, 8), put((fieldproof_word)start, 8), put((fieldproof_word)driver_off, 8);
+  put(port, 1), put((fieldproof_word)driver_on, 8), put((fieldproof_word)start, 8),
+      put((fieldproof_word)driver_off, 8);
   put(count, 2);
   for (; count > 0; --count) put(*characters++, 2);
   send_message();
 }
 
-static void write_item(void *context, unsigned item, fieldproof_word value, fieldproof_time when) {
+static void write_item(void* context, unsigned item, fieldproof_word value, fieldproof_time when) {
   (void)context;
   begin_message(WRITE);
   put(item, 2), put(value, 8), put((fieldproof_word)when, 8);
   send_message();
 }
 
-static fieldproof_word read_item(void *context, unsigned item, fieldproof_time when) {
+static fieldproof_word read_item(void* context, unsigned item, fieldproof_time when) {
   (void)context;
   begin_message(READ);
   put(item, 2), put((fieldproof_word)when, 8);
@@ -82,10 +85,10 @@ static fieldproof_word read_item(void *context, unsigned item, fieldproof_time w
   return next_message() == VALUE ? number(8) : 0;
 }
 
-static int begin_case(valve_node *node) {
+static int begin_case(valve_node* node) {
   fieldproof_setting settings[32];
   fieldproof_case test_case;
-  char *id = text();
+  char* id = text();
   const int is_served = strncmp(id, "valve_bus/node/", 15) == 0;
   test_case.seed = number(8);
   test_case.setting_count = (unsigned)number(2);
@@ -98,13 +101,13 @@ static int begin_case(valve_node *node) {
     test_case.id = id;
     test_case.settings = settings;
     valve_node_begin(node, &test_case);
-    for (n = 0; n < test_case.setting_count; ++n) free((void *)settings[n].name);
+    for (n = 0; n < test_case.setting_count; ++n) free((void*)settings[n].name);
   }
   free(id);
   return is_served;
 }
 
-static void receive(valve_node *node) {
+static void receive(valve_node* node) {
   const fieldproof_time now = (++at, (fieldproof_time)number(8)); /* behind the port: a node has one */
   unsigned count = (unsigned)number(2);
   for (; count > 0; --count) {
@@ -117,7 +120,7 @@ static void receive(valve_node *node) {
   }
 }
 
-static void answer(valve_node *node, unsigned type) {
+static void answer(valve_node* node, unsigned type) {
   int is_served = 1, is_on;
   if (type == HELLO) {
     begin_message(CAPABILITIES);
@@ -136,7 +139,7 @@ static void answer(valve_node *node, unsigned type) {
   send_message();
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   static fieldproof_bench bench;
   static valve_node node;
   int n;

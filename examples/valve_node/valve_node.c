@@ -4,21 +4,29 @@
 
 static const fieldproof_time SECOND = (fieldproof_time)1000000 * 1000000;
 
-const char *valve_deviation_name(valve_deviation deviation) {
-  static const char *const names[DEVIATIONS] = {
-      "right",        "check_without_command",  "answers_writes",   "address_low_nibble",  "any_command_reads", "read_drives_valves",
-      "data_swapped", "response_check_with_id", "turns_round_late", "driver_not_released", "takes_long_frames"};
+const char* valve_deviation_name(valve_deviation deviation) {
+  static const char* const names[DEVIATIONS] = {"right",
+                                                "check_without_command",
+                                                "answers_writes",
+                                                "address_low_nibble",
+                                                "any_command_reads",
+                                                "read_drives_valves",
+                                                "data_swapped",
+                                                "response_check_with_id",
+                                                "turns_round_late",
+                                                "driver_not_released",
+                                                "takes_long_frames"};
   return names[deviation];
 }
 
-static fieldproof_time setting(const fieldproof_case *test_case, const char *name) {
+static fieldproof_time setting(const fieldproof_case* test_case, const char* name) {
   unsigned n;
   for (n = 0; n < test_case->setting_count; ++n)
     if (strcmp(test_case->settings[n].name, name) == 0) return test_case->settings[n].value;
   return 0;
 }
 
-void valve_node_begin(valve_node *node, const fieldproof_case *test_case) {
+void valve_node_begin(valve_node* node, const fieldproof_case* test_case) {
   const fieldproof_time rate = setting(test_case, "bit_rate");
   const fieldproof_time format = setting(test_case, "characters");
   node->bit = SECOND / rate;
@@ -31,7 +39,7 @@ void valve_node_begin(valve_node *node, const fieldproof_case *test_case) {
   valve_node_power(node, 0, 0);
 }
 
-void valve_node_power(valve_node *node, int is_on, fieldproof_time now) {
+void valve_node_power(valve_node* node, int is_on, fieldproof_time now) {
   node->is_on = is_on;
   node->last_command = now;
   node->count = 0;
@@ -40,35 +48,36 @@ void valve_node_power(valve_node *node, int is_on, fieldproof_time now) {
 }
 
 /* A character that began within the delimiter is over by then, and known. */
-static fieldproof_time silence_known(const valve_node *node) {
+static fieldproof_time silence_known(const valve_node* node) {
   return node->count > 0 ? node->busy_until + 9 * node->half + node->bit : FIELDPROOF_NEVER;
 }
 
-static fieldproof_time host_lost(const valve_node *node) {
+static fieldproof_time host_lost(const valve_node* node) {
   return node->loss_limit > 0 ? node->last_command + node->loss_limit : FIELDPROOF_NEVER;
 }
 
-static void drive_valves(valve_node *node, unsigned data0, unsigned data1, fieldproof_time now) {
+static void drive_valves(valve_node* node, unsigned data0, unsigned data1, fieldproof_time now) {
   const unsigned both = node->deviation == DATA_SWAPPED ? data1 | data0 << 8 : data0 | data1 << 8;
   node->bench->write(node->bench->context, VALVES, both & node->boards, now);
 }
 
-static void answer_with(valve_node *node, unsigned data0, unsigned data1) {
+static void answer_with(valve_node* node, unsigned data0, unsigned data1) {
   const fieldproof_time late = node->deviation == TURNS_ROUND_LATE ? SECOND / 1000 * 21 / 10 : SECOND / 10000;
   node->has_answer = 1;
   node->answer_start = node->busy_until + 7 * node->half + late;
   node->answer[0] = (unsigned char)data0;
   node->answer[1] = (unsigned char)data1;
-  node->answer[2] = (unsigned char)(data0 ^ data1 ^ (node->deviation == RESPONSE_CHECK_WITH_ID ? node->address : 0));
+  node->answer[2] =
+      (unsigned char)(data0 ^ data1 ^ (node->deviation == RESPONSE_CHECK_WITH_ID ? node->address : 0));
 }
 
-static int is_meant(const valve_node *node, unsigned id) {
+static int is_meant(const valve_node* node, unsigned id) {
   if (node->address == 0) return 0;
   return node->deviation == ADDRESS_LOW_NIBBLE ? (id & 15) == (node->address & 15) : id == node->address;
 }
 
-static void end_frame(valve_node *node, fieldproof_time now) {
-  const unsigned char *f = node->frame;
+static void end_frame(valve_node* node, fieldproof_time now) {
+  const unsigned char* f = node->frame;
   const int has_length = node->count == 5 || (node->count == 6 && node->deviation == TAKES_LONG_FRAMES);
   const int is_whole = has_length && !node->is_spoilt;
   unsigned check = f[0] ^ f[1] ^ f[2] ^ f[3], command = f[1];
@@ -78,15 +87,17 @@ static void end_frame(valve_node *node, fieldproof_time now) {
   if (!is_whole || check != f[4] || !is_meant(node, f[0])) return;
   node->last_command = now;
   if (node->deviation == ANY_COMMAND_READS && command != 0) command = 1;
-  if (command == 0 || (command == 1 && node->deviation == READ_DRIVES_VALVES)) drive_valves(node, f[2], f[3], now);
+  if (command == 0 || (command == 1 && node->deviation == READ_DRIVES_VALVES))
+    drive_valves(node, f[2], f[3], now);
   if (command == 0 && node->answers_writes) answer_with(node, f[2], f[3]);
   if (command == 1) {
-    const unsigned switches = (unsigned)node->bench->read(node->bench->context, LIMIT_SWITCHES, now) & node->boards;
+    const unsigned switches =
+        (unsigned)node->bench->read(node->bench->context, LIMIT_SWITCHES, now) & node->boards;
     answer_with(node, switches & 0xFF, switches >> 8);
   }
 }
 
-void valve_node_receive(valve_node *node, const fieldproof_character *character, fieldproof_time now) {
+void valve_node_receive(valve_node* node, const fieldproof_character* character, fieldproof_time now) {
   const fieldproof_time gap = character->start - node->busy_until;
   if (!node->is_on) return;
   if (node->count > 0 && gap >= 7 * node->half) end_frame(node, now);
@@ -97,17 +108,19 @@ void valve_node_receive(valve_node *node, const fieldproof_character *character,
   node->busy_until = character->busy_until;
 }
 
-static void transmit_answer(valve_node *node, fieldproof_time now) {
+static void transmit_answer(valve_node* node, fieldproof_time now) {
   const fieldproof_time start = node->answer_start > now + node->bit ? node->answer_start : now + node->bit;
   unsigned short characters[3];
   unsigned n;
   for (n = 0; n < 3; ++n) characters[n] = (unsigned short)(node->ninth_bit | node->answer[n]);
   node->has_answer = 0;
-  node->driving_until = start + 6 * node->half + node->bit * (node->deviation == DRIVER_NOT_RELEASED ? 20 : 2);
-  node->bench->transmit(node->bench->context, 0, start - node->bit, start, node->driving_until, characters, 3);
+  node->driving_until =
+      start + 6 * node->half + node->bit * (node->deviation == DRIVER_NOT_RELEASED ? 20 : 2);
+  node->bench->transmit(node->bench->context, 0, start - node->bit, start, node->driving_until, characters,
+                        3);
 }
 
-void valve_node_on_time(valve_node *node, fieldproof_time now) {
+void valve_node_on_time(valve_node* node, fieldproof_time now) {
   if (now >= silence_known(node)) end_frame(node, now);
   if (node->has_answer && now >= node->answer_start - node->bit) transmit_answer(node, now);
   if (now >= host_lost(node)) {
@@ -116,7 +129,7 @@ void valve_node_on_time(valve_node *node, fieldproof_time now) {
   }
 }
 
-fieldproof_time valve_node_next_time(const valve_node *node) {
+fieldproof_time valve_node_next_time(const valve_node* node) {
   fieldproof_time next = silence_known(node);
   if (!node->is_on) return FIELDPROOF_NEVER;
   if (host_lost(node) < next) next = host_lost(node);

@@ -1,4 +1,5 @@
-/* A local node of the RS-485 valve bus as firmware would have it: no clock, no line, no allocation of its own. */
+/* A local node of the RS-485 valve bus as firmware would have it: no clock, no line, no allocation of its
+ * own. */
 #ifndef VALVE_NODE_H
 #define VALVE_NODE_H
 
@@ -23,7 +24,7 @@ typedef enum {
 } valve_deviation;
 
 typedef struct {
-  const fieldproof_bench *bench; /* where it acts */
+  const fieldproof_bench* bench; /* where it acts */
   valve_deviation deviation;
   fieldproof_time bit, half; /* half a character */
   fieldproof_time loss_limit;
@@ -35,12 +36,12 @@ typedef struct {
   unsigned char answer[3];
 } valve_node;
 
-const char *valve_deviation_name(valve_deviation deviation);
+const char* valve_deviation_name(valve_deviation deviation);
 
-void valve_node_begin(valve_node *node, const fieldproof_case *test_case);
-void valve_node_power(valve_node *node, int is_on, fieldproof_time now);
-void valve_node_receive(valve_node *node, const fieldproof_character *character, fieldproof_time now);
-void valve_node_on_time(valve_node *node, fieldproof_time now);
-fieldproof_time valve_node_next_time(const valve_node *node);
+void valve_node_begin(valve_node* node, const fieldproof_case* test_case);
+void valve_node_power(valve_node* node, int is_on, fieldproof_time now);
+void valve_node_receive(valve_node* node, const fieldproof_character* character, fieldproof_time now);
+void valve_node_on_time(valve_node* node, fieldproof_time now);
+fieldproof_time valve_node_next_time(const valve_node* node);
 
 #endif

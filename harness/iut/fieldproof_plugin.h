@@ -1,6 +1,6 @@
 /*
- * An implementation under test as a shared library. C89 and any compiler; nothing is allocated on one side and freed on
- * the other; no call keeps a pointer behind its return.
+ * An implementation under test as a shared library. C89 and any compiler; nothing is allocated on one side
+ * and freed on the other; no call keeps a pointer behind its return.
  *
  *   cc -shared -fPIC -o libnode.so node.c
  *   fieldproof run valve_bus/node/read/is_answered --iut plugin:./libnode.so
@@ -9,12 +9,13 @@
  *
  *   create  { begin  { set_power | receive | receive_levels | on_time }...  end }...  destroy
  *
- * and asks `next_time` behind each of them. Calls come one at a time, in order of time. Within a call (not within
- * `create`, `next_time`, `end`, `destroy`) the implementation acts by calling the bench, at instants that are now or
- * later. Several instances may live at once, each in a thread of its own: keep no state outside of them.
+ * and asks `next_time` behind each of them. Calls come one at a time, in order of time. Within
+ * `set_power`, `receive`, `receive_levels` and `on_time` the implementation acts by calling the bench, at
+ * instants that are now or later. Several instances may live at once, each in a thread of its own: keep no
+ * state outside of them.
  *
- * Times are picoseconds since the case began. Items and settings are those of the role; README.md beside this file
- * lists them.
+ * Times are picoseconds since the case began. Items and settings are those of the role; README.md beside this
+ * file lists them.
  */
 #ifndef FIELDPROOF_PLUGIN_H
 #define FIELDPROOF_PLUGIN_H
@@ -39,7 +40,8 @@ typedef unsigned long long fieldproof_word;
 /* The instant that never comes. */
 #define FIELDPROOF_NEVER ((fieldproof_time)(~(fieldproof_word)0 >> 1))
 
-/* How a line is told: FIELDPROOF_CHARACTERS are those of an asynchronous line, FIELDPROOF_LEVELS are packed bits. */
+/* How a line is told: FIELDPROOF_CHARACTERS are those of an asynchronous line, FIELDPROOF_LEVELS are packed
+ * bits. */
 #define FIELDPROOF_CHARACTERS 1
 #define FIELDPROOF_LEVELS 2
 
@@ -54,14 +56,14 @@ typedef struct fieldproof_character {
 } fieldproof_character;
 
 typedef struct fieldproof_setting {
-  const char *name;
+  const char* name;
   fieldproof_time value;
 } fieldproof_setting;
 
 typedef struct fieldproof_case {
-  const char *id; /* "valve_bus/node/read/is_answered" */
+  const char* id; /* "valve_bus/node/read/is_answered" */
   fieldproof_word seed;
-  const fieldproof_setting *settings;
+  const fieldproof_setting* settings;
   unsigned setting_count;
 } fieldproof_case;
 
@@ -69,48 +71,48 @@ typedef struct fieldproof_case {
 typedef struct fieldproof_bench {
   unsigned version; /* FIELDPROOF_PLUGIN_VERSION of the bench */
   unsigned size;    /* of this struct; later versions are longer */
-  void *context;
+  void* context;
   /* `count` characters without a gap from `start` on, with the driver on around them. */
-  void (*transmit)(void *context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
-                   fieldproof_time driver_off, const unsigned short *characters, unsigned count);
+  void (*transmit)(void* context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
+                   fieldproof_time driver_off, const unsigned short* characters, unsigned count);
   /* `count` levels, the first in bit 0 of levels[0], each 1/rate seconds long. */
-  void (*transmit_levels)(void *context, unsigned port, fieldproof_time start, fieldproof_time rate,
-                          const unsigned char *levels, unsigned count);
+  void (*transmit_levels)(void* context, unsigned port, fieldproof_time start, fieldproof_time rate,
+                          const unsigned char* levels, unsigned count);
   /* An output of the process side has this value from `when` on. */
-  void (*write)(void *context, unsigned item, fieldproof_word value, fieldproof_time when);
+  void (*write)(void* context, unsigned item, fieldproof_word value, fieldproof_time when);
   /* What an input of the process side is at `when`. */
-  fieldproof_word (*read)(void *context, unsigned item, fieldproof_time when);
+  fieldproof_word (*read)(void* context, unsigned item, fieldproof_time when);
   /* A line for people; it stands beside a finding. */
-  void (*log)(void *context, const char *text);
+  void (*log)(void* context, const char* text);
 } fieldproof_bench;
 
 typedef struct fieldproof_implementation {
   unsigned version; /* FIELDPROOF_PLUGIN_VERSION */
   unsigned size;    /* sizeof(fieldproof_implementation) */
-  const char *name;
+  const char* name;
   int unit; /* FIELDPROOF_CHARACTERS or FIELDPROOF_LEVELS */
 
   /* An instance for a role, or null for a role that is not served. `bench` stays valid until `destroy`. */
-  void *(*create)(const char *protocol, const char *role, const fieldproof_bench *bench);
-  void (*destroy)(void *self);
+  void* (*create)(const char* protocol, const char* role, const fieldproof_bench* bench);
+  void (*destroy)(void* self);
   /* A case begins; nothing of the one before counts. 0: it is not served. */
-  int (*begin)(void *self, const fieldproof_case *test_case);
+  int (*begin)(void* self, const fieldproof_case* test_case);
   /* The supply comes and goes; a case begins without it. */
-  void (*set_power)(void *self, int is_on, fieldproof_time now);
+  void (*set_power)(void* self, int is_on, fieldproof_time now);
   /* With FIELDPROOF_CHARACTERS: characters that are over. May be null otherwise. */
-  void (*receive)(void *self, unsigned port, const fieldproof_character *characters, unsigned count,
+  void (*receive)(void* self, unsigned port, const fieldproof_character* characters, unsigned count,
                   fieldproof_time now);
   /* With FIELDPROOF_LEVELS: a transmission that is over. May be null otherwise. */
-  void (*receive_levels)(void *self, unsigned port, fieldproof_time start, fieldproof_time rate,
-                         const unsigned char *levels, unsigned count, fieldproof_time now);
-  void (*on_time)(void *self, fieldproof_time now);
+  void (*receive_levels)(void* self, unsigned port, fieldproof_time start, fieldproof_time rate,
+                         const unsigned char* levels, unsigned count, fieldproof_time now);
+  void (*on_time)(void* self, fieldproof_time now);
   /* When on_time is wanted, FIELDPROOF_NEVER for never. */
-  fieldproof_time (*next_time)(void *self);
-  void (*end)(void *self);
+  fieldproof_time (*next_time)(void* self);
+  void (*end)(void* self);
 } fieldproof_implementation;
 
 /* What the library exports. `version` is that of the bench; null: there is none for it. */
-const fieldproof_implementation *fieldproof_plugin(unsigned version);
+const fieldproof_implementation* fieldproof_plugin(unsigned version);
 
 #ifdef __cplusplus
 }

@@ -81,7 +81,7 @@ bool MessageDevice::begin(const CaseBegin& begin, Bench& bench) {
   bench_ = &bench;
   next_time_ = kernel::kNever;
   calls_at_once_ = 0;
-  return call(write_case_begin(writer_, begin), CanRefuse::yes);
+  return call(write_case_begin(writer_, begin), Refusal::allowed);
 }
 
 void MessageDevice::set_power(bool is_on, kernel::Time now) {
@@ -112,25 +112,24 @@ void MessageDevice::on_time(kernel::Time now) {
 }
 
 void MessageDevice::end() {
+  bench_ = nullptr;  // the case is over: there is nothing to act on any more
   writer_.begin(MessageType::case_end);
   call(writer_.finish());
-  bench_ = nullptr;
   // What it says beyond that comes in front of the echo: this case is to blame, not the next one.
   writer_.begin(MessageType::echo);
   expect(writer_.finish(), MessageType::echoed, limits_.call);
 }
 
-void MessageDevice::refuse_unasked() {
-  peer_.blame(reasons::kGarbage,
-              "says something that it was not asked for: each call is answered once, by 'done'");
-}
-
-bool MessageDevice::call(std::span<const std::uint8_t> message, CanRefuse can_refuse) {
-  const milliseconds limit = limits_.call;
-  if (peer_.has_read_more()) refuse_unasked();
-  peer_.send(message, limit);
+bool MessageDevice::call(std::span<const std::uint8_t> message, Refusal refusal) {
+  if (peer_.has_read_more()) {
+    peer_.blame(reasons::kGarbage,
+                "says something that it was not asked for: each call is answered once, by 'done'");
+  }
+  // One limit for all that happens within the call: what comes drop by drop is as bad as what never comes.
+  const auto begin = Peer::Clock::now();
+  peer_.send(message, limits_.call);
   for (unsigned actions = 0; actions <= kMostActions; ++actions) {
-    const auto answer = peer_.receive(limit);
+    const auto answer = peer_.receive(limits_.call, begin);
     try {
       MessageReader reader(answer);
       if (reader.type() == MessageType::done) {
@@ -138,7 +137,8 @@ bool MessageDevice::call(std::span<const std::uint8_t> message, CanRefuse can_re
         reader.finish();
         return true;
       }
-      if (reader.type() == MessageType::unsupported && can_refuse == CanRefuse::yes) {
+      if (reader.type() == MessageType::unsupported && refusal == Refusal::allowed) {
+        reader.finish();
         bench_ = nullptr;
         return false;
       }

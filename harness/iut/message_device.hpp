@@ -44,10 +44,10 @@ class MessageDevice final : public Device {
   void end() override;
 
  private:
-  // Sends the message and serves the implementation until it is done; false for `unsupported`.
-  enum class CanRefuse : std::uint8_t { no, yes };
-  bool call(std::span<const std::uint8_t> message, CanRefuse can_refuse = CanRefuse::no);
-  [[noreturn]] void refuse_unasked();
+  enum class Refusal : std::uint8_t { none, allowed };
+  // Sends the message and serves the implementation until it is done; false for `unsupported`, where that is
+  // an answer.
+  bool call(std::span<const std::uint8_t> message, Refusal refusal = Refusal::none);
   void serve(MessageReader& reader);
   std::span<const std::uint8_t> expect(std::span<const std::uint8_t> message, MessageType answer,
                                        std::chrono::milliseconds limit);

@@ -47,8 +47,8 @@ std::string shown(std::span<const std::uint8_t> octets) {
   return fmt::format("{}{} \"{}\"", digits, octets.size() > kMost ? "..." : "", text);
 }
 
-int remaining(std::chrono::steady_clock::time_point until) {
-  const auto left = std::chrono::ceil<milliseconds>(until - std::chrono::steady_clock::now());
+int remaining(Peer::Clock::time_point until) {
+  const auto left = std::chrono::ceil<milliseconds>(until - Peer::Clock::now());
   return static_cast<int>(std::max<milliseconds::rep>(0, left.count()));
 }
 
@@ -120,8 +120,8 @@ void Peer::send(std::span<const std::uint8_t> message, milliseconds limit) {
   }
 }
 
-std::span<const std::uint8_t> Peer::receive(milliseconds limit) {
-  const auto until = Clock::now() + limit;
+std::span<const std::uint8_t> Peer::receive(milliseconds limit, Clock::time_point begin) {
+  const auto until = begin + limit;
   const auto wait_for = [&](std::size_t octets) {
     while (end_ - begin_ < octets) {
       if (remaining(until) == 0) {
@@ -190,7 +190,11 @@ void Peer::read_log() {
 
 bool Peer::is_alive() {
   if (process_) return !process_->has_ended(milliseconds(0));
-  return static_cast<bool>(socket_);
+  if (!socket_) return false;
+  // The end of the stream can be read as soon as the other side has closed it.
+  std::uint8_t octet = 0;
+  const ssize_t count = ::recv(socket_.number(), &octet, 1, MSG_PEEK | MSG_DONTWAIT);
+  return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
 std::string Peer::take_log() {

@@ -24,6 +24,8 @@ struct PeerLimits {
 
 class Peer {
  public:
+  using Clock = std::chrono::steady_clock;
+
   static constexpr std::size_t kKeptLog = 64U * 1024;
 
   // `what` names it in sentences: "exec:./node".
@@ -33,10 +35,11 @@ class Peer {
                           std::chrono::milliseconds patience);
 
   void send(std::span<const std::uint8_t> message, std::chrono::milliseconds limit);
-  // The next message, without its length. Valid until the next call.
-  std::span<const std::uint8_t> receive(std::chrono::milliseconds limit);
-  // Whether there is anything to read although nothing was asked; of what has come, without asking the
-  // system.
+  // The next message, without its length, within the limit behind `begin`. Valid until the next call.
+  std::span<const std::uint8_t> receive(std::chrono::milliseconds limit,
+                                        Clock::time_point begin = Clock::now());
+  // Whether there is anything to read although nothing was asked; of a peer that is alive. Of what has
+  // come already, without asking the system.
   bool has_more();
   bool has_read_more() const { return begin_ != end_; }
 
@@ -55,7 +58,6 @@ class Peer {
  private:
   explicit Peer(std::string what) : what_(std::move(what)) {}
 
-  using Clock = std::chrono::steady_clock;
   void fill(Clock::time_point until);
   void read_log();
   [[noreturn]] void blame_end();

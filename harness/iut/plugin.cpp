@@ -178,12 +178,20 @@ class PluginDevice final : public Device {
     });
   }
   static void on_write(void* context, unsigned item, fieldproof_word value, fieldproof_time when) {
-    act(context, [&](Bench& bench) { bench.write(static_cast<Item>(item), value, time_of(when)); });
+    act(context, [&](Bench& bench) { bench.write(item_of(item), value, time_of(when)); });
   }
   static fieldproof_word on_read(void* context, unsigned item, fieldproof_time when) {
     std::uint64_t value = 0;
-    act(context, [&](Bench& bench) { value = bench.read(static_cast<Item>(item), time_of(when)); });
+    act(context, [&](Bench& bench) { value = bench.read(item_of(item), time_of(when)); });
     return value;
+  }
+  // Cut to its lowest octets it would be another one.
+  static Item item_of(unsigned item) {
+    if (item > 0xFFFF) {
+      throw Misbehaviour(reasons::kImpossible,
+                         fmt::format("the implementation names item {}; items are at most 65535", item));
+    }
+    return static_cast<Item>(item);
   }
   static void on_log(void*, const char* text) { std::fprintf(stderr, "%s\n", text); }
 

@@ -113,7 +113,7 @@ Process::Process(const std::vector<std::string>& command) {
   const int failure =
       ::posix_spawnp(&id_, arguments.front(), actions.get(), attributes.get(), arguments.data(), environ);
   if (failure != 0) refuse(fmt::format("'{}' cannot be started", command.front()), failure);
-  is_reaped_ = false;
+  has_ended_ = false;
   to_input_ = std::move(input.write);
   from_output_ = std::move(output.read);
   from_errors_ = std::move(errors.read);
@@ -124,8 +124,8 @@ Process::Process(const std::vector<std::string>& command) {
 
 Process& Process::operator=(Process&& other) noexcept {
   std::swap(id_, other.id_);
-  std::swap(is_reaped_, other.is_reaped_);
-  std::swap(status_, other.status_);
+  std::swap(has_ended_, other.has_ended_);
+  std::swap(end_, other.end_);
   std::swap(to_input_, other.to_input_);
   std::swap(from_output_, other.from_output_);
   std::swap(from_errors_, other.from_errors_);
@@ -136,11 +136,16 @@ Process::~Process() {
   end_group();
 }
 
+// Looks and does not take it away: as long as the leader can still be waited for its number is no other's,
+// and so the signal to its group reaches nobody else.
 bool Process::has_ended(milliseconds patience) {
   const auto until = std::chrono::steady_clock::now() + patience;
-  while (!is_reaped_) {
-    if (::waitpid(id_, &status_, WNOHANG) == id_) {
-      is_reaped_ = true;
+  while (!has_ended_) {
+    siginfo_t seen{};
+    const int failure = ::waitid(P_PID, static_cast<id_t>(id_), &seen, WEXITED | WNOHANG | WNOWAIT);
+    if (failure == 0 && seen.si_pid == id_) {
+      end_ = seen;
+      has_ended_ = true;
       break;
     }
     if (std::chrono::steady_clock::now() >= until) return false;
@@ -150,22 +155,22 @@ bool Process::has_ended(milliseconds patience) {
 }
 
 std::string Process::how_it_ended() const {
-  if (WIFSIGNALED(status_)) {
-    const int signal = WTERMSIG(status_);
-    return fmt::format("was ended by signal {} ({})", signal, ::strsignal(signal));
+  if (end_.si_code != CLD_EXITED) {
+    return fmt::format("was ended by signal {} ({})", end_.si_status, ::strsignal(end_.si_status));
   }
-  return fmt::format("ended with exit code {}", WEXITSTATUS(status_));
+  return fmt::format("ended with exit code {}", end_.si_status);
 }
 
 void Process::end_group() {
   if (id_ < 0) return;
   // Children of an ended leader keep its group.
   ::kill(-id_, SIGKILL);
-  if (!is_reaped_) {
-    ::kill(id_, SIGKILL);
-    ::waitpid(id_, &status_, 0);
-    is_reaped_ = true;
+  ::kill(id_, SIGKILL);
+  siginfo_t last{};
+  while (::waitid(P_PID, static_cast<id_t>(id_), &last, WEXITED) != 0 && errno == EINTR) {
   }
+  if (!has_ended_) end_ = last;
+  has_ended_ = true;
   id_ = -1;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <signal.h>
 #include <sys/types.h>
 
 #include <chrono>
@@ -48,13 +49,13 @@ class Process {
   bool has_ended(std::chrono::milliseconds patience);
   // "ended with exit code 3", "was ended by signal 11 (Segmentation fault)"; of one that has ended.
   std::string how_it_ended() const;
-  // All processes of the group, at once and for certain.
+  // All processes of the group, at once and for certain. What how_it_ended() says stays.
   void end_group();
 
  private:
   pid_t id_ = -1;
-  bool is_reaped_ = true;
-  int status_ = 0;
+  bool has_ended_ = true;
+  siginfo_t end_{};
   Descriptor to_input_;
   Descriptor from_output_;
   Descriptor from_errors_;

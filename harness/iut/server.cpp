@@ -22,7 +22,10 @@ class MessagePipe {
 
   // Empty at the end of the stream between two messages.
   std::span<const std::uint8_t> receive() {
-    if (!wait_for(kMessageHead)) return {};
+    if (!wait_for(kMessageHead)) {
+      if (begin_ != end_) refuse_bench("it ends in the middle");
+      return {};
+    }
     std::size_t length = 0;
     for (std::size_t n = 0; n < kMessageHead; ++n) length |= std::size_t{buffer_[begin_ + n]} << (8 * n);
     if (length == 0 || length > kLongestMessage) refuse_bench(fmt::format("a length of {} octets", length));
@@ -91,12 +94,16 @@ class Server final : private Bench {
     if (device_ == nullptr) throw MessageError("the first one is 'hello'");
     if (reader.type() == MessageType::case_begin) {
       const CaseBegin begin = read_case_begin(reader);
+      is_in_case_ = false;
       const bool is_meant = begin.id.starts_with(fmt::format("{}/{}/", role_.protocol, role_.role));
       if (!is_meant || !device_->begin(begin, *this)) {
         writer_.begin(MessageType::unsupported);
         return pipe_.send(writer_.finish());
       }
+      is_in_case_ = true;
     } else {
+      if (!is_in_case_)
+        throw MessageError(fmt::format("'{}' is for a case that has begun", name(reader.type())));
       pass_on(reader);
     }
     writer_.begin(MessageType::done).time(device_->next_time());
@@ -136,6 +143,7 @@ class Server final : private Bench {
       case MessageType::on_time:
         return device_->on_time(reader.time());
       case MessageType::case_end:
+        is_in_case_ = false;
         return device_->end();
       default:
         throw MessageError(fmt::format("'{}' is nothing that a bench says here", name(reader.type())));
@@ -168,6 +176,7 @@ class Server final : private Bench {
   std::string_view own_name_;
   RoleName role_;
   std::unique_ptr<Device> device_;
+  bool is_in_case_ = false;
   MessageWriter writer_;
   line::Waveform wave_;
 };

@@ -52,7 +52,7 @@ NodeConfiguration node_configuration_of(const iut::CaseBegin& begin) {
 AttachedNode::AttachedNode(NodeAttachment attachment, const NodeConfiguration& configuration,
                            const std::string& case_id, std::uint64_t seed)
     : attachment_(std::move(attachment)), configuration_(configuration), codec_(configuration.rules) {
-  call([&](iut::Device& device) {
+  call(kernel::kStart, [&](iut::Device& device) {
     if (device.begin({case_id, seed, node_settings(configuration)}, *this)) return;
     throw iut::Misbehaviour(iut::reasons::kUnsupported,
                             "the implementation answers 'unsupported' to this case");
@@ -70,15 +70,16 @@ AttachedNode::~AttachedNode() {
 void AttachedNode::end() {
   if (!is_well_ || has_ended_) return;
   has_ended_ = true;
-  call([&](iut::Device& device) { device.end(); });
+  call(now_, [](iut::Device& device) { device.end(); });
   if (attachment_.on_well_ended) attachment_.on_well_ended();
 }
 
 // One that did not keep to the protocol once is not called again.
 template <typename Call>
-void AttachedNode::call(Call&& call) {
+void AttachedNode::call(kernel::Time now, Call&& call) {
   if (!is_well_) return;
   is_well_ = false;
+  now_ = now;
   call(*attachment_.device);
   is_well_ = true;
 }
@@ -89,12 +90,12 @@ void AttachedNode::wire(segment::Port& line, NodeBoards& boards) {
 }
 
 void AttachedNode::set_power(bool is_on, kernel::Time now) {
-  call([&](iut::Device& device) { device.set_power(is_on, now); });
+  call(now, [&](iut::Device& device) { device.set_power(is_on, now); });
 }
 
 void AttachedNode::receive(segment::PortIndex port, const line::Waveform& reception) {
   if (attachment_.device->unit_kind() == iut::UnitKind::levels) {
-    call([&](iut::Device& device) { device.receive(port, reception); });
+    call(reception.end(), [&](iut::Device& device) { device.receive(port, reception); });
     return;
   }
   characters_.clear();
@@ -105,13 +106,13 @@ void AttachedNode::receive(segment::PortIndex port, const line::Waveform& recept
   // What is no character an asynchronous receiver does not hear.
   for (std::span<const iut::Character> rest(characters_); !rest.empty();) {
     const auto part = rest.first(std::min(rest.size(), kMostCharacters));
-    call([&](iut::Device& device) { device.receive(port, part, reception.end()); });
+    call(reception.end(), [&](iut::Device& device) { device.receive(port, part, reception.end()); });
     rest = rest.subspan(part.size());
   }
 }
 
 void AttachedNode::on_time(kernel::Time now) {
-  call([&](iut::Device& device) { device.on_time(now); });
+  call(now, [&](iut::Device& device) { device.on_time(now); });
 }
 
 kernel::Time AttachedNode::next_time() const {
@@ -119,6 +120,11 @@ kernel::Time AttachedNode::next_time() const {
 }
 
 // ---- what the implementation does ----
+
+// A case begins without supply, and before there is a line.
+void AttachedNode::expect_supplied() const {
+  if (line_ == nullptr) refuse_impossible("acts while the case begins; it has no supply yet");
+}
 
 kernel::Time AttachedNode::drive_idle(kernel::Time from, kernel::Time to) {
   constexpr std::int64_t kFiner = 16;  // the driver comes and goes between bits, too
@@ -136,26 +142,24 @@ kernel::Time AttachedNode::drive_idle(kernel::Time from, kernel::Time to) {
   return std::max(to, end);
 }
 
-void AttachedNode::require_wired() const {
-  if (line_ == nullptr) refuse_impossible("acts before its case has begun");
-}
-
 void AttachedNode::transmit(const iut::Transmission& transmission) {
-  require_wired();
+  expect_supplied();
   if (transmission.port != 0)
     refuse_impossible(fmt::format("drives port {}; a node has port 0", transmission.port));
   const std::size_t count = transmission.characters.size();
   if (count > kMostCharacters) refuse_impossible(fmt::format("sends {} characters at once", count));
-  const kernel::Time end =
-      transmission.start + half_characters(configuration_.rules, 2 * static_cast<unsigned>(count));
-  const bool is_in_order =
-      transmission.driver_on <= transmission.start && end <= transmission.driver_off + kernel::kNanosecond;
-  if (!is_in_order || transmission.driver_off - transmission.driver_on > kLongestDrive ||
-      transmission.driver_off.time_since_epoch() > kFarthestAhead) {
-    refuse_impossible(fmt::format("drives from {} to {}, with characters from {} to {}",
+  // In this order: none of the sums is further than time reaches.
+  const bool is_near = kernel::kStart <= transmission.driver_on &&
+                       transmission.driver_on <= transmission.start &&
+                       transmission.start <= transmission.driver_off &&
+                       transmission.driver_off.time_since_epoch() <= kFarthestAhead &&
+                       transmission.driver_off - transmission.driver_on <= kLongestDrive;
+  const kernel::Duration length = half_characters(configuration_.rules, 2 * static_cast<unsigned>(count));
+  if (!is_near || transmission.start + length > transmission.driver_off + kernel::kNanosecond) {
+    refuse_impossible(fmt::format("drives from {} to {}, with {} of characters from {} on",
                                   kernel::describe(transmission.driver_on),
-                                  kernel::describe(transmission.driver_off),
-                                  kernel::describe(transmission.start), kernel::describe(end)));
+                                  kernel::describe(transmission.driver_off), kernel::describe(length),
+                                  kernel::describe(transmission.start)));
   }
   const kernel::Time start = drive_idle(transmission.driver_on, transmission.start);
   const kernel::Time driven = codec_.drive_characters(*line_, transmission.characters, start);
@@ -163,9 +167,10 @@ void AttachedNode::transmit(const iut::Transmission& transmission) {
 }
 
 void AttachedNode::transmit(unsigned port, line::Waveform& wave) {
-  require_wired();
+  expect_supplied();
   if (port != 0) refuse_impossible(fmt::format("drives port {}; a node has port 0", port));
-  const bool is_near = wave.start.time_since_epoch() <= kFarthestAhead;
+  if (wave.levels.empty()) refuse_impossible("drives no level at all");
+  const bool is_near = kernel::kStart <= wave.start && wave.start.time_since_epoch() <= kFarthestAhead;
   if (!is_near || wave.end() - wave.start > kLongestDrive) {
     refuse_impossible(
         fmt::format("drives from {} to {}", kernel::describe(wave.start), kernel::describe(wave.end())));
@@ -174,10 +179,14 @@ void AttachedNode::transmit(unsigned port, line::Waveform& wave) {
 }
 
 void AttachedNode::write(iut::Item item, std::uint64_t value, kernel::Time when) {
-  require_wired();
   if (item != kValves || value > 0xFFFF) {
     refuse_impossible(
         fmt::format("writes {} to item {}; a node has 16 valves, item {}", value, item, kValves));
+  }
+  expect_supplied();
+  if (when < now_ || when.time_since_epoch() > kFarthestAhead) {
+    refuse_impossible(
+        fmt::format("moves its valves at {} when it is {}", kernel::describe(when), kernel::describe(now_)));
   }
   if (when < last_write_) refuse_impossible("moves its valves at an instant that lies before the last one");
   last_write_ = when;
@@ -185,10 +194,14 @@ void AttachedNode::write(iut::Item item, std::uint64_t value, kernel::Time when)
 }
 
 std::uint64_t AttachedNode::read(iut::Item item, kernel::Time when) {
-  require_wired();
   if (item != kLimitSwitches) {
     refuse_impossible(
         fmt::format("reads item {}; a node has its limit switches, item {}", item, kLimitSwitches));
+  }
+  expect_supplied();
+  if (when < now_ || when.time_since_epoch() > kFarthestAhead) {
+    refuse_impossible(fmt::format("reads its limit switches at {} when it is {}", kernel::describe(when),
+                                  kernel::describe(now_)));
   }
   return boards_->limit_switches(when);
 }
@@ -197,6 +210,7 @@ std::uint64_t AttachedNode::read(iut::Item item, kernel::Time when) {
 
 bool ServedNode::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
   bench_ = &bench;
+  now_ = kernel::kStart;
   node_ = make_node_(node_configuration_of(begin));
   node_->wire(*this, *this);
   return true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -49,8 +50,8 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
 
  private:
   template <typename Call>
-  void call(Call&& call);
-  void require_wired() const;
+  void call(kernel::Time now, Call&& call);
+  void expect_supplied() const;
   void transmit(const iut::Transmission& transmission) override;
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
@@ -64,6 +65,7 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   segment::Port* line_ = nullptr;
   NodeBoards* boards_ = nullptr;
   std::vector<iut::Character> characters_;
+  kernel::Time now_{};  // as the implementation was told it
   kernel::Time last_write_{};
   bool is_well_ = true;
   bool has_ended_ = false;
@@ -76,25 +78,30 @@ class ServedNode final : public iut::Device, private segment::Port, private Node
 
   iut::UnitKind unit_kind() const override { return iut::UnitKind::levels; }
   bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override;
-  void set_power(bool is_on, kernel::Time now) override { node_->set_power(is_on, now); }
+  void set_power(bool is_on, kernel::Time now) override { node_->set_power(is_on, now_ = now); }
   void receive(unsigned port, std::span<const iut::Character> characters, kernel::Time now) override;
-  void receive(unsigned port, const line::Waveform& reception) override { node_->receive(port, reception); }
-  void on_time(kernel::Time now) override { node_->on_time(now); }
+  void receive(unsigned port, const line::Waveform& reception) override {
+    now_ = reception.end();
+    node_->receive(port, reception);
+  }
+  void on_time(kernel::Time now) override { node_->on_time(now_ = now); }
   kernel::Time next_time() const override { return node_ ? node_->next_time() : kernel::kNever; }
   void end() override { node_.reset(); }
 
  private:
   void drive(line::Waveform& wave) override { bench_->transmit(0, wave); }
   std::uint16_t limit_switches(kernel::Time when) override {
-    return static_cast<std::uint16_t>(bench_->read(kLimitSwitches, when));
+    return static_cast<std::uint16_t>(bench_->read(kLimitSwitches, std::max(when, now_)));
   }
   void drive_valves(std::uint16_t valves, kernel::Time when) override {
-    bench_->write(kValves, valves, when);
+    bench_->write(kValves, valves, std::max(when, now_));
   }
 
   MakeNode make_node_;
   std::unique_ptr<NodeDevice> node_;
   iut::Bench* bench_ = nullptr;
+  // A node may act at the end of a character by its own clock, before a slower sender has ended it.
+  kernel::Time now_{};
 };
 
 }  // namespace fieldproof::valve_bus

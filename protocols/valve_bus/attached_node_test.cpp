@@ -1,0 +1,316 @@
+#include "protocols/valve_bus/attached_node.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "harness/iut/misbehaviour.hpp"
+#include "harness/segment/medium.hpp"
+#include "harness/segment/segment.hpp"
+#include "protocols/valve_bus/node.hpp"
+#include "protocols/valve_bus/valve_block.hpp"
+
+namespace fieldproof::valve_bus {
+namespace {
+
+using kernel::kMicrosecond;
+using kernel::kMillisecond;
+using kernel::kNever;
+using kernel::kSecond;
+using kernel::kStart;
+
+constexpr kernel::Time kNow{20 * kMillisecond};
+
+// Does in each call what the test wants.
+class ActingDevice final : public iut::Device {
+ public:
+  using Act = std::function<void(iut::Bench&)>;
+
+  iut::UnitKind unit_kind() const override { return iut::UnitKind::characters; }
+  bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override {
+    told = begin;
+    bench_ = &bench;
+    if (at_begin) at_begin(bench);
+    return serves;
+  }
+  void set_power(bool, kernel::Time) override {}
+  void receive(unsigned, std::span<const iut::Character> characters, kernel::Time) override {
+    heard.insert(heard.end(), characters.begin(), characters.end());
+  }
+  void receive(unsigned, const line::Waveform&) override {}
+  void on_time(kernel::Time) override {
+    next = kNever;
+    if (at_time) at_time(*bench_);
+  }
+  kernel::Time next_time() const override { return next; }
+  void end() override { ++ends; }
+
+  iut::CaseBegin told;
+  bool serves = true;
+  Act at_begin;
+  Act at_time;
+  kernel::Time next = kNever;
+  std::vector<iut::Character> heard;
+  int ends = 0;
+
+ private:
+  iut::Bench* bench_ = nullptr;
+};
+
+// A device at a line, that acts at kNow.
+class AttachedNodeTest : public testing::Test, private segment::Station, private segment::Tap {
+ protected:
+  AttachedNodeTest() { line_.tap_driven(*this); }
+
+  void attach() {
+    NodeAttachment attachment{&device_, nullptr, [this] { ++well_ended_; }};
+    node_ = std::make_unique<AttachedNode>(attachment, configuration_, "valve_bus/node/x", 7);
+    node_->wire(line_.attach("node/in", segment_.attach(*node_, "node"), 0, {}), boards_);
+    host_ = &line_.attach("host/in", segment_.attach(*this, "host"), 0, {});
+    node_->set_power(true, kStart);
+  }
+  // What is told about an implementation that acts so; empty when there is nothing wrong with it.
+  std::string complaint(ActingDevice::Act act) {
+    device_.at_time = std::move(act);
+    device_.next = kNow;
+    if (!node_) attach();
+    segment_.run_until(kNow - kMillisecond);
+    try {
+      segment_.run_for(10 * kMillisecond);
+    } catch (const iut::Misbehaviour& done) {
+      EXPECT_EQ(done.reason(), iut::reasons::kImpossible);
+      return done.what();
+    } catch (const kernel::Error& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  NodeConfiguration configuration_;
+  segment::Segment segment_;
+  segment::Medium line_{segment_, "line", segment::ContentionRule::noise, kernel::Random(1)};
+  ValveBlock boards_;
+  ActingDevice device_;
+  std::unique_ptr<AttachedNode> node_;
+  segment::MediumPort* host_ = nullptr;
+  std::vector<line::Waveform> driven_;
+  int well_ended_ = 0;
+
+ private:
+  void receive(segment::PortIndex, const line::Waveform&) override {}
+  void on_time(kernel::Time) override {}
+  kernel::Time next_time() const override { return kNever; }
+  void on_wave(const line::Waveform& wave) override { driven_.push_back(wave); }
+};
+
+TEST_F(AttachedNodeTest, SettingsComeBack) {
+  for (const bool other : {false, true}) {
+    if (other) {
+      configuration_.rules.bit_rate = 9600;
+      configuration_.rules.characters = CharacterProfile::eight_bits;
+      configuration_.rules.answers_writes = true;
+      configuration_.rules.loss_limit = 250 * kMillisecond;
+      configuration_.tens = 9;
+      configuration_.units = 8;
+      configuration_.boards = 1;
+    }
+    const NodeConfiguration back = node_configuration_of({"x", 1, node_settings(configuration_)});
+    EXPECT_EQ(back.rules, configuration_.rules);
+    EXPECT_EQ(back.tens, configuration_.tens);
+    EXPECT_EQ(back.units, configuration_.units);
+    EXPECT_EQ(back.boards, configuration_.boards);
+  }
+}
+
+TEST_F(AttachedNodeTest, DeviceIsToldTheCase) {
+  attach();
+  EXPECT_EQ(device_.told.id, "valve_bus/node/x");
+  EXPECT_EQ(device_.told.seed, 7U);
+  EXPECT_EQ(device_.told.settings, node_settings(configuration_));
+}
+
+TEST_F(AttachedNodeTest, RefusedCaseIsMisbehaviourAndNotEndedWell) {
+  device_.serves = false;
+  EXPECT_THROW(attach(), iut::Misbehaviour);
+  EXPECT_EQ(device_.ends, 0);
+  EXPECT_EQ(well_ended_, 0);
+}
+
+TEST_F(AttachedNodeTest, CaseEndsWellUnlessTheDeviceDidWrong) {
+  attach();
+  node_.reset();
+  EXPECT_EQ(device_.ends, 1);
+  EXPECT_EQ(well_ended_, 1);
+}
+
+TEST_F(AttachedNodeTest, DeviceThatDidWrongIsNotCalledAgain) {
+  EXPECT_NE(complaint([](iut::Bench& bench) { bench.write(1, 0, kNow); }), "");
+  device_.next = kNow;
+  EXPECT_EQ(node_->next_time(), kNever);
+  node_.reset();
+  EXPECT_EQ(device_.ends, 0);
+  EXPECT_EQ(well_ended_, 0);
+}
+
+TEST_F(AttachedNodeTest, CharactersAreHeardWhenTheyAreOver) {
+  attach();
+  CharacterCodec codec(configuration_.rules);
+  const std::vector<std::uint8_t> octets{0x12, 0xFE};
+  codec.drive(*host_, octets, kStart + kMillisecond, {});
+  segment_.run_for(10 * kMillisecond);
+  ASSERT_EQ(device_.heard.size(), 2U);
+  EXPECT_EQ(device_.heard[0].start, kStart + kMillisecond);
+  EXPECT_EQ(device_.heard[0].data, 0x112);  // the ninth bit is 1
+  EXPECT_EQ(device_.heard[1].data, 0x1FE);
+  EXPECT_FALSE(device_.heard[1].is_stop_missing || device_.heard[1].is_parity_wrong);
+}
+
+TEST_F(AttachedNodeTest, TransmissionHasTheDriverAroundItsCharacters) {
+  const kernel::Duration bit = bits(configuration_.rules, 1);
+  const kernel::Time start = kNow + 3 * bit;
+  const kernel::Time off = start + 2 * character_time(configuration_.rules) + 2 * bit;
+  EXPECT_EQ(
+      complaint([&](iut::Bench& bench) { bench.transmit({0, start - bit, start, off, {0x141, 0x142}}); }),
+      "");
+  ASSERT_EQ(driven_.size(), 4U);  // idle, a character, a character, idle
+  EXPECT_EQ(driven_.front().start, start - bit);
+  EXPECT_EQ(driven_[1].start, start);
+  EXPECT_LE(driven_.back().end() - off, kernel::kNanosecond);
+  EXPECT_LE(off - driven_.back().end(), bit / 16);
+}
+
+TEST_F(AttachedNodeTest, WritesAndReadsReachTheBoards) {
+  boards_.set_input(0, 0xBEEF);
+  std::uint64_t switches = 0;
+  EXPECT_EQ(complaint([&](iut::Bench& bench) {
+              switches = bench.read(kLimitSwitches, kNow);
+              bench.write(kValves, 0xA55A, kNow);
+            }),
+            "");
+  EXPECT_EQ(switches, 0xBEEFU);
+  EXPECT_EQ(boards_.valves(), 0xA55A);
+}
+
+// Before it is wired there is no line that could be driven.
+TEST_F(AttachedNodeTest, NothingCanBeDoneWhileTheCaseBegins) {
+  line::Waveform wave;
+  wave.levels.append(0, 1);
+  const std::vector<ActingDevice::Act> acts = {
+      [](iut::Bench& bench) { bench.transmit({0, kStart, kStart, kNow, {1}}); },
+      [&](iut::Bench& bench) { bench.transmit(0, wave); },
+      [](iut::Bench& bench) { bench.write(kValves, 1, kStart); },
+      [](iut::Bench& bench) { bench.read(kLimitSwitches, kStart); }};
+  for (const ActingDevice::Act& act : acts) {
+    device_.at_begin = act;
+    EXPECT_THROW(attach(), iut::Misbehaviour);
+  }
+}
+
+struct Impossible {
+  const char* name;
+  ActingDevice::Act act;
+};
+
+std::vector<Impossible> impossible_acts() {
+  const kernel::Time soon = kNow + kMillisecond;
+  const kernel::Time first{kernel::Duration::min()};
+  const std::vector<std::uint16_t> ten(10, 0x100);
+  const auto transmits = [](const iut::Transmission& one) {
+    return [one](iut::Bench& bench) { bench.transmit(one); };
+  };
+  const auto drives = [](unsigned port, kernel::Time start, std::size_t levels) {
+    return [=](iut::Bench& bench) {
+      line::Waveform wave;
+      wave.start = start;
+      wave.levels.append_idle(levels);
+      bench.transmit(port, wave);
+    };
+  };
+  const auto writes = [](iut::Item item, std::uint64_t value, kernel::Time when) {
+    return [=](iut::Bench& bench) { bench.write(item, value, when); };
+  };
+  const auto reads = [](iut::Item item, kernel::Time when) {
+    return [=](iut::Bench& bench) { bench.read(item, when); };
+  };
+  return {{"port_1", transmits({1, kNow, kNow, soon, {}})},
+          {"driver_on_behind_start", transmits({0, soon, kNow, soon, {}})},
+          {"driver_off_within_characters", transmits({0, kNow, kNow, kNow + kMicrosecond, ten})},
+          {"drives_11_seconds", transmits({0, kNow, kNow, kNow + 11 * kSecond, {}})},
+          {"5000_characters", transmits({0, kNow, kNow, kNow + kSecond, std::vector<std::uint16_t>(5000)})},
+          {"drives_in_the_past", transmits({0, kNow - kMicrosecond, kNow, soon, {}})},
+          {"drives_never", transmits({0, kNever, kNever, kNever, ten})},
+          {"starts_never", transmits({0, kNow, kNever, kNever, ten})},
+          {"drives_before_all_time", transmits({0, first, first, first, ten})},
+          {"drives_for_all_time", transmits({0, first, kNow, kNever, ten})},
+          {"levels_at_port_1", drives(1, kNow, 1)},
+          {"no_levels", drives(0, kNow, 0)},
+          {"levels_for_11_seconds", drives(0, kNow, 11)},
+          {"levels_never", drives(0, kNever, 1)},
+          {"levels_before_all_time", drives(0, first, 1)},
+          {"writes_limit_switches", writes(kLimitSwitches, 0, kNow)},
+          {"writes_17_valves", writes(kValves, 0x10000, kNow)},
+          {"writes_in_the_past", writes(kValves, 1, kNow - kernel::kPicosecond)},
+          {"writes_never", writes(kValves, 1, kNever)},
+          {"reads_valves", reads(kValves, kNow)},
+          {"reads_in_the_past", reads(kLimitSwitches, kNow - kernel::kPicosecond)},
+          {"reads_never", reads(kLimitSwitches, kNever)},
+          {"writes_backwards", [=](iut::Bench& bench) {
+             bench.write(kValves, 1, soon);
+             bench.write(kValves, 2, kNow);
+           }}};
+}
+
+class AttachedNodeActs : public AttachedNodeTest, public testing::WithParamInterface<std::size_t> {};
+
+TEST_P(AttachedNodeActs, ThatNoNodeCanDoIsRefused) {
+  const Impossible one = impossible_acts()[GetParam()];
+  EXPECT_NE(complaint(one.act), "") << one.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Impossible, AttachedNodeActs,
+                         testing::Range(std::size_t{0}, impossible_acts().size()),
+                         [](const auto& one) { return std::string(impossible_acts()[one.param].name); });
+
+// Keeps what a served node does.
+class KeepingBench final : public iut::Bench {
+ public:
+  void transmit(const iut::Transmission&) override {}
+  void transmit(unsigned, line::Waveform& wave) override { wave.levels.clear(); }
+  void write(iut::Item, std::uint64_t value, kernel::Time when) override {
+    value_ = value;
+    when_ = when;
+  }
+  std::uint64_t read(iut::Item, kernel::Time) override { return 0; }
+
+  std::uint64_t value_ = 0;
+  kernel::Time when_{};
+};
+
+TEST(ServedNodeTest, PlaysTheNodeOfTheSettings) {
+  ServedNode served([](const NodeConfiguration& wanted) { return std::make_unique<Node>(wanted); });
+  NodeConfiguration configuration;
+  configuration.units = 5;
+  KeepingBench bench;
+  for (const kernel::Time start : {kNow, kStart}) {  // nothing of the case before counts
+    ASSERT_TRUE(served.begin({"valve_bus/node/x", 1, node_settings(configuration)}, bench));
+    served.set_power(true, kStart);
+    line::Waveform wave;
+    wave.start = start;
+    wave.rate = configuration.rules.bit_rate;
+    CharacterCodec(configuration.rules).append(wave.levels, octets_of(Command{5, 0, 0x21, 0x43}));
+    served.receive(0, wave);
+    const kernel::Time known = served.next_time();
+    EXPECT_GT(known, wave.end());
+    served.on_time(known);
+    EXPECT_EQ(bench.value_, 0x4321U);
+    EXPECT_EQ(bench.when_, known);
+    served.end();
+    EXPECT_EQ(served.next_time(), kNever);
+  }
+}
+
+}  // namespace
+}  // namespace fieldproof::valve_bus
