@@ -8,6 +8,7 @@
 #include "cli/command_line.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/verbs.hpp"
+#include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -50,6 +51,10 @@ int run_program(int argc, const char* const* argv, Suites (*make_suites)()) {
       terminal.print(parsed.text);
     }
     return code_after_output(code, terminal);
+  } catch (const iut::Misbehaviour& done) {
+    print_log_line(done.what());
+    for (const std::string& line : done.evidence()) print_log_line(line);
+    return done.exit_code();
   } catch (const kernel::Error& error) {
     print_log_line(error.what());
     return error.exit_code();

@@ -6,6 +6,7 @@ endif()
 foreach(folder IN ITEMS harness protocols conformance emc reports)
   if(IS_DIRECTORY "${CMAKE_SOURCE_DIR}/${folder}")
     install(DIRECTORY ${folder} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/fieldproof" FILES_MATCHING PATTERN "*.hpp"
+      PATTERN "*.h"
       PATTERN node_modules EXCLUDE)
   endif()
 endforeach()

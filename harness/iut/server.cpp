@@ -46,10 +46,10 @@ class MessagePipe {
 
  private:
   bool wait_for(std::size_t octets) {
-    constexpr std::size_t kChunk = 64U * 1024;
+    constexpr std::size_t kReadAhead = 64U * 1024;
     while (end_ - begin_ < octets) {
       if (begin_ == end_) begin_ = end_ = 0;
-      if (buffer_.size() - end_ < kChunk) buffer_.resize(end_ + kChunk);
+      if (buffer_.size() - end_ < kReadAhead) buffer_.resize(end_ + kReadAhead);
       const ssize_t count = ::read(input_, buffer_.data() + end_, buffer_.size() - end_);
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) return false;

@@ -1,0 +1,223 @@
+#include "cli/attachments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/probe/program_fixture.hpp"
+#include "harness/iut/peer.hpp"
+#include "harness/iut/process.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+const fs::path kExamples = kSourceFolder / "examples/valve_node";
+constexpr std::string_view kSuite = "valve_bus/node/";
+
+std::string in_quotes(const fs::path& path) {
+  return "'" + path.string() + "'";
+}
+
+// The whole path of a program that the system has; empty where it has none.
+std::string installed(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::stringstream folders(std::string("/usr/bin:/bin:/usr/local/bin:") + (path == nullptr ? "" : path));
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (fs::exists(fs::path(folder) / name)) return (fs::path(folder) / name).string();
+  }
+  return {};
+}
+
+class Attachments : public ProgramFixture {
+ protected:
+  struct Case {
+    std::string verdict;
+    std::string reason;
+    std::string fingerprint;
+    std::string findings;
+
+    friend bool operator==(const Case&, const Case&) = default;
+  };
+  using Cases = std::map<std::string, Case>;
+
+  // The real program over these cases of the suite.
+  Cases judged(const std::string& uri, const std::string& cases = "**",
+               const std::map<std::string, std::string>& environment = {}) {
+    const std::string out = "run" + std::to_string(++runs_);
+    Call made = prepared({"run", std::string(kSuite) + cases, "--volume", "quick", "--record", "none",
+                          "--iut", uri, "--out", out});
+    made.environment = environment;
+    const Called called = made.run();
+    EXPECT_TRUE(called.exit_code == 0 || called.exit_code == 1) << called.exit_code << called.err;
+    Cases found;
+    if (read(out + "/results.json").empty()) return found;
+    const nlohmann::json results = json(out + "/results.json");
+    for (const auto& one : results.at("cases")) {
+      const std::string id = one.at("id").get<std::string>().substr(kSuite.size());
+      found[id] = {one.at("verdict"), one.at("reason"), one.at("fingerprint"), one.at("findings").dump()};
+    }
+    return found;
+  }
+
+  void expect_passes(const std::string& uri) {
+    const Cases cases = judged(uri);
+    EXPECT_EQ(cases.size(), 44U) << uri;
+    for (const auto& [id, one] : cases) {
+      EXPECT_EQ(one.verdict, "pass") << uri << ": " << id << ": " << one.reason << one.findings;
+    }
+  }
+
+ private:
+  int runs_ = 0;
+};
+
+const std::string kStation = "exec:" + in_quotes(FIELDPROOF_EXE) + " station valve_bus/node ";
+const std::string kInC = "exec:" + in_quotes(VALVE_NODE_PROCESS) + " ";
+const std::string kPluginInC = "plugin:" VALVE_NODE_PLUGIN;
+
+TEST_F(Attachments, BuiltInStationInAProcessIsJudgedAsInside) {
+  const Cases inside = judged("ref");
+  EXPECT_EQ(inside.size(), 44U);
+  EXPECT_EQ(judged(kStation), inside);
+  const Cases late_inside = judged("deviant:turns_round_late");
+  EXPECT_EQ(late_inside.at("read/is_answered").reason, "answer_too_late");
+  EXPECT_EQ(judged(kStation + "deviant:turns_round_late"), late_inside);
+}
+
+TEST_F(Attachments, NodeInCPassesAsAProcess) {
+  expect_passes(kInC);
+}
+
+TEST_F(Attachments, NodeInCPassesAsALibraryInAProcessOfItsOwn) {
+  expect_passes(kPluginInC);
+}
+
+TEST_F(Attachments, NodeInCPassesAsALibraryInTheBench) {
+  expect_passes(kPluginInC + "?in-process");
+}
+
+TEST_F(Attachments, NodeInPythonPasses) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(kExamples / "node.py"));
+}
+
+TEST_F(Attachments, NodeInNodeJsPasses) {
+  const std::string node = installed("node");
+  ASSERT_FALSE(node.empty()) << "there is no node on the PATH; script/setup test installs it";
+  expect_passes("exec:" + in_quotes(node) + " " + in_quotes(kExamples / "node.mjs"));
+}
+
+// Begins to listen some time after it was started.
+void wait_for_listener(const std::string& path) {
+  for (int n = 0; n < 20'000; ++n) {
+    try {
+      iut::Peer::at_unix_socket("unix:" + path, path);
+      return;
+    } catch (const kernel::Error&) {
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+  }
+  ADD_FAILURE() << "nobody listens at " << path;
+}
+
+TEST_F(Attachments, NodeBehindASocketPasses) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const std::string path = (folder_ / "socket").string();
+  iut::Process listener({python, (kExamples / "node.py").string(), path});
+  wait_for_listener(path);
+  expect_passes("unix:" + path);
+  EXPECT_FALSE(listener.has_ended(milliseconds(0))) << listener.how_it_ended();
+}
+
+TEST_F(Attachments, DeviationOfALibraryIsSeenInBothPlaces) {
+  const std::map<std::string, std::string> swapped{{"VALVE_NODE", "data_swapped"}};
+  for (const char* place : {"", "?in-process"}) {
+    const Cases cases = judged(kPluginInC + place, "write/drives_the_valves", swapped);
+    EXPECT_EQ(cases.at("write/drives_the_valves").reason, "valves_wrong") << place;
+  }
+}
+
+// Nothing can be judged: the run ends before it begins, with the words of whoever knows why.
+TEST_F(Attachments, WhatCannotBeAttachedEndsTheRunWithAllThatIsKnown) {
+  write("empty.so", "");
+  const std::vector<std::pair<std::string, std::string>> all = {
+      {"exec:false", "ended with exit code 1"},
+      {"exec:echo 'Hello world'", "\"Hello world.\""},
+      {"exec:sh -c 'echo cannot open the bus >&2; exit 3'", "log: cannot open the bus"},
+      {"exec:./there_is_no_such_program", "cannot be started: "},
+      {"unix:./nobody", "unix:./nobody: nobody can be reached there: "},
+      {"plugin:./empty.so", "plugin:./empty.so: cannot be loaded: "},
+      {"plugin:./empty.so?in-process", "plugin:./empty.so: cannot be loaded: "},
+  };
+  for (const auto& [uri, sentence] : all) {
+    const Called called = call({"run", "valve_bus/node/read/is_answered", "--volume", "quick", "--iut", uri});
+    EXPECT_EQ(called.exit_code, 5) << uri;
+    EXPECT_HOLDS(called.err, sentence);
+  }
+}
+
+// What can be read at once is one message: twenty of them end in the middle of the case.
+TEST_F(Attachments, DeathInARunIsAVerdictWithEvidence) {
+  const std::string one = "read/is_answered";
+  write("dies.sh", "dd bs=65536 count=20 2>/dev/null | " + in_quotes(VALVE_NODE_PROCESS) +
+                       "\necho the bus is gone >&2\nkill -SEGV $$\n");
+  const Case dead = judged("exec:sh dies.sh", one).at(one);
+  EXPECT_EQ(dead.verdict, "fail") << dead.findings;
+  EXPECT_EQ(dead.reason, "implementation_crashed");
+  EXPECT_HOLDS(dead.findings, "was ended by signal 11");
+  EXPECT_HOLDS(dead.findings, "log: the bus is gone");
+}
+
+TEST_F(Attachments, CommandThatIsNoneIsAMistakeOfTheCommandLine) {
+  for (const char* wrong : {"exec:", "exec:'./node", "tcp:host"}) {
+    EXPECT_EQ(call({"run", "valve_bus/node/read/is_answered", "--iut", wrong}).exit_code, 64) << wrong;
+  }
+}
+
+// What is wrong with the node in C, and the case that says so.
+struct Deviation {
+  const char* name;
+  const char* test_case;
+  const char* reason;
+
+  friend void PrintTo(const Deviation& one, std::ostream* out) { *out << one.name; }
+};
+
+class AttachedDeviations : public Attachments, public testing::WithParamInterface<Deviation> {};
+
+TEST_P(AttachedDeviations, IsFoundByTheCaseThatNamesIt) {
+  const auto [name, test_case, reason] = GetParam();
+  const Cases cases = judged(kInC + name, test_case);
+  ASSERT_TRUE(cases.contains(test_case));
+  EXPECT_EQ(cases.at(test_case).verdict, "fail");
+  EXPECT_EQ(cases.at(test_case).reason, reason) << cases.at(test_case).findings;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    InC, AttachedDeviations,
+    testing::Values(
+        Deviation{"check_without_command", "check/single_bit_errors_are_refused", "acts_on_wrong_check"},
+        Deviation{"answers_writes", "write/drives_the_valves", "write_answered"},
+        Deviation{"address_low_nibble", "address/only_its_own_id_acts", "acts_on_foreign_id"},
+        Deviation{"any_command_reads", "command/undefined_commands_are_ignored", "acts_on_undefined_command"},
+        Deviation{"read_drives_valves", "read/data_is_not_looked_at", "valves_moved_by_read"},
+        Deviation{"data_swapped", "write/drives_the_valves", "valves_wrong"},
+        Deviation{"response_check_with_id", "read/is_answered", "answer_check_wrong"},
+        Deviation{"turns_round_late", "timing/turn_round_is_within_its_span", "answer_too_late"},
+        Deviation{"driver_not_released", "timing/driver_is_on_for_the_answer_only", "driver_not_released"},
+        Deviation{"takes_long_frames", "framing/long_frames_are_discarded", "acts_on_long_frame"}),
+    [](const testing::TestParamInfo<Deviation>& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace fieldproof::cli

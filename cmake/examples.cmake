@@ -1,0 +1,23 @@
+# The examples in C, which tests run: C89, as whoever writes firmware has it.
+
+# The compiler of the same maker: options of linkers and sanitizers hold for both languages.
+if(NOT DEFINED CMAKE_C_COMPILER)
+  string(REPLACE "clang++" "clang" c_compiler "${CMAKE_CXX_COMPILER}")
+  string(REPLACE "g++" "gcc" c_compiler "${c_compiler}")
+  if(NOT c_compiler STREQUAL CMAKE_CXX_COMPILER)
+    set(CMAKE_C_COMPILER "${c_compiler}" CACHE FILEPATH "Compiler of the examples in C")
+  endif()
+endif()
+enable_language(C)
+
+# fieldproof_c89(target): strict, and any warning is an error.
+function(fieldproof_c89 target)
+  set_target_properties(${target} PROPERTIES C_STANDARD 90 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF PREFIX "")
+  target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}")
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
+endfunction()
+
+add_executable(valve_node_process examples/valve_node/process.c examples/valve_node/valve_node.c)
+fieldproof_c89(valve_node_process)
+add_library(valve_node_plugin MODULE examples/valve_node/plugin.c examples/valve_node/valve_node.c)
+fieldproof_c89(valve_node_plugin)
