@@ -164,7 +164,7 @@ TEST_F(PoolTest, StartThatSucceedsForgivesThoseBefore) {
   EXPECT_EQ(starts(), 9);
 }
 
-// Two connections, one behind the other, that say all that a pool asks for.
+// Two connections, one behind the other, that answer all that a pool asks for.
 class PoolThreads : public PoolTest {
  protected:
   PoolThreads() : listener_(folder_.file("s")), thread_([this] { serve(); }) {}
@@ -172,10 +172,10 @@ class PoolThreads : public PoolTest {
 
   void serve() {
     const std::vector<MessageOctets> words{capabilities_message(), echoed_message(), unsupported_message()};
-    Descriptor first = listener_.accept_and_say(words);
+    Descriptor first = listener_.accept_and_answer(words);
     while (!may_close_) std::this_thread::sleep_for(milliseconds(1));
     first.close();
-    second_ = listener_.accept_and_say(words);
+    second_ = listener_.accept_and_answer(words);
   }
 
   Listener listener_;

@@ -128,6 +128,16 @@ class Listener {
     if (::write(connection.number(), joined.data(), joined.size()) < 0) std::abort();
     return connection;
   }
+  // A connection at which each of these answers what can be read at once: in lock step, one message.
+  Descriptor accept_and_answer(const std::vector<MessageOctets>& all) const {
+    Descriptor connection = accept();
+    std::vector<std::uint8_t> heard(65536);
+    for (const MessageOctets& octets : all) {
+      if (::read(connection.number(), heard.data(), heard.size()) <= 0) break;
+      if (::write(connection.number(), octets.data(), octets.size()) < 0) std::abort();
+    }
+    return connection;
+  }
   const std::string& path() const { return path_; }
 
  private:

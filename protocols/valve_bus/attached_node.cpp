@@ -149,8 +149,7 @@ void AttachedNode::transmit(const iut::Transmission& transmission) {
   const std::size_t count = transmission.characters.size();
   if (count > kMostCharacters) refuse_impossible(fmt::format("sends {} characters at once", count));
   // In this order: none of the sums is further than time reaches.
-  const bool is_near = kernel::kStart <= transmission.driver_on &&
-                       transmission.driver_on <= transmission.start &&
+  const bool is_near = now_ <= transmission.driver_on && transmission.driver_on <= transmission.start &&
                        transmission.start <= transmission.driver_off &&
                        transmission.driver_off.time_since_epoch() <= kFarthestAhead &&
                        transmission.driver_off - transmission.driver_on <= kLongestDrive;
@@ -170,7 +169,7 @@ void AttachedNode::transmit(unsigned port, line::Waveform& wave) {
   expect_supplied();
   if (port != 0) refuse_impossible(fmt::format("drives port {}; a node has port 0", port));
   if (wave.levels.empty()) refuse_impossible("drives no level at all");
-  const bool is_near = kernel::kStart <= wave.start && wave.start.time_since_epoch() <= kFarthestAhead;
+  const bool is_near = now_ <= wave.start && wave.start.time_since_epoch() <= kFarthestAhead;
   if (!is_near || wave.end() - wave.start > kLongestDrive) {
     refuse_impossible(
         fmt::format("drives from {} to {}", kernel::describe(wave.start), kernel::describe(wave.end())));
