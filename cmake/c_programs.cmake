@@ -1,11 +1,11 @@
-# The examples in C, which tests run: C89, as whoever writes firmware has it.
+# What tests run of C: the examples, and plug-ins that are wrong. C89, as whoever writes firmware has it.
 
 # The compiler of the same maker: options of linkers and sanitizers hold for both languages.
 if(NOT DEFINED CMAKE_C_COMPILER)
   string(REPLACE "clang++" "clang" c_compiler "${CMAKE_CXX_COMPILER}")
   string(REPLACE "g++" "gcc" c_compiler "${c_compiler}")
   if(NOT c_compiler STREQUAL CMAKE_CXX_COMPILER)
-    set(CMAKE_C_COMPILER "${c_compiler}" CACHE FILEPATH "Compiler of the examples in C")
+    set(CMAKE_C_COMPILER "${c_compiler}" CACHE FILEPATH "Compiler of the examples and plug-ins in C")
   endif()
 endif()
 enable_language(C)
@@ -21,3 +21,18 @@ add_executable(valve_node_process examples/valve_node/process.c examples/valve_n
 fieldproof_c89(valve_node_process)
 add_library(valve_node_plugin MODULE examples/valve_node/plugin.c examples/valve_node/valve_node.c)
 fieldproof_c89(valve_node_plugin)
+
+# fieldproof_odd_plugins(test): libraries that no station would be, and their paths for the test.
+function(fieldproof_odd_plugins test)
+  foreach(kind IN ITEMS "" _OTHER_VERSION _LEAVES_OUT _NO_ENTRY)
+    string(TOLOWER odd_plugin${kind} name)
+    add_library(${name} MODULE harness/iut/odd_plugin.c)
+    fieldproof_c89(${name})
+    if(kind)
+      string(SUBSTRING ${kind} 1 -1 definition)
+      target_compile_definitions(${name} PRIVATE ${definition})
+    endif()
+    add_dependencies(${test} ${name})
+    target_compile_definitions(${test} PRIVATE ODD_PLUGIN${kind}="$<TARGET_FILE:${name}>")
+  endforeach()
+endfunction()

@@ -1,0 +1,100 @@
+/*
+ * For plugin_test: a shared library that does what the role says by which it was asked for, when the supply
+ * comes. Compiled with OTHER_VERSION, LEAVES_OUT or NO_ENTRY it is none that can be used.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness/iut/fieldproof_plugin.h"
+
+typedef struct odd {
+  const fieldproof_bench* bench;
+  char does[32];
+  fieldproof_time next;
+} odd;
+
+static void* create(const char* protocol, const char* role, const fieldproof_bench* bench) {
+  odd* self = 0;
+  if (strcmp(protocol, "odd") != 0 || strlen(role) >= sizeof(self->does)) return 0;
+  self = (odd*)calloc(1, sizeof(odd));
+  if (self == 0) return 0;
+  strcpy(self->does, role);
+  self->bench = bench;
+  self->next = FIELDPROOF_NEVER;
+  return self;
+}
+
+static int begin(void* self, const fieldproof_case* test_case) {
+  /* What it was told comes back when the supply comes. */
+  ((odd*)self)->next = test_case->setting_count > 0 ? test_case->settings[0].value : FIELDPROOF_NEVER;
+  return strcmp(test_case->id, "odd/refused") != 0;
+}
+
+static void set_power(void* context, int is_on, fieldproof_time now) {
+  const odd* self = (const odd*)context;
+  const fieldproof_bench* bench = self->bench;
+  static const unsigned short characters[2] = {0x1AA, 0x155};
+  static const unsigned char levels[2] = {0x5A, 0x01};
+  unsigned n;
+  if (!is_on) return;
+  if (strcmp(self->does, "acts") == 0) {
+    bench->transmit(bench->context, 1, now, now + 1, now + 2, characters, 2);
+    bench->transmit_levels(bench->context, 2, now, 1000, levels, 9);
+    bench->write(bench->context, 3, bench->read(bench->context, 4, now) + 1, now);
+  }
+  if (strcmp(self->does, "writes item 65536") == 0) bench->write(bench->context, 65536, 1, now);
+  if (strcmp(self->does, "reads item 65537") == 0) bench->read(bench->context, 65537, now);
+  if (strcmp(self->does, "drives at rate 0") == 0)
+    bench->transmit_levels(bench->context, 0, now, 0, levels, 1);
+  for (n = 0; n <= 10000 && strcmp(self->does, "floods") == 0; ++n) bench->write(bench->context, 0, n, now);
+}
+
+static void receive(void* context, unsigned port, const fieldproof_character* characters, unsigned count,
+                    fieldproof_time now) {
+  const odd* self = (const odd*)context;
+  unsigned n;
+  for (n = 0; n < count; ++n)
+    self->bench->write(self->bench->context, port,
+                       (fieldproof_word)characters[n].data << 8 | characters[n].flags, now);
+}
+
+static void on_time(void* self, fieldproof_time now) {
+  ((odd*)self)->next = now;
+}
+
+static fieldproof_time next_time(void* self) {
+  return ((odd*)self)->next;
+}
+
+static void end(void* context) {
+  const odd* self = (const odd*)context;
+  self->bench->write(self->bench->context, 0, 0, 0); /* not heard: the case is over */
+}
+
+#ifdef OTHER_VERSION
+#define VERSION (FIELDPROOF_PLUGIN_VERSION + 1)
+#else
+#define VERSION FIELDPROOF_PLUGIN_VERSION
+#endif
+#ifdef LEAVES_OUT
+#define ON_TIME 0
+#else
+#define ON_TIME on_time
+#endif
+
+#ifdef NO_ENTRY
+#define fieldproof_plugin another_name
+const fieldproof_implementation* another_name(unsigned version);
+#endif
+const fieldproof_implementation* fieldproof_plugin(unsigned version) {
+  static const fieldproof_implementation implementation = {VERSION, sizeof(fieldproof_implementation),
+                                                           "odd",   FIELDPROOF_CHARACTERS,
+                                                           create,  free,
+                                                           begin,   set_power,
+                                                           receive, 0,
+                                                           ON_TIME, next_time,
+                                                           end};
+  (void)version;
+  (void)on_time;
+  return &implementation;
+}

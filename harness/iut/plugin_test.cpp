@@ -1,0 +1,143 @@
+#include "harness/iut/plugin.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "harness/iut/misbehaviour.hpp"
+
+namespace fieldproof::iut {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr kernel::Time kSupply{kernel::Duration{1000}};
+
+// Writes down what the library does; a write of 13 is one that the bench refuses.
+class Diary final : public Bench {
+ public:
+  void transmit(const Transmission& one) override {
+    lines.push_back(fmt::format("transmits {} {} {} {} {:X}", one.port,
+                                one.driver_on.time_since_epoch().count(),
+                                one.start.time_since_epoch().count(),
+                                one.driver_off.time_since_epoch().count(), one.characters.at(1)));
+  }
+  void transmit(unsigned port, line::Waveform& wave) override {
+    lines.push_back(fmt::format("drives {} {} {}", port, wave.rate, wave.levels.text()));
+  }
+  void write(Item item, std::uint64_t value, kernel::Time) override {
+    if (item == 13) throw Misbehaviour(reasons::kImpossible, "the bench has no item 13");
+    lines.push_back(fmt::format("writes {} {:X}", item, value));
+  }
+  std::uint64_t read(Item item, kernel::Time) override { return item * 0x100; }
+
+  std::vector<std::string> lines;
+};
+
+std::unique_ptr<Device> odd_device(const std::string& does) {
+  return load_plugin(ODD_PLUGIN, "odd", does);
+}
+
+// What is told about a library that does this when the supply comes.
+std::string blamed_for(const std::string& does, std::string_view reason) {
+  const auto device = odd_device(does);
+  Diary diary;
+  EXPECT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  try {
+    device->set_power(true, kSupply);
+  } catch (const Misbehaviour& done) {
+    EXPECT_EQ(done.reason(), reason);
+    return done.what();
+  }
+  return {};
+}
+
+std::string refusal_to_load(const std::string& path, const std::string& protocol = "odd") {
+  try {
+    load_plugin(path, protocol, "acts");
+  } catch (const kernel::Error& error) {
+    EXPECT_EQ(error.kind(), kernel::ErrorKind::implementation);
+    return error.what();
+  }
+  return {};
+}
+
+TEST(PluginTest, ActsThroughTheBench) {
+  const auto device = odd_device("acts");
+  EXPECT_EQ(device->unit_kind(), UnitKind::characters);
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {{"next", 77}}}, diary));
+  EXPECT_EQ(device->next_time(), kernel::Time{kernel::Duration{77}});
+  device->set_power(true, kSupply);
+  EXPECT_THAT(diary.lines,
+              ElementsAre("transmits 1 1000 1001 1002 155", "drives 2 1000 010110101", "writes 3 401"));
+}
+
+TEST(PluginTest, IsToldCharactersWithTheirErrors) {
+  const auto device = odd_device("hears");
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  const std::vector<Character> characters{
+      {{}, {}, 0x1A5, false, false}, {{}, {}, 1, true, false}, {{}, {}, 2, true, true}};
+  device->receive(5, characters, kSupply);
+  EXPECT_THAT(diary.lines, ElementsAre("writes 5 1A500", "writes 5 101", "writes 5 203"));
+}
+
+TEST(PluginTest, RefusedCaseIsAnAnswerAndTheEndIsTheEnd) {
+  const auto device = odd_device("acts");
+  Diary diary;
+  EXPECT_FALSE(device->begin({"odd/refused", 1, {}}, diary));
+  EXPECT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  device->end();
+  EXPECT_TRUE(diary.lines.empty());
+}
+
+TEST(PluginTest, ItemThatIsTooGreatIsNotTakenForAnother) {
+  EXPECT_THAT(blamed_for("writes item 65536", reasons::kImpossible), HasSubstr("item 65536"));
+  EXPECT_THAT(blamed_for("reads item 65537", reasons::kImpossible), HasSubstr("item 65537"));
+}
+
+TEST(PluginTest, RateThatNoLineHasIsRefused) {
+  EXPECT_THAT(blamed_for("drives at rate 0", reasons::kImpossible), HasSubstr("drives 0 levels per second"));
+}
+
+TEST(PluginTest, ActsWithoutEndAreAFlood) {
+  EXPECT_THAT(blamed_for("floods", reasons::kFloods), HasSubstr("more than 10000 things within one call"));
+}
+
+TEST(PluginTest, AskingForTheSameInstantWithoutEndIsAFlood) {
+  const auto device = odd_device("acts");
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  const auto call_again = [&] {
+    for (int n = 0; n < 20'000; ++n) device->on_time(kSupply);
+  };
+  EXPECT_THROW(call_again(), Misbehaviour);
+}
+
+// The library is between the bench and whoever catches: it must not be unwound.
+TEST(PluginTest, WhatTheBenchRefusesIsToldBehindTheCall) {
+  const auto device = odd_device("hears");
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  const std::vector<Character> characters(3);
+  EXPECT_THROW(device->receive(13, characters, kSupply), Misbehaviour);
+  device->receive(12, characters, kSupply);
+  EXPECT_EQ(diary.lines.size(), 3U);
+}
+
+TEST(PluginTest, FileThatIsNoSuchLibraryIsNamedWithWhatIsWrong) {
+  EXPECT_THAT(refusal_to_load("./nothing.so"), HasSubstr("plugin:./nothing.so: cannot be loaded: "));
+  EXPECT_THAT(refusal_to_load(ODD_PLUGIN_NO_ENTRY), HasSubstr("does not export 'fieldproof_plugin'"));
+  EXPECT_THAT(refusal_to_load(ODD_PLUGIN_OTHER_VERSION), HasSubstr("is not made for version 1"));
+  EXPECT_THAT(refusal_to_load(ODD_PLUGIN_LEAVES_OUT), HasSubstr("leaves a function out"));
+  EXPECT_THAT(refusal_to_load(ODD_PLUGIN, "even"), HasSubstr("does not serve the role 'even/acts'"));
+}
+
+}  // namespace
+}  // namespace fieldproof::iut
