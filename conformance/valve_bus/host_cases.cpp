@@ -1,6 +1,7 @@
 #include "conformance/valve_bus/host_cases.hpp"
 
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "conformance/valve_bus/node_cases.hpp"
@@ -42,18 +43,21 @@ const std::vector<HostCase>& host_cases() {
 }
 
 judge::CaseResult run_host_case(const HostCase& host_case, const HostSetting& setting) {
-  HostBench bench(host_case.needs, setting);
+  // Made within the procedure: what an implementation does when it is powered is its verdict, too.
+  std::optional<HostBench> bench;
   CaseJudge judge(host_case.test_case);
-  judge.use_clock([&] { return bench.now(); });
-  judge.use_decode([&] { return bench.decode_lines(); });
+  judge.use_clock([&] { return bench ? bench->now() : kernel::kStart; });
+  judge.use_decode([&] { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
   judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
-    host_case.procedure(bench, j);
-    bench.line_watch().judge(j);
+    bench.emplace(host_case.needs, setting);
+    host_case.procedure(*bench, j);
+    bench->line_watch().judge(j);
   });
   result.seed = setting.seed;
-  result.fingerprint = bench.segment().trace().fingerprint();
-  result.virtual_time = bench.now() - kernel::kStart;
-  result.planned_hits = bench.planned_hits();
+  if (!bench) return result;
+  result.fingerprint = bench->segment().trace().fingerprint();
+  result.virtual_time = bench->now() - kernel::kStart;
+  result.planned_hits = bench->planned_hits();
   return result;
 }
 
@@ -73,6 +77,14 @@ std::function<std::optional<std::string>(const judge::Pics&)> for_host_without(s
           sentence = std::move(sentence)](const judge::Pics& pics) -> std::optional<std::string> {
     if (!pics.completed_by(declared_host()).supports(item)) return std::nullopt;
     return sentence;
+  };
+}
+
+std::function<std::optional<std::string>(const judge::Pics&)> for_plain_writes() {
+  return [](const judge::Pics& pics) -> std::optional<std::string> {
+    if (pics.supports("acknowledges_writes")) return "the host waits for an acknowledge behind each write";
+    if (pics.supports("verifies_writes")) return "the host sends a read behind each write";
+    return std::nullopt;
   };
 }
 

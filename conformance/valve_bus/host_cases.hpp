@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,5 +40,8 @@ std::function<std::optional<std::string>(const judge::Pics&)> for_host_with(std:
                                                                             std::string sentence);
 std::function<std::optional<std::string>(const judge::Pics&)> for_host_without(std::string item,
                                                                                std::string sentence);
+
+// Applies only to a host that sends a write and does not look behind it.
+std::function<std::optional<std::string>(const judge::Pics&)> for_plain_writes();
 
 }  // namespace fieldproof::conformance

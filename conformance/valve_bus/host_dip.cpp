@@ -67,7 +67,11 @@ void switches_are_read_at_power_up(HostBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<HostCase> host_dip_cases() {
-  const auto with_switches = for_host_with("dip_can_be_set", "the bench cannot turn the host's DIP switches");
+  const auto with_switches = [](const judge::Pics& pics) {
+    const auto why_not = for_plain_writes()(pics);
+    return why_not ? why_not
+                   : for_host_with("dip_can_be_set", "the bench cannot turn the host's DIP switches")(pics);
+  };
   std::vector<HostCase> cases;
   cases.push_back(
       {{.id = "valve_bus/host/dip/each_position_is_a_bit_rate",

@@ -95,7 +95,8 @@ std::vector<HostCase> host_request_cases() {
                     .stimulus = "Writes with random data.",
                     .expected = "Five octets each, at most 1.5 characters apart.",
                     .tags = {"must"},
-                    .catches = {{"data_exchanged", "request_wrong"}, {"gap_in_request", "gap_in_frame"}}},
+                    .catches = {{"data_exchanged", "request_wrong"}, {"gap_in_request", "gap_in_frame"}},
+                    .not_applicable = for_plain_writes()},
                    a_write_is_sent_with_its_check});
   cases.push_back(
       {{.id = "valve_bus/host/request/check_is_the_exclusive_or",
@@ -106,7 +107,8 @@ std::vector<HostCase> host_request_cases() {
         .stimulus = "A hundred thousand random reads and writes.",
         .expected = "Each has the right check.",
         .tags = {"must", "long"},
-        .catches = {{"request_check_without_id", "check_wrong"}, {"request_check_is_sum", "check_wrong"}}},
+        .catches = {{"request_check_without_id", "check_wrong"}, {"request_check_is_sum", "check_wrong"}},
+        .not_applicable = for_plain_writes()},
        each_check_is_the_exclusive_or});
   cases.push_back(
       {{.id = "valve_bus/host/request/ids_1_to_99_are_sent",
@@ -122,7 +124,8 @@ std::vector<HostCase> host_request_cases() {
         .catches = {{"sends_id_100", "refused_id_sent"},
                     {"sends_id_0", "refused_id_sent"},
                     {"refuses_id_99", "no_request"},
-                    {"refuses_silently", "error_not_told"}}},
+                    {"refuses_silently", "error_not_told"}},
+        .not_applicable = for_plain_writes()},
        ids_1_to_99_are_sent});
   cases.push_back({{.id = "valve_bus/host/request/undefined_commands_are_refused",
                     .purpose = "RH-04",

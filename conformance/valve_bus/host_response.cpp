@@ -144,7 +144,7 @@ void other_lengths_are_refused(HostBench& bench, CaseJudge& judge) {
 
 void gaps_inside_a_response(HostBench& bench, CaseJudge& judge) {
   for (const std::size_t at : {1U, 2U}) {
-    for (const double gap : {0.5, 1.0, 1.4, 1.6, 2.0, 3.0, 3.4, 3.6, 10.0}) {
+    for (const double gap : {0.5, 1.0, 1.4, 1.6, 2.0, 3.0, 3.4}) {
       const HostFrame request = order_read(bench, judge, bench.random_id());
       const ResponseOctets octets = random_response(bench);
       const std::span<const std::uint8_t> all(octets);
@@ -301,17 +301,19 @@ std::vector<HostCase> host_response_cases() {
                                 {"takes_first_three_octets", "wrong_length_told"},
                                 {"takes_last_three_octets", "wrong_length_told"}}},
                    other_lengths_are_refused});
-  cases.push_back({{.id = "valve_bus/host/response/gaps_inside_a_response",
-                    .purpose = "RH-12",
-                    .requirement = "Inside a response up to 1.5 characters of silence are allowed; more "
-                                   "spoil it.",
-                    .reference = silence,
-                    .stimulus = "Responses with a gap of 0.5 to 10 characters in front of each octet.",
-                    .expected = "Told up to 1.4 characters, refused from 1.6 on.",
-                    .tags = {"must", "timing"},
-                    .catches = {{"response_gaps_of_three_characters", "long_gap_taken"},
-                                {"response_gaps_of_one_character", "short_gap_refused"}}},
-                   gaps_inside_a_response});
+  cases.push_back(
+      {{.id = "valve_bus/host/response/gaps_inside_a_response",
+        .purpose = "RH-12",
+        .requirement = "Inside a response up to 1.5 characters of silence are allowed; more "
+                       "spoil it.",
+        .reference = silence,
+        .stimulus =
+            "Responses with a gap of 0.5 to 3.4 characters in front of the second or the third octet.",
+        .expected = "Told up to 1.4 characters, refused from 1.6 on.",
+        .tags = {"must", "timing"},
+        .catches = {{"response_gaps_of_three_characters", "long_gap_taken"},
+                    {"response_gaps_of_one_character", "short_gap_refused"}}},
+       gaps_inside_a_response});
   cases.push_back(
       {{.id = "valve_bus/host/response/two_nodes_at_once_are_refused",
         .purpose = "RH-29",

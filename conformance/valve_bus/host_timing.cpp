@@ -77,8 +77,8 @@ void a_delimiter_is_in_front_of_each_request(HostBench& bench, CaseJudge& judge)
       if (poll == 2) expect_request(bench, judge, write);
       expect_request(bench, judge, read);
       const Response response{bench.random_octet(), bench.random_octet()};
-      bench.answer(response,
-                   bench.delimiter() + bench.bits(static_cast<std::int64_t>(bench.random().below(200))));
+      const kernel::Duration span = turn_round_span(bench.rules());
+      bench.answer(response, bench.delimiter() + kernel::Duration{bench.random().between(0, span.count())});
       expect_response(bench, judge, read.id, response);
     }
   }
@@ -116,7 +116,6 @@ void the_latest_response_is_taken_at_all_rates(HostBench& bench, CaseJudge& judg
 
 std::vector<HostCase> host_timing_cases() {
   const judge::Reference distance = valve_sources::own("a delimiter and 1 ms behind a write");
-  const auto literally = for_host_without("acknowledges_writes", "the nodes of this host acknowledge writes");
   std::vector<HostCase> cases;
   cases.push_back({{.id = "valve_bus/host/timing/write_is_left_alone",
                     .purpose = "RH-18",
@@ -127,7 +126,7 @@ std::vector<HostCase> host_timing_cases() {
                     .expected = "The second begins no earlier than that.",
                     .tags = {"must", "timing"},
                     .catches = {{"write_distance_missing", "write_distance_too_short"}},
-                    .not_applicable = literally},
+                    .not_applicable = for_plain_writes()},
                    a_write_is_left_alone});
   cases.push_back({{.id = "valve_bus/host/timing/write_is_not_answered",
                     .purpose = "RH-18",
@@ -138,7 +137,7 @@ std::vector<HostCase> host_timing_cases() {
                     .expected = "It is sent once up to its refresh; the PC is told nothing.",
                     .tags = {"must", "timing"},
                     .catches = {{"write_waits_for_answer", "write_repeated"}},
-                    .not_applicable = literally},
+                    .not_applicable = for_plain_writes()},
                    a_write_is_not_answered});
   cases.push_back({{.id = "valve_bus/host/timing/unasked_octets_are_drained",
                     .purpose = "RH-18",
@@ -148,7 +147,7 @@ std::vector<HostCase> host_timing_cases() {
                     .expected = "They are not told; the read is served.",
                     .tags = {"must"},
                     .catches = {{"stray_told_as_response", "unasked_told"}},
-                    .not_applicable = literally},
+                    .not_applicable = for_plain_writes()},
                    unasked_octets_are_drained});
   cases.push_back({{.id = "valve_bus/host/timing/delimiter_is_in_front_of_each_request",
                     .purpose = "RH-19",
@@ -159,7 +158,8 @@ std::vector<HostCase> host_timing_cases() {
                     .expected = "At least 38.5 bits of silence in front of each.",
                     .tags = {"must", "timing"},
                     .catches = {{"delimiter_missing", "no_delimiter"},
-                                {"delimiter_of_two_silent_characters", "no_delimiter"}}},
+                                {"delimiter_of_two_silent_characters", "no_delimiter"}},
+                    .not_applicable = for_plain_writes()},
                    a_delimiter_is_in_front_of_each_request});
   cases.push_back({{.id = "valve_bus/host/timing/driver_is_on_for_requests_only",
                     .purpose = "RH-27",
