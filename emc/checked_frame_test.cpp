@@ -24,8 +24,8 @@ using line::Parity;
 using line::Sampling;
 using line::StopBits;
 
-constexpr std::int64_t kBitRate = 500'000;
-constexpr Duration kBit = 2 * kMicrosecond;
+constexpr std::int64_t kFrameRate = 500'000;
+constexpr Duration kFrameBit = 2 * kMicrosecond;
 // XOR: 0x9C.
 constexpr std::array<std::uint16_t, 4> kMessage{0x05, 0x00, 0xA5, 0x3C};
 
@@ -35,7 +35,7 @@ struct HitBit {
 };
 
 CheckedFrameFormat format_of(const CharacterFormat& character) {
-  return {.character = character, .bit_rate = kBitRate};
+  return {.character = character, .bit_rate = kFrameRate};
 }
 
 // Pulses in the middle of these bits.
@@ -45,8 +45,8 @@ FrameFate fate_of(const CheckedFrameFormat& format, ForcedLevel forced, const st
   const std::int64_t length = format.character.half_bits() / 2;
   std::vector<FramePulse> pulses;
   for (const HitBit& hit : bits) {
-    const Duration begin = ((hit.character + 1) * length + hit.bit) * kBit;
-    pulses.push_back({kStart + begin + (kBit - wrong_time) / 2, 0});
+    const Duration begin = ((hit.character + 1) * length + hit.bit) * kFrameBit;
+    pulses.push_back({kStart + begin + (kFrameBit - wrong_time) / 2, 0});
   }
   return frame.fate(kMessage, pulses);
 }
@@ -54,7 +54,7 @@ FrameFate fate_of(const CheckedFrameFormat& format, ForcedLevel forced, const st
 TEST(CheckedFrame, LastsItsCharactersAndTwoQuietOnes) {
   const CheckedFrame frame(format_of({8, Parity::even, StopBits::one}),
                            pulse_effects(ForcedLevel::drawn, 300 * kNanosecond));
-  EXPECT_EQ(frame.end(), kStart + 7 * 11 * kBit);
+  EXPECT_EQ(frame.end(), kStart + 7 * 11 * kFrameBit);
   EXPECT_EQ(frame.reach(), (Interval{{}, 300 * kNanosecond}));
 }
 
@@ -126,14 +126,14 @@ TEST_P(EitherClock, SamplesAsItIsTold) {
 TEST(CheckedFrame, HearsACharacterInTheSilenceInFront) {
   const CheckedFrameFormat own = format_of({});
   CheckedFrame frame(own, pulse_effects(ForcedLevel::low, 1300 * kNanosecond));
-  const std::array<FramePulse, 1> early{{{kStart + 3 * kBit, 0}}};
+  const std::array<FramePulse, 1> early{{{kStart + 3 * kFrameBit, 0}}};
   EXPECT_EQ(frame.fate(kMessage, early), FrameFate::detected);
   CheckedFrameFormat in_step = own;
   in_step.clock = ReceiverClock::of_the_sender;
   CheckedFrame deaf(in_step, pulse_effects(ForcedLevel::low, 1300 * kNanosecond));
   EXPECT_EQ(deaf.fate(kMessage, early), FrameFate::intact);
   // Behind the frame it is one character more.
-  const std::array<FramePulse, 1> late{{{kStart + 61 * kBit, 0}}};
+  const std::array<FramePulse, 1> late{{{kStart + 61 * kFrameBit, 0}}};
   EXPECT_EQ(frame.fate(kMessage, late), FrameFate::detected);
 }
 
@@ -145,7 +145,7 @@ TEST(CheckedFrame, APulseAtAStartEdgeMovesTheSamples) {
     format.clock = clock;
     format.sampling = line::kMidBit;
     CheckedFrame frame(format, pulse_effects(ForcedLevel::low, 300 * kNanosecond));
-    const kernel::Time edge = kStart + 30 * kBit;
+    const kernel::Time edge = kStart + 30 * kFrameBit;
     // 0xA5 has its lowest bit set. Its sample comes 3 us behind the edge, or 240 ns earlier.
     std::vector<FramePulse> pulses{{edge + 2600 * kNanosecond, 0}};
     if (has_edge) pulses.insert(pulses.begin(), {edge - 240 * kNanosecond, 0});
@@ -199,7 +199,7 @@ RC_GTEST_PROP(CheckedFrameProperty, HasTheFateThatABurstChannelAndAReceiverGiveI
 
   line::Waveform wave;
   const line::CharacterCode code(format.character);
-  wave.rate = kBitRate * code.levels_per_bit();
+  wave.rate = kFrameRate * code.levels_per_bit();
   std::vector<unsigned> sent(message.begin(), message.end());
   sent.push_back(0);
   for (const std::uint16_t character : message) sent.back() ^= character;
@@ -212,12 +212,12 @@ RC_GTEST_PROP(CheckedFrameProperty, HasTheFateThatABurstChannelAndAReceiverGiveI
   BurstSchedule schedule(settings, kernel::Random(*rc::gen::arbitrary<std::uint64_t>()));
   wave.start = schedule.first_from(kStart + kernel::kSecond) + *rc::gen::inRange(-100, 700) * kMicrosecond;
   trace::Trace trace;
-  BurstChannel channel(schedule, wrong, {kBitRate, nullptr, format.sampling, true, true}, trace,
+  BurstChannel channel(schedule, wrong, {kFrameRate, nullptr, format.sampling, true, true}, trace,
                        trace.add_channel("rx"));
   line::Waveforms arrivals;
   if (!channel.pass(wave, arrivals)) arrivals.add(wave);
   std::vector<line::CharacterReceiver::Received> heard;
-  line::CharacterReceiver(format.character, kBitRate, format.sampling).receive(arrivals.front(), heard);
+  line::CharacterReceiver(format.character, kFrameRate, format.sampling).receive(arrivals.front(), heard);
   unsigned sum = 0;
   std::vector<unsigned> data;
   bool is_refused = heard.size() != sent.size();
@@ -253,7 +253,7 @@ RC_GTEST_PROP(CheckedFrameProperty, ClocksDifferOnlyAtFraming, ()) {
   for (std::int64_t character = 1; character <= format.characters; ++character) {
     for (std::int64_t bit = 1; bit < format.character.bits_before_stop(); ++bit) {
       if (*rc::gen::inRange(0, 8) != 0) continue;
-      const Duration middle = (character * length + bit) * kBit + kBit / 2;
+      const Duration middle = (character * length + bit) * kFrameBit + kFrameBit / 2;
       pulses.push_back(
           {kStart + middle - *rc::gen::inRange(0, 500) * kNanosecond, *rc::gen::inRange(0U, 2U)});
     }
