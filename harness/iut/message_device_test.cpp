@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "harness/iut/scripted_peer.hpp"
@@ -124,6 +125,15 @@ TEST(MessageDeviceHello, TextInsteadOfMessagesIsShownAsText) {
   Script script;
   script.then("echo 'Hello world'").stays();
   const Blame blame = blame_for([&] { device_of(script); });
+  EXPECT_EQ(blame.reason, reasons::kGarbage);
+  EXPECT_THAT(blame.evidence, Contains(HasSubstr("\"Hello world.\"")));
+}
+
+// Whether the bench or the program is faster must not decide what is told.
+TEST(MessageDeviceHello, WordsOfOneThatHasEndedAreShownToo) {
+  Peer peer = Peer::spawned("exec:echo", {"/bin/echo", "Hello world"});
+  while (peer.is_alive()) std::this_thread::sleep_for(milliseconds(1));
+  const Blame blame = blame_for([&] { const MessageDevice device(std::move(peer), kNode, kPatient); });
   EXPECT_EQ(blame.reason, reasons::kGarbage);
   EXPECT_THAT(blame.evidence, Contains(HasSubstr("\"Hello world.\"")));
 }

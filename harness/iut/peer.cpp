@@ -112,7 +112,8 @@ void Peer::send(std::span<const std::uint8_t> message, milliseconds limit) {
       message = message.subspan(static_cast<std::size_t>(sent));
       continue;
     }
-    if (sent < 0 && errno != EAGAIN && errno != EINTR) blame_end();
+    // It does not hear any more. What it has said before that tells more, and `receive` meets its end.
+    if (sent < 0 && errno != EAGAIN && errno != EINTR) return;
     pollfd wait{output(), POLLOUT, 0};
     if (::poll(&wait, 1, remaining(until)) == 0) {
       blame(reasons::kHangs, fmt::format("does not take what it is sent within {} ms", limit.count()));

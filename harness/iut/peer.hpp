@@ -34,6 +34,7 @@ class Peer {
   static Peer at_tcp_port(std::string what, const std::string& host, const std::string& port,
                           std::chrono::milliseconds patience);
 
+  // To one that has gone nothing is sent: the next `receive` tells what it said last, and that it has gone.
   void send(std::span<const std::uint8_t> message, std::chrono::milliseconds limit);
   // The next message, without its length, within the limit behind `begin`. Valid until the next call.
   std::span<const std::uint8_t> receive(std::chrono::milliseconds limit,
