@@ -70,7 +70,7 @@ class Attachments : public ProgramFixture {
 
   void expect_passes(const std::string& uri) {
     const Cases cases = judged(uri);
-    EXPECT_EQ(cases.size(), 44U) << uri;
+    EXPECT_EQ(cases.size(), 45U) << uri;
     for (const auto& [id, one] : cases) {
       EXPECT_EQ(one.verdict, "pass") << uri << ": " << id << ": " << one.reason << one.findings;
     }
@@ -86,7 +86,7 @@ const std::string kPluginInC = "plugin:" VALVE_NODE_PLUGIN;
 
 TEST_F(Attachments, BuiltInStationInAProcessIsJudgedAsInside) {
   const Cases inside = judged("ref");
-  EXPECT_EQ(inside.size(), 44U);
+  EXPECT_EQ(inside.size(), 45U);
   EXPECT_EQ(judged(kStation), inside);
   const Cases late_inside = judged("deviant:turns_round_late");
   EXPECT_EQ(late_inside.at("read/is_answered").reason, "answer_too_late");

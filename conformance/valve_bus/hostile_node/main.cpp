@@ -1,7 +1,7 @@
 // A node that is right until a call in the case that it is told, and then does the worst: what the bench
 // makes of implementations that crash, hang, flood or talk nonsense is tested with it.
 //
-//   hostile_node ACT CALL CASE     "segv receive data_is_not_looked_at"
+//   hostile_node ACT CALL CASE [MARK]    "segv receive data_is_not_looked_at"; a mark is for who looks for it
 #include <fcntl.h>
 #include <signal.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@
 #include "protocols/valve_bus/attached_node.hpp"
 #include "protocols/valve_bus/node.hpp"
 
-namespace fieldproof {
+namespace fieldproof::conformance {
 namespace {
 
 void say(std::string_view octets) {
@@ -189,11 +189,12 @@ const std::map<std::string, std::function<void(Hostile&)>, std::less<>>& Hostile
 }
 
 }  // namespace
-}  // namespace fieldproof
+}  // namespace fieldproof::conformance
 
 int main(int argc, char** argv) {
   using namespace fieldproof;
-  if (argc != 4) return 64;
+  using conformance::Hostile;
+  if (argc < 4) return 64;
   try {
     iut::serve(
         STDIN_FILENO, STDOUT_FILENO,
