@@ -56,7 +56,9 @@ void the_ninth_bit_is_not_looked_at(NodeBench& bench, CaseJudge& judge) {
 }
 
 void a_break_is_no_frame(NodeBench& bench, CaseJudge& judge) {
-  for (const kernel::Duration length : {kernel::kMillisecond, 10 * kernel::kMillisecond, kernel::kSecond}) {
+  for (const kernel::Duration time : {kernel::kMillisecond, 10 * kernel::kMillisecond, kernel::kSecond}) {
+    // Shorter than a character it would be one.
+    const kernel::Duration length = std::max(time, bench.characters(4));
     line::Waveform wave;
     wave.rate = bench.rules().bit_rate;
     wave.levels.append_fill(false, static_cast<std::size_t>(kernel::levels_within(length, wave.rate)));

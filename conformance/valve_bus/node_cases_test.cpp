@@ -1,0 +1,66 @@
+#include "conformance/valve_bus/node_cases.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "protocols/valve_bus/rules.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+struct DeclaredNode {
+  std::string name;
+  judge::Pics pics;
+};
+
+judge::Pics declaring(std::initializer_list<std::pair<std::string, judge::Pics::Answer>> answers) {
+  judge::Pics pics;
+  for (const auto& [item, answer] : answers) pics.declare(item, answer);
+  return pics;
+}
+
+std::vector<DeclaredNode> declared_nodes() {
+  std::vector<DeclaredNode> all{
+      {"address_99", declaring({{"address", std::int64_t{99}}})},
+      {"address_1", declaring({{"address", std::int64_t{1}}})},
+      {"one_board", declaring({{"boards", std::int64_t{1}}})},
+      {"P1", declaring({{"characters", std::string("P1")}})},
+      {"P2", declaring({{"characters", std::string("P2")}})},
+      {"acknowledges", declaring({{"acknowledges_writes", true}})},
+      {"acknowledges_P2", declaring({{"acknowledges_writes", true}, {"characters", std::string("P2")}})},
+      {"lets_go", declaring({{"valves_off_without_host", true}})},
+  };
+  for (const std::int64_t rate : valve_bus::dip_bit_rates()) {
+    all.push_back({"at_" + std::to_string(rate), declaring({{"bit_rate", rate}})});
+  }
+  return all;
+}
+
+class DeclaredNodes : public testing::TestWithParam<DeclaredNode> {};
+
+// Whatever a node declares, the reference that is so passes: anything else is a false alarm.
+TEST_P(DeclaredNodes, PassAsTheyDeclare) {
+  for (const NodeCase& one : node_cases()) {
+    if (is_canary(one.test_case)) continue;
+    const bool is_excluded =
+        one.test_case.not_applicable && one.test_case.not_applicable(GetParam().pics).has_value();
+    if (is_excluded || has_tag(one.test_case, kStressTag)) continue;
+    NodeSetting setting;
+    setting.volume = Volume::quick;
+    setting.pics = GetParam().pics;
+    for (setting.seed = 1; setting.seed <= 3; ++setting.seed) {
+      const judge::CaseResult result = run_node_case(one, setting);
+      EXPECT_EQ(result.verdict, judge::Verdict::pass)
+          << result.id << " seed " << setting.seed << ": " << result.reason
+          << (result.findings.empty() ? "" : ", " + result.findings.front().actual);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfTheReference, DeclaredNodes, testing::ValuesIn(declared_nodes()),
+                         [](const auto& node) { return node.param.name; });
+
+}  // namespace
+}  // namespace fieldproof::conformance
