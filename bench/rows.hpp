@@ -24,6 +24,8 @@ struct Row {
   std::string against;          // beginning of the peers' names; empty: this row is a peer
   double target_ratio;          // this row's rate over the fastest peer's; 0: none is asked for
   std::function<Batch()> make;  // sets up, outside the measured time
+  // It waits for another thread or process: its rate is per second of the clock, not of processor time.
+  bool waits = false;
 };
 
 // Adds rows to the table of the program.

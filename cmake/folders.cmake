@@ -181,7 +181,9 @@ function(fieldproof_benchmarks)
     benchmark::benchmark benchmark::benchmark_main fmt::fmt nlohmann_json::nlohmann_json Boost::headers Threads::Threads
     fieldproof_instrumented fieldproof_warnings)
   target_compile_definitions(fieldproof_bench PRIVATE
-    FIELDPROOF_HAVE_BOOST_CRC FIELDPROOF_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+    FIELDPROOF_HAVE_BOOST_CRC FIELDPROOF_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
+    FIELDPROOF_EXE="$<TARGET_FILE:fieldproof>")
+  add_dependencies(fieldproof_bench fieldproof)
   if(ns3_include_folder AND ns3_core_library)
     target_compile_definitions(fieldproof_bench PRIVATE FIELDPROOF_HAVE_NS3)
     target_link_libraries(fieldproof_bench PRIVATE "${ns3_core_library}")

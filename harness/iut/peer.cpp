@@ -60,6 +60,12 @@ Peer Peer::spawned(std::string what, const std::vector<std::string>& command) {
   return peer;
 }
 
+Peer Peer::at_socket(std::string what, Descriptor socket) {
+  Peer peer(std::move(what));
+  peer.socket_ = std::move(socket);
+  return peer;
+}
+
 Peer Peer::at_unix_socket(std::string what, const std::string& path) {
   Peer peer(std::move(what));
   sockaddr_un address{};

@@ -30,6 +30,8 @@ class Peer {
 
   // `what` names it in sentences: "exec:./node".
   static Peer spawned(std::string what, const std::vector<std::string>& command);
+  // Whoever is at the other end of a connected socket.
+  static Peer at_socket(std::string what, Descriptor socket);
   static Peer at_unix_socket(std::string what, const std::string& path);
   static Peer at_tcp_port(std::string what, const std::string& host, const std::string& port,
                           std::chrono::milliseconds patience);

@@ -6,7 +6,6 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -139,7 +138,7 @@ const std::map<std::string, std::function<void(Hostile&)>, std::less<>>& Hostile
        }},
       {"spin",
        [](Hostile&) {
-         const std::atomic<bool> for_ever{true};
+         volatile bool for_ever = true;  // read each time: a loop without effects may be left out
          while (for_ever) {
          }
        }},
