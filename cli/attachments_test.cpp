@@ -51,10 +51,16 @@ class Attachments : public ProgramFixture {
 
   // The real program over these cases of the suite.
   Cases judged(const std::string& uri, const std::string& cases = "**",
-               const std::map<std::string, std::string>& environment = {}) {
+               const std::map<std::string, std::string>& environment = {}, const std::string& pics = {}) {
     const std::string out = "run" + std::to_string(++runs_);
-    Call made = prepared({"run", std::string(kSuite) + cases, "--volume", "quick", "--record", "none",
-                          "--iut", uri, "--out", out});
+    std::vector<std::string> words{
+        "run", std::string(kSuite) + cases, "--volume", "quick", "--record", "none", "--iut", uri, "--out",
+        out};
+    if (!pics.empty()) {
+      write("node.pics.json", pics);
+      words.insert(words.end(), {"--pics", "node.pics.json"});
+    }
+    Call made = prepared(words);
     made.environment = environment;
     const Called called = made.run();
     EXPECT_TRUE(called.exit_code == 0 || called.exit_code == 1) << called.exit_code << called.err;
@@ -95,6 +101,14 @@ TEST_F(Attachments, BuiltInStationInAProcessIsJudgedAsInside) {
 
 TEST_F(Attachments, NodeInCPassesAsAProcess) {
   expect_passes(kInC);
+}
+
+// Its driver comes and goes in transmissions of their own: at a low bit rate they are as many as characters.
+TEST_F(Attachments, NodeInCPassesAtTheLowestBitRateWithAcknowledge) {
+  const std::string pics = R"({ "items": { "bit_rate": 2404, "acknowledges_writes": true } })";
+  for (const auto& [id, one] : judged(kInC, "**", {}, pics)) {
+    EXPECT_EQ(one.verdict, "pass") << id << ": " << one.reason << one.findings;
+  }
 }
 
 TEST_F(Attachments, NodeInCPassesAsALibraryInAProcessOfItsOwn) {

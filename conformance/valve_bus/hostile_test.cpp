@@ -145,7 +145,12 @@ TEST_P(HostileNode, CostsItsOwnVerdictAndNoOther) {
     ASSERT_EQ(results.size(), 3U);
     EXPECT_EQ(results[0].verdict, judge::Verdict::pass) << results[0].reason;
     EXPECT_EQ(results[1].verdict, judge::Verdict::fail);
-    EXPECT_EQ(results[1].reason, expected_reason(worst, GetParam()));
+    if (worst.act == "answers_twice") {
+      // One answer too many is seen at once, or by what it does to those behind it.
+      EXPECT_TRUE(results[1].reason.starts_with("implementation_")) << results[1].reason;
+    } else {
+      EXPECT_EQ(results[1].reason, expected_reason(worst, GetParam()));
+    }
     EXPECT_EQ(results[2].verdict, judge::Verdict::pass) << results[2].reason;
     EXPECT_EQ(open_descriptors(), descriptors);
     EXPECT_EQ(hostile_processes(), 0U);

@@ -99,7 +99,7 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting)
       driven_(character_format(rules()), rules().bit_rate),
       sent_(character_format(rules()), rules().bit_rate),
       arrived_(rules()),
-      line_watch_(bits(character_format(rules()).half_bits() / 2)),
+      line_watch_(bits(1)),
       stressed_(setting.stresses) {
   tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
   place_ = &line_.attach("node/in", node_seat_, 0, distance_);

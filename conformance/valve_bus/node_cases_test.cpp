@@ -32,7 +32,11 @@ std::vector<DeclaredNode> declared_nodes() {
       {"acknowledges_P2", declaring({{"acknowledges_writes", true}, {"characters", std::string("P2")}})},
       {"lets_go", declaring({{"valves_off_without_host", true}})},
   };
-  for (const std::int64_t rate : valve_bus::dip_bit_rates()) {
+  constexpr std::int64_t kSlowest = 1'200;
+  constexpr std::int64_t kFastest = 1'000'000;
+  std::vector<std::int64_t> rates{kSlowest, kFastest};
+  rates.insert(rates.end(), valve_bus::dip_bit_rates().begin(), valve_bus::dip_bit_rates().end());
+  for (const std::int64_t rate : rates) {
     all.push_back({"at_" + std::to_string(rate), declaring({{"bit_rate", rate}})});
   }
   return all;

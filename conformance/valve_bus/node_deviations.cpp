@@ -105,6 +105,7 @@ std::vector<NodeRow> node_answer_rows() {
       {"answers_twice", "MN22", "answers twice", node<AnswersTwice>()},
       {"answers_with_echo", "", "repeats the head of the command in front of its answer",
        node<AnswersWithEcho>()},
+      {"sends_ninth_bit_0", "", "sends its characters with a ninth bit of 0", node<SendsNinthBit0>()},
       {"gap_between_octets", "", "leaves 20 bits between the octets of an answer", node<GapBetweenOctets>()},
       {"answers_at_once", "MN12", "answers as soon as it has five octets", node<AnswersAtOnce>()},
       {"turns_round_late", "", "answers 200 us later than it may", node<TurnsRoundLate>(200 * kMicrosecond)},

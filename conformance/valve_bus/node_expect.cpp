@@ -49,7 +49,8 @@ void expect_driver(NodeBench& bench, CaseJudge& judge, const Transmission& answe
   });
 }
 
-void expect_octets(CaseJudge& judge, const Transmission& answer, std::uint8_t data0, std::uint8_t data1) {
+void expect_octets(NodeBench& bench, CaseJudge& judge, const Transmission& answer, std::uint8_t data0,
+                   std::uint8_t data1) {
   const std::vector<std::uint8_t> octets = answer.octets();
   const std::array<std::uint8_t, 3> wanted{data0, data1, static_cast<std::uint8_t>(data0 ^ data1)};
   const auto sighting = [&](std::string difference) {
@@ -66,6 +67,10 @@ void expect_octets(CaseJudge& judge, const Transmission& answer, std::uint8_t da
   judge.expect(octets[0] == wanted[0], "answer_data_wrong", sighting("DATA0"));
   judge.expect(octets[1] == wanted[1], "answer_data_wrong", sighting("DATA1"));
   judge.expect(octets[2] == wanted[2], "answer_check_wrong", sighting("BCC"));
+  const bool has_ninth_bit = std::ranges::all_of(answer.characters, [&](const DrivenCharacter& one) {
+    return one.data == written_character(bench.rules(), one.octet());
+  });
+  judge.expect(has_ninth_bit, "ninth_bit_wrong", "a ninth bit of 1 in each character", "one of 0");
 }
 
 // `end`: of the command's last stop bit, at the tester; the answer is judged where the IUT drives it.
@@ -78,7 +83,7 @@ Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t 
   judge.expect(answers.size() == 1, "answered_twice", [&] {
     return Sighting{{"one answer"}, fmt::format("{} transmissions", answers.size()), answers[1].driver_on};
   });
-  expect_octets(judge, answer, data0, data1);
+  expect_octets(bench, judge, answer, data0, data1);
   const kernel::Duration turn_round = answer.characters.front().start - (end + bench.distance());
   const kernel::Duration least = bench.delimiter();
   const kernel::Duration most = least + turn_round_span(bench.rules());

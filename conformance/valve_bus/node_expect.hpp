@@ -30,7 +30,8 @@ void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, 
 
 // One answer to a read whose last stop bit ended at `end`, with these limit switches: `no_answer`,
 // `answered_twice`, `answer_length_wrong`, `answer_garbled`, `answer_data_wrong`, `answer_check_wrong`,
-// `answer_too_early`, `answer_too_late`, `driver_on_late`, `driver_not_released`, `gap_in_answer`.
+// `ninth_bit_wrong`, `answer_too_early`, `answer_too_late`, `driver_on_late`, `driver_not_released`,
+// `gap_in_answer`.
 Transmission expect_answer(NodeBench& bench, CaseJudge& judge, std::uint16_t switches, kernel::Time end);
 
 // A write and a read of the IUT are served: `does_not_recover`. Forgets what was seen.

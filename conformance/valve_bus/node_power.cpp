@@ -38,10 +38,12 @@ void power_lost_in_a_frame(NodeBench& bench, CaseJudge& judge) {
   for (std::size_t at = 0; at <= valve_bus::kCommandOctets; ++at) {
     bench.write(0xFF, 0xFF);
     bench.settle();
+    bench.forget();
     const auto frame = octets_of(valve_bus::Command{bench.address(), 0, 0x0F, 0xF0});
     bench.send(std::span(frame).first(at));
     bench.set_power(false);
     bench.wait(bench.delimiter() / 2);
+    expect_silence(bench, judge, "speaks_without_power", "it has no supply");
     bench.forget();
     bench.set_power(true);
     bench.send(std::span(frame).subspan(at));

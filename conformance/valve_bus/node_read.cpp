@@ -107,7 +107,8 @@ std::vector<NodeCase> node_read_cases() {
         .catches = {{"check_without_command", "no_answer"},
                     {"response_check_with_id", "answer_check_wrong"},
                     {"answers_twice", "answered_twice"},
-                    {"answers_with_echo", "answer_length_wrong"}}},
+                    {"answers_with_echo", "answer_length_wrong"},
+                    {"sends_ninth_bit_0", "ninth_bit_wrong"}}},
        a_read_is_answered});
   cases.push_back({{.id = "valve_bus/node/read/data_is_not_looked_at",
                     .purpose = "RN-03",

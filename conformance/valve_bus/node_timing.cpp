@@ -57,6 +57,7 @@ void driver_is_on_for_the_answer_only(NodeBench& bench, CaseJudge& judge) {
       expect_write_taken(bench, judge, data0, data1, written);
       bench.forget();
     }
+    bench.settle();
     bench.wait(20 * kernel::kMillisecond);
     expect_silence(bench, judge, "drives_without_being_asked", "nobody asked it");
   }

@@ -32,10 +32,11 @@ kernel::Time time_of(fieldproof_time ticks) {
 class PluginDevice final : public Device {
  public:
   PluginDevice(const std::string& path, const std::string& protocol, const std::string& role) : path_(path) {
-    boost::dll::fs::error_code error;
-    library_.load(path, error, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
-    if (error)
-      refuse_library(path, fmt::format("cannot be loaded: {}", kernel::escaped_line(error.message())));
+    try {
+      library_.load(path, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+    } catch (const std::exception& error) {
+      refuse_library(path, fmt::format("cannot be loaded: {}", kernel::escaped_line(error.what())));
+    }
     if (!library_.has("fieldproof_plugin")) refuse_library(path, "does not export 'fieldproof_plugin'");
     const auto& entry = library_.get<const fieldproof_implementation*(unsigned)>("fieldproof_plugin");
     implementation_ = entry(FIELDPROOF_PLUGIN_VERSION);

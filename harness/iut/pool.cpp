@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 namespace fieldproof::iut {
 namespace {
@@ -26,9 +27,11 @@ HostAndPort host_and_port(const std::string& uri) {
   if (parts.host.size() > 2 && parts.host.front() == '[' && parts.host.back() == ']') {
     parts.host = parts.host.substr(1, parts.host.size() - 2);
   }
-  const bool has_digits =
-      !parts.port.empty() && std::ranges::all_of(parts.port, [](char c) { return c >= '0' && c <= '9'; });
-  if (parts.host.empty() || !has_digits) {
+  unsigned number = 0;
+  const char* const last = parts.port.data() + parts.port.size();
+  const auto [behind, failure] = std::from_chars(parts.port.data(), last, number);
+  const bool is_port = failure == std::errc{} && behind == last && number >= 1 && number <= 65'535;
+  if (parts.host.empty() || !is_port) {
     throw kernel::Error(
         kernel::ErrorKind::usage,
         fmt::format("'{}' names no port; write tcp:HOST:PORT, for example tcp:127.0.0.1:4850", uri));
@@ -48,6 +51,8 @@ DevicePool::DevicePool(std::string uri, RoleName role, PeerLimits limits)
     command_ = words_of(uri_.substr(kExec.size()));
   } else if (uri_.starts_with(kTcp)) {
     host_and_port(uri_);
+  } else if (uri_ == kUnix) {
+    throw kernel::Error(kernel::ErrorKind::usage, "'unix:' names no socket; write unix:/path/of/it");
   } else if (!uri_.starts_with(kUnix)) {
     throw kernel::Error(
         kernel::ErrorKind::usage,
@@ -81,22 +86,60 @@ std::unique_ptr<MessageDevice> DevicePool::started() {
   }
 }
 
-DevicePool::Lease DevicePool::take() {
-  const std::scoped_lock lock(mutex_);
-  if (idle_.empty()) return {*this, started()};
+std::unique_ptr<MessageDevice> DevicePool::idle_or_waited_for() {
+  std::unique_lock lock(mutex_);
+  const auto has_none = [&] { return idle_.empty() && is_limited_ && leased_ > 0; };
+  while (has_none()) returned_.wait(lock);
+  ++leased_;
+  if (idle_.empty()) return nullptr;
   std::unique_ptr<MessageDevice> device = std::move(idle_.back());
   idle_.pop_back();
-  if (device->is_quiet()) return {*this, std::move(device)};
-  if (device->peer().is_alive()) {
-    device->peer().blame(reasons::kGarbage, "has said something between two cases, when nothing was asked");
+  return device;
+}
+
+// Who listens at a socket may serve so many connections and no more: the next case waits for one of them.
+bool DevicePool::limits_itself() {
+  const std::scoped_lock lock(mutex_);
+  is_limited_ = is_limited_ || (command_.empty() && leased_ > 1);
+  return is_limited_ && leased_ > 1;
+}
+
+void DevicePool::give_back(std::unique_ptr<MessageDevice> device) {
+  {
+    const std::scoped_lock lock(mutex_);
+    --leased_;
+    if (device != nullptr) idle_.push_back(std::move(device));
   }
-  device->peer().blame(reasons::kDiedBetweenCases, "has died between two cases");
+  returned_.notify_one();
+}
+
+DevicePool::Lease DevicePool::take() {
+  while (true) {
+    std::unique_ptr<MessageDevice> device = idle_or_waited_for();
+    try {
+      if (device == nullptr) {
+        const std::scoped_lock lock(start_mutex_);
+        return {*this, started()};
+      }
+      if (device->is_quiet()) return {*this, std::move(device)};
+      if (device->peer().is_alive()) {
+        device->peer().blame(reasons::kGarbage,
+                             "has said something between two cases, when nothing was asked");
+      }
+      device->peer().blame(reasons::kDiedBetweenCases, "has died between two cases");
+    } catch (const kernel::Error&) {
+      const bool is_start = device == nullptr;
+      const bool may_wait = is_start && limits_itself();
+      give_back(nullptr);
+      if (!may_wait) throw;
+      const std::scoped_lock lock(start_mutex_);
+      failed_starts_ = 0;
+    }
+  }
 }
 
 DevicePool::Lease::~Lease() {
-  if (device_ == nullptr || !is_reusable_) return;
-  const std::scoped_lock lock(pool_->mutex_);
-  pool_->idle_.push_back(std::move(device_));
+  if (device_ != nullptr) pool_->give_back(is_reusable_ ? std::move(device_) : nullptr);
 }
 
 }  // namespace fieldproof::iut

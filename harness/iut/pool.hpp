@@ -1,5 +1,6 @@
 #pragma once
 
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -16,7 +17,8 @@
 //
 // Contract: `take` gives a device that has said hello; the first one of a pool has also tested itself. One
 // that died or spoke while no case ran is told as Misbehaviour by the `take` that meets it, and replaced
-// after that. After kMostFailedStarts starts in a row that failed nothing is started any more.
+// after that. Where a socket serves no further connection while others are in use, a case waits for one of
+// those. After kMostFailedStarts starts in a row that failed nothing is started any more.
 namespace fieldproof::iut {
 
 class DevicePool {
@@ -57,13 +59,21 @@ class DevicePool {
  private:
   Peer open() const;
   std::unique_ptr<MessageDevice> started();
+  // Null: one is to be started. Counts as leased in either case.
+  std::unique_ptr<MessageDevice> idle_or_waited_for();
+  bool limits_itself();
+  void give_back(std::unique_ptr<MessageDevice> device);
 
   std::string uri_;
   RoleName role_;
   std::vector<std::string> command_;  // empty: who listens at the URI
   PeerLimits limits_;
-  std::mutex mutex_;
+  std::mutex mutex_;  // of what is idle and leased
+  std::condition_variable returned_;
   std::vector<std::unique_ptr<MessageDevice>> idle_;
+  std::size_t leased_ = 0;
+  bool is_limited_ = false;  // no more are opened than there are
+  std::mutex start_mutex_;   // of all below
   bool is_tested_ = false;
   unsigned failed_starts_ = 0;
   std::string last_failure_;

@@ -90,6 +90,9 @@ void AttachedNode::wire(segment::Port& line, NodeBoards& boards) {
 }
 
 void AttachedNode::set_power(bool is_on, kernel::Time now) {
+  is_supplied_ = is_on;
+  last_write_ = now;
+  driven_until_ = now;
   call(now, [&](iut::Device& device) { device.set_power(is_on, now); });
 }
 
@@ -124,6 +127,12 @@ kernel::Time AttachedNode::next_time() const {
 // A case begins without supply, and before there is a line.
 void AttachedNode::expect_supplied() const {
   if (line_ == nullptr) refuse_impossible("acts while the case begins; it has no supply yet");
+  if (!is_supplied_) refuse_impossible("acts without supply");
+}
+
+// What follows without a gap has instants that are rounded, each for itself.
+kernel::Time AttachedNode::behind_the_last(kernel::Time start) const {
+  return start < driven_until_ && driven_until_ - start <= kernel::kNanosecond ? driven_until_ : start;
 }
 
 kernel::Time AttachedNode::drive_idle(kernel::Time from, kernel::Time to) {
@@ -160,9 +169,10 @@ void AttachedNode::transmit(const iut::Transmission& transmission) {
                                   kernel::describe(transmission.driver_off), kernel::describe(length),
                                   kernel::describe(transmission.start)));
   }
-  const kernel::Time start = drive_idle(transmission.driver_on, transmission.start);
+  const kernel::Time driver_on = behind_the_last(transmission.driver_on);
+  const kernel::Time start = drive_idle(driver_on, std::max(driver_on, transmission.start));
   const kernel::Time driven = codec_.drive_characters(*line_, transmission.characters, start);
-  drive_idle(driven, std::max(driven, transmission.driver_off));
+  driven_until_ = drive_idle(driven, std::max(driven, transmission.driver_off));
 }
 
 void AttachedNode::transmit(unsigned port, line::Waveform& wave) {
@@ -174,6 +184,8 @@ void AttachedNode::transmit(unsigned port, line::Waveform& wave) {
     refuse_impossible(
         fmt::format("drives from {} to {}", kernel::describe(wave.start), kernel::describe(wave.end())));
   }
+  wave.start = behind_the_last(wave.start);
+  driven_until_ = wave.end();
   line_->drive(wave);
 }
 

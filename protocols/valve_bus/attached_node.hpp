@@ -58,6 +58,7 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   std::uint64_t read(iut::Item item, kernel::Time when) override;
   // The driver on and nothing said. Gives the end: `to`, or what rounding makes of it.
   kernel::Time drive_idle(kernel::Time from, kernel::Time to);
+  kernel::Time behind_the_last(kernel::Time start) const;
 
   NodeAttachment attachment_;
   NodeConfiguration configuration_;
@@ -67,6 +68,8 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   std::vector<iut::Character> characters_;
   kernel::Time now_{};  // as the implementation was told it
   kernel::Time last_write_{};
+  kernel::Time driven_until_{};
+  bool is_supplied_ = false;
   bool is_well_ = true;
   bool has_ended_ = false;
 };

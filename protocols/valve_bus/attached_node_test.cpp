@@ -1,6 +1,7 @@
 #include "protocols/valve_bus/attached_node.hpp"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -144,6 +145,32 @@ TEST_F(AttachedNodeTest, CaseEndsWellUnlessTheDeviceDidWrong) {
   node_.reset();
   EXPECT_EQ(device_.ends, 1);
   EXPECT_EQ(well_ended_, 1);
+}
+
+// A UART sends octet by octet; each instant is rounded for itself, here down.
+TEST_F(AttachedNodeTest, CharactersOfTheirOwnMessagesDoNotOverlap) {
+  EXPECT_EQ(
+      complaint([](iut::Bench& bench) {
+        const std::int64_t character = 11'000'000'000'000 / 375'000;
+        for (std::int64_t n = 0; n < 9; ++n) {
+          const kernel::Time start = kNow + kernel::Duration{n * 11'000'000'000'000 / 375'000};
+          bench.transmit(iut::Transmission{0, start, start, start + kernel::Duration{character}, {0x155}});
+        }
+      }),
+      "");
+  ASSERT_EQ(driven_.size(), 9U);
+  for (std::size_t n = 1; n < driven_.size(); ++n) {
+    EXPECT_GE(driven_[n].start, driven_[n - 1].end());
+    EXPECT_LE(driven_[n].start - driven_[n - 1].end(), kernel::kNanosecond);
+  }
+}
+
+TEST_F(AttachedNodeTest, NothingIsDoneWithoutSupply) {
+  device_.next = kNow;  // before it is seated: nobody asks again
+  attach();
+  node_->set_power(false, kStart);
+  EXPECT_THAT(complaint([](iut::Bench& bench) { bench.write(kValves, 1, kNow); }),
+              testing::HasSubstr("acts without supply"));
 }
 
 TEST_F(AttachedNodeTest, DeviceThatDidWrongIsNotCalledAgain) {
