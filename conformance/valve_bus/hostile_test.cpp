@@ -105,7 +105,7 @@ class HostileNode : public testing::TestWithParam<std::string> {
     const std::string uri =
         fmt::format("exec:{} {} {} read/is_answered {}", FIELDPROOF_HOSTILE_NODE, act, GetParam(), mark());
     iut::PeerLimits limits;
-    limits.call = std::chrono::milliseconds(250);
+    limits.call = std::chrono::milliseconds(1000);  // a loaded machine under a sanitizer is slow
     iut::DevicePool pool(uri, {"valve_bus", "node"}, limits);
     const auto suite =
         valve_bus_suite({[&](const ValveBusGiven::Wanted& wanted, const auto& configuration) {
