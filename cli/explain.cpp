@@ -22,8 +22,9 @@ std::string catches_text(const conformance::Entry& entry) {
     const auto found = std::find_if(known.begin(), known.end(), [&](const conformance::Deviation& deviation) {
       return deviation.role == entry.test_case->role() && deviation.name == caught.deviation;
     });
-    text += fmt::format("  {} ({}): {}\n    with the finding '{}'\n", found->name, found->mutant,
-                        found->description, caught.reason);
+    const std::string label = found->mutant.empty() ? "" : fmt::format(" ({})", found->mutant);
+    text += fmt::format("  {}{}: {}\n    with the finding '{}'\n", found->name, label, found->description,
+                        caught.reason);
   }
   return text.empty() ? "  nothing\n" : text;
 }

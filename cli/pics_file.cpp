@@ -32,7 +32,7 @@ judge::Pics::Answer answer_from(const config::Value& value, const judge::PicsIte
     case judge::PicsKind::truth:
       return value.as_bool();
     case judge::PicsKind::number:
-      return value.as_integer<std::int64_t>(0, item.most);
+      return value.as_integer<std::int64_t>(item.least, item.most);
     case judge::PicsKind::text:
       break;
   }

@@ -5,25 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "conformance/judging.hpp"
-#include "conformance/test_case.hpp"
+#include "conformance/valve_bus/bench_case.hpp"
 #include "conformance/valve_bus/host_bench.hpp"
+#include "conformance/valve_bus/sources.hpp"
 
 // The test cases for a host module of the valve bus, RH-01 to RH-35 of the catalogue of test purposes, and a
 // canary.
 namespace fieldproof::conformance {
 
-struct HostCase {
-  TestCase test_case;
-  std::function<void(HostBench&, CaseJudge&)> procedure;
-  HostNeeds needs{};
-};
+using HostCase = BenchCase<HostBench, HostNeeds>;
 
 const std::vector<HostCase>& host_cases();
-
-// One run on a bench of its own. The result has verdict, findings, measurements, seed, fingerprint and
-// virtual time; wall time is the caller's to fill.
-judge::CaseResult run_host_case(const HostCase& host_case, const HostSetting& setting);
 
 // The chapters, each in its own file.
 std::vector<HostCase> host_request_cases();

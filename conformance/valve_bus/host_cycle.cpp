@@ -8,7 +8,6 @@
 
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_expect.hpp"
-#include "conformance/valve_bus/node_cases.hpp"
 
 // What goes round: refreshes of writes, polls of many nodes; and the options that make writes safer.
 namespace fieldproof::conformance {

@@ -393,35 +393,6 @@ class StrayToldAsResponse : public Host {
   }
 };
 
-class StopBitsNotLookedAt : public Host {
-  using Host::Host;
-  HeardCharacter judged(const HeardCharacter& character) const override {
-    HeardCharacter taken = character;
-    taken.is_stop_missing = false;
-    return taken;
-  }
-};
-
-class ParityNotLookedAt : public Host {
-  using Host::Host;
-  HeardCharacter judged(const HeardCharacter& character) const override {
-    HeardCharacter taken = character;
-    taken.is_parity_wrong = false;
-    return taken;
-  }
-};
-
-class WantsNinthBit : public Host {
-  using Host::Host;
-  HeardCharacter judged(const HeardCharacter& character) const override {
-    HeardCharacter taken = character;
-    if (valve_bus::character_format(rules()).data_bits == 9 && (character.data & 0x100U) == 0) {
-      taken.is_stop_missing = true;
-    }
-    return taken;
-  }
-};
-
 // ---- what the PC is told ----
 
 class ToldTwice : public Host {

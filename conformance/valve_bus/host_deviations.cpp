@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "conformance/valve_bus/character_deviants.hpp"
 #include "conformance/valve_bus/host_deviants.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
@@ -167,9 +168,9 @@ std::vector<HostRow> host_response_rows() {
        host<KeepsStrayOctets>()},
       {"stray_told_as_response", "", "tells what nobody asked for as a response",
        host<StrayToldAsResponse>()},
-      {"stop_bits_not_looked_at", "MH17", "does not look at stop bits", host<StopBitsNotLookedAt>()},
-      {"parity_not_looked_at", "", "does not look at parity", host<ParityNotLookedAt>()},
-      {"wants_ninth_bit", "", "wants the ninth bit to be 1", host<WantsNinthBit>()},
+      {"stop_bits_not_looked_at", "MH17", "does not look at stop bits", host<StopBitIgnored<Host>>()},
+      {"parity_not_looked_at", "", "does not look at parity", host<ParityIgnored<Host>>()},
+      {"wants_ninth_bit", "", "wants the ninth bit to be 1", host<NinthBitRequired<Host>>()},
   };
 }
 

@@ -5,7 +5,6 @@
 
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_expect.hpp"
-#include "conformance/valve_bus/node_cases.hpp"
 
 // The switches that say the bit rate.
 namespace fieldproof::conformance {

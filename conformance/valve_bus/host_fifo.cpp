@@ -4,7 +4,6 @@
 
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_expect.hpp"
-#include "conformance/valve_bus/node_cases.hpp"
 
 // The FIFO between the PC and the host: order, fullness, parts of commands.
 namespace fieldproof::conformance {

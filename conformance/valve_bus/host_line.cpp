@@ -4,7 +4,6 @@
 
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_expect.hpp"
-#include "conformance/valve_bus/node_cases.hpp"
 
 // What a line does to a host: its own echo, lines that are stuck, and noise between the polls.
 namespace fieldproof::conformance {

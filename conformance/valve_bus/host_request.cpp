@@ -2,7 +2,6 @@
 
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_expect.hpp"
-#include "conformance/valve_bus/node_cases.hpp"
 
 // What the PC orders and what stands on the line for it.
 namespace fieldproof::conformance {
@@ -82,16 +81,12 @@ void undefined_commands_are_refused(HostBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<HostCase> host_request_cases() {
-  const judge::Reference form = valve_sources::own("gaps, delimiter and driver times");
-  const std::vector<std::string> of_form{"gap_in_frame", "no_delimiter", "driver_on_late",
-                                         "driver_released_early", "driver_not_released"};
   std::vector<HostCase> cases;
   cases.push_back({{.id = "valve_bus/host/request/write_is_sent_with_its_check",
                     .purpose = "RH-01",
                     .requirement = "A write of the PC goes out as ID, 0, DATA0, DATA1 and the block check, "
                                    "which the module adds, without gaps.",
                     .reference = valve_sources::paper("frame of the host; check made in the module"),
-                    .details = {{form, of_form}},
                     .stimulus = "Writes with random data.",
                     .expected = "Five octets each, at most 1.5 characters apart.",
                     .tags = {"must"},
@@ -103,7 +98,6 @@ std::vector<HostCase> host_request_cases() {
         .purpose = "RH-05",
         .requirement = "The block check of a request is the exclusive or of its four octets.",
         .reference = valve_sources::paper("block check"),
-        .details = {{form, of_form}},
         .stimulus = "A hundred thousand random reads and writes.",
         .expected = "Each has the right check.",
         .tags = {"must", "long"},
@@ -116,8 +110,7 @@ std::vector<HostCase> host_request_cases() {
         .requirement = "Commands for the IDs 1 to 99 are sent; those for 0 and 100 to 255 are "
                        "refused, and the PC is told.",
         .reference = valve_sources::paper("ID 1 to 99"),
-        .details = {{valve_sources::own("refusal is told as an error"), {"error_not_told", "error_wrong"}},
-                    {form, of_form}},
+        .details = {{valve_sources::own("refusal is told as an error"), {"error_not_told", "error_wrong"}}},
         .stimulus = "A read and a write for each of the 256 IDs.",
         .expected = "99 reads and writes on the line, an error for each other.",
         .tags = {"must"},

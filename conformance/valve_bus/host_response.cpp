@@ -4,7 +4,6 @@
 
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_expect.hpp"
-#include "conformance/valve_bus/node_cases.hpp"
 
 // What is a response, and what the PC is told of it.
 namespace fieldproof::conformance {
@@ -232,7 +231,6 @@ void the_ninth_bit_of_a_response_is_not_looked_at(HostBench& bench, CaseJudge& j
 
 std::vector<HostCase> host_response_cases() {
   const judge::Reference silence = valve_sources::own("silence of 3.5 characters ends a frame");
-  const judge::Reference again = valve_sources::own("the host polls again");
   std::vector<HostCase> cases;
   cases.push_back({{.id = "valve_bus/host/response/is_told_once_with_its_id",
                     .purpose = "RH-02",
@@ -252,7 +250,6 @@ std::vector<HostCase> host_response_cases() {
                     .requirement = "A response whose block check does not fit is refused, and the node is "
                                    "polled again.",
                     .reference = valve_sources::paper("host on a wrong block check"),
-                    .details = {{again, {"no_retry"}}},
                     .stimulus = "Responses with each of their 24 bits wrong in turn.",
                     .expected = "Nothing is told; the next poll is answered rightly, and that is told.",
                     .tags = {"must"},
@@ -265,7 +262,6 @@ std::vector<HostCase> host_response_cases() {
         .requirement = "The block check of a response is the exclusive or of DATA0 and DATA1: it fits "
                        "whenever each of its eight columns has an even number of wrong bits, and only then.",
         .reference = valve_sources::calculated("24 double errors in one column, 252 others"),
-        .details = {{again, {"no_retry"}}},
         .stimulus =
             "Responses of two equal octets; responses with two wrong bits: all 24 pairs in one column, "
             "and the 252 others.",
@@ -292,7 +288,6 @@ std::vector<HostCase> host_response_cases() {
                     .requirement = "A response has three octets, no more and no less, also when three of "
                                    "more are a valid one.",
                     .reference = valve_sources::paper("frame of the node"),
-                    .details = {{again, {"no_retry"}}},
                     .stimulus = "One and two octets of a response; responses with 1 to 12 octets of zeros "
                                 "behind and in front.",
                     .expected = "Nothing is told; the node is polled again and served.",
@@ -320,7 +315,6 @@ std::vector<HostCase> host_response_cases() {
         .requirement = "When two nodes answer at once, what the line makes of them is refused by "
                        "its check, unless they say the same.",
         .reference = valve_sources::derived("nodes in parallel on one pair"),
-        .details = {{again, {"no_retry"}}},
         .stimulus = "Mixtures of two responses whose check does not fit; two equal responses.",
         .expected = "The mixtures are not told and the node is polled again; equal ones are told.",
         .tags = {"must"},

@@ -4,7 +4,6 @@
 
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_expect.hpp"
-#include "conformance/valve_bus/node_cases.hpp"
 
 // What becomes of a read that is not answered, or wrongly, or too late.
 namespace fieldproof::conformance {

@@ -46,10 +46,10 @@ std::unique_ptr<valve_bus::NodeDevice> made(const NodeSetting& setting,
 std::vector<judge::PicsItem> node_pics_items() {
   using enum judge::PicsKind;
   return {
-      {"address", number, "what the address switches are set to, 1 to 99", 99},
+      {"address", number, "what the address switches are set to, 1 to 99", 99, {}, 1},
       {"address_switches_can_be_set", truth, "the bench can give the node another address"},
-      {"boards", number, "drive boards, 1 or 2", 2},
-      {"bit_rate", number, "bit/s on the line", kMostBitRate},
+      {"boards", number, "drive boards, 1 or 2", 2, {}, 1},
+      {"bit_rate", number, "bit/s on the line", kMostBitRate, {}, kLeastBitRate},
       {"characters", text, "character format", 0, {"P0", "P1", "P2"}},
       {"acknowledges_writes", truth, "a write is answered with what was taken"},
       {"valves_off_without_host", truth, "valves go off when no command has come for 500 ms"},
@@ -78,7 +78,7 @@ NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& 
   configuration.units = needs.units.value_or(address % 10);
   configuration.boards = needs.boards.value_or(static_cast<unsigned>(pics.number("boards", 2)));
   Rules& rules = configuration.rules;
-  rules.bit_rate = std::clamp(pics.number("bit_rate", rules.bit_rate), kLeastBitRate, kMostBitRate);
+  rules.bit_rate = pics.number("bit_rate", rules.bit_rate);
   rules.characters = needs.characters.value_or(profile_named(pics.text("characters", "P0")));
   rules.answers_writes = pics.supports("acknowledges_writes");
   if (pics.supports("valves_off_without_host")) rules.loss_limit = 500 * kernel::kMillisecond;

@@ -55,7 +55,7 @@ TEST_P(DeclaredNodes, PassAsTheyDeclare) {
     setting.volume = Volume::quick;
     setting.pics = GetParam().pics;
     for (setting.seed = 1; setting.seed <= 3; ++setting.seed) {
-      const judge::CaseResult result = run_node_case(one, setting);
+      const judge::CaseResult result = run_on_bench(one, setting);
       EXPECT_EQ(result.verdict, judge::Verdict::pass)
           << result.id << " seed " << setting.seed << ": " << result.reason
           << (result.findings.empty() ? "" : ", " + result.findings.front().actual);

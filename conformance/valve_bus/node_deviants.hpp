@@ -432,41 +432,12 @@ class DeafBehindWrite : public Node {
 
 // ---- characters ----
 
-class StopBitIgnored : public Node {
-  using Node::Node;
-  HeardCharacter judged(const HeardCharacter& character) const override {
-    HeardCharacter taken = character;
-    taken.is_stop_missing = false;
-    return taken;
-  }
-};
-
 class ParityInverted : public Node {
   using Node::Node;
   HeardCharacter judged(const HeardCharacter& character) const override {
     HeardCharacter taken = character;
     if (valve_bus::character_format(rules()).parity != line::Parity::none) {
       taken.is_parity_wrong = !character.is_parity_wrong;
-    }
-    return taken;
-  }
-};
-
-class ParityIgnored : public Node {
-  using Node::Node;
-  HeardCharacter judged(const HeardCharacter& character) const override {
-    HeardCharacter taken = character;
-    taken.is_parity_wrong = false;
-    return taken;
-  }
-};
-
-class NinthBitRequired : public Node {
-  using Node::Node;
-  HeardCharacter judged(const HeardCharacter& character) const override {
-    HeardCharacter taken = character;
-    if (valve_bus::character_format(rules()).data_bits == 9 && (character.data & 0x100U) == 0) {
-      taken.is_stop_missing = true;
     }
     return taken;
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "conformance/valve_bus/character_deviants.hpp"
 #include "conformance/valve_bus/node_deviants.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
@@ -152,10 +153,10 @@ std::vector<NodeRow> node_frame_rows() {
 std::vector<NodeRow> node_character_rows() {
   using namespace node_deviants;
   return {
-      {"stop_bit_ignored", "MN17", "does not look at stop bits", node<StopBitIgnored>()},
+      {"stop_bit_ignored", "MN17", "does not look at stop bits", node<StopBitIgnored<Node>>()},
       {"parity_inverted", "MN21", "wants the parity that is wrong", node<ParityInverted>()},
-      {"parity_ignored", "", "does not look at parity", node<ParityIgnored>()},
-      {"ninth_bit_required", "", "wants the ninth bit to be 1", node<NinthBitRequired>()},
+      {"parity_ignored", "", "does not look at parity", node<ParityIgnored<Node>>()},
+      {"ninth_bit_required", "", "wants the ninth bit to be 1", node<NinthBitRequired<Node>>()},
       {"locks_up_after_break", "", "hears nothing any more behind a break", node<LocksUpAfterBreak>()},
       {"start_bit_not_validated", "", "takes every falling edge for a start bit",
        node<StartBitNotValidated>()},

@@ -184,7 +184,6 @@ std::vector<NodeCase> node_framing_cases() {
                     .requirement = "The response of one node and the poll of node 1 behind it are not taken "
                                    "for a write, although their octets are one.",
                     .reference = valve_sources::calculated("ID 0 ID 1 1 has a block check that fits"),
-                    .details = {{silence, {"does_not_recover"}}},
                     .stimulus = "A response that begins with the node's ID and a poll of node 1, without and "
                                 "with a delimiter between them.",
                     .expected = "No valve moves; the node serves what follows.",

@@ -94,7 +94,6 @@ std::vector<NodeCase> node_immunity_cases() {
         .requirement = "Under bursts valves move and answers come only by frames that arrive with a "
                        "check that fits; behind a burst the first frame is served.",
         .reference = valve_sources::paper("block check; use in disturbed surroundings"),
-        .details = {{valve_sources::own("recovery within one frame"), {"does_not_recover"}}},
         .stimulus = "Bursts of IEC 61000-4-4, 5 and 100 kHz, both polarities, the two highest levels, "
                     "while writes and reads go on.",
         .expected = "Each move follows from a frame that arrived; wrong data whose exclusive or fits "

@@ -124,7 +124,6 @@ std::vector<NodeCase> node_read_cases() {
                     .requirement = "Each limit switch has its bit, and an answer tells the switches as they "
                                    "are when it is asked for.",
                     .reference = valve_sources::paper("limit switches at both ends of 8 cylinders"),
-                    .details = {{valve_sources::own("which switch has which bit"), {"answer_data_wrong"}}},
                     .stimulus = "Each switch alone made, each alone open.",
                     .expected = "Exactly these bits.",
                     .tags = {"must"},

@@ -184,20 +184,18 @@ std::vector<NodeCase> node_timing_cases() {
                                 {"turns_round_late", "answer_too_late"},
                                 {"turn_round_drifts", "answer_too_late"}}},
                    turn_round_is_within_its_span});
-  cases.push_back(
-      {{.id = "valve_bus/node/timing/driver_is_on_for_the_answer_only",
-        .purpose = "RN-19",
-        .requirement = "The driver comes on at least a bit before an answer and is off at most "
-                       "two bits behind it; else a node does not drive the line.",
-        .reference = valve_sources::paper("a node that does not send listens"),
-        .details = {{valve_sources::own("driver times"), {"driver_on_late", "driver_not_released"}}},
-        .stimulus = "Reads and writes.",
-        .expected = "The driver is on around the answers, and at no other time.",
-        .tags = {"must", "timing"},
-        .catches = {{"driver_not_released", "driver_not_released"},
-                    {"driver_on_late", "driver_on_late"},
-                    {"drives_now_and_then", "drives_without_being_asked"}}},
-       driver_is_on_for_the_answer_only});
+  cases.push_back({{.id = "valve_bus/node/timing/driver_is_on_for_the_answer_only",
+                    .purpose = "RN-19",
+                    .requirement = "The driver comes on at least a bit before an answer and is off at most "
+                                   "two bits behind it; else a node does not drive the line.",
+                    .reference = valve_sources::paper("a node that does not send listens"),
+                    .stimulus = "Reads and writes.",
+                    .expected = "The driver is on around the answers, and at no other time.",
+                    .tags = {"must", "timing"},
+                    .catches = {{"driver_not_released", "driver_not_released"},
+                                {"driver_on_late", "driver_on_late"},
+                                {"drives_now_and_then", "drives_without_being_asked"}}},
+                   driver_is_on_for_the_answer_only});
   cases.push_back({{.id = "valve_bus/node/timing/other_clocks_are_understood",
                     .purpose = "RN-27",
                     .requirement = "Characters that are sent up to 2 % faster or slower are understood; of "

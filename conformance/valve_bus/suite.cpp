@@ -76,8 +76,8 @@ class ValveBusSuite final : public Suite {
     Outcome outcome;
     outcome.result =
         is_of_host(test_case)
-            ? run_host_case(*host_cases_.at(test_case.id), with_recorder(host_setting(test_case, setup)))
-            : run_node_case(*node_cases_.at(test_case.id), with_recorder(node_setting(test_case, setup)));
+            ? run_on_bench(*host_cases_.at(test_case.id), with_recorder(host_setting(test_case, setup)))
+            : run_on_bench(*node_cases_.at(test_case.id), with_recorder(node_setting(test_case, setup)));
     recorder.keep(outcome);
     return outcome;
   }

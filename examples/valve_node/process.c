@@ -1,9 +1,8 @@
 /*
- * The node as a process; harness/iut/README.md describes the messages:
+ * The node as a process; harness/iut/README.md describes the messages. An argument names a deviation.
  *
  *   cc -I. -o valve_node examples/valve_node/process.c examples/valve_node/valve_node.c
  *   fieldproof run valve_bus/node/read/is_answered --iut 'exec:./valve_node'
- * An argument names a deviation.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -63,9 +62,8 @@ static void transmit(void* context, unsigned port, fieldproof_time driver_on, fi
                      fieldproof_time driver_off, const unsigned short* characters, unsigned count) {
   (void)context;
   begin_message(TRANSMIT);
-  put(port, 1), put((fieldproof_word)driver_on, 8), put((fieldproof_word)start, 8),
-      put((fieldproof_word)driver_off, 8);
-  put(count, 2);
+  put(port, 1), put((fieldproof_word)driver_on, 8), put((fieldproof_word)start, 8);
+  put((fieldproof_word)driver_off, 8), put(count, 2);
   for (; count > 0; --count) put(*characters++, 2);
   send_message();
 }

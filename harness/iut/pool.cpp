@@ -97,11 +97,28 @@ std::unique_ptr<MessageDevice> DevicePool::idle_or_waited_for() {
   return device;
 }
 
-// Who listens at a socket may serve so many connections and no more: the next case waits for one of them.
-bool DevicePool::limits_itself() {
+bool DevicePool::has_others() {
   const std::scoped_lock lock(mutex_);
-  is_limited_ = is_limited_ || (command_.empty() && leased_ > 1);
-  return is_limited_ && leased_ > 1;
+  return leased_ > 1 || !idle_.empty();
+}
+
+// Who listens at a socket may serve so many connections and no more: the next case waits for one of them.
+// Null when this is so, which who waits for its turn to start learns from the one before.
+std::unique_ptr<MessageDevice> DevicePool::started_in_turn() {
+  const std::scoped_lock lock(start_mutex_);
+  const bool had_others = has_others();
+  if (is_limited_ && had_others) return nullptr;
+  try {
+    return started();
+  } catch (const kernel::Error&) {
+    // Those that were in use when this one tried may have come back in the meantime.
+    const bool is_one_too_many = command_.empty() && (had_others || has_others());
+    if (!is_one_too_many) throw;
+    failed_starts_ = 0;
+    const std::scoped_lock lock_of_leases(mutex_);
+    is_limited_ = true;
+    return nullptr;
+  }
 }
 
 void DevicePool::give_back(std::unique_ptr<MessageDevice> device) {
@@ -118,8 +135,9 @@ DevicePool::Lease DevicePool::take() {
     std::unique_ptr<MessageDevice> device = idle_or_waited_for();
     try {
       if (device == nullptr) {
-        const std::scoped_lock lock(start_mutex_);
-        return {*this, started()};
+        if (device = started_in_turn(); device != nullptr) return {*this, std::move(device)};
+        give_back(nullptr);
+        continue;
       }
       if (device->is_quiet()) return {*this, std::move(device)};
       if (device->peer().is_alive()) {
@@ -128,12 +146,8 @@ DevicePool::Lease DevicePool::take() {
       }
       device->peer().blame(reasons::kDiedBetweenCases, "has died between two cases");
     } catch (const kernel::Error&) {
-      const bool is_start = device == nullptr;
-      const bool may_wait = is_start && limits_itself();
       give_back(nullptr);
-      if (!may_wait) throw;
-      const std::scoped_lock lock(start_mutex_);
-      failed_starts_ = 0;
+      throw;
     }
   }
 }

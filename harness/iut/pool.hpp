@@ -61,7 +61,8 @@ class DevicePool {
   std::unique_ptr<MessageDevice> started();
   // Null: one is to be started. Counts as leased in either case.
   std::unique_ptr<MessageDevice> idle_or_waited_for();
-  bool limits_itself();
+  bool has_others();
+  std::unique_ptr<MessageDevice> started_in_turn();
   void give_back(std::unique_ptr<MessageDevice> device);
 
   std::string uri_;
@@ -73,7 +74,7 @@ class DevicePool {
   std::vector<std::unique_ptr<MessageDevice>> idle_;
   std::size_t leased_ = 0;
   bool is_limited_ = false;  // no more are opened than there are
-  std::mutex start_mutex_;   // of all below
+  std::mutex start_mutex_;   // of all below; taken before mutex_
   bool is_tested_ = false;
   unsigned failed_starts_ = 0;
   std::string last_failure_;

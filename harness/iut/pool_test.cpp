@@ -196,6 +196,33 @@ TEST_F(PoolThreads, ConnectionThatIsClosedBetweenCasesIsToldOnceAndReplaced) {
   EXPECT_EQ(failure_of([&] { pool.take(); }), "");
 }
 
+// Who serves one connection lets others wait without a word. Of the cases that wait for their turn to start
+// one finds that out, and all have theirs in the end.
+TEST(SharedPoolThreads, CasesAtTheSameTimeShareTheOnlyConnection) {
+  const ScriptFolder folder;
+  const Listener listener(folder.file("s"));
+  Descriptor only;
+  std::thread server([&] {
+    only = listener.accept_and_answer({capabilities_message(), echoed_message(), unsupported_message()});
+  });
+  DevicePool pool("unix:" + listener.path(), kValveNode, {milliseconds(1'000), milliseconds(20'000)});
+  {
+    auto first = pool.take();
+    std::vector<std::thread> threads;
+    for (int n = 0; n < 3; ++n) {
+      threads.emplace_back([&] { EXPECT_EQ(failure_of([&] { pool.take().set_reusable(); }), ""); });
+    }
+    std::this_thread::sleep_for(milliseconds(1'500));
+    first.set_reusable();
+    {
+      const auto returned = std::move(first);
+    }
+    for (std::thread& thread : threads) thread.join();
+  }
+  server.join();
+  EXPECT_EQ(listener.accept_waiting(), 1U);
+}
+
 TEST(SharedPoolThreads, CasesAtTheSameTimeDoNotShareOne) {
   const Script script = Script().tests_itself().stays();
   DevicePool pool("exec:script", kValveNode, script.command(), kNoHurry);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -137,6 +138,12 @@ class Listener {
       if (::write(connection.number(), octets.data(), octets.size()) < 0) std::abort();
     }
     return connection;
+  }
+  // Takes those who have connected and wait, and tells how many there were.
+  unsigned accept_waiting() const {
+    unsigned count = 0;
+    for (pollfd ready{socket_.number(), POLLIN, 0}; ::poll(&ready, 1, 0) == 1; ++count) accept();
+    return count;
   }
   const std::string& path() const { return path_; }
 

@@ -43,7 +43,7 @@ std::string answers_text(const PicsItem& item) {
     case PicsKind::truth:
       return "true or false";
     case PicsKind::number:
-      return fmt::format("a whole number from 0 to {}", item.most);
+      return fmt::format("a whole number from {} to {}", item.least, item.most);
     case PicsKind::text:
       break;
   }

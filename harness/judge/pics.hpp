@@ -44,8 +44,9 @@ struct PicsItem {
   std::string name;
   PicsKind kind = PicsKind::truth;
   std::string meaning;
-  std::int64_t most = 0;             // of a number, which is at least 0
+  std::int64_t most = 0;             // of a number
   std::vector<std::string> words{};  // that a text may be
+  std::int64_t least = 0;            // of a number
 };
 
 // "true or false", "a whole number from 0 to 64", "\"held\" or \"cleared\"".

@@ -118,6 +118,8 @@ class HostDevice : public segment::Station {
   // Commands have been lost since power-up.
   virtual bool has_overflowed() const = 0;
   virtual HostCounters counters(std::uint8_t id) const = 0;
+  // The case is over: nothing is asked of the host any more. What it does then is still its verdict.
+  virtual void end() {}
 };
 
 }  // namespace fieldproof::valve_bus

@@ -28,10 +28,6 @@ std::string halves(unsigned count) {
   return fmt::format("{}.{} characters", count / 2, count % 2 == 0 ? 0 : 5);
 }
 
-std::string data_profile_text(DataProfile data) {
-  return data == DataProfile::boards ? "two boards of 8 valves" : "8 valves with coils A and B";
-}
-
 const std::array kRows = {
     Row{"bit_rate", [](const Rules& r) { return fmt::format("{} bit/s", r.bit_rate); }, kPaper,
         Standing::seed},
@@ -53,7 +49,6 @@ const std::array kRows = {
         Standing::seed},
     Row{"read_command", [](const Rules& r) { return fmt::format("{}", r.read_command); }, kPaper,
         Standing::seed},
-    Row{"data", [](const Rules& r) { return data_profile_text(r.data); }, kReadsAs, Standing::own},
     Row{"turn_round_span", [](const Rules& r) { return kernel::describe(r.turn_round_span); }, kOwn,
         Standing::own},
     Row{"actuation_limit", [](const Rules& r) { return kernel::describe(r.actuation_limit); }, kOwn,

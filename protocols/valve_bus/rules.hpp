@@ -25,12 +25,6 @@ enum class CharacterProfile : std::uint8_t {
   eight_bits,     // P2: start, 8 data bits, stop
 };
 
-// What the two octets of data mean at a node.
-enum class DataProfile : std::uint8_t {
-  boards,            // DATA0: valves 1..8 of drive board 0, DATA1: valves 9..16 of board 1
-  double_solenoids,  // DATA0: coils A of 8 valves with two coils, DATA1: their coils B
-};
-
 struct Rules {
   // Line.
   std::int64_t bit_rate = 375'000;  // bit/s
@@ -45,7 +39,6 @@ struct Rules {
   unsigned last_address = 99;
   unsigned write_command = 0;
   unsigned read_command = 1;
-  DataProfile data = DataProfile::boards;
 
   // Node. Times begin with the delimiter behind the command.
   kernel::Duration turn_round_span = 2 * kernel::kMillisecond;  // within which a response begins

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/judging.hpp"
+#include "conformance/test_case.hpp"
+#include "conformance/valve_bus/sources.hpp"
+
+// What the cases of both roles have in common: a procedure on a bench that is made for one run, chapters of
+// cases, and a canary behind them.
+namespace fieldproof::conformance {
+
+template <typename Bench, typename Needs>
+struct BenchCase {
+  TestCase test_case;
+  std::function<void(Bench&, CaseJudge&)> procedure;
+  Needs needs{};
+};
+
+// One run on a bench of its own. The result has verdict, findings, measurements, seed, fingerprint and
+// virtual time; wall time is the caller's to fill.
+template <typename Bench, typename Needs, typename Setting>
+judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting& setting) {
+  // Made within the procedure: what an implementation does when it is powered is its verdict, too.
+  std::optional<Bench> bench;
+  CaseJudge judge(one.test_case);
+  judge.use_clock([&] { return bench ? bench->now() : kernel::kStart; });
+  judge.use_decode([&] { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
+  judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
+    bench.emplace(one.needs, setting);
+    one.procedure(*bench, j);
+    bench->line_watch().judge(j);
+    bench->finish();
+  });
+  result.seed = setting.seed;
+  if (!bench) return result;
+  result.fingerprint = bench->segment().trace().fingerprint();
+  result.virtual_time = bench->now() - kernel::kStart;
+  result.planned_hits = bench->planned_hits();
+  return result;
+}
+
+// The cases of the chapters, each resting on these details too.
+template <typename Case>
+std::vector<Case> cases_of(std::span<std::vector<Case> (*const)()> chapters,
+                           const std::vector<Detail>& details) {
+  std::vector<Case> all;
+  for (const auto chapter : chapters) {
+    for (Case& one : chapter()) {
+      rest_also_on(one.test_case, details);
+      all.push_back(std::move(one));
+    }
+  }
+  return all;
+}
+
+// Applies only where the implementation talks in this character format, or has not said in which.
+inline std::function<std::optional<std::string>(const judge::Pics&)> for_characters(std::string profile) {
+  return [profile = std::move(profile)](const judge::Pics& pics) -> std::optional<std::string> {
+    if (pics.text("characters", profile) == profile) return std::nullopt;
+    return "the implementation does not talk in characters " + profile;
+  };
+}
+
+// Asks for what no implementation of the role does.
+inline TestCase canary_of(const std::string& role, std::string expected) {
+  TestCase test_case;
+  test_case.id = "valve_bus/" + role + "/canary/a_failure_is_seen";
+  test_case.purpose = "canary";
+  test_case.requirement = "a failure of this suite is seen";
+  test_case.reference = valve_sources::own("rules of the suite");
+  test_case.stimulus = "A read.";
+  test_case.expected = "The verdict is fail: " + std::move(expected);
+  test_case.tags = {"canary"};
+  return test_case;
+}
+
+}  // namespace fieldproof::conformance

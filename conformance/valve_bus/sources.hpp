@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "conformance/test_case.hpp"
+#include "harness/judge/finding.hpp"
+
+// What the cases of the valve bus rest on. The paper says little more than the frames; silences, times and
+// character formats are this project's own choice, and almost every case judges some of them on its way.
+namespace fieldproof::conformance {
+
+namespace valve_sources {
+judge::Reference paper(std::string place);       // the paper that describes the bus
+judge::Reference calculated(std::string place);  // from its block check
+judge::Reference own(std::string place);         // where the paper is silent
+judge::Reference derived(std::string place);     // follows from the paper
+}  // namespace valve_sources
+
+// The reasons of node_expect and host_expect that rest on less than the paper, whatever a case is about.
+const std::vector<Detail>& node_details();
+const std::vector<Detail>& host_details();
+
+// Adds the details to the case, but for reasons that details of its own are about.
+void rest_also_on(TestCase& test_case, const std::vector<Detail>& details);
+
+}  // namespace fieldproof::conformance
