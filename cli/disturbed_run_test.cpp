@@ -24,7 +24,7 @@ conformance::CaseRun run_under(const std::string& plan, std::uint64_t seed = 1) 
   setup.volume = conformance::Volume::quick;
   setup.network_file = (kSourceFolder / "examples/paper.json").string();
   setup.plan_file = plan;
-  return conformance::run_case(entries.front(), setup, conformance::KeptRecordings::all);
+  return conformance::run_case(entries.front(), setup, {conformance::KeptRecordings::all});
 }
 
 const std::string kExample = (kSourceFolder / "examples/disturbed_line.plan.json").string();

@@ -14,13 +14,15 @@ int exit_code(const reports::Run& run, const ExitRules& rules) {
       });
   if (has_internal_error) return kInternal;
   if (rules.signal != 0) return kSignalBase + rules.signal;
-  const reports::Counts counts = reports::count(run);
-  const std::size_t doubtful = counts.of(Verdict::inconclusive);
-  std::size_t failed = counts.of(Verdict::fail) + counts.of(Verdict::error);
-  if (rules.is_strict) failed += doubtful + counts.of(Verdict::warn);
+  const auto count_of = [&](Verdict verdict) {
+    return std::ranges::count(run.cases, verdict, reports::counted_verdict);
+  };
+  const auto doubtful = count_of(Verdict::inconclusive);
+  auto failed = count_of(Verdict::fail) + count_of(Verdict::error);
+  if (rules.is_strict) failed += doubtful + count_of(Verdict::warn);
   if (failed > 0) return kFailed;
-  if (rules.differs) return kDiffers;
-  if (counts.judged == 0) return kNothingJudged;
+  if (rules.differs || rules.is_stale) return kDiffers;
+  if (reports::count(run).judged == 0) return kNothingJudged;
   if ((doubtful > 0 || rules.is_incomplete) && !rules.allows_inconclusive) return kInconclusive;
   return kAllAsExpected;
 }

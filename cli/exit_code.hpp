@@ -8,7 +8,7 @@ namespace fieldproof::cli {
 inline constexpr int kAllAsExpected = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kInconclusive = 2;
-inline constexpr int kDiffers = 3;  // a fingerprint differed
+inline constexpr int kDiffers = 3;  // a fingerprint differed, or the baseline is stale
 inline constexpr int kNothingJudged = 4;
 inline constexpr int kUsage = 64;
 inline constexpr int kInternal = 70;
@@ -19,6 +19,7 @@ struct ExitRules {
   bool is_strict = false;  // warn and inconclusive count as fail
   bool allows_inconclusive = false;
   bool is_incomplete = false;  // not all that was selected is judged; counts as inconclusive
+  bool is_stale = false;       // the baseline says what is not so any more
   bool differs = false;        // a fingerprint or a stored verdict was not met again
   int signal = 0;
 };

@@ -93,7 +93,8 @@ std::vector<Row> rows_of(Session& session) {
   }
   conformance::Setup setup;
   if (session.settings.is_set("pics")) setup.pics = load_pics(session.settings.text("pics"), items);
-  for (const conformance::Entry& entry : session.catalogue.select(session.operands)) {
+  for (const conformance::Entry& entry :
+       shard_of(session.settings, session.catalogue.select(session.operands))) {
     rows.push_back(row_of(entry, setup));
   }
   return rows;

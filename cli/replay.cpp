@@ -93,7 +93,7 @@ int replay(Session& session) {
   reports::Run run{identity_for(session, stored), {}};
   session.terminal.print(reports::run_header(run.identity, manifest_of(session, 1)));
   const conformance::CaseRun done =
-      conformance::run_case(entry, stored.setup, conformance::KeptRecordings::all);
+      conformance::run_case(entry, stored.setup, {conformance::KeptRecordings::all});
   show_recording(session, done);
   const judge::CaseResult& result = done.outcome.result;
   run.cases = {result};

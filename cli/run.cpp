@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "cli/baseline.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
 #include "cli/page_catalogue.hpp"
+#include "cli/reset_hook.hpp"
 #include "cli/run_book.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/verbs.hpp"
@@ -23,7 +25,8 @@ using judge::Verdict;
 
 constexpr const char* kConfiguration = "configuration.json";
 
-bool is_failure(Verdict verdict) {
+bool is_failure(const judge::CaseResult& result) {
+  const Verdict verdict = reports::counted_verdict(result);
   return verdict == Verdict::fail || verdict == Verdict::error;
 }
 
@@ -47,7 +50,9 @@ std::vector<conformance::Entry> failed_entries(Session& session) {
   take_over_configuration(session, directory);
   std::vector<std::string> failed;
   for (const judge::CaseResult& result : directory.load().run.cases) {
-    if (is_failure(result.verdict) || result.verdict == Verdict::inconclusive) failed.push_back(result.id);
+    if (is_failure(result) || reports::counted_verdict(result) == Verdict::inconclusive) {
+      failed.push_back(result.id);
+    }
   }
   session.terminal.log(
       fmt::format("{} of the cases of {} did not pass", failed.size(), directory.path().string()));
@@ -66,8 +71,28 @@ std::vector<conformance::Entry> failed_entries(Session& session) {
   return entries;
 }
 
+conformance::Manner manner_from(const Settings& settings) {
+  constexpr unsigned kMostConfirmations = 1000;
+  conformance::Manner manner;
+  manner.keeps_recordings = static_cast<conformance::KeptRecordings>(settings.choice("record"));
+  manner.confirmations = static_cast<unsigned>(settings.number("confirm", 0, kMostConfirmations));
+  if (settings.is_set("reset")) manner.reset = reset_hook(settings.text("reset"));
+  return manner;
+}
+
+// A thing that is reset between two cases is one thing.
+unsigned jobs_of(const Settings& settings) {
+  return settings.is_set("reset") ? 1 : jobs_from(settings);
+}
+
+std::optional<Baseline> baseline_from(const Session& session) {
+  if (!session.settings.is_set("baseline")) return std::nullopt;
+  return Baseline::load(session.settings.text("baseline"), session.catalogue, today_utc());
+}
+
 struct Prepared {
   conformance::Setup setup;
+  std::optional<Baseline> baseline;
   std::unique_ptr<RunBook> book;
 };
 
@@ -107,8 +132,10 @@ Prepared prepare_resumed(Session& session) {
     refuse_resume(directory, "it has its selection already, leave out the selectors");
   take_over_configuration(session, directory);
   session.operands = stored.run.identity.selectors;
-  const std::vector<conformance::Entry> selected = session.catalogue.select(session.operands);
-  Prepared prepared{setup_from(session.settings, session.catalogue, selected), nullptr};
+  const std::vector<conformance::Entry> selected =
+      shard_of(session.settings, session.catalogue.select(session.operands));
+  Prepared prepared{setup_from(session.settings, session.catalogue, selected), baseline_from(session),
+                    nullptr};
   const reports::RunIdentity now = identity_of(session, prepared.setup, selected.size());
   check_same_run(directory, stored.run.identity, now);
   session.terminal.log(
@@ -124,18 +151,20 @@ Prepared prepare(Session& session) {
     if (is_failed_only) session.settings.refuse("failed", "goes not with --resume; give one of them");
     return prepare_resumed(session);
   }
+  if (is_failed_only && session.settings.is_set("shard")) {
+    session.settings.refuse("shard", "goes not with --failed; give one of them");
+  }
+  // A stored run that was a part of a whole has failed in this part only.
   const std::vector<conformance::Entry> selected =
-      is_failed_only ? failed_entries(session) : session.catalogue.select(session.operands);
-  Prepared prepared{setup_from(session.settings, session.catalogue, selected), nullptr};
+      is_failed_only ? failed_entries(session)
+                     : shard_of(session.settings, session.catalogue.select(session.operands));
+  Prepared prepared{setup_from(session.settings, session.catalogue, selected), baseline_from(session),
+                    nullptr};
   reports::RunIdentity identity = identity_of(session, prepared.setup, selected.size());
-  prepared.book = std::make_unique<RunBook>(session.settings.text("out"),
-                                            manifest_of(session, jobs_from(session.settings)),
-                                            std::move(identity), selected, session.settings.as_file());
+  prepared.book =
+      std::make_unique<RunBook>(session.settings.text("out"), manifest_of(session, jobs_of(session.settings)),
+                                std::move(identity), selected, session.settings.as_file());
   return prepared;
-}
-
-conformance::KeptRecordings kept_recordings(const Settings& settings) {
-  return static_cast<conformance::KeptRecordings>(settings.choice("record"));
 }
 
 // Judges what is open and tells each verdict after it is stored. Answers why the run is not complete.
@@ -147,10 +176,13 @@ class Judging {
     conformance::Plan plan;
     plan.entries = prepared_.book->open_cases();
     plan.setup = prepared_.setup;
-    plan.jobs = jobs_from(session_.settings);
-    plan.keeps_recordings = kept_recordings(session_.settings);
+    plan.jobs = jobs_of(session_.settings);
+    plan.manner = manner_from(session_.settings);
     plan.stop = interruption.token();
-    plan.on_case = [this](conformance::CaseRun&& done) { return on_case(done); };
+    plan.on_case = [this](conformance::CaseRun&& done) {
+      if (prepared_.baseline) prepared_.baseline->mark(done.outcome.result);
+      return on_case(done);
+    };
     plan.on_progress = [this](std::size_t finished) { session_.terminal.progress(finished); };
     session_.terminal.begin_progress(plan.entries.size(), "cases");
     const std::size_t delivered = conformance::run(plan);
@@ -177,7 +209,7 @@ class Judging {
       session_.terminal.log(
           fmt::format("{} did not repeat: its second run has another fingerprint", result.id));
     }
-    if (!session_.settings.is_set("fail-fast") || !is_failure(result.verdict)) return true;
+    if (!session_.settings.is_set("fail-fast") || !is_failure(result)) return true;
     stopped_by_ = result.id;
     return false;
   }
@@ -228,7 +260,7 @@ void write_copies(const Session& session, const RunBook& book) {
 }  // namespace
 
 int run(Session& session) {
-  kept_recordings(session.settings);  // refuses before anything is stored
+  manner_from(session.settings);  // refuses before anything is stored
   check_copies(session.settings);
   const Interruption interruption(session.settings.duration("max-time"));
   Prepared prepared = prepare(session);
@@ -247,7 +279,9 @@ int run(Session& session) {
     write_copies(session, book);
     throw;
   }
+  if (prepared.baseline) book.tell_stale(prepared.baseline->stale(book.run()));
   ExitRules rules;
+  rules.is_stale = !book.run().identity.stale_expectations.empty();
   rules.is_strict = session.settings.is_set("strict");
   rules.allows_inconclusive = session.settings.is_set("allow-inconclusive");
   rules.differs = judging.has_differed();

@@ -36,6 +36,10 @@ class RunBook {
   std::vector<conformance::Entry> open_cases() const;
 
   void add(const conformance::CaseRun& done);
+  // What the baseline of expected failures says and the run does not show.
+  void tell_stale(std::vector<std::string> sentences) {
+    run_.identity.stale_expectations = std::move(sentences);
+  }
   void close(const std::string& incomplete_because, int exit_code, const reports::JunitOptions& options);
 
  private:

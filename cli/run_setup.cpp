@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <charconv>
 #include <chrono>
 #include <ctime>
 #include <limits>
@@ -62,6 +63,26 @@ conformance::Setup setup_from(const Settings& settings, const conformance::Catal
 
 unsigned jobs_from(const Settings& settings) {
   return static_cast<unsigned>(settings.number("jobs", 1, kMostJobs));
+}
+
+std::vector<conformance::Entry> shard_of(const Settings& settings, std::vector<conformance::Entry> selected) {
+  if (!settings.is_set("shard")) return selected;
+  const std::string written = settings.text("shard");
+  unsigned number = 0;
+  unsigned count = 0;
+  const char* const last = written.data() + written.size();
+  const auto [slash, first_failure] = std::from_chars(written.data(), last, number);
+  bool is_good = first_failure == std::errc{} && slash != last && *slash == '/';
+  if (is_good) {
+    const auto [end, failure] = std::from_chars(slash + 1, last, count);
+    is_good = failure == std::errc{} && end == last && number >= 1 && number <= count;
+  }
+  if (!is_good) {
+    settings.refuse("shard", fmt::format("'{}' is no part of a selection; write for example 2/4", written));
+  }
+  std::vector<conformance::Entry> shard;
+  for (std::size_t at = number - 1; at < selected.size(); at += count) shard.push_back(selected[at]);
+  return shard;
 }
 
 std::string suite_version(const conformance::Catalogue& catalogue) {

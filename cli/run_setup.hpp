@@ -20,6 +20,10 @@ conformance::Setup setup_from(const Settings& settings, const conformance::Catal
 
 unsigned jobs_from(const Settings& settings);
 
+// What `--shard I/N` leaves of a selection: each N-th entry from the I-th on. All N are the whole, and each
+// is part of one only.
+std::vector<conformance::Entry> shard_of(const Settings& settings, std::vector<conformance::Entry> selected);
+
 reports::RunIdentity identity_of(const Session& session, const conformance::Setup& setup,
                                  std::size_t selected);
 reports::Manifest manifest_of(const Session& session, unsigned jobs);

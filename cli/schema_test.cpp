@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/baseline.hpp"
 #include "cli/matrix_text.hpp"
 #include "cli/options.hpp"
 #include "cli/pics_file.hpp"
@@ -184,6 +185,28 @@ TEST_F(Schemas, OfAPics) {
                 bad(R"({"items": {"outputs_while_outgoing_bus_is_reset": "clear"}})"),
                 bad(R"({"items": {}, "more": 1})")},
                [](const fs::path& file) { load_pics(file, catalogue().pics_items()); });
+}
+
+TEST_F(Schemas, OfABaseline) {
+  const std::string id = catalogue().entries().front().test_case->id;
+  const auto with = [&](const std::string& rest) {
+    return R"({"expected": [{"case": ")" + id + "\"" + rest + "}]}";
+  };
+  expect_alike(
+      "cli/baseline.schema.json",
+      {good(R"({"expected": []})"), bad("{}"), good(with(R"(, "reason": "r", "expires": "2027-03-31")")),
+       good(with(R"(, "reason": "r", "expires": "2028-02-29", "finding": "late")")),
+       bad(with(R"(, "expires": "2027-03-31")")), bad(with(R"(, "reason": "r")")),
+       bad(with(R"(, "reason": "", "expires": "2027-03-31")")),
+       bad(with(R"(, "reason": "r", "expires": "2027-13-31")")),
+       bad(with(R"(, "reason": "r", "expires": "31.3.2027")")),
+       bad_to_the_reader_only(with(R"(, "reason": "r", "expires": "2027-02-29")")),
+       bad(with(R"(, "reason": "r", "expires": "2027-03-31", "until": 1)")),
+       bad_to_the_reader_only(R"({"expected": [{"case": "a/b", "reason": "r", "expires": "2027-03-31"}]})")},
+      [](const fs::path& file) {
+        using namespace std::chrono;
+        Baseline::load(file, catalogue(), 2026y / November / 22d);
+      });
 }
 
 nlohmann::json schema_of(const char* name) {

@@ -50,9 +50,9 @@ std::string told(const judge::CaseResult& result) {
 // The first line in which two recordings differ, or where the shorter one ends.
 std::string first_divergence(const conformance::Entry& entry, const conformance::Setup& setup) {
   const auto once =
-      conformance::run_case(entry, setup, conformance::KeptRecordings::all).outcome.recording.lines();
+      conformance::run_case(entry, setup, {conformance::KeptRecordings::all}).outcome.recording.lines();
   const auto again =
-      conformance::run_case(entry, setup, conformance::KeptRecordings::all).outcome.recording.lines();
+      conformance::run_case(entry, setup, {conformance::KeptRecordings::all}).outcome.recording.lines();
   const auto [a, b] = std::mismatch(once.begin(), once.end(), again.begin(), again.end());
   if (a == once.end() && b == again.end()) return "  two further runs with their recordings kept are equal\n";
   const auto line = [](auto at, auto end) {

@@ -52,13 +52,15 @@ std::optional<std::string> not_applicable(const Entry& entry, const Setup& setup
   return pics ? entry.test_case->not_applicable(*pics) : std::nullopt;
 }
 
-Outcome internal_error(const TestCase& test_case, std::string_view what) {
+// A verdict about the run of a case, not about the implementation.
+Outcome of_the_bench(const TestCase& test_case, Verdict verdict, std::string_view reason,
+                     std::string_view requirement, std::string_view what) {
   Outcome outcome;
-  outcome.result = blank_result(test_case, Verdict::error, std::string(kInternalError));
+  outcome.result = blank_result(test_case, verdict, std::string(reason));
   judge::Finding finding;
-  finding.verdict = Verdict::error;
-  finding.reason = kInternalError;
-  finding.requirement = "the bench runs a case to its end";
+  finding.verdict = verdict;
+  finding.reason = reason;
+  finding.requirement = requirement;
   finding.reference = {.source = "fieldproof itself", .clause = "", .standing = judge::Standing::own};
   finding.expected = {"a verdict about the implementation"};
   finding.actual = what;
@@ -66,10 +68,20 @@ Outcome internal_error(const TestCase& test_case, std::string_view what) {
   return outcome;
 }
 
-Outcome guarded_run(const Entry& entry, const Setup& setup) {
+Outcome internal_error(const TestCase& test_case, std::string_view what) {
+  return of_the_bench(test_case, Verdict::error, kInternalError, "the bench runs a case to its end", what);
+}
+
+Outcome guarded_run(const Entry& entry, const Setup& setup, const Manner& manner) {
   const kernel::CheckContext context(
       [&] { return fmt::format("case {}, seed {}", entry.test_case->id, setup.seed); });
   try {
+    if (manner.reset) {
+      if (const auto obstacle = manner.reset(*entry.test_case)) {
+        return of_the_bench(*entry.test_case, Verdict::inconclusive, kResetFailed,
+                            "the implementation is reset before a case", *obstacle);
+      }
+    }
     return entry.suite->run(*entry.test_case, setup);
   } catch (const kernel::Error&) {
     throw;
@@ -91,14 +103,38 @@ std::uint64_t microseconds_since(std::chrono::steady_clock::time_point begin) {
 
 // The second run of a case, this time with its trace: keeping the trace of every passing case would cost more
 // than running the few others twice.
-void record_again(CaseRun& done) {
+void record_again(CaseRun& done, const Manner& manner) {
   Setup recording = done.setup;
   recording.record = true;
-  Outcome again = guarded_run(done.entry, recording);
+  Outcome again = guarded_run(done.entry, recording, manner);
   done.is_repeatable = again.result.fingerprint == done.outcome.result.fingerprint &&
                        again.result.verdict == done.outcome.result.verdict &&
                        again.result.reason == done.outcome.result.reason;
   done.outcome.recording = std::move(again.recording);
+}
+
+// A failure of real parts may be one of the moment: what does not come again each time is a doubt. All that
+// was seen of it is kept.
+void confirm(CaseRun& done, const Manner& manner) {
+  judge::CaseResult& first = done.outcome.result;
+  for (unsigned n = 1; n <= manner.confirmations; ++n) {
+    const judge::CaseResult again = guarded_run(done.entry, done.setup, manner).result;
+    if (again.verdict == first.verdict && again.reason == first.reason) continue;
+    const std::string what =
+        fmt::format("it failed with '{}', and its repetition {} gave {}{}", first.reason, n,
+                    judge::name(again.verdict), again.reason.empty() ? "" : ", '" + again.reason + "'");
+    Outcome doubt = of_the_bench(*done.entry.test_case, Verdict::inconclusive, kNotConfirmed,
+                                 "a failure comes again when its case is repeated", what);
+    for (judge::Finding& finding : first.findings) finding.verdict = Verdict::inconclusive;
+    first.findings.insert(first.findings.begin(), std::move(doubt.result.findings.front()));
+    first.verdict = Verdict::inconclusive;
+    first.reason = kNotConfirmed;
+    return;
+  }
+}
+
+bool is_failure(Verdict verdict) {
+  return verdict == Verdict::fail || verdict == Verdict::error;
 }
 
 }  // namespace
@@ -107,17 +143,18 @@ std::uint64_t case_seed(std::uint64_t run_seed, std::string_view id) {
   return kernel::Random(run_seed).split(id).seed();
 }
 
-CaseRun run_case(const Entry& entry, const Setup& run_setup, KeptRecordings keeps_recordings) {
+CaseRun run_case(const Entry& entry, const Setup& run_setup, const Manner& manner) {
   CaseRun done{entry, run_setup, {}, true};
   done.setup.seed = case_seed(run_setup.seed, entry.test_case->id);
-  done.setup.record = keeps_recordings == KeptRecordings::all;
+  done.setup.record = manner.keeps_recordings == KeptRecordings::all;
   const auto begin = std::chrono::steady_clock::now();
   if (auto reason = not_applicable(entry, done.setup)) {
     done.outcome.result = blank_result(*entry.test_case, Verdict::not_applicable, std::move(*reason));
   } else {
-    done.outcome = guarded_run(entry, done.setup);
-    if (keeps_recordings == KeptRecordings::failed && needs_recording(done.outcome.result.verdict))
-      record_again(done);
+    done.outcome = guarded_run(entry, done.setup, manner);
+    if (manner.keeps_recordings == KeptRecordings::failed && needs_recording(done.outcome.result.verdict))
+      record_again(done, manner);
+    if (is_failure(done.outcome.result.verdict)) confirm(done, manner);
   }
   done.outcome.result.seed = done.setup.seed;
   done.outcome.result.wall_time_us = microseconds_since(begin);
@@ -139,7 +176,7 @@ std::size_t run(const Plan& plan) {
   work.count = plan.entries.size();
   work.threads = plan.jobs;
   work.stop = plan.stop;
-  work.work = [&](std::size_t i) { return run_case(plan.entries[i], plan.setup, plan.keeps_recordings); };
+  work.work = [&](std::size_t i) { return run_case(plan.entries[i], plan.setup, plan.manner); };
   work.deliver = [&](std::size_t, CaseRun&& done) { return plan.on_case(std::move(done)); };
   work.idle = plan.on_progress;
   return work.run();

@@ -3,14 +3,16 @@
 //
 // Contract: the seed of a case depends on the run's seed and the id only, so a case repeats alone as it ran
 // in the whole. A case that does not pass is run a second time with its trace kept when `keeps_recordings` is
-// `failed`; the two fingerprints must agree, and `is_repeatable` says whether they did. kernel::Error of a
-// suite (a setup that cannot be served) ends the run; any other exception, a broken invariant too, is the
-// verdict `error` with the reason `internal_error` of that case and the run goes on: one defect of the bench
-// must not cost the results of a night.
+// `failed`; the two fingerprints must agree, and `is_repeatable` says whether they did. With `confirmations`
+// a failure that does not come again each time is inconclusive, `not_confirmed`. kernel::Error of a suite (a
+// setup that cannot be served) ends the run; any other exception, a broken invariant too, is the verdict
+// `error` with the reason `internal_error` of that case and the run goes on: one defect of the bench must not
+// cost the results of a night.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string_view>
@@ -21,6 +23,8 @@
 namespace fieldproof::conformance {
 
 inline constexpr std::string_view kInternalError = "internal_error";
+inline constexpr std::string_view kNotConfirmed = "not_confirmed";
+inline constexpr std::string_view kResetFailed = "reset_failed";
 
 std::uint64_t case_seed(std::uint64_t run_seed, std::string_view id);
 
@@ -33,11 +37,19 @@ struct CaseRun {
   bool is_repeatable = true;
 };
 
+// How a case is run, besides what decides its outcome in virtual time.
+struct Manner {
+  KeptRecordings keeps_recordings = KeptRecordings::none;
+  unsigned confirmations = 0;  // how often a failure must come again
+  // Called before each run of a case, to bring what is real into its first state. Gives why it could not.
+  std::function<std::optional<std::string>(const TestCase&)> reset{};
+};
+
 struct Plan {
   std::vector<Entry> entries;
   Setup setup;  // `seed` is the seed of the run
   unsigned jobs = 1;
-  KeptRecordings keeps_recordings = KeptRecordings::none;
+  Manner manner;
   std::stop_token stop;
   // Receives each case in its turn; false ends the run after it.
   std::function<bool(CaseRun&&)> on_case;
@@ -47,8 +59,7 @@ struct Plan {
 
 // One case, never throwing anything but kernel::Error. The verdict is not-applicable without running anything
 // when the PICS of the setup exclude the case, or when implementations are assigned to other roles only.
-CaseRun run_case(const Entry& entry, const Setup& run_setup,
-                 KeptRecordings keeps_recordings = KeptRecordings::none);
+CaseRun run_case(const Entry& entry, const Setup& run_setup, const Manner& manner = {});
 
 // Throws the kernel::Error of a setup that cannot be served, before anything is run or stored. Each role of
 // each protocol is asked once, by its first case that applies.

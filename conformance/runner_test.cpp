@@ -189,9 +189,9 @@ TEST(Runner, CaseOfARoleThatNobodyWasAssignedToIsNotApplicable) {
 
 TEST(Runner, FailedCaseIsRecordedByASecondRun) {
   const Catalogue catalogue = twelve_cases();
-  const CaseRun passed = run_case(catalogue.entries()[0], {}, KeptRecordings::failed);
+  const CaseRun passed = run_case(catalogue.entries()[0], {}, {KeptRecordings::failed});
   EXPECT_TRUE(passed.outcome.recording.lines().empty());
-  const CaseRun failed = run_case(catalogue.entries()[3], {}, KeptRecordings::failed);
+  const CaseRun failed = run_case(catalogue.entries()[3], {}, {KeptRecordings::failed});
   EXPECT_EQ(failed.outcome.recording.lines(),
             (std::vector<std::string>{"0 s  a  first = 1", "0 s  a  fault: second"}));
   EXPECT_TRUE(failed.is_repeatable);
@@ -204,7 +204,7 @@ TEST(Runner, CaseThatDoesNotRepeatIsTold) {
     outcome.result.fingerprint = ++*calls;
     return outcome;
   });
-  EXPECT_FALSE(run_case(catalogue.entries().front(), {}, KeptRecordings::failed).is_repeatable);
+  EXPECT_FALSE(run_case(catalogue.entries().front(), {}, {KeptRecordings::failed}).is_repeatable);
 }
 
 }  // namespace

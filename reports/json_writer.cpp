@@ -53,6 +53,7 @@ Json identity_to_json(const RunIdentity& identity) {
           {"network_hash", as_utf8(identity.network_hash)},
           {"pics_hash", as_utf8(identity.pics_hash)},
           {"caveats", strings_to_json(identity.caveats)},
+          {"stale_expectations", strings_to_json(identity.stale_expectations)},
           {"selectors", strings_to_json(identity.selectors)},
           {"implementations", std::move(implementations)},
           {"reproduce_options", as_utf8(identity.reproduce_options)},
@@ -70,7 +71,8 @@ Json counts_to_json(const Counts& counts) {
   return {{"selected", counts.selected},
           {"judged", counts.judged},
           {"not_run", counts.not_run()},
-          {"by_verdict", std::move(by_verdict)}};
+          {"by_verdict", std::move(by_verdict)},
+          {"expected", counts.expected}};
 }
 
 Json planned_faults_to_json(const std::vector<PlannedFault>& faults) {
@@ -143,6 +145,9 @@ RunIdentity identity_from(const Value& value) {
     identity.network_hash = text_in(object, "network_hash");
     if (const auto hash = object.optional("pics_hash")) identity.pics_hash = hash->as_string();
     if (const auto caveats = object.optional("caveats")) identity.caveats = judge::texts_from(*caveats);
+    if (const auto stale = object.optional("stale_expectations")) {
+      identity.stale_expectations = judge::texts_from(*stale);
+    }
     identity.selectors = judge::texts_from(object.required("selectors"));
     identity.implementations = implementations_from(object.required("implementations"));
     identity.reproduce_options = text_in(object, "reproduce_options");

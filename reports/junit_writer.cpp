@@ -1,6 +1,7 @@
 #include "reports/junit_writer.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 #include <utility>
@@ -37,6 +38,11 @@ Outcome outcome_of(Verdict verdict, const JunitOptions& options) {
       break;
   }
   return Outcome::error;
+}
+
+Outcome outcome_of(const CaseResult& result, const JunitOptions& options) {
+  const bool is_expected = counted_verdict(result) != result.verdict;
+  return is_expected ? Outcome::skipped : outcome_of(result.verdict, options);
 }
 
 // What a Char of XML 1.0 may be.
@@ -128,7 +134,7 @@ struct Totals {
   std::uint64_t wall_time_us = 0;
 
   void add(const CaseResult& result, const JunitOptions& options) {
-    add(outcome_of(result.verdict, options));
+    add(outcome_of(result, options));
     wall_time_us += result.wall_time_us;
   }
 
@@ -164,6 +170,7 @@ std::string properties(const RunIdentity& identity, const CaseResult& result) {
 
 std::string message_of(const CaseResult& result) {
   if (result.verdict == Verdict::none) return "the case was not judged";
+  if (counted_verdict(result) != result.verdict) return "expected: " + result.expected_because;
   if (result.verdict == Verdict::inconclusive) return "inconclusive: " + result.reason;
   return result.reason;
 }
@@ -184,7 +191,7 @@ std::string test_case(const RunIdentity& identity, const CaseResult& result, con
       fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{}\">\n", attribute(names.classname),
                   attribute(names.name), seconds(result.wall_time_us));
   out += properties(identity, result);
-  const Outcome outcome = outcome_of(result.verdict, options);
+  const Outcome outcome = outcome_of(result, options);
   out += outcome_element(outcome, message_of(result), name(result.verdict), finding_text(identity, result));
   if (result.verdict == Verdict::warn && outcome == Outcome::passed) {
     out += "      <system-out>" + cdata(finding_text(identity, result)) + "</system-out>\n";
@@ -213,17 +220,42 @@ std::string timestamp(const Manifest& manifest) {
   return utc.empty() ? "" : fmt::format(" timestamp=\"{}\"", attribute(utc));
 }
 
-// The suite of one case that says that the others are not all.
-std::string incompleteness_suite(const Run& run, const Manifest& manifest, const Totals& totals,
-                                 Outcome outcome) {
-  const Counts counts = count(run);
-  const std::string text = fmt::format("the run is incomplete: {}; {} of {} selected cases were not judged",
-                                       run.identity.incomplete_because, counts.not_run(), counts.selected);
+// What is wrong with a run that none of its cases tells; a testcase of the suite fieldproof.run each.
+struct Complaint {
+  std::string_view name;
+  std::string_view type;
+  std::string text;
+  Outcome outcome;
+};
+
+std::vector<Complaint> complaints_about(const Run& run, const JunitOptions& options) {
+  std::vector<Complaint> all;
+  if (!run.is_complete()) {
+    const Counts counts = count(run);
+    all.push_back({"is_complete", "incomplete",
+                   fmt::format("the run is incomplete: {}; {} of {} selected cases were not judged",
+                               run.identity.incomplete_because, counts.not_run(), counts.selected),
+                   outcome_of(Verdict::inconclusive, options)});
+  }
+  if (!run.identity.stale_expectations.empty()) {
+    all.push_back({"baseline_is_current", "stale",
+                   fmt::format("{}", fmt::join(run.identity.stale_expectations, "\n")), Outcome::failure});
+  }
+  return all;
+}
+
+std::string suite_of(const std::vector<Complaint>& complaints, const Manifest& manifest) {
+  Totals totals;
+  for (const Complaint& one : complaints) totals.add(one.outcome);
   std::string out =
       fmt::format("  <testsuite name=\"fieldproof.run\" {}{}>\n", totals.attributes(), timestamp(manifest));
-  out += "    <testcase classname=\"fieldproof.run\" name=\"is_complete\" time=\"0.000000\">\n";
-  out += outcome_element(outcome, text, "incomplete", text + "\n");
-  return out + "    </testcase>\n  </testsuite>\n";
+  for (const Complaint& one : complaints) {
+    out +=
+        fmt::format("    <testcase classname=\"fieldproof.run\" name=\"{}\" time=\"0.000000\">\n", one.name);
+    out += outcome_element(one.outcome, one.text, one.type, one.text + "\n");
+    out += "    </testcase>\n";
+  }
+  return out + "  </testsuite>\n";
 }
 
 }  // namespace
@@ -231,8 +263,8 @@ std::string incompleteness_suite(const Run& run, const Manifest& manifest, const
 std::string junit_xml(const Run& run, const Manifest& manifest, const JunitOptions& options) {
   Totals all;
   for (const CaseResult& result : run.cases) all.add(result, options);
-  const Outcome of_incomplete = outcome_of(Verdict::inconclusive, options);
-  if (!run.is_complete()) all.add(of_incomplete);
+  const std::vector<Complaint> complaints = complaints_about(run, options);
+  for (const Complaint& one : complaints) all.add(one.outcome);
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   out += fmt::format("<testsuites name=\"fieldproof\" {}>\n", all.attributes());
   for (const auto& [folder, results] : by_folder(run)) {
@@ -245,11 +277,7 @@ std::string junit_xml(const Run& run, const Manifest& manifest, const JunitOptio
     }
     out += "  </testsuite>\n";
   }
-  if (!run.is_complete()) {
-    Totals totals;
-    totals.add(of_incomplete);
-    out += incompleteness_suite(run, manifest, totals, of_incomplete);
-  }
+  if (!complaints.empty()) out += suite_of(complaints, manifest);
   return out + "</testsuites>\n";
 }
 

@@ -5,9 +5,11 @@
 // <error>, not-applicable a <skipped> with the reason, warn passes and tells its finding in <system-out>;
 // inconclusive and none never pass. A run that is incomplete has one testcase more, `is_complete` of
 // fieldproof.run, which counts like an inconclusive case: without it the cases that were never judged would
-// look like cases that were never asked for. Valid against reports/schema/junit.xsd, well-formed for any
-// octets in any text: what XML 1.0 cannot hold is written as \xNN, the end of a CDATA section is split.
-// Properties: purpose, requirement, standing, verdict, seed, repro, virtual_time, wall_time, fingerprint.
+// look like cases that were never asked for. A failure that the baseline expects is a <skipped>; a baseline
+// that is not current is a failure of its own, `baseline_is_current`. Valid against reports/schema/junit.xsd,
+// well-formed for any octets in any text: what XML 1.0 cannot hold is written as \xNN, the end of a CDATA
+// section is split. Properties: purpose, requirement, standing, verdict, seed, repro, virtual_time,
+// wall_time, fingerprint.
 #pragma once
 
 #include <cstdint>

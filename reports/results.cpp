@@ -18,13 +18,19 @@ Counts count(const Run& run) {
   for (const judge::CaseResult& result : run.cases) {
     ++counts.by_verdict.at(static_cast<std::size_t>(result.verdict));
     if (result.verdict >= judge::Verdict::pass) ++counts.judged;
+    if (counted_verdict(result) != result.verdict) ++counts.expected;
   }
   return counts;
 }
 
+judge::Verdict counted_verdict(const judge::CaseResult& result) {
+  const bool is_expected = result.verdict > judge::Verdict::pass && !result.expected_because.empty();
+  return is_expected ? judge::Verdict::pass : result.verdict;
+}
+
 judge::Verdict headline(const Run& run) {
   judge::Verdict heaviest = judge::Verdict::none;
-  for (const judge::CaseResult& result : run.cases) heaviest = std::max(heaviest, result.verdict);
+  for (const judge::CaseResult& result : run.cases) heaviest = std::max(heaviest, counted_verdict(result));
   return heaviest;
 }
 

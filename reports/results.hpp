@@ -38,6 +38,8 @@ struct RunIdentity {
   std::string network_hash;           // of the network file; empty: the suites' own networks
   std::vector<std::string> caveats;   // what must be said about all results of the run; sentences
   std::string pics_hash;              // of the answers of the PICS; empty: none
+  // What the baseline of expected failures says and the run does not show; sentences.
+  std::vector<std::string> stale_expectations;
   std::vector<std::string> selectors;
   std::vector<Implementation> implementations;
   // Every option of the command line that decides the outcome, quoted for a shell, without the selector:
@@ -74,6 +76,7 @@ struct Counts {
   std::size_t selected = 0;
   std::size_t judged = 0;  // a verdict from pass to error: not "none", not "not-applicable"
   std::array<std::size_t, kVerdicts> by_verdict{};
+  std::size_t expected = 0;  // of those that do not pass: the baseline lists them
 
   std::size_t of(judge::Verdict verdict) const { return by_verdict.at(static_cast<std::size_t>(verdict)); }
   std::size_t not_run() const;  // selected cases without a result, and those whose verdict is none
@@ -81,7 +84,10 @@ struct Counts {
 
 Counts count(const Run& run);
 
-// The heaviest verdict of the run; none when there are no results.
+// What a result counts as where it is decided whether a run is good: a failure that is expected passes.
+judge::Verdict counted_verdict(const judge::CaseResult& result);
+
+// The heaviest of what its results count as; none when there are no results.
 judge::Verdict headline(const Run& run);
 
 // What a part of the plan of faults did in the cases that ran under it.

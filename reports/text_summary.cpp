@@ -75,7 +75,7 @@ std::string one_finding(const Finding& finding, const TextOptions& options) {
 }
 
 bool is_worth_telling(const CaseResult& result) {
-  return result.verdict > Verdict::pass;
+  return counted_verdict(result) > Verdict::pass;
 }
 
 std::string counts_text(const Counts& counts) {
@@ -90,6 +90,7 @@ std::string counts_text(const Counts& counts) {
   if (counts.of(Verdict::not_applicable) > 0) {
     out += fmt::format("; {} not applicable", counts.of(Verdict::not_applicable));
   }
+  if (counts.expected > 0) out += fmt::format("; {} expected by the baseline", counts.expected);
   if (counts.not_run() > 0) out += fmt::format("; {} not run", counts.not_run());
   return out + "\n";
 }
@@ -121,10 +122,10 @@ std::string planned_faults_text(const Run& run) {
 
 // The heaviest case that does not pass, the first one of those in the catalogue.
 const CaseResult* worst_case(const Run& run) {
-  const auto worst =
-      std::max_element(run.cases.begin(), run.cases.end(),
-                       [](const CaseResult& a, const CaseResult& b) { return a.verdict < b.verdict; });
-  return worst == run.cases.end() || worst->verdict < Verdict::inconclusive ? nullptr : &*worst;
+  const auto worst = std::max_element(
+      run.cases.begin(), run.cases.end(),
+      [](const CaseResult& a, const CaseResult& b) { return counted_verdict(a) < counted_verdict(b); });
+  return worst == run.cases.end() || counted_verdict(*worst) < Verdict::inconclusive ? nullptr : &*worst;
 }
 
 }  // namespace
@@ -158,6 +159,7 @@ std::string case_line(const CaseResult& result, const TextOptions& options) {
   std::string out = painted(result.verdict, fmt::format("{:<14}", name(result.verdict)), options);
   out += " " + escaped_line(result.id);
   if (!result.reason.empty()) out += "  (" + escaped_line(result.reason) + ")";
+  if (!result.expected_because.empty()) out += ", expected: " + escaped_line(result.expected_because);
   return out + "\n";
 }
 
@@ -211,6 +213,9 @@ std::string summary_text(const Run& run, const TextOptions& options) {
   }
   out += planned_faults_text(run);
   for (const std::string& caveat : run.identity.caveats) out += "unverified: " + escaped_line(caveat) + "\n";
+  for (const std::string& stale : run.identity.stale_expectations) {
+    out += "baseline: " + escaped_line(stale) + "\n";
+  }
   const CaseResult* worst = worst_case(run);
   if (worst == nullptr) return out;
   return out + "reproduce: " + escaped_line(reproduce_command(run.identity, worst->id)) + "\n";

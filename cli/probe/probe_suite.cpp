@@ -128,6 +128,10 @@ void add_ends(SuiteOfFunctions& suite) {
     FIELDPROOF_CHECK(false, "the probe breaks as it promised");
     return {};
   });
+  suite.add(named("odd/end/fails_once", {"once"}), [](const TestCase&, const Setup& setup) {
+    static std::atomic<unsigned> calls{0};
+    return calls++ == 0 ? judged(setup, Verdict::fail, "first_time") : judged(setup, Verdict::pass);
+  });
   suite.add(named("odd/end/never_repeats", {"odd"}), [](const TestCase&, const Setup& setup) {
     static std::atomic<std::uint64_t> calls{0};
     Outcome outcome = judged(setup, Verdict::pass);

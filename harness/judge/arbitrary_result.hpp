@@ -85,7 +85,8 @@ inline rc::Gen<CaseResult> arbitrary_result() {
           rc::gen::set(&CaseResult::virtual_time, duration),
           rc::gen::set(&CaseResult::wall_time_us, arbitrary_word()),
           rc::gen::set(&CaseResult::log, kernel::arbitrary_text()),
-          rc::gen::set(&CaseResult::purpose, kernel::arbitrary_text())));
+          rc::gen::set(&CaseResult::purpose, kernel::arbitrary_text()),
+          rc::gen::set(&CaseResult::expected_because, kernel::arbitrary_text())));
 }
 
 }  // namespace fieldproof::judge

@@ -51,6 +51,8 @@ struct CaseResult {
   std::uint64_t wall_time_us = 0;  // the only field that differs between two equal runs
   std::string log;                 // of the implementation, bounded
   std::string purpose{};           // label of the test purpose, "IS-14"; may be empty
+  // Who runs the suite knows of this failure, for this reason and until that day; empty: nobody does.
+  std::string expected_because{};
 };
 
 }  // namespace fieldproof::judge

@@ -161,6 +161,7 @@ nlohmann::ordered_json to_json(const CaseResult& result, WallTime wall_time) {
     json["planned_hits"] =
         list_to_json(result.planned_hits, [](std::uint64_t hits) { return fmt::format("{}", hits); });
   }
+  if (!result.expected_because.empty()) json["expected_because"] = kernel::as_utf8(result.expected_because);
   if (wall_time == WallTime::included) json["wall_time_us"] = fmt::format("{}", result.wall_time_us);
   return json;
 }
@@ -196,6 +197,9 @@ CaseResult case_result_from(const Value& value) {
     result.log = text_in(object, "log");
     if (const auto hits = object.optional("planned_hits")) {
       result.planned_hits = list_from(*hits, [](const Value& one) { return unsigned_from(one); });
+    }
+    if (const auto because = object.optional("expected_because")) {
+      result.expected_because = because->as_string();
     }
     if (const auto time = object.optional("wall_time_us")) result.wall_time_us = unsigned_from(*time);
     return result;

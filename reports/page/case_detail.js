@@ -101,6 +101,7 @@ export function caseDetail(row) {
     element("p", {class: "requirement"}, result.requirement || "No requirement is stated."),
     definitions([["Source", sourceText(result.reference)], ["Purpose", result.purpose],
       [result.verdict === "not-applicable" ? "Why it does not apply" : "Reason", result.reason],
+      ["Expected by the baseline", result.expected_because ?? ""],
       ["Plan of faults", plannedHitsText(result.planned_hits, row.run.results.run.plan)]]),
     storyPart(story),
     result.findings.map((finding, at) => findingPart(finding, result, at, result.findings.length)),

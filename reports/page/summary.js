@@ -18,6 +18,9 @@ function headlineText({ headline, counts }) {
   const of = counts.by_verdict;
   const judged = `of ${plural(counts.judged, "judged case")}`;
   if (counts.judged === 0) return "No case was judged";
+  if (of.fail + of.error > 0 && headline !== "fail" && headline !== "error") {
+    return `${number(of.fail + of.error)} ${judged} failed, as the baseline expects; all others passed`;
+  }
   if (of.fail + of.error > 0) {
     const errors = of.error ? ` and ${number(of.error)} ended in an error` : "";
     return `${number(of.fail)} ${judged} failed${errors}`;
@@ -98,6 +101,7 @@ function runPart(run, isJoined) {
         `${part(counts.not_run, counts.selected)} selected cases have no verdict.`));
   }
   trouble.push(idleFaults(results));
+  for (const stale of results.run.stale_expectations ?? []) trouble.push(notice(element("strong", {}, "Baseline"), `: ${stale}`));
   for (const caveat of results.run.caveats ?? []) trouble.push(notice(element("strong", {}, "Unverified"), `: ${caveat}`));
   if (run.journal_was_torn) trouble.push(notice("The last line of its journal was torn; that result is lost."));
   return element("article", {class: `run ${results.headline}`},
