@@ -1,10 +1,13 @@
 #include "conformance/valve_bus/arrived_frames.hpp"
 
+#include <functional>
+#include <numeric>
+
 namespace fieldproof::conformance {
 
-bool ArrivedFrame::is_command() const {
-  if (is_spoilt || octets.size() != 5) return false;
-  return (octets[0] ^ octets[1] ^ octets[2] ^ octets[3] ^ octets[4]) == 0;
+bool ArrivedFrame::is_checked(std::size_t length) const {
+  if (is_spoilt || octets.size() != length) return false;
+  return std::accumulate(octets.begin(), octets.end(), 0, std::bit_xor<>()) == 0;
 }
 
 ArrivedFrames::ArrivedFrames(const valve_bus::Rules& rules)

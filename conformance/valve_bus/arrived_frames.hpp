@@ -21,8 +21,10 @@ struct ArrivedFrame {
   std::vector<std::uint8_t> octets;
   bool is_spoilt = false;
 
-  // Five octets that nothing spoilt and whose exclusive or is 0.
-  bool is_command() const;
+  // Five, three octets that nothing spoilt and whose exclusive or is 0.
+  bool is_command() const { return is_checked(5); }
+  bool is_response() const { return is_checked(3); }
+  bool is_checked(std::size_t length) const;
 };
 
 class ArrivedFrames final : public segment::Tap {

@@ -102,14 +102,17 @@ HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting)
       tester_seat_(segment_.attach(*this, "tester")),
       host_seat_(segment_.attach(*host_, "host")),
       driven_(character_format(rules()), rules().bit_rate),
+      arrived_(rules()),
       line_watch_(kernel::levels_duration(character_format(rules()).half_bits() / 2,
                                           valve_bus::dip_bit_rates().front())),
+      stressed_(setting.stresses),
       writes_(256) {
   tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
   place_ = &line_.attach("host/in", host_seat_, 0, {}, configuration_.hears_itself);
   adopt_rate(configuration_.dip);
   if (setting.make_recorder) segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules()));
   place_->tap_driven(driven_);
+  place_->tap_arrived(arrived_);
   line_watch_.watch(*place_, segment_.trace());
   if (!setting.plan.empty()) {
     plan_ = std::make_unique<fault::InstalledPlan>(setting.plan, segment_.trace(), random_.split("plan"));
@@ -126,6 +129,7 @@ void HostBench::adopt_rate(unsigned dip) {
   configuration_.rules.bit_rate = rates[dip % rates.size()];
   codec_ = valve_bus::CharacterCodec(rules());
   driven_.listen(character_format(rules()), rules().bit_rate);
+  arrived_ = ArrivedFrames(rules());
   patience_ = 4 * (time_out() + characters(16)) + 10 * kernel::kMillisecond;
 }
 
@@ -175,6 +179,19 @@ std::optional<Told> HostBench::next_told(kernel::Duration within) {
   const Told first = told_.front();
   told_.pop_front();
   return first;
+}
+
+void HostBench::await(kernel::Duration within) {
+  const kernel::Time limit = now() + within;
+  while (told_.empty() && frames_.empty() && driven_.empty() && segment_.scheduler().next() <= limit) {
+    segment_.step();
+  }
+}
+
+void HostBench::begin_stress(const fault::Stress& stress) {
+  stressed_.begin(stress, *place_,
+                  {rules().bit_rate, now(), random_.split("stress").split(stress_number_++), segment_.trace(),
+                   place_->trace_channel()});
 }
 
 void HostBench::on_response(const valve_bus::HostResponse& response, kernel::Time when) {
@@ -279,6 +296,7 @@ void HostBench::forget() {
   frames_.clear();
   told_.clear();
   driven_.clear();
+  arrived_.clear();
 }
 
 void HostBench::note(std::variant<HostFrame, Told> seen) {

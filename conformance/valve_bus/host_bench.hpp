@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "conformance/line_watch.hpp"
+#include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
+#include "conformance/valve_bus/arrived_frames.hpp"
 #include "conformance/valve_bus/driven_line.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/judge/pics.hpp"
@@ -47,6 +49,7 @@ struct HostSetting {
   Volume volume = Volume::full;
   std::optional<judge::Pics> pics;
   fault::Plan plan{};
+  std::span<const fault::Stress> stresses{};
   // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
   std::function<trace::Recorder*(const trace::Trace&, const valve_bus::Rules&)> make_recorder;
 };
@@ -112,6 +115,8 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   // The next thing that the PC is told, waiting at most so long.
   std::optional<Told> next_told(kernel::Duration within);
   bool was_told() const { return !told_.empty(); }
+  // Runs until the PC has been told something or the IUT has begun to send, at most so long.
+  void await(kernel::Duration within);
 
   void set_dip(unsigned position) { host_->set_dip(position); }
   // Power off and on, with the switches so; what was seen is forgotten.
@@ -141,6 +146,15 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   // What the nodes have been told to do by the frames that were got: to know a refresh.
   void note_write(const valve_bus::Command& command);
   bool is_refresh(const valve_bus::Command& command) const;
+
+  // What has arrived at the IUT since `forget`.
+  std::span<const ArrivedFrame> arrived() const { return arrived_.frames(); }
+
+  // ---- stress ----
+  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
+  void begin_stress(const fault::Stress& stress);
+  void end_stress() { stressed_.end(); }
+  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
 
   // Frames and what was told, up to now; what the nodes were told to do is kept.
   void forget();
@@ -187,8 +201,11 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   segment::MediumPort* tester_ = nullptr;
   segment::MediumPort* place_ = nullptr;  // of the IUT
   DrivenLine driven_;
+  ArrivedFrames arrived_;
   LineWatch line_watch_;
   std::unique_ptr<fault::InstalledPlan> plan_;
+  StressedReceiver stressed_;
+  std::uint64_t stress_number_ = 0;
   kernel::Duration patience_{};
 
   std::deque<Transmission> frames_;  // that the case has not got yet

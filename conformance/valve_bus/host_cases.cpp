@@ -23,7 +23,7 @@ const std::vector<HostCase>& host_cases() {
   static const std::vector<HostCase> cases = [] {
     static constexpr std::array kChapters{host_request_cases, host_response_cases, host_retry_cases,
                                           host_fifo_cases,    host_timing_cases,   host_line_cases,
-                                          host_cycle_cases,   host_dip_cases};
+                                          host_cycle_cases,   host_dip_cases,      host_immunity_cases};
     auto all = cases_of<HostCase>(kChapters, host_details());
     all.push_back(host_canary());
     return all;

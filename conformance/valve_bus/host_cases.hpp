@@ -9,7 +9,7 @@
 #include "conformance/valve_bus/host_bench.hpp"
 #include "conformance/valve_bus/sources.hpp"
 
-// The test cases for a host module of the valve bus, RH-01 to RH-35 of the catalogue of test purposes, and a
+// The test cases for a host module of the valve bus, RH-01 to RH-36 of the catalogue of test purposes, and a
 // canary.
 namespace fieldproof::conformance {
 
@@ -26,6 +26,7 @@ std::vector<HostCase> host_timing_cases();
 std::vector<HostCase> host_line_cases();
 std::vector<HostCase> host_cycle_cases();
 std::vector<HostCase> host_dip_cases();
+std::vector<HostCase> host_immunity_cases();
 
 // Applies only to a host of which the PICS says so, or says the contrary.
 std::function<std::optional<std::string>(const judge::Pics&)> for_host_with(std::string item,

@@ -26,6 +26,7 @@ class ValveBusSuite final : public Suite {
       node_cases_[one.test_case.id] = &one;
     }
     for (const HostCase& one : host_cases()) {
+      if (given_.stresses.empty() && has_tag(one.test_case, kStressTag)) continue;
       cases_.push_back(one.test_case);
       host_cases_[one.test_case.id] = &one;
     }
@@ -96,13 +97,13 @@ class ValveBusSuite final : public Suite {
     setting.seed = setup.seed;
     setting.volume = setup.volume;
     setting.pics = setup.pics;
+    setting.stresses = given_.stresses;
     if (!setup.plan_file.empty()) setting.plan = load(setup);
     return setting;
   }
 
   NodeSetting node_setting(const TestCase& test_case, const Setup& setup) const {
     NodeSetting setting = setting_of<NodeSetting>(setup);
-    setting.stresses = given_.stresses;
     setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
                          seed = setup.seed](const valve_bus::NodeConfiguration& configuration) {
       return make_node({uri, id, seed}, configuration);
