@@ -60,10 +60,10 @@ bool is_attachment(std::string_view uri) {
   return iut::DevicePool::is_meant(uri) || uri.starts_with(kPlugin);
 }
 
-conformance::ValveBusGiven::MakeNode attached_nodes() {
+conformance::GivenNodes::Make attached_nodes() {
   const auto pools = std::make_shared<Pools>(iut::RoleName{"valve_bus", "node"});
   return
-      [pools](const conformance::ValveBusGiven::Wanted& wanted,
+      [pools](const conformance::Wanted& wanted,
               const valve_bus::NodeConfiguration& configuration) -> std::unique_ptr<valve_bus::NodeDevice> {
         if (!is_attachment(wanted.uri)) return nullptr;
         return std::make_unique<valve_bus::AttachedNode>(attachment_of(*pools, wanted.uri), configuration,

@@ -14,6 +14,6 @@ namespace fieldproof::cli {
 bool is_attachment(std::string_view uri);
 
 // Implementations of one URI are kept from case to case, and as many are opened as cases run side by side.
-conformance::ValveBusGiven::MakeNode attached_nodes();
+conformance::GivenNodes::Make attached_nodes();
 
 }  // namespace fieldproof::cli

@@ -11,7 +11,7 @@ namespace fieldproof::cli {
 Suites suites() {
   Suites all;
   all.push_back(conformance::interbus_suite({}, {emc::catalogue_stresses(), emc::plan_disturbances()}));
-  all.push_back(conformance::valve_bus_suite({.make_node = attached_nodes(),
+  all.push_back(conformance::valve_bus_suite({.node = {.attached = attached_nodes()},
                                               .disturbances = emc::plan_disturbances(),
                                               .stresses = emc::catalogue_stresses()}));
   return all;

@@ -300,6 +300,9 @@ class InterbusSuite final : public Suite {
 
   std::string_view protocol() const override { return "interbus"; }
   std::vector<std::string> roles() const override { return {"slave", "master", "network"}; }
+  bool has_own(std::string_view role) const override {
+    return role == "slave" ? bool(given_.own.make_slave) : role == "master" && bool(given_.own.make_master);
+  }
   const std::vector<TestCase>& cases() const override { return cases_; }
   const std::vector<Deviation>& deviations() const override { return deviations_; }
 
