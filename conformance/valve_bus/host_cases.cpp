@@ -52,6 +52,7 @@ judge::CaseResult run_host_case(const HostCase& host_case, const HostSetting& se
     bench.emplace(host_case.needs, setting);
     host_case.procedure(*bench, j);
     bench->line_watch().judge(j);
+    bench->finish();
   });
   result.seed = setting.seed;
   if (!bench) return result;

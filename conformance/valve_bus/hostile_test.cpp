@@ -111,7 +111,7 @@ class HostileNode : public testing::TestWithParam<std::string> {
         valve_bus_suite({.node = {.attached = [&](const Wanted& wanted, const auto& configuration) {
                            const auto lease = std::make_shared<iut::DevicePool::Lease>(pool.take());
                            return std::make_unique<valve_bus::AttachedNode>(
-                               valve_bus::NodeAttachment{&**lease, lease, [lease] { lease->set_reusable(); }},
+                               iut::Attachment{&**lease, lease, [lease] { lease->set_reusable(); }},
                                configuration, wanted.case_id, wanted.seed);
                          }}});
     conformance::Setup setup;

@@ -130,8 +130,8 @@ std::unique_ptr<NodeDevice> firmware(const NodeConfiguration& configuration, con
                                      std::uint64_t seed) {
   const std::shared_ptr<iut::Device> device =
       iut::make_plugin(*fieldproof_plugin(FIELDPROOF_PLUGIN_VERSION), "valve_bus", "node");
-  return std::make_unique<valve_bus::AttachedNode>(valve_bus::NodeAttachment{device.get(), device},
-                                                   configuration, case_id, seed);
+  return std::make_unique<valve_bus::AttachedNode>(iut::Attachment{device.get(), device}, configuration,
+                                                   case_id, seed);
 }
 
 std::unique_ptr<Suite> island_suite() {
