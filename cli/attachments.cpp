@@ -8,6 +8,8 @@
 
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/pool.hpp"
+#include "protocols/interbus/attached_slave.hpp"
+#include "protocols/valve_bus/attached_host.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
 
 namespace fieldproof::cli {
@@ -43,7 +45,7 @@ class Pools {
   std::map<std::string, std::unique_ptr<iut::DevicePool>> pools_;
 };
 
-valve_bus::NodeAttachment attachment_of(Pools& pools, const std::string& uri) {
+iut::Attachment attachment_of(Pools& pools, const std::string& uri) {
   if (uri.starts_with(kPlugin) && uri.ends_with(kInProcess)) {
     const std::string path = uri.substr(kPlugin.size(), uri.size() - kPlugin.size() - kInProcess.size());
     const std::shared_ptr<iut::Device> device =
@@ -54,21 +56,33 @@ valve_bus::NodeAttachment attachment_of(Pools& pools, const std::string& uri) {
   return {&**lease, lease, [lease] { lease->set_reusable(); }};
 }
 
+// Makes what takes the place of a station of the bench in this role.
+template <typename Attached, typename Make>
+Make attached(iut::RoleName role) {
+  const auto pools = std::make_shared<Pools>(std::move(role));
+  return [pools](const conformance::Wanted& wanted, const auto& configuration) -> Make::result_type {
+    if (!is_attachment(wanted.uri)) return nullptr;
+    return std::make_unique<Attached>(attachment_of(*pools, wanted.uri), configuration, wanted.case_id,
+                                      wanted.seed);
+  };
+}
+
 }  // namespace
 
 bool is_attachment(std::string_view uri) {
   return iut::DevicePool::is_meant(uri) || uri.starts_with(kPlugin);
 }
 
-conformance::ValveBusGiven::MakeNode attached_nodes() {
-  const auto pools = std::make_shared<Pools>(iut::RoleName{"valve_bus", "node"});
-  return
-      [pools](const conformance::ValveBusGiven::Wanted& wanted,
-              const valve_bus::NodeConfiguration& configuration) -> std::unique_ptr<valve_bus::NodeDevice> {
-        if (!is_attachment(wanted.uri)) return nullptr;
-        return std::make_unique<valve_bus::AttachedNode>(attachment_of(*pools, wanted.uri), configuration,
-                                                         wanted.case_id, wanted.seed);
-      };
+conformance::GivenSlaves::Make attached_slaves() {
+  return attached<interbus::AttachedSlave, conformance::GivenSlaves::Make>({"interbus", "slave"});
+}
+
+conformance::GivenNodes::Make attached_nodes() {
+  return attached<valve_bus::AttachedNode, conformance::GivenNodes::Make>({"valve_bus", "node"});
+}
+
+conformance::GivenHosts::Make attached_hosts() {
+  return attached<valve_bus::AttachedHost, conformance::GivenHosts::Make>({"valve_bus", "host"});
 }
 
 }  // namespace fieldproof::cli

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "conformance/interbus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 
 // Implementations outside the program, for the suites:
@@ -14,6 +15,8 @@ namespace fieldproof::cli {
 bool is_attachment(std::string_view uri);
 
 // Implementations of one URI are kept from case to case, and as many are opened as cases run side by side.
-conformance::ValveBusGiven::MakeNode attached_nodes();
+conformance::GivenSlaves::Make attached_slaves();
+conformance::GivenNodes::Make attached_nodes();
+conformance::GivenHosts::Make attached_hosts();
 
 }  // namespace fieldproof::cli

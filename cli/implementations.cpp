@@ -9,6 +9,7 @@
 #include <charconv>
 #include <set>
 
+#include "conformance/assigned.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -113,13 +114,25 @@ void resolve_deviation(Assignment& assignment, const Catalogue& catalogue, std::
   assignment.uri = fmt::format("{}{}", kDeviant, found.deviation->name);
 }
 
+// What a program brings along, of any role where none is said.
+bool is_own(const Assignment& assignment, std::span<const Suite* const> suites) {
+  if (assignment.uri != conformance::kOwnUri) return false;
+  return std::any_of(suites.begin(), suites.end(), [&](const Suite* suite) {
+    const std::vector<std::string> roles = suite->roles();
+    return std::any_of(roles.begin(), roles.end(), [&](const std::string& role) {
+      return (assignment.role.empty() || assignment.role == role) && suite->has_own(role);
+    });
+  });
+}
+
 Assignment parse_implementation(const std::string& text, const Catalogue& catalogue,
                                 std::span<const Entry> among) {
   Assignment assignment = split(text);
-  check_position(text, assignment, suites_with(text, assignment.role, catalogue));
+  const std::vector<const Suite*> suites = suites_with(text, assignment.role, catalogue);
+  check_position(text, assignment, suites);
   if (assignment.uri.starts_with(kDeviant)) {
     resolve_deviation(assignment, catalogue, among);
-  } else if (assignment.uri != "ref" && !is_attachment(assignment.uri)) {
+  } else if (assignment.uri != "ref" && !is_attachment(assignment.uri) && !is_own(assignment, suites)) {
     refuse(text,
            "there is no such kind of implementation; write ref, deviant:NAME, plugin:LIBRARY, exec:PROGRAM, "
            "unix:PATH, tcp:HOST:PORT, or one of them behind ROLE= or ROLE@POSITION=");
@@ -156,7 +169,10 @@ std::optional<std::string> obstacle(const Assignment& assignment, const Suite& s
     return fmt::format("the position {} is out of range; a network has at most {} stations",
                        assignment.position, suite.last_position());
   }
-  if (assignment.uri == "ref" || is_attachment(assignment.uri)) return std::nullopt;
+  const Suite* const only = &suite;
+  if (assignment.uri == "ref" || is_attachment(assignment.uri) || is_own(assignment, std::span(&only, 1))) {
+    return std::nullopt;
+  }
   if (!assignment.uri.starts_with(kDeviant)) {
     return fmt::format("'{}' is no implementation that can be run again; write ref or deviant:NAME",
                        assignment.uri);

@@ -3,6 +3,7 @@
 //   ref                          the reference, in the role of each case
 //   deviant:crc_preset_zero      the reference with one deviation; its role is the only one that has it
 //   exec:./node --fast           a process; unix:PATH and tcp:HOST:PORT: who listens there
+//   own                          what a program with suites of its own brings along
 //   slave=deviant:late           the role is said
 //   slave@3=deviant:late         and the position: 1 is next to the master
 #pragma once

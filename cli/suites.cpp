@@ -10,8 +10,11 @@ namespace fieldproof::cli {
 
 Suites suites() {
   Suites all;
-  all.push_back(conformance::interbus_suite({}, {emc::catalogue_stresses(), emc::plan_disturbances()}));
-  all.push_back(conformance::valve_bus_suite({.make_node = attached_nodes(),
+  all.push_back(conformance::interbus_suite({.slave = {.attached = attached_slaves()},
+                                             .disturbances = emc::plan_disturbances(),
+                                             .stresses = emc::catalogue_stresses()}));
+  all.push_back(conformance::valve_bus_suite({.node = {.attached = attached_nodes()},
+                                              .host = {.attached = attached_hosts()},
                                               .disturbances = emc::plan_disturbances(),
                                               .stresses = emc::catalogue_stresses()}));
   return all;

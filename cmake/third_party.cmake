@@ -20,6 +20,8 @@ if(FIELDPROOF_TESTS)
   fieldproof_require(GTest 1.12 CONFIG)
   fieldproof_require(rapidcheck CONFIG)  # its package has no version file
   include(GoogleTest)
+else()
+  find_package(GTest 1.12 CONFIG QUIET)  # for fieldproof_gtest
 endif()
 if(FIELDPROOF_BENCHMARKS)
   find_package(benchmark CONFIG QUIET)

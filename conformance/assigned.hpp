@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -15,6 +18,28 @@ inline constexpr std::string_view kOwnUri = "own";
 
 // The last assignment for the role of the case, or for every role; else the reference.
 Assignment assigned_to(const TestCase& test_case, const Setup& setup);
+
+// Who is to play the role of one case.
+struct Wanted {
+  const std::string& uri;
+  const std::string& case_id;
+  std::uint64_t seed;
+};
+
+// What a suite is given for one role, besides its reference and its deviations.
+template <typename Device, typename Configuration>
+struct GivenStations {
+  using Make = std::function<std::unique_ptr<Device>(const Wanted&, const Configuration&)>;
+
+  Make own{};       // what the URI `own` means: the station of the program that holds the suite
+  Make attached{};  // implementations outside; null for a URI of another kind
+
+  // Null: one of the suite's own, or nothing at all.
+  std::unique_ptr<Device> make(const Wanted& wanted, const Configuration& configuration) const {
+    const Make& make = wanted.uri == kOwnUri ? own : attached;
+    return make ? make(wanted, configuration) : nullptr;
+  }
+};
 
 // The name behind `deviant:`. Throws kernel::Error(usage) for any other URI; `what` is "INTERBUS slave".
 std::string deviation_of(const std::string& uri, std::string_view what);

@@ -12,7 +12,7 @@
 // the setup is the seed of a run: each case derives its own from it, as `fieldproof run` does. pass and warn
 // succeed; not-applicable skips with its reason; everything else fails and prints its findings in full.
 // kernel::Error of the setup fails the test with its sentence. Canaries are not registered. The suite must
-// outlive the tests. This is a library of its own (fieldproof_gtest): the suites do not depend on GoogleTest.
+// outlive the tests. This is a library of its own (fieldproof::gtest): no suite depends on GoogleTest.
 #pragma once
 
 #include <functional>

@@ -4,7 +4,9 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,10 +27,13 @@ class SuiteOfFunctions : public Suite {
   }
   void add(Deviation deviation) { deviations_.push_back(std::move(deviation)); }
   void add(judge::PicsItem item) { pics_items_.push_back(std::move(item)); }
+  // The functions know the URI `own` in this role.
+  void add_own(std::string role) { own_roles_.insert(std::move(role)); }
   void set_last_position(int position) { last_position_ = position; }
 
   std::string_view protocol() const override { return protocol_; }
   std::vector<std::string> roles() const override { return roles_; }
+  bool has_own(std::string_view role) const override { return own_roles_.contains(role); }
   const std::vector<TestCase>& cases() const override { return cases_; }
   const std::vector<Deviation>& deviations() const override { return deviations_; }
 
@@ -50,6 +55,7 @@ class SuiteOfFunctions : public Suite {
   std::vector<TestCase> cases_;
   std::vector<Deviation> deviations_;
   std::vector<judge::PicsItem> pics_items_;
+  std::set<std::string, std::less<>> own_roles_;
   int last_position_ = 1;
   std::map<std::string, Function, std::less<>> functions_;
 };

@@ -124,6 +124,8 @@ class Suite {
   virtual const std::vector<Deviation>& deviations() const = 0;
   virtual Outcome run(const TestCase& test_case, const Setup& setup) const = 0;
 
+  // Whether the program brought an implementation of this role along, with the URI `own`.
+  virtual bool has_own(std::string_view /*role*/) const { return false; }
   // The farthest position of a role on a network of the suite's own.
   virtual int last_position() const { return 1; }
   // What a PICS of this protocol may answer.

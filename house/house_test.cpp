@@ -47,5 +47,16 @@ INSTANTIATE_TEST_SUITE_P(
                     Rule{"ForbiddenWords", check_forbidden_words}),
     [](const auto& rule) { return std::string(rule.param.name); });
 
+// It has a root and a namespace of its own, and does not say where this tree lies.
+TEST(OwnProject, KeepsWhatIsNoMatterOfPlaces) {
+  const std::vector<File> files = read_tree(FIELDPROOF_SOURCE_DIR "/examples/own_project");
+  ASSERT_GT(files.size(), 5U);
+  for (const auto check : {check_headers_open_once, check_names, check_umbrella_headers, check_line_lengths,
+                           check_forbidden_words}) {
+    const Complaints complaints = check(files);
+    EXPECT_TRUE(complaints.empty()) << to_text(complaints);
+  }
+}
+
 }  // namespace
 }  // namespace fieldproof::house

@@ -11,8 +11,10 @@
 namespace fieldproof::house {
 namespace {
 
+// The own project is a tree of its own: what holds there is asked about it alone.
 bool is_left_out(const std::string& path) {
-  static constexpr std::array folders{".git", "build", "runs", "fuzz/corpus", ".cache"};
+  static constexpr std::array folders{".git",        "build",  "runs",
+                                      "fuzz/corpus", ".cache", "examples/own_project"};
   const bool is_listed = std::any_of(folders.begin(), folders.end(), [&](const char* folder) {
     return path == folder || path.starts_with(std::string(folder) + "/");
   });

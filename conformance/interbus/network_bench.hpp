@@ -54,6 +54,11 @@ class NetworkBench {
   segment::Segment& segment() { return segment_; }
   interbus::MasterDevice& master() { return *master_; }
   interbus::Ring& ring() { return *ring_; }
+  // The case is over. What the stations do then is still their verdict.
+  void finish() {
+    master_->end();
+    ring_->end();
+  }
   // What every station drives.
   const LineWatch& line_watch() const { return line_watch_; }
   interbus::MasterStatus status() const { return master_->status(); }

@@ -87,6 +87,7 @@ class RecordedSlave final : public SlaveDevice, private interbus::Terminals {
     device_->on_time(now);
   }
   kernel::Time next_time() const override { return device_->next_time(); }
+  void end() override { device_->end(); }
 
  private:
   std::uint16_t input(unsigned word, kernel::Time when) override { return terminals_->input(word, when); }
@@ -161,6 +162,7 @@ class RecordedMaster final : public MasterDevice {
     look();
   }
   kernel::Time next_time() const override { return device_->next_time(); }
+  void end() override { device_->end(); }
 
  private:
   void look() {

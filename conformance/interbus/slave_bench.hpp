@@ -148,6 +148,8 @@ class SlaveBench final : private segment::Station {
   // A whole data cycle as the station in front of the IUT would send it, alone in the ring.
   line::Levels direct_data_cycle(std::span<const std::uint16_t> words, unsigned gap_bits);
 
+  // The case is over. What the IUT does then is still its verdict.
+  void finish() { ring_.end(); }
   // What the IUT drives, on all its lines.
   const LineWatch& line_watch() const { return line_watch_; }
 

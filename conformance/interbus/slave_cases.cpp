@@ -76,25 +76,29 @@ const std::vector<SlaveCase>& slave_cases() {
 
 judge::CaseResult run_slave_case(const SlaveCase& slave_case, const SlaveSetting& setting) {
   const TestCase& test_case = slave_case.test_case;
-  SlaveBench bench(slave_case.needs, setting);
   if (setting.network) {
     if (auto sentence = missing_in_network(slave_case.needs, *setting.network, setting.position))
       return not_applicable(test_case, *sentence);
   }
-  if (test_case.not_applicable) {
-    if (auto sentence = test_case.not_applicable(bench.pics())) return not_applicable(test_case, *sentence);
-  }
+  // Made within the procedure: what an implementation does when it is powered is its verdict, too.
+  std::optional<SlaveBench> bench;
+  std::optional<std::string> obstacle;
   CaseJudge judge(test_case);
-  judge.use_clock([&] { return bench.now(); });
-  judge.use_decode([&] { return bench.decode_lines(); });
+  judge.use_clock([&] { return bench ? bench->now() : kernel::kStart; });
+  judge.use_decode([&] { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
   judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
-    slave_case.procedure(bench, j);
-    bench.line_watch().judge(j);
+    bench.emplace(slave_case.needs, setting);
+    if (test_case.not_applicable) obstacle = test_case.not_applicable(bench->pics());
+    if (!obstacle) slave_case.procedure(*bench, j);
+    bench->line_watch().judge(j);
+    bench->finish();
   });
+  if (obstacle) return not_applicable(test_case, *obstacle);
   result.seed = setting.seed;
-  result.fingerprint = bench.segment().trace().fingerprint();
-  result.virtual_time = bench.now() - kernel::kStart;
-  result.planned_hits = bench.planned_hits();
+  if (!bench) return result;
+  result.fingerprint = bench->segment().trace().fingerprint();
+  result.virtual_time = bench->now() - kernel::kStart;
+  result.planned_hits = bench->planned_hits();
   return result;
 }
 

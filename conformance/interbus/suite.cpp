@@ -28,23 +28,17 @@ namespace {
   throw kernel::Error(kernel::ErrorKind::usage, sentence);
 }
 
-// What the suite was made with.
-struct Given {
-  OwnStations own;
-  LineDisturbances disturbances;
-};
-
-fault::Plan load_plan(const Setup& setup, const interbus::Rules& rules, const Given& given) {
+fault::Plan load_plan(const Setup& setup, const interbus::Rules& rules, const InterbusGiven& given) {
   return fault::load_plan(setup.plan_file, {.telegrams = &line::shared_telegram_code(rules.telegram),
-                                            .disturbances = given.disturbances.of_plans});
+                                            .disturbances = given.disturbances});
 }
 
 // What a run needs besides its case: the assignment of the case's role, the files that are named, and the two
 // recorders. Made anew for each run, so runs share nothing.
 class Run {
  public:
-  Run(const TestCase& test_case, const Setup& setup, const Given& given)
-      : test_case_(test_case), setup_(setup), own_(given.own), stresses_(given.disturbances.stresses) {
+  Run(const TestCase& test_case, const Setup& setup, const InterbusGiven& given)
+      : test_case_(test_case), setup_(setup), given_(given) {
     if (!setup.network_file.empty()) network_ = interbus::NetworkDescription::load(setup.network_file);
     if (!setup.plan_file.empty()) {
       plan_ = load_plan(setup, network_ ? network_->rules : interbus::Rules{}, given);
@@ -60,6 +54,8 @@ class Run {
   void check(const MasterCase& master_case);
   void check(const NetworkCase& network_case);
   judge::Pics pics(const SlaveCase& slave_case);
+  // Makes each implementation once, before anything is judged.
+  void try_out() const;
 
   Outcome run(const SlaveCase& slave_case);
   Outcome run(const MasterCase& master_case);
@@ -68,7 +64,11 @@ class Run {
  private:
   using MakeSlave =
       std::function<std::unique_ptr<interbus::SlaveDevice>(const interbus::SlaveConfiguration&)>;
+  using MakeMaster =
+      std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)>;
+  Wanted wanted(const std::string& uri) const { return {uri, test_case_.id, setup_.seed}; }
   MakeSlave slave_maker(const std::string& uri) const;
+  MakeMaster master_maker(const std::string& uri) const;
   std::unique_ptr<interbus::SlaveDevice> make_slave(const interbus::SlaveConfiguration& configuration);
   std::unique_ptr<interbus::MasterDevice> make_master(const interbus::MasterConfiguration& configuration);
   SlaveSetting slave_setting();
@@ -80,8 +80,7 @@ class Run {
 
   const TestCase& test_case_;
   const Setup& setup_;
-  const OwnStations& own_;
-  std::span<const fault::Stress> stresses_;
+  const InterbusGiven& given_;
   Assignment assigned_;
   std::optional<interbus::NetworkDescription> network_;
   fault::Plan plan_;
@@ -91,11 +90,19 @@ class Run {
   CaseRecorder recorder_;
 };
 
+// The given ones are asked each time: each slave is one of its own, also of an implementation outside.
 Run::MakeSlave Run::slave_maker(const std::string& uri) const {
   if (uri == kReferenceUri) return std::make_unique<interbus::Slave, const interbus::SlaveConfiguration&>;
-  if (uri == kOwnUri && own_.make_slave) return own_.make_slave;
-  return [name = deviation_of(uri, "INTERBUS slave")](const interbus::SlaveConfiguration& configuration) {
-    return make_slave_deviation(name, configuration);
+  return [this, uri](const interbus::SlaveConfiguration& configuration) {
+    if (auto slave = given_.slave.make(wanted(uri), configuration)) return slave;
+    return make_slave_deviation(deviation_of(uri, "INTERBUS slave"), configuration);
+  };
+}
+
+Run::MakeMaster Run::master_maker(const std::string& uri) const {
+  return [this, uri](const interbus::MasterConfiguration& configuration) {
+    if (auto master = given_.master.make(wanted(uri), configuration)) return master;
+    return conformance::make_master(uri)(configuration);
   };
 }
 
@@ -107,9 +114,7 @@ std::unique_ptr<interbus::SlaveDevice> Run::make_slave(const interbus::SlaveConf
 
 std::unique_ptr<interbus::MasterDevice> Run::make_master(const interbus::MasterConfiguration& configuration) {
   if (played_back_) return played_back_master(*played_back_, played_back_devices_++);
-  auto device = assigned_.uri == kOwnUri && own_.make_master
-                    ? own_.make_master(configuration)
-                    : conformance::make_master(assigned_.uri)(configuration);
+  std::unique_ptr<interbus::MasterDevice> device = master_maker(assigned_.uri)(configuration);
   return setup_.record ? recorded(std::move(device), recording_) : std::move(device);
 }
 
@@ -131,6 +136,15 @@ void Run::keep(Outcome& outcome) {
   if (recording_.device_count() > 0) kept.playback = recording_.text();
 }
 
+void Run::try_out() const {
+  for (const Assignment& assignment : setup_.implementations) {
+    if (assignment.uri.starts_with(kRecordedUri)) continue;
+    const std::string role = assignment.role.empty() ? test_case_.role() : assignment.role;
+    if (role == "slave") slave_maker(assignment.uri)({});
+    if (role == "master") master_maker(assignment.uri)({});
+  }
+}
+
 SlaveSetting Run::slave_setting() {
   SlaveSetting setting;
   setting.make_slave = [this](const interbus::SlaveConfiguration& c) { return make_slave(c); };
@@ -141,7 +155,7 @@ SlaveSetting Run::slave_setting() {
   setting.seed = setup_.seed;
   setting.volume = setup_.volume;
   setting.pics = setup_.pics;
-  setting.stresses = stresses_;
+  setting.stresses = given_.stresses;
   return setting;
 }
 
@@ -186,7 +200,7 @@ void Run::check(const MasterCase&) {
 Outcome Run::run(const MasterCase& master_case) {
   check(master_case);
   MasterBench bench([this](const auto& configuration) { return make_master(configuration); }, setup_.seed,
-                    setup_.volume, setup_.pics.value_or(judge::Pics{}), stresses_);
+                    setup_.volume, setup_.pics.value_or(judge::Pics{}), given_.stresses);
   if (setup_.record) {
     bench.segment().trace().set_recorder(&recorder_of(bench.segment().trace(), bench.rules()));
   }
@@ -210,9 +224,7 @@ NetworkParts Run::network_parts(std::size_t stations) {
     if (assignment.role == "slave") {
       slaves[assignment.position == 0 ? 1 : assignment.position] = slave_maker(assignment.uri);
     } else if (assignment.role == "master") {
-      parts.make_master = assignment.uri == kOwnUri && own_.make_master
-                              ? own_.make_master
-                              : conformance::make_master(assignment.uri);
+      parts.make_master = master_maker(assignment.uri);
     } else {
       parts = deviating_network(deviation_of(assignment.uri, "INTERBUS network"), stations);
     }
@@ -260,30 +272,34 @@ void Run::check(const NetworkCase&) {
 Outcome Run::run(const NetworkCase& network_case) {
   check(network_case);
   const interbus::NetworkDescription network = this->network();
-  NetworkBench bench(network, network_parts(interbus::ring_order(network).size()), plan_, setup_.seed,
-                     setup_.volume);
-  if (setup_.record) {
-    bench.segment().trace().set_recorder(&recorder_of(bench.segment().trace(), network.rules));
-  }
+  // Made within the procedure: what an implementation does when it is powered is its verdict, too.
+  std::optional<NetworkBench> bench;
   CaseJudge judge(test_case_);
-  judge.use_clock([&] { return bench.segment().now(); });
+  judge.use_clock([&] { return bench ? bench->segment().now() : kernel::kStart; });
   Outcome outcome;
   outcome.result = judge.run_procedure([&](CaseJudge& j) {
-    network_case.procedure(bench, j);
-    bench.line_watch().judge(j);
+    bench.emplace(network, network_parts(interbus::ring_order(network).size()), plan_, setup_.seed,
+                  setup_.volume);
+    if (setup_.record) {
+      bench->segment().trace().set_recorder(&recorder_of(bench->segment().trace(), network.rules));
+    }
+    network_case.procedure(*bench, j);
+    bench->line_watch().judge(j);
+    bench->finish();
   });
-  finish(outcome, bench.segment().trace(), bench.segment().now());
-  outcome.result.planned_hits = bench.planned_hits();
+  if (!bench) return outcome;
+  finish(outcome, bench->segment().trace(), bench->segment().now());
+  outcome.result.planned_hits = bench->planned_hits();
   keep(outcome);
   return outcome;
 }
 
 class InterbusSuite final : public Suite {
  public:
-  explicit InterbusSuite(Given given) : given_(std::move(given)) {
+  explicit InterbusSuite(InterbusGiven given) : given_(std::move(given)) {
     const auto add = [&](const auto& cases) {
       for (const auto& one : cases) {
-        if (given_.disturbances.stresses.empty() && has_tag(one.test_case, kStressTag)) continue;
+        if (given_.stresses.empty() && has_tag(one.test_case, kStressTag)) continue;
         cases_.push_back(one.test_case);
         runs_[one.test_case.id] = [&one](Run& run) { return run.run(one); };
         checks_[one.test_case.id] = [&one](Run& run) { run.check(one); };
@@ -300,6 +316,9 @@ class InterbusSuite final : public Suite {
 
   std::string_view protocol() const override { return "interbus"; }
   std::vector<std::string> roles() const override { return {"slave", "master", "network"}; }
+  bool has_own(std::string_view role) const override {
+    return role == "slave" ? bool(given_.slave.own) : role == "master" && bool(given_.master.own);
+  }
   const std::vector<TestCase>& cases() const override { return cases_; }
   const std::vector<Deviation>& deviations() const override { return deviations_; }
 
@@ -329,6 +348,7 @@ class InterbusSuite final : public Suite {
   void check(const TestCase& test_case, const Setup& setup) const override {
     Run one(test_case, setup, given_);
     checks_.at(test_case.id)(one);
+    one.try_out();
   }
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
@@ -337,7 +357,7 @@ class InterbusSuite final : public Suite {
   }
 
  private:
-  Given given_;
+  InterbusGiven given_;
   std::vector<TestCase> cases_;
   std::vector<Deviation> deviations_;
   std::map<std::string, std::function<Outcome(Run&)>, std::less<>> runs_;
@@ -347,8 +367,8 @@ class InterbusSuite final : public Suite {
 
 }  // namespace
 
-std::unique_ptr<Suite> interbus_suite(OwnStations own, LineDisturbances disturbances) {
-  return std::make_unique<InterbusSuite>(Given{std::move(own), std::move(disturbances)});
+std::unique_ptr<Suite> interbus_suite(InterbusGiven given) {
+  return std::make_unique<InterbusSuite>(std::move(given));
 }
 
 }  // namespace fieldproof::conformance

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "conformance/assigned.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/disturbance.hpp"
 #include "harness/fault/stress.hpp"
@@ -12,23 +12,22 @@
 
 // The INTERBUS suite: the cases for slaves, for masters and for whole networks, and their deviations.
 //
-// Implementations of a role: `ref`, `deviant:NAME`, `recorded:FILE` (a device that does again what a stored
-// run recorded). Cases for a slave and for a network take the network of the setup; cases for a master make
-// the rings that they need.
+// Implementations of a role: `ref`, `deviant:NAME`, what the suite was given, and `recorded:FILE` (a device
+// that does again what a stored run recorded). Cases for a slave and for a network take the network of the
+// setup; cases for a master make the rings that they need.
 namespace fieldproof::conformance {
 
-// What makes the stations that the URI `own` means; null where there is none.
-struct OwnStations {
-  std::function<std::unique_ptr<interbus::SlaveDevice>(const interbus::SlaveConfiguration&)> make_slave{};
-  std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)> make_master{};
-};
+using GivenSlaves = GivenStations<interbus::SlaveDevice, interbus::SlaveConfiguration>;
+using GivenMasters = GivenStations<interbus::MasterDevice, interbus::MasterConfiguration>;
 
-// What disturbs a line. It comes from outside, because a suite has no model of a disturbance.
-struct LineDisturbances {
+// What disturbs a line comes from outside as well, because a suite has no model of a disturbance.
+struct InterbusGiven {
+  GivenSlaves slave{};
+  GivenMasters master{};
+  std::span<const fault::DisturbanceKind> disturbances{};  // what a plan can name
   std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
-  std::span<const fault::DisturbanceKind> of_plans{};  // what a plan can name
 };
 
-std::unique_ptr<Suite> interbus_suite(OwnStations own = {}, LineDisturbances disturbances = {});
+std::unique_ptr<Suite> interbus_suite(InterbusGiven given = {});
 
 }  // namespace fieldproof::conformance

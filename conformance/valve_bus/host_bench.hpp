@@ -162,7 +162,7 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   std::vector<std::uint64_t> planned_hits() const {
     return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
   }
-  // The case is over.
+  // The case is over. What the IUT does then is still its verdict.
   void finish() { host_->end(); }
   const LineWatch& line_watch() const { return line_watch_; }
   // The last frames of the IUT, and what the PC was told, in words.

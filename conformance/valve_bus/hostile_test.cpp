@@ -108,13 +108,12 @@ class HostileNode : public testing::TestWithParam<std::string> {
     limits.call = std::chrono::milliseconds(1000);  // a loaded machine under a sanitizer is slow
     iut::DevicePool pool(uri, {"valve_bus", "node"}, limits);
     const auto suite =
-        valve_bus_suite({[&](const ValveBusGiven::Wanted& wanted, const auto& configuration) {
+        valve_bus_suite({.node = {.attached = [&](const Wanted& wanted, const auto& configuration) {
                            const auto lease = std::make_shared<iut::DevicePool::Lease>(pool.take());
                            return std::make_unique<valve_bus::AttachedNode>(
-                               valve_bus::NodeAttachment{&**lease, lease, [lease] { lease->set_reusable(); }},
+                               iut::Attachment{&**lease, lease, [lease] { lease->set_reusable(); }},
                                configuration, wanted.case_id, wanted.seed);
-                         },
-                         {}});
+                         }}});
     conformance::Setup setup;
     setup.volume = Volume::quick;
     setup.implementations = {{"node", 0, uri}};

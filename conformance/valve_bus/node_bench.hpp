@@ -135,7 +135,7 @@ class NodeBench final : private segment::Station {
     return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
   }
 
-  // The case is over.
+  // The case is over. What the IUT does then is still its verdict.
   void finish() { node_->end(); }
   const LineWatch& line_watch() const { return line_watch_; }
   // The last transmissions of the tester and of the IUT, in words.

@@ -36,6 +36,9 @@ class ValveBusSuite final : public Suite {
 
   std::string_view protocol() const override { return "valve_bus"; }
   std::vector<std::string> roles() const override { return {"node", "host"}; }
+  bool has_own(std::string_view role) const override {
+    return role == "node" ? bool(given_.node.own) : role == "host" && bool(given_.host.own);
+  }
   const std::vector<TestCase>& cases() const override { return cases_; }
   const std::vector<Deviation>& deviations() const override { return deviations_; }
   std::vector<judge::PicsItem> pics_items() const override {
@@ -120,21 +123,17 @@ class ValveBusSuite final : public Suite {
     return setting;
   }
 
-  std::unique_ptr<valve_bus::NodeDevice> make_node(const ValveBusGiven::Wanted& wanted,
+  std::unique_ptr<valve_bus::NodeDevice> make_node(const Wanted& wanted,
                                                    const valve_bus::NodeConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Node>(configuration);
-    if (given_.make_node) {
-      if (auto node = given_.make_node(wanted, configuration)) return node;
-    }
+    if (auto node = given_.node.make(wanted, configuration)) return node;
     return make_node_deviation(deviation_of(wanted.uri, "node of the valve bus"), configuration);
   }
 
-  std::unique_ptr<valve_bus::HostDevice> make_host(const ValveBusGiven::Wanted& wanted,
+  std::unique_ptr<valve_bus::HostDevice> make_host(const Wanted& wanted,
                                                    const valve_bus::HostConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Host>(configuration);
-    if (given_.make_host) {
-      if (auto host = given_.make_host(wanted, configuration)) return host;
-    }
+    if (auto host = given_.host.make(wanted, configuration)) return host;
     return make_host_deviation(deviation_of(wanted.uri, "host of the valve bus"), configuration);
   }
 

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "conformance/assigned.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/disturbance.hpp"
 #include "harness/fault/stress.hpp"
@@ -15,25 +13,15 @@
 // The suite of the RS-485 bus for pneumatic valves: the cases for local nodes and for
 // host modules, and their deviations.
 //
-// Implementations of a role: `ref`, `deviant:NAME`, and what the makers of implementations that the suite was
-// given can make of their URI.
+// Implementations of a role: `ref`, `deviant:NAME`, and what the suite was given.
 namespace fieldproof::conformance {
 
-struct ValveBusGiven {
-  // Who plays the role of one case.
-  struct Wanted {
-    const std::string& uri;
-    const std::string& case_id;
-    std::uint64_t seed;
-  };
-  // The node, the host that such a URI means; null for a URI of another kind.
-  using MakeNode = std::function<std::unique_ptr<valve_bus::NodeDevice>(
-      const Wanted& wanted, const valve_bus::NodeConfiguration& configuration)>;
-  using MakeHost = std::function<std::unique_ptr<valve_bus::HostDevice>(
-      const Wanted& wanted, const valve_bus::HostConfiguration& configuration)>;
+using GivenNodes = GivenStations<valve_bus::NodeDevice, valve_bus::NodeConfiguration>;
+using GivenHosts = GivenStations<valve_bus::HostDevice, valve_bus::HostConfiguration>;
 
-  MakeNode make_node{};
-  MakeHost make_host{};
+struct ValveBusGiven {
+  GivenNodes node{};
+  GivenHosts host{};
   std::span<const fault::DisturbanceKind> disturbances{};  // what a plan can name
   std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
 };

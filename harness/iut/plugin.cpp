@@ -18,8 +18,8 @@ namespace {
 
 constexpr unsigned kMostActions = 10'000;  // within one call, and calls at one instant
 
-[[noreturn]] void refuse_library(const std::string& path, const std::string& why) {
-  throw kernel::Error(kernel::ErrorKind::implementation, fmt::format("plugin:{}: {}", path, why));
+[[noreturn]] void refuse_library(const std::string& name, const std::string& why) {
+  throw kernel::Error(kernel::ErrorKind::implementation, fmt::format("{}: {}", name, why));
 }
 
 fieldproof_time ticks_of(kernel::Time time) {
@@ -29,17 +29,32 @@ kernel::Time time_of(fieldproof_time ticks) {
   return kernel::Time{kernel::Duration{ticks}};
 }
 
+// A library stays loaded as long as what it gave is used.
+struct Plugin {
+  std::string name;  // in sentences: "plugin:./libnode.so"
+  boost::dll::shared_library library{};
+  const fieldproof_implementation* implementation = nullptr;
+};
+
+Plugin loaded(const std::string& path) {
+  Plugin plugin{.name = "plugin:" + path};
+  try {
+    plugin.library.load(path, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+  } catch (const std::exception& error) {
+    refuse_library(plugin.name, fmt::format("cannot be loaded: {}", kernel::escaped_line(error.what())));
+  }
+  if (!plugin.library.has("fieldproof_plugin")) {
+    refuse_library(plugin.name, "does not export 'fieldproof_plugin'");
+  }
+  const auto& entry = plugin.library.get<const fieldproof_implementation*(unsigned)>("fieldproof_plugin");
+  plugin.implementation = entry(FIELDPROOF_PLUGIN_VERSION);
+  return plugin;
+}
+
 class PluginDevice final : public Device {
  public:
-  PluginDevice(const std::string& path, const std::string& protocol, const std::string& role) : path_(path) {
-    try {
-      library_.load(path, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
-    } catch (const std::exception& error) {
-      refuse_library(path, fmt::format("cannot be loaded: {}", kernel::escaped_line(error.what())));
-    }
-    if (!library_.has("fieldproof_plugin")) refuse_library(path, "does not export 'fieldproof_plugin'");
-    const auto& entry = library_.get<const fieldproof_implementation*(unsigned)>("fieldproof_plugin");
-    implementation_ = entry(FIELDPROOF_PLUGIN_VERSION);
+  PluginDevice(Plugin plugin, const std::string& protocol, const std::string& role)
+      : plugin_(std::move(plugin)), implementation_(plugin_.implementation) {
     check();
     bench_.version = FIELDPROOF_PLUGIN_VERSION;
     bench_.size = sizeof bench_;
@@ -51,7 +66,7 @@ class PluginDevice final : public Device {
     bench_.log = &on_log;
     self_ = implementation_->create(protocol.c_str(), role.c_str(), &bench_);
     if (self_ == nullptr)
-      refuse_library(path, fmt::format("does not serve the role '{}/{}'", protocol, role));
+      refuse_library(plugin_.name, fmt::format("does not serve the role '{}/{}'", protocol, role));
   }
   ~PluginDevice() override { implementation_->destroy(self_); }
 
@@ -100,11 +115,10 @@ class PluginDevice final : public Device {
     calls_at_once_ = now == last_call_ ? calls_at_once_ + 1 : 0;
     last_call_ = now;
     if (calls_at_once_ > kMostActions) {
-      throw Misbehaviour(
-          reasons::kFloods,
-          fmt::format("plugin:{} asks to be called at {} again and again; its next time must lie "
-                      "behind the one that has come",
-                      path_, kernel::describe(now)));
+      throw Misbehaviour(reasons::kFloods,
+                         fmt::format("{} asks to be called at {} again and again; its next time must lie "
+                                     "behind the one that has come",
+                                     plugin_.name, kernel::describe(now)));
     }
     call([&] { implementation_->on_time(self_, ticks_of(now)); });
   }
@@ -117,16 +131,17 @@ class PluginDevice final : public Device {
  private:
   void check() const {
     if (implementation_ == nullptr || implementation_->version != FIELDPROOF_PLUGIN_VERSION) {
-      refuse_library(
-          path_, fmt::format("is not made for version {} of fieldproof_plugin.h", FIELDPROOF_PLUGIN_VERSION));
+      refuse_library(plugin_.name, fmt::format("is not made for version {} of fieldproof_plugin.h",
+                                               FIELDPROOF_PLUGIN_VERSION));
     }
     const fieldproof_implementation& it = *implementation_;
-    if (it.size < sizeof it) refuse_library(path_, "has a shorter table of functions than its version has");
+    if (it.size < sizeof it)
+      refuse_library(plugin_.name, "has a shorter table of functions than its version has");
     const bool has_receive =
         it.unit == FIELDPROOF_LEVELS ? it.receive_levels != nullptr : it.receive != nullptr;
     if (it.create == nullptr || it.destroy == nullptr || it.begin == nullptr || it.set_power == nullptr ||
         !has_receive || it.on_time == nullptr || it.next_time == nullptr || it.end == nullptr) {
-      refuse_library(path_, "leaves a function out of its table");
+      refuse_library(plugin_.name, "leaves a function out of its table");
     }
   }
 
@@ -145,9 +160,8 @@ class PluginDevice final : public Device {
     if (self.failure_ || self.case_bench_ == nullptr) return;
     try {
       if (++self.actions_ > kMostActions) {
-        throw Misbehaviour(
-            reasons::kFloods,
-            fmt::format("plugin:{} has done more than {} things within one call", self.path_, kMostActions));
+        throw Misbehaviour(reasons::kFloods, fmt::format("{} has done more than {} things within one call",
+                                                         self.plugin_.name, kMostActions));
       }
       act(*self.case_bench_);
     } catch (...) {
@@ -196,9 +210,8 @@ class PluginDevice final : public Device {
   }
   static void on_log(void*, const char* text) { std::fprintf(stderr, "%s\n", text); }
 
-  std::string path_;
-  boost::dll::shared_library library_;
-  const fieldproof_implementation* implementation_ = nullptr;
+  Plugin plugin_;
+  const fieldproof_implementation* implementation_;
   fieldproof_bench bench_{};
   void* self_ = nullptr;
   Bench* case_bench_ = nullptr;
@@ -215,7 +228,15 @@ class PluginDevice final : public Device {
 
 std::unique_ptr<Device> load_plugin(const std::string& path, const std::string& protocol,
                                     const std::string& role) {
-  return std::make_unique<PluginDevice>(path, protocol, role);
+  return std::make_unique<PluginDevice>(loaded(path), protocol, role);
+}
+
+std::unique_ptr<Device> make_plugin(const fieldproof_implementation& implementation,
+                                    const std::string& protocol, const std::string& role) {
+  const char* name = implementation.name != nullptr ? implementation.name : "without a name";
+  return std::make_unique<PluginDevice>(
+      Plugin{.name = "plugin " + kernel::escaped_line(name), .implementation = &implementation}, protocol,
+      role);
 }
 
 }  // namespace fieldproof::iut

@@ -120,6 +120,39 @@ TEST(PluginTest, AskingForTheSameInstantWithoutEndIsAFlood) {
   EXPECT_THROW(call_again(), Misbehaviour);
 }
 
+TEST(PluginTest, ImplementationThatTheProgramHoldsIsCalledLikeALibrary) {
+  static constexpr fieldproof_implementation echo{
+      .version = FIELDPROOF_PLUGIN_VERSION,
+      .size = sizeof(fieldproof_implementation),
+      .name = "echo",
+      .unit = FIELDPROOF_LEVELS,
+      .create = [](const char*, const char* role, const fieldproof_bench* bench) -> void* {
+        return std::string_view(role) == "echo" ? const_cast<fieldproof_bench*>(bench) : nullptr;
+      },
+      .destroy = [](void*) {},
+      .begin = [](void*, const fieldproof_case*) { return 1; },
+      .set_power = [](void*, int, fieldproof_time) {},
+      .receive = nullptr,
+      .receive_levels =
+          [](void* self, unsigned port, fieldproof_time, fieldproof_time rate, const unsigned char* levels,
+             unsigned count, fieldproof_time now) {
+            const auto* bench = static_cast<const fieldproof_bench*>(self);
+            bench->transmit_levels(bench->context, port, now, rate, levels, count);
+          },
+      .on_time = [](void*, fieldproof_time) {},
+      .next_time = [](void*) { return FIELDPROOF_NEVER; },
+      .end = [](void*) {},
+  };
+  const auto device = make_plugin(echo, "odd", "echo");
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  line::Waveform wave{kSupply, 1'000, {}};
+  wave.levels.append(0b1011, 4);
+  device->receive(2, wave);
+  EXPECT_THAT(diary.lines, ElementsAre("drives 2 1000 1101"));
+  EXPECT_THROW(make_plugin(echo, "odd", "silence"), kernel::Error);
+}
+
 // The library is between the bench and whoever catches: it must not be unwound.
 TEST(PluginTest, WhatTheBenchRefusesIsToldBehindTheCall) {
   const auto device = odd_device("hears");

@@ -95,7 +95,8 @@ class Server final : private Bench {
     if (reader.type() == MessageType::case_begin) {
       const CaseBegin begin = read_case_begin(reader);
       is_in_case_ = false;
-      const bool is_meant = begin.id.starts_with(fmt::format("{}/{}/", role_.protocol, role_.role));
+      // A station may take part in the cases of another role, as a slave does in those of a network.
+      const bool is_meant = begin.id.starts_with(role_.protocol + "/");
       if (!is_meant || !device_->begin(begin, *this)) {
         writer_.begin(MessageType::unsupported);
         return pipe_.send(writer_.finish());

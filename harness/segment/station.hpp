@@ -29,6 +29,8 @@ class Station {
   // When on_time is wanted, kNever for never. Asked after each receive and on_time. An instant that has
   // passed means now.
   virtual kernel::Time next_time() const = 0;
+  // The bench is done with it: nothing is asked of the station any more.
+  virtual void end() {}
 };
 
 // Where a station drives. `wave.start` is now or later, and not before the end of what the port drove before

@@ -130,6 +130,10 @@ CycleFields::InFront Ring::in_front_of(std::size_t station) const {
   return {2 * words, 2 * static_cast<unsigned>(station)};
 }
 
+void Ring::end() {
+  for (Place& place : slaves_) place.device->end();
+}
+
 void Ring::set_cable(int position, bool connected) {
   link_to(position).set_connected(connected);
   link_from(position).set_connected(connected);

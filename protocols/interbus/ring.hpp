@@ -63,6 +63,9 @@ class Ring {
   unsigned first_word(int position) const { return slaves_.at(index(position)).first_word; }
   unsigned word_count() const { return word_count_; }
 
+  // The bench is done with all of them.
+  void end();
+
   // The cable to the station is cut, both directions, or mended.
   void set_cable(int position, bool connected);
 

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "harness/iut/device.hpp"
-#include "protocols/valve_bus/codec.hpp"
+#include "harness/iut/served_station.hpp"
+#include "protocols/valve_bus/attached_line.hpp"
 #include "protocols/valve_bus/device.hpp"
 
 // A local node between the bench and an implementation outside, in both directions: AttachedNode is a node of
@@ -27,84 +27,55 @@ std::vector<std::pair<std::string, std::int64_t>> node_settings(const NodeConfig
 // The other way round; what is not there is as the configuration has it anyway.
 NodeConfiguration node_configuration_of(const iut::CaseBegin& begin);
 
-// A device for one case and what is to be done behind it.
-struct NodeAttachment {
-  iut::Device* device = nullptr;
-  std::shared_ptr<void> lease;            // keeps the device
-  std::function<void()> on_well_ended{};  // the case has ended as it should
-};
-
 class AttachedNode final : public NodeDevice, private iut::Bench {
  public:
   // Throws iut::Misbehaviour when the implementation refuses the case.
-  AttachedNode(NodeAttachment attachment, const NodeConfiguration& configuration, const std::string& case_id,
+  AttachedNode(iut::Attachment attachment, const NodeConfiguration& configuration, const std::string& case_id,
                std::uint64_t seed);
-  ~AttachedNode() override;
 
   void wire(segment::Port& line, NodeBoards& boards) override;
   void set_power(bool is_on, kernel::Time now) override;
-  void receive(segment::PortIndex port, const line::Waveform& reception) override;
-  void on_time(kernel::Time now) override;
-  kernel::Time next_time() const override;
-  void end() override;
+  void receive(segment::PortIndex port, const line::Waveform& reception) override {
+    line_.receive(port, reception);
+  }
+  void on_time(kernel::Time now) override { attached_.on_time(now); }
+  kernel::Time next_time() const override { return attached_.next_time(); }
+  void end() override { attached_.end(); }
 
  private:
-  template <typename Call>
-  void call(kernel::Time now, Call&& call);
-  void expect_supplied() const;
-  void transmit(const iut::Transmission& transmission) override;
-  void transmit(unsigned port, line::Waveform& wave) override;
+  void transmit(const iut::Transmission& transmission) override { line_.transmit(transmission); }
+  void transmit(unsigned port, line::Waveform& wave) override { line_.transmit(port, wave); }
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(iut::Item item, kernel::Time when) override;
-  // The driver on and nothing said. Gives the end: `to`, or what rounding makes of it.
-  kernel::Time drive_idle(kernel::Time from, kernel::Time to);
-  kernel::Time behind_the_last(kernel::Time start) const;
 
-  NodeAttachment attachment_;
-  NodeConfiguration configuration_;
-  CharacterCodec codec_;
-  segment::Port* line_ = nullptr;
+  Rules rules_;
+  iut::AttachedCase attached_;
+  AttachedLine line_;
   NodeBoards* boards_ = nullptr;
-  std::vector<iut::Character> characters_;
-  kernel::Time now_{};  // as the implementation was told it
-  kernel::Time last_write_{};
-  kernel::Time driven_until_{};
-  bool is_supplied_ = false;
-  bool is_well_ = true;
-  bool has_ended_ = false;
 };
 
-class ServedNode final : public iut::Device, private segment::Port, private NodeBoards {
+class ServedNode final : public iut::ServedStation<NodeDevice>, private NodeBoards {
  public:
-  using MakeNode = std::function<std::unique_ptr<NodeDevice>(const NodeConfiguration&)>;
-  explicit ServedNode(MakeNode make_node) : make_node_(std::move(make_node)) {}
+  using Make = std::function<std::unique_ptr<NodeDevice>(const NodeConfiguration&)>;
+  explicit ServedNode(Make make) : make_(std::move(make)) {}
 
-  iut::UnitKind unit_kind() const override { return iut::UnitKind::levels; }
   bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override;
-  void set_power(bool is_on, kernel::Time now) override { node_->set_power(is_on, now_ = now); }
-  void receive(unsigned port, std::span<const iut::Character> characters, kernel::Time now) override;
-  void receive(unsigned port, const line::Waveform& reception) override {
-    now_ = reception.end();
-    node_->receive(port, reception);
+  void set_power(bool is_on, kernel::Time now) override {
+    act(now, [&] { station().set_power(is_on, now); });
   }
-  void on_time(kernel::Time now) override { node_->on_time(now_ = now); }
-  kernel::Time next_time() const override { return node_ ? node_->next_time() : kernel::kNever; }
-  void end() override { node_.reset(); }
+  void receive(unsigned port, const line::Waveform& reception) override {
+    act(reception.end(), [&] { station().receive(port, reception); });
+  }
 
  private:
-  void drive(line::Waveform& wave) override { bench_->transmit(0, wave); }
   std::uint16_t limit_switches(kernel::Time when) override {
-    return static_cast<std::uint16_t>(bench_->read(kLimitSwitches, std::max(when, now_)));
+    return static_cast<std::uint16_t>(bench().read(kLimitSwitches, not_past(when)));
   }
   void drive_valves(std::uint16_t valves, kernel::Time when) override {
-    bench_->write(kValves, valves, std::max(when, now_));
+    bench().write(kValves, valves, not_past(when));
   }
 
-  MakeNode make_node_;
-  std::unique_ptr<NodeDevice> node_;
-  iut::Bench* bench_ = nullptr;
-  // A node may act at the end of a character by its own clock, before a slower sender has ended it.
-  kernel::Time now_{};
+  Make make_;
 };
 
 }  // namespace fieldproof::valve_bus

@@ -67,7 +67,7 @@ class AttachedNodeTest : public testing::Test, private segment::Station, private
   AttachedNodeTest() { line_.tap_driven(*this); }
 
   void attach() {
-    NodeAttachment attachment{&device_, nullptr, [this] { ++well_ended_; }};
+    iut::Attachment attachment{&device_, nullptr, [this] { ++well_ended_; }};
     node_ = std::make_unique<AttachedNode>(attachment, configuration_, "valve_bus/node/x", 7);
     node_->wire(line_.attach("node/in", segment_.attach(*node_, "node"), 0, {}), boards_);
     host_ = &line_.attach("host/in", segment_.attach(*this, "host"), 0, {});

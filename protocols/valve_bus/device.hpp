@@ -38,8 +38,6 @@ class NodeDevice : public segment::Station {
   // The supply comes and goes; a node begins without it. It must not drive the line or a valve without it:
   // the valves are told off by who switches it.
   virtual void set_power(bool is_on, kernel::Time now) = 0;
-  // The case is over: nothing is asked of the node any more. What it does then is still its verdict.
-  virtual void end() {}
 };
 
 // ---- the host module and its PC ----
@@ -118,8 +116,6 @@ class HostDevice : public segment::Station {
   // Commands have been lost since power-up.
   virtual bool has_overflowed() const = 0;
   virtual HostCounters counters(std::uint8_t id) const = 0;
-  // The case is over: nothing is asked of the host any more. What it does then is still its verdict.
-  virtual void end() {}
 };
 
 }  // namespace fieldproof::valve_bus

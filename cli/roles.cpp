@@ -1,0 +1,45 @@
+#include "cli/roles.hpp"
+
+#include <array>
+
+#include "conformance/assigned.hpp"
+#include "conformance/interbus/slave_deviations.hpp"
+#include "conformance/valve_bus/host_deviations.hpp"
+#include "conformance/valve_bus/node_deviations.hpp"
+#include "protocols/interbus/attached_slave.hpp"
+#include "protocols/interbus/slave.hpp"
+#include "protocols/valve_bus/attached_host.hpp"
+#include "protocols/valve_bus/attached_node.hpp"
+#include "protocols/valve_bus/host.hpp"
+#include "protocols/valve_bus/node.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+// `make_deviation` gives the station of a deviation by its name.
+template <typename Served, typename Reference, auto make_deviation>
+std::unique_ptr<iut::Device> serve(const std::string& uri) {
+  const bool is_reference = uri == conformance::kReferenceUri;
+  const std::string name = is_reference ? "" : conformance::deviation_of(uri, "built-in station");
+  if (!is_reference) make_deviation(name, {});  // while it is the caller's mistake
+  return std::make_unique<Served>([is_reference, name](const auto& configuration) {
+    return is_reference ? std::make_unique<Reference>(configuration) : make_deviation(name, configuration);
+  });
+}
+
+constexpr std::array kRoles{
+    Role{"interbus", "slave",
+         &serve<interbus::ServedSlave, interbus::Slave, &conformance::make_slave_deviation>},
+    Role{"valve_bus", "node",
+         &serve<valve_bus::ServedNode, valve_bus::Node, &conformance::make_node_deviation>},
+    Role{"valve_bus", "host",
+         &serve<valve_bus::ServedHost, valve_bus::Host, &conformance::make_host_deviation>},
+};
+
+}  // namespace
+
+std::span<const Role> roles() {
+  return kRoles;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,26 @@
+// The roles that an implementation outside can take, one row each, and the built-in stations that can be
+// served in them (`fieldproof station`).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "harness/iut/device.hpp"
+
+namespace fieldproof::cli {
+
+struct Role {
+  std::string_view protocol;
+  std::string_view name;
+  // The station of `ref` or `deviant:NAME` as an implementation. Throws kernel::Error(usage) for a deviation
+  // that is not there.
+  std::unique_ptr<iut::Device> (*serve)(const std::string& uri);
+
+  std::string path() const { return std::string(protocol) + "/" + std::string(name); }
+};
+
+std::span<const Role> roles();
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,148 @@
+#include "island.hpp"
+
+#include <conformance/assigned.hpp>
+#include <conformance/case_recorder.hpp>
+#include <conformance/suite_of_functions.hpp>
+#include <conformance/valve_bus/node_cases.hpp>
+#include <conformance/valve_bus/node_expect.hpp>
+#include <harness/iut/plugin.hpp>
+#include <protocols/valve_bus/attached_node.hpp>
+#include <protocols/valve_bus/node.hpp>
+#include <protocols/valve_bus/notation.hpp>
+
+namespace island {
+namespace {
+
+using namespace fieldproof;
+using namespace fieldproof::conformance;
+using kernel::kMicrosecond;
+using kernel::kMillisecond;
+
+// ---- the station and its deviations ----
+
+class Island : public valve_bus::Node {
+ public:
+  using Node::Node;
+
+ protected:
+  kernel::Duration turn_round() const override { return delimiter(rules()) + 120 * kMicrosecond; }
+};
+
+// The bus allows 2 ms for both.
+class AnswersSlowly final : public Island {
+  using Island::Island;
+  kernel::Duration turn_round() const override { return Island::turn_round() + kMillisecond; }
+};
+
+class MovesSlowly final : public Island {
+  using Island::Island;
+  void actuate(std::uint16_t valves, kernel::Time now) override {
+    Island::actuate(valves, now + kMillisecond);
+  }
+};
+
+std::unique_ptr<NodeDevice> node_of(const Wanted& wanted, const NodeConfiguration& configuration) {
+  if (wanted.uri == kOwnUri) return firmware(configuration, wanted.case_id, wanted.seed);
+  if (wanted.uri == kReferenceUri) return std::make_unique<Island>(configuration);
+  const std::string deviation = deviation_of(wanted.uri, "valve island");
+  if (deviation == "answers_slowly") return std::make_unique<AnswersSlowly>(configuration);
+  return std::make_unique<MovesSlowly>(configuration);
+}
+
+// ---- the cases ----
+
+const judge::Reference kDataSheet{"data sheet of the valve island", "dynamic properties",
+                                  judge::Standing::own};
+
+void expect_at_once(CaseJudge& judge, std::string_view what, kernel::Duration took, std::string_view reason) {
+  judge.expect_between(what, "us", static_cast<double>(took.count()) * 1e-6, 0, 300, reason);
+}
+
+void answers_within_300_us(NodeBench& bench, CaseJudge& judge) {
+  for (int n = 0; n < bench.volume(3, 50); ++n) {
+    bench.forget();
+    const auto switches = static_cast<std::uint16_t>(bench.random().below(0x10000));
+    bench.boards().set_input(0, switches);
+    const kernel::Time asked = bench.read();
+    bench.settle();
+    const Transmission answer = expect_answer(bench, judge, switches, asked);
+    const kernel::Duration took = answer.characters.front().start - asked - bench.delimiter();
+    expect_at_once(judge, "answer behind the silence", took, "answers_too_slowly");
+  }
+}
+
+void moves_within_300_us(NodeBench& bench, CaseJudge& judge) {
+  for (int n = 0; n < bench.volume(3, 50); ++n) {
+    bench.forget();
+    const auto data0 = static_cast<std::uint8_t>(~bench.valves());
+    const kernel::Time written = bench.write(data0, 0);
+    bench.settle();
+    expect_write_taken(bench, judge, data0, 0, written);
+    const kernel::Duration took = bench.boards().changes().front().when - written - bench.delimiter();
+    expect_at_once(judge, "valves behind the silence", took, "moves_too_slowly");
+  }
+}
+
+const std::vector<NodeCase>& cases() {
+  static const std::vector<NodeCase> all{
+      {{.id = "island/node/read/answers_within_300_us",
+        .purpose = "VI-01",
+        .requirement = "The valve island answers a read at most 0.3 ms behind the silence that ends it.",
+        .reference = kDataSheet,
+        .stimulus = "Reads with random limit switches.",
+        .expected = "Each answer is right and begins in time.",
+        .tags = {"must", "timing"},
+        .catches = {{"answers_slowly", "answers_too_slowly"}}},
+       &answers_within_300_us},
+      {{.id = "island/node/write/moves_within_300_us",
+        .purpose = "VI-02",
+        .requirement =
+            "The valve island moves its valves at most 0.3 ms behind the silence that ends a write.",
+        .reference = kDataSheet,
+        .stimulus = "Writes that change every valve of the first board.",
+        .expected = "The valves stand as each write says, in time.",
+        .tags = {"must", "timing"},
+        .catches = {{"moves_slowly", "moves_too_slowly"}}},
+       &moves_within_300_us}};
+  return all;
+}
+
+Outcome run(const NodeCase& one, const Setup& setup) {
+  CaseRecorder recorder;
+  NodeSetting setting{.seed = setup.seed, .volume = setup.volume, .pics = setup.pics};
+  const std::string uri = assigned_to(one.test_case, setup).uri;
+  setting.make_node = [&](const NodeConfiguration& configuration) {
+    return node_of({uri, one.test_case.id, setup.seed}, configuration);
+  };
+  if (setup.record) {
+    setting.make_recorder = [&](const trace::Trace& trace, const valve_bus::Rules& rules) {
+      return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
+    };
+  }
+  Outcome outcome{run_node_case(one, setting), {}};
+  recorder.keep(outcome);
+  return outcome;
+}
+
+}  // namespace
+
+std::unique_ptr<NodeDevice> firmware(const NodeConfiguration& configuration, const std::string& case_id,
+                                     std::uint64_t seed) {
+  const std::shared_ptr<iut::Device> device =
+      iut::make_plugin(*fieldproof_plugin(FIELDPROOF_PLUGIN_VERSION), "valve_bus", "node");
+  return std::make_unique<valve_bus::AttachedNode>(iut::Attachment{device.get(), device}, configuration,
+                                                   case_id, seed);
+}
+
+std::unique_ptr<Suite> island_suite() {
+  auto suite = std::make_unique<SuiteOfFunctions>("island", std::vector<std::string>{"node"});
+  suite->add(Deviation{"answers_slowly", "MV1", "node", "answers a read 1 ms later"});
+  suite->add(Deviation{"moves_slowly", "MV2", "node", "moves its valves 1 ms later"});
+  suite->add_own("node");
+  for (const NodeCase& one : cases()) {
+    suite->add(one.test_case, [&one](const TestCase&, const Setup& setup) { return run(one, setup); });
+  }
+  return suite;
+}
+
+}  // namespace island

@@ -1,0 +1,20 @@
+// Every case against the firmware, as a test of GoogleTest.
+#include <gtest/gtest.h>
+#include <conformance/gtest_catalogue.hpp>
+
+#include "suites.hpp"
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  using namespace fieldproof::conformance;
+  const auto suites = island::suites();
+  for (const auto& suite : suites) {
+    register_with_googletest(*suite, [](const TestCase&) {
+      fieldproof::conformance::Setup setup;
+      setup.volume = Volume::quick;
+      setup.implementations = {{.role = "node", .uri = "own"}};
+      return setup;
+    });
+  }
+  return RUN_ALL_TESTS();
+}

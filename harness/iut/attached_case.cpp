@@ -1,0 +1,105 @@
+#include "harness/iut/attached_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/iut/misbehaviour.hpp"
+
+namespace fieldproof::iut {
+namespace {
+
+constexpr kernel::Duration kLongestDrive = 10 * kernel::kSecond;
+constexpr kernel::Duration kFarthestAhead = 3600 * kernel::kSecond;
+
+bool is_within_reach(kernel::Time when) {
+  return when.time_since_epoch() <= kFarthestAhead;
+}
+
+}  // namespace
+
+void refuse_impossible(const std::string& sentence) {
+  throw Misbehaviour(reasons::kImpossible, "the implementation " + sentence);
+}
+
+std::int64_t setting(const CaseBegin& begin, std::string_view name, std::int64_t absent) {
+  const auto found = std::ranges::find(begin.settings, name, [](const auto& one) { return one.first; });
+  return found == begin.settings.end() ? absent : found->second;
+}
+
+AttachedCase::~AttachedCase() {
+  try {
+    end();
+  } catch (const kernel::Error&) {
+    // The case has ended before, with a verdict; the next one begins with a new implementation.
+  }
+}
+
+void AttachedCase::begin(const CaseBegin& begin, Bench& bench) {
+  call(kernel::kStart, [&](Device& device) {
+    if (device.begin(begin, bench)) return;
+    throw Misbehaviour(reasons::kUnsupported, "the implementation answers 'unsupported' to this case");
+  });
+  has_begun_ = true;
+}
+
+void AttachedCase::set_power(bool is_on, kernel::Time now) {
+  is_supplied_ = is_on;
+  for (auto& [kind, last] : last_) last = now;
+  call(now, [&](Device& device) { device.set_power(is_on, now); });
+}
+
+void AttachedCase::on_time(kernel::Time now) {
+  call(now, [&](Device& device) { device.on_time(now); });
+}
+
+kernel::Time AttachedCase::next_time() const {
+  return is_well_ ? attachment_.device->next_time() : kernel::kNever;
+}
+
+void AttachedCase::end() {
+  if (!is_well_ || has_ended_ || !has_begun_) return;
+  has_ended_ = true;
+  call(now_, [](Device& device) { device.end(); });
+  if (attachment_.on_well_ended) attachment_.on_well_ended();
+}
+
+// ---- what the implementation does ----
+
+void AttachedCase::expect_supplied() const {
+  if (!has_begun_) refuse_impossible("acts while the case begins; it has no supply yet");
+  if (!is_supplied_) refuse_impossible("acts without supply");
+}
+
+void AttachedCase::expect_ahead(kernel::Time when, std::string_view does) const {
+  expect_supplied();
+  if (now_ <= when && is_within_reach(when)) return;
+  refuse_impossible(
+      fmt::format("{} at {} when it is {}", does, kernel::describe(when), kernel::describe(now_)));
+}
+
+void AttachedCase::expect_in_order(kernel::Time when, std::string_view does) {
+  expect_ahead(when, does);
+  const auto last = last_.try_emplace(std::string(does), kernel::kStart).first;
+  if (when < last->second) {
+    refuse_impossible(fmt::format("{} at an instant that lies before the last one", does));
+  }
+  last->second = when;
+}
+
+void AttachedCase::expect_span(kernel::Time begin, kernel::Time end,
+                               const std::function<std::string()>& describe) const {
+  // In this order: none of the sums is further than time reaches.
+  const bool is_near = now_ <= begin && begin <= end && is_within_reach(end) && end - begin <= kLongestDrive;
+  if (!is_near) refuse_impossible(describe());
+}
+
+void AttachedCase::expect_drive(const line::Waveform& wave) const {
+  expect_supplied();
+  if (wave.levels.empty()) refuse_impossible("drives no level at all");
+  expect_span(wave.start, is_within_reach(wave.start) ? wave.end() : wave.start, [&] {
+    return fmt::format("drives from {} to {}", kernel::describe(wave.start), kernel::describe(wave.end()));
+  });
+}
+
+}  // namespace fieldproof::iut
