@@ -23,14 +23,6 @@ using nlohmann::ordered_json;
 constexpr std::string_view kSchema = "fieldproof/case/1";
 constexpr const char* kPlayback = "playback.txt";
 
-ordered_json implementations_json(const conformance::Setup& setup) {
-  ordered_json list = ordered_json::array();
-  for (const conformance::Assignment& assignment : setup.implementations) {
-    list.push_back({{"role", assignment.role}, {"position", assignment.position}, {"uri", assignment.uri}});
-  }
-  return list;
-}
-
 std::string place_of_copy(std::string_view name) {
   return fmt::format("../../{}", name);
 }
@@ -68,7 +60,7 @@ ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed,
   json["run_seed"] = std::to_string(run_seed);
   json["case_seed"] = std::to_string(result.seed);
   json["volume"] = conformance::name(done.setup.volume);
-  json["implementations"] = implementations_json(done.setup);
+  json["implementations"] = ordered_json::parse(implementations_json(done.setup));
   if (!kept.network.empty()) json["network"] = kept.network;
   if (!kept.plan.empty()) json["plan"] = kept.plan;
   if (!kept.pics.empty()) json["pics"] = kept.pics;
@@ -92,22 +84,6 @@ void store_recording(const reports::RunDirectory& directory, const conformance::
   directory.write_case(id, "timeline.json",
                        reports::timeline_json(outcome.result, recording.trace, recording.told_in()));
   directory.write_case(id, "trace.pcapng", capture_of(done));
-}
-
-std::vector<conformance::Assignment> implementations_from(const config::Value& list,
-                                                          const conformance::Suite& suite) {
-  std::vector<conformance::Assignment> implementations;
-  for (const config::Value& element : list.as_array()) {
-    implementations.push_back(config::read_object(element, [](config::ObjectReader& reader) {
-      conformance::Assignment assignment;
-      assignment.role = reader.required("role").as_string();
-      assignment.position = reader.required("position").as_integer<int>(0);
-      assignment.uri = reader.required("uri").as_string();
-      return assignment;
-    }));
-    if (const auto why = obstacle(implementations.back(), suite)) config::fail(element, *why);
-  }
-  return implementations;
 }
 
 std::string path_from(const std::optional<config::Value>& value, const std::filesystem::path& folder) {
@@ -152,6 +128,30 @@ CaseFile read_case(config::ObjectReader& reader, const std::filesystem::path& fo
 }
 
 }  // namespace
+
+std::string implementations_json(const conformance::Setup& setup) {
+  ordered_json list = ordered_json::array();
+  for (const conformance::Assignment& assignment : setup.implementations) {
+    list.push_back({{"role", assignment.role}, {"position", assignment.position}, {"uri", assignment.uri}});
+  }
+  return list.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::vector<conformance::Assignment> implementations_from(const config::Value& list,
+                                                          const conformance::Suite& suite) {
+  std::vector<conformance::Assignment> implementations;
+  for (const config::Value& element : list.as_array()) {
+    implementations.push_back(config::read_object(element, [](config::ObjectReader& reader) {
+      conformance::Assignment assignment;
+      assignment.role = reader.required("role").as_string();
+      assignment.position = reader.required("position").as_integer<int>(0);
+      assignment.uri = reader.required("uri").as_string();
+      return assignment;
+    }));
+    if (const auto why = obstacle(implementations.back(), suite)) config::fail(element, *why);
+  }
+  return implementations;
+}
 
 void store_case(const reports::RunDirectory& directory, const conformance::CaseRun& done,
                 std::uint64_t run_seed) {

@@ -11,8 +11,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "conformance/runner.hpp"
+#include "harness/config/document.hpp"
 #include "reports/run_directory.hpp"
 
 namespace fieldproof::cli {
@@ -39,5 +41,10 @@ std::string wave_dump_of(const conformance::CaseRun& done);
 
 // The case, its implementations and its PICS are looked up in the catalogue.
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue);
+
+// The member "implementations" of files that are run again.
+std::string implementations_json(const conformance::Setup& setup);
+std::vector<conformance::Assignment> implementations_from(const config::Value& list,
+                                                          const conformance::Suite& suite);
 
 }  // namespace fieldproof::cli

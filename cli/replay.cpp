@@ -6,6 +6,8 @@
 #include "cli/exit_code.hpp"
 #include "cli/implementations.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/sequence_file.hpp"
+#include "cli/stored_sequence.hpp"
 #include "cli/verbs.hpp"
 #include "harness/judge/result_json.hpp"
 #include "reports/run_directory.hpp"
@@ -82,6 +84,7 @@ void show_recording(Session& session, const conformance::CaseRun& done) {
 
 int replay(Session& session) {
   check_exports(session.settings);
+  if (is_sequence_file(session.operands.front())) return replay_sequence(session);
   CaseFile stored = load_case(session.operands.front(), session.catalogue);
   const conformance::Entry& entry = session.catalogue.at(stored.id);
   const bool is_other = session.settings.origin("iut") != Origin::fallback;

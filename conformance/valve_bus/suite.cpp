@@ -8,6 +8,7 @@
 #include "conformance/valve_bus/host_deviations.hpp"
 #include "conformance/valve_bus/node_cases.hpp"
 #include "conformance/valve_bus/node_deviations.hpp"
+#include "conformance/valve_bus/node_sequence.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/valve_bus/host.hpp"
@@ -64,25 +65,46 @@ class ValveBusSuite final : public Suite {
   }
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
+    if (!is_of_host(test_case)) return run_node(*node_cases_.at(test_case.id), setup);
     CaseRecorder recorder;
-    const auto with_recorder = [&](auto setting) {
-      if (setup.record) {
-        setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
-          return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
-        };
-      }
-      return setting;
-    };
     Outcome outcome;
-    outcome.result =
-        is_of_host(test_case)
-            ? run_host_case(*host_cases_.at(test_case.id), with_recorder(host_setting(test_case, setup)))
-            : run_node_case(*node_cases_.at(test_case.id), with_recorder(node_setting(test_case, setup)));
+    outcome.result = run_host_case(*host_cases_.at(test_case.id),
+                                   recorded(host_setting(test_case, setup), setup, recorder));
     recorder.keep(outcome);
     return outcome;
   }
 
+  std::span<const SequenceRole> sequence_roles() const override {
+    return std::span(&node_sequence_role(), 1);
+  }
+  Outcome run_sequence(const SequenceRole& role, const Sequence& sequence,
+                       const Setup& setup) const override {
+    const auto procedure = [&sequence](NodeBench& bench, CaseJudge& judge) {
+      run_node_sequence(sequence, bench, judge);
+    };
+    return run_node({role.test_case, procedure}, setup);
+  }
+
  private:
+  Outcome run_node(const NodeCase& node_case, const Setup& setup) const {
+    CaseRecorder recorder;
+    Outcome outcome;
+    outcome.result =
+        run_node_case(node_case, recorded(node_setting(node_case.test_case, setup), setup, recorder));
+    recorder.keep(outcome);
+    return outcome;
+  }
+
+  template <typename Setting>
+  static Setting recorded(Setting setting, const Setup& setup, CaseRecorder& recorder) {
+    if (setup.record) {
+      setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
+        return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
+      };
+    }
+    return setting;
+  }
+
   fault::Plan load(const Setup& setup) const {
     return fault::load_plan(setup.plan_file, {.disturbances = given_.disturbances});
   }
