@@ -12,6 +12,7 @@ constexpr std::uint64_t kGrowth = 10;  // sequences of each length before they g
 constexpr unsigned kPerCent = 100;
 constexpr unsigned kFaultyPerCent = 30;  // of the commands
 constexpr std::size_t kMostDrawnFaults = 3;   // of one command
+constexpr unsigned kRepeatedPerCent = 15;
 constexpr unsigned kLikelyPerCent = 60;
 constexpr unsigned kMostSteps = 200;  // that fail to fail, before RapidCheck's part is over
 
@@ -72,11 +73,24 @@ rc::Gen<SequenceCommand> command_of(const SequenceVocabulary& vocabulary) {
   });
 }
 
+// What comes twice is what implementations take a short cut for.
+Sequence with_repetitions(const std::vector<std::pair<SequenceCommand, unsigned>>& drawn) {
+  Sequence sequence;
+  for (const auto& [command, die] : drawn) {
+    const bool is_repeated = !sequence.empty() && die >= kPerCent - kRepeatedPerCent;
+    sequence.push_back(is_repeated ? SequenceCommand(sequence.back()) : command);
+  }
+  return sequence;
+}
+
 rc::Shrinkable<Sequence> drawn(const SequenceVocabulary& vocabulary, std::uint64_t seed, std::uint64_t n) {
   const auto most = static_cast<int>(std::min<std::uint64_t>(1 + n / kGrowth, vocabulary.most_commands));
   // The size of a container is its length; that of what is in it stays whole.
-  const auto commands = rc::gen::container<Sequence>(rc::gen::resize(rc::kNominalSize, command_of(vocabulary)));
-  return rc::gen::resize(most, commands)(rc::Random(rc::Random::Key{seed, n, 0, 0}));
+  const auto one = rc::gen::pair(command_of(vocabulary), rc::gen::inRange(0U, kPerCent));
+  const auto commands = rc::gen::container<std::vector<std::pair<SequenceCommand, unsigned>>>(
+      rc::gen::resize(rc::kNominalSize, one));
+  return rc::gen::map(rc::gen::resize(most, commands), with_repetitions)(
+      rc::Random(rc::Random::Key{seed, n, 0, 0}));
 }
 
 }  // namespace

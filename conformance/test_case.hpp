@@ -68,6 +68,7 @@ struct Deviation {
   std::string mutant;  // the label of the mutant, "MS1"
   std::string role;    // "slave"
   std::string description;
+  bool is_for_check = false;  // shows in sequences only: `check` must find it, and the matrix leaves it out
 };
 
 // Who plays a role: "slave@3=deviant:crc_preset_zero".
