@@ -8,6 +8,8 @@
 #include "cli/build_info.hpp"
 #include "cli/implementations.hpp"
 #include "cli/pics_file.hpp"
+#include "cli/struck_bits.hpp"
+#include "cli/suites.hpp"
 #include "harness/config/document.hpp"
 #include "harness/judge/result_json.hpp"
 #include "harness/kernel/error.hpp"
@@ -52,7 +54,8 @@ KeptFiles keep_files(const reports::RunDirectory& directory, const conformance::
   return kept;
 }
 
-ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed, const KeptFiles& kept) {
+ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed, const KeptFiles& kept,
+                       bool is_quiet) {
   const judge::CaseResult& result = done.outcome.result;
   ordered_json json;
   json["schema"] = kSchema;
@@ -64,12 +67,17 @@ ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed,
   if (!kept.network.empty()) json["network"] = kept.network;
   if (!kept.plan.empty()) json["plan"] = kept.plan;
   if (!kept.pics.empty()) json["pics"] = kept.pics;
+  if (is_quiet) json["quiet"] = true;
   json["verdict"] = judge::name(result.verdict);
   json["reason"] = result.reason;
   json["fingerprint"] = judge::fingerprint_text(result.fingerprint);
   if (!done.outcome.recording.playback.empty()) json["playback"] = kPlayback;
   json["truncated"] = done.outcome.recording.truncated;
   return json;
+}
+
+std::string text_of(const ordered_json& json) {
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string program_name() {
@@ -114,6 +122,7 @@ CaseFile read_case(config::ObjectReader& reader, const std::filesystem::path& fo
   read.setup.plan_file = path_from(reader.optional("plan"), folder);
   read.pics_file = path_from(reader.optional("pics"), folder);
   if (!read.pics_file.empty()) read.setup.pics = load_pics(read.pics_file, catalogue.pics_items());
+  if (const auto quiet = reader.optional("quiet")) read.is_quiet = quiet->as_bool();
   read.verdict = judge::verdict_from(reader.required("verdict"));
   read.reason = reader.required("reason").as_string();
   read.fingerprint = judge::unsigned_from(reader.required("fingerprint"), 16);
@@ -162,9 +171,17 @@ void store_case(const reports::RunDirectory& directory, const conformance::CaseR
   if (!recording.playback.empty()) directory.write_case(id, kPlayback, recording.playback);
   if (!done.outcome.result.log.empty()) directory.write_case(id, "log.txt", done.outcome.result.log);
   // Last, so that a case file never names a file that is not there.
-  const ordered_json json = case_json(done, run_seed, kept);
-  directory.write_case(id, "case.json",
-                       json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  directory.write_case(id, "case.json", text_of(case_json(done, run_seed, kept, false)));
+}
+
+void write_quiet_case(const std::filesystem::path& file, const conformance::CaseRun& done,
+                      const CaseFile& stored) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const auto seen = [&folder](const std::string& path) {
+    return path.empty() ? path : std::filesystem::relative(path, folder).string();
+  };
+  const KeptFiles files{seen(done.setup.network_file), seen(done.setup.plan_file), seen(stored.pics_file)};
+  reports::write_text_file(file.string(), text_of(case_json(done, stored.setup.seed, files, true)));
 }
 
 std::string capture_of(const conformance::CaseRun& done) {
@@ -174,6 +191,14 @@ std::string capture_of(const conformance::CaseRun& done) {
 
 std::string wave_dump_of(const conformance::CaseRun& done) {
   return reports::vcd(done.outcome.recording.trace, program_name(), done.outcome.result.id);
+}
+
+StoredEntry::StoredEntry(const CaseFile& stored, const conformance::Catalogue& catalogue) {
+  if (stored.is_quiet) {
+    const Disturbances all = all_disturbances();
+    quiet_ = std::make_unique<conformance::Catalogue>(suites_with({quiet(all.stresses), all.of_plans}));
+  }
+  entry_ = &(quiet_ ? *quiet_ : catalogue).at(stored.id);
 }
 
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue) {

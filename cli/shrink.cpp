@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include "cli/burst_shrink.hpp"
+#include "cli/case_file.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
 #include "cli/run_setup.hpp"
@@ -21,11 +23,7 @@ std::string smaller_path(const Session& session) {
   return path.substr(0, stem) + ".shrunk.json";
 }
 
-}  // namespace
-
-int shrink(Session& session) {
-  SequenceFile stored = load_sequence_file(session.operands.front(), session.catalogue);
-  const std::string path = smaller_path(session);
+int shrink_sequence(Session& session, SequenceFile stored, const std::string& path) {
   reports::check_writable(path);
   stored.suite->check(stored.role->test_case, stored.setup);
   session.terminal.print(
@@ -41,6 +39,17 @@ int shrink(Session& session) {
   keep_sequence(session, stored, found->outcome.result, path);
   session.terminal.print(shrunk_text(found->drawn, found->smallest, found->shrinking_runs));
   return found->is_confirmed ? kAllAsExpected : kDiffers;
+}
+
+}  // namespace
+
+int shrink(Session& session) {
+  const std::string& file = session.operands.front();
+  const std::string path = smaller_path(session);
+  if (is_sequence_file(file)) return shrink_sequence(session, load_sequence_file(file, session.catalogue), path);
+  const CaseFile stored = load_case(file, session.catalogue);
+  reports::check_writable(path);
+  return shrink_bursts(session, stored, path);
 }
 
 }  // namespace fieldproof::cli

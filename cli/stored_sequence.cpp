@@ -59,12 +59,16 @@ void keep_sequence(Session& session, SequenceFile file, const judge::CaseResult&
   file.fingerprint = result.fingerprint;
   reports::write_text_file(path, sequence_file_text(file));
   session.terminal.print(
-      sequence_text(session, file, result, fmt::format("fieldproof replay {}", reports::shell_quoted(path))));
+      sequence_text(session, file, result, replay_command(path)));
 }
 
 std::string shrunk_text(const conformance::Sequence& before, const conformance::Sequence& after,
                         std::uint64_t runs) {
   return fmt::format("shrunk from {} to {}, in {} runs\n", size_text(before), size_text(after), runs);
+}
+
+std::string replay_command(const std::string& file) {
+  return fmt::format("fieldproof replay {}", reports::shell_quoted(file));
 }
 
 int replay_sequence(Session& session) {
@@ -85,7 +89,7 @@ int replay_sequence(Session& session) {
       session.terminal.print(reports::escaped_line(line) + "\n");
   }
   session.terminal.print(sequence_text(session, stored, result,
-                                       fmt::format("fieldproof replay {}", reports::shell_quoted(path))));
+                                       replay_command(path)));
   if (is_other) {
     session.terminal.print("another implementation than the stored one: not compared\n");
     return code_of(result);

@@ -24,6 +24,8 @@ void keep_sequence(Session& session, SequenceFile file, const judge::CaseResult&
 std::string shrunk_text(const conformance::Sequence& before, const conformance::Sequence& after,
                         std::uint64_t runs);
 
+std::string replay_command(const std::string& file);
+
 // `replay` of a stored sequence.
 int replay_sequence(Session& session);
 

@@ -8,12 +8,21 @@
 
 namespace fieldproof::cli {
 
+Disturbances all_disturbances() {
+  const auto of_plans = emc::plan_disturbances();
+  return {emc::catalogue_stresses(), {of_plans.begin(), of_plans.end()}};
+}
+
 Suites suites() {
+  return suites_with(all_disturbances());
+}
+
+Suites suites_with(const Disturbances& disturbances) {
   Suites all;
-  all.push_back(conformance::interbus_suite({}, {emc::catalogue_stresses(), emc::plan_disturbances()}));
+  all.push_back(conformance::interbus_suite({}, {disturbances.stresses, disturbances.of_plans}));
   all.push_back(conformance::valve_bus_suite({.make_node = attached_nodes(),
-                                              .disturbances = emc::plan_disturbances(),
-                                              .stresses = emc::catalogue_stresses()}));
+                                              .disturbances = disturbances.of_plans,
+                                              .stresses = disturbances.stresses}));
   return all;
 }
 

@@ -26,7 +26,7 @@ struct OwnStations {
 // What disturbs a line. It comes from outside, because a suite has no model of a disturbance.
 struct LineDisturbances {
   std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
-  std::span<const fault::DisturbanceKind> of_plans{};  // what a plan can name
+  std::vector<fault::DisturbanceKind> of_plans{};  // what a plan can name
 };
 
 std::unique_ptr<Suite> interbus_suite(OwnStations own = {}, LineDisturbances disturbances = {});

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -34,7 +33,7 @@ struct ValveBusGiven {
 
   MakeNode make_node{};
   MakeHost make_host{};
-  std::span<const fault::DisturbanceKind> disturbances{};  // what a plan can name
+  std::vector<fault::DisturbanceKind> disturbances{};  // what a plan can name
   std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
 };
 
