@@ -8,6 +8,8 @@
 #include "cli/build_info.hpp"
 #include "cli/implementations.hpp"
 #include "cli/pics_file.hpp"
+#include "cli/struck_bits.hpp"
+#include "cli/suites.hpp"
 #include "harness/config/document.hpp"
 #include "harness/judge/result_json.hpp"
 #include "harness/kernel/error.hpp"
@@ -22,14 +24,6 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view kSchema = "fieldproof/case/1";
 constexpr const char* kPlayback = "playback.txt";
-
-ordered_json implementations_json(const conformance::Setup& setup) {
-  ordered_json list = ordered_json::array();
-  for (const conformance::Assignment& assignment : setup.implementations) {
-    list.push_back({{"role", assignment.role}, {"position", assignment.position}, {"uri", assignment.uri}});
-  }
-  return list;
-}
 
 std::string place_of_copy(std::string_view name) {
   return fmt::format("../../{}", name);
@@ -60,7 +54,8 @@ KeptFiles keep_files(const reports::RunDirectory& directory, const conformance::
   return kept;
 }
 
-ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed, const KeptFiles& kept) {
+ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed, const KeptFiles& kept,
+                       bool is_quiet) {
   const judge::CaseResult& result = done.outcome.result;
   ordered_json json;
   json["schema"] = kSchema;
@@ -68,16 +63,21 @@ ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed,
   json["run_seed"] = std::to_string(run_seed);
   json["case_seed"] = std::to_string(result.seed);
   json["volume"] = conformance::name(done.setup.volume);
-  json["implementations"] = implementations_json(done.setup);
+  json["implementations"] = ordered_json::parse(implementations_json(done.setup));
   if (!kept.network.empty()) json["network"] = kept.network;
   if (!kept.plan.empty()) json["plan"] = kept.plan;
   if (!kept.pics.empty()) json["pics"] = kept.pics;
+  if (is_quiet) json["quiet"] = true;
   json["verdict"] = judge::name(result.verdict);
   json["reason"] = result.reason;
   json["fingerprint"] = judge::fingerprint_text(result.fingerprint);
   if (!done.outcome.recording.playback.empty()) json["playback"] = kPlayback;
   json["truncated"] = done.outcome.recording.truncated;
   return json;
+}
+
+std::string text_of(const ordered_json& json) {
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string program_name() {
@@ -92,22 +92,6 @@ void store_recording(const reports::RunDirectory& directory, const conformance::
   directory.write_case(id, "timeline.json",
                        reports::timeline_json(outcome.result, recording.trace, recording.told_in()));
   directory.write_case(id, "trace.pcapng", capture_of(done));
-}
-
-std::vector<conformance::Assignment> implementations_from(const config::Value& list,
-                                                          const conformance::Suite& suite) {
-  std::vector<conformance::Assignment> implementations;
-  for (const config::Value& element : list.as_array()) {
-    implementations.push_back(config::read_object(element, [](config::ObjectReader& reader) {
-      conformance::Assignment assignment;
-      assignment.role = reader.required("role").as_string();
-      assignment.position = reader.required("position").as_integer<int>(0);
-      assignment.uri = reader.required("uri").as_string();
-      return assignment;
-    }));
-    if (const auto why = obstacle(implementations.back(), suite)) config::fail(element, *why);
-  }
-  return implementations;
 }
 
 std::string path_from(const std::optional<config::Value>& value, const std::filesystem::path& folder) {
@@ -138,6 +122,7 @@ CaseFile read_case(config::ObjectReader& reader, const std::filesystem::path& fo
   read.setup.plan_file = path_from(reader.optional("plan"), folder);
   read.pics_file = path_from(reader.optional("pics"), folder);
   if (!read.pics_file.empty()) read.setup.pics = load_pics(read.pics_file, catalogue.pics_items());
+  if (const auto quiet = reader.optional("quiet")) read.is_quiet = quiet->as_bool();
   read.verdict = judge::verdict_from(reader.required("verdict"));
   read.reason = reader.required("reason").as_string();
   read.fingerprint = judge::unsigned_from(reader.required("fingerprint"), 16);
@@ -153,6 +138,30 @@ CaseFile read_case(config::ObjectReader& reader, const std::filesystem::path& fo
 
 }  // namespace
 
+std::string implementations_json(const conformance::Setup& setup) {
+  ordered_json list = ordered_json::array();
+  for (const conformance::Assignment& assignment : setup.implementations) {
+    list.push_back({{"role", assignment.role}, {"position", assignment.position}, {"uri", assignment.uri}});
+  }
+  return list.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::vector<conformance::Assignment> implementations_from(const config::Value& list,
+                                                          const conformance::Suite& suite) {
+  std::vector<conformance::Assignment> implementations;
+  for (const config::Value& element : list.as_array()) {
+    implementations.push_back(config::read_object(element, [](config::ObjectReader& reader) {
+      conformance::Assignment assignment;
+      assignment.role = reader.required("role").as_string();
+      assignment.position = reader.required("position").as_integer<int>(0);
+      assignment.uri = reader.required("uri").as_string();
+      return assignment;
+    }));
+    if (const auto why = obstacle(implementations.back(), suite)) config::fail(element, *why);
+  }
+  return implementations;
+}
+
 void store_case(const reports::RunDirectory& directory, const conformance::CaseRun& done,
                 std::uint64_t run_seed) {
   const std::string& id = done.outcome.result.id;
@@ -162,9 +171,17 @@ void store_case(const reports::RunDirectory& directory, const conformance::CaseR
   if (!recording.playback.empty()) directory.write_case(id, kPlayback, recording.playback);
   if (!done.outcome.result.log.empty()) directory.write_case(id, "log.txt", done.outcome.result.log);
   // Last, so that a case file never names a file that is not there.
-  const ordered_json json = case_json(done, run_seed, kept);
-  directory.write_case(id, "case.json",
-                       json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  directory.write_case(id, "case.json", text_of(case_json(done, run_seed, kept, false)));
+}
+
+void write_quiet_case(const std::filesystem::path& file, const conformance::CaseRun& done,
+                      const CaseFile& stored) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const auto seen = [&folder](const std::string& path) {
+    return path.empty() ? path : std::filesystem::relative(path, folder).string();
+  };
+  const KeptFiles files{seen(done.setup.network_file), seen(done.setup.plan_file), seen(stored.pics_file)};
+  reports::write_text_file(file.string(), text_of(case_json(done, stored.setup.seed, files, true)));
 }
 
 std::string capture_of(const conformance::CaseRun& done) {
@@ -174,6 +191,14 @@ std::string capture_of(const conformance::CaseRun& done) {
 
 std::string wave_dump_of(const conformance::CaseRun& done) {
   return reports::vcd(done.outcome.recording.trace, program_name(), done.outcome.result.id);
+}
+
+StoredEntry::StoredEntry(const CaseFile& stored, const conformance::Catalogue& catalogue) {
+  if (stored.is_quiet) {
+    const Disturbances all = all_disturbances();
+    quiet_ = std::make_unique<conformance::Catalogue>(suites_with({quiet(all.stresses), all.of_plans}));
+  }
+  entry_ = &(quiet_ ? *quiet_ : catalogue).at(stored.id);
 }
 
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue) {

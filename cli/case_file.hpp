@@ -10,9 +10,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "conformance/runner.hpp"
+#include "harness/config/document.hpp"
 #include "reports/run_directory.hpp"
 
 namespace fieldproof::cli {
@@ -22,6 +25,7 @@ struct CaseFile {
   std::uint64_t case_seed = 0;
   conformance::Setup setup;  // with the seed of the run
   std::string pics_file;     // the copy of what `setup.pics` was read from; empty: none
+  bool is_quiet = false;         // bursts that the case makes itself are left out: its plan has what mattered
   judge::Verdict verdict = judge::Verdict::none;
   std::string reason;
   std::uint64_t fingerprint = 0;
@@ -33,11 +37,33 @@ struct CaseFile {
 void store_case(const reports::RunDirectory& directory, const conformance::CaseRun& done,
                 std::uint64_t run_seed);
 
+// Stores the case in one file, quiet; the files of its setup stay where they are. `stored` is what it was
+// before.
+void write_quiet_case(const std::filesystem::path& file, const conformance::CaseRun& done,
+                      const CaseFile& stored);
+
 // What was recorded of a case, for programs of others: a pcapng capture, and a value change dump.
 std::string capture_of(const conformance::CaseRun& done);
 std::string wave_dump_of(const conformance::CaseRun& done);
 
 // The case, its implementations and its PICS are looked up in the catalogue.
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue);
+
+// The entry by which a stored case is run again: that of the catalogue, or of one whose cases make no bursts
+// themselves.
+class StoredEntry {
+ public:
+  StoredEntry(const CaseFile& stored, const conformance::Catalogue& catalogue);
+  const conformance::Entry& operator*() const { return *entry_; }
+
+ private:
+  std::unique_ptr<conformance::Catalogue> quiet_;
+  const conformance::Entry* entry_;
+};
+
+// The member "implementations" of files that are run again.
+std::string implementations_json(const conformance::Setup& setup);
+std::vector<conformance::Assignment> implementations_from(const config::Value& list,
+                                                          const conformance::Suite& suite);
 
 }  // namespace fieldproof::cli

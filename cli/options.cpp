@@ -11,13 +11,13 @@ using enum OptionKind;
 
 // clang-format off
 constexpr std::array kOptions = {
-    Option{"iut", list, "[ROLE[@POSITION]=]URI", "ref", "run verify replay emc",
+    Option{"iut", list, "[ROLE[@POSITION]=]URI", "ref", "run verify replay emc check",
            "implementation under test: ref, deviant:NAME; 'slave@3=deviant:NAME' places it", false, true},
-    Option{"seed", value, "N", "1", "run verify matrix residual measure paper emc", "seed of the run, 0 to 2^64-1", false, true},
+    Option{"seed", value, "N", "1", "run verify matrix residual measure paper emc check", "seed of the run, 0 to 2^64-1", false, true},
     Option{"volume", value, "quick|full", "full", "run verify", "how many repetitions a case makes", false, true},
     Option{"network", value, "FILE", "", "run verify measure emc", "network description instead of the suite's own", false, true},
     Option{"plan", value, "FILE", "", "run verify", "plan of declared faults and disturbances", false, true},
-    Option{"pics", value, "FILE", "", "run verify list", "what the implementation declares about itself", false, true},
+    Option{"pics", value, "FILE", "", "run verify list check", "what the implementation declares about itself", false, true},
     Option{"jobs", value, "N", "all cores", "run verify matrix emc", "threads; the results are the same for any number"},
     Option{"out", value, "DIR", "runs/<utc>-<seed>", "run", "directory of the run"},
     Option{"record", value, "none|failed|all", "failed", "run", "which cases keep their trace"},
@@ -32,7 +32,7 @@ constexpr std::array kOptions = {
     Option{"shard", value, "I/N", "", "run list", "only each N-th of the selected cases, from the I-th on: one of N runs that are all of them together", false, false, true},
     Option{"reset", value, "COMMAND", "", "run", "a command of the shell that resets the implementation before each case, with the id behind it; cases then run one by one", false, true},
     Option{"fail-fast", flag, "", "", "run", "stop after the first case that fails"},
-    Option{"max-time", value, "T", "", "run matrix emc", "stop after this time: 90s, 15min, 2h"},
+    Option{"max-time", value, "T", "", "run matrix emc check shrink", "stop after this time: 90s, 15min, 2h"},
     Option{"signal", list, "F,F...", "50Hz,150Hz,200Hz", "measure", "frequencies of the square waves", false, true},
     Option{"duration", value, "T", "60s", "measure paper emc", "virtual time of each signal or test", false, true},
     Option{"levels", list, "L,L...", "1..4", "emc", "severity levels of signal ports: 1, 1..4, or volts x:1000, x:1000..4500:500", false, true},
@@ -43,7 +43,7 @@ constexpr std::array kOptions = {
     Option{"worst", value, "A|B|C", "C", "emc", "the worst performance criterion that does not fail", false, true},
     Option{"bursts", value, "L[,R[,P]]", "", "measure", "bursts while measuring, as 3 or x:1000,100kHz,-; quiet, burst and recovery are told apart", false, true},
     Option{"latch", value, "M1|M2|M3", "M2", "measure", "when stations sample inputs: M1 at the latch of outputs, M2 at the start of a frame, M3 at the end of the one before", false, true},
-    Option{"quiet", flag, "", "", "run matrix verify judge measure paper emc", "no line per case and no progress"},
+    Option{"quiet", flag, "", "", "run matrix verify judge measure paper emc check shrink", "no line per case and no progress"},
     Option{"failed", optional_value, "RUNDIR", "", "run", "only the cases that failed in that run (runs/latest)", true},
     Option{"resume", value, "RUNDIR", "", "run", "finish a run that was stopped or killed", true},
     Option{"measurements", flag, "", "", "run", "print what each case measured, with its limits"},
@@ -51,6 +51,8 @@ constexpr std::array kOptions = {
     Option{"bits", flag, "", "", "replay", "print the whole recording", true},
     Option{"pcapng", value, "FILE", "", "replay", "write the recording as a capture for Wireshark here", true},
     Option{"vcd", value, "FILE", "", "replay", "write the recording as a wave dump (VCD) here", true},
+    Option{"cases", value, "N", "2000", "check", "how many sequences are drawn at most", true},
+    Option{"case", value, "FILE", "<role>-<seed>.case.json, <file>.shrunk.json", "check shrink", "where what was found is written, for replay", true},
     Option{"runs", value, "N", "2", "verify", "how often each case is run (also -n)", true},
     Option{"fcs", value, "NAME", "", "residual", "frame check by its catalogue name: CRC-16/IBM-3740, CRC-32", false, true},
     Option{"bits", value, "N", "", "residual", "length of message and check", false, true},
@@ -58,8 +60,8 @@ constexpr std::array kOptions = {
     Option{"samples", value, "N", "0", "residual", "also simulate: so many telegrams counted, and patterns of flips drawn", false, true},
     Option{"messages", value, "N", "3600", "residual", "messages per hour, for the rate per hour", false, true},
     Option{"receivers", value, "N", "1", "residual", "receivers of each message, for the rate per hour", false, true},
-    Option{"config", value, "FILE", "", "run verify matrix list residual measure paper emc report", "configuration file (JSON, comments allowed)"},
-    Option{"print-config", flag, "", "", "run verify matrix list residual measure paper emc report", "print every value with its origin and stop", true},
+    Option{"config", value, "FILE", "", "run verify matrix list residual measure paper emc report check", "configuration file (JSON, comments allowed)"},
+    Option{"print-config", flag, "", "", "run verify matrix list residual measure paper emc report check", "print every value with its origin and stop", true},
 };
 // clang-format on
 

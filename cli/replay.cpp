@@ -6,6 +6,8 @@
 #include "cli/exit_code.hpp"
 #include "cli/implementations.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/sequence_file.hpp"
+#include "cli/stored_sequence.hpp"
 #include "cli/verbs.hpp"
 #include "harness/judge/result_json.hpp"
 #include "reports/run_directory.hpp"
@@ -82,8 +84,10 @@ void show_recording(Session& session, const conformance::CaseRun& done) {
 
 int replay(Session& session) {
   check_exports(session.settings);
+  if (is_sequence_file(session.operands.front())) return replay_sequence(session);
   CaseFile stored = load_case(session.operands.front(), session.catalogue);
-  const conformance::Entry& entry = session.catalogue.at(stored.id);
+  const StoredEntry stored_entry(stored, session.catalogue);
+  const conformance::Entry& entry = *stored_entry;
   const bool is_other = session.settings.origin("iut") != Origin::fallback;
   if (is_other) {
     stored.setup.implementations =
@@ -97,8 +101,10 @@ int replay(Session& session) {
   show_recording(session, done);
   const judge::CaseResult& result = done.outcome.result;
   run.cases = {result};
-  session.terminal.print(
-      reports::finding_text(run.identity, result, {.colour = session.terminal.has_colour()}));
+  reports::TextOptions options;
+  options.colour = session.terminal.has_colour();
+  if (stored.is_quiet) options.reproduce = replay_command(session.operands.front());
+  session.terminal.print(reports::finding_text(run.identity, result, options));
   ExitRules rules;
   rules.allows_inconclusive = session.settings.is_set("allow-inconclusive");
   const std::string different = differences(stored, result);

@@ -8,15 +8,24 @@
 
 namespace fieldproof::cli {
 
+Disturbances all_disturbances() {
+  const auto of_plans = emc::plan_disturbances();
+  return {emc::catalogue_stresses(), {of_plans.begin(), of_plans.end()}};
+}
+
 Suites suites() {
+  return suites_with(all_disturbances());
+}
+
+Suites suites_with(const Disturbances& disturbances) {
   Suites all;
   all.push_back(conformance::interbus_suite({.slave = {.attached = attached_slaves()},
-                                             .disturbances = emc::plan_disturbances(),
-                                             .stresses = emc::catalogue_stresses()}));
+                                             .disturbances = disturbances.of_plans,
+                                             .stresses = disturbances.stresses}));
   all.push_back(conformance::valve_bus_suite({.node = {.attached = attached_nodes()},
                                               .host = {.attached = attached_hosts()},
-                                              .disturbances = emc::plan_disturbances(),
-                                              .stresses = emc::catalogue_stresses()}));
+                                              .disturbances = disturbances.of_plans,
+                                              .stresses = disturbances.stresses}));
   return all;
 }
 

@@ -15,6 +15,8 @@ constexpr std::array kVerbs = {
     Verb{"explain", "CASE-ID", 1, 1, "requirement, source, stimulus, expected and what the case catches", &explain},
     Verb{"matrix", "PROTOCOL", 1, 1, "cases x deviations; 1 on a hole", &matrix},
     Verb{"replay", "CASEFILE", 1, 1, "run a stored case again and compare it bit for bit", &replay},
+    Verb{"check", "PROTOCOL/ROLE", 1, 1, "random sequences of commands and faults against a model of the role; what fails is made as small as it can be", &check},
+    Verb{"shrink", "CASEFILE", 1, 1, "make a stored case that fails smaller: the fewest commands, faults and flipped bits", &shrink},
     Verb{"verify", "SELECTOR...|CASEFILE", 1, kAny, "run cases several times; equal seeds must give equal fingerprints", &verify},
     Verb{"judge", "RUNDIR", 1, 1, "judge a stored run again, without the implementation", &judge_again},
     Verb{"diff", "RUN_A RUN_B", 2, 2, "new failures, fixed ones and drifted measurements", &diff},

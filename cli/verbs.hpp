@@ -26,6 +26,8 @@ int run(Session& session);
 int explain(Session& session);
 int matrix(Session& session);
 int replay(Session& session);
+int check(Session& session);
+int shrink(Session& session);
 int verify(Session& session);
 int judge_again(Session& session);
 int diff(Session& session);

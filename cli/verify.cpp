@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 
 #include "cli/case_file.hpp"
 #include "cli/exit_code.hpp"
@@ -21,13 +22,16 @@ constexpr std::uint64_t kMostRuns = 1'000'000;
 struct Target {
   std::vector<conformance::Entry> entries;
   conformance::Setup setup;
+  std::unique_ptr<StoredEntry> stored{};  // of a case file
 };
 
 Target target_of(Session& session) {
   const std::string& first = session.operands.front();
   if (session.operands.size() == 1 && first.ends_with(".json") && std::filesystem::exists(first)) {
     const CaseFile stored = load_case(first, session.catalogue);
-    return {{session.catalogue.at(stored.id)}, stored.setup};
+    Target target{{}, stored.setup, std::make_unique<StoredEntry>(stored, session.catalogue)};
+    target.entries.push_back(**target.stored);
+    return target;
   }
   Target target;
   target.entries = session.catalogue.select(session.operands);

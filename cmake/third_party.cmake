@@ -13,12 +13,12 @@ fieldproof_require(Threads)
 fieldproof_require(fmt 9 CONFIG)
 fieldproof_require(nlohmann_json 3.11 CONFIG)
 fieldproof_require(CLI11 2 CONFIG)
+fieldproof_require(rapidcheck CONFIG)  # its package has no version file
 # libboost1.81-dev and libboost1.74-dev replace each other silently: asking for the version tells.
 fieldproof_require(Boost 1.81 CONFIG COMPONENTS headers)
 
 if(FIELDPROOF_TESTS)
   fieldproof_require(GTest 1.12 CONFIG)
-  fieldproof_require(rapidcheck CONFIG)  # its package has no version file
   include(GoogleTest)
 else()
   find_package(GTest 1.12 CONFIG QUIET)  # for fieldproof_gtest

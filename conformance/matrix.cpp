@@ -28,7 +28,7 @@ RoleMatrix blank_role(const Suite& suite, const std::string& role) {
     if (test_case.role() == role && !is_canary(test_case)) matrix.cases.push_back(&test_case);
   }
   for (const Deviation& deviation : suite.deviations()) {
-    if (deviation.role == role) matrix.deviations.push_back(&deviation);
+    if (deviation.role == role && !deviation.is_for_check) matrix.deviations.push_back(&deviation);
   }
   matrix.reference.resize(matrix.cases.size());
   matrix.cells.assign(matrix.cases.size(), std::vector<Cell>(matrix.deviations.size()));

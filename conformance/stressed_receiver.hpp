@@ -26,6 +26,7 @@ class StressedReceiver final : private fault::Channel {
   void begin(const fault::Stress& stress, segment::Receiver& receiver, const fault::StressPlace& place) {
     end();
     channel_ = stress.make_channel(place);
+    if (channel_ == nullptr) return;
     receiver_ = &receiver;
     before_ = receiver.channel();
     receiver.set_channel(this);

@@ -4,10 +4,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "conformance/sequence.hpp"
 #include "harness/fault/plan_part.hpp"
 #include "harness/judge/finding.hpp"
 #include "harness/judge/pics.hpp"
@@ -66,6 +68,7 @@ struct Deviation {
   std::string mutant;  // the label of the mutant, "MS1"
   std::string role;    // "slave"
   std::string description;
+  bool is_for_check = false;  // shows in sequences only: `check` must find it, and the matrix leaves it out
 };
 
 // Who plays a role: "slave@3=deviant:crc_preset_zero".
@@ -109,6 +112,12 @@ struct Outcome {
   Recording recording;
 };
 
+// A role that has commands and a model.
+struct SequenceRole {
+  TestCase test_case;  // "valve_bus/node/check/follows_the_model"
+  SequenceVocabulary vocabulary;
+};
+
 // A protocol's suite. `run` never throws for a misbehaving implementation: that is a verdict. It throws
 // kernel::Error for a setup that cannot be served, naming what would be right.
 class Suite {
@@ -138,6 +147,12 @@ class Suite {
   virtual std::vector<std::string> caveats(const Setup&) const { return {}; }
   // The parts of the setup's plan of faults, in the order in which results count their hits.
   virtual std::vector<fault::PlanPart> plan_parts(const Setup&) const { return {}; }
+  // What `check` draws sequences of, by role.
+  virtual std::span<const SequenceRole> sequence_roles() const { return {}; }
+  // One run of a sequence of one of these roles on a bench of its own, judged by the model of the role; as
+  // for `run`, the seed of the setup is that of the case.
+  virtual Outcome run_sequence(const SequenceRole& role, const Sequence& sequence, const Setup& setup) const;
+
   // Throws the kernel::Error of `run` for files and places of this setup, without running anything.
   virtual void check(const TestCase&, const Setup&) const {}
 };

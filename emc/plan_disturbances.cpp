@@ -266,15 +266,14 @@ DisturbanceModel read_flipped_bits(const Value& value) {
           }};
 }
 
-constexpr std::array<fault::DisturbanceKind, 4> kKinds{{{"bursts", read_burst_model},
-                                                        {"binary_symmetric", read_binary_symmetric},
-                                                        {"gilbert_elliott", read_gilbert_elliott},
-                                                        {"flipped_bits", read_flipped_bits}}};
-
 }  // namespace
 
 std::span<const fault::DisturbanceKind> plan_disturbances() {
-  return kKinds;
+  static const std::array<fault::DisturbanceKind, 4> kinds{{{"bursts", read_burst_model},
+                                                            {"binary_symmetric", read_binary_symmetric},
+                                                            {"gilbert_elliott", read_gilbert_elliott},
+                                                            {"flipped_bits", read_flipped_bits}}};
+  return kinds;
 }
 
 }  // namespace fieldproof::emc

@@ -41,7 +41,7 @@ fault::DisturbanceModel read_inverts(const config::Value& value) {
   return {"inverts", "{}", [](const fault::StressPlace&) { return std::make_unique<Inverts>(); }};
 }
 
-constexpr std::array<fault::DisturbanceKind, 1> kKinds{{{"inverts", read_inverts}}};
+const std::array<fault::DisturbanceKind, 1> kKinds{{{"inverts", read_inverts}}};
 
 fault::Plan plan_of(std::string text) {
   const config::Document document = config::Document::parse(std::move(text), "fuzz.json");

@@ -186,7 +186,9 @@ std::string finding_text(const RunIdentity& identity, const CaseResult& result, 
   for (const Finding& finding : result.findings) out += one_finding(finding, options);
   out += field("seed", fmt::format("{} (of the case)", result.seed));
   out += field("fingerprint", judge::fingerprint_text(result.fingerprint));
-  return out + field("reproduce", escaped_line(reproduce_command(identity, result.id)));
+  const std::string command =
+      options.reproduce.empty() ? reproduce_command(identity, result.id) : options.reproduce;
+  return out + field("reproduce", escaped_line(command));
 }
 
 std::string summary_text(const Run& run, const TextOptions& options) {

@@ -17,6 +17,8 @@ namespace fieldproof::reports {
 struct TextOptions {
   bool colour = false;
   std::size_t findings = 10;  // how many full finding texts the summary shows at most
+  // The command that repeats what no catalogue has; empty: that of the case.
+  std::string reproduce{};
 };
 
 // The first line of every run: seed, suite version, build, plan and network hash.

@@ -24,7 +24,7 @@ using GivenMasters = GivenStations<interbus::MasterDevice, interbus::MasterConfi
 struct InterbusGiven {
   GivenSlaves slave{};
   GivenMasters master{};
-  std::span<const fault::DisturbanceKind> disturbances{};  // what a plan can name
+  std::vector<fault::DisturbanceKind> disturbances{};  // what a plan can name
   std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
 };
 

@@ -17,9 +17,12 @@
 namespace fieldproof::conformance {
 
 struct ArrivedFrame {
-  kernel::Time end{};  // of its last stop bit
+  kernel::Time start{};  // of its first start bit
+  kernel::Time end{};    // of its last stop bit
   std::vector<std::uint8_t> octets;
   bool is_spoilt = false;
+  // A silence in it or in front of it is so near to a limit that receivers may differ about it.
+  bool is_doubtful = false;
 
   // Five, three octets that nothing spoilt and whose exclusive or is 0.
   bool is_command() const { return is_checked(5); }
@@ -40,6 +43,7 @@ class ArrivedFrames final : public segment::Tap {
   line::CharacterReceiver receiver_;
   kernel::Duration longest_gap_;
   kernel::Duration delimiter_;
+  kernel::Duration doubt_;
   std::vector<line::CharacterReceiver::Received> received_;
   std::vector<ArrivedFrame> frames_;
 };

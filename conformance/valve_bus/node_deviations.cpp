@@ -9,6 +9,7 @@
 
 #include "conformance/valve_bus/character_deviants.hpp"
 #include "conformance/valve_bus/node_deviants.hpp"
+#include "conformance/valve_bus/node_sequence_deviants.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -43,6 +44,7 @@ struct NodeRow {
   std::string_view mutant;
   std::string_view description;
   MakeNode make_node;
+  bool is_for_check = false;
 };
 
 std::vector<NodeRow> node_check_rows() {
@@ -183,11 +185,47 @@ std::vector<NodeRow> node_power_rows() {
   };
 }
 
+std::vector<NodeRow> node_sequence_rows() {
+  using namespace node_deviants;
+  std::vector<NodeRow> rows = {
+      {"refused_write_kept", "", "drives the data of a write that it refused at the next read",
+       node<RefusedWriteKept>()},
+      {"check_not_reset", "", "goes on with the block check of a frame that was wrong", node<CheckNotReset>()},
+      {"check_skipped_behind_error", "", "does not check the frame behind a wrong one",
+       node<CheckSkippedBehindError>()},
+      {"deaf_after_three_errors", "", "hears nothing more behind three wrong frames in a row",
+       node<DeafAfterThreeErrors>()},
+      {"long_frame_costs_next", "", "loses the frame behind one of more than five octets",
+       node<LongFrameCostsNext>()},
+      {"third_write_lost", "", "loses the write behind two equal ones", node<ThirdWriteLost>()},
+      {"write_behind_write_late", "", "drives the second of two writes when the next command comes",
+       node<WriteBehindWriteLate>()},
+      {"loses_each_fourth_command", "", "does nothing at each fourth command",
+       node<LosesEachFourthCommand>()},
+      {"unknown_command_kept", "", "takes the write behind an unknown command for a read",
+       node<UnknownCommandKept>()},
+      {"second_board_skipped", "", "leaves the second board when the first one does not change",
+       node<SecondBoardSkipped>()},
+      {"read_answers_write", "", "answers a read behind a write with what was written",
+       node<ReadAnswersWrite>()},
+      {"switches_old_behind_write", "", "answers a read behind a write with the switches as they were then",
+       node<SwitchesOldBehindWrite>()},
+      {"repeated_read_answers_old", "", "answers the second of two reads as the first",
+       node<RepeatedReadAnswersOld>()},
+      {"twice_behind_response", "", "answers twice behind the response of another node",
+       node<TwiceBehindResponse>()},
+      {"silent_after_power_loss", "", "does not answer the first read after power was lost",
+       node<SilentAfterPowerLoss>()},
+  };
+  for (NodeRow& row : rows) row.is_for_check = true;
+  return rows;
+}
+
 const std::vector<NodeRow>& node_rows() {
   static const std::vector<NodeRow> table = [] {
     std::vector<NodeRow> all;
     for (auto group : {node_check_rows, node_command_rows, node_process_rows, node_answer_rows,
-                       node_frame_rows, node_character_rows, node_power_rows}) {
+                       node_frame_rows, node_character_rows, node_power_rows, node_sequence_rows}) {
       for (NodeRow& row : group()) all.push_back(std::move(row));
     }
     return all;
@@ -201,7 +239,8 @@ const std::vector<Deviation>& node_deviations() {
   static const std::vector<Deviation> deviations = [] {
     std::vector<Deviation> all;
     for (const NodeRow& row : node_rows()) {
-      all.push_back({std::string(row.name), std::string(row.mutant), "node", std::string(row.description)});
+      all.push_back({std::string(row.name), std::string(row.mutant), "node", std::string(row.description),
+                     row.is_for_check});
     }
     return all;
   }();

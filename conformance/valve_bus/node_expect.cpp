@@ -73,7 +73,8 @@ void expect_octets(NodeBench& bench, CaseJudge& judge, const Transmission& answe
   judge.expect(has_ninth_bit, "ninth_bit_wrong", "a ninth bit of 1 in each character", "one of 0");
 }
 
-// `end`: of the command's last stop bit, at the tester; the answer is judged where the IUT drives it.
+}  // namespace
+
 Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, std::uint8_t data1,
                                kernel::Time end) {
   const std::vector<Transmission> answers = bench.answers();
@@ -98,8 +99,6 @@ Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t 
   expect_driver(bench, judge, answer);
   return answer;
 }
-
-}  // namespace
 
 void expect_valves(NodeBench& bench, CaseJudge& judge, std::uint16_t valves, std::string_view reason) {
   judge.expect(bench.valves() == valves, reason,

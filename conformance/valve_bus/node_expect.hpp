@@ -28,10 +28,13 @@ void expect_ignored(NodeBench& bench, CaseJudge& judge, std::string_view reason,
 void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, std::uint8_t data1,
                         kernel::Time end);
 
-// One answer to a read whose last stop bit ended at `end`, with these limit switches: `no_answer`,
+// One answer with this data to a command whose last stop bit ended at `end`, at the tester: `no_answer`,
 // `answered_twice`, `answer_length_wrong`, `answer_garbled`, `answer_data_wrong`, `answer_check_wrong`,
 // `ninth_bit_wrong`, `answer_too_early`, `answer_too_late`, `driver_on_late`, `driver_not_released`,
-// `gap_in_answer`.
+// `gap_in_answer`. It is judged where the IUT drives it.
+Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, std::uint8_t data1,
+                               kernel::Time end);
+// The same to a read, with these limit switches.
 Transmission expect_answer(NodeBench& bench, CaseJudge& judge, std::uint16_t switches, kernel::Time end);
 
 // A write and a read of the IUT are served: `does_not_recover`. Forgets what was seen.

@@ -8,6 +8,7 @@
 #include "conformance/valve_bus/host_deviations.hpp"
 #include "conformance/valve_bus/node_cases.hpp"
 #include "conformance/valve_bus/node_deviations.hpp"
+#include "conformance/valve_bus/node_sequence.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/valve_bus/host.hpp"
@@ -68,25 +69,38 @@ class ValveBusSuite final : public Suite {
   }
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
-    CaseRecorder recorder;
-    const auto with_recorder = [&](auto setting) {
-      if (setup.record) {
-        setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
-          return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
-        };
-      }
-      return setting;
+    if (is_of_host(test_case)) {
+      return run_recorded(*host_cases_.at(test_case.id), host_setting(test_case, setup), setup);
+    }
+    return run_recorded(*node_cases_.at(test_case.id), node_setting(test_case, setup), setup);
+  }
+
+  std::span<const SequenceRole> sequence_roles() const override {
+    return std::span(&node_sequence_role(), 1);
+  }
+  Outcome run_sequence(const SequenceRole& role, const Sequence& sequence,
+                       const Setup& setup) const override {
+    const auto procedure = [&sequence](NodeBench& bench, CaseJudge& judge) {
+      run_node_sequence(sequence, bench, judge);
     };
+    return run_recorded(NodeCase{role.test_case, procedure}, node_setting(role.test_case, setup), setup);
+  }
+
+ private:
+  template <typename Case, typename Setting>
+  static Outcome run_recorded(const Case& one, Setting setting, const Setup& setup) {
+    CaseRecorder recorder;
+    if (setup.record) {
+      setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
+        return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
+      };
+    }
     Outcome outcome;
-    outcome.result =
-        is_of_host(test_case)
-            ? run_on_bench(*host_cases_.at(test_case.id), with_recorder(host_setting(test_case, setup)))
-            : run_on_bench(*node_cases_.at(test_case.id), with_recorder(node_setting(test_case, setup)));
+    outcome.result = run_on_bench(one, setting);
     recorder.keep(outcome);
     return outcome;
   }
 
- private:
   fault::Plan load(const Setup& setup) const {
     return fault::load_plan(setup.plan_file, {.disturbances = given_.disturbances});
   }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <memory>
-#include <span>
+#include <string>
 #include <vector>
 
 #include "conformance/assigned.hpp"
@@ -22,7 +22,7 @@ using GivenHosts = GivenStations<valve_bus::HostDevice, valve_bus::HostConfigura
 struct ValveBusGiven {
   GivenNodes node{};
   GivenHosts host{};
-  std::span<const fault::DisturbanceKind> disturbances{};  // what a plan can name
+  std::vector<fault::DisturbanceKind> disturbances{};  // what a plan can name
   std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
 };
 

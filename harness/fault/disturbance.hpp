@@ -46,7 +46,7 @@ struct Disturbance {
 // readers do; what it returns reads its own parameters again.
 struct DisturbanceKind {
   std::string_view word;
-  DisturbanceModel (*read)(const config::Value& value);
+  std::function<DisturbanceModel(const config::Value& value)> read;
 };
 
 }  // namespace fieldproof::fault

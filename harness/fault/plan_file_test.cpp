@@ -206,7 +206,7 @@ DisturbanceModel read_noise(const config::Value& value) {
   return {"noise", "{\"volts\":" + std::to_string(volts) + "}", nullptr};
 }
 
-constexpr std::array<DisturbanceKind, 2> kNoises{{{"noise", read_noise}, {"hum", read_noise}}};
+const std::array<DisturbanceKind, 2> kNoises{{{"noise", read_noise}, {"hum", read_noise}}};
 
 TEST(PlanFile, ReadsDisturbancesOfTheKindsThatItIsGiven) {
   const Plan plan = plan_of(R"({"disturbances": [

@@ -29,6 +29,7 @@ struct StressPlace {
 struct Stress {
   std::string name;           // "bursts of 5 kHz, +, level 4 (2000 V), profile A"
   kernel::Duration duration;  // at most; quiet behind
+  // Null: the line stays as it is.
   std::function<std::unique_ptr<Channel>(const StressPlace&)> make_channel;
 };
 

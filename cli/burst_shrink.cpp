@@ -1,0 +1,139 @@
+#include "cli/burst_shrink.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "cli/exit_code.hpp"
+#include "cli/interruption.hpp"
+#include "cli/run_setup.hpp"
+#include "cli/stored_sequence.hpp"
+#include "cli/struck_bits.hpp"
+#include "cli/suites.hpp"
+#include "conformance/minimise.hpp"
+#include "reports/run_directory.hpp"
+#include "reports/text_summary.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+// A plan lists no more.
+constexpr std::size_t kMostBits = 10'000;
+
+// The case with all its disturbances, and a note of what they struck until it failed.
+struct DisturbedRun {
+  StruckBits struck;
+  judge::CaseResult result;
+};
+
+DisturbedRun run_disturbed(const CaseFile& stored) {
+  const auto struck = std::make_shared<StruckBits>();
+  const Disturbances all = all_disturbances();
+  const Disturbances noted{watched(all.stresses, struck), watched(all.of_plans, struck)};
+  const conformance::Catalogue catalogue(suites_with(noted));
+  const conformance::CaseRun done = conformance::run_case(catalogue.at(stored.id), stored.setup);
+  return {std::move(*struck), done.outcome.result};
+}
+
+class BurstShrink {
+ public:
+  BurstShrink(const CaseFile& stored, const conformance::Catalogue& catalogue,
+              std::filesystem::path plan_file, std::string reason, std::stop_token stop)
+      : entry_(quiet_of(stored), catalogue),
+        setup_(stored.setup),
+        plan_file_(std::move(plan_file)),
+        reason_(std::move(reason)),
+        stop_(std::move(stop)) {
+    if (!setup_.plan_file.empty()) plan_ = reports::read_text_file(setup_.plan_file);
+    setup_.plan_file = plan_file_.string();
+  }
+
+  // The smallest; nothing when bits alone do not make it fail.
+  std::optional<StruckBits> run(const StruckBits& struck) {
+    // The run ended where it failed, so what mattered lies near the end.
+    for (std::size_t last = 1;; last *= 2) {
+      const std::size_t count = std::min({last, struck.size(), kMostBits});
+      StruckBits bits(struck.end() - static_cast<std::ptrdiff_t>(count), struck.end());
+      if (still_fails(bits)) {
+        return conformance::fewest(std::move(bits), [this](const StruckBits& some) { return still_fails(some); });
+      }
+      if (count < last) return std::nullopt;
+    }
+  }
+
+  conformance::CaseRun run_with(const StruckBits& bits) {
+    ++runs_;
+    reports::write_text_file(plan_file_.string(), plan_of(bits, plan_));
+    return conformance::run_case(*entry_, setup_);
+  }
+  std::size_t runs() const { return runs_; }
+
+ private:
+  static CaseFile quiet_of(CaseFile stored) {
+    stored.is_quiet = true;
+    return stored;
+  }
+  bool still_fails(const StruckBits& bits) {
+    if (stop_.stop_requested()) return false;
+    const judge::CaseResult& result = run_with(bits).outcome.result;
+    return result.verdict == judge::Verdict::fail && result.reason == reason_;
+  }
+
+  StoredEntry entry_;
+  conformance::Setup setup_;
+  std::filesystem::path plan_file_;
+  std::string plan_;  // the text of the stored one
+  std::string reason_;
+  std::stop_token stop_;
+  std::size_t runs_ = 0;
+};
+
+std::string bit_lines(const StruckBits& bits) {
+  std::string text;
+  for (const StruckBit& one : bits) {
+    text += fmt::format("  bit {} of transmission {} from {} on, as {} hears it\n", one.bit, one.transmission,
+                        kernel::describe(one.from), one.receiver);
+  }
+  return text;
+}
+
+}  // namespace
+
+int shrink_bursts(Session& session, const CaseFile& stored, const std::filesystem::path& file) {
+  session.terminal.print(
+      reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
+  const DisturbedRun disturbed = run_disturbed(stored);
+  if (disturbed.result.verdict != judge::Verdict::fail) {
+    session.terminal.print(fmt::format("the stored case does not fail, its verdict is {}: nothing to shrink\n",
+                                       judge::name(disturbed.result.verdict)));
+    return kDiffers;
+  }
+  std::filesystem::path plan_file = file;
+  plan_file.replace_extension(".plan.json");
+  const Interruption interruption(session.settings.duration("max-time"));
+  BurstShrink shrinking(stored, session.catalogue, plan_file, disturbed.result.reason, interruption.token());
+  const auto smallest = shrinking.run(disturbed.struck);
+  if (!smallest) {
+    session.terminal.print(
+        fmt::format("the {} bits that were struck do not make it fail with '{}' without the rest of the "
+                    "disturbance\n",
+                    disturbed.struck.size(), reports::escaped_line(disturbed.result.reason)));
+    return kDiffers;
+  }
+  const conformance::CaseRun done = shrinking.run_with(*smallest);
+  write_quiet_case(file, done, stored);
+  reports::TextOptions options;
+  options.colour = session.terminal.has_colour();
+  options.reproduce = replay_command(file.string());
+  session.terminal.print(
+      reports::finding_text(identity_of(session, done.setup, 1), done.outcome.result, options));
+  session.terminal.print(fmt::format("shrunk from {} struck bits to {}, in {} runs\n{}",
+                                     disturbed.struck.size(), smallest->size(), shrinking.runs(),
+                                     bit_lines(*smallest)));
+  return kAllAsExpected;
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "cli/exit_code.hpp"
+#include "cli/interruption.hpp"
+#include "cli/pics_file.hpp"
+#include "cli/run_setup.hpp"
+#include "cli/stored_sequence.hpp"
+#include "cli/verbs.hpp"
+#include "reports/run_directory.hpp"
+#include "reports/text_summary.hpp"
+
+// `fieldproof check`: random sequences of commands and faults against a model of the role. What fails is made
+// as small as it can be and stored as a case file.
+namespace fieldproof::cli {
+namespace {
+
+constexpr std::uint64_t kMostCases = 1'000'000'000;
+
+SequenceFile target_of(const Session& session) {
+  const Settings& settings = session.settings;
+  SequenceFile target;
+  std::tie(target.suite, target.role) = sequence_role_at(session.operands.front(), session.catalogue);
+  target.setup.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
+  if (settings.is_set("pics"))
+    target.setup.pics = load_pics(settings.text("pics"), session.catalogue.pics_items());
+  assign_implementations(session, target);
+  target.suite->check(target.role->test_case, target.setup);
+  return target;
+}
+
+std::string case_path(const Session& session, const SequenceFile& target) {
+  if (session.settings.origin("case") != Origin::fallback) return session.settings.text("case");
+  std::string name = role_path(*target.role);
+  std::ranges::replace(name, '/', '-');
+  return fmt::format("{}-{}.case.json", name, target.setup.seed);
+}
+
+std::string passed_text(std::uint64_t passed, std::uint64_t cases, const Interruption& interruption) {
+  const std::string why = interruption.reason();
+  return fmt::format("{} of {} sequences, and the model agrees with each{}{}\n", passed, cases,
+                     why.empty() ? "" : "; ", why);
+}
+
+}  // namespace
+
+int check(Session& session) {
+  SequenceFile target = target_of(session);
+  const std::string path = case_path(session, target);
+  reports::check_writable(path);
+  conformance::SequenceSearch search;
+  search.suite = target.suite;
+  search.role = target.role;
+  search.setup = target.setup;
+  search.cases = session.settings.number("cases", 1, kMostCases);
+  session.terminal.print(
+      reports::run_header(identity_of(session, target.setup, 1), manifest_of(session, 1)));
+  const Interruption interruption(session.settings.duration("max-time"));
+  search.stop = interruption.token();
+  search.on_progress = [&](std::uint64_t done) { session.terminal.progress(static_cast<std::size_t>(done)); };
+  session.terminal.begin_progress(static_cast<std::size_t>(search.cases), "sequences");
+  const conformance::SequenceSearchResult result = conformance::search(search);
+  session.terminal.end_progress();
+  if (!result.found) {
+    session.terminal.print(passed_text(result.passed, search.cases, interruption));
+    if (interruption.signal() != 0) return kSignalBase + interruption.signal();
+    return result.passed > 0 ? kAllAsExpected : kNothingJudged;
+  }
+  const conformance::SequenceFound& found = *result.found;
+  target.commands = found.smallest;
+  keep_sequence(session, target, found.outcome.result, path);
+  session.terminal.print(fmt::format("sequence {} failed; {}", result.passed + 1,
+                                     shrunk_text(found.drawn, found.smallest, found.shrinking_runs)));
+  if (!found.is_confirmed) {
+    session.terminal.print("not confirmed: the implementation did not do the same again\n");
+    return kDiffers;
+  }
+  return kFailed;
+}
+
+}  // namespace fieldproof::cli

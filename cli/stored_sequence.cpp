@@ -1,0 +1,110 @@
+#include "cli/stored_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/exit_code.hpp"
+#include "cli/implementations.hpp"
+#include "cli/run_setup.hpp"
+#include "harness/judge/result_json.hpp"
+#include "reports/run_directory.hpp"
+#include "reports/text_summary.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+std::string size_text(const conformance::Sequence& sequence) {
+  const auto counted = [](std::size_t count, std::string_view what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  return fmt::format("{}, {} ({})", counted(sequence.size(), "command"),
+                     counted(conformance::faults_in(sequence), "fault"),
+                     counted(conformance::flips_in(sequence), "flipped bit"));
+}
+
+std::string command_lines(const SequenceFile& file) {
+  std::string text = "  commands\n";
+  std::size_t number = 0;
+  for (const std::string& line : conformance::sequence_lines(file.commands, file.role->vocabulary)) {
+    text += fmt::format("    {}. {}\n", ++number, line);
+  }
+  return text;
+}
+
+int code_of(const judge::CaseResult& result) {
+  reports::Run run;
+  run.cases = {result};
+  return exit_code(run, {});
+}
+
+}  // namespace
+
+void assign_implementations(const Session& session, SequenceFile& file) {
+  const std::vector<std::string> cases_of_role{role_path(*file.role) + "/**"};
+  file.setup.implementations = parse_implementations(session.settings.list("iut"), session.catalogue,
+                                                     session.catalogue.select(cases_of_role));
+}
+
+std::string sequence_text(const Session& session, const SequenceFile& file, const judge::CaseResult& result,
+                          const std::string& reproduce) {
+  reports::TextOptions options;
+  options.colour = session.terminal.has_colour();
+  options.reproduce = reproduce;
+  return reports::finding_text(identity_of(session, file.setup, 1), result, options) + command_lines(file);
+}
+
+void keep_sequence(Session& session, SequenceFile file, const judge::CaseResult& result,
+                   const std::string& path) {
+  file.verdict = result.verdict;
+  file.reason = result.reason;
+  file.fingerprint = result.fingerprint;
+  reports::write_text_file(path, sequence_file_text(file));
+  session.terminal.print(
+      sequence_text(session, file, result, replay_command(path)));
+}
+
+std::string shrunk_text(const conformance::Sequence& before, const conformance::Sequence& after,
+                        std::uint64_t runs) {
+  return fmt::format("shrunk from {} to {}, in {} runs\n", size_text(before), size_text(after), runs);
+}
+
+std::string replay_command(const std::string& file) {
+  return fmt::format("fieldproof replay {}", reports::shell_quoted(file));
+}
+
+int replay_sequence(Session& session) {
+  const std::string& path = session.operands.front();
+  SequenceFile stored = load_sequence_file(path, session.catalogue);
+  const bool is_other = session.settings.origin("iut") != Origin::fallback;
+  if (is_other) assign_implementations(session, stored);
+  stored.suite->check(stored.role->test_case, stored.setup);
+  session.terminal.print(
+      reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
+  conformance::Setup recorded = stored.setup;
+  recorded.record = true;
+  const conformance::Outcome outcome =
+      conformance::run_sequence(*stored.suite, *stored.role, stored.commands, recorded);
+  const judge::CaseResult& result = outcome.result;
+  if (session.settings.is_set("bits")) {
+    for (const std::string& line : outcome.recording.lines())
+      session.terminal.print(reports::escaped_line(line) + "\n");
+  }
+  session.terminal.print(sequence_text(session, stored, result,
+                                       replay_command(path)));
+  if (is_other) {
+    session.terminal.print("another implementation than the stored one: not compared\n");
+    return code_of(result);
+  }
+  const bool is_equal = result.verdict == stored.verdict && result.reason == stored.reason &&
+                        result.fingerprint == stored.fingerprint;
+  if (is_equal) {
+    session.terminal.print("equal: verdict, reason and fingerprint are those of the stored run\n");
+    return code_of(result);
+  }
+  session.terminal.print(fmt::format("differs: was {} {} {}, is {} {} {}\n", judge::name(stored.verdict),
+                                     reports::escaped_line(stored.reason),
+                                     judge::fingerprint_text(stored.fingerprint), judge::name(result.verdict),
+                                     result.reason, judge::fingerprint_text(result.fingerprint)));
+  return kDiffers;
+}
+
+}  // namespace fieldproof::cli

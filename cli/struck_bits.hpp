@@ -1,0 +1,45 @@
+// Which bits the disturbances of a run struck, and a plan that strikes the same ones without them.
+//
+// Contract: a struck bit is one that a receiver of the declared bit rate, which takes the majority of three
+// samples, hears otherwise than it was sent. What a disturbance does beyond that (a pulse that is no bit to
+// such a receiver) is not kept, so who replays the bits looks whether they do what the disturbance did.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/fault/disturbance.hpp"
+#include "harness/fault/stress.hpp"
+
+namespace fieldproof::cli {
+
+struct StruckBit {
+  std::string receiver;
+  kernel::Time from;           // of the disturbance
+  std::uint64_t transmission;  // to the receiver, from 0 at that instant on
+  std::uint64_t bit;
+
+  friend auto operator<=>(const StruckBit&, const StruckBit&) = default;
+};
+
+// In the order in which they were struck.
+using StruckBits = std::vector<StruckBit>;
+
+// The same disturbances, with a note in `struck` of all that they do.
+std::vector<fault::Stress> watched(std::span<const fault::Stress> stresses,
+                                   const std::shared_ptr<StruckBits>& struck);
+std::vector<fault::DisturbanceKind> watched(std::span<const fault::DisturbanceKind> kinds,
+                                            const std::shared_ptr<StruckBits>& struck);
+
+// Stresses that disturb nothing, for as long as those do.
+std::vector<fault::Stress> quiet(std::span<const fault::Stress> stresses);
+
+// The text of a plan with these bits instead of all disturbances of `plan`, which is the text of one, or
+// empty.
+std::string plan_of(std::span<const StruckBit> struck, const std::string& plan);
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,151 @@
+#include "conformance/sequence.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+namespace fieldproof::conformance {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMostCommands = 1'000;
+constexpr std::size_t kMostFaults = 1'000;
+constexpr std::uint32_t kMostUnit = 1'000;
+constexpr std::uint32_t kMostValue = 100'000;
+
+constexpr std::array<std::string_view, 3> kFaultNames{"flip", "drop", "gap"};
+
+std::string fault_text(const SequenceFault& fault, std::string_view unit) {
+  switch (fault.kind) {
+    case SequenceFaultKind::flip:
+      return fmt::format("level {} of {} {} flipped", fault.value, unit, fault.unit);
+    case SequenceFaultKind::drop:
+      return fmt::format("{} {} dropped", unit, fault.unit);
+    case SequenceFaultKind::gap:
+      break;
+  }
+  return fmt::format("{} bits of silence behind {} {}", fault.value, unit, fault.unit);
+}
+
+ordered_json fault_json(const SequenceFault& fault) {
+  ordered_json json;
+  json["fault"] = kFaultNames.at(static_cast<std::size_t>(fault.kind));
+  json["unit"] = fault.unit;
+  if (fault.kind == SequenceFaultKind::flip) json["level"] = fault.value;
+  if (fault.kind == SequenceFaultKind::gap) json["bits"] = fault.value;
+  return json;
+}
+
+SequenceFault read_fault(const config::Value& value) {
+  return config::read_object(value, [](config::ObjectReader& reader) {
+    SequenceFault fault;
+    fault.kind = static_cast<SequenceFaultKind>(reader.required("fault").as_choice(kFaultNames));
+    fault.unit = reader.required("unit").as_integer<std::uint32_t>(0, kMostUnit);
+    if (fault.kind == SequenceFaultKind::flip) {
+      fault.value = reader.required("level").as_integer<std::uint32_t>(0, kMostValue);
+    } else if (fault.kind == SequenceFaultKind::gap) {
+      fault.value = reader.required("bits").as_integer<std::uint32_t>(0, kMostValue);
+    }
+    return fault;
+  });
+}
+
+SequenceCommand read_command(const config::Value& value, const SequenceVocabulary& vocabulary) {
+  return config::read_object(value, [&](config::ObjectReader& reader) {
+    std::vector<std::string_view> names;
+    for (const SequenceWord& word : vocabulary.words) names.push_back(word.word);
+    SequenceCommand command;
+    command.word = reader.required("do").as_choice(names);
+    const SequenceWord& word = vocabulary.words[command.word];
+    for (const SequenceNumber& number : word.numbers) {
+      command.numbers.push_back(
+          reader.required(number.name).as_integer<std::int64_t>(number.least, number.most));
+    }
+    if (word.most_octets > 0) {
+      for (const config::Value& octet : reader.required("octets").as_array(1, word.most_octets)) {
+        command.octets.push_back(octet.as_integer<std::uint8_t>());
+      }
+    }
+    if (units_of(word, command) == 0) return command;
+    if (const auto faults = reader.optional("faults")) {
+      for (const config::Value& fault : faults->as_array(0, kMostFaults)) {
+        command.faults.push_back(read_fault(fault));
+      }
+    }
+    return command;
+  });
+}
+
+}  // namespace
+
+const SequenceWord* SequenceVocabulary::find(std::string_view word) const {
+  const auto found = std::ranges::find(words, word, &SequenceWord::word);
+  return found == words.end() ? nullptr : &*found;
+}
+
+std::size_t units_of(const SequenceWord& word, const SequenceCommand& command) {
+  return word.most_octets > 0 ? command.octets.size() : word.units;
+}
+
+std::size_t faults_in(const Sequence& sequence) {
+  std::size_t count = 0;
+  for (const SequenceCommand& command : sequence) count += command.faults.size();
+  return count;
+}
+
+std::size_t flips_in(const Sequence& sequence) {
+  std::size_t count = 0;
+  for (const SequenceCommand& command : sequence) {
+    count += static_cast<std::size_t>(
+        std::ranges::count(command.faults, SequenceFaultKind::flip, &SequenceFault::kind));
+  }
+  return count;
+}
+
+std::vector<std::string> sequence_lines(const Sequence& sequence, const SequenceVocabulary& vocabulary) {
+  std::vector<std::string> lines;
+  for (const SequenceCommand& command : sequence) {
+    const SequenceWord& word = vocabulary.words.at(command.word);
+    std::string line(word.word);
+    for (std::size_t n = 0; n < word.numbers.size(); ++n) {
+      line += fmt::format(" {} {}", word.numbers[n].name, command.numbers.at(n));
+    }
+    if (!command.octets.empty()) line += fmt::format(" octets {:02X}", fmt::join(command.octets, " "));
+    for (const SequenceFault& fault : command.faults) line += "; " + fault_text(fault, vocabulary.unit);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::string sequence_json(const Sequence& sequence, const SequenceVocabulary& vocabulary) {
+  ordered_json list = ordered_json::array();
+  for (const SequenceCommand& command : sequence) {
+    const SequenceWord& word = vocabulary.words.at(command.word);
+    ordered_json json;
+    json["do"] = word.word;
+    for (std::size_t n = 0; n < word.numbers.size(); ++n) {
+      json[std::string(word.numbers[n].name)] = command.numbers.at(n);
+    }
+    if (word.most_octets > 0) json["octets"] = command.octets;
+    if (!command.faults.empty()) {
+      for (const SequenceFault& fault : command.faults) json["faults"].push_back(fault_json(fault));
+    }
+    list.push_back(std::move(json));
+  }
+  return list.dump();
+}
+
+Sequence read_sequence(const config::Value& value, const SequenceVocabulary& vocabulary) {
+  Sequence sequence;
+  for (const config::Value& command : value.as_array(1, kMostCommands)) {
+    sequence.push_back(read_command(command, vocabulary));
+  }
+  return sequence;
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/config/document.hpp"
+
+// Sequences of commands to an implementation, as values: what `check` draws at random, makes smaller and
+// stores, and what `replay` runs again. Which commands there are is the vocabulary of a role; a bench of that
+// role knows how to do them, and a model of it what must come of them.
+//
+// A number of a command lies between the limits of its vocabulary, whoever made the sequence: drawing and
+// reading both see to that, so a bench need not.
+namespace fieldproof::conformance {
+
+enum class SequenceFaultKind : std::uint8_t {
+  flip,  // a level of a unit arrives inverted
+  drop,  // a unit does not arrive; what is behind it arrives in time
+  gap,   // silence behind a unit
+};
+
+// What is wrong with the transmission of one command. A unit is what the line consists of: a character, a
+// telegram; one behind the last of them, or a level behind its end, does nothing.
+struct SequenceFault {
+  SequenceFaultKind kind = SequenceFaultKind::flip;
+  std::uint32_t unit = 0;   // from 0
+  std::uint32_t value = 0;  // flip: the level, from 0; gap: bits; drop: 0
+
+  friend auto operator<=>(const SequenceFault&, const SequenceFault&) = default;
+};
+
+struct SequenceNumber {
+  std::string_view name;
+  std::int64_t least = 0;
+  std::int64_t most = 0;
+  std::int64_t simple = 0;                 // what a person expects when nothing is said
+  std::span<const std::int64_t> likely{};  // what is drawn more often than the rest
+  bool is_likely_only = false;             // the rest is never drawn: between them nothing is certain
+};
+
+struct SequenceWord {
+  std::string_view word;
+  std::string_view meaning;  // "writes DATA0 and DATA1"
+  std::vector<SequenceNumber> numbers{};
+  std::size_t most_octets = 0;  // octets of any value behind the numbers
+  unsigned units = 0;           // of a transmission without octets; a word with neither takes no faults
+  unsigned weight = 1;          // how often it is drawn, beside the others
+};
+
+struct SequenceVocabulary {
+  std::vector<SequenceWord> words;
+  std::string_view unit = "character";
+  unsigned levels_per_unit = 11;
+  std::span<const std::int64_t> gaps{};  // bits of silence that are drawn
+  std::size_t most_commands = 20;        // in a drawn sequence
+
+  const SequenceWord* find(std::string_view word) const;
+};
+
+struct SequenceCommand {
+  std::size_t word = 0;                // of the vocabulary
+  std::vector<std::int64_t> numbers;   // as many as the word has
+  std::vector<std::uint8_t> octets{};  // at most as many as the word takes
+  std::vector<SequenceFault> faults{};
+
+  friend bool operator==(const SequenceCommand&, const SequenceCommand&) = default;
+};
+
+using Sequence = std::vector<SequenceCommand>;
+
+// Units of the transmission of a command, without its faults.
+std::size_t units_of(const SequenceWord& word, const SequenceCommand& command);
+std::size_t flips_in(const Sequence& sequence);
+std::size_t faults_in(const Sequence& sequence);
+
+// One line for each command: "write data0 165 data1 60 silence 45; bit 3 of character 2 flipped".
+std::vector<std::string> sequence_lines(const Sequence& sequence, const SequenceVocabulary& vocabulary);
+
+// The value of "commands" in a case file. Reading is strict: an error names line and pointer.
+std::string sequence_json(const Sequence& sequence, const SequenceVocabulary& vocabulary);
+Sequence read_sequence(const config::Value& value, const SequenceVocabulary& vocabulary);
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,93 @@
+#include "conformance/sequence_check.hpp"
+
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "conformance/runner.hpp"
+#include "conformance/sequence_draw.hpp"
+#include "conformance/sequence_shrink.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+// What is still not smallest by then comes from an implementation that does not repeat itself.
+constexpr std::uint64_t kMostShrinkingRuns = 20'000;
+
+bool has_failed(const Outcome& outcome) {
+  return outcome.result.verdict == judge::Verdict::fail;
+}
+
+}  // namespace
+
+Outcome run_sequence(const Suite& suite, const SequenceRole& role, const Sequence& sequence, Setup setup) {
+  setup.seed = case_seed(setup.seed, role.test_case.id);
+  return suite.run_sequence(role, sequence, setup);
+}
+
+namespace {
+
+// Runs candidates under one setup and says whether they fail for one reason.
+class SameFailure {
+ public:
+  SameFailure(const Suite& suite, const SequenceRole& role, const Setup& setup, std::string reason,
+              std::stop_token stop)
+      : suite_(suite), role_(role), setup_(setup), reason_(std::move(reason)), stop_(std::move(stop)) {}
+
+  bool operator()(const Sequence& candidate) {
+    if (runs_ == kMostShrinkingRuns || stop_.stop_requested()) return false;
+    ++runs_;
+    return is_in(run_sequence(suite_, role_, candidate, setup_));
+  }
+
+  SequenceFound found(Sequence drawn, Sequence smallest) const {
+    Setup recorded = setup_;
+    recorded.record = true;
+    Outcome outcome = run_sequence(suite_, role_, smallest, recorded);
+    const bool is_confirmed = is_in(outcome);
+    return {std::move(drawn), std::move(smallest), std::move(outcome), runs_, is_confirmed};
+  }
+
+ private:
+  bool is_in(const Outcome& outcome) const {
+    return has_failed(outcome) && outcome.result.reason == reason_;
+  }
+
+  const Suite& suite_;
+  const SequenceRole& role_;
+  const Setup& setup_;
+  std::string reason_;
+  std::stop_token stop_;
+  std::uint64_t runs_ = 0;
+};
+
+}  // namespace
+
+SequenceSearchResult search(const SequenceSearch& search) {
+  const Suite& suite = *search.suite;
+  const SequenceRole& role = *search.role;
+  const SequenceSource source(role.vocabulary, search.setup.seed);
+  SequenceSearchResult result;
+  for (; result.passed < search.cases && !search.stop.stop_requested(); ++result.passed) {
+    if (search.on_progress) search.on_progress(result.passed);
+    const Sequence drawn = source.draw(result.passed);
+    const Outcome outcome = run_sequence(suite, role, drawn, search.setup);
+    if (!has_failed(outcome)) continue;
+    SameFailure same(suite, role, search.setup, outcome.result.reason, search.stop);
+    const SequenceFails still_fails = std::ref(same);
+    const Sequence smaller = source.smaller(result.passed, still_fails);
+    result.found = same.found(drawn, shrunk(smaller, role.vocabulary, still_fails));
+    break;
+  }
+  return result;
+}
+
+std::optional<SequenceFound> shrink(const Suite& suite, const SequenceRole& role, const Sequence& sequence,
+                                    const Setup& setup, std::stop_token stop) {
+  const Outcome outcome = run_sequence(suite, role, sequence, setup);
+  if (!has_failed(outcome)) return std::nullopt;
+  SameFailure same(suite, role, setup, outcome.result.reason, std::move(stop));
+  return same.found(sequence, shrunk(sequence, role.vocabulary, std::ref(same)));
+}
+
+}  // namespace fieldproof::conformance

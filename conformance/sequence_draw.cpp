@@ -1,0 +1,117 @@
+#include "conformance/sequence_draw.hpp"
+
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::uint64_t kGrowth = 10;  // sequences of each length before they get longer
+constexpr unsigned kPerCent = 100;
+constexpr unsigned kFaultyPerCent = 30;  // of the commands
+constexpr std::size_t kMostDrawnFaults = 3;   // of one command
+constexpr unsigned kRepeatedPerCent = 15;
+constexpr unsigned kLikelyPerCent = 60;
+constexpr unsigned kMostSteps = 200;  // that fail to fail, before RapidCheck's part is over
+
+template <typename T>
+T chosen(std::span<const T> from) {
+  return from[*rc::gen::inRange<std::size_t>(0, from.size())];
+}
+
+bool chance(unsigned per_cent) {
+  return *rc::gen::inRange(0U, kPerCent) < per_cent;
+}
+
+std::int64_t draw_number(const SequenceNumber& number) {
+  if (!number.likely.empty() && (number.is_likely_only || chance(kLikelyPerCent))) {
+    return chosen(number.likely);
+  }
+  return *rc::gen::inRange(number.least, number.most + 1);
+}
+
+SequenceFault draw_fault(const SequenceVocabulary& vocabulary, std::size_t units) {
+  SequenceFault fault;
+  fault.unit = *rc::gen::inRange<std::uint32_t>(0, static_cast<std::uint32_t>(units));
+  fault.kind = *rc::gen::weightedElement<SequenceFaultKind>(
+      {{6, SequenceFaultKind::flip}, {2, SequenceFaultKind::drop}, {2, SequenceFaultKind::gap}});
+  if (fault.kind == SequenceFaultKind::flip) {
+    fault.value = *rc::gen::inRange<std::uint32_t>(0, vocabulary.levels_per_unit);
+  } else if (fault.kind == SequenceFaultKind::gap) {
+    fault.value = static_cast<std::uint32_t>(chosen(vocabulary.gaps));
+  }
+  return fault;
+}
+
+rc::Gen<SequenceCommand> command_of(const SequenceVocabulary& vocabulary) {
+  // A word stands in the urn as often as it weighs.
+  std::vector<std::size_t> urn;
+  for (std::size_t n = 0; n < vocabulary.words.size(); ++n) {
+    urn.insert(urn.end(), vocabulary.words[n].weight, n);
+  }
+  return rc::gen::exec([&vocabulary, urn] {
+    SequenceCommand command;
+    command.word = chosen(std::span<const std::size_t>(urn));
+    const SequenceWord& word = vocabulary.words[command.word];
+    for (const SequenceNumber& number : word.numbers) command.numbers.push_back(draw_number(number));
+    if (word.most_octets > 0) {
+      const auto count = *rc::gen::inRange<std::size_t>(1, word.most_octets + 1);
+      for (std::size_t n = 0; n < count; ++n) {
+        command.octets.push_back(static_cast<std::uint8_t>(*rc::gen::inRange(0, 256)));
+      }
+    }
+    const std::size_t units = units_of(word, command);
+    if (units == 0 || !chance(kFaultyPerCent)) return command;
+    const auto faults = *rc::gen::inRange<std::size_t>(1, kMostDrawnFaults + 1);
+    for (std::size_t n = 0; n < faults; ++n) command.faults.push_back(draw_fault(vocabulary, units));
+    std::ranges::sort(command.faults);
+    const auto doubled = std::ranges::unique(command.faults);
+    command.faults.erase(doubled.begin(), doubled.end());
+    return command;
+  });
+}
+
+// What comes twice is what implementations take a short cut for.
+Sequence with_repetitions(const std::vector<std::pair<SequenceCommand, unsigned>>& drawn) {
+  Sequence sequence;
+  for (const auto& [command, die] : drawn) {
+    const bool is_repeated = !sequence.empty() && die >= kPerCent - kRepeatedPerCent;
+    sequence.push_back(is_repeated ? SequenceCommand(sequence.back()) : command);
+  }
+  return sequence;
+}
+
+rc::Shrinkable<Sequence> drawn(const SequenceVocabulary& vocabulary, std::uint64_t seed, std::uint64_t n) {
+  const auto most = static_cast<int>(std::min<std::uint64_t>(1 + n / kGrowth, vocabulary.most_commands));
+  // The size of a container is its length; that of what is in it stays whole.
+  const auto one = rc::gen::pair(command_of(vocabulary), rc::gen::inRange(0U, kPerCent));
+  const auto commands = rc::gen::container<std::vector<std::pair<SequenceCommand, unsigned>>>(
+      rc::gen::resize(rc::kNominalSize, one));
+  return rc::gen::map(rc::gen::resize(most, commands), with_repetitions)(
+      rc::Random(rc::Random::Key{seed, n, 0, 0}));
+}
+
+}  // namespace
+
+Sequence SequenceSource::draw(std::uint64_t n) const {
+  return drawn(vocabulary_, seed_, n).value();
+}
+
+Sequence SequenceSource::smaller(std::uint64_t n, const SequenceFails& still_fails) const {
+  rc::Shrinkable<Sequence> best = drawn(vocabulary_, seed_, n);
+  for (bool is_smaller = true; is_smaller;) {
+    is_smaller = false;
+    auto steps = best.shrinks();
+    for (unsigned tried = 0; tried < kMostSteps && !is_smaller; ++tried) {
+      const auto step = steps.next();
+      if (!step) break;
+      is_smaller = still_fails(step->value());
+      if (is_smaller) best = *step;
+    }
+  }
+  return best.value();
+}
+
+}  // namespace fieldproof::conformance
