@@ -36,3 +36,12 @@ function(fieldproof_odd_plugins test)
     target_compile_definitions(${test} PRIVATE ODD_PLUGIN${kind}="$<TARGET_FILE:${name}>")
   endforeach()
 endfunction()
+
+# fieldproof_link_valve_node(target): the node in C within the program, and the path of it as a library.
+function(fieldproof_link_valve_node target)
+  add_library(valve_node_objects OBJECT examples/valve_node/valve_node.c)
+  fieldproof_c89(valve_node_objects)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:valve_node_objects>)
+  add_dependencies(${target} valve_node_plugin)
+  target_compile_definitions(${target} PRIVATE FIELDPROOF_VALVE_NODE_PLUGIN="$<TARGET_FILE:valve_node_plugin>")
+endfunction()
