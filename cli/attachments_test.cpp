@@ -76,9 +76,10 @@ class Attachments : public ProgramFixture {
     return found;
   }
 
-  void expect_passes(const std::string& uri) {
-    const Cases cases = judged(uri);
-    EXPECT_EQ(cases.size(), 45U) << uri;
+  void expect_passes(const std::string& uri, const std::string& suite = std::string(kSuite),
+                     std::size_t count = 45) {
+    const Cases cases = judged(uri, "**", {}, {}, suite);
+    EXPECT_EQ(cases.size(), count) << uri;
     for (const auto& [id, one] : cases) {
       EXPECT_EQ(one.verdict, "pass") << uri << ": " << id << ": " << one.reason << one.findings;
     }
@@ -178,6 +179,14 @@ TEST_F(Attachments, NodeInPythonPasses) {
   const std::string python = installed("python3");
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
   expect_passes("exec:" + in_quotes(python) + " " + in_quotes(kExamples / "node.py"));
+}
+
+// Written from the page of the role.
+TEST_F(Attachments, InterbusSlaveInPythonPasses) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const fs::path slave = kSourceFolder / "examples/interbus_slave/slave.py";
+  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(slave), "interbus/slave/", 60);
 }
 
 TEST_F(Attachments, NodeInNodeJsPasses) {
