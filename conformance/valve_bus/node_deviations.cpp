@@ -190,7 +190,8 @@ std::vector<NodeRow> node_sequence_rows() {
   std::vector<NodeRow> rows = {
       {"refused_write_kept", "", "drives the data of a write that it refused at the next read",
        node<RefusedWriteKept>()},
-      {"check_not_reset", "", "goes on with the block check of a frame that was wrong", node<CheckNotReset>()},
+      {"check_not_reset", "", "goes on with the block check of a frame that was wrong",
+       node<CheckNotReset>()},
       {"check_skipped_behind_error", "", "does not check the frame behind a wrong one",
        node<CheckSkippedBehindError>()},
       {"deaf_after_three_errors", "", "hears nothing more behind three wrong frames in a row",
