@@ -1,14 +1,18 @@
 #include "cli/attachments.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "cli/serial_pool.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/pool.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
+#include "protocols/valve_bus/serial_node.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -43,6 +47,18 @@ class Pools {
   std::map<std::string, std::unique_ptr<iut::DevicePool>> pools_;
 };
 
+// The words of a PICS for the format of a UART.
+std::string characters_of(const std::string& uri, const line::CharacterFormat& format) {
+  const std::string text = format.text();
+  if (text == "8m1") return "P0";
+  if (text == "8e1") return "P1";
+  if (text == "8n1") return "P2";
+  throw kernel::Error(kernel::ErrorKind::usage,
+                      fmt::format("'{}': no node of the valve bus talks in characters {}; there are 8m1 (a "
+                                  "ninth bit of 1), 8e1 and 8n1",
+                                  uri, text));
+}
+
 valve_bus::NodeAttachment attachment_of(Pools& pools, const std::string& uri) {
   if (uri.starts_with(kPlugin) && uri.ends_with(kInProcess)) {
     const std::string path = uri.substr(kPlugin.size(), uri.size() - kPlugin.size() - kInProcess.size());
@@ -57,18 +73,36 @@ valve_bus::NodeAttachment attachment_of(Pools& pools, const std::string& uri) {
 }  // namespace
 
 bool is_attachment(std::string_view uri) {
-  return iut::DevicePool::is_meant(uri) || uri.starts_with(kPlugin);
+  return iut::DevicePool::is_meant(uri) || uri.starts_with(kPlugin) || uri.starts_with(iut::kSerialUri);
+}
+
+std::optional<judge::Pics> node_on_real_line(const std::string& uri) {
+  if (!uri.starts_with(iut::kSerialUri)) return std::nullopt;
+  const iut::SerialSettings settings = iut::serial_settings(uri);
+  judge::Pics pics;
+  if (settings.bit_rate) pics.declare("bit_rate", *settings.bit_rate);
+  if (settings.format) pics.declare("characters", characters_of(uri, *settings.format));
+  // Without an upper channel the box is as it stands there.
+  pics.declare("address_switches_can_be_set", !settings.upper.empty());
+  pics.declare("power_can_be_switched", !settings.upper.empty());
+  return pics;
 }
 
 conformance::ValveBusGiven::MakeNode attached_nodes() {
-  const auto pools = std::make_shared<Pools>(iut::RoleName{"valve_bus", "node"});
-  return
-      [pools](const conformance::ValveBusGiven::Wanted& wanted,
-              const valve_bus::NodeConfiguration& configuration) -> std::unique_ptr<valve_bus::NodeDevice> {
-        if (!is_attachment(wanted.uri)) return nullptr;
-        return std::make_unique<valve_bus::AttachedNode>(attachment_of(*pools, wanted.uri), configuration,
-                                                         wanted.case_id, wanted.seed);
-      };
+  const iut::RoleName role{"valve_bus", "node"};
+  const auto pools = std::make_shared<Pools>(role);
+  const auto lines = std::make_shared<SerialPool>(role);
+  return [pools, lines](
+             const conformance::ValveBusGiven::Wanted& wanted,
+             const valve_bus::NodeConfiguration& configuration) -> std::unique_ptr<valve_bus::NodeDevice> {
+    if (!is_attachment(wanted.uri)) return nullptr;
+    if (wanted.uri.starts_with(iut::kSerialUri)) {
+      return std::make_unique<valve_bus::SerialNode>(lines->take(wanted.uri), configuration, wanted.case_id,
+                                                     wanted.seed);
+    }
+    return std::make_unique<valve_bus::AttachedNode>(attachment_of(*pools, wanted.uri), configuration,
+                                                     wanted.case_id, wanted.seed);
+  };
 }
 
 }  // namespace fieldproof::cli

@@ -1,17 +1,24 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "conformance/valve_bus/suite.hpp"
+#include "harness/judge/pics.hpp"
 
 // Implementations outside the program, for the suites:
 //
 //   exec:./program ARGUMENTS     a process
 //   unix:/path, tcp:HOST:PORT    who listens there
 //   plugin:./library.so          a shared library, in a process of its own; with ?in-process in this one
+//   serial:/dev/ttyUSB0?baud=…   a box at a serial line, in wall-clock time
 namespace fieldproof::cli {
 
 bool is_attachment(std::string_view uri);
+
+// What the URI of a serial line says of the node at it, as answers of a PICS; nothing for other URIs.
+std::optional<judge::Pics> node_on_real_line(const std::string& uri);
 
 // Implementations of one URI are kept from case to case, and as many are opened as cases run side by side.
 conformance::ValveBusGiven::MakeNode attached_nodes();

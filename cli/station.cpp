@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cli/exit_code.hpp"
+#include "cli/station_on_line.hpp"
 #include "cli/verbs.hpp"
 #include "conformance/valve_bus/node_deviations.hpp"
 #include "harness/iut/plugin.hpp"
@@ -33,15 +34,8 @@ std::unique_ptr<valve_bus::NodeDevice> node_of(const std::string& uri,
       fmt::format("'{}' is no built-in station; write ref, deviant:NAME or plugin:LIBRARY", uri));
 }
 
-}  // namespace
-
-int station(Session& session) {
-  const std::string& wanted = session.operands.front();
-  if (wanted != kNode) {
-    throw kernel::Error(kernel::ErrorKind::usage,
-                        fmt::format("no station '{}' can be played; there is '{}'", wanted, kNode));
-  }
-  const std::string uri = session.operands.size() > 1 ? session.operands[1] : "ref";
+// Lock step and virtual time, at the standard streams.
+void play_in_lock_step(const std::string& uri) {
   constexpr std::string_view kPlugin = "plugin:";
   const bool is_plugin = uri.starts_with(kPlugin);
   if (!is_plugin) node_of(uri, {});
@@ -54,6 +48,24 @@ int station(Session& session) {
             [uri](const valve_bus::NodeConfiguration& configuration) { return node_of(uri, configuration); });
       },
       fmt::format("fieldproof {}", uri));
+}
+
+}  // namespace
+
+int station(Session& session) {
+  const std::string& wanted = session.operands.front();
+  if (wanted != kNode) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        fmt::format("no station '{}' can be played; there is '{}'", wanted, kNode));
+  }
+  const std::string uri = session.operands.size() > 1 ? session.operands[1] : "ref";
+  if (session.settings.is_set("serial")) {
+    play_on_line(session, uri, [&](const valve_bus::NodeConfiguration& configuration) {
+      return node_of(uri, configuration);
+    });
+  } else {
+    play_in_lock_step(uri);
+  }
   return kAllAsExpected;
 }
 

@@ -116,8 +116,8 @@ CaseRun run_case(const Entry& entry, const Setup& run_setup, KeptRecordings keep
     done.outcome.result = blank_result(*entry.test_case, Verdict::not_applicable, std::move(*reason));
   } else {
     done.outcome = guarded_run(entry, done.setup);
-    if (keeps_recordings == KeptRecordings::failed && needs_recording(done.outcome.result.verdict))
-      record_again(done);
+    const bool is_wanted = needs_recording(done.outcome.result.verdict) && !done.outcome.happens_once;
+    if (keeps_recordings == KeptRecordings::failed && is_wanted) record_again(done);
   }
   done.outcome.result.seed = done.setup.seed;
   done.outcome.result.wall_time_us = microseconds_since(begin);

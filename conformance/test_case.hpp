@@ -107,6 +107,7 @@ struct Recording {
 struct Outcome {
   judge::CaseResult result;
   Recording recording;
+  bool happens_once = false;  // on a real line: a second run is another one, and has another fingerprint
 };
 
 // A protocol's suite. `run` never throws for a misbehaving implementation: that is a verdict. It throws

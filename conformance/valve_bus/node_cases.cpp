@@ -27,6 +27,21 @@ NodeCase canary() {
           }};
 }
 
+// On a real line an instant is known to some microseconds. One that lies closer to its limit says nothing; a
+// case of which most say nothing has not shown what was to be judged.
+void judge_instants(const InstantLedger& instants, CaseJudge& judge) {
+  const auto microseconds = [](kernel::Duration time) { return static_cast<double>(time.count()) * 1e-6; };
+  if (instants.greatest_doubt > kernel::Duration{})
+    judge.measure("greatest uncertainty U of an instant", "us", microseconds(instants.greatest_doubt));
+  if (instants.in_doubt == 0) return;
+  judge.measure("instants closer to a limit than U", "", static_cast<double>(instants.in_doubt));
+  if (instants.in_doubt <= instants.sure) return;
+  judge.inconclusive("timing_in_doubt", {{"instants that are known better than their distance from a limit"},
+                                         fmt::format("{} of {} were closer than U, which was {} at least",
+                                                     instants.in_doubt, instants.in_doubt + instants.sure,
+                                                     kernel::describe(instants.least_doubt_open))});
+}
+
 }  // namespace
 
 const std::vector<NodeCase>& node_cases() {
@@ -55,6 +70,7 @@ judge::CaseResult run_node_case(const NodeCase& node_case, const NodeSetting& se
     node_case.procedure(*bench, j);
     bench->line_watch().judge(j);
     bench->finish();
+    judge_instants(bench->instants(), j);
   });
   result.seed = setting.seed;
   if (!bench) return result;

@@ -38,6 +38,7 @@ void turn_round_is_within_its_span(NodeBench& bench, CaseJudge& judge) {
 }
 
 void driver_is_on_for_the_answer_only(NodeBench& bench, CaseJudge& judge) {
+  bench.require(&valve_bus::NodeReach::driver);
   for (int n = 0; n < bench.volume(5, 100); ++n) {
     bench.forget();
     const std::uint16_t switches = set_random_switches(bench);

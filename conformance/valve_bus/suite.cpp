@@ -50,6 +50,12 @@ class ValveBusSuite final : public Suite {
     return setup.plan_file.empty() ? std::vector<fault::PlanPart>{} : load(setup).parts();
   }
 
+  std::optional<judge::Pics> declared_pics(const TestCase& test_case, const Setup& setup) const override {
+    if (auto of_line = on_real_line(test_case, setup))
+      return setup.pics ? setup.pics->completed_by(*of_line) : of_line;
+    return setup.pics;
+  }
+
   void check(const TestCase& test_case, const Setup& setup) const override {
     if (!setup.network_file.empty()) {
       throw kernel::Error(kernel::ErrorKind::usage,
@@ -65,8 +71,9 @@ class ValveBusSuite final : public Suite {
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
     CaseRecorder recorder;
+    const bool is_once = on_real_line(test_case, setup).has_value();
     const auto with_recorder = [&](auto setting) {
-      if (setup.record) {
+      if (setup.record || is_once) {
         setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
           return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
         };
@@ -79,10 +86,15 @@ class ValveBusSuite final : public Suite {
             ? run_host_case(*host_cases_.at(test_case.id), with_recorder(host_setting(test_case, setup)))
             : run_node_case(*node_cases_.at(test_case.id), with_recorder(node_setting(test_case, setup)));
     recorder.keep(outcome);
+    outcome.happens_once = is_once;
     return outcome;
   }
 
  private:
+  std::optional<judge::Pics> on_real_line(const TestCase& test_case, const Setup& setup) const {
+    return given_.on_real_line ? given_.on_real_line(assigned_to(test_case, setup).uri) : std::nullopt;
+  }
+
   fault::Plan load(const Setup& setup) const {
     return fault::load_plan(setup.plan_file, {.disturbances = given_.disturbances});
   }
@@ -102,6 +114,7 @@ class ValveBusSuite final : public Suite {
 
   NodeSetting node_setting(const TestCase& test_case, const Setup& setup) const {
     NodeSetting setting = setting_of<NodeSetting>(setup);
+    setting.pics = declared_pics(test_case, setup);
     setting.stresses = given_.stresses;
     setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
                          seed = setup.seed](const valve_bus::NodeConfiguration& configuration) {

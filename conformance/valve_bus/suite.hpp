@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "conformance/test_case.hpp"
 #include "harness/fault/disturbance.hpp"
 #include "harness/fault/stress.hpp"
+#include "harness/judge/pics.hpp"
 #include "protocols/valve_bus/device.hpp"
 
 // The suite of the RS-485 bus for pneumatic valves: the cases for local nodes and for
@@ -34,6 +36,9 @@ struct ValveBusGiven {
 
   MakeNode make_node{};
   MakeHost make_host{};
+  // Nodes on real lines: what their URI says of them, as answers to a PICS that has none; nothing for a URI
+  // of another kind.
+  std::function<std::optional<judge::Pics>(const std::string& uri)> on_real_line{};
   std::span<const fault::DisturbanceKind> disturbances{};  // what a plan can name
   std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
 };

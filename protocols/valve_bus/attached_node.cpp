@@ -51,7 +51,10 @@ NodeConfiguration node_configuration_of(const iut::CaseBegin& begin) {
 
 AttachedNode::AttachedNode(NodeAttachment attachment, const NodeConfiguration& configuration,
                            const std::string& case_id, std::uint64_t seed)
-    : attachment_(std::move(attachment)), configuration_(configuration), codec_(configuration.rules) {
+    : attachment_(std::move(attachment)),
+      configuration_(configuration),
+      codec_(configuration.rules),
+      transmitter_(configuration.rules) {
   call(kernel::kStart, [&](iut::Device& device) {
     if (device.begin({case_id, seed, node_settings(configuration)}, *this)) return;
     throw iut::Misbehaviour(iut::reasons::kUnsupported,
@@ -92,7 +95,7 @@ void AttachedNode::wire(segment::Port& line, NodeBoards& boards) {
 void AttachedNode::set_power(bool is_on, kernel::Time now) {
   is_supplied_ = is_on;
   last_write_ = now;
-  driven_until_ = now;
+  transmitter_.begin_at(now);
   call(now, [&](iut::Device& device) { device.set_power(is_on, now); });
 }
 
@@ -130,27 +133,6 @@ void AttachedNode::expect_supplied() const {
   if (!is_supplied_) refuse_impossible("acts without supply");
 }
 
-// What follows without a gap has instants that are rounded, each for itself.
-kernel::Time AttachedNode::behind_the_last(kernel::Time start) const {
-  return start < driven_until_ && driven_until_ - start <= kernel::kNanosecond ? driven_until_ : start;
-}
-
-kernel::Time AttachedNode::drive_idle(kernel::Time from, kernel::Time to) {
-  constexpr std::int64_t kFiner = 16;  // the driver comes and goes between bits, too
-  line::Waveform idle;
-  idle.start = from;
-  idle.rate = configuration_.rules.bit_rate * kFiner;
-  const kernel::Duration half = kernel::levels_duration(1, 2 * idle.rate);
-  auto count = static_cast<std::size_t>(kernel::levels_within(to - from + half, idle.rate));
-  // The nearest sixteenth, but not into what follows.
-  if (kernel::level_time(from, static_cast<std::int64_t>(count), idle.rate) > to + kernel::kNanosecond)
-    --count;
-  idle.levels.append_idle(count);
-  const kernel::Time end = idle.end();
-  if (count > 0) line_->drive(idle);
-  return std::max(to, end);
-}
-
 void AttachedNode::transmit(const iut::Transmission& transmission) {
   expect_supplied();
   if (transmission.port != 0)
@@ -169,10 +151,7 @@ void AttachedNode::transmit(const iut::Transmission& transmission) {
                                   kernel::describe(transmission.driver_off), kernel::describe(length),
                                   kernel::describe(transmission.start)));
   }
-  const kernel::Time driver_on = behind_the_last(transmission.driver_on);
-  const kernel::Time start = drive_idle(driver_on, std::max(driver_on, transmission.start));
-  const kernel::Time driven = codec_.drive_characters(*line_, transmission.characters, start);
-  driven_until_ = drive_idle(driven, std::max(driven, transmission.driver_off));
+  transmitter_.drive(*line_, transmission);
 }
 
 void AttachedNode::transmit(unsigned port, line::Waveform& wave) {
@@ -184,9 +163,7 @@ void AttachedNode::transmit(unsigned port, line::Waveform& wave) {
     refuse_impossible(
         fmt::format("drives from {} to {}", kernel::describe(wave.start), kernel::describe(wave.end())));
   }
-  wave.start = behind_the_last(wave.start);
-  driven_until_ = wave.end();
-  line_->drive(wave);
+  transmitter_.drive(*line_, wave);
 }
 
 void AttachedNode::write(iut::Item item, std::uint64_t value, kernel::Time when) {

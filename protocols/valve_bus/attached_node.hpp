@@ -10,6 +10,7 @@
 #include "harness/iut/device.hpp"
 #include "protocols/valve_bus/codec.hpp"
 #include "protocols/valve_bus/device.hpp"
+#include "protocols/valve_bus/transmitter.hpp"
 
 // A local node between the bench and an implementation outside, in both directions: AttachedNode is a node of
 // the bench that an iut::Device plays; ServedNode is an iut::Device that a node of ours plays.
@@ -56,19 +57,16 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(iut::Item item, kernel::Time when) override;
-  // The driver on and nothing said. Gives the end: `to`, or what rounding makes of it.
-  kernel::Time drive_idle(kernel::Time from, kernel::Time to);
-  kernel::Time behind_the_last(kernel::Time start) const;
 
   NodeAttachment attachment_;
   NodeConfiguration configuration_;
   CharacterCodec codec_;
+  Transmitter transmitter_;
   segment::Port* line_ = nullptr;
   NodeBoards* boards_ = nullptr;
   std::vector<iut::Character> characters_;
   kernel::Time now_{};  // as the implementation was told it
   kernel::Time last_write_{};
-  kernel::Time driven_until_{};
   bool is_supplied_ = false;
   bool is_well_ = true;
   bool has_ended_ = false;
