@@ -142,6 +142,7 @@ class NodeBench final : private segment::Station {
   // An instant that a case looked at could be judged, or lay closer to its limit than it is known.
   void note_instant(bool is_sure, const valve_bus::Doubt& doubt);
   const InstantLedger& instants() const { return instants_; }
+  void keep_instants(const InstantLedger& ledger) { instants_ = ledger; }
   // What has arrived at the IUT since then.
   std::span<const ArrivedFrame> arrived() const { return arrived_.frames(); }
   void forget();

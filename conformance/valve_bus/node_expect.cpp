@@ -206,7 +206,10 @@ void expect_serves(NodeBench& bench, CaseJudge& judge) {
   const kernel::Time end = bench.read();
   bench.settle();
   judge.expect(bench.has_driven(), kReason, "a read is answered", "the node did not say anything");
+  // That it serves is shown here; how fast it does so, by the case itself.
+  const InstantLedger before = bench.instants();
   expect_answer(bench, judge, switches, end);
+  bench.keep_instants(before);
   bench.forget();
 }
 
