@@ -28,20 +28,12 @@ class Pools {
   iut::DevicePool& of(const std::string& uri) {
     const std::scoped_lock lock(mutex_);
     auto& pool = pools_[uri];
-    if (pool == nullptr) pool = made(uri);
+    if (pool == nullptr) pool = pool_of(uri, role_);
     return *pool;
   }
   const iut::RoleName& role() const { return role_; }
 
  private:
-  std::unique_ptr<iut::DevicePool> made(const std::string& uri) const {
-    if (!uri.starts_with(kPlugin)) return std::make_unique<iut::DevicePool>(uri, role_);
-    // This program itself loads it: one that crashes takes a process along that nobody misses.
-    const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-    return std::make_unique<iut::DevicePool>(
-        uri, role_, std::vector<std::string>{self, "station", role_.protocol + "/" + role_.role, uri});
-  }
-
   iut::RoleName role_;
   std::mutex mutex_;
   std::map<std::string, std::unique_ptr<iut::DevicePool>> pools_;
@@ -60,10 +52,9 @@ std::string characters_of(const std::string& uri, const line::CharacterFormat& f
 }
 
 valve_bus::NodeAttachment attachment_of(Pools& pools, const std::string& uri) {
-  if (uri.starts_with(kPlugin) && uri.ends_with(kInProcess)) {
-    const std::string path = uri.substr(kPlugin.size(), uri.size() - kPlugin.size() - kInProcess.size());
+  if (is_in_process(uri)) {
     const std::shared_ptr<iut::Device> device =
-        iut::load_plugin(path, pools.role().protocol, pools.role().role);
+        iut::load_plugin(plugin_path(uri), pools.role().protocol, pools.role().role);
     return {device.get(), device, {}};
   }
   const auto lease = std::make_shared<iut::DevicePool::Lease>(pools.of(uri).take());
@@ -74,6 +65,23 @@ valve_bus::NodeAttachment attachment_of(Pools& pools, const std::string& uri) {
 
 bool is_attachment(std::string_view uri) {
   return iut::DevicePool::is_meant(uri) || uri.starts_with(kPlugin) || uri.starts_with(iut::kSerialUri);
+}
+
+bool is_in_process(std::string_view uri) {
+  return uri.starts_with(kPlugin) && uri.ends_with(kInProcess);
+}
+
+std::string plugin_path(std::string_view uri) {
+  const std::size_t end = uri.size() - (is_in_process(uri) ? kInProcess.size() : 0);
+  return std::string(uri.substr(kPlugin.size(), end - kPlugin.size()));
+}
+
+std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role) {
+  if (!uri.starts_with(kPlugin)) return std::make_unique<iut::DevicePool>(uri, role);
+  // This program itself loads it: one that crashes takes a process along that nobody misses.
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  return std::make_unique<iut::DevicePool>(
+      uri, role, std::vector<std::string>{self, "station", role.protocol + "/" + role.role, uri});
 }
 
 std::optional<judge::Pics> node_on_real_line(const std::string& uri) {

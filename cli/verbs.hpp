@@ -35,6 +35,7 @@ int measure_protocol(Session& session);
 int paper(Session& session);
 int report(Session& session);
 int station(Session& session);
+int doctor(Session& session);
 
 struct Verb {
   std::string_view name;

@@ -40,7 +40,6 @@ SerialNode::SerialNode(SerialAttachment attachment, const NodeConfiguration& con
     line.set_clock(clock_);
     line.set(configuration.rules.bit_rate, serial_format(configuration.rules));
     line.look_every(std::clamp(character_ / 8, 20 * kernel::kMicrosecond, 200 * kernel::kMicrosecond));
-    line.forget_arrived();
     if (attachment_.upper != nullptr) {
       iut::CaseBegin begin{case_id, seed, node_settings(configuration)};
       begin.settings.emplace_back(kClockOrigin, clock_.origin());
@@ -49,6 +48,7 @@ SerialNode::SerialNode(SerialAttachment attachment, const NodeConfiguration& con
                                 "the implementation answers 'unsupported' to this case");
       }
     }
+    line.forget_arrived();  // what was still under way
     const kernel::Time begun = clock_.now();
     anchor_ = {kernel::kStart, {begun, begun}};
   });
