@@ -162,17 +162,23 @@ void NodePlayer::report() {
 // ---- the node ----
 
 void NodePlayer::drive(line::Waveform& wave) {
-  const bool goes_on = std::chrono::abs(wave.start - driven_until_) <= kernel::kNanosecond;
-  driven_until_ = wave.end();
+  const auto follows = [](kernel::Time start, kernel::Time end) {
+    return std::chrono::abs(start - end) <= kernel::kNanosecond;
+  };
+  const bool is_driving = follows(wave.start, driven_until_);
+  if (!is_driving) driver_on_ = wave.start;
   codec_->hear(wave, [&](const HeardCharacter& heard) {
-    const bool follows = goes_on && !blocks_.empty() &&
-                         std::chrono::abs(heard.start - blocks_.back().end) <= kernel::kNanosecond;
-    if (!follows) blocks_.push_back({{0, wave.start, heard.start, wave.end(), {}}, heard.start});
+    const bool goes_on = is_driving && !blocks_.empty() && follows(heard.start, blocks_.back().end);
+    if (!goes_on) {
+      blocks_.push_back({{0, driver_on_, heard.start, {}, {}}, {}});
+      driver_on_ = wave.start;  // what comes behind it without a pause has a driver that is on already
+    }
     blocks_.back().transmission.characters.push_back(heard.data);
     blocks_.back().end = heard.busy_until;
   });
-  if (!blocks_.empty() && (goes_on || blocks_.back().end >= wave.start))
-    blocks_.back().transmission.driver_off = driven_until_;
+  driven_until_ = wave.end();
+  const bool has_sent = !blocks_.empty() && blocks_.back().end > driver_on_;
+  if (has_sent) blocks_.back().transmission.driver_off = driven_until_;
 }
 
 void NodePlayer::drive_valves(std::uint16_t valves, kernel::Time when) {

@@ -77,6 +77,7 @@ class NodePlayer final : public iut::Device, private segment::Port, private Node
   bool is_supplied_ = false;
   kernel::Time now_{};  // of the node
   kernel::Time driven_until_{};
+  kernel::Time driver_on_{};
   std::uint16_t switches_ = 0;
   std::deque<Block> blocks_;
   std::deque<Report> reports_;
