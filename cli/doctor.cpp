@@ -25,11 +25,13 @@ class Samples {
  public:
   void add(kernel::Duration sample) { all_.push_back(sample); }
   std::string text() const {
+    return fmt::format("{:.1f} us, the worst of {} {:.1f} us", microseconds(median()), all_.size(),
+                       microseconds(worst()));
+  }
+  kernel::Duration median() const {
     std::vector<kernel::Duration> sorted = all_;
     std::ranges::sort(sorted);
-    if (sorted.empty()) return "nothing";
-    return fmt::format("{:.1f} us, the worst of {} {:.1f} us", microseconds(sorted[sorted.size() / 2]),
-                       sorted.size(), microseconds(sorted.back()));
+    return sorted.empty() ? kernel::Duration{} : sorted[sorted.size() / 2];
   }
   kernel::Duration worst() const { return all_.empty() ? kernel::Duration{} : std::ranges::max(all_); }
 
@@ -59,6 +61,9 @@ class Doctor {
 // A sleep that is too long, and octets between the two ends of a pseudo terminal: what stamps are made of.
 void Doctor::examine_machine() {
   session_.terminal.print("this machine\n");
+  say("real-time priority", iut::ask_for_real_time()
+                                ? "permitted"
+                                : "not permitted: stamps are as wide as others keep this program waiting");
   const iut::WallClock clock;
   Samples steps;
   for (unsigned n = 0; n < kRounds; ++n) {
@@ -88,7 +93,8 @@ void Doctor::examine_machine() {
   say("a sleep of 1 ms ends late", late.text());
   say("an octet over a terminal", ways.text());
   say("a stamp is known to", widths.text());
-  say("U of a turn-round", fmt::format("some {} as busy as the machine is now",
+  say("U of a turn-round", fmt::format("usually {}, at worst {}, as busy as the machine is now",
+                                       kernel::describe(2 * ways.median() + widths.median()),
                                        kernel::describe(2 * ways.worst() + widths.worst())));
 }
 

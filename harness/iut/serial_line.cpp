@@ -5,6 +5,7 @@
 #include <linux/serial.h>
 #include <poll.h>
 #include <pty.h>
+#include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
@@ -77,6 +78,13 @@ std::string set_direction(int descriptor) {
 
 }  // namespace
 
+bool ask_for_real_time() {
+  sched_param priority{};
+  priority.sched_priority = 1;
+  const int policy = SCHED_FIFO | SCHED_RESET_ON_FORK;
+  return ::sched_setscheduler(0, policy, &priority) == 0;
+}
+
 struct SerialLine::Port {
   boost::asio::io_context context{1};
   SerialPort port{context};
@@ -85,6 +93,7 @@ struct SerialLine::Port {
 SerialLine::SerialLine(const WallClock& clock) : clock_(clock), last_look_(clock.now()) {
   // Sleeps of this thread end when they should, not up to 50 us later.
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  ask_for_real_time();
 }
 
 SerialLine::SerialLine(const std::string& path, const WallClock& clock) : SerialLine(clock) {

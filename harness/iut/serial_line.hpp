@@ -103,6 +103,10 @@ class SerialLine {
   kernel::Time last_look_{};  // at which nothing was there
 };
 
+// Whoever stamps instants should not wait for others: before them all from now on, this thread, where the
+// system permits it. Lines ask for it when they are opened. False when it does not.
+bool ask_for_real_time();
+
 // Without waiting; true at the end of a stream, too.
 bool can_be_read(int descriptor);
 
