@@ -1,16 +1,20 @@
 #include "cli/attachments.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "cli/serial_pool.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/pool.hpp"
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
+#include "protocols/valve_bus/serial_node.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -26,30 +30,33 @@ class Pools {
   iut::DevicePool& of(const std::string& uri) {
     const std::scoped_lock lock(mutex_);
     auto& pool = pools_[uri];
-    if (pool == nullptr) pool = made(uri);
+    if (pool == nullptr) pool = pool_of(uri, role_);
     return *pool;
   }
   const iut::RoleName& role() const { return role_; }
 
  private:
-  std::unique_ptr<iut::DevicePool> made(const std::string& uri) const {
-    if (!uri.starts_with(kPlugin)) return std::make_unique<iut::DevicePool>(uri, role_);
-    // This program itself loads it: one that crashes takes a process along that nobody misses.
-    const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-    return std::make_unique<iut::DevicePool>(
-        uri, role_, std::vector<std::string>{self, "station", role_.protocol + "/" + role_.role, uri});
-  }
-
   iut::RoleName role_;
   std::mutex mutex_;
   std::map<std::string, std::unique_ptr<iut::DevicePool>> pools_;
 };
 
+// The words of a PICS for the format of a UART.
+std::string characters_of(const std::string& uri, const line::CharacterFormat& format) {
+  const std::string text = format.text();
+  if (text == "8m1") return "P0";
+  if (text == "8e1") return "P1";
+  if (text == "8n1") return "P2";
+  throw kernel::Error(kernel::ErrorKind::usage,
+                      fmt::format("'{}': no node of the valve bus talks in characters {}; there are 8m1 (a "
+                                  "ninth bit of 1), 8e1 and 8n1",
+                                  uri, text));
+}
+
 iut::Attachment attachment_of(Pools& pools, const std::string& uri) {
-  if (uri.starts_with(kPlugin) && uri.ends_with(kInProcess)) {
-    const std::string path = uri.substr(kPlugin.size(), uri.size() - kPlugin.size() - kInProcess.size());
+  if (is_in_process(uri)) {
     const std::shared_ptr<iut::Device> device =
-        iut::load_plugin(path, pools.role().protocol, pools.role().role);
+        iut::load_plugin(plugin_path(uri), pools.role().protocol, pools.role().role);
     return {device.get(), device, {}};
   }
   const auto lease = std::make_shared<iut::DevicePool::Lease>(pools.of(uri).take());
@@ -70,7 +77,44 @@ Make attached(iut::RoleName role) {
 }  // namespace
 
 bool is_attachment(std::string_view uri) {
-  return iut::DevicePool::is_meant(uri) || uri.starts_with(kPlugin);
+  return iut::DevicePool::is_meant(uri) || uri.starts_with(kPlugin) || uri.starts_with(iut::kSerialUri);
+}
+
+bool is_in_process(std::string_view uri) {
+  return uri.starts_with(kPlugin) && uri.ends_with(kInProcess);
+}
+
+std::string plugin_path(std::string_view uri) {
+  const std::size_t end = std::min(uri.find('?'), uri.size());
+  const std::string path(uri.substr(kPlugin.size(), end - kPlugin.size()));
+  if (path.empty() || (end != uri.size() && uri.substr(end) != kInProcess)) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        fmt::format("'{}' names no library; write plugin:./library.so, or with ?in-process "
+                                    "behind it",
+                                    uri));
+  }
+  return path;
+}
+
+std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role) {
+  if (!uri.starts_with(kPlugin)) return std::make_unique<iut::DevicePool>(uri, role);
+  plugin_path(uri);  // refuses before anything is started
+  // This program itself loads it: one that crashes takes a process along that nobody misses.
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  return std::make_unique<iut::DevicePool>(
+      uri, role, std::vector<std::string>{self, "station", role.protocol + "/" + role.role, uri});
+}
+
+std::optional<judge::Pics> node_on_real_line(const std::string& uri) {
+  if (!uri.starts_with(iut::kSerialUri)) return std::nullopt;
+  const iut::SerialSettings settings = iut::serial_settings(uri);
+  judge::Pics pics;
+  if (settings.bit_rate) pics.declare("bit_rate", *settings.bit_rate);
+  if (settings.format) pics.declare("characters", characters_of(uri, *settings.format));
+  // Without an upper channel the box is as it stands there.
+  pics.declare("address_switches_can_be_set", !settings.upper.empty());
+  pics.declare("power_can_be_switched", !settings.upper.empty());
+  return pics;
 }
 
 conformance::GivenSlaves::Make attached_slaves() {
@@ -78,7 +122,15 @@ conformance::GivenSlaves::Make attached_slaves() {
 }
 
 conformance::GivenNodes::Make attached_nodes() {
-  return attached<valve_bus::AttachedNode, conformance::GivenNodes::Make>({"valve_bus", "node"});
+  const iut::RoleName role{"valve_bus", "node"};
+  return [in_lock_step = attached<valve_bus::AttachedNode, conformance::GivenNodes::Make>(role),
+          lines = std::make_shared<SerialPool>(role)](
+             const conformance::Wanted& wanted,
+             const auto& configuration) -> std::unique_ptr<valve_bus::NodeDevice> {
+    if (!wanted.uri.starts_with(iut::kSerialUri)) return in_lock_step(wanted, configuration);
+    return std::make_unique<valve_bus::SerialNode>(lines->take(wanted.uri), configuration, wanted.case_id,
+                                                   wanted.seed);
+  };
 }
 
 conformance::GivenHosts::Make attached_hosts() {

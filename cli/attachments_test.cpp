@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -51,11 +53,11 @@ class Attachments : public ProgramFixture {
 
   // The real program over these cases of the suite.
   Cases judged(const std::string& uri, const std::string& cases = "**",
-               const std::map<std::string, std::string>& environment = {}, const std::string& pics = {}) {
+               const std::map<std::string, std::string>& environment = {}, const std::string& pics = {},
+               const std::string& suite = std::string(kSuite)) {
     const std::string out = "run" + std::to_string(++runs_);
-    std::vector<std::string> words{
-        "run", std::string(kSuite) + cases, "--volume", "quick", "--record", "none", "--iut", uri, "--out",
-        out};
+    std::vector<std::string> words{"run",  suite + cases, "--volume", "quick", "--record",
+                                   "none", "--iut",       uri,        "--out", out};
     if (!pics.empty()) {
       write("node.pics.json", pics);
       words.insert(words.end(), {"--pics", "node.pics.json"});
@@ -68,15 +70,16 @@ class Attachments : public ProgramFixture {
     if (read(out + "/results.json").empty()) return found;
     const nlohmann::json results = json(out + "/results.json");
     for (const auto& one : results.at("cases")) {
-      const std::string id = one.at("id").get<std::string>().substr(kSuite.size());
+      const std::string id = one.at("id").get<std::string>().substr(suite.size());
       found[id] = {one.at("verdict"), one.at("reason"), one.at("fingerprint"), one.at("findings").dump()};
     }
     return found;
   }
 
-  void expect_passes(const std::string& uri) {
-    const Cases cases = judged(uri);
-    EXPECT_EQ(cases.size(), 45U) << uri;
+  void expect_passes(const std::string& uri, const std::string& suite = std::string(kSuite),
+                     std::size_t count = 45) {
+    const Cases cases = judged(uri, "**", {}, {}, suite);
+    EXPECT_EQ(cases.size(), count) << uri;
     for (const auto& [id, one] : cases) {
       EXPECT_EQ(one.verdict, "pass") << uri << ": " << id << ": " << one.reason << one.findings;
     }
@@ -90,13 +93,66 @@ const std::string kStation = "exec:" + in_quotes(FIELDPROOF_EXE) + " station val
 const std::string kInC = "exec:" + in_quotes(VALVE_NODE_PROCESS) + " ";
 const std::string kPluginInC = "plugin:" VALVE_NODE_PLUGIN;
 
-TEST_F(Attachments, BuiltInStationInAProcessIsJudgedAsInside) {
-  const Cases inside = judged("ref");
-  EXPECT_EQ(inside.size(), 45U);
-  EXPECT_EQ(judged(kStation), inside);
-  const Cases late_inside = judged("deviant:turns_round_late");
-  EXPECT_EQ(late_inside.at("read/is_answered").reason, "answer_too_late");
-  EXPECT_EQ(judged(kStation + "deviant:turns_round_late"), late_inside);
+// A role, how many cases it has, and two of its deviations with a case that says what is wrong.
+struct Served {
+  struct Wrong {
+    const char* deviation;
+    const char* test_case;
+    const char* reason;
+  };
+  const char* role;
+  std::size_t cases;
+  std::array<Wrong, 2> wrong;
+
+  friend void PrintTo(const Served& one, std::ostream* out) { *out << one.role; }
+};
+
+class ServedRoles : public Attachments, public testing::WithParamInterface<Served> {};
+
+// Verdicts, findings and fingerprints of each case: to the bit.
+TEST_P(ServedRoles, BuiltInStationInAProcessIsJudgedAsInside) {
+  const std::string suite = std::string(GetParam().role) + "/";
+  const std::string station = "exec:" + in_quotes(FIELDPROOF_EXE) + " station " + GetParam().role + " ";
+  const Cases inside = judged("ref", "**", {}, {}, suite);
+  EXPECT_EQ(inside.size(), GetParam().cases);
+  EXPECT_EQ(judged(station, "**", {}, {}, suite), inside);
+  for (const auto& [deviation, test_case, reason] : GetParam().wrong) {
+    const Cases wrong = judged("deviant:" + std::string(deviation), "**", {}, {}, suite);
+    EXPECT_EQ(wrong.at(test_case).reason, reason) << deviation;
+    EXPECT_EQ(judged(station + "deviant:" + deviation, "**", {}, {}, suite), wrong) << deviation;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Roles, ServedRoles,
+    testing::Values(
+        Served{
+            "valve_bus/node",
+            45,
+            {{{"turns_round_late", "read/is_answered", "answer_too_late"},
+              {"any_command_reads", "command/undefined_commands_are_ignored", "acts_on_undefined_command"}}}},
+        Served{"valve_bus/host",
+               43,
+               {{{"sends_any_command", "request/undefined_commands_are_refused", "undefined_command_sent"},
+                 {"request_check_is_sum", "request/check_is_the_exclusive_or", "check_wrong"}}}},
+        Served{
+            "interbus/slave",
+            60,
+            {{{"output_octets_swapped", "data_cycle/process_data_is_exact", "output_word_wrong"},
+              {"latches_late", "data_cycle/outputs_change_after_the_check_phase", "outputs_latched_late"}}}}),
+    [](const testing::TestParamInfo<Served>& one) {
+      std::string name = one.param.role;
+      std::ranges::replace(name, '/', '_');
+      return name;
+    });
+
+// A slave takes part in the cases of a network as well, in a process of its own at each place.
+TEST_F(Attachments, SlavesOfANetworkAreProcesses) {
+  const std::string slave = "exec:" + in_quotes(FIELDPROOF_EXE) + " station interbus/slave ";
+  const std::string suite = "interbus/network/";
+  const Cases inside = judged("ref", "**", {}, {}, suite);
+  EXPECT_EQ(inside.size(), 6U);
+  EXPECT_EQ(judged("slave@2=" + slave, "**", {}, {}, suite), inside);
 }
 
 TEST_F(Attachments, NodeInCPassesAsAProcess) {
@@ -123,6 +179,14 @@ TEST_F(Attachments, NodeInPythonPasses) {
   const std::string python = installed("python3");
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
   expect_passes("exec:" + in_quotes(python) + " " + in_quotes(kExamples / "node.py"));
+}
+
+// Written from the page of the role.
+TEST_F(Attachments, InterbusSlaveInPythonPasses) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const fs::path slave = kSourceFolder / "examples/interbus_slave/slave.py";
+  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(slave), "interbus/slave/", 60);
 }
 
 TEST_F(Attachments, NodeInNodeJsPasses) {

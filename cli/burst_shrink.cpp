@@ -58,7 +58,8 @@ class BurstShrink {
       const std::size_t count = std::min({last, struck.size(), kMostBits});
       StruckBits bits(struck.end() - static_cast<std::ptrdiff_t>(count), struck.end());
       if (still_fails(bits)) {
-        return conformance::fewest(std::move(bits), [this](const StruckBits& some) { return still_fails(some); });
+        return conformance::fewest(std::move(bits),
+                                   [this](const StruckBits& some) { return still_fails(some); });
       }
       if (count < last) return std::nullopt;
     }
@@ -103,12 +104,12 @@ std::string bit_lines(const StruckBits& bits) {
 }  // namespace
 
 int shrink_bursts(Session& session, const CaseFile& stored, const std::filesystem::path& file) {
-  session.terminal.print(
-      reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
+  session.terminal.print(reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
   const DisturbedRun disturbed = run_disturbed(stored);
   if (disturbed.result.verdict != judge::Verdict::fail) {
-    session.terminal.print(fmt::format("the stored case does not fail, its verdict is {}: nothing to shrink\n",
-                                       judge::name(disturbed.result.verdict)));
+    session.terminal.print(
+        fmt::format("the stored case does not fail, its verdict is {}: nothing to shrink\n",
+                    judge::name(disturbed.result.verdict)));
     return kDiffers;
   }
   std::filesystem::path plan_file = file;

@@ -1,5 +1,5 @@
-// `shrink` of a stored case that fails under bursts: from all that they struck to the fewest bits that make it
-// fail for the same reason.
+// `shrink` of a stored case that fails under bursts: from all that they struck to the fewest bits that make
+// it fail for the same reason.
 #pragma once
 
 #include <filesystem>

@@ -25,7 +25,7 @@ struct CaseFile {
   std::uint64_t case_seed = 0;
   conformance::Setup setup;  // with the seed of the run
   std::string pics_file;     // the copy of what `setup.pics` was read from; empty: none
-  bool is_quiet = false;         // bursts that the case makes itself are left out: its plan has what mattered
+  bool is_quiet = false;     // bursts that the case makes itself are left out: its plan has what mattered
   judge::Verdict verdict = judge::Verdict::none;
   std::string reason;
   std::uint64_t fingerprint = 0;

@@ -55,8 +55,7 @@ int check(Session& session) {
   search.role = target.role;
   search.setup = target.setup;
   search.cases = session.settings.number("cases", 1, kMostCases);
-  session.terminal.print(
-      reports::run_header(identity_of(session, target.setup, 1), manifest_of(session, 1)));
+  session.terminal.print(reports::run_header(identity_of(session, target.setup, 1), manifest_of(session, 1)));
   const Interruption interruption(session.settings.duration("max-time"));
   search.stop = interruption.token();
   search.on_progress = [&](std::uint64_t done) { session.terminal.progress(static_cast<std::size_t>(done)); };

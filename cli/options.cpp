@@ -11,13 +11,13 @@ using enum OptionKind;
 
 // clang-format off
 constexpr std::array kOptions = {
-    Option{"iut", list, "[ROLE[@POSITION]=]URI", "ref", "run verify replay emc check",
+    Option{"iut", list, "[ROLE[@POSITION]=]URI", "ref", "run verify replay emc check doctor",
            "implementation under test: ref, deviant:NAME; 'slave@3=deviant:NAME' places it", false, true},
     Option{"seed", value, "N", "1", "run verify matrix residual measure paper emc check", "seed of the run, 0 to 2^64-1", false, true},
     Option{"volume", value, "quick|full", "full", "run verify", "how many repetitions a case makes", false, true},
     Option{"network", value, "FILE", "", "run verify measure emc", "network description instead of the suite's own", false, true},
     Option{"plan", value, "FILE", "", "run verify", "plan of declared faults and disturbances", false, true},
-    Option{"pics", value, "FILE", "", "run verify list check", "what the implementation declares about itself", false, true},
+    Option{"pics", value, "FILE", "", "run verify list check station", "what the implementation declares about itself", false, true},
     Option{"jobs", value, "N", "all cores", "run verify matrix emc", "threads; the results are the same for any number"},
     Option{"out", value, "DIR", "runs/<utc>-<seed>", "run", "directory of the run"},
     Option{"record", value, "none|failed|all", "failed", "run", "which cases keep their trace"},
@@ -53,6 +53,8 @@ constexpr std::array kOptions = {
     Option{"vcd", value, "FILE", "", "replay", "write the recording as a wave dump (VCD) here", true},
     Option{"cases", value, "N", "2000", "check", "how many sequences are drawn at most", true},
     Option{"case", value, "FILE", "<role>-<seed>.case.json, <file>.shrunk.json", "check shrink", "where what was found is written, for replay", true},
+    Option{"serial", value, "LINE", "", "station", "play it in wall-clock time on this serial line; a name that is not there yet becomes a pseudo terminal", true},
+    Option{"upper", value, "PATH|-|none", "-", "station", "with --serial: where the upper tester's channel is: a socket to listen at, the standard streams, or none", true},
     Option{"runs", value, "N", "2", "verify", "how often each case is run (also -n)", true},
     Option{"fcs", value, "NAME", "", "residual", "frame check by its catalogue name: CRC-16/IBM-3740, CRC-32", false, true},
     Option{"bits", value, "N", "", "residual", "length of message and check", false, true},

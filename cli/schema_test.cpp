@@ -18,6 +18,7 @@
 #include "cli/options.hpp"
 #include "cli/pics_file.hpp"
 #include "cli/probe/source_folder.hpp"
+#include "cli/sequence_file.hpp"
 #include "cli/settings.hpp"
 #include "cli/suites.hpp"
 #include "conformance/catalogue.hpp"
@@ -233,6 +234,55 @@ TEST(ConfigurationSchema, NamesTheOptionsThatAFileMayGive) {
     if (!option.is_of_the_moment && option.name != "config") known.insert(file_key(option));
   }
   EXPECT_EQ(keys_of(schema_of("configuration.schema.json")["properties"]), known);
+}
+
+std::string sequence(const std::string& role, const std::string& commands) {
+  return R"({"schema": "fieldproof/sequence/1", "role": ")" + role +
+         R"(", "seed": "1", "implementations": [{"role": "", "position": 0, "uri": "ref"}], "commands": [)" +
+         commands + R"(], "verdict": "fail", "reason": "no_answer", "fingerprint": "1f"})";
+}
+
+TEST_F(Schemas, OfASequence) {
+  const std::string node = "valve_bus/node";
+  const std::string wait = R"({"do": "wait", "ms": 1})";
+  const std::string id = R"({"do": "id", "faults": [{"fault": "drop", "unit": 3}]})";
+  const std::string octets = R"({"do": "octets", "silence": 45, "octets": [1, 255],
+                                "faults": [{"fault": "flip", "unit": 1, "level": 3}]})";
+  expect_alike(
+      "cli/sequence.schema.json",
+      {good(sequence(node, wait + "," + octets)), good(sequence("interbus/slave", id)),
+       bad(sequence("interbus/slave", wait)), bad(sequence("valve_bus/host", wait)), bad(sequence(node, "")),
+       bad(sequence(node, id)), bad(sequence(node, R"({"do": "wait", "ms": 0})")),
+       bad(sequence(node, R"({"do": "wait", "ms": 1, "faults": []})")),
+       bad(sequence(node, R"({"do": "octets", "silence": 45, "octets": [256]})")),
+       bad(sequence("interbus/slave", R"({"do": "id", "faults": [{"fault": "drop"}]})"))},
+      [](const fs::path& file) { load_sequence_file(file, catalogue()); });
+}
+
+// A vocabulary that grows without its schema would be refused by editors.
+TEST(SequenceSchema, HasEachCommandOfEachRole) {
+  const nlohmann::json schema = schema_of("sequence.schema.json");
+  for (const auto& suite : catalogue().suites()) {
+    for (const conformance::SequenceRole& role : suite->sequence_roles()) {
+      std::set<std::string> listed;
+      std::set<std::string> known;
+      for (const auto& one : schema["allOf"]) {
+        if (one["if"]["properties"]["role"]["const"] != role_path(role)) continue;
+        for (const auto& command : one["then"]["properties"]["commands"]["items"]["oneOf"]) {
+          const std::string word = command["properties"]["do"]["const"];
+          for (const std::string& key : keys_of(command["properties"])) listed.insert(word + " " + key);
+        }
+      }
+      for (const conformance::SequenceWord& word : role.vocabulary.words) {
+        const std::string name(word.word);
+        known.insert(name + " do");
+        for (const auto& number : word.numbers) known.insert(name + " " + std::string(number.name));
+        if (word.most_octets > 0) known.insert(name + " octets");
+        if (word.most_octets > 0 || word.units > 0) known.insert(name + " faults");
+      }
+      EXPECT_EQ(listed, known) << role_path(role);
+    }
+  }
 }
 
 TEST_F(Schemas, OfAConfiguration) {

@@ -65,8 +65,7 @@ std::string sequence_file_text(const SequenceFile& file) {
   json["seed"] = std::to_string(file.setup.seed);
   json["implementations"] = ordered_json::parse(implementations_json(file.setup));
   if (file.setup.pics) json["pics"] = ordered_json::parse(pics_text(*file.setup.pics)).at("items");
-  json["commands"] =
-      ordered_json::parse(conformance::sequence_json(file.commands, file.role->vocabulary));
+  json["commands"] = ordered_json::parse(conformance::sequence_json(file.commands, file.role->vocabulary));
   json["verdict"] = judge::name(file.verdict);
   json["reason"] = file.reason;
   json["fingerprint"] = judge::fingerprint_text(file.fingerprint);
@@ -87,9 +86,8 @@ bool is_sequence_file(const std::filesystem::path& file) {
 
 SequenceFile load_sequence_file(const std::filesystem::path& file, const conformance::Catalogue& catalogue) {
   const config::Document document = config::Document::load(file);
-  return config::read_object(document.root(), [&](config::ObjectReader& reader) {
-    return read_sequence_file(reader, catalogue);
-  });
+  return config::read_object(
+      document.root(), [&](config::ObjectReader& reader) { return read_sequence_file(reader, catalogue); });
 }
 
 }  // namespace fieldproof::cli

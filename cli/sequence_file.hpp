@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "conformance/sequence_check.hpp"
 #include "conformance/catalogue.hpp"
+#include "conformance/sequence_check.hpp"
 #include "harness/judge/verdict.hpp"
 
 namespace fieldproof::cli {
@@ -28,7 +28,8 @@ struct SequenceFile {
 // "valve_bus/node" of "valve_bus/node/check/follows_the_model".
 std::string role_path(const conformance::SequenceRole& role);
 
-// The suite and the role of "valve_bus/node". Throws kernel::Error(usage) that names the roles that there are.
+// The suite and the role of "valve_bus/node". Throws kernel::Error(usage) that names the roles that there
+// are.
 std::pair<const conformance::Suite*, const conformance::SequenceRole*> sequence_role_at(
     const std::string& path, const conformance::Catalogue& catalogue);
 

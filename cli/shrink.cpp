@@ -26,11 +26,10 @@ std::string smaller_path(const Session& session) {
 int shrink_sequence(Session& session, SequenceFile stored, const std::string& path) {
   reports::check_writable(path);
   stored.suite->check(stored.role->test_case, stored.setup);
-  session.terminal.print(
-      reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
+  session.terminal.print(reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
   const Interruption interruption(session.settings.duration("max-time"));
-  const auto found = conformance::shrink(*stored.suite, *stored.role, stored.commands, stored.setup,
-                                         interruption.token());
+  const auto found =
+      conformance::shrink(*stored.suite, *stored.role, stored.commands, stored.setup, interruption.token());
   if (!found) {
     session.terminal.print("the stored commands do not fail: nothing to make smaller\n");
     return kDiffers;
@@ -46,7 +45,8 @@ int shrink_sequence(Session& session, SequenceFile stored, const std::string& pa
 int shrink(Session& session) {
   const std::string& file = session.operands.front();
   const std::string path = smaller_path(session);
-  if (is_sequence_file(file)) return shrink_sequence(session, load_sequence_file(file, session.catalogue), path);
+  if (is_sequence_file(file))
+    return shrink_sequence(session, load_sequence_file(file, session.catalogue), path);
   const CaseFile stored = load_case(file, session.catalogue);
   reports::check_writable(path);
   return shrink_bursts(session, stored, path);

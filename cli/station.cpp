@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/attachments.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/roles.hpp"
+#include "cli/station_on_line.hpp"
 #include "cli/verbs.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/server.hpp"
@@ -29,22 +31,34 @@ const Role& role_named(const std::string& path) {
                                                             path, fmt::join(known, "', '")));
 }
 
-}  // namespace
-
-int station(Session& session) {
+// Lock step and virtual time, at the standard streams.
+void play_in_lock_step(const Role& role, const std::string& uri) {
   constexpr std::string_view kPlugin = "plugin:";
-  const Role& role = role_named(session.operands.front());
-  const std::string uri = session.operands.size() > 1 ? session.operands[1] : "ref";
   const bool is_plugin = uri.starts_with(kPlugin);
   if (!is_plugin) role.serve(uri);
   iut::serve(
       STDIN_FILENO, STDOUT_FILENO,
       [&](const iut::RoleName& wanted) -> std::unique_ptr<iut::Device> {
         if (wanted.protocol != role.protocol || wanted.role != role.name) return nullptr;
-        if (is_plugin) return iut::load_plugin(uri.substr(kPlugin.size()), wanted.protocol, wanted.role);
+        if (is_plugin) return iut::load_plugin(plugin_path(uri), wanted.protocol, wanted.role);
         return role.serve(uri);
       },
       fmt::format("fieldproof {}", uri));
+}
+
+}  // namespace
+
+int station(Session& session) {
+  const Role& role = role_named(session.operands.front());
+  const std::string uri = session.operands.size() > 1 ? session.operands[1] : "ref";
+  if (!session.settings.is_set("serial")) {
+    play_in_lock_step(role, uri);
+  } else if (role.path() == kRoleOnLines) {
+    play_on_line(session, uri);
+  } else {
+    session.settings.refuse("serial", fmt::format("there is no line for '{}'; '{}' can be played on one",
+                                                  role.path(), kRoleOnLines));
+  }
   return kAllAsExpected;
 }
 

@@ -58,8 +58,7 @@ void keep_sequence(Session& session, SequenceFile file, const judge::CaseResult&
   file.reason = result.reason;
   file.fingerprint = result.fingerprint;
   reports::write_text_file(path, sequence_file_text(file));
-  session.terminal.print(
-      sequence_text(session, file, result, replay_command(path)));
+  session.terminal.print(sequence_text(session, file, result, replay_command(path)));
 }
 
 std::string shrunk_text(const conformance::Sequence& before, const conformance::Sequence& after,
@@ -77,8 +76,7 @@ int replay_sequence(Session& session) {
   const bool is_other = session.settings.origin("iut") != Origin::fallback;
   if (is_other) assign_implementations(session, stored);
   stored.suite->check(stored.role->test_case, stored.setup);
-  session.terminal.print(
-      reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
+  session.terminal.print(reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
   conformance::Setup recorded = stored.setup;
   recorded.record = true;
   const conformance::Outcome outcome =
@@ -88,8 +86,7 @@ int replay_sequence(Session& session) {
     for (const std::string& line : outcome.recording.lines())
       session.terminal.print(reports::escaped_line(line) + "\n");
   }
-  session.terminal.print(sequence_text(session, stored, result,
-                                       replay_command(path)));
+  session.terminal.print(sequence_text(session, stored, result, replay_command(path)));
   if (is_other) {
     session.terminal.print("another implementation than the stored one: not compared\n");
     return code_of(result);

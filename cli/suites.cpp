@@ -24,6 +24,7 @@ Suites suites_with(const Disturbances& disturbances) {
                                              .stresses = disturbances.stresses}));
   all.push_back(conformance::valve_bus_suite({.node = {.attached = attached_nodes()},
                                               .host = {.attached = attached_hosts()},
+                                              .on_real_line = node_on_real_line,
                                               .disturbances = disturbances.of_plans,
                                               .stresses = disturbances.stresses}));
   return all;

@@ -37,6 +37,7 @@ int measure_protocol(Session& session);
 int paper(Session& session);
 int report(Session& session);
 int station(Session& session);
+int doctor(Session& session);
 
 struct Verb {
   std::string_view name;

@@ -55,10 +55,13 @@ void CaseJudge::expect_between(std::string_view name, std::string_view unit, dou
 }
 
 judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>& procedure) {
+  std::string cannot_be_done;
   try {
     procedure(*this);
   } catch (const CaseEnded&) {
     // The finding that ended it is kept.
+  } catch (const iut::CannotBeDone& what) {
+    cannot_be_done = what.what();
   } catch (const iut::Misbehaviour& done) {
     Sighting sighting{{"an implementation that answers, in time and to the point"}, done.what()};
     sighting.decode = done.evidence();
@@ -75,6 +78,11 @@ judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>
   result.purpose = test_case_.purpose;
   result.requirement = test_case_.requirement;
   result.reference = test_case_.rests_on();
+  if (!cannot_be_done.empty()) {
+    result.verdict = judge::Verdict::not_applicable;
+    result.reason = cannot_be_done;
+    return result;
+  }
   result.verdict = judge::Verdict::pass;
   for (const judge::Finding& finding : findings_) {
     if (finding.verdict <= result.verdict) continue;

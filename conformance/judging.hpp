@@ -5,6 +5,7 @@
 // `run_procedure` catches; a warning and a measurement do not end it. A case without a finding passes.
 // A finding rests on the source of the case, or on that of the detail that its reason belongs to
 // (TestCase::details); a failure rests on what its finding rests on, a pass on all of them.
+// What the attachment of the implementation cannot do (iut::CannotBeDone) makes the case not applicable.
 // Expectations that stand in a loop should describe themselves by a callable: it is only called when the
 // expectation does not hold.
 #pragma once

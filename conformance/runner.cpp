@@ -152,8 +152,8 @@ CaseRun run_case(const Entry& entry, const Setup& run_setup, const Manner& manne
     done.outcome.result = blank_result(*entry.test_case, Verdict::not_applicable, std::move(*reason));
   } else {
     done.outcome = guarded_run(entry, done.setup, manner);
-    if (manner.keeps_recordings == KeptRecordings::failed && needs_recording(done.outcome.result.verdict))
-      record_again(done, manner);
+    const bool is_wanted = needs_recording(done.outcome.result.verdict) && !done.outcome.happens_once;
+    if (manner.keeps_recordings == KeptRecordings::failed && is_wanted) record_again(done, manner);
     if (is_failure(done.outcome.result.verdict)) confirm(done, manner);
   }
   done.outcome.result.seed = done.setup.seed;

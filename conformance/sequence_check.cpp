@@ -49,9 +49,7 @@ class SameFailure {
   }
 
  private:
-  bool is_in(const Outcome& outcome) const {
-    return has_failed(outcome) && outcome.result.reason == reason_;
-  }
+  bool is_in(const Outcome& outcome) const { return has_failed(outcome) && outcome.result.reason == reason_; }
 
   const Suite& suite_;
   const SequenceRole& role_;

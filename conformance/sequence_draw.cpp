@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint64_t kGrowth = 10;  // sequences of each length before they get longer
 constexpr unsigned kPerCent = 100;
-constexpr unsigned kFaultyPerCent = 30;  // of the commands
-constexpr std::size_t kMostDrawnFaults = 3;   // of one command
+constexpr unsigned kFaultyPerCent = 30;      // of the commands
+constexpr std::size_t kMostDrawnFaults = 3;  // of one command
 constexpr unsigned kRepeatedPerCent = 15;
 constexpr unsigned kLikelyPerCent = 60;
 constexpr unsigned kMostSteps = 200;  // that fail to fail, before RapidCheck's part is over
@@ -37,6 +37,7 @@ SequenceFault draw_fault(const SequenceVocabulary& vocabulary, std::size_t units
   fault.unit = *rc::gen::inRange<std::uint32_t>(0, static_cast<std::uint32_t>(units));
   fault.kind = *rc::gen::weightedElement<SequenceFaultKind>(
       {{6, SequenceFaultKind::flip}, {2, SequenceFaultKind::drop}, {2, SequenceFaultKind::gap}});
+  if (fault.kind == SequenceFaultKind::gap && vocabulary.gaps.empty()) fault.kind = SequenceFaultKind::drop;
   if (fault.kind == SequenceFaultKind::flip) {
     fault.value = *rc::gen::inRange<std::uint32_t>(0, vocabulary.levels_per_unit);
   } else if (fault.kind == SequenceFaultKind::gap) {
@@ -89,8 +90,8 @@ rc::Shrinkable<Sequence> drawn(const SequenceVocabulary& vocabulary, std::uint64
   const auto one = rc::gen::pair(command_of(vocabulary), rc::gen::inRange(0U, kPerCent));
   const auto commands = rc::gen::container<std::vector<std::pair<SequenceCommand, unsigned>>>(
       rc::gen::resize(rc::kNominalSize, one));
-  return rc::gen::map(rc::gen::resize(most, commands), with_repetitions)(
-      rc::Random(rc::Random::Key{seed, n, 0, 0}));
+  return rc::gen::map(rc::gen::resize(most, commands),
+                      with_repetitions)(rc::Random(rc::Random::Key{seed, n, 0, 0}));
 }
 
 }  // namespace

@@ -110,6 +110,7 @@ struct Recording {
 struct Outcome {
   judge::CaseResult result;
   Recording recording;
+  bool happens_once = false;  // on a real line: a second run is another one, and has another fingerprint
 };
 
 // A role that has commands and a model.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -243,11 +244,15 @@ class TearsBetweenInputWords : public Slave {
 
 class SamplesWithPreviousCycle : public Slave {
   using Slave::Slave;
-  void sample_inputs(kernel::Time, std::span<std::uint8_t> octets) override {
-    Slave::sample_inputs(last_end_, octets);
+  void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) override {
+    if (sampled_.empty()) return Slave::sample_inputs(when, octets);
+    std::ranges::copy(sampled_, octets.begin());
   }
-  void on_transfer_end(kernel::Time when) override { last_end_ = when; }
-  kernel::Time last_end_{};
+  void on_transfer_end(kernel::Time when) override {
+    sampled_.resize(2 * std::size_t{configuration().words});
+    Slave::sample_inputs(when, sampled_);
+  }
+  std::vector<std::uint8_t> sampled_;
 };
 
 class LatchesAtEndOfDataPhase : public Slave {

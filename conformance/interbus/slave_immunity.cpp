@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "conformance/interbus/slave_arrivals.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_expect.hpp"
 #include "harness/kernel/check.hpp"
@@ -62,43 +63,6 @@ unsigned flip_at_random(SlaveBench& bench, const kernel::GeometricSkip& skip) {
   return flips;
 }
 
-// Follows what arrives at the slave's receiver from cycle to cycle: telegrams that a broken cycle left open
-// belong to what comes next, as they do in the slave.
-class Arrivals {
- public:
-  explicit Arrivals(SlaveBench& bench) : bench_(bench) {}
-
-  // Takes in the last train; gives whether a cycle that may be taken over ended in it.
-  bool take() {
-    const std::span<const SeenTelegram> telegrams = bench_.in().data_telegrams();
-    open_.insert(open_.end(), telegrams.begin(), telegrams.end());
-    bool has_words = false;
-    for (find_first_cycle(open_, cycle_); cycle_.is_found; find_first_cycle(open_, cycle_)) {
-      if (is_right_data_cycle(bench_, cycle_) && cycle_.octets.size() >= 2 * bench_.words()) {
-        has_words = true;
-        keep_words();
-      }
-      open_.erase(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(cycle_.end));
-    }
-    return has_words;
-  }
-
-  // Of the last of these cycles.
-  const std::vector<std::uint16_t>& words() const { return words_; }
-
- private:
-  void keep_words() {
-    words_.clear();
-    for (std::size_t n = cycle_.octets.size() - 2 * bench_.words(); n < cycle_.octets.size(); n += 2)
-      words_.push_back(static_cast<std::uint16_t>(cycle_.octets[n] << 8 | cycle_.octets[n + 1]));
-  }
-
-  SlaveBench& bench_;
-  FoundCycle cycle_;
-  std::vector<std::uint16_t> words_;
-  std::vector<SeenTelegram> open_;
-};
-
 // Cycles of one strength of faults that were not taken over.
 struct Rejects {
   unsigned by_model = 0;  // by what arrived
@@ -107,8 +71,8 @@ struct Rejects {
 
 // Outputs may show the words that arrived, when these are a cycle with a right check and a clean status word;
 // else they stay.
-void check_outputs_under_faults(SlaveBench& bench, CaseJudge& judge, Arrivals& arrivals, Rejects& rejects,
-                                std::span<const std::uint16_t> before) {
+void check_outputs_under_faults(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arrivals,
+                                Rejects& rejects, std::span<const std::uint16_t> before) {
   const bool may_change = arrivals.take();
   if (!may_change) ++rejects.by_model;
   if (!may_change || !std::ranges::equal(bench.outputs(), arrivals.words())) ++rejects.by_slave;
@@ -124,7 +88,7 @@ void check_outputs_under_faults(SlaveBench& bench, CaseJudge& judge, Arrivals& a
 }
 
 // The faults end; gives how many clean cycles were lost until one was taken over.
-unsigned recover(SlaveBench& bench, CaseJudge& judge, Arrivals& arrivals) {
+unsigned recover(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arrivals) {
   unsigned lost = 0;
   for (; lost < bench.rules().published_recovery_cycles; ++lost) {
     const std::vector<std::uint16_t> words = bench.random_words();
@@ -151,7 +115,7 @@ struct Faults {
   unsigned longest_recovery = 0;
 };
 
-void faults_of_chance(SlaveBench& bench, CaseJudge& judge, Arrivals& arrivals, double chance,
+void faults_of_chance(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arrivals, double chance,
                       Faults& faults) {
   const kernel::GeometricSkip skip(chance);
   Rejects rejects;
@@ -178,7 +142,7 @@ void faults_of_chance(SlaveBench& bench, CaseJudge& judge, Arrivals& arrivals, d
 
 // A cycle at whose end the outputs are as before, or what was sent, or what arrived with a right check: a
 // receiver that samples at other instants than the tester's own may have got it right.
-void stressed_cycle(SlaveBench& bench, CaseJudge& judge, Arrivals& arrivals) {
+void stressed_cycle(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arrivals) {
   const std::vector<std::uint16_t> before = bench.outputs();
   const std::vector<std::uint16_t> sent = bench.random_words();
   bench.terminals().forget_changes();
@@ -201,7 +165,7 @@ void stressed_cycle(SlaveBench& bench, CaseJudge& judge, Arrivals& arrivals) {
 void stresses(SlaveBench& bench, CaseJudge& judge) {
   FIELDPROOF_CHECK(!bench.stresses().empty(), "a case under stresses has some");
   bench.bring_up();
-  Arrivals arrivals(bench);
+  SlaveArrivals arrivals(bench);
   unsigned longest_recovery = 0;
   for (const fault::Stress& stress : bench.stresses()) {
     for (unsigned burst = 0; burst < bench.volume(1U, 12U); ++burst) {
@@ -218,7 +182,7 @@ void stresses(SlaveBench& bench, CaseJudge& judge) {
 
 void random_faults(SlaveBench& bench, CaseJudge& judge) {
   bench.bring_up();
-  Arrivals arrivals(bench);
+  SlaveArrivals arrivals(bench);
   Faults faults;
   for (const double chance : {0.001, 0.01, 0.05}) faults_of_chance(bench, judge, arrivals, chance, faults);
   judge.measure("cycles struck by a flip", "", faults.struck);

@@ -1,4 +1,5 @@
 #include "conformance/interbus/suite.hpp"
+#include "conformance/interbus/slave_sequence.hpp"
 
 #include <fmt/format.h>
 
@@ -309,6 +310,7 @@ class InterbusSuite final : public Suite {
     add(slave_cases());
     add(master_cases());
     add(network_cases());
+    checks_[blank_sequence_case().test_case.id] = [](Run& run) { run.check(blank_sequence_case()); };
     for (const auto* list : {&slave_deviations(), &master_deviations(), &network_deviations()}) {
       deviations_.insert(deviations_.end(), list->begin(), list->end());
     }
@@ -356,7 +358,24 @@ class InterbusSuite final : public Suite {
     return runs_.at(test_case.id)(one);
   }
 
+  std::span<const SequenceRole> sequence_roles() const override {
+    return std::span(&slave_sequence_role(), 1);
+  }
+  Outcome run_sequence(const SequenceRole& role, const Sequence& sequence,
+                       const Setup& setup) const override {
+    const auto procedure = [&sequence](SlaveBench& bench, CaseJudge& judge) {
+      run_slave_sequence(sequence, bench, judge);
+    };
+    return Run(role.test_case, setup, given_).run(SlaveCase{role.test_case, procedure});
+  }
+
  private:
+  // What a setup is looked at with before the first sequence.
+  static const SlaveCase& blank_sequence_case() {
+    static const SlaveCase blank{slave_sequence_role().test_case, nullptr};
+    return blank;
+  }
+
   InterbusGiven given_;
   std::vector<TestCase> cases_;
   std::vector<Deviation> deviations_;

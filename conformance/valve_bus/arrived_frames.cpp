@@ -26,7 +26,8 @@ void ArrivedFrames::on_wave(const line::Waveform& wave) {
   received_.clear();
   receiver_.receive(wave, received_);
   for (const line::CharacterReceiver::Received& one : received_) {
-    const kernel::Duration silence = frames_.empty() ? kernel::Duration::max() : one.start - frames_.back().end;
+    const kernel::Duration silence =
+        frames_.empty() ? kernel::Duration::max() : one.start - frames_.back().end;
     if (silence >= delimiter_) {
       frames_.emplace_back().start = one.start;
     } else if (silence > longest_gap_) {

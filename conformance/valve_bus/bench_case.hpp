@@ -23,6 +23,13 @@ struct BenchCase {
   Needs needs{};
 };
 
+// What is judged behind a procedure, whatever it was about.
+template <typename Bench>
+void judge_end(Bench& bench, CaseJudge& judge) {
+  bench.line_watch().judge(judge);
+  bench.finish();
+}
+
 // One run on a bench of its own. The result has verdict, findings, measurements, seed, fingerprint and
 // virtual time; wall time is the caller's to fill.
 template <typename Bench, typename Needs, typename Setting>
@@ -35,8 +42,7 @@ judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting
   judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
     bench.emplace(one.needs, setting);
     one.procedure(*bench, j);
-    bench->line_watch().judge(j);
-    bench->finish();
+    judge_end(*bench, j);
   });
   result.seed = setting.seed;
   if (!bench) return result;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/iut/misbehaviour.hpp"
 #include "protocols/valve_bus/node.hpp"
 
 namespace fieldproof::conformance {
@@ -121,10 +122,33 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting)
   settling_ = delimiter() + std::max(turn_round_span(rules()), actuation_limit(rules())) + characters(8) +
               2 * distance_ + 500 * kernel::kMicrosecond;
   node_->wire(*place_, boards_);
+  if (distance_ > kernel::Duration{}) require(&valve_bus::NodeReach::distance);
   if (!needs.is_powered) return;
   set_power(true);
   wait(kWarmUp);
   forget();
+}
+
+void NodeBench::require(bool valve_bus::NodeReach::* what) const {
+  using valve_bus::NodeReach;
+  if (reach().*what) return;
+  if (what == &NodeReach::boards)
+    throw iut::CannotBeDone("the valves of the node cannot be seen without an upper channel");
+  if (what == &NodeReach::moving_switches)
+    throw iut::CannotBeDone("the limit switches cannot be moved while the node works");
+  if (what == &NodeReach::driver)
+    throw iut::CannotBeDone("the driver of the node cannot be seen without an upper channel");
+  throw iut::CannotBeDone("the node cannot be put farther away");
+}
+
+void NodeBench::note_instant(bool is_sure, const valve_bus::Doubt& doubt) {
+  const kernel::Duration all = doubt.earlier + doubt.later;
+  instants_.greatest_doubt = std::max(instants_.greatest_doubt, all);
+  if (is_sure) {
+    ++instants_.sure;
+  } else if (instants_.in_doubt++ == 0 || all < instants_.least_doubt_open) {
+    instants_.least_doubt_open = all;
+  }
 }
 
 std::uint8_t NodeBench::address() const {

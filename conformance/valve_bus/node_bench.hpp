@@ -63,6 +63,14 @@ judge::Pics declared_node();
 // The configuration of the IUT under these needs; `pics` has an answer to each item.
 valve_bus::NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& pics);
 
+// The instants that a case has judged.
+struct InstantLedger {
+  std::uint64_t sure = 0;
+  std::uint64_t in_doubt = 0;           // closer to a limit than they are known
+  kernel::Duration greatest_doubt{};    // of all of them
+  kernel::Duration least_doubt_open{};  // of those in doubt
+};
+
 class NodeBench final : private segment::Station {
  public:
   using Octets = std::vector<std::uint8_t>;
@@ -86,6 +94,10 @@ class NodeBench final : private segment::Station {
   kernel::Duration delimiter() const { return valve_bus::delimiter(rules()); }
   // How much later what is driven reaches the IUT.
   kernel::Duration distance() const { return distance_; }
+
+  // What the bench can do with this IUT; the case does not apply where it cannot do what is required.
+  valve_bus::NodeReach reach() const { return node_->reach(); }
+  void require(bool valve_bus::NodeReach::* what) const;
 
   // ---- upper tester ----
   valve_bus::ValveBlock& boards() { return boards_; }
@@ -122,6 +134,15 @@ class NodeBench final : private segment::Station {
   // What the IUT has driven since `forget`.
   std::vector<Transmission> answers() { return driven_.transmissions(); }
   bool has_driven() const { return !driven_.empty(); }
+  // How uncertain the instants of an answer and of the last moves of the valves are.
+  valve_bus::Doubt doubt_of(const Transmission& answer) const {
+    return node_->doubt_of_answer(answer.driver_on);
+  }
+  valve_bus::Doubt doubt_of_valves() const { return node_->doubt_of_valves(); }
+  // An instant that a case looked at could be judged, or lay closer to its limit than it is known.
+  void note_instant(bool is_sure, const valve_bus::Doubt& doubt);
+  const InstantLedger& instants() const { return instants_; }
+  void keep_instants(const InstantLedger& ledger) { instants_ = ledger; }
   // What has arrived at the IUT since then.
   std::span<const ArrivedFrame> arrived() const { return arrived_.frames(); }
   void forget();
@@ -169,6 +190,7 @@ class NodeBench final : private segment::Station {
   std::uint64_t stress_number_ = 0;
   kernel::Duration settling_;
   double clock_ = 1.0;
+  InstantLedger instants_;
 };
 
 }  // namespace fieldproof::conformance

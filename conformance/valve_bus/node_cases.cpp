@@ -18,7 +18,28 @@ NodeCase canary() {
           }};
 }
 
+// On a real line an instant is known to some microseconds. One that lies closer to its limit says nothing; a
+// case of which most say nothing has not shown what was to be judged.
+void judge_instants(const InstantLedger& instants, CaseJudge& judge) {
+  const auto microseconds = [](kernel::Duration time) { return static_cast<double>(time.count()) * 1e-6; };
+  if (instants.greatest_doubt > kernel::Duration{})
+    judge.measure("greatest uncertainty U of an instant", "us", microseconds(instants.greatest_doubt));
+  if (instants.in_doubt == 0) return;
+  judge.measure("instants closer to a limit than U", "", static_cast<double>(instants.in_doubt));
+  if (instants.in_doubt <= instants.sure) return;
+  judge.inconclusive("timing_in_doubt", {{"instants that are known better than their distance from a limit"},
+                                         fmt::format("{} of {} were closer than U, which was {} at least",
+                                                     instants.in_doubt, instants.in_doubt + instants.sure,
+                                                     kernel::describe(instants.least_doubt_open))});
+}
+
 }  // namespace
+
+void judge_end(NodeBench& bench, CaseJudge& judge) {
+  bench.line_watch().judge(judge);
+  bench.finish();
+  judge_instants(bench.instants(), judge);
+}
 
 const std::vector<NodeCase>& node_cases() {
   static const std::vector<NodeCase> cases = [] {

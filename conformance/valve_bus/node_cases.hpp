@@ -16,6 +16,9 @@ using NodeCase = BenchCase<NodeBench, NodeNeeds>;
 
 const std::vector<NodeCase>& node_cases();
 
+// The instants of a node on a real line besides: a case of which most are in doubt has shown nothing.
+void judge_end(NodeBench& bench, CaseJudge& judge);
+
 // The chapters, each in its own file.
 std::vector<NodeCase> node_write_cases();
 std::vector<NodeCase> node_read_cases();

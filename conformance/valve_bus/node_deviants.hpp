@@ -295,6 +295,29 @@ class AnswersAtOnce : public Node {
   Duration turn_round() const override { return {}; }
 };
 
+// The first start bit that many hundredths of the least and of the greatest turn-round behind the command.
+class TurnsRoundEarly : public AnswersAtOnce {
+ public:
+  TurnsRoundEarly(const valve_bus::NodeConfiguration& configuration, int hundredths)
+      : AnswersAtOnce(configuration), hundredths_(hundredths) {}
+
+ private:
+  Duration turn_round() const override { return valve_bus::delimiter(rules()) * hundredths_ / 100; }
+  int hundredths_;
+};
+
+class TurnsRoundSlowly : public Node {
+ public:
+  TurnsRoundSlowly(const valve_bus::NodeConfiguration& configuration, int hundredths)
+      : Node(configuration), hundredths_(hundredths) {}
+
+ private:
+  Duration turn_round() const override {
+    return (valve_bus::delimiter(rules()) + turn_round_span(rules())) * hundredths_ / 100;
+  }
+  int hundredths_;
+};
+
 class TurnsRoundLate : public Node {
  public:
   TurnsRoundLate(const valve_bus::NodeConfiguration& configuration, Duration lateness)

@@ -8,6 +8,7 @@ namespace fieldproof::conformance {
 namespace {
 
 void without_a_host_the_valves_hold(NodeBench& bench, CaseJudge& judge) {
+  bench.require(&valve_bus::NodeReach::boards);
   bench.write(0x5A, 0xA5);
   bench.settle();
   bench.forget();

@@ -89,7 +89,8 @@ std::vector<std::uint8_t> octets_of(Word word, const SequenceCommand& command, c
   switch (word) {
     case Word::write:
     case Word::read:
-      octets = {bench.address(), static_cast<std::uint8_t>(word == Word::write ? 0 : 1), number(0), number(1)};
+      octets = {bench.address(), static_cast<std::uint8_t>(word == Word::write ? 0 : 1), number(0),
+                number(1)};
       break;
     case Word::command:
       octets = {number(0), number(1), number(2), number(3)};

@@ -31,6 +31,7 @@ void every_value_is_driven_at_once(NodeBench& bench, CaseJudge& judge) {
 }
 
 void a_repeated_write_does_not_move_the_valves(NodeBench& bench, CaseJudge& judge) {
+  bench.require(&valve_bus::NodeReach::boards);
   const auto data0 = static_cast<std::uint8_t>(bench.random_octet() | 1U);
   const auto data1 = bench.random_octet();
   bench.write(data0, data1);

@@ -55,6 +55,12 @@ class ValveBusSuite final : public Suite {
     return setup.plan_file.empty() ? std::vector<fault::PlanPart>{} : load(setup).parts();
   }
 
+  std::optional<judge::Pics> declared_pics(const TestCase& test_case, const Setup& setup) const override {
+    if (auto of_line = on_real_line(test_case, setup))
+      return setup.pics ? setup.pics->completed_by(*of_line) : of_line;
+    return setup.pics;
+  }
+
   void check(const TestCase& test_case, const Setup& setup) const override {
     if (!setup.network_file.empty()) {
       throw kernel::Error(kernel::ErrorKind::usage,
@@ -70,9 +76,9 @@ class ValveBusSuite final : public Suite {
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
     if (is_of_host(test_case)) {
-      return run_recorded(*host_cases_.at(test_case.id), host_setting(test_case, setup), setup);
+      return run_recorded(*host_cases_.at(test_case.id), host_setting(test_case, setup), setup.record);
     }
-    return run_recorded(*node_cases_.at(test_case.id), node_setting(test_case, setup), setup);
+    return run_node(*node_cases_.at(test_case.id), setup);
   }
 
   std::span<const SequenceRole> sequence_roles() const override {
@@ -83,14 +89,23 @@ class ValveBusSuite final : public Suite {
     const auto procedure = [&sequence](NodeBench& bench, CaseJudge& judge) {
       run_node_sequence(sequence, bench, judge);
     };
-    return run_recorded(NodeCase{role.test_case, procedure}, node_setting(role.test_case, setup), setup);
+    return run_node({role.test_case, procedure}, setup);
   }
 
  private:
+  // What happens on a real line never happens again: it is always recorded.
+  Outcome run_node(const NodeCase& node_case, const Setup& setup) const {
+    const bool is_once = on_real_line(node_case.test_case, setup).has_value();
+    Outcome outcome =
+        run_recorded(node_case, node_setting(node_case.test_case, setup), setup.record || is_once);
+    outcome.happens_once = is_once;
+    return outcome;
+  }
+
   template <typename Case, typename Setting>
-  static Outcome run_recorded(const Case& one, Setting setting, const Setup& setup) {
+  static Outcome run_recorded(const Case& one, Setting setting, bool is_recorded) {
     CaseRecorder recorder;
-    if (setup.record) {
+    if (is_recorded) {
       setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
         return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
       };
@@ -99,6 +114,10 @@ class ValveBusSuite final : public Suite {
     outcome.result = run_on_bench(one, setting);
     recorder.keep(outcome);
     return outcome;
+  }
+
+  std::optional<judge::Pics> on_real_line(const TestCase& test_case, const Setup& setup) const {
+    return given_.on_real_line ? given_.on_real_line(assigned_to(test_case, setup).uri) : std::nullopt;
   }
 
   fault::Plan load(const Setup& setup) const {
@@ -121,6 +140,7 @@ class ValveBusSuite final : public Suite {
 
   NodeSetting node_setting(const TestCase& test_case, const Setup& setup) const {
     NodeSetting setting = setting_of<NodeSetting>(setup);
+    setting.pics = declared_pics(test_case, setup);
     setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
                          seed = setup.seed](const valve_bus::NodeConfiguration& configuration) {
       return make_node({uri, id, seed}, configuration);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +10,7 @@
 #include "conformance/test_case.hpp"
 #include "harness/fault/disturbance.hpp"
 #include "harness/fault/stress.hpp"
+#include "harness/judge/pics.hpp"
 #include "protocols/valve_bus/device.hpp"
 
 // The suite of the RS-485 bus for pneumatic valves: the cases for local nodes and for
@@ -22,6 +25,9 @@ using GivenHosts = GivenStations<valve_bus::HostDevice, valve_bus::HostConfigura
 struct ValveBusGiven {
   GivenNodes node{};
   GivenHosts host{};
+  // Nodes on real lines: what their URI says of them, as answers to a PICS that has none; nothing for a URI
+  // of another kind.
+  std::function<std::optional<judge::Pics>(const std::string& uri)> on_real_line{};
   std::vector<fault::DisturbanceKind> disturbances{};  // what a plan can name
   std::vector<fault::Stress> stresses{};  // for cases with the tag `bursts`; without any they are left out
 };

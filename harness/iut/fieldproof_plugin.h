@@ -15,7 +15,7 @@
  * state outside of them.
  *
  * Times are picoseconds since the case began. Items and settings are those of the role; README.md beside this
- * file lists them.
+ * file leads to them.
  */
 #ifndef FIELDPROOF_PLUGIN_H
 #define FIELDPROOF_PLUGIN_H
@@ -99,10 +99,12 @@ typedef struct fieldproof_implementation {
   int (*begin)(void* self, const fieldproof_case* test_case);
   /* The supply comes and goes; a case begins without it. */
   void (*set_power)(void* self, int is_on, fieldproof_time now);
-  /* With FIELDPROOF_CHARACTERS: characters that are over. May be null otherwise. */
+  /* Characters that are over. May be null with FIELDPROOF_LEVELS, unless the role tells some all the
+   * same. */
   void (*receive)(void* self, unsigned port, const fieldproof_character* characters, unsigned count,
                   fieldproof_time now);
-  /* With FIELDPROOF_LEVELS: a transmission that is over. May be null otherwise. */
+  /* With FIELDPROOF_LEVELS: a transmission, and its end as `now`; the role says whether it is told then or when
+   * it begins. May be null otherwise. */
   void (*receive_levels)(void* self, unsigned port, fieldproof_time start, fieldproof_time rate,
                          const unsigned char* levels, unsigned count, fieldproof_time now);
   void (*on_time)(void* self, fieldproof_time now);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,12 @@ class Misbehaviour : public kernel::Error {
  private:
   std::string reason_;
   std::vector<std::string> evidence_;
+};
+
+// What a case asks for and this attachment cannot do: the case does not apply to it. The sentence says what.
+class CannotBeDone : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 }  // namespace fieldproof::iut

@@ -95,6 +95,9 @@ class PluginDevice final : public Device {
       characters_.push_back(
           {ticks_of(one.start), ticks_of(one.busy_until), one.data, static_cast<unsigned short>(flags)});
     }
+    if (implementation_->receive == nullptr) {
+      refuse_library(plugin_.name, "has no function 'receive', and its role is told characters, too");
+    }
     call([&] {
       implementation_->receive(self_, port, characters_.data(), static_cast<unsigned>(characters_.size()),
                                ticks_of(now));

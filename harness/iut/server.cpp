@@ -35,6 +35,8 @@ class MessagePipe {
     return message;
   }
 
+  bool has_more() const { return begin_ != end_; }
+
   void send(std::span<const std::uint8_t> message) {
     while (!message.empty()) {
       const ssize_t sent = ::write(output_, message.data(), message.size());
@@ -67,11 +69,12 @@ class MessagePipe {
 
 class Server final : private Bench {
  public:
-  Server(int input, int output, const MakeDevice& make_device, std::string_view own_name)
-      : pipe_(input, output), make_device_(make_device), own_name_(own_name) {}
+  Server(int input, int output, const MakeDevice& make_device, std::string_view own_name, const Idle& idle)
+      : input_(input), pipe_(input, output), make_device_(make_device), own_name_(own_name), idle_(idle) {}
 
   void run() {
     while (true) {
+      if (idle_ && !pipe_.has_more()) idle_(input_);
       const auto message = pipe_.receive();
       if (message.empty()) return;
       try {
@@ -172,9 +175,11 @@ class Server final : private Bench {
     return reader.u64();
   }
 
+  int input_;
   MessagePipe pipe_;
   const MakeDevice& make_device_;
   std::string_view own_name_;
+  const Idle& idle_;
   RoleName role_;
   std::unique_ptr<Device> device_;
   bool is_in_case_ = false;
@@ -184,8 +189,9 @@ class Server final : private Bench {
 
 }  // namespace
 
-void serve(int input, int output, const MakeDevice& make_device, std::string_view own_name) {
-  Server(input, output, make_device, own_name).run();
+void serve(int input, int output, const MakeDevice& make_device, std::string_view own_name,
+           const Idle& idle) {
+  Server(input, output, make_device, own_name, idle).run();
 }
 
 }  // namespace fieldproof::iut

@@ -13,8 +13,12 @@ namespace fieldproof::iut {
 // Makes the device of a role; null for one that it does not have.
 using MakeDevice = std::function<std::unique_ptr<Device>(const RoleName& role)>;
 
+// What a device does by itself while no call has come: until the descriptor can be read.
+using Idle = std::function<void(int descriptor)>;
+
 // Until the bench closes its end. `input` and `output` may be one descriptor. Throws
 // kernel::Error(implementation) when the bench does not keep to the protocol.
-void serve(int input, int output, const MakeDevice& make_device, std::string_view own_name);
+void serve(int input, int output, const MakeDevice& make_device, std::string_view own_name,
+           const Idle& idle = {});
 
 }  // namespace fieldproof::iut

@@ -187,7 +187,6 @@ std::uint64_t AttachedSlave::read(iut::Item item, kernel::Time when) {
     iut::refuse_impossible(fmt::format("reads item {}; this slave has {} input words, from item {} on", item,
                                        words_, kInputWord));
   }
-  attached_.expect_in_order(when, "samples its inputs");
   return terminals_->input(item - kInputWord, when);
 }
 
@@ -198,15 +197,28 @@ bool ServedSlave::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
   return true;
 }
 
-// It has no switch of its own: with the supply it is there.
-void ServedSlave::set_power(bool is_on, kernel::Time) {
-  if (is_on) station().wire({&port(kFromUpstream), &port(kFromBranch), &port(kFromRemote)}, *this);
+// It has no switch of its own: with the supply it is there. Where nothing is plugged in then, nothing will
+// be.
+void ServedSlave::set_power(bool is_on, kernel::Time now) {
+  if (!is_on) return;
+  SlavePorts ports{.upstream = &port(kFromUpstream)};
+  is_branch_plugged_ = bench().read(kBranchPlugged, now) != 0;
+  is_remote_plugged_ = bench().read(kRemotePlugged, now) != 0;
+  if (is_branch_plugged_) ports.branch = &port(kFromBranch);
+  if (is_remote_plugged_) ports.remote = &port(kFromRemote);
+  station().wire(ports, *this);
 }
 
 // A plug is put in or pulled between two calls.
 void ServedSlave::before_call() {
-  station().set_next_present(true, bench().read(kBranchPlugged, now()) != 0);
-  station().set_next_present(false, bench().read(kRemotePlugged, now()) != 0);
+  const auto follow = [&](iut::Item item, bool on_branch, bool& known) {
+    const bool is_plugged = bench().read(item, now()) != 0;
+    if (is_plugged == known) return;
+    known = is_plugged;
+    station().set_next_present(on_branch, is_plugged);
+  };
+  follow(kBranchPlugged, true, is_branch_plugged_);
+  follow(kRemotePlugged, false, is_remote_plugged_);
 }
 
 std::uint16_t ServedSlave::input(unsigned word, kernel::Time when) {

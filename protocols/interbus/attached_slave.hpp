@@ -80,6 +80,8 @@ class ServedSlave final : public iut::ServedStation<SlaveDevice>, private Termin
   bool wants_reconfiguration(kernel::Time when) override;
 
   Make make_;
+  bool is_branch_plugged_ = false;
+  bool is_remote_plugged_ = false;
 };
 
 }  // namespace fieldproof::interbus

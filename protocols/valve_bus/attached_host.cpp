@@ -120,15 +120,18 @@ std::uint64_t AttachedHost::read(iut::Item item, kernel::Time when) {
 // ---- a host of ours ----
 
 bool ServedHost::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
+  is_on_ = false;
   fifo_room_ = has_overflowed_ = 0;
   counters_ = {};
-  play(make_(host_configuration_of(begin)), bench);
+  const HostConfiguration configuration = host_configuration_of(begin);
+  dip_ = configuration.dip;
+  play(make_(configuration), bench);
   station().wire(port(0), *this);
   return true;
 }
 
 void ServedHost::set_power(bool is_on, kernel::Time now) {
-  if (is_on) station().set_dip(static_cast<unsigned>(bench().read(kDip, now)));
+  is_on_ = is_on;
   act(now, [&] { station().set_power(is_on, now); });
 }
 
@@ -144,8 +147,17 @@ void ServedHost::keep(iut::Item item, std::uint64_t value, std::uint64_t& told) 
   told = value;
 }
 
+void ServedHost::before_call() {
+  if (!is_on_) return;
+  const std::uint64_t dip = bench().read(kDip, now());
+  if (dip == dip_) return;
+  dip_ = dip;
+  station().set_dip(static_cast<unsigned>(dip));
+}
+
 // What the PC may look at is kept up to date behind each call.
 void ServedHost::after_call() {
+  if (!is_on_) return;
   keep(kFifoRoom, station().fifo_room(), fifo_room_);
   keep(kOverflow, station().has_overflowed() ? 1 : 0, has_overflowed_);
   for (unsigned id = 0; id < kIds; ++id) {

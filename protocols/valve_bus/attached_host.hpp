@@ -88,12 +88,16 @@ class ServedHost final : public iut::ServedStation<HostDevice>, private HostAppl
   void receive(unsigned port, std::span<const iut::Character> characters, kernel::Time now) override;
 
  private:
+  void before_call() override;
   void after_call() override;
   void keep(iut::Item item, std::uint64_t value, std::uint64_t& told);
   void on_response(const HostResponse& response, kernel::Time when) override;
   void on_error(const HostError& error, kernel::Time when) override;
 
   Make make_;
+  bool is_on_ = false;
+  std::uint64_t dip_ = 0;
+  // As the bench was told them.
   std::uint64_t fifo_room_ = 0;
   std::uint64_t has_overflowed_ = 0;
   std::array<std::array<std::uint64_t, 256>, 4> counters_{};

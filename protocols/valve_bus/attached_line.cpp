@@ -20,7 +20,8 @@ CharacterProfile character_profile_of(const iut::CaseBegin& begin) {
 void AttachedLine::begin(const Rules& rules, kernel::Time now) {
   rules_ = rules;
   codec_ = CharacterCodec(rules);
-  driven_until_ = now;
+  transmitter_ = Transmitter(rules);
+  transmitter_.begin_at(now);
 }
 
 void AttachedLine::receive(segment::PortIndex port, const line::Waveform& reception) {
@@ -40,27 +41,6 @@ void AttachedLine::receive(segment::PortIndex port, const line::Waveform& recept
                    [&](iut::Device& device) { device.receive(port, part, reception.end()); });
     rest = rest.subspan(part.size());
   }
-}
-
-// What follows without a gap has instants that are rounded, each for itself.
-kernel::Time AttachedLine::behind_the_last(kernel::Time start) const {
-  return start < driven_until_ && driven_until_ - start <= kernel::kNanosecond ? driven_until_ : start;
-}
-
-kernel::Time AttachedLine::drive_idle(kernel::Time from, kernel::Time to) {
-  constexpr std::int64_t kFiner = 16;  // the driver comes and goes between bits, too
-  line::Waveform idle;
-  idle.start = from;
-  idle.rate = rules_.bit_rate * kFiner;
-  const kernel::Duration half = kernel::levels_duration(1, 2 * idle.rate);
-  auto count = static_cast<std::size_t>(kernel::levels_within(to - from + half, idle.rate));
-  // The nearest sixteenth, but not into what follows.
-  if (kernel::level_time(from, static_cast<std::int64_t>(count), idle.rate) > to + kernel::kNanosecond)
-    --count;
-  idle.levels.append_idle(count);
-  const kernel::Time end = idle.end();
-  if (count > 0) line_->drive(idle);
-  return std::max(to, end);
 }
 
 void AttachedLine::expect_port(unsigned port) const {
@@ -83,18 +63,13 @@ void AttachedLine::transmit(const iut::Transmission& transmission) {
   if (transmission.start + length > transmission.driver_off + kernel::kNanosecond) {
     iut::refuse_impossible(describe());
   }
-  const kernel::Time driver_on = behind_the_last(transmission.driver_on);
-  const kernel::Time start = drive_idle(driver_on, std::max(driver_on, transmission.start));
-  const kernel::Time driven = codec_.drive_characters(*line_, transmission.characters, start);
-  driven_until_ = drive_idle(driven, std::max(driven, transmission.driver_off));
+  transmitter_.drive(*line_, transmission);
 }
 
 void AttachedLine::transmit(unsigned port, line::Waveform& wave) {
   expect_port(port);
   attached_.expect_drive(wave);
-  wave.start = behind_the_last(wave.start);
-  driven_until_ = wave.end();
-  line_->drive(wave);
+  transmitter_.drive(*line_, wave);
 }
 
 }  // namespace fieldproof::valve_bus

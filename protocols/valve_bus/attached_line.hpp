@@ -4,6 +4,7 @@
 
 #include "harness/iut/attached_case.hpp"
 #include "protocols/valve_bus/codec.hpp"
+#include "protocols/valve_bus/transmitter.hpp"
 
 // The line of the valve bus as an implementation outside hears and drives it, whatever its role: port 0, in
 // characters that are over, or in levels.
@@ -12,7 +13,7 @@ namespace fieldproof::valve_bus {
 class AttachedLine {
  public:
   AttachedLine(iut::AttachedCase& attached, const Rules& rules)
-      : attached_(attached), rules_(rules), codec_(rules) {}
+      : attached_(attached), rules_(rules), codec_(rules), transmitter_(rules) {}
 
   void wire(segment::Port& line) { line_ = &line; }
   // Nothing has been driven before `now`, and characters come as these rules say.
@@ -25,16 +26,13 @@ class AttachedLine {
 
  private:
   void expect_port(unsigned port) const;
-  // The driver on and nothing said. Gives the end: `to`, or what rounding makes of it.
-  kernel::Time drive_idle(kernel::Time from, kernel::Time to);
-  kernel::Time behind_the_last(kernel::Time start) const;
 
   iut::AttachedCase& attached_;
   Rules rules_;
   CharacterCodec codec_;
+  Transmitter transmitter_;
   segment::Port* line_ = nullptr;
   std::vector<iut::Character> characters_;
-  kernel::Time driven_until_{};
 };
 
 // As a setting tells it: 0 is P0, 1 is P1, 2 is P2.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/iut/acting_device.hpp"
 #include "harness/iut/misbehaviour.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
@@ -17,6 +18,7 @@
 namespace fieldproof::valve_bus {
 namespace {
 
+using iut::ActingDevice;
 using kernel::kMicrosecond;
 using kernel::kMillisecond;
 using kernel::kNever;
@@ -24,42 +26,6 @@ using kernel::kSecond;
 using kernel::kStart;
 
 constexpr kernel::Time kNow{20 * kMillisecond};
-
-// Does in each call what the test wants.
-class ActingDevice final : public iut::Device {
- public:
-  using Act = std::function<void(iut::Bench&)>;
-
-  iut::UnitKind unit_kind() const override { return iut::UnitKind::characters; }
-  bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override {
-    told = begin;
-    bench_ = &bench;
-    if (at_begin) at_begin(bench);
-    return serves;
-  }
-  void set_power(bool, kernel::Time) override {}
-  void receive(unsigned, std::span<const iut::Character> characters, kernel::Time) override {
-    heard.insert(heard.end(), characters.begin(), characters.end());
-  }
-  void receive(unsigned, const line::Waveform&) override {}
-  void on_time(kernel::Time) override {
-    next = kNever;
-    if (at_time) at_time(*bench_);
-  }
-  kernel::Time next_time() const override { return next; }
-  void end() override { ++ends; }
-
-  iut::CaseBegin told;
-  bool serves = true;
-  Act at_begin;
-  Act at_time;
-  kernel::Time next = kNever;
-  std::vector<iut::Character> heard;
-  int ends = 0;
-
- private:
-  iut::Bench* bench_ = nullptr;
-};
 
 // A device at a line, that acts at kNow.
 class AttachedNodeTest : public testing::Test, private segment::Station, private segment::Tap {
@@ -94,7 +60,7 @@ class AttachedNodeTest : public testing::Test, private segment::Station, private
   segment::Segment segment_;
   segment::Medium line_{segment_, "line", segment::ContentionRule::noise, kernel::Random(1)};
   ValveBlock boards_;
-  ActingDevice device_;
+  ActingDevice device_{iut::UnitKind::characters};
   std::unique_ptr<AttachedNode> node_;
   segment::MediumPort* host_ = nullptr;
   std::vector<line::Waveform> driven_;
@@ -189,10 +155,10 @@ TEST_F(AttachedNodeTest, CharactersAreHeardWhenTheyAreOver) {
   codec.drive(*host_, octets, kStart + kMillisecond, {});
   segment_.run_for(10 * kMillisecond);
   ASSERT_EQ(device_.heard.size(), 2U);
-  EXPECT_EQ(device_.heard[0].start, kStart + kMillisecond);
-  EXPECT_EQ(device_.heard[0].data, 0x112);  // the ninth bit is 1
-  EXPECT_EQ(device_.heard[1].data, 0x1FE);
-  EXPECT_FALSE(device_.heard[1].is_stop_missing || device_.heard[1].is_parity_wrong);
+  EXPECT_EQ(device_.heard[0].character.start, kStart + kMillisecond);
+  EXPECT_EQ(device_.heard[0].character.data, 0x112);  // the ninth bit is 1
+  EXPECT_EQ(device_.heard[1].character.data, 0x1FE);
+  EXPECT_FALSE(device_.heard[1].character.is_stop_missing || device_.heard[1].character.is_parity_wrong);
 }
 
 TEST_F(AttachedNodeTest, TransmissionHasTheDriverAroundItsCharacters) {

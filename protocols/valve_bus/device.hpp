@@ -32,12 +32,33 @@ struct NodeConfiguration {
   unsigned boards = 2;  // drive boards, 1 or 2
 };
 
+// What a bench can see of a node and do to it. In virtual time that is everything; of one behind a real line
+// it may be less.
+struct NodeReach {
+  bool boards = true;           // its valves can be seen, its limit switches set
+  bool moving_switches = true;  // and moved while it works
+  bool driver = true;           // when its driver comes on and goes off can be seen
+  bool distance = true;         // it can be put farther away
+};
+
+// How far what was seen may lie from what was: its instant is at least `earlier` before and at most `later`
+// behind the one that was told.
+struct Doubt {
+  kernel::Duration earlier{};
+  kernel::Duration later{};
+};
+
 class NodeDevice : public segment::Station {
  public:
   virtual void wire(segment::Port& line, NodeBoards& boards) = 0;
   // The supply comes and goes; a node begins without it. It must not drive the line or a valve without it:
   // the valves are told off by who switches it.
   virtual void set_power(bool is_on, kernel::Time now) = 0;
+
+  virtual NodeReach reach() const { return {}; }
+  // Of what it drove when its driver came on at this instant, and of the last moves of its valves.
+  virtual Doubt doubt_of_answer(kernel::Time) const { return {}; }
+  virtual Doubt doubt_of_valves() const { return {}; }
 };
 
 // ---- the host module and its PC ----

@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "cli/exit_code.hpp"
+#include "cli/probe/program_fixture.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+class Check : public ProgramFixture {
+ protected:
+  // The case of a run that failed, in the folder of the test.
+  std::string failed_case(const std::string& selector, const std::string& uri) const {
+    EXPECT_EQ(call({"run", selector, "--iut", uri, "--out", "run"}).exit_code, kFailed);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "run")) {
+      if (entry.path().filename() == "case.json") return entry.path().string();
+    }
+    ADD_FAILURE() << "no case was stored";
+    return {};
+  }
+};
+
+TEST_F(Check, PassesTheReferenceAndFindsADeviation) {
+  const Called passed = call({"check", "valve_bus/node", "--cases", "200"});
+  EXPECT_EQ(passed.exit_code, kAllAsExpected);
+  EXPECT_HOLDS(passed.out, "200 of 200 sequences");
+  const Called found = call({"check", "valve_bus/node", "--iut", "deviant:check_not_reset", "--seed", "1"});
+  EXPECT_EQ(found.exit_code, kFailed);
+  EXPECT_HOLDS(found.out, "fieldproof replay valve_bus-node-1.case.json");
+  EXPECT_HOLDS(found.out, "to 2 commands, 1 fault (1 flipped bit)");
+}
+
+TEST_F(Check, ItsCaseIsReplayedAnywhere) {
+  call({"check", "valve_bus/node", "--iut", "deviant:read_answers_write", "--case", "found.json"});
+  const Called same = call({"replay", "found.json"});
+  EXPECT_EQ(same.exit_code, kFailed);
+  EXPECT_HOLDS(same.out, "equal: verdict, reason and fingerprint are those of the stored run");
+  EXPECT_HOLDS(same.out, "1. write");
+  const Called reference = call({"replay", "found.json", "--iut", "ref"});
+  EXPECT_EQ(reference.exit_code, kAllAsExpected);
+  EXPECT_HOLDS(reference.out, "not compared");
+  EXPECT_HOLDS(call({"replay", "found.json", "--bits"}).out, "node/in");
+  const Called attached = call({"replay", "found.json", "--iut", std::string("exec:") + VALVE_NODE_PROCESS});
+  EXPECT_EQ(attached.exit_code, kAllAsExpected) << attached.out << attached.err;
+}
+
+TEST_F(Check, SearchesAnAttachedNodeAndAnInterbusSlave) {
+  const Called attached =
+      call({"check", "valve_bus/node", "--iut", std::string("exec:") + VALVE_NODE_PROCESS, "--cases", "40"});
+  EXPECT_EQ(attached.exit_code, kAllAsExpected) << attached.out << attached.err;
+  EXPECT_EQ(call({"check", "interbus/slave", "--cases", "100"}).exit_code, kAllAsExpected);
+}
+
+TEST_F(Check, RefusesWhatItCannotServe) {
+  const Called no_role = call({"check", "valve_bus/host"});
+  EXPECT_EQ(no_role.exit_code, kUsage);
+  EXPECT_HOLDS(no_role.err, "'valve_bus/node'");
+  EXPECT_EQ(call({"check", "valve_bus/node", "--iut", "deviant:nobody"}).exit_code, kUsage);
+  EXPECT_EQ(call({"check", "valve_bus/node", "--iut", "exec:./nobody"}).exit_code, 5);
+  write("bad.json", R"({"schema": "fieldproof/sequence/1", "role": "valve_bus/node"})");
+  const Called bad = call({"replay", "bad.json"});
+  EXPECT_EQ(bad.exit_code, 65);
+  EXPECT_HOLDS(bad.err, "bad.json");
+}
+
+TEST_F(Check, ShrinksAStoredSequence) {
+  write("long.json", R"({"schema": "fieldproof/sequence/1", "role": "valve_bus/node", "seed": "1",
+    "implementations": [{"role": "node", "position": 0, "uri": "deviant:read_answers_write"}],
+    "commands": [{"do": "wait", "ms": 10}, {"do": "write", "data0": 77, "data1": 3, "silence": 80},
+                 {"do": "response", "data0": 1, "data1": 2, "silence": 45},
+                 {"do": "read", "data0": 9, "data1": 9, "silence": 45}],
+    "verdict": "fail", "reason": "answer_data_wrong", "fingerprint": "0"})");
+  const Called shrunk = call({"shrink", "long.json"});
+  EXPECT_EQ(shrunk.exit_code, kAllAsExpected) << shrunk.out << shrunk.err;
+  EXPECT_EQ(json("long.shrunk.json")["commands"].size(), 2U);
+  EXPECT_EQ(call({"replay", "long.shrunk.json"}).exit_code, kFailed);
+}
+
+TEST_F(Check, ShrinksBurstsToTheBitsThatMattered) {
+  struct Campaign {
+    const char* selector;
+    const char* uri;
+  };
+  for (const Campaign& one :
+       {Campaign{"valve_bus/node/immunity/*", "deviant:write_not_checked"},
+        Campaign{"valve_bus/node/immunity/*", "deviant:valves_off_on_wrong_check"},
+        Campaign{"interbus/slave/immunity/bursts*", "slave=deviant:latches_in_spite_of_own_error"}}) {
+    std::filesystem::remove_all(folder_ / "run");
+    const std::string stored = failed_case(one.selector, one.uri);
+    const Called shrunk = call({"shrink", stored, "--case", "small.json"});
+    EXPECT_EQ(shrunk.exit_code, kAllAsExpected) << one.uri << shrunk.out << shrunk.err;
+    std::size_t bits = 0;
+    for (const auto& disturbance : json("small.plan.json")["disturbances"]) {
+      for (const auto& transmission : disturbance["flipped_bits"]) bits += transmission["bits"].size();
+    }
+    EXPECT_GE(bits, 1U) << one.uri;
+    EXPECT_LE(bits, 2U) << one.uri;
+    const Called replayed = call({"replay", "small.json"});
+    EXPECT_EQ(replayed.exit_code, kFailed) << replayed.out;
+    EXPECT_HOLDS(replayed.out, "equal: verdict, reason and fingerprint are those of the stored run");
+    EXPECT_EQ(call({"verify", "small.json"}).exit_code, kAllAsExpected);
+  }
+}
+
+}  // namespace
+}  // namespace fieldproof::cli

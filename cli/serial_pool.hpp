@@ -1,0 +1,41 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "harness/iut/pool.hpp"
+#include "harness/iut/serial_line.hpp"
+#include "protocols/valve_bus/serial_node.hpp"
+
+// The serial lines of a run, by URI, with the channels of their upper testers. A line serves one case at a
+// time: others wait for it, however many run side by side.
+namespace fieldproof::cli {
+
+class SerialPool {
+ public:
+  explicit SerialPool(iut::RoleName role) : role_(std::move(role)) {}
+
+  // Opens what is not open yet: first the upper channel, which may be what makes the line. Throws
+  // kernel::Error(implementation) for one that cannot be used.
+  valve_bus::SerialAttachment take(const std::string& uri);
+
+ private:
+  struct Box {
+    std::mutex in_use;
+    iut::SerialSettings settings;
+    std::unique_ptr<iut::SerialLine> line;
+    std::unique_ptr<iut::DevicePool> upper;
+    kernel::Duration latency{};
+  };
+  struct Use;
+
+  Box& box(const std::string& uri);
+
+  iut::RoleName role_;
+  std::mutex mutex_;
+  std::map<std::string, std::unique_ptr<Box>> boxes_;
+};
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,123 @@
+#include "cli/station_on_line.hpp"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+#include "cli/attachments.hpp"
+#include "cli/pics_file.hpp"
+#include "conformance/assigned.hpp"
+#include "conformance/valve_bus/node_bench.hpp"
+#include "conformance/valve_bus/node_deviations.hpp"
+#include "harness/iut/server.hpp"
+#include "harness/kernel/error.hpp"
+#include "protocols/valve_bus/node.hpp"
+#include "protocols/valve_bus/node_player.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+using valve_bus::NodePlayer;
+
+// A URI that is no attachment is that of a built-in node.
+std::unique_ptr<valve_bus::NodeDevice> built_in(const std::string& uri,
+                                                const valve_bus::NodeConfiguration& configuration) {
+  if (uri == conformance::kReferenceUri) return std::make_unique<valve_bus::Node>(configuration);
+  return conformance::make_node_deviation(conformance::deviation_of(uri, "built-in station"), configuration);
+}
+
+NodePlayer::MakeNode maker_of(const std::string& uri) {
+  if (!is_attachment(uri)) {
+    built_in(uri, {});  // refuses before anything is opened
+    return [uri](const valve_bus::NodeConfiguration& configuration, const iut::CaseBegin&) {
+      return built_in(uri, configuration);
+    };
+  }
+  return [uri, attached = attached_nodes()](const valve_bus::NodeConfiguration& configuration,
+                                            const iut::CaseBegin& begin) {
+    return attached({uri, begin.id, begin.seed}, configuration);
+  };
+}
+
+// One connection of a bench, or its whole life at the standard streams.
+void serve_bench(int input, int output, iut::SerialLine& line, const NodePlayer::MakeNode& make_node,
+                 const std::string& name) {
+  NodePlayer* player = nullptr;
+  iut::serve(
+      input, output,
+      [&](const iut::RoleName& role) -> std::unique_ptr<iut::Device> {
+        if (role.protocol != "valve_bus" || role.role != "node") return nullptr;
+        auto made = std::make_unique<NodePlayer>(line, make_node);
+        player = made.get();
+        return made;
+      },
+      name,
+      [&](int descriptor) {
+        if (player != nullptr) player->play(descriptor);
+      });
+}
+
+[[noreturn]] void refuse_socket(const std::string& path, const std::string& why) {
+  throw kernel::Error(kernel::ErrorKind::usage, fmt::format("--upper '{}': {}", path, why));
+}
+
+iut::Descriptor listen_at(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path)
+    refuse_socket(path, "the path of a socket has at most 107 characters");
+  std::memcpy(address.sun_path, path.data(), path.size());
+  if (std::filesystem::is_socket(path)) ::unlink(path.c_str());
+  iut::Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(socket.number(), 1) != 0) {
+    refuse_socket(path, std::system_category().message(errno));
+  }
+  return socket;
+}
+
+void serve_socket(const std::string& path, iut::SerialLine& line, const NodePlayer::MakeNode& make_node,
+                  const std::string& name) {
+  const iut::Descriptor listener = listen_at(path);
+  while (true) {
+    const iut::Descriptor bench(::accept4(listener.number(), nullptr, nullptr, SOCK_CLOEXEC));
+    if (!bench) continue;
+    try {
+      serve_bench(bench.number(), bench.number(), line, make_node, name);
+    } catch (const kernel::Error& error) {
+      fmt::print(stderr, "{}\n", error.what());  // of this bench; the next one is served
+    }
+  }
+}
+
+iut::SerialLine line_at(const std::string& path) {
+  const iut::WallClock clock;
+  const auto state = std::filesystem::symlink_status(path);
+  const bool is_new = state.type() == std::filesystem::file_type::not_found ||
+                      (std::filesystem::is_symlink(state) && !std::filesystem::exists(path));
+  return is_new ? iut::SerialLine::at_new_terminal(path, clock) : iut::SerialLine(path, clock);
+}
+
+}  // namespace
+
+void play_on_line(Session& session, const std::string& uri) {
+  const NodePlayer::MakeNode make_node = maker_of(uri);
+  iut::SerialLine line = line_at(session.settings.text("serial"));
+  const std::string upper = session.settings.text("upper");
+  const std::string name = fmt::format("fieldproof {} on a line", uri);
+  if (upper == "-") return serve_bench(STDIN_FILENO, STDOUT_FILENO, line, make_node, name);
+  if (upper != "none") return serve_socket(upper, line, make_node, name);
+  judge::Pics pics;
+  if (session.settings.is_set("pics"))
+    pics = load_pics(session.settings.text("pics"), conformance::node_pics_items());
+  NodePlayer player(line, make_node);
+  player.begin_alone(conformance::node_configuration({}, pics.completed_by(conformance::declared_node())));
+  player.play(-1);
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,44 @@
+#include "conformance/interbus/slave_sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "conformance/interbus/suite.hpp"
+#include "conformance/sequence_check.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+SequenceSearchResult check_slave(const std::string& uri, std::uint64_t cases, std::uint64_t seed = 1) {
+  static const std::unique_ptr<Suite> suite = interbus_suite();
+  SequenceSearch one;
+  one.suite = suite.get();
+  one.role = &slave_sequence_role();
+  one.setup.seed = seed;
+  one.setup.implementations = {{"slave", 0, uri}};
+  one.cases = cases;
+  return search(one);
+}
+
+TEST(SlaveSequence, TheReferenceFollowsTheModel) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) EXPECT_EQ(check_slave("ref", 400, seed).passed, 400U) << seed;
+}
+
+TEST(SlaveSequence, FindsSlavesThatARejectedCycleChanges) {
+  for (const char* name : {"locks_up_after_rejected_cycle", "waits_for_id_cycle_after_rejected_cycle"}) {
+    const SequenceSearchResult result = check_slave(std::string("deviant:") + name, 1'000);
+    ASSERT_TRUE(result.found) << name;
+    EXPECT_EQ(result.found->smallest.size(), 2U) << name;
+    EXPECT_EQ(flips_in(result.found->smallest), 1U) << name;
+    EXPECT_EQ(result.found->outcome.result.reason, "valid_cycle_rejected") << name;
+  }
+}
+
+TEST(SlaveSequence, FindsASlaveThatLatchesABrokenCycle) {
+  const SequenceSearchResult result = check_slave("deviant:latches_in_spite_of_own_error", 1'000);
+  ASSERT_TRUE(result.found);
+  EXPECT_EQ(result.found->smallest.size(), 1U);
+  EXPECT_EQ(result.found->outcome.result.reason, "wrong_value_latched");
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance

@@ -1,0 +1,120 @@
+#include "conformance/valve_bus/node_sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "conformance/sequence_check.hpp"
+#include "conformance/sequence_draw.hpp"
+#include "conformance/valve_bus/suite.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::uint64_t kFixedSeed = 1;
+
+const Suite& valve_suite() {
+  static const std::unique_ptr<Suite> suite = valve_bus_suite();
+  return *suite;
+}
+
+SequenceSearch search_of(const std::string& uri, std::uint64_t cases) {
+  SequenceSearch one;
+  one.suite = &valve_suite();
+  one.role = &node_sequence_role();
+  one.setup.seed = kFixedSeed;
+  one.setup.implementations = {{"node", 0, uri}};
+  one.cases = cases;
+  return one;
+}
+
+std::vector<std::string> nodes_for_check() {
+  std::vector<std::string> names;
+  for (const Deviation& deviation : valve_suite().deviations()) {
+    if (deviation.is_for_check) names.push_back(deviation.name);
+  }
+  return names;
+}
+
+std::string told(const Sequence& sequence) {
+  std::string text;
+  for (const std::string& line : sequence_lines(sequence, node_sequence_role().vocabulary))
+    text += line + "\n";
+  return text;
+}
+
+TEST(NodeSequence, TheReferenceFollowsTheModel) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    SequenceSearch one = search_of("ref", 700);
+    one.setup.seed = seed;
+    const SequenceSearchResult result = search(one);
+    EXPECT_EQ(result.passed, one.cases) << seed << "\n"
+                                        << told(result.found ? result.found->smallest : Sequence{});
+  }
+}
+
+TEST(NodeSequence, FindsEachNodeForCheckWithAtMostFourCommands) {
+  ASSERT_EQ(nodes_for_check().size(), 15U);
+  for (const std::string& name : nodes_for_check()) {
+    const SequenceSearchResult result = search(search_of("deviant:" + name, 5'000));
+    ASSERT_TRUE(result.found) << name;
+    EXPECT_TRUE(result.found->is_confirmed) << name;
+    EXPECT_LE(result.found->smallest.size(), 4U) << name << "\n" << told(result.found->smallest);
+    EXPECT_GE(result.found->smallest.size(), 2U) << name << "\n" << told(result.found->smallest);
+    EXPECT_LE(flips_in(result.found->smallest), 2U) << name << "\n" << told(result.found->smallest);
+  }
+}
+
+// Else it would be no fault of sequences.
+TEST(NodeSequence, NoSingleCommandTellsThem) {
+  const SequenceSource source(node_sequence_role().vocabulary, kFixedSeed);
+  std::vector<Sequence> single;
+  for (std::uint64_t n = 0; single.size() < 300; ++n) {
+    for (const SequenceCommand& command : source.draw(n)) single.push_back({command});
+  }
+  for (const std::string& name : nodes_for_check()) {
+    Setup setup = search_of("deviant:" + name, 1).setup;
+    for (const Sequence& sequence : single) {
+      const Outcome outcome = run_sequence(valve_suite(), node_sequence_role(), sequence, setup);
+      EXPECT_EQ(outcome.result.verdict, judge::Verdict::pass) << name << "\n" << told(sequence);
+    }
+  }
+}
+
+TEST(NodeSequence, WhatIsFoundIsTheSameAgain) {
+  const SequenceSearch one = search_of("deviant:buffer_not_cleared", 1'000);
+  const SequenceSearchResult result = search(one);
+  const SequenceSearchResult again = search(one);
+  ASSERT_TRUE(result.found && again.found);
+  EXPECT_EQ(result.found->smallest, again.found->smallest);
+  EXPECT_EQ(result.found->outcome.result.fingerprint, again.found->outcome.result.fingerprint);
+  const Outcome replayed = run_sequence(*one.suite, *one.role, result.found->smallest, one.setup);
+  EXPECT_EQ(replayed.result.fingerprint, result.found->outcome.result.fingerprint);
+}
+
+TEST(NodeSequence, AStopEndsSearchAndShrinking) {
+  std::stop_source stop;
+  SequenceSearch one = search_of("ref", 1'000);
+  one.stop = stop.get_token();
+  one.on_progress = [&](std::uint64_t done) {
+    if (done == 5) stop.request_stop();
+  };
+  EXPECT_EQ(search(one).passed, 6U);
+}
+
+// What receivers may differ about is no finding, and ends the sequence.
+TEST(NodeSequence, ASilenceAtALimitIsNotJudged) {
+  const SequenceVocabulary& words = node_sequence_role().vocabulary;
+  const auto write = static_cast<std::size_t>(words.find("write") - words.words.data());
+  for (std::int64_t silence = 0; silence < 60; ++silence) {
+    const Sequence sequence{{write, {1, 0, silence}}, {write, {2, 0, 100}}};
+    for (const char* uri : {"ref", "deviant:buffer_not_cleared"}) {
+      const Outcome outcome =
+          run_sequence(valve_suite(), node_sequence_role(), sequence, search_of(uri, 1).setup);
+      EXPECT_EQ(outcome.result.verdict, judge::Verdict::pass) << uri << " " << silence;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance
