@@ -27,10 +27,10 @@ class Pools {
  public:
   explicit Pools(iut::RoleName role) : role_(std::move(role)) {}
 
-  iut::DevicePool& of(const std::string& uri) {
+  iut::DevicePool& of(const std::string& uri, const iut::PeerLimits& limits) {
     const std::scoped_lock lock(mutex_);
     auto& pool = pools_[uri];
-    if (pool == nullptr) pool = pool_of(uri, role_);
+    if (pool == nullptr) pool = pool_of(uri, role_, limits);
     return *pool;
   }
   const iut::RoleName& role() const { return role_; }
@@ -53,13 +53,14 @@ std::string characters_of(const std::string& uri, const line::CharacterFormat& f
                                   uri, text));
 }
 
-iut::Attachment attachment_of(Pools& pools, const std::string& uri) {
+iut::Attachment attachment_of(Pools& pools, const conformance::Wanted& wanted) {
+  const std::string& uri = wanted.uri;
   if (is_in_process(uri)) {
     const std::shared_ptr<iut::Device> device =
         iut::load_plugin(plugin_path(uri), pools.role().protocol, pools.role().role);
     return {device.get(), device, {}};
   }
-  const auto lease = std::make_shared<iut::DevicePool::Lease>(pools.of(uri).take());
+  const auto lease = std::make_shared<iut::DevicePool::Lease>(pools.of(uri, wanted.limits).take());
   return {&**lease, lease, [lease] { lease->set_reusable(); }};
 }
 
@@ -69,7 +70,7 @@ Make attached(iut::RoleName role) {
   const auto pools = std::make_shared<Pools>(std::move(role));
   return [pools](const conformance::Wanted& wanted, const auto& configuration) -> Make::result_type {
     if (!is_attachment(wanted.uri)) return nullptr;
-    return std::make_unique<Attached>(attachment_of(*pools, wanted.uri), configuration, wanted.case_id,
+    return std::make_unique<Attached>(attachment_of(*pools, wanted), configuration, wanted.case_id,
                                       wanted.seed);
   };
 }
@@ -96,13 +97,14 @@ std::string plugin_path(std::string_view uri) {
   return path;
 }
 
-std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role) {
-  if (!uri.starts_with(kPlugin)) return std::make_unique<iut::DevicePool>(uri, role);
+std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role,
+                                         const iut::PeerLimits& limits) {
+  if (!uri.starts_with(kPlugin)) return std::make_unique<iut::DevicePool>(uri, role, limits);
   plugin_path(uri);  // refuses before anything is started
   // This program itself loads it: one that crashes takes a process along that nobody misses.
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   return std::make_unique<iut::DevicePool>(
-      uri, role, std::vector<std::string>{self, "station", role.protocol + "/" + role.role, uri});
+      uri, role, std::vector<std::string>{self, "station", role.protocol + "/" + role.role, uri}, limits);
 }
 
 std::optional<judge::Pics> node_on_real_line(const std::string& uri) {

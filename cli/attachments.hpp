@@ -25,7 +25,8 @@ bool is_in_process(std::string_view uri);
 std::string plugin_path(std::string_view uri);
 
 // Who is called by messages: exec:, unix:, tcp:, and a library in a process of its own.
-std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role);
+std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role,
+                                         const iut::PeerLimits& limits = {});
 
 // What the URI of a serial line says of the node at it, as answers of a PICS; nothing for other URIs.
 std::optional<judge::Pics> node_on_real_line(const std::string& uri);

@@ -30,6 +30,8 @@ constexpr std::array kOptions = {
     Option{"baseline", value, "FILE", "", "run", "failures that are expected, each with its reason and its last day; one that is stale gives 3", false, false, true},
     Option{"confirm", value, "N", "0", "run", "a failure must come again N times, else it is inconclusive", false, true},
     Option{"shard", value, "I/N", "", "run list", "only each N-th of the selected cases, from the I-th on: one of N runs that are all of them together", false, false, true},
+    Option{"call-limit", value, "T", "2s", "run verify check", "how long an implementation in another process may take for one call", false, false, true},
+    Option{"case-limit", value, "T", "10min", "run verify check", "and for all calls of a case", false, false, true},
     Option{"reset", value, "COMMAND", "", "run", "a command of the shell that resets the implementation before each case, with the id behind it; cases then run one by one", false, true},
     Option{"fail-fast", flag, "", "", "run", "stop after the first case that fails"},
     Option{"max-time", value, "T", "", "run matrix emc check shrink", "stop after this time: 90s, 15min, 2h"},

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "conformance/test_case.hpp"
+#include "harness/iut/limits.hpp"
 
 // What the URI of an implementation says, and who plays the role that a case judges.
 namespace fieldproof::conformance {
@@ -24,6 +25,7 @@ struct Wanted {
   const std::string& uri;
   const std::string& case_id;
   std::uint64_t seed;
+  iut::PeerLimits limits{};
 };
 
 // What a suite is given for one role, besides its reference and its deviations.

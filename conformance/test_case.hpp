@@ -11,6 +11,7 @@
 
 #include "conformance/sequence.hpp"
 #include "harness/fault/plan_part.hpp"
+#include "harness/iut/limits.hpp"
 #include "harness/judge/finding.hpp"
 #include "harness/judge/pics.hpp"
 #include "harness/trace/notation.hpp"
@@ -92,7 +93,8 @@ struct Setup {
   std::string plan_file;     // additional declared faults; empty: none
   std::optional<judge::Pics> pics;
   Volume volume = Volume::full;
-  bool record = false;  // keep the trace (bounded) in the outcome
+  iut::PeerLimits limits{};  // of implementations in other processes
+  bool record = false;       // keep the trace (bounded) in the outcome
 };
 
 // A record of everything on the line and at the upper tester, for replay and for people.

@@ -67,7 +67,7 @@ class Run {
       std::function<std::unique_ptr<interbus::SlaveDevice>(const interbus::SlaveConfiguration&)>;
   using MakeMaster =
       std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)>;
-  Wanted wanted(const std::string& uri) const { return {uri, test_case_.id, setup_.seed}; }
+  Wanted wanted(const std::string& uri) const { return {uri, test_case_.id, setup_.seed, setup_.limits}; }
   MakeSlave slave_maker(const std::string& uri) const;
   MakeMaster master_maker(const std::string& uri) const;
   std::unique_ptr<interbus::SlaveDevice> make_slave(const interbus::SlaveConfiguration& configuration);

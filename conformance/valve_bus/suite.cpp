@@ -141,18 +141,18 @@ class ValveBusSuite final : public Suite {
   NodeSetting node_setting(const TestCase& test_case, const Setup& setup) const {
     NodeSetting setting = setting_of<NodeSetting>(setup);
     setting.pics = declared_pics(test_case, setup);
-    setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
-                         seed = setup.seed](const valve_bus::NodeConfiguration& configuration) {
-      return make_node({uri, id, seed}, configuration);
+    setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id, seed = setup.seed,
+                         limits = setup.limits](const valve_bus::NodeConfiguration& configuration) {
+      return make_node({uri, id, seed, limits}, configuration);
     };
     return setting;
   }
 
   HostSetting host_setting(const TestCase& test_case, const Setup& setup) const {
     HostSetting setting = setting_of<HostSetting>(setup);
-    setting.make_host = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id,
-                         seed = setup.seed](const valve_bus::HostConfiguration& configuration) {
-      return make_host({uri, id, seed}, configuration);
+    setting.make_host = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id, seed = setup.seed,
+                         limits = setup.limits](const valve_bus::HostConfiguration& configuration) {
+      return make_host({uri, id, seed, limits}, configuration);
     };
     return setting;
   }

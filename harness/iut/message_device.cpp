@@ -79,6 +79,7 @@ bool MessageDevice::is_quiet() {
 
 bool MessageDevice::begin(const CaseBegin& begin, Bench& bench) {
   bench_ = &bench;
+  case_begin_ = Peer::Clock::now();
   next_time_ = kernel::kNever;
   calls_at_once_ = 0;
   return call(write_case_begin(writer_, begin), Refusal::allowed);
@@ -127,6 +128,10 @@ bool MessageDevice::call(std::span<const std::uint8_t> message, Refusal refusal)
   }
   // One limit for all that happens within the call: what comes drop by drop is as bad as what never comes.
   const auto begin = Peer::Clock::now();
+  if (begin - case_begin_ > limits_.whole_case) {
+    peer_.blame(reasons::kHangs,
+                fmt::format("has not come to the end of a case within {} ms", limits_.whole_case.count()));
+  }
   peer_.send(message, limits_.call);
   for (unsigned actions = 0; actions <= kMostActions; ++actions) {
     const auto answer = peer_.receive(limits_.call, begin);

@@ -89,6 +89,21 @@ Script begun() {
   return script;
 }
 
+// Each call is answered at once, and there is no end of them.
+TEST(MessageDeviceCase, ThatTakesLongerThanItMayIsAHang) {
+  Script script = begun();
+  script.answers(done_message()).answers(done_message()).stays();
+  MessageDevice device = device_of(script, {milliseconds(20'000), milliseconds(20'000), milliseconds(200)});
+  Notes notes;
+  ASSERT_TRUE(device.begin(kCase, notes));
+  const auto begin = Peer::Clock::now();
+  while (Peer::Clock::now() - begin < milliseconds(250)) {
+  }
+  const Blame blame = blame_for([&] { device.set_power(true, kernel::kStart); });
+  EXPECT_EQ(blame.reason, reasons::kHangs);
+  EXPECT_THAT(blame.sentence, HasSubstr("has not come to the end of a case within 200 ms"));
+}
+
 TEST(MessageDeviceHello, TellsUnitAndName) {
   Script script;
   script.answers(capabilities_message(1, 2, "a\x1b[2J\xff")).stays();

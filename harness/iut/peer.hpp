@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/iut/misbehaviour.hpp"
+#include "harness/iut/limits.hpp"
 #include "harness/iut/process.hpp"
 
 // The other end of a stream of messages: a process at its standard streams, or who listens at a socket. It is
@@ -16,11 +17,6 @@
 //
 // Limits: the log (its standard error) is kept up to kKeptLog octets, the last ones.
 namespace fieldproof::iut {
-
-struct PeerLimits {
-  std::chrono::milliseconds start{5'000};  // for its first answer
-  std::chrono::milliseconds call{2'000};   // for each other one
-};
 
 class Peer {
  public:
