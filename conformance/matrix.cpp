@@ -14,7 +14,7 @@ namespace {
 using judge::Verdict;
 
 // One run: a case on the reference (no deviation) or on a deviation.
-struct Run {
+struct PlannedRun {
   std::size_t role = 0;
   std::size_t row = 0;
   const Deviation* deviation = nullptr;
@@ -35,8 +35,8 @@ RoleMatrix blank_role(const Suite& suite, const std::string& role) {
   return matrix;
 }
 
-std::vector<Run> planned_runs(Matrix& matrix) {
-  std::vector<Run> runs;
+std::vector<PlannedRun> planned_runs(Matrix& matrix) {
+  std::vector<PlannedRun> runs;
   for (std::size_t role = 0; role < matrix.roles.size(); ++role) {
     RoleMatrix& block = matrix.roles[role];
     for (std::size_t row = 0; row < block.cases.size(); ++row) {
@@ -171,14 +171,14 @@ Matrix make_matrix(const Suite& suite, const MatrixPlan& plan) {
   matrix.protocol = suite.protocol();
   matrix.seed = plan.seed;
   for (const std::string& role : suite.roles()) matrix.roles.push_back(blank_role(suite, role));
-  const std::vector<Run> runs = planned_runs(matrix);
+  const std::vector<PlannedRun> runs = planned_runs(matrix);
 
   OrderedWork<Cell> work;
   work.count = runs.size();
   work.threads = plan.jobs;
   work.stop = plan.stop;
   work.work = [&](std::size_t i) {
-    const Run& run = runs[i];
+    const PlannedRun& run = runs[i];
     return run_cell(suite, *matrix.roles[run.role].cases[run.row], run.deviation, plan.seed);
   };
   work.deliver = [&](std::size_t i, Cell&& cell) {

@@ -60,9 +60,11 @@ TEST(Sequence, RefusesWhatIsWrongAtItsPlace) {
       {R"([{"do": "octets", "silence": 0, "octets": []}])", "/0/octets"},
       {R"([{"do": "octets", "silence": 0, "octets": [1,2,3,4,5,6,7,8,9]}])", "/0/octets"},
       {R"([{"do": "wait", "ms": 1, "faults": []}])", "faults"},
-      {R"([{"do": "read", "data0": 0, "data1": 0, "silence": 0, "faults": [{"fault": "drop", "unit": 0, "level": 1}]}])",
+      {R"([{"do": "read", "data0": 0, "data1": 0, "silence": 0,
+             "faults": [{"fault": "drop", "unit": 0, "level": 1}]}])",
        "level"},
-      {R"([{"do": "read", "data0": 0, "data1": 0, "silence": 0, "faults": [{"fault": "flip", "unit": -1, "level": 1}]}])",
+      {R"([{"do": "read", "data0": 0, "data1": 0, "silence": 0,
+             "faults": [{"fault": "flip", "unit": -1, "level": 1}]}])",
        "/0/faults/0/unit"},
   };
   for (const BadSequence& one : bad) {

@@ -73,7 +73,7 @@ TEST(NodeSequence, NoSingleCommandTellsThem) {
     for (const SequenceCommand& command : source.draw(n)) single.push_back({command});
   }
   for (const std::string& name : nodes_for_check()) {
-    Setup setup = search_of("deviant:" + name, 1).setup;
+    const conformance::Setup setup = search_of("deviant:" + name, 1).setup;
     for (const Sequence& sequence : single) {
       const Outcome outcome = run_sequence(valve_suite(), node_sequence_role(), sequence, setup);
       EXPECT_EQ(outcome.result.verdict, judge::Verdict::pass) << name << "\n" << told(sequence);
