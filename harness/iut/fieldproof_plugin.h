@@ -103,8 +103,8 @@ typedef struct fieldproof_implementation {
    * same. */
   void (*receive)(void* self, unsigned port, const fieldproof_character* characters, unsigned count,
                   fieldproof_time now);
-  /* With FIELDPROOF_LEVELS: a transmission, and its end as `now`; the role says whether it is told then or when
-   * it begins. May be null otherwise. */
+  /* With FIELDPROOF_LEVELS: a transmission, and its end as `now`; the role says whether it is told then or
+   * when it begins. May be null otherwise. */
   void (*receive_levels)(void* self, unsigned port, fieldproof_time start, fieldproof_time rate,
                          const unsigned char* levels, unsigned count, fieldproof_time now);
   void (*on_time)(void* self, fieldproof_time now);
