@@ -24,6 +24,7 @@ SequenceFile target_of(const Session& session) {
   SequenceFile target;
   std::tie(target.suite, target.role) = sequence_role_at(session.operands.front(), session.catalogue);
   target.setup.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
+  target.setup.limits = limits_from(settings);
   if (settings.is_set("pics"))
     target.setup.pics = load_pics(settings.text("pics"), session.catalogue.pics_items());
   assign_implementations(session, target);

@@ -56,11 +56,17 @@ conformance::Setup setup_from(const Settings& settings, const conformance::Catal
   setup.network_file = settings.text("network");
   setup.plan_file = settings.text("plan");
   if (settings.is_set("pics")) setup.pics = load_pics(settings.text("pics"), catalogue.pics_items());
-  setup.limits.call = settings.duration("call-limit").value();
-  setup.limits.whole_case = settings.duration("case-limit").value();
+  setup.limits = limits_from(settings);
   setup.implementations = parse_implementations(settings.list("iut"), catalogue, selected);
   conformance::check_setup(selected, setup);
   return setup;
+}
+
+iut::PeerLimits limits_from(const Settings& settings) {
+  iut::PeerLimits limits;
+  limits.call = settings.duration("call-limit").value();
+  limits.whole_case = settings.duration("case-limit").value();
+  return limits;
 }
 
 unsigned jobs_from(const Settings& settings) {

@@ -18,6 +18,9 @@ namespace fieldproof::cli {
 conformance::Setup setup_from(const Settings& settings, const conformance::Catalogue& catalogue,
                               std::span<const conformance::Entry> selected);
 
+// Of implementations in other processes: `--call-limit`, `--case-limit`.
+iut::PeerLimits limits_from(const Settings& settings);
+
 unsigned jobs_from(const Settings& settings);
 
 // What `--shard I/N` leaves of a selection: each N-th entry from the I-th on. All N are the whole, and each
