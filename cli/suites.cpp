@@ -14,10 +14,10 @@ Disturbances all_disturbances() {
 }
 
 Suites suites() {
-  return suites_with(all_disturbances());
+  return suites_under(all_disturbances());
 }
 
-Suites suites_with(const Disturbances& disturbances) {
+Suites suites_under(const Disturbances& disturbances) {
   Suites all;
   all.push_back(conformance::interbus_suite({}, {disturbances.stresses, disturbances.of_plans}));
   all.push_back(conformance::valve_bus_suite({.make_node = attached_nodes(),
