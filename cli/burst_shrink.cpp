@@ -33,7 +33,7 @@ DisturbedRun run_disturbed(const CaseFile& stored) {
   const auto struck = std::make_shared<StruckBits>();
   const Disturbances all = all_disturbances();
   const Disturbances noted{watched(all.stresses, struck), watched(all.of_plans, struck)};
-  const conformance::Catalogue catalogue(suites_with(noted));
+  const conformance::Catalogue catalogue(suites_under(noted));
   const conformance::CaseRun done = conformance::run_case(catalogue.at(stored.id), stored.setup);
   return {std::move(*struck), done.outcome.result};
 }

@@ -196,7 +196,7 @@ std::string wave_dump_of(const conformance::CaseRun& done) {
 StoredEntry::StoredEntry(const CaseFile& stored, const conformance::Catalogue& catalogue) {
   if (stored.is_quiet) {
     const Disturbances all = all_disturbances();
-    quiet_ = std::make_unique<conformance::Catalogue>(suites_with({quiet(all.stresses), all.of_plans}));
+    quiet_ = std::make_unique<conformance::Catalogue>(suites_under({quiet(all.stresses), all.of_plans}));
   }
   entry_ = &(quiet_ ? *quiet_ : catalogue).at(stored.id);
 }

@@ -92,7 +92,8 @@ TEST_F(Check, ShrinksBurstsToTheBitsThatMattered) {
     const Called shrunk = call({"shrink", stored, "--case", "small.json"});
     EXPECT_EQ(shrunk.exit_code, kAllAsExpected) << one.uri << shrunk.out << shrunk.err;
     std::size_t bits = 0;
-    for (const auto& disturbance : json("small.plan.json")["disturbances"]) {
+    const nlohmann::json plan = json("small.plan.json");
+    for (const auto& disturbance : plan["disturbances"]) {
       for (const auto& transmission : disturbance["flipped_bits"]) bits += transmission["bits"].size();
     }
     EXPECT_GE(bits, 1U) << one.uri;

@@ -14,10 +14,10 @@ Disturbances all_disturbances() {
 }
 
 Suites suites() {
-  return suites_with(all_disturbances());
+  return suites_under(all_disturbances());
 }
 
-Suites suites_with(const Disturbances& disturbances) {
+Suites suites_under(const Disturbances& disturbances) {
   Suites all;
   all.push_back(conformance::interbus_suite({.slave = {.attached = attached_slaves()},
                                              .disturbances = disturbances.of_plans,

@@ -19,6 +19,6 @@ struct Disturbances {
 Disturbances all_disturbances();
 
 Suites suites();
-Suites suites_with(const Disturbances& disturbances);
+Suites suites_under(const Disturbances& disturbances);
 
 }  // namespace fieldproof::cli

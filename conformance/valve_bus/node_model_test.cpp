@@ -55,7 +55,7 @@ TEST(NodeModel, LetsAWriteGoThatTheNextOneOvertakes) {
   model.hear(frame_of({5, 0, 1, 0, 4}, 1 * kMillisecond), 0);
   model.hear(frame_of({5, 0, 2, 0, 7}, 1300 * kMicrosecond), 0);
   EXPECT_EQ(reason_of(model.move(2, kStart + 2 * kMillisecond)), "");
-  EXPECT_EQ(reason_of(model.move(1, kStart + 2100 * kMicrosecond)), "valves_wrong");
+  EXPECT_EQ(reason_of(model.move(1, kStart + 2100 * kMicrosecond)), "moves_without_command");
 }
 
 TEST(NodeModel, AnswersReadsOfItsOwnOnly) {

@@ -180,11 +180,10 @@ class NodeSequenceRun {
   // In pieces as long as a character: a line tells a transmission when it is over, and a receiver knows of a
   // missing stop bit no later than that.
   void drive_low(std::int64_t bits) {
-    line::Waveform piece;
-    piece.rate = bench_.rules().bit_rate;
     const auto character = static_cast<std::int64_t>(bench_.levels_of(0).size());
     for (std::int64_t left = bits; left > 0; left -= character) {
-      piece.levels.clear();
+      line::Waveform piece;  // a line may take away what it is given
+      piece.rate = bench_.rules().bit_rate;
       piece.levels.append_fill(false, static_cast<std::size_t>(std::min(left, character)));
       bench_.drive(piece);
     }
