@@ -51,6 +51,9 @@ constexpr std::array exceptions{
               "an implementation that hangs is given up in time of the machine"},
     Exception{"harness/iut/peer.hpp", "steady_clock",
               "an implementation outside may hang; how long it may is time of the machine"},
+    Exception{"harness/iut/wall_clock.hpp", "steady_clock",
+              "a real line is in time of the machine; nothing of it is replayed, and no other source asks "
+              "the clock"},
     Exception{"harness/iut/process.cpp", "steady_clock", "a process ends in time of the machine"},
 };
 

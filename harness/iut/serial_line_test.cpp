@@ -33,9 +33,9 @@ TEST(SerialUri, SaysWhatTheLineIs) {
 TEST(SerialUri, RefusesWhatIsNone) {
   for (const char* wrong :
        {"serial:", "serial:?baud=9600", "serial:x?baud=", "serial:x?baud=9600x", "serial:x?baud=-1",
-        "serial:x?baud=99999999999999999999", "serial:x?format=9n1", "serial:x?format=8x1", "serial:x?format=8n",
-        "serial:x?format=8n3", "serial:x?latency=3", "serial:x?latency=-3us", "serial:x?speed=1",
-        "serial:x?baud", "serial:x?&baud=9600"}) {
+        "serial:x?baud=99999999999999999999", "serial:x?format=9n1", "serial:x?format=8x1",
+        "serial:x?format=8n", "serial:x?format=8n3", "serial:x?latency=3", "serial:x?latency=-3us",
+        "serial:x?speed=1", "serial:x?baud", "serial:x?&baud=9600"}) {
     try {
       serial_settings(wrong);
       ADD_FAILURE() << wrong;
@@ -46,7 +46,8 @@ TEST(SerialUri, RefusesWhatIsNone) {
 }
 
 TEST(SerialUri, EachFormatOfAUartIsKnown) {
-  for (const char* text : {"8n1", "7e2", "5o1", "8m1", "6s2"}) EXPECT_EQ(character_format_of(text)->text(), text);
+  for (const char* text : {"8n1", "7e2", "5o1", "8m1", "6s2"})
+    EXPECT_EQ(character_format_of(text)->text(), text);
 }
 
 class SerialLines : public testing::Test {

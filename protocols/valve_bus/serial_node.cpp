@@ -163,6 +163,18 @@ void SerialNode::expect_drivable(const line::Waveform& wave, const HeardCharacte
     refuse("levels that are no right character cannot be driven");
 }
 
+// The tester talks while the box does: into an answer, or because the box never stops.
+void SerialNode::expect_an_answer() const {
+  constexpr std::uint64_t kLongestAnswer = 64;
+  if (arrived_ - arrived_before_ > kLongestAnswer) {
+    throw iut::Misbehaviour(
+        iut::reasons::kFloods,
+        fmt::format("the implementation has sent {} octets, and talks while it should hear",
+                    arrived_ - arrived_before_));
+  }
+  refuse("nothing can be sent into an answer");
+}
+
 void SerialNode::receive(segment::PortIndex, const line::Waveform& reception) {
   guarded([&] {
     now_ = reception.end();
@@ -171,7 +183,7 @@ void SerialNode::receive(segment::PortIndex, const line::Waveform& reception) {
     if (characters.size() != 1) refuse("levels that are no right character cannot be driven");
     const HeardCharacter& character = characters.front();
     expect_drivable(reception, character);
-    if (character.start < transmitter_.driven_until()) refuse("nothing can be sent into an answer");
+    if (character.start < transmitter_.driven_until()) expect_an_answer();
     expect_no_short_gap(character.start);
     pending_.push_back(character.octet());
     sent_until_ = character.busy_until;
@@ -185,6 +197,7 @@ void SerialNode::flush(kernel::Time now) {
   if (attachment_.upper != nullptr) ask_upper(clock_.now());
   const iut::Stamp written = attachment_.line->write(pending_);
   sent_ += pending_.size();
+  arrived_before_ = arrived_;
   pending_.clear();
   anchor_ = {sent_until_, {written.earliest, written.latest + attachment_.latency}};
   if (attachment_.upper != nullptr) wait_until_heard();

@@ -78,6 +78,7 @@ class SerialNode final : public NodeDevice, private iut::Bench {
   // ---- the tester's side ----
   void expect_drivable(const line::Waveform& wave, const HeardCharacter& character) const;
   void expect_no_short_gap(kernel::Time start) const;
+  [[noreturn]] void expect_an_answer() const;
   void flush(kernel::Time now);
   void wait_until_heard();
 
@@ -121,8 +122,9 @@ class SerialNode final : public NodeDevice, private iut::Bench {
   std::uint64_t heard_ = 0;  // of these, by the node
 
   std::deque<iut::Arrival> arrivals_;
-  std::uint64_t arrived_ = 0;  // octets, of the box
-  std::uint64_t said_ = 0;     // as it tells
+  std::uint64_t arrived_ = 0;         // octets, of the box
+  std::uint64_t said_ = 0;            // as it tells
+  std::uint64_t arrived_before_ = 0;  // the last frame of the tester
   std::deque<Said> told_;
   kernel::Time told_until_{kernel::Duration::min() / 2};  // driver off, as it told
   std::deque<Move> moves_;

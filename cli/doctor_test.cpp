@@ -1,0 +1,46 @@
+// Subject: cli/doctor.cpp
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "cli/probe/program_fixture.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+class DoctorTest : public ProgramFixture {};
+
+TEST_F(DoctorTest, SaysHowWellTheMachineKnowsInstants) {
+  const Called called = call({"doctor"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  for (const char* words : {"a look at the clock", "a stamp is known to", "U of a turn-round"})
+    EXPECT_HOLDS(called.out, words);
+}
+
+TEST_F(DoctorTest, TellsWhatIsAttached) {
+  const Called process = call({"doctor", "--iut", "exec:'" FIELDPROOF_EXE "' station valve_bus/node ref"});
+  EXPECT_EQ(process.exit_code, 0) << process.err;
+  EXPECT_HOLDS(process.out, "attached, calls itself 'fieldproof ref'");
+  EXPECT_HOLDS(process.out, "echo, unknown case");
+  EXPECT_EQ(call({"doctor", "--iut", "plugin:" VALVE_NODE_PLUGIN}).exit_code, 0);
+  EXPECT_EQ(call({"doctor", "--iut", "plugin:" VALVE_NODE_PLUGIN "?in-process"}).exit_code, 0);
+  EXPECT_HOLDS(call({"doctor", "--iut", "ref"}).out, "nothing is attached");
+}
+
+TEST_F(DoctorTest, LooksAtALineAndItsUpperChannel) {
+  const Called called = call({"doctor", "--iut",
+                              "serial:./line?baud=9600&format=8e1&upper=exec:'" FIELDPROOF_EXE
+                              "' station valve_bus/node ref --serial ./line"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  for (const char* words : {"upper channel", "pseudo terminal", "silent for 200 ms"})
+    EXPECT_HOLDS(called.out, words);
+}
+
+TEST_F(DoctorTest, WhatCannotBeUsedIsFive) {
+  for (const char* wrong : {"exec:false", "unix:./nobody", "plugin:./nothing.so", "serial:./nothing"})
+    EXPECT_EQ(call({"doctor", "--iut", wrong}).exit_code, 5) << wrong;
+  EXPECT_EQ(call({"doctor", "--iut", "serial:"}).exit_code, 64);
+}
+
+}  // namespace
+}  // namespace fieldproof::cli

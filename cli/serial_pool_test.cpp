@@ -1,0 +1,223 @@
+#include "cli/serial_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/probe/program_fixture.hpp"
+#include "harness/iut/process.hpp"
+
+// Nodes that play on pseudo terminals, judged in wall-clock time by the real program.
+namespace fieldproof::cli {
+namespace {
+
+constexpr std::string_view kNodeSuite = "valve_bus/node/";
+
+class SerialRuns : public ProgramFixture {
+ protected:
+  struct Case {
+    std::string verdict;
+    std::string reason;
+    std::string findings;
+  };
+  using Cases = std::map<std::string, Case>;
+
+  std::string line() const { return (folder_ / "line").string(); }
+  std::string station(const std::string& node) const {
+    return "'" FIELDPROOF_EXE "' station valve_bus/node " + node + " --serial '" + line() + "'";
+  }
+  std::string in_c(const std::string& deviation = {}) const {
+    return station("\"exec:'" VALVE_NODE_PROCESS "' " + deviation + "\"");
+  }
+  std::string uri(const std::string& upper, int baud = 375'000) const {
+    return "serial:" + line() + "?baud=" + std::to_string(baud) + "&format=8m1" +
+           (upper.empty() ? "" : "&upper=" + upper);
+  }
+
+  Cases judged(const std::string& iut, const std::vector<std::string>& selectors) {
+    const std::string out = "run" + std::to_string(++runs_);
+    std::vector<std::string> words{"run",   "--volume", "quick", "--record", "failed",
+                                   "--iut", iut,        "--out", out};
+    for (const std::string& one : selectors) words.push_back(std::string(kNodeSuite) + one);
+    const Called called = call(words);
+    EXPECT_TRUE(called.exit_code <= 2 || called.exit_code == 4) << called.exit_code << called.err;
+    Cases found;
+    if (read(out + "/results.json").empty()) return found;
+    const nlohmann::json results = json(out + "/results.json");
+    for (const auto& one : results.at("cases")) {
+      const std::string id = one.at("id").get<std::string>().substr(kNodeSuite.size());
+      found[id] = {one.at("verdict"), one.at("reason"), one.at("findings").dump()};
+    }
+    return found;
+  }
+
+  // On a machine that is busy an instant may be in doubt; that is no verdict about the node.
+  void expect_no_wrong_verdict(const Cases& cases) {
+    EXPECT_FALSE(cases.empty());
+    for (const auto& [id, one] : cases) {
+      EXPECT_TRUE(one.verdict == "pass" || one.reason == "timing_in_doubt")
+          << id << ": " << one.verdict << one.reason << one.findings;
+    }
+  }
+
+ private:
+  int runs_ = 0;
+};
+
+const std::vector<std::string> kSome{"read/is_answered",
+                                     "read/data_is_not_looked_at",
+                                     "write/drives_the_valves",
+                                     "write/one_board_takes_the_first_octet",
+                                     "address/switches_10_are_decimal",
+                                     "framing/short_frames_are_discarded",
+                                     "framing/joined_frames_are_no_write",
+                                     "timing/turn_round_is_within_its_span",
+                                     "timing/driver_is_on_for_the_answer_only",
+                                     "timing/read_behind_write_is_served",
+                                     "power/power_up_is_safe",
+                                     "power/power_lost_in_a_frame"};
+
+TEST_F(SerialRuns, ReferencePassesInWallClockTime) {
+  expect_no_wrong_verdict(judged(uri("exec:" + station("ref")), kSome));
+}
+
+TEST_F(SerialRuns, NodeInCPassesAsAProcessAndAsALibrary) {
+  expect_no_wrong_verdict(judged(uri("exec:" + in_c()), kSome));
+  expect_no_wrong_verdict(judged(uri("exec:" + station("plugin:" VALVE_NODE_PLUGIN)), {"read/is_answered"}));
+}
+
+TEST_F(SerialRuns, CharactersAreSlowAtALowBitRate) {
+  expect_no_wrong_verdict(judged(uri("exec:" + station("ref"), 9'600), {"read/is_answered"}));
+}
+
+TEST_F(SerialRuns, NodesATenthTooEarlyAndTooLateAreNeverRight) {
+  const std::string id = "timing/turn_round_is_within_its_span";
+  for (const auto& [node, reason] : {std::pair{"deviant:turns_round_a_tenth_early", "answer_too_early"},
+                                     std::pair{"deviant:turns_round_a_tenth_late", "answer_too_late"}}) {
+    const Case judged_one = judged(uri("exec:" + station(node), 2'400), {id}).at(id);
+    EXPECT_TRUE(judged_one.reason == reason || judged_one.reason == "timing_in_doubt")
+        << node << judged_one.verdict << judged_one.findings;
+  }
+}
+
+TEST_F(SerialRuns, WhatTheLineCannotDoDoesNotApply) {
+  const Cases cases = judged(uri("exec:" + station("ref")),
+                             {"line/break_is_no_frame", "framing/gaps_inside_a_frame",
+                              "timing/wrong_bit_rates_are_not_understood", "read/snapshot_is_not_torn",
+                              "timing/far_node_answers_in_time", "line/collision_does_not_change_the_node"});
+  EXPECT_EQ(cases.size(), 6U);
+  for (const auto& [id, one] : cases) {
+    EXPECT_EQ(one.verdict, "not-applicable") << id << one.findings;
+    EXPECT_NE(one.reason, "") << id;
+  }
+}
+
+// Begins to play some time after it was started.
+void wait_for(const std::string& path) {
+  for (int n = 0; n < 20'000 && !std::filesystem::exists(path); ++n)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+TEST_F(SerialRuns, UpperChannelAtASocket) {
+  const std::string socket = (folder_ / "upper").string();
+  const iut::Process player(
+      {FIELDPROOF_EXE, "station", "valve_bus/node", "ref", "--serial", line(), "--upper", socket});
+  wait_for(socket);
+  expect_no_wrong_verdict(judged(uri("unix:" + socket), {"read/is_answered"}));
+  expect_no_wrong_verdict(judged(uri("unix:" + socket), {"write/drives_the_valves"}));
+}
+
+// A box of which nothing but the line is there.
+TEST_F(SerialRuns, WithoutAnUpperChannelTheLineAloneIsJudged) {
+  write("node.pics.json", R"({ "items": { "bit_rate": 9600, "address": 5 } })");
+  const iut::Process player({FIELDPROOF_EXE, "station", "valve_bus/node", "ref", "--serial", line(),
+                             "--upper", "none", "--pics", (folder_ / "node.pics.json").string()});
+  wait_for(line());
+  const Cases cases = judged(
+      uri("", 9'600), {"read/is_answered", "framing/short_frames_are_discarded", "write/drives_the_valves",
+                       "power/power_up_is_safe", "address/switches_10_are_decimal"});
+  EXPECT_EQ(cases.at("write/drives_the_valves").verdict, "not-applicable");
+  EXPECT_EQ(cases.at("power/power_up_is_safe").verdict, "not-applicable");
+  EXPECT_EQ(cases.at("address/switches_10_are_decimal").verdict, "not-applicable");
+  EXPECT_TRUE(cases.at("read/is_answered").verdict == "pass" ||
+              cases.at("read/is_answered").reason == "timing_in_doubt")
+      << cases.at("read/is_answered").findings;
+}
+
+TEST_F(SerialRuns, SilentBoxDoesNotAnswer) {
+  const iut::SerialLine box = iut::SerialLine::at_new_terminal(line(), iut::WallClock());
+  EXPECT_EQ(judged(uri(""), {"read/is_answered"}).at("read/is_answered").reason, "no_answer");
+}
+
+TEST_F(SerialRuns, FloodIsAVerdict) {
+  iut::SerialLine box = iut::SerialLine::at_new_terminal(line(), iut::WallClock());
+  std::jthread flood([&](const std::stop_token& stop) {
+    const std::vector<std::uint8_t> octets(512, 0x55);
+    try {
+      while (!stop.stop_requested()) box.write(octets);
+    } catch (const kernel::Error&) {
+      // Nobody reads any more.
+    }
+  });
+  const Case flooded = judged(uri(""), {"read/is_answered"}).at("read/is_answered");
+  EXPECT_EQ(flooded.verdict, "fail") << flooded.findings;
+}
+
+TEST_F(SerialRuns, BoxThatVanishesIsAVerdict) {
+  auto box = std::make_unique<iut::SerialLine>(iut::SerialLine::at_new_terminal(line(), iut::WallClock()));
+  std::jthread unplug([&] {
+    // The end of the first command.
+    for (std::size_t heard = 0; heard < 5;) {
+      if (const auto arrival = box->read(kernel::kNever)) heard += arrival->octets.size();
+    }
+    box.reset();
+  });
+  const Case gone = judged(uri(""), {"read/is_answered"}).at("read/is_answered");
+  EXPECT_EQ(gone.reason, "implementation_gone") << gone.findings;
+}
+
+TEST_F(SerialRuns, WhatCannotBeUsedEndsTheRun) {
+  const std::vector<std::pair<std::string, int>> all{
+      {"serial:./nothing", 5},      {"serial:/dev/null", 5},          {"serial:", 64},
+      {"serial:./line?baud=x", 64}, {"serial:./line?format=7e1", 64}, {"serial:./line?upper=exec:false", 5}};
+  for (const auto& [wrong, code] : all)
+    EXPECT_EQ(call({"run", "valve_bus/node/read/is_answered", "--iut", wrong}).exit_code, code) << wrong;
+}
+
+// What is wrong with the node in C is told by the same case over the line as in lock step.
+struct Deviation {
+  const char* name;
+  const char* test_case;
+  const char* reason;
+
+  friend void PrintTo(const Deviation& one, std::ostream* out) { *out << one.name; }
+};
+
+class SerialDeviations : public SerialRuns, public testing::WithParamInterface<Deviation> {};
+
+TEST_P(SerialDeviations, IsFoundByTheCaseThatNamesIt) {
+  const auto [name, test_case, reason] = GetParam();
+  const Case found = judged(uri("exec:" + in_c(name)), {test_case}).at(test_case);
+  EXPECT_EQ(found.reason, reason) << found.verdict << found.findings;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    InC, SerialDeviations,
+    testing::Values(
+        Deviation{"check_without_command", "check/single_bit_errors_are_refused", "acts_on_wrong_check"},
+        Deviation{"answers_writes", "write/drives_the_valves", "write_answered"},
+        Deviation{"address_low_nibble", "address/only_its_own_id_acts", "acts_on_foreign_id"},
+        Deviation{"any_command_reads", "command/undefined_commands_are_ignored", "acts_on_undefined_command"},
+        Deviation{"read_drives_valves", "read/data_is_not_looked_at", "valves_moved_by_read"},
+        Deviation{"data_swapped", "write/drives_the_valves", "valves_wrong"},
+        Deviation{"response_check_with_id", "read/is_answered", "answer_check_wrong"},
+        Deviation{"turns_round_late", "timing/turn_round_is_within_its_span", "answer_too_late"},
+        Deviation{"driver_not_released", "timing/driver_is_on_for_the_answer_only", "driver_not_released"},
+        Deviation{"takes_long_frames", "framing/long_frames_are_discarded", "acts_on_long_frame"}),
+    [](const testing::TestParamInfo<Deviation>& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace fieldproof::cli
