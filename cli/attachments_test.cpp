@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
             {{{"turns_round_late", "read/is_answered", "answer_too_late"},
               {"any_command_reads", "command/undefined_commands_are_ignored", "acts_on_undefined_command"}}}},
         Served{"valve_bus/host",
-               43,
+               44,
                {{{"sends_any_command", "request/undefined_commands_are_refused", "undefined_command_sent"},
                  {"request_check_is_sum", "request/check_is_the_exclusive_or", "check_wrong"}}}},
         Served{

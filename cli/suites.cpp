@@ -9,8 +9,7 @@
 namespace fieldproof::cli {
 
 Disturbances all_disturbances() {
-  const auto of_plans = emc::plan_disturbances();
-  return {emc::catalogue_stresses(), {of_plans.begin(), of_plans.end()}};
+  return {emc::catalogue_stresses(), emc::plan_disturbances()};
 }
 
 Suites suites() {

@@ -123,14 +123,19 @@ function(fieldproof_tests name folder)
     endif()
   endforeach()
   # One seed for all property tests: a failure in CI is a failure at the desk.
-  foreach(part IN ITEMS "*Threads*" "-*Threads*")
+  # What is judged in wall-clock time has the machine for itself.
+  foreach(part IN ITEMS "*Threads*" "*SerialRuns*" "-*Threads*:*SerialRuns*")
     set(label plain)
+    set(serial OFF)
     if(part STREQUAL "*Threads*")
       set(label threads)
+    elseif(part STREQUAL "*SerialRuns*")
+      set(label wall_clock)
+      set(serial ON)
     endif()
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}/" TEST_FILTER "${part}"
       TEST_LIST ${name}_${label}
-      PROPERTIES LABELS ${label} ENVIRONMENT "RC_PARAMS=seed=20240611" TIMEOUT 600)
+      PROPERTIES LABELS ${label} ENVIRONMENT "RC_PARAMS=seed=20240611" TIMEOUT 600 RUN_SERIAL ${serial})
   endforeach()
 endfunction()
 

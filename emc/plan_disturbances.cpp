@@ -268,11 +268,11 @@ DisturbanceModel read_flipped_bits(const Value& value) {
 
 }  // namespace
 
-std::span<const fault::DisturbanceKind> plan_disturbances() {
-  static const std::array<fault::DisturbanceKind, 4> kinds{{{"bursts", read_burst_model},
-                                                            {"binary_symmetric", read_binary_symmetric},
-                                                            {"gilbert_elliott", read_gilbert_elliott},
-                                                            {"flipped_bits", read_flipped_bits}}};
+const std::vector<fault::DisturbanceKind>& plan_disturbances() {
+  static const std::vector<fault::DisturbanceKind> kinds{{"bursts", read_burst_model},
+                                                         {"binary_symmetric", read_binary_symmetric},
+                                                         {"gilbert_elliott", read_gilbert_elliott},
+                                                         {"flipped_bits", read_flipped_bits}};
   return kinds;
 }
 

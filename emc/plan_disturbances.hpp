@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <vector>
 
 #include "harness/fault/disturbance.hpp"
 
@@ -25,6 +25,6 @@
 // not come do nothing.
 namespace fieldproof::emc {
 
-std::span<const fault::DisturbanceKind> plan_disturbances();
+const std::vector<fault::DisturbanceKind>& plan_disturbances();
 
 }  // namespace fieldproof::emc

@@ -34,7 +34,7 @@ const std::map<std::string, Names, std::less<>>& directions() {
       {"emc", with({"protocols"}, bench_ground)},
       {"fuzz", with({"protocols"}, bench_ground)},
       {"cli", with({"protocols", "reports", "conformance", "emc"}, bench_ground)},
-      {"bench", with({"protocols", "reports", "conformance", "emc"}, bench_ground)},
+      {"bench", with({"protocols", "reports", "conformance", "emc", "examples"}, bench_ground)},
       {"house", {}},
       {"examples", {"iut"}},  // the header of plug-ins
   };

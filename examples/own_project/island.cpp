@@ -119,7 +119,7 @@ Outcome run(const NodeCase& one, const Setup& setup) {
       return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
     };
   }
-  Outcome outcome{run_node_case(one, setting), {}};
+  Outcome outcome{run_on_bench(one, setting), {}};
   recorder.keep(outcome);
   return outcome;
 }

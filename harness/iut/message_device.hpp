@@ -59,7 +59,7 @@ class MessageDevice final : public Device {
   UnitKind unit_kind_ = UnitKind::characters;
   MessageWriter writer_;
   Bench* bench_ = nullptr;
-  Peer::Clock::time_point case_begin_{};
+  Peer::Clock::time_point case_begin_ = Peer::Clock::now();
   kernel::Time next_time_ = kernel::kNever;
   kernel::Time last_call_{};
   unsigned calls_at_once_ = 0;

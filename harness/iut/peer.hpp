@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/iut/misbehaviour.hpp"
 #include "harness/iut/limits.hpp"
+#include "harness/iut/misbehaviour.hpp"
 #include "harness/iut/process.hpp"
 
 // The other end of a stream of messages: a process at its standard streams, or who listens at a socket. It is
