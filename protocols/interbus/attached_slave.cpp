@@ -10,7 +10,7 @@
 namespace fieldproof::interbus {
 namespace {
 
-constexpr unsigned kMostWords = kInputWord - kOutputWord;
+constexpr unsigned kMostSlaveWords = kInputWord - kOutputWord;
 
 using Settings = std::vector<std::pair<std::string, std::int64_t>>;
 
@@ -115,7 +115,7 @@ SlaveConfiguration slave_configuration_of(const iut::CaseBegin& begin) {
     return std::clamp<std::int64_t>(iut::setting(begin, name, absent), 0, most);
   };
   configuration.id_code = static_cast<std::uint16_t>(within("id_code", 0, 0x1FFF));
-  configuration.words = static_cast<unsigned>(within("words", 0, kMostWords));
+  configuration.words = static_cast<unsigned>(within("words", 0, kMostSlaveWords));
   configuration.has_branch = within("has_branch", 0, 1) != 0;
   rules.bit_rate = std::max<std::int64_t>(1, within("bit_rate", rules.bit_rate, 100'000'000));
   rules.forward_delay_half_bits =

@@ -68,6 +68,7 @@ class ServedSlave final : public iut::ServedStation<SlaveDevice>, private Termin
 
   bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override;
   void set_power(bool is_on, kernel::Time now) override;
+  using iut::ServedStation<SlaveDevice>::receive;
   void receive(unsigned port, const line::Waveform& reception) override {
     act(reception.start, [&] { station().receive(port, reception); });
   }

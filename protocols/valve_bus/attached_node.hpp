@@ -63,6 +63,7 @@ class ServedNode final : public iut::ServedStation<NodeDevice>, private NodeBoar
   void set_power(bool is_on, kernel::Time now) override {
     act(now, [&] { station().set_power(is_on, now); });
   }
+  using iut::ServedStation<NodeDevice>::receive;
   void receive(unsigned port, const line::Waveform& reception) override {
     act(reception.end(), [&] { station().receive(port, reception); });
   }
