@@ -105,10 +105,24 @@ TEST_F(AcceptedFailures, RunOfTheFailedOnesLeavesOutTheExpected) {
   EXPECT_HOLDS(again.err, "1 of the cases of r did not pass");
 }
 
+// The baseline of now decides, also about what was judged before.
+TEST_F(AcceptedFailures, ResumedRunIsHeldAgainstTheBaselineOfNow) {
+  expect_of("odd/end/fails", kLater);
+  EXPECT_EQ(run({"odd/end/fails", "odd/end/warns", "--max-time", "1h"}).exit_code, 0);
+  expect_of("odd/end/warns", kLater);
+  EXPECT_EQ(probe({"run", "--resume", "r"}).exit_code, 1);
+}
+
 using Confirmation = Program;
 
 TEST_F(Confirmation, FailureThatComesAgainStaysOne) {
   EXPECT_EQ(code({"run", "odd/end/fails", "--confirm", "3"}), 1);
+}
+
+TEST_F(Confirmation, RecordingIsARepetitionAsWell) {
+  const Called called = probe({"run", "odd/end/fails_once", "--confirm", "2"});
+  EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "its repetition 1 gave pass");
 }
 
 TEST_F(Confirmation, FailureThatDoesNotIsInconclusiveAndKeepsWhatWasSeen) {
@@ -152,11 +166,21 @@ TEST_F(Shard, OtherWordsAreRefused) {
   EXPECT_EQ(code({"run", "--failed", "--shard", "1/2"}), 64);
 }
 
+// What a part of a whole has selected stays selected.
+TEST_F(Shard, ResumedAndFailedRunsKeepTheirSelection) {
+  EXPECT_EQ(code({"run", "odd/end/fails", "odd/slow/**", "--shard", "1/2", "--out", "a"}), 1);
+  const std::size_t failed = json("a/results.json")["counts"]["by_verdict"]["fail"];
+  EXPECT_EQ(code({"run", "--resume", "a", "--shard", "2/2"}), 64);
+  EXPECT_EQ(code({"run", "--failed=a", "--fail-fast", "--out", "b"}), 1);
+  EXPECT_EQ(code({"run", "--resume", "b"}), 1);
+  EXPECT_EQ(json("b/results.json")["counts"]["judged"], failed);
+  EXPECT_EQ(json("b/results.json")["counts"]["not_run"], 0);
+}
+
 using Reset = Program;
 
 TEST_F(Reset, CommandRunsBeforeEachCaseWithItsId) {
-  const Called called =
-      probe({"run", "probe/**", "--reset", "f() { echo \"$1\" >> ids; }; f", "--jobs", "2"});
+  const Called called = probe({"run", "probe/**", "--reset", "echo \"$1\" >> ids", "--jobs", "2"});
   EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
   EXPECT_HOLDS(read("ids"), "probe/station/data/word_is_latched\n");
   const std::string ids = read("ids");
@@ -164,7 +188,7 @@ TEST_F(Reset, CommandRunsBeforeEachCaseWithItsId) {
 }
 
 TEST_F(Reset, FailureLeavesTheCaseInconclusiveWithWhatWasSaid) {
-  const Called called = probe({"run", "probe/**", "--reset", "echo relay is gone; exit 3; :"});
+  const Called called = probe({"run", "probe/**", "--reset", "echo relay is gone; exit 3"});
   EXPECT_EQ(called.exit_code, 2);
   EXPECT_HOLDS(called.out, "(reset_failed)");
   EXPECT_HOLDS(called.out, "ended with exit code 3, and said: relay is gone");
@@ -173,14 +197,14 @@ TEST_F(Reset, FailureLeavesTheCaseInconclusiveWithWhatWasSaid) {
 TEST(ResetHook, ThatNeverEndsIsEnded) {
   conformance::TestCase test_case;
   test_case.id = "a/b/c";
-  const auto hook = reset_hook("sleep 1000; :", std::chrono::milliseconds(200));
-  EXPECT_EQ(hook(test_case), "'sleep 1000; :' has not ended within 200 ms");
+  const auto hook = reset_hook("sleep 1000", std::chrono::milliseconds(200));
+  EXPECT_EQ(hook(test_case), "'sleep 1000' has not ended within 200 ms");
 }
 
 TEST(ResetHook, ThatSaysALotIsHeardToItsEnd) {
   conformance::TestCase test_case;
   test_case.id = "a/b/c";
-  const auto hook = reset_hook("seq 1 100000; exit 1;", std::chrono::seconds(20));
+  const auto hook = reset_hook("seq 1 100000; exit 1", std::chrono::seconds(20));
   const std::optional<std::string> said = hook(test_case);
   ASSERT_TRUE(said);
   EXPECT_LT(said->size(), 3000U);

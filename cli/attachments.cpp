@@ -130,8 +130,8 @@ conformance::GivenNodes::Make attached_nodes() {
              const conformance::Wanted& wanted,
              const auto& configuration) -> std::unique_ptr<valve_bus::NodeDevice> {
     if (!wanted.uri.starts_with(iut::kSerialUri)) return in_lock_step(wanted, configuration);
-    return std::make_unique<valve_bus::SerialNode>(lines->take(wanted.uri), configuration, wanted.case_id,
-                                                   wanted.seed);
+    return std::make_unique<valve_bus::SerialNode>(lines->take(wanted.uri, wanted.limits), configuration,
+                                                   wanted.case_id, wanted.seed);
   };
 }
 

@@ -107,12 +107,12 @@ std::vector<std::string> Baseline::stale(const reports::Run& run) const {
     const auto say = [&](const std::string& what) {
       sentences.push_back(fmt::format("{}: {} {}", entry.place, entry.id, what));
     };
-    if (entry.has_expired) {
-      say(fmt::format("was accepted until {}; mend it, or say until when from now on", entry.expires));
-    } else if (found->verdict == Verdict::not_applicable) {
+    if (found->verdict == Verdict::not_applicable) {
       say("does not apply to this implementation; remove the entry");
     } else if (found->verdict == Verdict::pass) {
       say("passes; remove the entry");
+    } else if (entry.has_expired) {
+      say(fmt::format("was accepted until {}; mend it, or say until when from now on", entry.expires));
     } else if (!is_about(entry, *found)) {
       say(fmt::format("is accepted for '{}' and has '{}'", entry.finding, found->reason));
     }

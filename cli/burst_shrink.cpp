@@ -117,6 +117,12 @@ int shrink_bursts(Session& session, const CaseFile& stored, const std::filesyste
   const Interruption interruption(session.settings.duration("max-time"));
   BurstShrink shrinking(stored, session.catalogue, plan_file, disturbed.result.reason, interruption.token());
   const auto smallest = shrinking.run(disturbed.struck);
+  if (!smallest && interruption.token().stop_requested()) {
+    session.terminal.print(
+        fmt::format("{}, before it was known which of the {} bits that were struck make it fail\n",
+                    interruption.reason(), disturbed.struck.size()));
+    return interruption.signal() != 0 ? kSignalBase + interruption.signal() : kInconclusive;
+  }
   if (!smallest) {
     session.terminal.print(
         fmt::format("the {} bits that were struck do not make it fail with '{}' without the rest of the "
@@ -134,7 +140,12 @@ int shrink_bursts(Session& session, const CaseFile& stored, const std::filesyste
   session.terminal.print(fmt::format("shrunk from {} struck bits to {}, in {} runs\n{}",
                                      disturbed.struck.size(), smallest->size(), shrinking.runs(),
                                      bit_lines(*smallest)));
-  return kAllAsExpected;
+  if (interruption.signal() != 0) return kSignalBase + interruption.signal();
+  const judge::CaseResult& result = done.outcome.result;
+  if (result.verdict == judge::Verdict::fail && result.reason == disturbed.result.reason)
+    return kAllAsExpected;
+  session.terminal.print("not confirmed: the implementation did not do the same again\n");
+  return kDiffers;
 }
 
 }  // namespace fieldproof::cli

@@ -39,10 +39,20 @@ std::string case_path(const Session& session, const SequenceFile& target) {
   return fmt::format("{}-{}.case.json", name, target.setup.seed);
 }
 
-std::string passed_text(std::uint64_t passed, std::uint64_t cases, const Interruption& interruption) {
+std::string passed_text(const conformance::SequenceSearchResult& result, std::uint64_t cases,
+                        const Interruption& interruption) {
   const std::string why = interruption.reason();
-  return fmt::format("{} of {} sequences, and the model agrees with each{}{}\n", passed, cases,
-                     why.empty() ? "" : "; ", why);
+  std::string text = fmt::format("{} of {} sequences, and the model agrees with {}", result.run, cases,
+                                 result.passed == result.run ? "each" : std::to_string(result.passed));
+  if (result.not_applicable > 0)
+    text += fmt::format("; {} ask for what cannot be done to it", result.not_applicable);
+  if (result.inconclusive > 0) text += fmt::format("; {} are inconclusive", result.inconclusive);
+  return text + (why.empty() ? "" : "; " + why) + "\n";
+}
+
+int code_of(const conformance::SequenceSearchResult& result) {
+  if (result.passed == 0) return kNothingJudged;
+  return result.inconclusive > 0 ? kInconclusive : kAllAsExpected;
 }
 
 }  // namespace
@@ -64,15 +74,16 @@ int check(Session& session) {
   const conformance::SequenceSearchResult result = conformance::search(search);
   session.terminal.end_progress();
   if (!result.found) {
-    session.terminal.print(passed_text(result.passed, search.cases, interruption));
-    if (interruption.signal() != 0) return kSignalBase + interruption.signal();
-    return result.passed > 0 ? kAllAsExpected : kNothingJudged;
+    session.terminal.print(passed_text(result, search.cases, interruption));
+    return interruption.signal() != 0 ? kSignalBase + interruption.signal() : code_of(result);
   }
   const conformance::SequenceFound& found = *result.found;
-  target.commands = found.smallest;
-  keep_sequence(session, target, found.outcome.result, path);
-  session.terminal.print(fmt::format("sequence {} failed; {}", result.passed + 1,
+  // Of one that does not do the same again the file keeps what was seen.
+  target.commands = found.is_confirmed ? found.smallest : found.drawn;
+  keep_sequence(session, target, found.is_confirmed ? found.outcome.result : found.first, path);
+  session.terminal.print(fmt::format("sequence {} failed; {}", result.run + 1,
                                      shrunk_text(found.drawn, found.smallest, found.shrinking_runs)));
+  if (interruption.signal() != 0) return kSignalBase + interruption.signal();
   if (!found.is_confirmed) {
     session.terminal.print("not confirmed: the implementation did not do the same again\n");
     return kDiffers;

@@ -8,6 +8,7 @@
 #include "cli/attachments.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/implementations.hpp"
+#include "cli/roles.hpp"
 #include "cli/serial_pool.hpp"
 #include "cli/verbs.hpp"
 #include "harness/iut/plugin.hpp"
@@ -42,7 +43,7 @@ class Samples {
 
 class Doctor {
  public:
-  explicit Doctor(Session& session) : session_(session) {}
+  Doctor(Session& session, iut::RoleName role) : session_(session), role_(std::move(role)) {}
 
   void examine_machine();
   void examine(const std::string& uri);
@@ -55,7 +56,7 @@ class Doctor {
   void examine_line(const std::string& uri);
 
   Session& session_;
-  const iut::RoleName role_{"valve_bus", "node"};
+  iut::RoleName role_;
 };
 
 // A sleep that is too long, and octets between the two ends of a pseudo terminal: what stamps are made of.
@@ -155,14 +156,22 @@ void Doctor::examine(const std::string& uri) {
   }
 }
 
+// Whose case it is that a real one would be asked for.
+iut::RoleName role_of(const conformance::Assignment& assignment) {
+  const auto named = std::ranges::find(roles(), assignment.role, &Role::name);
+  if (assignment.role.empty() || named == roles().end()) return {"valve_bus", "node"};
+  return {std::string(named->protocol), std::string(named->name)};
+}
+
 }  // namespace
 
 int doctor(Session& session) {
   const auto implementations =
       parse_implementations(session.settings.list("iut"), session.catalogue, session.catalogue.entries());
-  Doctor doctor(session);
-  doctor.examine_machine();
-  for (const conformance::Assignment& one : implementations) doctor.examine(one.uri);
+  Doctor(session, {}).examine_machine();
+  for (const conformance::Assignment& one : implementations) {
+    Doctor(session, role_of(one)).examine(one.uri);
+  }
   return kAllAsExpected;
 }
 

@@ -86,6 +86,7 @@ int replay(Session& session) {
   check_exports(session.settings);
   if (is_sequence_file(session.operands.front())) return replay_sequence(session);
   CaseFile stored = load_case(session.operands.front(), session.catalogue);
+  stored.setup.limits = limits_from(session.settings);
   const StoredEntry stored_entry(stored, session.catalogue);
   const conformance::Entry& entry = *stored_entry;
   const bool is_other = session.settings.origin("iut") != Origin::fallback;

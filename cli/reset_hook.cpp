@@ -29,8 +29,8 @@ void drain(iut::Process& process, std::string& said) {
 
 std::optional<std::string> reset(const std::string& command, const std::string& id, milliseconds limit) {
   constexpr milliseconds kBetweenLooks{20};
-  // The shell names its arguments from $0 on. Both outputs of the command go where they are read.
-  iut::Process process({"sh", "-c", "{ " + command + " \"$0\"\n} >&2", id});
+  // Both outputs of the command go where they are read.
+  iut::Process process({"sh", "-c", "{ " + command + "\n} >&2", "sh", id});
   process.to_input().close();
   std::string said;
   const auto until = std::chrono::steady_clock::now() + limit;

@@ -56,6 +56,8 @@ std::vector<conformance::Entry> failed_entries(Session& session) {
   }
   session.terminal.log(
       fmt::format("{} of the cases of {} did not pass", failed.size(), directory.path().string()));
+  // The part of a whole that the stored run was is what it has failed in.
+  session.settings.forget("shard");
   if (failed.empty()) return {};
   std::vector<conformance::Entry> entries = session.catalogue.select(failed);
   if (!session.operands.empty()) {
@@ -128,12 +130,16 @@ Prepared prepare_resumed(Session& session) {
   auto directory = reports::RunDirectory::open(session.settings.text("resume"));
   auto journal = std::make_unique<judge::Journal>(directory.journal());
   reports::StoredRun stored = directory.load();
-  if (!session.operands.empty())
-    refuse_resume(directory, "it has its selection already, leave out the selectors");
+  if (!session.operands.empty() || session.settings.is_set("shard"))
+    refuse_resume(directory, "it has its selection already, leave out the selectors and --shard");
   take_over_configuration(session, directory);
   session.operands = stored.run.identity.selectors;
   const std::vector<conformance::Entry> selected =
       shard_of(session.settings, session.catalogue.select(session.operands));
+  if (selected.size() != stored.run.identity.selected) {
+    refuse_resume(directory, fmt::format("it selected {} cases, and its selectors are {} now",
+                                         stored.run.identity.selected, selected.size()));
+  }
   Prepared prepared{setup_from(session.settings, session.catalogue, selected), baseline_from(session),
                     nullptr};
   const reports::RunIdentity now = identity_of(session, prepared.setup, selected.size());
@@ -279,7 +285,7 @@ int run(Session& session) {
     write_copies(session, book);
     throw;
   }
-  if (prepared.baseline) book.tell_stale(prepared.baseline->stale(book.run()));
+  if (prepared.baseline) book.hold_against(*prepared.baseline);
   ExitRules rules;
   rules.is_stale = !book.run().identity.stale_expectations.empty();
   rules.is_strict = session.settings.is_set("strict");

@@ -60,6 +60,14 @@ void RunBook::add(const conformance::CaseRun& done) {
   run_.cases.push_back(result);
 }
 
+void RunBook::hold_against(const Baseline& baseline) {
+  for (judge::CaseResult& result : run_.cases) {
+    result.expected_because.clear();
+    baseline.mark(result);
+  }
+  run_.identity.stale_expectations = baseline.stale(run_);
+}
+
 void RunBook::sort_by_catalogue() {
   std::map<std::string, std::size_t> order;
   for (std::size_t i = 0; i < selected_.size(); ++i) order.emplace(selected_[i].test_case->id, i);

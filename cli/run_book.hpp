@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/baseline.hpp"
 #include "cli/run_setup.hpp"
 #include "harness/judge/journal.hpp"
 #include "reports/junit_writer.hpp"
@@ -36,10 +37,9 @@ class RunBook {
   std::vector<conformance::Entry> open_cases() const;
 
   void add(const conformance::CaseRun& done);
-  // What the baseline of expected failures says and the run does not show.
-  void tell_stale(std::vector<std::string> sentences) {
-    run_.identity.stale_expectations = std::move(sentences);
-  }
+  // Which failures of all cases are expected, also of those that were judged before a resumption under
+  // another baseline; and what the baseline says and the run does not show.
+  void hold_against(const Baseline& baseline);
   void close(const std::string& incomplete_because, int exit_code, const reports::JunitOptions& options);
 
  private:

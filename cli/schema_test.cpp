@@ -251,7 +251,7 @@ TEST_F(Schemas, OfASequence) {
   expect_alike(
       "cli/sequence.schema.json",
       {good(sequence(node, wait + "," + octets)), good(sequence("interbus/slave", id)),
-       bad(sequence("interbus/slave", wait)), bad(sequence("valve_bus/host", wait)), bad(sequence(node, "")),
+       bad(sequence("interbus/slave", wait)), bad(sequence("valve_bus/host", wait)), good(sequence(node, "")),
        bad(sequence(node, id)), bad(sequence(node, R"({"do": "wait", "ms": 0})")),
        bad(sequence(node, R"({"do": "wait", "ms": 1, "faults": []})")),
        bad(sequence(node, R"({"do": "octets", "silence": 45, "octets": [256]})")),

@@ -23,22 +23,22 @@ struct SerialPool::Use {
   bool is_well = false;
 };
 
-SerialPool::Box& SerialPool::box(const std::string& uri) {
+SerialPool::Box& SerialPool::box(const std::string& uri, const iut::PeerLimits& limits) {
   const std::scoped_lock lock(mutex_);
   auto& found = boxes_[uri];
   if (found == nullptr) {
     auto made = std::make_unique<Box>();
     made->settings = iut::serial_settings(uri);
     const std::string& upper = made->settings.upper;
-    if (!upper.empty()) made->upper = std::make_unique<iut::DevicePool>(upper, role_);
+    if (!upper.empty()) made->upper = std::make_unique<iut::DevicePool>(upper, role_, limits);
     made->latency = made->settings.latency.value_or(2 * iut::measured_latency(kLatencyRounds));
     found = std::move(made);
   }
   return *found;
 }
 
-valve_bus::SerialAttachment SerialPool::take(const std::string& uri) {
-  const auto use = std::make_shared<Use>(box(uri));
+valve_bus::SerialAttachment SerialPool::take(const std::string& uri, const iut::PeerLimits& limits) {
+  const auto use = std::make_shared<Use>(box(uri, limits));
   Box& box = use->box;
   valve_bus::SerialAttachment attachment;
   if (box.upper != nullptr) {

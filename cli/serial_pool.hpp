@@ -19,7 +19,7 @@ class SerialPool {
 
   // Opens what is not open yet: first the upper channel, which may be what makes the line. Throws
   // kernel::Error(implementation) for one that cannot be used.
-  valve_bus::SerialAttachment take(const std::string& uri);
+  valve_bus::SerialAttachment take(const std::string& uri, const iut::PeerLimits& limits);
 
  private:
   struct Box {
@@ -31,7 +31,7 @@ class SerialPool {
   };
   struct Use;
 
-  Box& box(const std::string& uri);
+  Box& box(const std::string& uri, const iut::PeerLimits& limits);
 
   iut::RoleName role_;
   std::mutex mutex_;

@@ -147,6 +147,16 @@ TEST_F(SerialRuns, WithoutAnUpperChannelTheLineAloneIsJudged) {
       << cases.at("read/is_answered").findings;
 }
 
+// What nobody sees is not judged, and what the line cannot do is no agreement with the model.
+TEST_F(SerialRuns, CheckOfALineAloneFailsNoRightNode) {
+  const iut::Process player(
+      {FIELDPROOF_EXE, "station", "valve_bus/node", "ref", "--serial", line(), "--upper", "none"});
+  wait_for(line());
+  const Called called = call({"check", "valve_bus/node", "--iut", uri("", 375'000), "--cases", "12"});
+  EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "ask for what cannot be done to it");
+}
+
 TEST_F(SerialRuns, SilentBoxDoesNotAnswer) {
   const iut::SerialLine box = iut::SerialLine::at_new_terminal(line(), iut::WallClock());
   EXPECT_EQ(judged(uri(""), {"read/is_answered"}).at("read/is_answered").reason, "no_answer");

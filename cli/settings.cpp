@@ -184,6 +184,11 @@ const Setting& Settings::setting(std::string_view name) const {
   return found->second;
 }
 
+void Settings::forget(std::string_view name) {
+  if (const Option* option = find_option(name, verb_))
+    settings_.insert_or_assign(std::string(name), fallback_of(*option));
+}
+
 void Settings::refuse(std::string_view name, const std::string& sentence) const {
   refuse_at(setting(name), sentence);
 }

@@ -59,6 +59,9 @@ class Settings {
   // One of the words that the table lists as the option's value: "quick|full".
   std::size_t choice(std::string_view name) const;
 
+  // As if it had never been given.
+  void forget(std::string_view name);
+
   Origin origin(std::string_view name) const { return setting(name).origin; }
   [[noreturn]] void refuse(std::string_view name, const std::string& sentence) const;
 

@@ -25,6 +25,7 @@ std::string smaller_path(const Session& session) {
 
 int shrink_sequence(Session& session, SequenceFile stored, const std::string& path) {
   reports::check_writable(path);
+  stored.setup.limits = limits_from(session.settings);
   stored.suite->check(stored.role->test_case, stored.setup);
   session.terminal.print(reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
   const Interruption interruption(session.settings.duration("max-time"));
@@ -37,6 +38,7 @@ int shrink_sequence(Session& session, SequenceFile stored, const std::string& pa
   stored.commands = found->smallest;
   keep_sequence(session, stored, found->outcome.result, path);
   session.terminal.print(shrunk_text(found->drawn, found->smallest, found->shrinking_runs));
+  if (interruption.signal() != 0) return kSignalBase + interruption.signal();
   return found->is_confirmed ? kAllAsExpected : kDiffers;
 }
 
@@ -47,7 +49,8 @@ int shrink(Session& session) {
   const std::string path = smaller_path(session);
   if (is_sequence_file(file))
     return shrink_sequence(session, load_sequence_file(file, session.catalogue), path);
-  const CaseFile stored = load_case(file, session.catalogue);
+  CaseFile stored = load_case(file, session.catalogue);
+  stored.setup.limits = limits_from(session.settings);
   reports::check_writable(path);
   return shrink_bursts(session, stored, path);
 }

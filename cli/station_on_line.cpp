@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -95,11 +96,22 @@ void serve_socket(const std::string& path, iut::SerialLine& line, const NodePlay
   }
 }
 
+// The name of a terminal whose maker was killed, which may be that of another terminal by now: one that was
+// made behind the name.
+bool is_left_behind(const std::string& path) {
+  struct stat link{};
+  struct stat device{};
+  if (::lstat(path.c_str(), &link) != 0 || !S_ISLNK(link.st_mode)) return false;
+  if (::stat(path.c_str(), &device) != 0) return true;
+  if (!std::filesystem::read_symlink(path).string().starts_with("/dev/pts/")) return false;
+  const auto instant = [](const timespec& at) { return std::pair(at.tv_sec, at.tv_nsec); };
+  return instant(link.st_mtim) < instant(device.st_ctim);
+}
+
 iut::SerialLine line_at(const std::string& path) {
   const iut::WallClock clock;
-  const auto state = std::filesystem::symlink_status(path);
-  const bool is_new = state.type() == std::filesystem::file_type::not_found ||
-                      (std::filesystem::is_symlink(state) && !std::filesystem::exists(path));
+  const bool is_new = is_left_behind(path) ||
+                      std::filesystem::symlink_status(path).type() == std::filesystem::file_type::not_found;
   return is_new ? iut::SerialLine::at_new_terminal(path, clock) : iut::SerialLine(path, clock);
 }
 

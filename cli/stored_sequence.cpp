@@ -73,6 +73,7 @@ std::string replay_command(const std::string& file) {
 int replay_sequence(Session& session) {
   const std::string& path = session.operands.front();
   SequenceFile stored = load_sequence_file(path, session.catalogue);
+  stored.setup.limits = limits_from(session.settings);
   const bool is_other = session.settings.origin("iut") != Origin::fallback;
   if (is_other) assign_implementations(session, stored);
   stored.suite->check(stored.role->test_case, stored.setup);

@@ -103,38 +103,56 @@ std::uint64_t microseconds_since(std::chrono::steady_clock::time_point begin) {
 
 // The second run of a case, this time with its trace: keeping the trace of every passing case would cost more
 // than running the few others twice.
-void record_again(CaseRun& done, const Manner& manner) {
+judge::CaseResult record_again(CaseRun& done, const Manner& manner) {
   Setup recording = done.setup;
   recording.record = true;
   Outcome again = guarded_run(done.entry, recording, manner);
-  done.is_repeatable = again.result.fingerprint == done.outcome.result.fingerprint &&
-                       again.result.verdict == done.outcome.result.verdict &&
-                       again.result.reason == done.outcome.result.reason;
   done.outcome.recording = std::move(again.recording);
+  return std::move(again.result);
+}
+
+bool is_same_verdict(const judge::CaseResult& one, const judge::CaseResult& other) {
+  return one.verdict == other.verdict && one.reason == other.reason;
 }
 
 // A failure of real parts may be one of the moment: what does not come again each time is a doubt. All that
 // was seen of it is kept.
-void confirm(CaseRun& done, const Manner& manner) {
+void doubt(CaseRun& done, unsigned repetition, const judge::CaseResult& again) {
   judge::CaseResult& first = done.outcome.result;
-  for (unsigned n = 1; n <= manner.confirmations; ++n) {
-    const judge::CaseResult again = guarded_run(done.entry, done.setup, manner).result;
-    if (again.verdict == first.verdict && again.reason == first.reason) continue;
-    const std::string what =
-        fmt::format("it failed with '{}', and its repetition {} gave {}{}", first.reason, n,
-                    judge::name(again.verdict), again.reason.empty() ? "" : ", '" + again.reason + "'");
-    Outcome doubt = of_the_bench(*done.entry.test_case, Verdict::inconclusive, kNotConfirmed,
-                                 "a failure comes again when its case is repeated", what);
-    for (judge::Finding& finding : first.findings) finding.verdict = Verdict::inconclusive;
-    first.findings.insert(first.findings.begin(), std::move(doubt.result.findings.front()));
-    first.verdict = Verdict::inconclusive;
-    first.reason = kNotConfirmed;
-    return;
-  }
+  const std::string what =
+      fmt::format("it failed with '{}', and its repetition {} gave {}{}", first.reason, repetition,
+                  judge::name(again.verdict), again.reason.empty() ? "" : ", '" + again.reason + "'");
+  Outcome of_doubt = of_the_bench(*done.entry.test_case, Verdict::inconclusive, kNotConfirmed,
+                                  "a failure comes again when its case is repeated", what);
+  for (judge::Finding& finding : first.findings) finding.verdict = Verdict::inconclusive;
+  first.findings.insert(first.findings.begin(), std::move(of_doubt.result.findings.front()));
+  first.verdict = Verdict::inconclusive;
+  first.reason = kNotConfirmed;
 }
 
 bool is_failure(Verdict verdict) {
   return verdict == Verdict::fail || verdict == Verdict::error;
+}
+
+// For the recording, which is the first repetition of a failure that is to be confirmed, and then as often as
+// that asks for. A case that was never begun has nothing to repeat.
+void repeat(CaseRun& done, const Manner& manner) {
+  const judge::CaseResult& first = done.outcome.result;
+  const bool is_to_confirm = manner.confirmations > 0 && is_failure(first.verdict);
+  unsigned repetition = 0;
+  if (manner.keeps_recordings == KeptRecordings::failed && needs_recording(first.verdict) &&
+      !done.outcome.happens_once && first.reason != kResetFailed) {
+    ++repetition;
+    const judge::CaseResult again = record_again(done, manner);
+    const bool is_same = is_same_verdict(first, again);
+    if (is_to_confirm && !is_same) return doubt(done, repetition, again);
+    done.is_repeatable = is_same && again.fingerprint == first.fingerprint;
+  }
+  while (is_to_confirm && repetition < manner.confirmations) {
+    ++repetition;
+    const judge::CaseResult again = guarded_run(done.entry, done.setup, manner).result;
+    if (!is_same_verdict(first, again)) return doubt(done, repetition, again);
+  }
 }
 
 }  // namespace
@@ -152,9 +170,7 @@ CaseRun run_case(const Entry& entry, const Setup& run_setup, const Manner& manne
     done.outcome.result = blank_result(*entry.test_case, Verdict::not_applicable, std::move(*reason));
   } else {
     done.outcome = guarded_run(entry, done.setup, manner);
-    const bool is_wanted = needs_recording(done.outcome.result.verdict) && !done.outcome.happens_once;
-    if (manner.keeps_recordings == KeptRecordings::failed && is_wanted) record_again(done, manner);
-    if (is_failure(done.outcome.result.verdict)) confirm(done, manner);
+    repeat(done, manner);
   }
   done.outcome.result.seed = done.setup.seed;
   done.outcome.result.wall_time_us = microseconds_since(begin);

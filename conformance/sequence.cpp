@@ -142,7 +142,7 @@ std::string sequence_json(const Sequence& sequence, const SequenceVocabulary& vo
 
 Sequence read_sequence(const config::Value& value, const SequenceVocabulary& vocabulary) {
   Sequence sequence;
-  for (const config::Value& command : value.as_array(1, kMostCommands)) {
+  for (const config::Value& command : value.as_array(0, kMostCommands)) {
     sequence.push_back(read_command(command, vocabulary));
   }
   return sequence;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kMostShrinkingRuns = 20'000;
 
 bool has_failed(const Outcome& outcome) {
-  return outcome.result.verdict == judge::Verdict::fail;
+  return outcome.result.verdict >= judge::Verdict::fail;
 }
 
 }  // namespace
@@ -40,12 +40,12 @@ class SameFailure {
     return is_in(run_sequence(suite_, role_, candidate, setup_));
   }
 
-  SequenceFound found(Sequence drawn, Sequence smallest) const {
+  SequenceFound found(Sequence drawn, judge::CaseResult first, Sequence smallest) const {
     Setup recorded = setup_;
     recorded.record = true;
     Outcome outcome = run_sequence(suite_, role_, smallest, recorded);
     const bool is_confirmed = is_in(outcome);
-    return {std::move(drawn), std::move(smallest), std::move(outcome), runs_, is_confirmed};
+    return {std::move(drawn), std::move(smallest), std::move(outcome), std::move(first), runs_, is_confirmed};
   }
 
  private:
@@ -66,15 +66,20 @@ SequenceSearchResult search(const SequenceSearch& search) {
   const SequenceRole& role = *search.role;
   const SequenceSource source(role.vocabulary, search.setup.seed);
   SequenceSearchResult result;
-  for (; result.passed < search.cases && !search.stop.stop_requested(); ++result.passed) {
-    if (search.on_progress) search.on_progress(result.passed);
-    const Sequence drawn = source.draw(result.passed);
+  for (; result.run < search.cases && !search.stop.stop_requested(); ++result.run) {
+    if (search.on_progress) search.on_progress(result.run);
+    const Sequence drawn = source.draw(result.run);
     const Outcome outcome = run_sequence(suite, role, drawn, search.setup);
-    if (!has_failed(outcome)) continue;
+    if (!has_failed(outcome)) {
+      result.passed += outcome.result.verdict == judge::Verdict::pass ? 1 : 0;
+      result.not_applicable += outcome.result.verdict == judge::Verdict::not_applicable ? 1 : 0;
+      result.inconclusive += outcome.result.verdict == judge::Verdict::inconclusive ? 1 : 0;
+      continue;
+    }
     SameFailure same(suite, role, search.setup, outcome.result.reason, search.stop);
     const SequenceFails still_fails = std::ref(same);
-    const Sequence smaller = source.smaller(result.passed, still_fails);
-    result.found = same.found(drawn, shrunk(smaller, role.vocabulary, still_fails));
+    const Sequence smaller = source.smaller(result.run, still_fails);
+    result.found = same.found(drawn, outcome.result, shrunk(smaller, role.vocabulary, still_fails));
     break;
   }
   return result;
@@ -85,7 +90,7 @@ std::optional<SequenceFound> shrink(const Suite& suite, const SequenceRole& role
   const Outcome outcome = run_sequence(suite, role, sequence, setup);
   if (!has_failed(outcome)) return std::nullopt;
   SameFailure same(suite, role, setup, outcome.result.reason, std::move(stop));
-  return same.found(sequence, shrunk(sequence, role.vocabulary, std::ref(same)));
+  return same.found(sequence, outcome.result, shrunk(sequence, role.vocabulary, std::ref(same)));
 }
 
 }  // namespace fieldproof::conformance

@@ -23,15 +23,19 @@ struct SequenceSearch {
 };
 
 struct SequenceFound {
-  Sequence drawn;     // as it was drawn
-  Sequence smallest;  // fails for the same reason
-  Outcome outcome;    // of the smallest one, recorded
+  Sequence drawn;           // as it was drawn
+  Sequence smallest;        // fails for the same reason
+  Outcome outcome;          // of the smallest one, recorded
+  judge::CaseResult first;  // of the drawn one, when it failed
   std::uint64_t shrinking_runs = 0;
   bool is_confirmed = true;  // the smallest one failed once more for that reason
 };
 
 struct SequenceSearchResult {
-  std::uint64_t passed = 0;  // sequences, in front of what was found
+  std::uint64_t run = 0;             // sequences in front of what was found
+  std::uint64_t passed = 0;          // of these: the model agrees
+  std::uint64_t not_applicable = 0;  // what they ask for cannot be done to this implementation
+  std::uint64_t inconclusive = 0;
   std::optional<SequenceFound> found{};
 };
 

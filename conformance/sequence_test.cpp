@@ -53,7 +53,6 @@ struct BadSequence {
 
 TEST(Sequence, RefusesWhatIsWrongAtItsPlace) {
   const BadSequence bad[] = {
-      {"[]", "0 elements"},
       {R"([{"do": "wirte", "data0": 1, "data1": 1, "silence": 0}])", "/0/do"},
       {R"([{"do": "write", "data0": 256, "data1": 1, "silence": 0}])", "/0/data0"},
       {R"([{"do": "write", "data0": 1, "data1": 1}])", "silence"},

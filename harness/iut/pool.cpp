@@ -89,8 +89,15 @@ std::unique_ptr<MessageDevice> DevicePool::started() {
 std::unique_ptr<MessageDevice> DevicePool::idle_or_waited_for() {
   std::unique_lock lock(mutex_);
   const auto has_none = [&] { return idle_.empty() && is_limited_ && leased_ > 0; };
+  // Two cases that hold one each and wait for another would wait for each other.
+  if (has_none() && holders_.contains(std::this_thread::get_id())) {
+    throw kernel::Error(kernel::ErrorKind::implementation,
+                        fmt::format("{} serves {} connections at the same time, and this case needs one more",
+                                    uri_, leased_));
+  }
   while (has_none()) returned_.wait(lock);
   ++leased_;
+  holders_.insert(std::this_thread::get_id());
   if (idle_.empty()) return nullptr;
   std::unique_ptr<MessageDevice> device = std::move(idle_.back());
   idle_.pop_back();
@@ -121,10 +128,11 @@ std::unique_ptr<MessageDevice> DevicePool::started_in_turn() {
   }
 }
 
-void DevicePool::give_back(std::unique_ptr<MessageDevice> device) {
+void DevicePool::give_back(std::unique_ptr<MessageDevice> device, std::thread::id holder) {
   {
     const std::scoped_lock lock(mutex_);
     --leased_;
+    if (const auto one = holders_.find(holder); one != holders_.end()) holders_.erase(one);
     if (device != nullptr) idle_.push_back(std::move(device));
   }
   returned_.notify_one();
@@ -153,7 +161,7 @@ DevicePool::Lease DevicePool::take() {
 }
 
 DevicePool::Lease::~Lease() {
-  if (device_ != nullptr) pool_->give_back(is_reusable_ ? std::move(device_) : nullptr);
+  if (device_ != nullptr) pool_->give_back(is_reusable_ ? std::move(device_) : nullptr, holder_);
 }
 
 }  // namespace fieldproof::iut

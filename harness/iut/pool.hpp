@@ -4,7 +4,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "harness/iut/message_device.hpp"
@@ -35,7 +37,7 @@ class DevicePool {
   class Lease {
    public:
     Lease(DevicePool& pool, std::unique_ptr<MessageDevice> device)
-        : pool_(&pool), device_(std::move(device)) {}
+        : pool_(&pool), device_(std::move(device)), holder_(std::this_thread::get_id()) {}
     Lease(Lease&&) noexcept = default;
     Lease& operator=(Lease&&) = delete;
     ~Lease();
@@ -47,6 +49,7 @@ class DevicePool {
    private:
     DevicePool* pool_;
     std::unique_ptr<MessageDevice> device_;
+    std::thread::id holder_;
     bool is_reusable_ = false;
   };
 
@@ -63,7 +66,7 @@ class DevicePool {
   std::unique_ptr<MessageDevice> idle_or_waited_for();
   bool has_others();
   std::unique_ptr<MessageDevice> started_in_turn();
-  void give_back(std::unique_ptr<MessageDevice> device);
+  void give_back(std::unique_ptr<MessageDevice> device, std::thread::id holder = std::this_thread::get_id());
 
   std::string uri_;
   RoleName role_;
@@ -73,8 +76,9 @@ class DevicePool {
   std::condition_variable returned_;
   std::vector<std::unique_ptr<MessageDevice>> idle_;
   std::size_t leased_ = 0;
-  bool is_limited_ = false;  // no more are opened than there are
-  std::mutex start_mutex_;   // of all below; taken before mutex_
+  std::multiset<std::thread::id> holders_;  // of these, each in its thread
+  bool is_limited_ = false;                 // no more are opened than there are
+  std::mutex start_mutex_;                  // of all below; taken before mutex_
   bool is_tested_ = false;
   unsigned failed_starts_ = 0;
   std::string last_failure_;

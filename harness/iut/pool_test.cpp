@@ -223,6 +223,20 @@ TEST(SharedPoolThreads, CasesAtTheSameTimeShareTheOnlyConnection) {
   EXPECT_EQ(listener.accept_waiting(), 1U);
 }
 
+// It would wait for itself.
+TEST(SharedPoolThreads, CaseThatNeedsTwoOfTheOnlyConnectionIsRefused) {
+  const ScriptFolder folder;
+  const Listener listener(folder.file("s"));
+  Descriptor only;
+  std::thread server([&] {
+    only = listener.accept_and_answer({capabilities_message(), echoed_message(), unsupported_message()});
+  });
+  DevicePool pool("unix:" + listener.path(), kValveNode, {milliseconds(300), milliseconds(20'000)});
+  const auto first = pool.take();
+  EXPECT_THAT(failure_of([&] { pool.take(); }), HasSubstr("this case needs one more"));
+  server.join();
+}
+
 TEST(SharedPoolThreads, CasesAtTheSameTimeDoNotShareOne) {
   const Script script = Script().tests_itself().stays();
   DevicePool pool("exec:script", kValveNode, script.command(), kNoHurry);

@@ -114,6 +114,8 @@ SerialLine::SerialLine(SerialLine&& other) noexcept
       last_look_(other.last_look_) {}
 
 SerialLine::~SerialLine() {
+  // A pseudo terminal outlives this end of it, and would keep the next one out.
+  if (port_ != nullptr && port_->port.is_open()) ::ioctl(descriptor(), TIOCNXCL);
   if (!link_.empty()) ::unlink(link_.c_str());
 }
 
