@@ -2,11 +2,13 @@
 // library, beside the same node called directly.
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "bench/rows.hpp"
 #include "harness/iut/device.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/kernel/check.hpp"
+#include "protocols/valve_bus/attached_node.hpp"
 
 extern "C" {
 #include "examples/valve_node/valve_node.h"
@@ -21,39 +23,50 @@ constexpr kernel::Duration kSilence = kernel::kMillisecond;
 // A write to another node: it is collected, checked and left alone.
 constexpr std::array<std::uint16_t, 5> kFrame{0x163, 0x100, 0x112, 0x134, 0x145};
 
-// Frames of characters and the silence behind each, to whoever takes `receive` and `on_time`.
-template <typename Node>
-std::uint64_t send_frames(Node& node, kernel::Time& now) {
-  for (std::uint64_t frame = 0; frame < kFrames; ++frame) {
-    for (const std::uint16_t data : kFrame) {
-      node.receive({now, now + kCharacter, data, false, false}, now + kCharacter);
-      now += kCharacter;
-    }
-    FIELDPROOF_CHECK(node.next_time() != kernel::kNever, "the node waits for silence");
-    now += kSilence;
-    node.on_time(now);
+// A station of ours that calls the functions of the firmware itself, as one that is compiled in would: each
+// call tells the bench when the next one is wanted.
+class DirectDevice final : public iut::Device {
+ public:
+  iut::UnitKind unit_kind() const override { return iut::UnitKind::characters; }
+  bool begin(const iut::CaseBegin& begin, iut::Bench&) override {
+    bench_.write = [](void*, unsigned, fieldproof_word, fieldproof_time) {};
+    node_.bench = &bench_;
+    std::vector<fieldproof_setting> settings;
+    for (const auto& [name, value] : begin.settings) settings.push_back({name.c_str(), value});
+    const fieldproof_case test_case{begin.id.c_str(), begin.seed, settings.data(),
+                                    static_cast<unsigned>(settings.size())};
+    valve_node_begin(&node_, &test_case);
+    return true;
   }
-  return kFrames * kFrame.size();
-}
+  void set_power(bool is_on, kernel::Time now) override {
+    call([&] { valve_node_power(&node_, is_on ? 1 : 0, ticks(now)); });
+  }
+  void receive(unsigned, std::span<const iut::Character> characters, kernel::Time now) override {
+    call([&] {
+      for (const iut::Character& one : characters) {
+        const fieldproof_character heard{ticks(one.start), ticks(one.busy_until), one.data, 0};
+        valve_node_receive(&node_, &heard, ticks(now));
+      }
+    });
+  }
+  void receive(unsigned, const line::Waveform&) override {}
+  void on_time(kernel::Time now) override {
+    call([&] { valve_node_on_time(&node_, ticks(now)); });
+  }
+  kernel::Time next_time() const override { return next_time_; }
+  void end() override {}
 
-// As the firmware's own tests would call it.
-struct DirectNode {
-  DirectNode() {
-    static const fieldproof_bench bench{};
-    node.bench = &bench;
-    const fieldproof_case test_case{"valve_bus/node/bench/call", 0, nullptr, 0};
-    valve_node_begin(&node, &test_case);
-    valve_node_power(&node, 1, 0);
+ private:
+  static fieldproof_time ticks(kernel::Time at) { return at.time_since_epoch().count(); }
+  template <typename Act>
+  void call(Act&& act) {
+    act();
+    next_time_ = kernel::Time{kernel::Duration{valve_node_next_time(&node_)}};
   }
-  void receive(const iut::Character& character, kernel::Time at) {
-    const fieldproof_character heard{character.start.time_since_epoch().count(),
-                                     character.busy_until.time_since_epoch().count(), character.data, 0};
-    valve_node_receive(&node, &heard, at.time_since_epoch().count());
-  }
-  void on_time(kernel::Time at) { valve_node_on_time(&node, at.time_since_epoch().count()); }
-  kernel::Time next_time() const { return kernel::Time{kernel::Duration{valve_node_next_time(&node)}}; }
 
-  valve_node node{};
+  fieldproof_bench bench_{};
+  valve_node node_{};
+  kernel::Time next_time_{};
 };
 
 class NoActs final : public iut::Bench {
@@ -63,32 +76,38 @@ class NoActs final : public iut::Bench {
   std::uint64_t read(iut::Item, kernel::Time) override { return 0; }
 };
 
-struct LoadedNode {
-  LoadedNode() : device(iut::load_plugin(FIELDPROOF_VALVE_NODE_PLUGIN, "valve_bus", "node")) {
-    device->begin({"valve_bus/node/bench/call", 0, {}}, bench);
-    device->set_power(true, kernel::kStart);
-  }
-  void receive(const iut::Character& character, kernel::Time at) {
-    device->receive(0, std::span(&character, 1), at);
-  }
-  void on_time(kernel::Time at) { device->on_time(at); }
-  kernel::Time next_time() const { return device->next_time(); }
+// Frames of characters and the silence behind each.
+Batch frames_to(std::shared_ptr<iut::Device> device) {
+  const auto bench = std::make_shared<NoActs>();
+  device->begin({"valve_bus/node/bench/call", 0, valve_bus::node_settings({})}, *bench);
+  device->set_power(true, kernel::kStart);
+  return [device, bench, now = kernel::kStart + kSilence]() mutable -> std::uint64_t {
+    for (std::uint64_t frame = 0; frame < kFrames; ++frame) {
+      for (const std::uint16_t data : kFrame) {
+        const iut::Character character{now, now + kCharacter, data, false, false};
+        now += kCharacter;
+        device->receive(0, std::span(&character, 1), now);
+        FIELDPROOF_CHECK(device->next_time() != kernel::kNever, "the node waits for silence");
+      }
+      device->on_time(now += kSilence);
+    }
+    return kFrames * kFrame.size();
+  };
+}
 
-  NoActs bench;
-  std::unique_ptr<iut::Device> device;
-};
+Batch frames_to_plugin() {
+  return frames_to(iut::load_plugin(FIELDPROOF_VALVE_NODE_PLUGIN, "valve_bus", "node"));
+}
 
-template <typename Node>
-Batch frames_to() {
-  const auto node = std::make_shared<Node>();
-  return [node, now = kernel::kStart + kSilence]() mutable { return send_frames(*node, now); };
+Batch frames_to_direct() {
+  return frames_to(std::make_shared<DirectDevice>());
 }
 
 constexpr const char* kGroup = "one character to a node in this process";
 
 const Rows kPluginRows({
-    {kGroup, "direct: its functions", "characters", "", 0, frames_to<DirectNode>},
-    {kGroup, "plugin: in-process", "characters", "direct", 0.83, frames_to<LoadedNode>},
+    {kGroup, "direct: its functions", "characters", "", 0, frames_to_direct},
+    {kGroup, "plugin: in-process", "characters", "direct", 0.83, frames_to_plugin},
 });
 
 }  // namespace
