@@ -77,12 +77,16 @@ Make attached(iut::RoleName role) {
 
 }  // namespace
 
+bool is_plugin_uri(std::string_view uri) {
+  return uri.starts_with(kPlugin);
+}
+
 bool is_attachment(std::string_view uri) {
-  return iut::DevicePool::is_meant(uri) || uri.starts_with(kPlugin) || uri.starts_with(iut::kSerialUri);
+  return iut::DevicePool::is_meant(uri) || is_plugin_uri(uri) || uri.starts_with(iut::kSerialUri);
 }
 
 bool is_in_process(std::string_view uri) {
-  return uri.starts_with(kPlugin) && uri.ends_with(kInProcess);
+  return is_plugin_uri(uri) && uri.ends_with(kInProcess);
 }
 
 std::string plugin_path(std::string_view uri) {
@@ -99,7 +103,7 @@ std::string plugin_path(std::string_view uri) {
 
 std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role,
                                          const iut::PeerLimits& limits) {
-  if (!uri.starts_with(kPlugin)) return std::make_unique<iut::DevicePool>(uri, role, limits);
+  if (!is_plugin_uri(uri)) return std::make_unique<iut::DevicePool>(uri, role, limits);
   plugin_path(uri);  // refuses before anything is started
   // This program itself loads it: one that crashes takes a process along that nobody misses.
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();

@@ -20,7 +20,8 @@ namespace fieldproof::cli {
 
 bool is_attachment(std::string_view uri);
 
-// A library that is loaded into this process, and the path of any library.
+// A library, one that is loaded into this process, and the path of either.
+bool is_plugin_uri(std::string_view uri);
 bool is_in_process(std::string_view uri);
 std::string plugin_path(std::string_view uri);
 

@@ -13,7 +13,7 @@ using conformance::Catalogue;
 using conformance::Entry;
 
 std::vector<Entry> burst_cases() {
-  static const Catalogue catalogue(suites());
+  static const Catalogue catalogue(suites(all_disturbances()));
   return catalogue.select(std::vector<std::string>{"+" + std::string(conformance::kStressTag)});
 }
 

@@ -1,6 +1,7 @@
 #include "cli/burst_shrink.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
@@ -12,7 +13,6 @@
 #include "cli/run_setup.hpp"
 #include "cli/stored_sequence.hpp"
 #include "cli/struck_bits.hpp"
-#include "cli/suites.hpp"
 #include "conformance/minimise.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
@@ -23,32 +23,47 @@ namespace {
 // A plan lists no more.
 constexpr std::size_t kMostBits = 10'000;
 
+// A file of this process for what is tried; what is found goes where the caller said.
+class TriedPlan {
+ public:
+  TriedPlan()
+      : path_(std::filesystem::temp_directory_path() /
+              fmt::format("fieldproof-shrink-{}.plan.json", ::getpid())) {}
+  TriedPlan(const TriedPlan&) = delete;
+  TriedPlan& operator=(const TriedPlan&) = delete;
+  ~TriedPlan() {
+    std::error_code gone_already;
+    std::filesystem::remove(path_, gone_already);
+  }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
 // The case with all its disturbances, and a note of what they struck until it failed.
 struct DisturbedRun {
   StruckBits struck;
   judge::CaseResult result;
 };
 
-DisturbedRun run_disturbed(const CaseFile& stored) {
+DisturbedRun run_disturbed(const CaseFile& stored, const Session& session) {
   const auto struck = std::make_shared<StruckBits>();
   const Disturbances all = all_disturbances();
-  const Disturbances noted{watched(all.stresses, struck), watched(all.of_plans, struck)};
-  const conformance::Catalogue catalogue(suites_under(noted));
+  const auto stresses = stored.is_quiet ? quiet(all.stresses) : watched(all.stresses, struck);
+  const conformance::Catalogue catalogue(session.make_suites({stresses, watched(all.of_plans, struck)}));
   const conformance::CaseRun done = conformance::run_case(catalogue.at(stored.id), stored.setup);
   return {std::move(*struck), done.outcome.result};
 }
 
 class BurstShrink {
  public:
-  BurstShrink(const CaseFile& stored, const conformance::Catalogue& catalogue,
-              std::filesystem::path plan_file, std::string reason, std::stop_token stop)
-      : entry_(quiet_of(stored), catalogue),
+  BurstShrink(const CaseFile& stored, const Session& session, std::string reason, std::stop_token stop)
+      : entry_(quiet_of(stored), session),
         setup_(stored.setup),
-        plan_file_(std::move(plan_file)),
         reason_(std::move(reason)),
         stop_(std::move(stop)) {
     if (!setup_.plan_file.empty()) plan_ = reports::read_text_file(setup_.plan_file);
-    setup_.plan_file = plan_file_.string();
   }
 
   // The smallest; nothing when bits alone do not make it fail.
@@ -65,9 +80,11 @@ class BurstShrink {
     }
   }
 
-  conformance::CaseRun run_with(const StruckBits& bits) {
+  // With these bits, in a plan that is left there.
+  conformance::CaseRun run_with(const StruckBits& bits, const std::string& plan_file) {
     ++runs_;
-    reports::write_text_file(plan_file_.string(), plan_of(bits, plan_));
+    reports::write_text_file(plan_file, plan_of(bits, plan_));
+    setup_.plan_file = plan_file;
     return conformance::run_case(*entry_, setup_);
   }
   std::size_t runs() const { return runs_; }
@@ -79,13 +96,13 @@ class BurstShrink {
   }
   bool still_fails(const StruckBits& bits) {
     if (stop_.stop_requested()) return false;
-    const judge::CaseResult& result = run_with(bits).outcome.result;
+    const judge::CaseResult& result = run_with(bits, tried_.path()).outcome.result;
     return result.verdict == judge::Verdict::fail && result.reason == reason_;
   }
 
   StoredEntry entry_;
   conformance::Setup setup_;
-  std::filesystem::path plan_file_;
+  TriedPlan tried_;
   std::string plan_;  // the text of the stored one
   std::string reason_;
   std::stop_token stop_;
@@ -104,18 +121,19 @@ std::string bit_lines(const StruckBits& bits) {
 }  // namespace
 
 int shrink_bursts(Session& session, const CaseFile& stored, const std::filesystem::path& file) {
+  std::filesystem::path plan_file = file;
+  plan_file.replace_extension(".plan.json");
+  reports::check_writable(plan_file);
   session.terminal.print(reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
-  const DisturbedRun disturbed = run_disturbed(stored);
+  const DisturbedRun disturbed = run_disturbed(stored, session);
   if (disturbed.result.verdict != judge::Verdict::fail) {
     session.terminal.print(
         fmt::format("the stored case does not fail, its verdict is {}: nothing to shrink\n",
                     judge::name(disturbed.result.verdict)));
     return kDiffers;
   }
-  std::filesystem::path plan_file = file;
-  plan_file.replace_extension(".plan.json");
   const Interruption interruption(session.settings.duration("max-time"));
-  BurstShrink shrinking(stored, session.catalogue, plan_file, disturbed.result.reason, interruption.token());
+  BurstShrink shrinking(stored, session, disturbed.result.reason, interruption.token());
   const auto smallest = shrinking.run(disturbed.struck);
   if (!smallest && interruption.token().stop_requested()) {
     session.terminal.print(
@@ -130,7 +148,7 @@ int shrink_bursts(Session& session, const CaseFile& stored, const std::filesyste
                     disturbed.struck.size(), reports::escaped_line(disturbed.result.reason)));
     return kDiffers;
   }
-  const conformance::CaseRun done = shrinking.run_with(*smallest);
+  const conformance::CaseRun done = shrinking.run_with(*smallest, plan_file.string());
   write_quiet_case(file, done, stored);
   reports::TextOptions options;
   options.colour = session.terminal.has_colour();

@@ -9,7 +9,6 @@
 #include "cli/implementations.hpp"
 #include "cli/pics_file.hpp"
 #include "cli/struck_bits.hpp"
-#include "cli/suites.hpp"
 #include "harness/config/document.hpp"
 #include "harness/judge/result_json.hpp"
 #include "harness/kernel/error.hpp"
@@ -68,9 +67,7 @@ ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed,
   if (!kept.plan.empty()) json["plan"] = kept.plan;
   if (!kept.pics.empty()) json["pics"] = kept.pics;
   if (is_quiet) json["quiet"] = true;
-  json["verdict"] = judge::name(result.verdict);
-  json["reason"] = result.reason;
-  json["fingerprint"] = judge::fingerprint_text(result.fingerprint);
+  add_end(json, end_of(result));
   if (!done.outcome.recording.playback.empty()) json["playback"] = kPlayback;
   json["truncated"] = done.outcome.recording.truncated;
   return json;
@@ -123,9 +120,7 @@ CaseFile read_case(config::ObjectReader& reader, const std::filesystem::path& fo
   read.pics_file = path_from(reader.optional("pics"), folder);
   if (!read.pics_file.empty()) read.setup.pics = load_pics(read.pics_file, catalogue.pics_items());
   if (const auto quiet = reader.optional("quiet")) read.is_quiet = quiet->as_bool();
-  read.verdict = judge::verdict_from(reader.required("verdict"));
-  read.reason = reader.required("reason").as_string();
-  read.fingerprint = judge::unsigned_from(reader.required("fingerprint"), 16);
+  read.end = end_from(reader);
   read.playback = path_from(reader.optional("playback"), folder);
   read.is_truncated = reader.required("truncated").as_bool();
   const std::uint64_t expected = conformance::case_seed(read.setup.seed, read.id);
@@ -193,12 +188,13 @@ std::string wave_dump_of(const conformance::CaseRun& done) {
   return reports::vcd(done.outcome.recording.trace, program_name(), done.outcome.result.id);
 }
 
-StoredEntry::StoredEntry(const CaseFile& stored, const conformance::Catalogue& catalogue) {
+StoredEntry::StoredEntry(const CaseFile& stored, const Session& session) {
   if (stored.is_quiet) {
     const Disturbances all = all_disturbances();
-    quiet_ = std::make_unique<conformance::Catalogue>(suites_under({quiet(all.stresses), all.of_plans}));
+    quiet_ =
+        std::make_unique<conformance::Catalogue>(session.make_suites({quiet(all.stresses), all.of_plans}));
   }
-  entry_ = &(quiet_ ? *quiet_ : catalogue).at(stored.id);
+  entry_ = &(quiet_ ? *quiet_ : session.catalogue).at(stored.id);
 }
 
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue) {

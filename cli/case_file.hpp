@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/stored_end.hpp"
+#include "cli/verbs.hpp"
 #include "conformance/runner.hpp"
 #include "harness/config/document.hpp"
 #include "reports/run_directory.hpp"
@@ -26,9 +28,7 @@ struct CaseFile {
   conformance::Setup setup;  // with the seed of the run
   std::string pics_file;     // the copy of what `setup.pics` was read from; empty: none
   bool is_quiet = false;     // bursts that the case makes itself are left out: its plan has what mattered
-  judge::Verdict verdict = judge::Verdict::none;
-  std::string reason;
-  std::uint64_t fingerprint = 0;
+  StoredEnd end;
   bool is_truncated = false;
   std::filesystem::path playback;  // empty: the implementation's part was not recorded
 };
@@ -53,7 +53,7 @@ CaseFile load_case(const std::filesystem::path& file, const conformance::Catalog
 // themselves.
 class StoredEntry {
  public:
-  StoredEntry(const CaseFile& stored, const conformance::Catalogue& catalogue);
+  StoredEntry(const CaseFile& stored, const Session& session);
   const conformance::Entry& operator*() const { return *entry_; }
 
  private:

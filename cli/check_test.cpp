@@ -105,5 +105,28 @@ TEST_F(Check, ShrinksBurstsToTheBitsThatMattered) {
   }
 }
 
+// Its own bursts are out of it: what is left is all that there is to make smaller.
+TEST_F(Check, ShrinksASmallBurstCaseAgain) {
+  const std::string stored = failed_case("valve_bus/node/immunity/*", "deviant:write_not_checked");
+  ASSERT_EQ(call({"shrink", stored, "--case", "small.json"}).exit_code, kAllAsExpected);
+  const Called again = call({"shrink", "small.json", "--case", "again.json"});
+  EXPECT_EQ(again.exit_code, kAllAsExpected) << again.out << again.err;
+  EXPECT_HOLDS(again.out, "shrunk from 1 struck bits to 1");
+  EXPECT_EQ(read("again.plan.json"), read("small.plan.json"));
+}
+
+TEST_F(Check, LeavesAPlanAloneWhenNothingWasFound) {
+  ASSERT_EQ(call({"run", "valve_bus/node/immunity/*", "--volume", "quick", "--record", "all", "--out", "run"})
+                .exit_code,
+            kAllAsExpected);
+  write("small.plan.json", "{}");
+  const Called shrunk =
+      call({"shrink", "run/cases/valve_bus+node+immunity+bursts_move_nothing_by_themselves/case.json",
+            "--case", "small.json"});
+  EXPECT_EQ(shrunk.exit_code, kDiffers) << shrunk.err;
+  EXPECT_HOLDS(shrunk.out, "nothing to shrink");
+  EXPECT_EQ(read("small.plan.json"), "{}");
+}
+
 }  // namespace
 }  // namespace fieldproof::cli

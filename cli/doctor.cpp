@@ -117,11 +117,11 @@ void Doctor::examine_channel(iut::DevicePool& pool, std::string_view what) {
 void Doctor::examine_line(const std::string& uri) {
   const iut::SerialSettings settings = iut::serial_settings(uri);
   const judge::Pics pics = *node_on_real_line(uri);
-  iut::DevicePool upper(settings.upper.empty() ? "exec:none" : settings.upper, role_);
+  std::optional<iut::DevicePool> upper;
   if (settings.upper.empty()) {
     say("upper channel", "none: valves and switches are not seen, settings and supply stay as they are");
   } else {
-    examine_channel(upper, "upper channel");
+    examine_channel(upper.emplace(settings.upper, role_), "upper channel");
   }
   const iut::WallClock clock;
   iut::SerialLine line(settings.path, clock);

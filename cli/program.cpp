@@ -15,7 +15,7 @@
 namespace fieldproof::cli {
 namespace {
 
-int serve(const Command& command, const std::vector<std::string>& arguments, Suites (*make_suites)(),
+int serve(const Command& command, const std::vector<std::string>& arguments, MakeSuites make_suites,
           Terminal& terminal) {
   const auto verb =
       std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == command.verb; });
@@ -26,8 +26,8 @@ int serve(const Command& command, const std::vector<std::string>& arguments, Sui
     return kAllAsExpected;
   }
   if (find_option("quiet", verb->name) != nullptr) terminal.set_quiet(settings.is_set("quiet"));
-  const conformance::Catalogue catalogue(make_suites());
-  Session session{catalogue, settings, terminal, command.operands, arguments};
+  const conformance::Catalogue catalogue(make_suites(all_disturbances()));
+  Session session{catalogue, make_suites, settings, terminal, command.operands, arguments};
   return verb->serve(session);
 }
 
@@ -38,7 +38,7 @@ int code_after_output(int code, const Terminal& terminal) {
 
 }  // namespace
 
-int run_program(int argc, const char* const* argv, Suites (*make_suites)()) {
+int run_program(int argc, const char* const* argv, MakeSuites make_suites) {
   secure_standard_streams();
   try {
     Terminal terminal;

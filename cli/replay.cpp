@@ -18,21 +18,6 @@
 namespace fieldproof::cli {
 namespace {
 
-// What is not as it was, one line each.
-std::string differences(const CaseFile& stored, const judge::CaseResult& now) {
-  std::string text;
-  const auto differ = [&text](std::string_view what, std::string_view before, std::string_view after) {
-    if (before != after)
-      text += fmt::format("differs: {} was '{}', is '{}'\n", what, reports::escaped_line(before),
-                          reports::escaped_line(after));
-  };
-  differ("verdict", judge::name(stored.verdict), judge::name(now.verdict));
-  differ("reason", stored.reason, now.reason);
-  differ("fingerprint", judge::fingerprint_text(stored.fingerprint),
-         judge::fingerprint_text(now.fingerprint));
-  return text;
-}
-
 reports::RunIdentity identity_for(Session& session, const CaseFile& stored) {
   reports::RunIdentity identity = identity_of(session, stored.setup, 1);
   identity.reproduce_options = fmt::format("--seed {}", stored.setup.seed);
@@ -87,7 +72,7 @@ int replay(Session& session) {
   if (is_sequence_file(session.operands.front())) return replay_sequence(session);
   CaseFile stored = load_case(session.operands.front(), session.catalogue);
   stored.setup.limits = limits_from(session.settings);
-  const StoredEntry stored_entry(stored, session.catalogue);
+  const StoredEntry stored_entry(stored, session);
   const conformance::Entry& entry = *stored_entry;
   const bool is_other = session.settings.origin("iut") != Origin::fallback;
   if (is_other) {
@@ -108,16 +93,7 @@ int replay(Session& session) {
   session.terminal.print(reports::finding_text(run.identity, result, options));
   ExitRules rules;
   rules.allows_inconclusive = session.settings.is_set("allow-inconclusive");
-  const std::string different = differences(stored, result);
-  if (is_other) {
-    session.terminal.print("another implementation than the stored one: not compared\n");
-  } else if (!different.empty()) {
-    session.terminal.print(different);
-    return exit_code(run, rules) == kInternal ? kInternal : kDiffers;
-  } else {
-    session.terminal.print("equal: verdict, reason and fingerprint are those of the stored run\n");
-  }
-  return exit_code(run, rules);
+  return compared(session.terminal, stored.end, result, is_other, exit_code(run, rules));
 }
 
 }  // namespace fieldproof::cli

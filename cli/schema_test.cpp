@@ -87,7 +87,7 @@ class Schemas : public testing::Test {
 };
 
 const conformance::Catalogue& catalogue() {
-  static const conformance::Catalogue catalogue(suites());
+  static const conformance::Catalogue catalogue(suites(all_disturbances()));
   return catalogue;
 }
 

@@ -31,9 +31,7 @@ SequenceFile read_sequence_file(config::ObjectReader& reader, const conformance:
   read.setup.implementations = implementations_from(reader.required("implementations"), *read.suite);
   if (const auto pics = reader.optional("pics")) read.setup.pics = pics_from(*pics, catalogue.pics_items());
   read.commands = conformance::read_sequence(reader.required("commands"), read.role->vocabulary);
-  read.verdict = judge::verdict_from(reader.required("verdict"));
-  read.reason = reader.required("reason").as_string();
-  read.fingerprint = judge::unsigned_from(reader.required("fingerprint"), 16);
+  read.end = end_from(reader);
   return read;
 }
 
@@ -66,9 +64,7 @@ std::string sequence_file_text(const SequenceFile& file) {
   json["implementations"] = ordered_json::parse(implementations_json(file.setup));
   if (file.setup.pics) json["pics"] = ordered_json::parse(pics_text(*file.setup.pics)).at("items");
   json["commands"] = ordered_json::parse(conformance::sequence_json(file.commands, file.role->vocabulary));
-  json["verdict"] = judge::name(file.verdict);
-  json["reason"] = file.reason;
-  json["fingerprint"] = judge::fingerprint_text(file.fingerprint);
+  add_end(json, file.end);
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <string>
 
+#include "cli/stored_end.hpp"
 #include "conformance/catalogue.hpp"
 #include "conformance/sequence_check.hpp"
-#include "harness/judge/verdict.hpp"
 
 namespace fieldproof::cli {
 
@@ -20,9 +20,7 @@ struct SequenceFile {
   const conformance::SequenceRole* role = nullptr;
   conformance::Setup setup;  // with the seed of the run
   conformance::Sequence commands;
-  judge::Verdict verdict = judge::Verdict::none;
-  std::string reason;
-  std::uint64_t fingerprint = 0;
+  StoredEnd end;
 };
 
 // "valve_bus/node" of "valve_bus/node/check/follows_the_model".

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "cli/probe/deviations_in_c.hpp"
 #include "cli/probe/program_fixture.hpp"
 #include "harness/iut/process.hpp"
 
@@ -199,15 +200,7 @@ TEST_F(SerialRuns, WhatCannotBeUsedEndsTheRun) {
 }
 
 // What is wrong with the node in C is told by the same case over the line as in lock step.
-struct Deviation {
-  const char* name;
-  const char* test_case;
-  const char* reason;
-
-  friend void PrintTo(const Deviation& one, std::ostream* out) { *out << one.name; }
-};
-
-class SerialDeviations : public SerialRuns, public testing::WithParamInterface<Deviation> {};
+class SerialDeviations : public SerialRuns, public testing::WithParamInterface<DeviationInC> {};
 
 TEST_P(SerialDeviations, IsFoundByTheCaseThatNamesIt) {
   const auto [name, test_case, reason] = GetParam();
@@ -215,20 +208,10 @@ TEST_P(SerialDeviations, IsFoundByTheCaseThatNamesIt) {
   EXPECT_EQ(found.reason, reason) << found.verdict << found.findings;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    InC, SerialDeviations,
-    testing::Values(
-        Deviation{"check_without_command", "check/single_bit_errors_are_refused", "acts_on_wrong_check"},
-        Deviation{"answers_writes", "write/drives_the_valves", "write_answered"},
-        Deviation{"address_low_nibble", "address/only_its_own_id_acts", "acts_on_foreign_id"},
-        Deviation{"any_command_reads", "command/undefined_commands_are_ignored", "acts_on_undefined_command"},
-        Deviation{"read_drives_valves", "read/data_is_not_looked_at", "valves_moved_by_read"},
-        Deviation{"data_swapped", "write/drives_the_valves", "valves_wrong"},
-        Deviation{"response_check_with_id", "read/is_answered", "answer_check_wrong"},
-        Deviation{"turns_round_late", "timing/turn_round_is_within_its_span", "answer_too_late"},
-        Deviation{"driver_not_released", "timing/driver_is_on_for_the_answer_only", "driver_not_released"},
-        Deviation{"takes_long_frames", "framing/long_frames_are_discarded", "acts_on_long_frame"}),
-    [](const testing::TestParamInfo<Deviation>& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(InC, SerialDeviations, testing::ValuesIn(kDeviationsInC),
+                         [](const testing::TestParamInfo<DeviationInC>& one) {
+                           return std::string(one.param.name);
+                         });
 
 }  // namespace
 }  // namespace fieldproof::cli

@@ -33,8 +33,7 @@ const Role& role_named(const std::string& path) {
 
 // Lock step and virtual time, at the standard streams.
 void play_in_lock_step(const Role& role, const std::string& uri) {
-  constexpr std::string_view kPlugin = "plugin:";
-  const bool is_plugin = uri.starts_with(kPlugin);
+  const bool is_plugin = is_plugin_uri(uri);
   if (!is_plugin) role.serve(uri);
   iut::serve(
       STDIN_FILENO, STDOUT_FILENO,

@@ -54,9 +54,7 @@ std::string sequence_text(const Session& session, const SequenceFile& file, cons
 
 void keep_sequence(Session& session, SequenceFile file, const judge::CaseResult& result,
                    const std::string& path) {
-  file.verdict = result.verdict;
-  file.reason = result.reason;
-  file.fingerprint = result.fingerprint;
+  file.end = end_of(result);
   reports::write_text_file(path, sequence_file_text(file));
   session.terminal.print(sequence_text(session, file, result, replay_command(path)));
 }
@@ -88,21 +86,7 @@ int replay_sequence(Session& session) {
       session.terminal.print(reports::escaped_line(line) + "\n");
   }
   session.terminal.print(sequence_text(session, stored, result, replay_command(path)));
-  if (is_other) {
-    session.terminal.print("another implementation than the stored one: not compared\n");
-    return code_of(result);
-  }
-  const bool is_equal = result.verdict == stored.verdict && result.reason == stored.reason &&
-                        result.fingerprint == stored.fingerprint;
-  if (is_equal) {
-    session.terminal.print("equal: verdict, reason and fingerprint are those of the stored run\n");
-    return code_of(result);
-  }
-  session.terminal.print(fmt::format("differs: was {} {} {}, is {} {} {}\n", judge::name(stored.verdict),
-                                     reports::escaped_line(stored.reason),
-                                     judge::fingerprint_text(stored.fingerprint), judge::name(result.verdict),
-                                     result.reason, judge::fingerprint_text(result.fingerprint)));
-  return kDiffers;
+  return compared(session.terminal, stored.end, result, is_other, code_of(result));
 }
 
 }  // namespace fieldproof::cli

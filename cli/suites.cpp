@@ -3,20 +3,10 @@
 #include "cli/attachments.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
-#include "emc/burst_stress.hpp"
-#include "emc/plan_disturbances.hpp"
 
 namespace fieldproof::cli {
 
-Disturbances all_disturbances() {
-  return {emc::catalogue_stresses(), emc::plan_disturbances()};
-}
-
-Suites suites() {
-  return suites_under(all_disturbances());
-}
-
-Suites suites_under(const Disturbances& disturbances) {
+Suites suites(const Disturbances& disturbances) {
   Suites all;
   all.push_back(conformance::interbus_suite({.slave = {.attached = attached_slaves()},
                                              .disturbances = disturbances.of_plans,

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/program.hpp"
 #include "cli/settings.hpp"
 #include "cli/terminal.hpp"
 #include "conformance/catalogue.hpp"
@@ -13,7 +14,8 @@
 namespace fieldproof::cli {
 
 struct Session {
-  const conformance::Catalogue& catalogue;
+  const conformance::Catalogue& catalogue;  // under all disturbances
+  MakeSuites make_suites;
   Settings& settings;
   Terminal& terminal;
   std::vector<std::string> operands;   // selectors, case id, run directories

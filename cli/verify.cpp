@@ -28,8 +28,9 @@ struct Target {
 Target target_of(Session& session) {
   const std::string& first = session.operands.front();
   if (session.operands.size() == 1 && first.ends_with(".json") && std::filesystem::exists(first)) {
-    const CaseFile stored = load_case(first, session.catalogue);
-    Target target{{}, stored.setup, std::make_unique<StoredEntry>(stored, session.catalogue)};
+    CaseFile stored = load_case(first, session.catalogue);
+    stored.setup.limits = limits_from(session.settings);
+    Target target{{}, stored.setup, std::make_unique<StoredEntry>(stored, session)};
     target.entries.push_back(**target.stored);
     return target;
   }

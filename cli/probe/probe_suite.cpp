@@ -191,8 +191,8 @@ std::unique_ptr<SuiteOfFunctions> gone_suite() {
 
 }  // namespace
 
-std::vector<std::unique_ptr<conformance::Suite>> probe_suites() {
-  std::vector<std::unique_ptr<conformance::Suite>> suites;
+Suites probe_suites(const Disturbances&) {
+  Suites suites;
   suites.push_back(good_suite());
   suites.push_back(odd_suite());
   suites.push_back(gone_suite());

@@ -1,15 +1,13 @@
 #pragma once
 
-#include <memory>
-#include <vector>
-
-#include "conformance/test_case.hpp"
+#include "cli/program.hpp"
 
 // Suites of invented cases, one for each way in which a run can end, so that tests see every exit code of the
 // program. `probe` is a good suite without a hole, `odd` has cases that fail, break, sleep or answer as their
 // ids say, the implementations of `gone` cannot be reached.
 namespace fieldproof::cli {
 
-std::vector<std::unique_ptr<conformance::Suite>> probe_suites();
+// There is no line to disturb.
+Suites probe_suites(const Disturbances&);
 
 }  // namespace fieldproof::cli

@@ -151,7 +151,7 @@ const SequenceRole& slave_sequence_role() {
        .requirement = "Whatever cycles come in whatever order, outputs show the words of cycles that arrived "
                       "with a right check, and what nothing disturbs is taken over and answered.",
        .reference = sources::from_memory("what a slave does with a cycle, and with a rejected one"),
-       .details = {},
+       .details = details::answer(),
        .stimulus = "Cycles at random, with flipped levels and lost telegrams.",
        .expected = "What a model of the rules says.",
        .tags = {},

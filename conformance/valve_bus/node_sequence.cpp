@@ -271,6 +271,14 @@ class NodeSequenceRun {
   bool is_over_ = false;
 };
 
+// Any silence may stand between two characters of a sequence: what is a frame rests on the delimiter always.
+std::vector<Detail> sequence_details() {
+  std::vector<Detail> details = node_details();
+  details.push_back({valve_sources::own("silence of 3.5 characters ends a frame, whatever came before it"),
+                     {"moves_without_command", "write_not_taken", "answers_without_command", "no_answer"}});
+  return details;
+}
+
 }  // namespace
 
 const SequenceRole& node_sequence_role() {
@@ -280,7 +288,7 @@ const SequenceRole& node_sequence_role() {
        .requirement = "Whatever comes in whatever order, valves move and answers come by whole frames of the "
                       "node's own, and by nothing else.",
        .reference = valve_sources::paper("frames, block check, what a node does with a command"),
-       .details = {},
+       .details = sequence_details(),
        .stimulus = "Commands at random, with flipped bits, dropped characters and gaps.",
        .expected = "What a model of the rules says.",
        .tags = {},

@@ -62,6 +62,13 @@ TEST(NodeSequence, FindsEachNodeForCheckWithAtMostFourCommands) {
     EXPECT_LE(result.found->smallest.size(), 4U) << name << "\n" << told(result.found->smallest);
     EXPECT_GE(result.found->smallest.size(), 2U) << name << "\n" << told(result.found->smallest);
     EXPECT_LE(flips_in(result.found->smallest), 2U) << name << "\n" << told(result.found->smallest);
+    for (const judge::Finding& finding : result.found->outcome.result.findings) {
+      // What is a frame is this project's choice, and so is what follows from it; that there is one response
+      // is the paper's.
+      const bool is_of_the_paper = finding.reason == "answered_twice";
+      EXPECT_EQ(finding.reference.standing, is_of_the_paper ? judge::Standing::seed : judge::Standing::own)
+          << name << ": " << finding.reason;
+    }
   }
 }
 

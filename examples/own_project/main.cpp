@@ -1,17 +1,16 @@
 // The program of fieldproof with all its verbs, over the suites of this project.
 #include <cli/attachments.hpp>
 #include <cli/program.hpp>
-#include <emc/burst_stress.hpp>
-#include <emc/plan_disturbances.hpp>
 
 #include "suites.hpp"
 
 using namespace fieldproof;
 
-static cli::Suites suites() {
+// The program says what disturbs the lines: `shrink` and `replay` want other bursts than `run`.
+static cli::Suites suites(const cli::Disturbances& disturbances) {
   return island::suites({.node = {.attached = cli::attached_nodes()},
-                         .disturbances = emc::plan_disturbances(),
-                         .stresses = emc::catalogue_stresses()});
+                         .disturbances = disturbances.of_plans,
+                         .stresses = disturbances.stresses});
 }
 
 int main(int argc, char** argv) {

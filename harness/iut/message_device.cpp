@@ -133,8 +133,13 @@ bool MessageDevice::call(std::span<const std::uint8_t> message, Refusal refusal)
                 fmt::format("has not come to the end of a case within {} ms", limits_.whole_case.count()));
   }
   peer_.send(message, limits_.call);
+  std::size_t octets = 0;
   for (unsigned actions = 0; actions <= kMostActions; ++actions) {
     const auto answer = peer_.receive(limits_.call, begin);
+    octets += answer.size();
+    if (octets > kMostOctets) {
+      peer_.blame(reasons::kFloods, fmt::format("has said more than {} octets within one call", kMostOctets));
+    }
     try {
       MessageReader reader(answer);
       if (reader.type() == MessageType::done) {

@@ -20,6 +20,7 @@ class MessageDevice final : public Device {
   // Messages of an implementation within one call, and calls at one instant that it asks for; more are a
   // flood.
   static constexpr unsigned kMostActions = 10'000;
+  static constexpr std::size_t kMostOctets = 8U << 20U;  // of the messages of one call
 
   // Says hello. Throws Misbehaviour for a peer that does not answer as it should, and
   // kernel::Error(implementation) for one that speaks another version.

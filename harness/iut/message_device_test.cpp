@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 
+#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
@@ -305,6 +306,22 @@ TEST(MessageDeviceCall, ActionsWithoutEndAreAFlood) {
   const Blame blame = blame_for_power(script);
   EXPECT_EQ(blame.reason, reasons::kFloods);
   EXPECT_THAT(blame.sentence, HasSubstr("more than 10000 things within one call"));
+}
+
+// Each of them is a message that may be: together they would fill the memory.
+TEST(MessageDeviceCall, OctetsWithoutEndAreAFlood) {
+  MessageWriter writer;
+  const std::vector<std::uint16_t> characters(20'000, 0x155);
+  const MessageOctets message =
+      octets_of(write_transmission(writer, {0, kernel::kStart, kernel::kStart, kernel::kStart, characters}));
+  const ScriptFolder folder;
+  std::ofstream(folder.file("message"))
+      .write(reinterpret_cast<const char*>(message.data()), static_cast<std::streamsize>(message.size()));
+  Script script = begun();
+  script.hears().then("while cat " + folder.file("message") + "; do :; done");
+  const Blame blame = blame_for_power(script);
+  EXPECT_EQ(blame.reason, reasons::kFloods);
+  EXPECT_THAT(blame.sentence, HasSubstr("more than 8388608 octets within one call"));
 }
 
 TEST(MessageDeviceEnd, CrashIsToldWithTheEndOfTheLogAsPlainText) {

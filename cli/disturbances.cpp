@@ -1,0 +1,12 @@
+#include "cli/disturbances.hpp"
+
+#include "emc/burst_stress.hpp"
+#include "emc/plan_disturbances.hpp"
+
+namespace fieldproof::cli {
+
+Disturbances all_disturbances() {
+  return {emc::catalogue_stresses(), emc::plan_disturbances()};
+}
+
+}  // namespace fieldproof::cli
