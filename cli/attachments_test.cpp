@@ -152,7 +152,7 @@ TEST_F(Attachments, SlavesOfANetworkAreProcesses) {
   const std::string slave = "exec:" + in_quotes(FIELDPROOF_EXE) + " station interbus/slave ";
   const std::string suite = "interbus/network/";
   const Cases inside = judged("ref", "**", {}, {}, suite);
-  EXPECT_EQ(inside.size(), 6U);
+  EXPECT_EQ(inside.size(), 7U);
   EXPECT_EQ(judged("slave@2=" + slave, "**", {}, {}, suite), inside);
 }
 

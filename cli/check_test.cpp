@@ -86,7 +86,9 @@ TEST_F(Check, ShrinksBurstsToTheBitsThatMattered) {
   for (const Campaign& one :
        {Campaign{"valve_bus/node/immunity/*", "deviant:write_not_checked"},
         Campaign{"valve_bus/node/immunity/*", "deviant:valves_off_on_wrong_check"},
-        Campaign{"interbus/slave/immunity/bursts*", "slave=deviant:latches_in_spite_of_own_error"}}) {
+        Campaign{"interbus/slave/immunity/bursts*", "slave=deviant:latches_in_spite_of_own_error"},
+        Campaign{"interbus/network/immunity/*", "slave@4=deviant:latches_in_spite_of_own_error"},
+        Campaign{"interbus/network/immunity/*", "master=deviant:own_check_ignored"}}) {
     std::filesystem::remove_all(folder_ / "run");
     const std::string stored = failed_case(one.selector, one.uri);
     const Called shrunk = call({"shrink", stored, "--case", "small.json"});

@@ -21,7 +21,7 @@ std::string recovery_text(const emc::ImmunityResult& result) {
   return result.recovered_after_start ? "after a start" : "never";
 }
 
-ordered_json ledger_json(const emc::ErrorLedger& ledger) {
+ordered_json ledger_json(const interbus::ErrorLedger& ledger) {
   return {{"sent", ledger.sent},
           {"corrupted", ledger.corrupted},
           {"detected", ledger.detected},
@@ -81,7 +81,7 @@ ordered_json channel_json(const EmcTest& test) {
 std::string channel_line(const EmcTest& test) {
   const std::string where = fmt::format("bsc {:<12g}", test.flip_probability);
   if (!test.result.came_up) return where + "  the network does not come up on a quiet line\n";
-  const emc::ErrorLedger& ledger = test.result.ledger;
+  const interbus::ErrorLedger& ledger = test.result.ledger;
   return fmt::format("{} {:>9} {:>10} {:>10} {:>8} {:>6} {:>6} {:>12.3g} {:>8.3g}\n", where, ledger.sent,
                      ledger.corrupted, ledger.detected, test.result.longest_bad_run, test.result.bus_stops,
                      ledger.wrong_cycles, test.expected_wrong_cycles(), test.chance_of_count());
@@ -148,7 +148,7 @@ std::string emc_line(const EmcTest& test) {
   const std::string where = fmt::format("{:<14} {:>8} {:>3}", test.level.text(),
                                         emc::text_of(test.repetition), emc::text_of(test.polarity));
   if (!result.came_up) return where + "  the network does not come up on a quiet line\n";
-  const emc::ErrorLedger& ledger = result.ledger;
+  const interbus::ErrorLedger& ledger = result.ledger;
   return fmt::format("{}  {:>9} {:>8} {:>10} {:>9} {:>9} {:>8} {:>14} {:>6} {:>8} {:>6}\n", where,
                      emc::name(result.criterion), ledger.sent, ledger.corrupted, ledger.detected,
                      ledger.detected - std::min(ledger.detected, ledger.partly_latched),

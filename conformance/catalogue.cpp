@@ -70,7 +70,10 @@ bool is_path_end(std::string_view path, std::string_view name) {
 // The protocols and roles of the entries: which deviations a bare name can mean there.
 std::set<std::pair<const Suite*, std::string>> roles_of(std::span<const Entry> entries) {
   std::set<std::pair<const Suite*, std::string>> roles;
-  for (const Entry& entry : entries) roles.insert({entry.suite, entry.test_case->role()});
+  for (const Entry& entry : entries) {
+    roles.insert({entry.suite, entry.test_case->role()});
+    for (const std::string& part : entry.test_case->parts) roles.insert({entry.suite, part});
+  }
   return roles;
 }
 

@@ -30,14 +30,16 @@ void NetworkBench::Listener::on_wave(const line::Waveform& wave) {
 }
 
 NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkParts& parts,
-                           const fault::Plan& plan, std::uint64_t seed, Volume volume)
+                           const fault::Plan& plan, std::uint64_t seed, Volume volume,
+                           std::span<const fault::Stress> stresses)
     : network_(std::move(network)),
       built_(built_from(network_, parts)),
       places_(interbus::ring_order(network_)),
       volume_(volume),
       random_(seed),
       listener_(network_.rules),
-      line_watch_(interbus::shortest_telegram(network_.rules)) {
+      line_watch_(interbus::shortest_telegram(network_.rules)),
+      stresses_(stresses) {
   interbus::MasterConfiguration configuration = interbus::master_configuration(network_);
   configuration.rules = built_.rules;
   if (parts.make_master) {
@@ -48,13 +50,46 @@ NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkPa
   master_seat_ = segment_.attach(*master_, "master");
   ring_ = std::make_unique<interbus::Ring>(segment_, built_, master_seat_, parts.make_slave);
   master_->wire(ring_->out());
-  master_->on_cycle_end([&trace = segment_.trace(), place = segment_.trace().add_channel("master")](
+  master_->on_cycle_end([this, place = segment_.trace().add_channel("master")](
                             kernel::Time now, bool data_cycle, bool accepted) {
-    trace.observe(place, now, interbus::observed_cycle_end(data_cycle, accepted), 0);
+    segment_.trace().observe(place, now, interbus::observed_cycle_end(data_cycle, accepted), 0);
+    on_cycle_end(now, data_cycle, accepted);
   });
   ring_->link_to(1).tap_driven(listener_);
   for (segment::Link* link : ring_->links()) line_watch_.watch(*link, segment_.trace());
+  for (std::size_t n = 0; n < ring_->remote_links().size(); ++n) stressed_.emplace_back(stresses_);
   install(plan);
+}
+
+interbus::ExchangeOracle& NetworkBench::begin_exchange() {
+  return exchange_.emplace(*master_, *ring_, random_.split("process data"));
+}
+
+void NetworkBench::on_cycle_end(kernel::Time now, bool is_data, bool accepted) {
+  if (!exchange_) return;
+  const std::uint64_t changed = stressed_transmissions();
+  exchange_->on_cycle_end(now, is_data, accepted, changed != changed_before_);
+  changed_before_ = changed;
+}
+
+void NetworkBench::begin_stress(const fault::Stress& stress) {
+  const kernel::Random random = random_.split("stress").split(stress_number_++);
+  auto stressed = stressed_.begin();
+  for (segment::Link* link : ring_->remote_links()) {
+    (stressed++)
+        ->begin(stress, *link,
+                {network_.rules.bit_rate, segment_.now(), random, segment_.trace(), link->trace_channel()});
+  }
+}
+
+void NetworkBench::end_stress() {
+  for (StressedReceiver& one : stressed_) one.end();
+}
+
+std::uint64_t NetworkBench::stressed_transmissions() const {
+  std::uint64_t sum = 0;
+  for (const StressedReceiver& one : stressed_) sum += one.changed();
+  return sum;
 }
 
 void NetworkBench::install(const fault::Plan& plan) {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,9 +14,11 @@
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/line_watch.hpp"
+#include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/segment/segment.hpp"
+#include "protocols/interbus/exchange_oracle.hpp"
 #include "protocols/interbus/network.hpp"
 #include "protocols/interbus/ring.hpp"
 
@@ -33,7 +38,7 @@ struct NetworkParts {
 class NetworkBench {
  public:
   NetworkBench(interbus::NetworkDescription network, const NetworkParts& parts, const fault::Plan& plan,
-               std::uint64_t seed, Volume volume);
+               std::uint64_t seed, Volume volume, std::span<const fault::Stress> stresses = {});
   NetworkBench(const NetworkBench&) = delete;
   NetworkBench& operator=(const NetworkBench&) = delete;
 
@@ -72,6 +77,15 @@ class NetworkBench {
   // has just missed the cycle.
   void run_behind_sampling();
 
+  // A stress on all cables of the remote bus, from now on; the n-th of a case has the n-th disturbances, and
+  // all cables the same ones.
+  std::span<const fault::Stress> stresses() const { return stresses_; }
+  void begin_stress(const fault::Stress& stress);
+  void end_stress();
+  std::uint64_t stressed_transmissions() const;
+  // From now on random words go through the network at each cycle, and what comes out of it is judged.
+  interbus::ExchangeOracle& begin_exchange();
+
   // Starts of the data cycles on the master's output since `forget_starts`, as the lower tester decoded them.
   const std::vector<kernel::Time>& data_cycle_starts() const { return listener_.starts; }
   void forget_starts() { listener_.starts.clear(); }
@@ -91,6 +105,7 @@ class NetworkBench {
   };
 
   void install(const fault::Plan& plan);
+  void on_cycle_end(kernel::Time now, bool is_data, bool accepted);
   kernel::Duration longest_recognition() const;
 
   interbus::NetworkDescription network_;
@@ -105,6 +120,11 @@ class NetworkBench {
   std::unique_ptr<fault::InstalledPlan> plan_;
   Listener listener_;
   LineWatch line_watch_;
+  std::span<const fault::Stress> stresses_;
+  std::deque<StressedReceiver> stressed_;  // of each remote link
+  std::uint64_t stress_number_ = 0;
+  std::optional<interbus::ExchangeOracle> exchange_;
+  std::uint64_t changed_before_ = 0;  // at the end of the cycle before
 };
 
 struct NetworkCase {
@@ -113,6 +133,7 @@ struct NetworkCase {
 };
 
 const std::vector<NetworkCase>& network_cases();
+std::vector<NetworkCase> network_immunity_cases();  // a part of them
 
 const std::vector<Deviation>& network_deviations();
 // The parts of a deviation by name; throws kernel::Error(usage) with the nearest names for an unknown one.

@@ -267,7 +267,11 @@ std::vector<NetworkCase> make_cases() {
 }  // namespace
 
 const std::vector<NetworkCase>& network_cases() {
-  static const std::vector<NetworkCase> cases = make_cases();
+  static const std::vector<NetworkCase> cases = [] {
+    std::vector<NetworkCase> all = make_cases();
+    for (NetworkCase& one : network_immunity_cases()) all.insert(std::prev(all.end()), std::move(one));
+    return all;
+  }();
   return cases;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -280,7 +281,7 @@ Outcome Run::run(const NetworkCase& network_case) {
   Outcome outcome;
   outcome.result = judge.run_procedure([&](CaseJudge& j) {
     bench.emplace(network, network_parts(interbus::ring_order(network).size()), plan_, setup_.seed,
-                  setup_.volume);
+                  setup_.volume, given_.stresses);
     if (setup_.record) {
       bench->segment().trace().set_recorder(&recorder_of(bench->segment().trace(), network.rules));
     }
@@ -312,7 +313,8 @@ class InterbusSuite final : public Suite {
     add(network_cases());
     checks_[blank_sequence_case().test_case.id] = [](Run& run) { run.check(blank_sequence_case()); };
     for (const auto* list : {&slave_deviations(), &master_deviations(), &network_deviations()}) {
-      deviations_.insert(deviations_.end(), list->begin(), list->end());
+      std::ranges::copy_if(*list, std::back_inserter(deviations_),
+                           [&](const Deviation& one) { return !only_left_out_cases_name(one); });
     }
   }
 
@@ -370,6 +372,17 @@ class InterbusSuite final : public Suite {
   }
 
  private:
+  // Networks that only bursts tell are no hole of a suite that was given none.
+  bool only_left_out_cases_name(const Deviation& deviation) const {
+    const auto names = [&](const TestCase& one) {
+      return one.role() == deviation.role && std::ranges::any_of(one.catches, [&](const Catch& caught) {
+               return caught.deviation == deviation.name;
+             });
+    };
+    return std::ranges::none_of(cases_, names) &&
+           std::ranges::any_of(network_cases(), [&](const NetworkCase& one) { return names(one.test_case); });
+  }
+
   // What a setup is looked at with before the first sequence.
   static const SlaveCase& blank_sequence_case() {
     static const SlaveCase blank{slave_sequence_role().test_case, nullptr};

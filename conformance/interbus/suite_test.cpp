@@ -154,13 +154,15 @@ TEST(InterbusSuite, CasesOfStressesAreThereWithStresses) {
   const fault::Stress deaf{"nothing arrives for 2 ms", 2 * kernel::kMillisecond,
                            [](const fault::StressPlace&) { return std::make_unique<Deaf>(); }};
   const auto stressed = interbus_suite({.stresses = {deaf}});
-  EXPECT_EQ(std::ranges::count_if(stressed->cases(), has_stress_tag), 2);
+  EXPECT_EQ(std::ranges::count_if(stressed->cases(), has_stress_tag), 3);
   for (const TestCase& test_case : stressed->cases()) {
     if (!has_stress_tag(test_case)) continue;
     EXPECT_EQ(stressed->run(test_case, setup_of(test_case.role(), "ref")).result.verdict,
               judge::Verdict::pass)
         << test_case.id;
   }
+  EXPECT_EQ(stressed->deviations().size(), suite().deviations().size() + 2)
+      << "networks that only bursts tell";
 }
 
 // A file that lives as long as the test needs it.

@@ -4,16 +4,6 @@
 
 namespace fieldproof::emc {
 
-std::vector<segment::Link*> cables_in_clamp(interbus::Ring& ring) {
-  std::vector<segment::Link*> links;
-  for (int position = 1; position <= static_cast<int>(ring.size()); ++position) {
-    if (ring.configuration(position).is_local) continue;
-    links.push_back(&ring.link_to(position));
-    links.push_back(&ring.link_from(position));
-  }
-  return links;
-}
-
 BurstClamp::BurstClamp(const BurstSettings& bursts, WrongOutput wrong, const BurstReceiver& receiver,
                        const kernel::Random& random, kernel::Duration recovery)
     : bursts_(bursts),
@@ -29,7 +19,7 @@ void BurstClamp::couple(interbus::Ring& ring, segment::Segment& segment, kernel:
   // Equal streams: all receivers of a run, and whoever asks for its phases, see the same pulses.
   schedule_ = BurstSchedule(bursts_, random_);
   channels_.clear();
-  for (segment::Link* link : cables_in_clamp(ring)) {
+  for (segment::Link* link : ring.remote_links()) {
     channels_.emplace_back(BurstSchedule(bursts_, random_), wrong_, receiver_, segment.trace(),
                            link->trace_channel());
     link->set_channel(&channels_.back());

@@ -14,9 +14,6 @@
 // Bursts on an INTERBUS ring: all cables of the remote bus lie in the clamp, local buses do not.
 namespace fieldproof::emc {
 
-// Both directions of these cables, in ring order.
-std::vector<segment::Link*> cables_in_clamp(interbus::Ring& ring);
-
 class BurstClamp {
  public:
   // The phases of a run: each burst, and how long the bus has to recover behind it.

@@ -46,7 +46,7 @@ struct Clamped {
 TEST(BurstClamp, HoldsTheRemoteBusAndNoLocalBus) {
   Clamped clamped(1, kStart);
   EXPECT_EQ(clamped.ring.size(), 3U);
-  EXPECT_EQ(cables_in_clamp(clamped.ring).size(), 2U) << "to and from the coupler";
+  EXPECT_EQ(clamped.ring.remote_links().size(), 2U) << "to and from the coupler";
   EXPECT_EQ(clamped.clamp.channels().size(), 2U);
   clamped.clamp.couple(clamped.ring, clamped.segment, kStart);
   EXPECT_EQ(clamped.clamp.channels().size(), 2U) << "what was coupled before is forgotten";

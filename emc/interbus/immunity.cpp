@@ -10,6 +10,7 @@
 #include "emc/interbus/burst_clamp.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/segment/segment.hpp"
+#include "protocols/interbus/exchange_oracle.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/timing.hpp"
 
@@ -30,116 +31,6 @@ std::unique_ptr<interbus::MasterDevice> make_master(const InterbusStations& stat
   if (stations.make_master) return stations.make_master(configuration);
   return std::make_unique<interbus::Master>(configuration);
 }
-
-// What the network exchanges, and whether it is what came out.
-class Oracle {
- public:
-  Oracle(interbus::MasterDevice& master, interbus::Ring& ring, kernel::Random random)
-      : master_(master), ring_(ring), random_(std::move(random)) {
-    for (int position = 1; position <= static_cast<int>(ring.size()); ++position) watch(position);
-    sent_.resize(ring.word_count());
-    put_out_.resize(ring.word_count());
-    at_terminals_.resize(ring.word_count());
-    held_.resize(ring.word_count());
-  }
-
-  void begin() {
-    ledger_ = {};
-    wrong_before_ = 0;
-  }
-  const ErrorLedger& ledger() const { return ledger_; }
-  // Whether the last good cycle was not put out somewhere.
-  bool has_missed() const { return has_missed_; }
-
-  // At the end of a cycle: judges the images and gives both sides new values.
-  void on_cycle_end(bool is_data, bool accepted, bool is_corrupted) {
-    if (is_data) {
-      ++ledger_.sent;
-      if (is_corrupted) ++ledger_.corrupted;
-      if (!accepted) {
-        ++ledger_.detected;
-        if (has_latched_) ++ledger_.partly_latched;
-      }
-    } else if (was_rejected_) {
-      ++ledger_.repeated;
-    }
-    was_rejected_ = !accepted;
-    judge_inputs(is_data && accepted);
-    if (is_data && accepted) judge_outputs();
-    if (ledger_.accepted_wrong() != wrong_before_) ++ledger_.wrong_cycles;
-    wrong_before_ = ledger_.accepted_wrong();
-    has_latched_ = false;
-    exchange();
-  }
-
- private:
-  void watch(int position) {
-    const unsigned first = ring_.first_word(position);
-    ring_.terminals(position).on_change([this, first](const interbus::TerminalBlock::Change& change) {
-      put_out_[first + change.word] = change.after;
-      if (change.after == 0) {
-        ++ledger_.cleared_outputs;  // the safe value, never sent
-        return;
-      }
-      has_latched_ = true;
-      if (change.after != sent_[first + change.word]) ++ledger_.accepted_wrong_outputs;
-    });
-  }
-
-  // A good data cycle brings what was at the terminals when it began; nothing else changes the image. Outside
-  // of `run` an image may be empty.
-  void judge_inputs(bool is_good_data) {
-    const bool is_running = master_.status().state == MasterState::run;
-    for (unsigned word = 0; word < held_.size(); ++word) {
-      const std::uint16_t actual = master_.input(word);
-      if (is_good_data) {
-        if (actual != at_terminals_[word]) ++ledger_.accepted_wrong_inputs;
-      } else if (is_running && actual != held_[word]) {
-        ++ledger_.accepted_wrong_inputs;
-      }
-      held_[word] = actual;
-    }
-  }
-
-  // The words of a cycle that the master takes for good are at the outputs when it has ended.
-  void judge_outputs() {
-    has_missed_ = false;
-    for (int position = 1; position <= static_cast<int>(ring_.size()); ++position) {
-      for (unsigned n = 0; n < ring_.configuration(position).words; ++n) {
-        const unsigned word = ring_.first_word(position) + n;
-        if (put_out_[word] == sent_[word]) continue;
-        ++ledger_.missed_outputs;
-        has_missed_ = true;
-      }
-    }
-  }
-
-  void exchange() {
-    for (int position = 1; position <= static_cast<int>(ring_.size()); ++position) {
-      const unsigned words = ring_.configuration(position).words;
-      for (unsigned n = 0; n < words; ++n) {
-        const unsigned word = ring_.first_word(position) + n;
-        sent_[word] = static_cast<std::uint16_t>(random_.between(1, 0xFFFF));
-        at_terminals_[word] = static_cast<std::uint16_t>(random_.between(1, 0xFFFF));
-        master_.write_output(word, sent_[word]);
-        ring_.terminals(position).set_input(n, at_terminals_[word]);
-      }
-    }
-  }
-
-  interbus::MasterDevice& master_;
-  interbus::Ring& ring_;
-  kernel::Random random_;
-  std::vector<std::uint16_t> sent_;          // the output image of the cycle in work
-  std::vector<std::uint16_t> at_terminals_;  // the inputs that it will bring
-  std::vector<std::uint16_t> held_;          // the input image as it was seen last
-  std::vector<std::uint16_t> put_out_;       // at the output terminals
-  bool has_latched_ = false;
-  bool has_missed_ = false;
-  bool was_rejected_ = false;
-  std::uint64_t wrong_before_ = 0;
-  ErrorLedger ledger_;
-};
 
 // Counts what a channel of any kind does.
 class CountedChannel final : public fault::Channel {
@@ -212,7 +103,7 @@ class Run {
 
   void couple_channels() {
     const kernel::Random random = random_.split("channels");
-    for (segment::Link* link : cables_in_clamp(ring_)) {
+    for (segment::Link* link : ring_.remote_links()) {
       counted_.emplace_back(settings_.make_channel(random.split(counted_.size())));
       link->set_channel(&counted_.back());
     }
@@ -235,7 +126,7 @@ class Run {
     }
     // Bursts know themselves when they end.
     if (settings_.make_channel) {
-      for (segment::Link* link : cables_in_clamp(ring_)) link->set_channel(nullptr);
+      for (segment::Link* link : ring_.remote_links()) link->set_channel(nullptr);
     }
   }
 
@@ -266,9 +157,9 @@ class Run {
     return condition();
   }
 
-  void on_cycle_end(Time, bool is_data, bool accepted) {
+  void on_cycle_end(Time now, bool is_data, bool accepted) {
     const std::uint64_t changed = changed_transmissions();
-    oracle_.on_cycle_end(is_data, accepted, changed != changed_before_);
+    oracle_.on_cycle_end(now, is_data, accepted, changed != changed_before_);
     changed_before_ = changed;
     if (accepted && is_data && master_->status().state == MasterState::run) {
       is_exchanging_ = true;
@@ -317,7 +208,7 @@ class Run {
   std::unique_ptr<interbus::MasterDevice> master_;
   std::size_t seat_;
   interbus::Ring ring_;
-  Oracle oracle_;
+  interbus::ExchangeOracle oracle_;
   ImmunitySettings settings_;
   std::optional<BurstClamp> clamp_;
   std::deque<CountedChannel> counted_;

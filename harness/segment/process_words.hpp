@@ -47,7 +47,7 @@ class ProcessWords {
     if (held == value) return;
     const Change change{when, word, held, value};
     if (changes_.size() < kMostChanges) changes_.push_back(change);
-    if (on_change_) on_change_(change);
+    for (const auto& hook : on_change_) hook(change);
     held = value;
   }
 
@@ -56,8 +56,8 @@ class ProcessWords {
   static constexpr std::size_t kMostChanges = 65'536;
   const std::vector<Change>& changes() const { return changes_; }
   void forget_changes() { changes_.clear(); }
-  // Called at each change as it is written.
-  void on_change(std::function<void(const Change&)> hook) { on_change_ = std::move(hook); }
+  // Called at each change as it is written, behind those that were added before.
+  void on_change(std::function<void(const Change&)> hook) { on_change_.push_back(std::move(hook)); }
   std::uint64_t write_count() const { return write_count_; }
   kernel::Time last_write() const { return last_write_; }
 
@@ -72,7 +72,7 @@ class ProcessWords {
   std::vector<std::uint16_t> outputs_;
   std::vector<Write> writes_;  // the last one of each word
   std::vector<Change> changes_;
-  std::function<void(const Change&)> on_change_;
+  std::vector<std::function<void(const Change&)>> on_change_;
   std::uint64_t write_count_ = 0;
   kernel::Time last_write_{};
 };

@@ -115,6 +115,16 @@ fault::KnownNames Ring::known_names() {
   return known;
 }
 
+std::vector<segment::Link*> Ring::remote_links() {
+  std::vector<segment::Link*> links;
+  for (int position = 1; position <= static_cast<int>(size()); ++position) {
+    if (configuration(position).is_local) continue;
+    links.push_back(&link_to(position));
+    links.push_back(&link_from(position));
+  }
+  return links;
+}
+
 void Ring::install(fault::InstalledPlan& plan) {
   fault::expect_known_names(plan.plan(), known_names());
   const Rules& rules = slaves_.front().configuration.rules;

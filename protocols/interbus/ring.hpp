@@ -54,6 +54,8 @@ class Ring {
   };
   std::vector<Receiver> receivers();
   std::vector<segment::Link*> links();
+  // Both directions of the cables of the remote bus, in ring order: what lies in the clamp of a burst test.
+  std::vector<segment::Link*> remote_links();
 
   // Puts the channels of a fault plan on the receivers that its rules can mean. The plan must outlive the
   // ring. Throws kernel::Error(configuration) for a rule that names what a ring does not have.
