@@ -78,7 +78,7 @@ class Attachments : public ProgramFixture {
   }
 
   void expect_passes(const std::string& uri, const std::string& suite = std::string(kSuite),
-                     std::size_t count = 45) {
+                     std::size_t count = 47) {
     const Cases cases = judged(uri, "**", {}, {}, suite);
     EXPECT_EQ(cases.size(), count) << uri;
     for (const auto& [id, one] : cases) {
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Served{
             "valve_bus/node",
-            45,
+            47,
             {{{"turns_round_late", "read/is_answered", "answer_too_late"},
               {"any_command_reads", "command/undefined_commands_are_ignored", "acts_on_undefined_command"}}}},
         Served{"valve_bus/host",

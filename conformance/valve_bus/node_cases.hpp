@@ -29,6 +29,7 @@ std::vector<NodeCase> node_timing_cases();
 std::vector<NodeCase> node_line_cases();
 std::vector<NodeCase> node_power_cases();
 std::vector<NodeCase> node_immunity_cases();
+std::vector<NodeCase> node_resonance_cases();
 
 // Applies only to a node of which the PICS says so.
 std::function<std::optional<std::string>(const judge::Pics&)> for_node_with(std::string item,

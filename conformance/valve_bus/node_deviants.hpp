@@ -494,6 +494,35 @@ class StartBitNotValidated : public Node {
   }
 };
 
+// Takes every bit but the start bit at another sixteenth than in its middle.
+class SamplesElsewhere : public Node {
+ public:
+  SamplesElsewhere(const valve_bus::NodeConfiguration& configuration, unsigned sixteenth)
+      : Node(configuration), sixteenth_(sixteenth) {}
+
+ private:
+  void receive(segment::PortIndex port, const line::Waveform& reception) override {
+    wave_ = &reception;
+    Node::receive(port, reception);
+  }
+  HeardCharacter judged(const HeardCharacter& character) const override {
+    const line::CharacterCode code(valve_bus::character_format(rules()));
+    std::uint32_t bits = 0;
+    for (unsigned bit = 1; bit <= code.format().bits_before_stop(); ++bit) {
+      const Time when = line::Sampling::instant(character.start, bit, sixteenth_, rules().bit_rate);
+      bits |= std::uint32_t{wave_->at(when)} << bit;
+    }
+    const line::Character sampled = code.from_bits(bits);
+    HeardCharacter taken = character;
+    taken.data = sampled.data;
+    taken.is_parity_wrong = sampled.is_parity_wrong;
+    taken.is_stop_missing = sampled.is_stop_missing;
+    return taken;
+  }
+  unsigned sixteenth_;
+  const line::Waveform* wave_ = nullptr;  // that is being received
+};
+
 class FollowsAnyRate : public Node {
   using Node::Node;
   void receive(segment::PortIndex port, const line::Waveform& reception) override {

@@ -11,10 +11,6 @@ namespace {
 
 using Change = segment::ProcessWords::Change;
 
-std::string valves_text(std::uint16_t valves) {
-  return fmt::format("valves {:02X} {:02X}", valves & 0xFF, valves >> 8);
-}
-
 std::string change_text(const Change& change) {
   return fmt::format("{} became {:02X} {:02X} at {}", valves_text(change.before), change.after & 0xFF,
                      change.after >> 8, kernel::describe(change.when));
@@ -88,6 +84,10 @@ void expect_octets(NodeBench& bench, CaseJudge& judge, const Transmission& answe
 }
 
 }  // namespace
+
+std::string valves_text(std::uint16_t valves) {
+  return fmt::format("valves {:02X} {:02X}", valves & 0xFF, valves >> 8);
+}
 
 Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, std::uint8_t data1,
                                kernel::Time end) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "conformance/judging.hpp"
@@ -11,6 +12,9 @@ namespace fieldproof::conformance {
 
 // Positions on the line are rounded to picoseconds, each for itself: limits are held to a nanosecond.
 inline constexpr kernel::Duration kRounding = kernel::kNanosecond;
+
+// "valves 5A A5": the first board, the second one.
+std::string valves_text(std::uint16_t valves);
 
 // The valves stand like this now.
 void expect_valves(NodeBench& bench, CaseJudge& judge, std::uint16_t valves, std::string_view reason);
