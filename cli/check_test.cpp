@@ -118,9 +118,10 @@ TEST_F(Check, ShrinksASmallBurstCaseAgain) {
 }
 
 TEST_F(Check, LeavesAPlanAloneWhenNothingWasFound) {
-  ASSERT_EQ(call({"run", "valve_bus/node/immunity/bursts*", "--volume", "quick", "--record", "all", "--out", "run"})
-                .exit_code,
-            kAllAsExpected);
+  ASSERT_EQ(
+      call({"run", "valve_bus/node/immunity/bursts*", "--volume", "quick", "--record", "all", "--out", "run"})
+          .exit_code,
+      kAllAsExpected);
   write("small.plan.json", "{}");
   const Called shrunk =
       call({"shrink", "run/cases/valve_bus+node+immunity+bursts_move_nothing_by_themselves/case.json",
