@@ -44,7 +44,8 @@ class DirectDevice final : public iut::Device {
   void receive(unsigned, std::span<const iut::Character> characters, kernel::Time now) override {
     call([&] {
       for (const iut::Character& one : characters) {
-        const fieldproof_character heard{ticks(one.start), ticks(one.busy_until), one.data, 0};
+        const fieldproof_character heard{ticks(one.start), ticks(one.busy_until), one.data,
+                                         one.is_parity_wrong, one.is_stop_missing};
         valve_node_receive(&node_, &heard, ticks(now));
       }
     });

@@ -10,9 +10,10 @@ if(NOT DEFINED CMAKE_C_COMPILER)
 endif()
 enable_language(C)
 
-# fieldproof_c89(target): strict, and any warning is an error.
+# fieldproof_c89(target): strict, and any warning is an error. A plug-in exports its entry alone.
 function(fieldproof_c89 target)
-  set_target_properties(${target} PROPERTIES C_STANDARD 90 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF PREFIX "")
+  set_target_properties(${target} PROPERTIES
+    C_STANDARD 90 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF PREFIX "" C_VISIBILITY_PRESET hidden)
   target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}")
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
 endfunction()

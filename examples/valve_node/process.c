@@ -113,7 +113,7 @@ static void receive(valve_node* node) {
     character.start = (fieldproof_time)number(8);
     character.busy_until = (fieldproof_time)number(8);
     character.data = (unsigned short)number(2);
-    character.flags = (unsigned short)number(1);
+    character.is_parity_wrong = *at & 1, character.is_stop_missing = *at++ >> 1 & 1;
     valve_node_receive(node, &character, now);
   }
 }

@@ -27,8 +27,8 @@ static fieldproof_time setting(const fieldproof_case* test_case, const char* nam
 }
 
 void valve_node_begin(valve_node* node, const fieldproof_case* test_case) {
-  const fieldproof_time rate = setting(test_case, "bit_rate");
-  const fieldproof_time format = setting(test_case, "characters");
+  const fieldproof_time told = setting(test_case, "bit_rate"), format = setting(test_case, "characters");
+  const fieldproof_time rate = told > 0 ? told : 62500; /* switch position 2 */
   node->bit = SECOND / rate;
   node->half = (format == 2 ? 10 : 11) * SECOND / (2 * rate);
   node->ninth_bit = format == 0 ? 0x100 : 0;
@@ -102,7 +102,8 @@ void valve_node_receive(valve_node* node, const fieldproof_character* character,
   if (!node->is_on) return;
   if (node->count > 0 && gap >= 7 * node->half) end_frame(node, now);
   node->has_answer = 0; /* somebody else talks */
-  if (character->flags != 0 || character->start < node->driving_until) node->is_spoilt = 1;
+  if (character->is_parity_wrong || character->is_stop_missing || character->start < node->driving_until)
+    node->is_spoilt = 1;
   if (node->count > 0 && gap > 3 * node->half + 1000) node->is_spoilt = 1;
   if (node->count < 6) node->frame[node->count++] = (unsigned char)(character->data & 0xFF);
   node->busy_until = character->busy_until;

@@ -130,17 +130,17 @@ TEST(PluginTest, ImplementationThatTheProgramHoldsIsCalledLikeALibrary) {
         return std::string_view(role) == "echo" ? const_cast<fieldproof_bench*>(bench) : nullptr;
       },
       .destroy = [](void*) {},
-      .begin = [](void*, const fieldproof_case*) { return 1; },
-      .set_power = [](void*, int, fieldproof_time) {},
+      .begin = [](void*, const fieldproof_case*, fieldproof_time*) { return 1; },
+      .set_power = [](void*, int, fieldproof_time) { return FIELDPROOF_NEVER; },
       .receive = nullptr,
       .receive_levels =
           [](void* self, unsigned port, fieldproof_time, fieldproof_time rate, const unsigned char* levels,
              unsigned count, fieldproof_time now) {
             const auto* bench = static_cast<const fieldproof_bench*>(self);
             bench->transmit_levels(bench->context, port, now, rate, levels, count);
+            return now + 1;
           },
-      .on_time = [](void*, fieldproof_time) {},
-      .next_time = [](void*) { return FIELDPROOF_NEVER; },
+      .on_time = [](void*, fieldproof_time) { return FIELDPROOF_NEVER; },
       .end = [](void*) {},
   };
   const auto device = make_plugin(echo, "odd", "echo");
@@ -167,7 +167,7 @@ TEST(PluginTest, WhatTheBenchRefusesIsToldBehindTheCall) {
 TEST(PluginTest, FileThatIsNoSuchLibraryIsNamedWithWhatIsWrong) {
   EXPECT_THAT(refusal_to_load("./nothing.so"), HasSubstr("plugin:./nothing.so: cannot be loaded: "));
   EXPECT_THAT(refusal_to_load(ODD_PLUGIN_NO_ENTRY), HasSubstr("does not export 'fieldproof_plugin'"));
-  EXPECT_THAT(refusal_to_load(ODD_PLUGIN_OTHER_VERSION), HasSubstr("is not made for version 1"));
+  EXPECT_THAT(refusal_to_load(ODD_PLUGIN_OTHER_VERSION), HasSubstr("is not made for version 2"));
   EXPECT_THAT(refusal_to_load(ODD_PLUGIN_LEAVES_OUT), HasSubstr("leaves a function out"));
   EXPECT_THAT(refusal_to_load(ODD_PLUGIN, "even"), HasSubstr("does not serve the role 'even/acts'"));
 }
