@@ -31,28 +31,23 @@ static void* create(const char* protocol, const char* role, const fieldproof_ben
 
 static int begin(void* self, const fieldproof_case* test_case, fieldproof_time* next_time) {
   const char* prefix = "valve_bus/node/";
-  (void)next_time; /* it has nothing to do without supply */
   if (strncmp(test_case->id, prefix, strlen(prefix)) != 0) return 0;
-  valve_node_begin((valve_node*)self, test_case);
+  *next_time = valve_node_begin((valve_node*)self, test_case);
   return 1;
 }
 
 static fieldproof_time set_power(void* self, int is_on, fieldproof_time now) {
-  valve_node_power((valve_node*)self, is_on, now);
-  return valve_node_next_time((valve_node*)self);
+  return valve_node_power((valve_node*)self, is_on, now);
 }
 
 static fieldproof_time receive(void* self, unsigned port, const fieldproof_character* characters,
                                unsigned count, fieldproof_time now) {
-  unsigned n;
-  (void)port;
-  for (n = 0; n < count; ++n) valve_node_receive((valve_node*)self, &characters[n], now);
-  return valve_node_next_time((valve_node*)self);
+  (void)port; /* it has one */
+  return valve_node_receive((valve_node*)self, characters, count, now);
 }
 
 static fieldproof_time on_time(void* self, fieldproof_time now) {
-  valve_node_on_time((valve_node*)self, now);
-  return valve_node_next_time((valve_node*)self);
+  return valve_node_on_time((valve_node*)self, now);
 }
 
 static void end(void* self) {

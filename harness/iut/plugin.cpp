@@ -107,9 +107,8 @@ class PluginDevice final : public Device {
     call([&] { return implementation_->set_power(self_, is_on ? 1 : 0, ticks_of(now)); });
   }
   void receive(unsigned port, std::span<const Character> characters, kernel::Time now) override {
-    if (implementation_->receive == nullptr) [[unlikely]] {
-      refuse_library(plugin_.name, "has no function 'receive', and its role is told characters, too");
-    }
+    if (implementation_->receive == nullptr) [[unlikely]]
+      refuse_characters();
     call([&] {
       return implementation_->receive(self_, port, as_they_lie(characters),
                                       static_cast<unsigned>(characters.size()), ticks_of(now));
@@ -159,6 +158,10 @@ class PluginDevice final : public Device {
         !has_receive || it.on_time == nullptr || it.end == nullptr) {
       refuse_library(plugin_.name, "leaves a function out of its table");
     }
+  }
+
+  [[noreturn, gnu::noinline]] void refuse_characters() const {
+    refuse_library(plugin_.name, "has no function 'receive', and its role is told characters, too");
   }
 
   // `call` returns when on_time is wanted. An exception must not pass through the implementation: it is kept
