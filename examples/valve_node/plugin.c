@@ -1,7 +1,7 @@
 /*
  * The node as a shared library:
  *
- *   cc -O2 -shared -fPIC -fvisibility=hidden -I. -o libvalve_node.so examples/valve_node/plugin.c \
+ *   cc -O2 -flto -shared -fPIC -fvisibility=hidden -I. -o libvalve_node.so examples/valve_node/plugin.c \
  *     examples/valve_node/valve_node.c
  *
  * The environment variable VALVE_NODE names a deviation.

@@ -28,7 +28,7 @@ static fieldproof_time setting(const fieldproof_case* test_case, const char* nam
 
 fieldproof_time valve_node_begin(valve_node* node, const fieldproof_case* test_case) {
   const fieldproof_time told = setting(test_case, "bit_rate"), format = setting(test_case, "characters");
-  const fieldproof_time rate = told > 0 ? told : 62500; /* switch position 2 */
+  const fieldproof_time rate = told > 0 ? told : 62500; /* dip 2 */
   node->bit = SECOND / rate;
   node->half = (format == 2 ? 10 : 11) * SECOND / (2 * rate);
   node->ninth_bit = format == 0 ? 0x100 : 0;

@@ -2,7 +2,7 @@
  * An implementation under test as a shared library. C89 and any compiler; nothing is allocated on one side
  * and freed on the other; no call keeps a pointer behind its return.
  *
- *   cc -O2 -shared -fPIC -fvisibility=hidden -o libnode.so node.c
+ *   cc -O2 -flto -shared -fPIC -fvisibility=hidden -o libnode.so node.c
  *   fieldproof run valve_bus/node/read/is_answered --iut plugin:./libnode.so
  *
  * The library exports one function, `fieldproof_plugin`; with -fvisibility=hidden it exports nothing else,

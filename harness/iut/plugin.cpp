@@ -164,20 +164,20 @@ class PluginDevice final : public Device {
     refuse_library(plugin_.name, "has no function 'receive', and its role is told characters, too");
   }
 
-  // `call` returns when on_time is wanted. An exception must not pass through the implementation: it is kept
-  // until the call is over.
+  // `call` returns when on_time is wanted. Most calls do nothing to the bench: then that is all.
   template <typename Call>
   void call(Call&& call) {
-    actions_ = 0;
     const fieldproof_time next = call();
-    if (failure_) [[unlikely]]
-      throw_failure();
+    if (actions_ != 0) [[unlikely]]
+      end_actions();
     next_time_ = time_of(next);
   }
-  [[noreturn, gnu::noinline]] void throw_failure() {
-    std::rethrow_exception(std::exchange(failure_, nullptr));
+  [[gnu::noinline]] void end_actions() {
+    actions_ = 0;
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   }
 
+  // An exception must not pass through the implementation: it is kept until the call is over.
   template <typename Act>
   static void act(void* context, Act&& act) {
     auto& self = *static_cast<PluginDevice*>(context);
@@ -242,7 +242,7 @@ class PluginDevice final : public Device {
   kernel::Time next_time_ = kernel::kNever;
   kernel::Time last_call_{};
   unsigned calls_at_once_ = 0;
-  unsigned actions_ = 0;
+  unsigned actions_ = 0;  // within the call that runs
   std::exception_ptr failure_;
   std::vector<unsigned char> packed_;
 };

@@ -88,6 +88,36 @@ TEST(PluginTest, IsToldCharactersWithTheirErrors) {
   EXPECT_THAT(diary.lines, ElementsAre("writes 5 1A500", "writes 5 101", "writes 5 203"));
 }
 
+TEST(PluginTest, EachCallReturnsWhenTheNextOneIsWanted) {
+  const auto device = odd_device("hears");
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {{"next", 77}}}, diary));
+  const std::vector<Character> characters(3);
+  device->receive(5, characters, kSupply);
+  EXPECT_EQ(device->next_time(), kSupply + kernel::Duration{3});
+  device->on_time(kSupply);
+  EXPECT_EQ(device->next_time(), kSupply);
+  device->set_power(true, kSupply);  // in the past, as it says
+  EXPECT_EQ(device->next_time(), kernel::Time{kernel::Duration{77}});
+  device->set_power(false, kSupply);
+  EXPECT_EQ(device->next_time(), kernel::kNever);
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));  // which leaves it as it was given
+  EXPECT_EQ(device->next_time(), kernel::kNever);
+}
+
+TEST(PluginTest, ActsAreCountedWithinEachCallAlone) {
+  const auto device = odd_device("hears");
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  const std::vector<Character> most(10'000);
+  const std::vector<Character> too_many(10'001);
+  device->receive(5, most, kSupply);
+  device->receive(5, most, kSupply);
+  EXPECT_THROW(device->receive(5, too_many, kSupply), Misbehaviour);
+  device->receive(5, most, kSupply);
+  EXPECT_EQ(diary.lines.size(), 40'000U);
+}
+
 TEST(PluginTest, RefusedCaseIsAnAnswerAndTheEndIsTheEnd) {
   const auto device = odd_device("acts");
   Diary diary;

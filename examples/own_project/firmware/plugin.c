@@ -66,7 +66,7 @@ static int begin(void* self, const fieldproof_case* test_case, fieldproof_time* 
   device* me = self;
   const fieldproof_time format = setting(test_case, "characters");
   const fieldproof_time told = setting(test_case, "bit_rate");
-  const fieldproof_time bit_rate = told > 0 ? told : 62500; /* switch position 2 */
+  const fieldproof_time bit_rate = told > 0 ? told : 62500; /* dip 2 */
   me->bit = INT64_C(1000000000000) / bit_rate;
   me->ninth_bit = format == 0 ? 0x100 : 0;
   memset(&me->firmware, 0, sizeof me->firmware);
