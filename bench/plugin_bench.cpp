@@ -39,30 +39,23 @@ class DirectDevice final : public iut::Device {
     return true;
   }
   void set_power(bool is_on, kernel::Time now) override {
-    call([&] { valve_node_power(&node_, is_on ? 1 : 0, ticks(now)); });
+    next_time_ = time(valve_node_power(&node_, is_on ? 1 : 0, ticks(now)));
   }
   void receive(unsigned, std::span<const iut::Character> characters, kernel::Time now) override {
-    call([&] {
-      for (const iut::Character& one : characters) {
-        const fieldproof_character heard{ticks(one.start), ticks(one.busy_until), one.data, 0};
-        valve_node_receive(&node_, &heard, ticks(now));
-      }
-    });
+    for (const iut::Character& one : characters) {
+      const fieldproof_character heard{ticks(one.start), ticks(one.busy_until), one.data, one.is_parity_wrong,
+                                       one.is_stop_missing};
+      next_time_ = time(valve_node_receive(&node_, &heard, 1, ticks(now)));
+    }
   }
   void receive(unsigned, const line::Waveform&) override {}
-  void on_time(kernel::Time now) override {
-    call([&] { valve_node_on_time(&node_, ticks(now)); });
-  }
+  void on_time(kernel::Time now) override { next_time_ = time(valve_node_on_time(&node_, ticks(now))); }
   kernel::Time next_time() const override { return next_time_; }
   void end() override {}
 
  private:
   static fieldproof_time ticks(kernel::Time at) { return at.time_since_epoch().count(); }
-  template <typename Act>
-  void call(Act&& act) {
-    act();
-    next_time_ = kernel::Time{kernel::Duration{valve_node_next_time(&node_)}};
-  }
+  static kernel::Time time(fieldproof_time ticks) { return kernel::Time{kernel::Duration{ticks}}; }
 
   fieldproof_bench bench_{};
   valve_node node_{};

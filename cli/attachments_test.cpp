@@ -259,7 +259,7 @@ TEST_F(Attachments, DeathInARunIsAVerdictWithEvidence) {
 }
 
 TEST_F(Attachments, CommandThatIsNoneIsAMistakeOfTheCommandLine) {
-  for (const char* wrong : {"exec:", "exec:'./node", "tcp:host"}) {
+  for (const char* wrong : {"exec:", "exec:'./node", "tcp:host", "plugin:", "plugin:x.so?odd"}) {
     EXPECT_EQ(call({"run", "valve_bus/node/read/is_answered", "--iut", wrong}).exit_code, 64) << wrong;
   }
 }

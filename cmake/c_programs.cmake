@@ -10,9 +10,10 @@ if(NOT DEFINED CMAKE_C_COMPILER)
 endif()
 enable_language(C)
 
-# fieldproof_c89(target): strict, and any warning is an error.
+# fieldproof_c89(target): strict, and any warning is an error. A plug-in exports its entry alone.
 function(fieldproof_c89 target)
-  set_target_properties(${target} PROPERTIES C_STANDARD 90 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF PREFIX "")
+  set_target_properties(${target} PROPERTIES
+    C_STANDARD 90 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF PREFIX "" C_VISIBILITY_PRESET hidden)
   target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}")
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
 endfunction()
@@ -21,6 +22,11 @@ add_executable(valve_node_process examples/valve_node/process.c examples/valve_n
 fieldproof_c89(valve_node_process)
 add_library(valve_node_plugin MODULE examples/valve_node/plugin.c examples/valve_node/valve_node.c)
 fieldproof_c89(valve_node_plugin)
+# As its first comment tells users to build it.
+if(NOT FIELDPROOF_SANITIZE AND NOT FIELDPROOF_COVERAGE AND CMAKE_C_COMPILER_ID STREQUAL "GNU")
+  set_target_properties(valve_node_plugin PROPERTIES INTERPROCEDURAL_OPTIMIZATION ON)
+  target_link_options(valve_node_plugin PRIVATE -fuse-ld=bfd)  # lld does not know the objects of g++
+endif()
 
 # fieldproof_odd_plugins(test): libraries that no station would be, and their paths for the test.
 function(fieldproof_odd_plugins test)

@@ -39,9 +39,9 @@ function send(type, ...fields) {
 
 class Node {
   constructor(settings) {
-    this.settings = settings;
-    this.bit = SECOND / settings.bit_rate;
-    this.half = ((settings.characters === 2n ? 10n : 11n) * SECOND) / (2n * settings.bit_rate); // a character
+    const rate = settings.bit_rate || 62500n; // dip 2
+    Object.assign(this, { settings, bit: SECOND / rate });
+    this.half = ((settings.characters === 2n ? 10n : 11n) * SECOND) / (2n * rate); // a character
     this.address = Number(10n * settings.address_tens + settings.address_units);
     this.boards = settings.boards === 1n ? 0xff : 0xffff;
     this.power(false, 0n);

@@ -28,9 +28,9 @@ class Stream:
 
 class Node:
     def __init__(self, stream, settings):
-        self.stream, self.settings = stream, settings
-        self.bit = SECOND // settings["bit_rate"]
-        self.half = (10 if settings["characters"] == 2 else 11) * SECOND // (2 * settings["bit_rate"])  # a character
+        self.stream, self.settings, rate = stream, settings, settings.get("bit_rate") or 62500  # dip 2
+        self.bit = SECOND // rate
+        self.half = (10 if settings["characters"] == 2 else 11) * SECOND // (2 * rate)  # a character
         self.address = 10 * settings["address_tens"] + settings["address_units"]
         self.power(False, 0)
 

@@ -1,7 +1,8 @@
 /*
  * The node as a shared library:
  *
- *   cc -shared -fPIC -I. -o libvalve_node.so examples/valve_node/plugin.c examples/valve_node/valve_node.c
+ *   cc -O2 -flto -shared -fPIC -fvisibility=hidden -I. -o libvalve_node.so examples/valve_node/plugin.c \
+ *     examples/valve_node/valve_node.c
  *
  * The environment variable VALVE_NODE names a deviation.
  */
@@ -28,30 +29,25 @@ static void* create(const char* protocol, const char* role, const fieldproof_ben
   return node;
 }
 
-static int begin(void* self, const fieldproof_case* test_case) {
+static int begin(void* self, const fieldproof_case* test_case, fieldproof_time* next_time) {
   const char* prefix = "valve_bus/node/";
   if (strncmp(test_case->id, prefix, strlen(prefix)) != 0) return 0;
-  valve_node_begin((valve_node*)self, test_case);
+  *next_time = valve_node_begin((valve_node*)self, test_case);
   return 1;
 }
 
-static void set_power(void* self, int is_on, fieldproof_time now) {
-  valve_node_power((valve_node*)self, is_on, now);
+static fieldproof_time set_power(void* self, int is_on, fieldproof_time now) {
+  return valve_node_power((valve_node*)self, is_on, now);
 }
 
-static void receive(void* self, unsigned port, const fieldproof_character* characters, unsigned count,
-                    fieldproof_time now) {
-  unsigned n;
-  (void)port;
-  for (n = 0; n < count; ++n) valve_node_receive((valve_node*)self, &characters[n], now);
+static fieldproof_time receive(void* self, unsigned port, const fieldproof_character* characters,
+                               unsigned count, fieldproof_time now) {
+  (void)port; /* it has one */
+  return valve_node_receive((valve_node*)self, characters, count, now);
 }
 
-static void on_time(void* self, fieldproof_time now) {
-  valve_node_on_time((valve_node*)self, now);
-}
-
-static fieldproof_time next_time(void* self) {
-  return valve_node_next_time((valve_node*)self);
+static fieldproof_time on_time(void* self, fieldproof_time now) {
+  return valve_node_on_time((valve_node*)self, now);
 }
 
 static void end(void* self) {
@@ -70,7 +66,6 @@ const fieldproof_implementation* fieldproof_plugin(unsigned version) {
                                                            receive,
                                                            0,
                                                            on_time,
-                                                           next_time,
                                                            end};
   return version == FIELDPROOF_PLUGIN_VERSION ? &implementation : 0;
 }

@@ -16,6 +16,7 @@ enum { CAPABILITIES = 129, ECHOED, DONE, UNSUPPORTED, TRANSMIT, WRITE = 135, REA
 static unsigned char *message, *at; /* the last one that came, and how far it has been read */
 static unsigned char out[64], *end; /* the one that goes, and how far it has been written */
 static unsigned length;
+static fieldproof_time next; /* when the node wants to be called again */
 
 static fieldproof_word number(unsigned octets) {
   fieldproof_word value = 0;
@@ -96,9 +97,8 @@ static int begin_case(valve_node* node) {
       settings[n].name = text();
       settings[n].value = (fieldproof_time)number(8);
     }
-    test_case.id = id;
-    test_case.settings = settings;
-    valve_node_begin(node, &test_case);
+    test_case.id = id, test_case.settings = settings;
+    next = valve_node_begin(node, &test_case);
     for (n = 0; n < test_case.setting_count; ++n) free((void*)settings[n].name);
   }
   free(id);
@@ -113,13 +113,13 @@ static void receive(valve_node* node) {
     character.start = (fieldproof_time)number(8);
     character.busy_until = (fieldproof_time)number(8);
     character.data = (unsigned short)number(2);
-    character.flags = (unsigned short)number(1);
-    valve_node_receive(node, &character, now);
+    character.is_parity_wrong = *at & 1, character.is_stop_missing = *at++ >> 1 & 1;
+    next = valve_node_receive(node, &character, 1, now);
   }
 }
 
 static void answer(valve_node* node, unsigned type) {
-  int is_served = 1, is_on;
+  int is_served = 1, is_on = type == POWER && number(1) != 0;
   if (type == HELLO) {
     begin_message(CAPABILITIES);
     put(1, 2), put(FIELDPROOF_CHARACTERS, 1), put(4, 2), memcpy(end, "node", 4), end += 4;
@@ -128,11 +128,11 @@ static void answer(valve_node* node, unsigned type) {
     memcpy(end, at, length - 1 < 32 ? length - 1 : 32), end += length - 1 < 32 ? length - 1 : 32;
   } else {
     if (type == CASE_BEGIN) is_served = begin_case(node);
-    if (type == POWER) is_on = number(1) != 0, valve_node_power(node, is_on, (fieldproof_time)number(8));
+    if (type == POWER) next = valve_node_power(node, is_on, (fieldproof_time)number(8));
     if (type == RECEIVE) receive(node);
-    if (type == ON_TIME) valve_node_on_time(node, (fieldproof_time)number(8));
+    if (type == ON_TIME) next = valve_node_on_time(node, (fieldproof_time)number(8));
     begin_message(is_served ? DONE : UNSUPPORTED);
-    if (is_served) put((fieldproof_word)valve_node_next_time(node), 8);
+    if (is_served) put((fieldproof_word)next, 8);
   }
   send_message();
 }

@@ -26,9 +26,9 @@ static fieldproof_time setting(const fieldproof_case* test_case, const char* nam
   return 0;
 }
 
-void valve_node_begin(valve_node* node, const fieldproof_case* test_case) {
-  const fieldproof_time rate = setting(test_case, "bit_rate");
-  const fieldproof_time format = setting(test_case, "characters");
+fieldproof_time valve_node_begin(valve_node* node, const fieldproof_case* test_case) {
+  const fieldproof_time told = setting(test_case, "bit_rate"), format = setting(test_case, "characters");
+  const fieldproof_time rate = told > 0 ? told : 62500; /* dip 2 */
   node->bit = SECOND / rate;
   node->half = (format == 2 ? 10 : 11) * SECOND / (2 * rate);
   node->ninth_bit = format == 0 ? 0x100 : 0;
@@ -36,15 +36,7 @@ void valve_node_begin(valve_node* node, const fieldproof_case* test_case) {
   node->boards = setting(test_case, "boards") == 1 ? 0x00FF : 0xFFFF;
   node->answers_writes = setting(test_case, "answers_writes") != 0 || node->deviation == ANSWERS_WRITES;
   node->loss_limit = setting(test_case, "loss_limit_ms") * (SECOND / 1000);
-  valve_node_power(node, 0, 0);
-}
-
-void valve_node_power(valve_node* node, int is_on, fieldproof_time now) {
-  node->is_on = is_on;
-  node->last_command = now;
-  node->count = 0;
-  node->is_spoilt = node->has_answer = 0;
-  node->busy_until = node->driving_until = 0;
+  return valve_node_power(node, 0, 0);
 }
 
 /* A character that began within the delimiter is over by then, and known. */
@@ -54,6 +46,23 @@ static fieldproof_time silence_known(const valve_node* node) {
 
 static fieldproof_time host_lost(const valve_node* node) {
   return node->loss_limit > 0 ? node->last_command + node->loss_limit : FIELDPROOF_NEVER;
+}
+
+static fieldproof_time next_time(const valve_node* node) {
+  fieldproof_time next = silence_known(node);
+  if (!node->is_on) return FIELDPROOF_NEVER;
+  if (host_lost(node) < next) next = host_lost(node);
+  if (node->has_answer && node->answer_start - node->bit < next) next = node->answer_start - node->bit;
+  return next;
+}
+
+fieldproof_time valve_node_power(valve_node* node, int is_on, fieldproof_time now) {
+  node->is_on = is_on;
+  node->last_command = now;
+  node->count = 0;
+  node->is_spoilt = node->has_answer = 0;
+  node->busy_until = node->driving_until = 0;
+  return next_time(node);
 }
 
 static void drive_valves(valve_node* node, unsigned data0, unsigned data1, fieldproof_time now) {
@@ -97,15 +106,22 @@ static void end_frame(valve_node* node, fieldproof_time now) {
   }
 }
 
-void valve_node_receive(valve_node* node, const fieldproof_character* character, fieldproof_time now) {
+static void hear(valve_node* node, const fieldproof_character* character, fieldproof_time now) {
   const fieldproof_time gap = character->start - node->busy_until;
   if (!node->is_on) return;
   if (node->count > 0 && gap >= 7 * node->half) end_frame(node, now);
   node->has_answer = 0; /* somebody else talks */
-  if (character->flags != 0 || character->start < node->driving_until) node->is_spoilt = 1;
+  if (character->is_parity_wrong || character->is_stop_missing || character->start < node->driving_until)
+    node->is_spoilt = 1;
   if (node->count > 0 && gap > 3 * node->half + 1000) node->is_spoilt = 1;
   if (node->count < 6) node->frame[node->count++] = (unsigned char)(character->data & 0xFF);
   node->busy_until = character->busy_until;
+}
+
+fieldproof_time valve_node_receive(valve_node* node, const fieldproof_character* characters, unsigned count,
+                                   fieldproof_time now) {
+  for (; count > 0; --count) hear(node, characters++, now);
+  return next_time(node);
 }
 
 static void transmit_answer(valve_node* node, fieldproof_time now) {
@@ -120,19 +136,12 @@ static void transmit_answer(valve_node* node, fieldproof_time now) {
                         3);
 }
 
-void valve_node_on_time(valve_node* node, fieldproof_time now) {
+fieldproof_time valve_node_on_time(valve_node* node, fieldproof_time now) {
   if (now >= silence_known(node)) end_frame(node, now);
   if (node->has_answer && now >= node->answer_start - node->bit) transmit_answer(node, now);
   if (now >= host_lost(node)) {
     node->last_command = now;
     node->bench->write(node->bench->context, VALVES, 0, now);
   }
-}
-
-fieldproof_time valve_node_next_time(const valve_node* node) {
-  fieldproof_time next = silence_known(node);
-  if (!node->is_on) return FIELDPROOF_NEVER;
-  if (host_lost(node) < next) next = host_lost(node);
-  if (node->has_answer && node->answer_start - node->bit < next) next = node->answer_start - node->bit;
-  return next;
+  return next_time(node);
 }

@@ -38,10 +38,11 @@ typedef struct {
 
 const char* valve_deviation_name(valve_deviation deviation);
 
-void valve_node_begin(valve_node* node, const fieldproof_case* test_case);
-void valve_node_power(valve_node* node, int is_on, fieldproof_time now);
-void valve_node_receive(valve_node* node, const fieldproof_character* character, fieldproof_time now);
-void valve_node_on_time(valve_node* node, fieldproof_time now);
-fieldproof_time valve_node_next_time(const valve_node* node);
+/* Each returns when valve_node_on_time is wanted next. */
+fieldproof_time valve_node_begin(valve_node* node, const fieldproof_case* test_case);
+fieldproof_time valve_node_power(valve_node* node, int is_on, fieldproof_time now);
+fieldproof_time valve_node_receive(valve_node* node, const fieldproof_character* characters, unsigned count,
+                                   fieldproof_time now);
+fieldproof_time valve_node_on_time(valve_node* node, fieldproof_time now);
 
 #endif

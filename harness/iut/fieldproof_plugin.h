@@ -2,16 +2,18 @@
  * An implementation under test as a shared library. C89 and any compiler; nothing is allocated on one side
  * and freed on the other; no call keeps a pointer behind its return.
  *
- *   cc -shared -fPIC -o libnode.so node.c
+ *   cc -O2 -flto -shared -fPIC -fvisibility=hidden -o libnode.so node.c
  *   fieldproof run valve_bus/node/read/is_answered --iut plugin:./libnode.so
  *
- * The library exports one function, `fieldproof_plugin`. The bench calls what it returns in this order:
+ * The library exports one function, `fieldproof_plugin`; with -fvisibility=hidden it exports nothing else,
+ * and calls between its own functions go straight. The bench calls what it returns in this order:
  *
  *   create  { begin  { set_power | receive | receive_levels | on_time }...  end }...  destroy
  *
- * and asks `next_time` behind each of them. Calls come one at a time, in order of time. Within
- * `set_power`, `receive`, `receive_levels` and `on_time` the implementation acts by calling the bench, at
- * instants that are now or later. Several instances may live at once, each in a thread of its own: keep no
+ * Calls come one at a time, in order of time. Within `set_power`, `receive`, `receive_levels` and `on_time`
+ * the implementation acts by calling the bench, at instants that are now or later, and each of them returns
+ * the instant at which it wants `on_time`: one behind `now`, or FIELDPROOF_NEVER. The latest answer holds;
+ * the ones before are forgotten. Several instances may live at once, each in a thread of its own: keep no
  * state outside of them.
  *
  * Times are picoseconds since the case began. Items and settings are those of the role; README.md beside this
@@ -24,7 +26,7 @@
 extern "C" {
 #endif
 
-#define FIELDPROOF_PLUGIN_VERSION 1
+#define FIELDPROOF_PLUGIN_VERSION 2
 
 #if defined(__GNUC__)
 __extension__ typedef long long fieldproof_time;
@@ -45,14 +47,19 @@ typedef unsigned long long fieldproof_word;
 #define FIELDPROOF_CHARACTERS 1
 #define FIELDPROOF_LEVELS 2
 
-#define FIELDPROOF_PARITY_WRONG 1
-#define FIELDPROOF_STOP_MISSING 2
+/* The bench keeps its characters in this shape and hands them over where they lie. */
+#if defined(__GNUC__)
+#define FIELDPROOF_AS_IT_LIES __attribute__((may_alias))
+#else
+#define FIELDPROOF_AS_IT_LIES
+#endif
 
-typedef struct fieldproof_character {
-  fieldproof_time start;      /* of its start bit */
-  fieldproof_time busy_until; /* end of its last stop bit, or of the low line behind it */
-  unsigned short data;        /* with a ninth bit, where the format has one */
-  unsigned short flags;       /* FIELDPROOF_PARITY_WRONG, FIELDPROOF_STOP_MISSING */
+typedef struct FIELDPROOF_AS_IT_LIES fieldproof_character {
+  fieldproof_time start;         /* of its start bit */
+  fieldproof_time busy_until;    /* end of its last stop bit, or of the low line behind it */
+  unsigned short data;           /* with a ninth bit, where the format has one */
+  unsigned char is_parity_wrong; /* 0 or 1 */
+  unsigned char is_stop_missing; /* 0 or 1 */
 } fieldproof_character;
 
 typedef struct fieldproof_setting {
@@ -95,26 +102,34 @@ typedef struct fieldproof_implementation {
   /* An instance for a role, or null for a role that is not served. `bench` stays valid until `destroy`. */
   void* (*create)(const char* protocol, const char* role, const fieldproof_bench* bench);
   void (*destroy)(void* self);
-  /* A case begins; nothing of the one before counts. 0: it is not served. */
-  int (*begin)(void* self, const fieldproof_case* test_case);
-  /* The supply comes and goes; a case begins without it. */
-  void (*set_power)(void* self, int is_on, fieldproof_time now);
-  /* Characters that are over. May be null with FIELDPROOF_LEVELS, unless the role tells some all the
-   * same. */
-  void (*receive)(void* self, unsigned port, const fieldproof_character* characters, unsigned count,
-                  fieldproof_time now);
+  /* A case begins; nothing of the one before counts. 0: it is not served. `*next_time` is FIELDPROOF_NEVER;
+   * who wants `on_time` before the supply comes writes the instant there. */
+  int (*begin)(void* self, const fieldproof_case* test_case, fieldproof_time* next_time);
+  /* The supply comes and goes; a case begins without it. Returns when on_time is wanted. */
+  fieldproof_time (*set_power)(void* self, int is_on, fieldproof_time now);
+  /* Characters that are over. Returns when on_time is wanted. May be null with FIELDPROOF_LEVELS, unless the
+   * role tells some all the same. */
+  fieldproof_time (*receive)(void* self, unsigned port, const fieldproof_character* characters,
+                             unsigned count, fieldproof_time now);
   /* With FIELDPROOF_LEVELS: a transmission, and its end as `now`; the role says whether it is told then or
-   * when it begins. May be null otherwise. */
-  void (*receive_levels)(void* self, unsigned port, fieldproof_time start, fieldproof_time rate,
-                         const unsigned char* levels, unsigned count, fieldproof_time now);
-  void (*on_time)(void* self, fieldproof_time now);
-  /* When on_time is wanted, FIELDPROOF_NEVER for never. */
-  fieldproof_time (*next_time)(void* self);
+   * when it begins. Returns when on_time is wanted. May be null otherwise. */
+  fieldproof_time (*receive_levels)(void* self, unsigned port, fieldproof_time start, fieldproof_time rate,
+                                    const unsigned char* levels, unsigned count, fieldproof_time now);
+  /* The instant has come that was asked for. Returns when on_time is wanted again. */
+  fieldproof_time (*on_time)(void* self, fieldproof_time now);
   void (*end)(void* self);
 } fieldproof_implementation;
 
+#if defined(__GNUC__)
+#define FIELDPROOF_EXPORT __attribute__((visibility("default")))
+#elif defined(_MSC_VER)
+#define FIELDPROOF_EXPORT __declspec(dllexport)
+#else
+#define FIELDPROOF_EXPORT
+#endif
+
 /* What the library exports. `version` is that of the bench; null: there is none for it. */
-const fieldproof_implementation* fieldproof_plugin(unsigned version);
+FIELDPROOF_EXPORT const fieldproof_implementation* fieldproof_plugin(unsigned version);
 
 #ifdef __cplusplus
 }

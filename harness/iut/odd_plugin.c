@@ -24,19 +24,20 @@ static void* create(const char* protocol, const char* role, const fieldproof_ben
   return self;
 }
 
-static int begin(void* self, const fieldproof_case* test_case) {
-  /* What it was told comes back when the supply comes. */
+static int begin(void* self, const fieldproof_case* test_case, fieldproof_time* next_time) {
+  /* What it was told is what it wants, now and when the supply comes. */
   ((odd*)self)->next = test_case->setting_count > 0 ? test_case->settings[0].value : FIELDPROOF_NEVER;
+  if (test_case->setting_count > 0) *next_time = ((odd*)self)->next;
   return strcmp(test_case->id, "odd/refused") != 0;
 }
 
-static void set_power(void* context, int is_on, fieldproof_time now) {
+static fieldproof_time set_power(void* context, int is_on, fieldproof_time now) {
   const odd* self = (const odd*)context;
   const fieldproof_bench* bench = self->bench;
   static const unsigned short characters[2] = {0x1AA, 0x155};
   static const unsigned char levels[2] = {0x5A, 0x01};
   unsigned n;
-  if (!is_on) return;
+  if (!is_on) return FIELDPROOF_NEVER;
   if (strcmp(self->does, "acts") == 0) {
     bench->transmit(bench->context, 1, now, now + 1, now + 2, characters, 2);
     bench->transmit_levels(bench->context, 2, now, 1000, levels, 9);
@@ -47,23 +48,25 @@ static void set_power(void* context, int is_on, fieldproof_time now) {
   if (strcmp(self->does, "drives at rate 0") == 0)
     bench->transmit_levels(bench->context, 0, now, 0, levels, 1);
   for (n = 0; n <= 10000 && strcmp(self->does, "floods") == 0; ++n) bench->write(bench->context, 0, n, now);
+  return self->next;
 }
 
-static void receive(void* context, unsigned port, const fieldproof_character* characters, unsigned count,
-                    fieldproof_time now) {
+static fieldproof_time receive(void* context, unsigned port, const fieldproof_character* characters,
+                               unsigned count, fieldproof_time now) {
   const odd* self = (const odd*)context;
   unsigned n;
   for (n = 0; n < count; ++n)
     self->bench->write(self->bench->context, port,
-                       (fieldproof_word)characters[n].data << 8 | characters[n].flags, now);
+                       (fieldproof_word)characters[n].data << 8 |
+                           (fieldproof_word)characters[n].is_stop_missing << 1 |
+                           characters[n].is_parity_wrong,
+                       now);
+  return now + (fieldproof_time)count;
 }
 
-static void on_time(void* self, fieldproof_time now) {
-  ((odd*)self)->next = now;
-}
-
-static fieldproof_time next_time(void* self) {
-  return ((odd*)self)->next;
+static fieldproof_time on_time(void* self, fieldproof_time now) {
+  (void)self;
+  return now;
 }
 
 static void end(void* context) {
@@ -84,7 +87,7 @@ static void end(void* context) {
 
 #ifdef NO_ENTRY
 #define fieldproof_plugin another_name
-const fieldproof_implementation* another_name(unsigned version);
+FIELDPROOF_EXPORT const fieldproof_implementation* another_name(unsigned version);
 #endif
 const fieldproof_implementation* fieldproof_plugin(unsigned version) {
   static const fieldproof_implementation implementation = {VERSION, sizeof(fieldproof_implementation),
@@ -92,8 +95,7 @@ const fieldproof_implementation* fieldproof_plugin(unsigned version) {
                                                            create,  free,
                                                            begin,   set_power,
                                                            receive, 0,
-                                                           ON_TIME, next_time,
-                                                           end};
+                                                           ON_TIME, end};
   (void)version;
   (void)on_time;
   return &implementation;

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <boost/dll/shared_library.hpp>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <type_traits>
 #include <vector>
 
 #include "harness/iut/fieldproof_plugin.h"
@@ -27,6 +29,19 @@ fieldproof_time ticks_of(kernel::Time time) {
 }
 kernel::Time time_of(fieldproof_time ticks) {
   return kernel::Time{kernel::Duration{ticks}};
+}
+
+// Nearly every call tells one character: a copy into another shape would cost as much as the call. Hence the
+// shape is one, and fieldproof_character may alias.
+static_assert(std::is_standard_layout_v<Character> && sizeof(Character) == sizeof(fieldproof_character) &&
+              offsetof(Character, start) == offsetof(fieldproof_character, start) &&
+              offsetof(Character, busy_until) == offsetof(fieldproof_character, busy_until) &&
+              offsetof(Character, data) == offsetof(fieldproof_character, data) &&
+              offsetof(Character, is_parity_wrong) == offsetof(fieldproof_character, is_parity_wrong) &&
+              offsetof(Character, is_stop_missing) == offsetof(fieldproof_character, is_stop_missing) &&
+              sizeof(kernel::Time) == sizeof(fieldproof_time) && sizeof(bool) == sizeof(unsigned char));
+const fieldproof_character* as_they_lie(std::span<const Character> characters) {
+  return reinterpret_cast<const fieldproof_character*>(characters.data());
 }
 
 // A library stays loaded as long as what it gave is used.
@@ -81,26 +96,22 @@ class PluginDevice final : public Device {
                                     static_cast<unsigned>(settings.size())};
     case_bench_ = &bench;
     bool is_served = false;
-    call([&] { is_served = implementation_->begin(self_, &test_case) != 0; });
+    call([&] {
+      fieldproof_time next = FIELDPROOF_NEVER;
+      is_served = implementation_->begin(self_, &test_case, &next) != 0;
+      return next;
+    });
     return is_served;
   }
   void set_power(bool is_on, kernel::Time now) override {
-    call([&] { implementation_->set_power(self_, is_on ? 1 : 0, ticks_of(now)); });
+    call([&] { return implementation_->set_power(self_, is_on ? 1 : 0, ticks_of(now)); });
   }
   void receive(unsigned port, std::span<const Character> characters, kernel::Time now) override {
-    characters_.clear();
-    for (const Character& one : characters) {
-      const int flags = (one.is_parity_wrong ? FIELDPROOF_PARITY_WRONG : 0) |
-                        (one.is_stop_missing ? FIELDPROOF_STOP_MISSING : 0);
-      characters_.push_back(
-          {ticks_of(one.start), ticks_of(one.busy_until), one.data, static_cast<unsigned short>(flags)});
-    }
-    if (implementation_->receive == nullptr) {
-      refuse_library(plugin_.name, "has no function 'receive', and its role is told characters, too");
-    }
+    if (implementation_->receive == nullptr) [[unlikely]]
+      refuse_characters();
     call([&] {
-      implementation_->receive(self_, port, characters_.data(), static_cast<unsigned>(characters_.size()),
-                               ticks_of(now));
+      return implementation_->receive(self_, port, as_they_lie(characters),
+                                      static_cast<unsigned>(characters.size()), ticks_of(now));
     });
   }
   void receive(unsigned port, const line::Waveform& reception) override {
@@ -110,8 +121,9 @@ class PluginDevice final : public Device {
       packed_.push_back(static_cast<unsigned char>(reception.levels.window(n) & 0xFF));
     }
     call([&] {
-      implementation_->receive_levels(self_, port, ticks_of(reception.start), reception.rate, packed_.data(),
-                                      static_cast<unsigned>(count), ticks_of(reception.end()));
+      return implementation_->receive_levels(self_, port, ticks_of(reception.start), reception.rate,
+                                             packed_.data(), static_cast<unsigned>(count),
+                                             ticks_of(reception.end()));
     });
   }
   void on_time(kernel::Time now) override {
@@ -123,7 +135,7 @@ class PluginDevice final : public Device {
                                      "behind the one that has come",
                                      plugin_.name, kernel::describe(now)));
     }
-    call([&] { implementation_->on_time(self_, ticks_of(now)); });
+    call([&] { return implementation_->on_time(self_, ticks_of(now)); });
   }
   kernel::Time next_time() const override { return next_time_; }
   void end() override {
@@ -143,20 +155,29 @@ class PluginDevice final : public Device {
     const bool has_receive =
         it.unit == FIELDPROOF_LEVELS ? it.receive_levels != nullptr : it.receive != nullptr;
     if (it.create == nullptr || it.destroy == nullptr || it.begin == nullptr || it.set_power == nullptr ||
-        !has_receive || it.on_time == nullptr || it.next_time == nullptr || it.end == nullptr) {
+        !has_receive || it.on_time == nullptr || it.end == nullptr) {
       refuse_library(plugin_.name, "leaves a function out of its table");
     }
   }
 
-  // An exception must not pass through the implementation: it is kept until the call is over.
-  template <typename Call>
-  void call(Call&& call) {
-    actions_ = 0;
-    call();
-    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-    next_time_ = time_of(implementation_->next_time(self_));
+  [[noreturn, gnu::noinline]] void refuse_characters() const {
+    refuse_library(plugin_.name, "has no function 'receive', and its role is told characters, too");
   }
 
+  // `call` returns when on_time is wanted. Most calls do nothing to the bench: then that is all.
+  template <typename Call>
+  void call(Call&& call) {
+    const fieldproof_time next = call();
+    if (actions_ != 0) [[unlikely]]
+      end_actions();
+    next_time_ = time_of(next);
+  }
+  [[gnu::noinline]] void end_actions() {
+    actions_ = 0;
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+
+  // An exception must not pass through the implementation: it is kept until the call is over.
   template <typename Act>
   static void act(void* context, Act&& act) {
     auto& self = *static_cast<PluginDevice*>(context);
@@ -221,9 +242,8 @@ class PluginDevice final : public Device {
   kernel::Time next_time_ = kernel::kNever;
   kernel::Time last_call_{};
   unsigned calls_at_once_ = 0;
-  unsigned actions_ = 0;
+  unsigned actions_ = 0;  // within the call that runs
   std::exception_ptr failure_;
-  std::vector<fieldproof_character> characters_;
   std::vector<unsigned char> packed_;
 };
 

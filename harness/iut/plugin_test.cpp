@@ -88,6 +88,36 @@ TEST(PluginTest, IsToldCharactersWithTheirErrors) {
   EXPECT_THAT(diary.lines, ElementsAre("writes 5 1A500", "writes 5 101", "writes 5 203"));
 }
 
+TEST(PluginTest, EachCallReturnsWhenTheNextOneIsWanted) {
+  const auto device = odd_device("hears");
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {{"next", 77}}}, diary));
+  const std::vector<Character> characters(3);
+  device->receive(5, characters, kSupply);
+  EXPECT_EQ(device->next_time(), kSupply + kernel::Duration{3});
+  device->on_time(kSupply);
+  EXPECT_EQ(device->next_time(), kSupply);
+  device->set_power(true, kSupply);  // in the past, as it says
+  EXPECT_EQ(device->next_time(), kernel::Time{kernel::Duration{77}});
+  device->set_power(false, kSupply);
+  EXPECT_EQ(device->next_time(), kernel::kNever);
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));  // which leaves it as it was given
+  EXPECT_EQ(device->next_time(), kernel::kNever);
+}
+
+TEST(PluginTest, ActsAreCountedWithinEachCallAlone) {
+  const auto device = odd_device("hears");
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  const std::vector<Character> most(10'000);
+  const std::vector<Character> too_many(10'001);
+  device->receive(5, most, kSupply);
+  device->receive(5, most, kSupply);
+  EXPECT_THROW(device->receive(5, too_many, kSupply), Misbehaviour);
+  device->receive(5, most, kSupply);
+  EXPECT_EQ(diary.lines.size(), 40'000U);
+}
+
 TEST(PluginTest, RefusedCaseIsAnAnswerAndTheEndIsTheEnd) {
   const auto device = odd_device("acts");
   Diary diary;
@@ -130,17 +160,17 @@ TEST(PluginTest, ImplementationThatTheProgramHoldsIsCalledLikeALibrary) {
         return std::string_view(role) == "echo" ? const_cast<fieldproof_bench*>(bench) : nullptr;
       },
       .destroy = [](void*) {},
-      .begin = [](void*, const fieldproof_case*) { return 1; },
-      .set_power = [](void*, int, fieldproof_time) {},
+      .begin = [](void*, const fieldproof_case*, fieldproof_time*) { return 1; },
+      .set_power = [](void*, int, fieldproof_time) { return FIELDPROOF_NEVER; },
       .receive = nullptr,
       .receive_levels =
           [](void* self, unsigned port, fieldproof_time, fieldproof_time rate, const unsigned char* levels,
              unsigned count, fieldproof_time now) {
             const auto* bench = static_cast<const fieldproof_bench*>(self);
             bench->transmit_levels(bench->context, port, now, rate, levels, count);
+            return now + 1;
           },
-      .on_time = [](void*, fieldproof_time) {},
-      .next_time = [](void*) { return FIELDPROOF_NEVER; },
+      .on_time = [](void*, fieldproof_time) { return FIELDPROOF_NEVER; },
       .end = [](void*) {},
   };
   const auto device = make_plugin(echo, "odd", "echo");
@@ -167,7 +197,7 @@ TEST(PluginTest, WhatTheBenchRefusesIsToldBehindTheCall) {
 TEST(PluginTest, FileThatIsNoSuchLibraryIsNamedWithWhatIsWrong) {
   EXPECT_THAT(refusal_to_load("./nothing.so"), HasSubstr("plugin:./nothing.so: cannot be loaded: "));
   EXPECT_THAT(refusal_to_load(ODD_PLUGIN_NO_ENTRY), HasSubstr("does not export 'fieldproof_plugin'"));
-  EXPECT_THAT(refusal_to_load(ODD_PLUGIN_OTHER_VERSION), HasSubstr("is not made for version 1"));
+  EXPECT_THAT(refusal_to_load(ODD_PLUGIN_OTHER_VERSION), HasSubstr("is not made for version 2"));
   EXPECT_THAT(refusal_to_load(ODD_PLUGIN_LEAVES_OUT), HasSubstr("leaves a function out"));
   EXPECT_THAT(refusal_to_load(ODD_PLUGIN, "even"), HasSubstr("does not serve the role 'even/acts'"));
 }

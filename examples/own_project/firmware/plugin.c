@@ -58,10 +58,15 @@ static fieldproof_time setting(const fieldproof_case* test_case, const char* nam
   return 0;
 }
 
-static int begin(void* self, const fieldproof_case* test_case) {
+static fieldproof_time next_time(const device* me) {
+  return picoseconds(island_timer_at(&me->firmware));
+}
+
+static int begin(void* self, const fieldproof_case* test_case, fieldproof_time* next) {
   device* me = self;
   const fieldproof_time format = setting(test_case, "characters");
-  const fieldproof_time bit_rate = setting(test_case, "bit_rate");
+  const fieldproof_time told = setting(test_case, "bit_rate");
+  const fieldproof_time bit_rate = told > 0 ? told : 62500; /* dip 2 */
   me->bit = INT64_C(1000000000000) / bit_rate;
   me->ninth_bit = format == 0 ? 0x100 : 0;
   memset(&me->firmware, 0, sizeof me->firmware);
@@ -69,36 +74,38 @@ static int begin(void* self, const fieldproof_case* test_case) {
   me->firmware.address =
       (uint8_t)(10 * setting(test_case, "address_tens") + setting(test_case, "address_units"));
   me->firmware.fitted = setting(test_case, "boards") == 1 ? 0x00FF : 0xFFFF;
+  *next = next_time(me);
   return 1;
 }
 
-static void set_power(void* self, int is_on, fieldproof_time now) {
+static fieldproof_time set_power(void* self, int is_on, fieldproof_time now) {
   device* me = self;
   me->now = now;
   island_power(&me->firmware, is_on);
+  return next_time(me);
 }
 
-static void receive(void* self, unsigned port, const fieldproof_character* characters, unsigned count,
-                    fieldproof_time now) {
+static fieldproof_time receive(void* self, unsigned port, const fieldproof_character* characters,
+                               unsigned count, fieldproof_time now) {
   device* me = self;
   (void)port;
   me->now = now;
   for (unsigned n = 0; n < count; ++n) {
     const fieldproof_character* one = &characters[n];
-    island_character(&me->firmware, &me->board, (uint8_t)one->data, one->flags == 0, nanoseconds(one->start),
+    island_character(&me->firmware, &me->board, (uint8_t)one->data,
+                     !one->is_parity_wrong && !one->is_stop_missing, nanoseconds(one->start),
                      nanoseconds(one->busy_until));
   }
+  return next_time(me);
 }
 
-static void on_time(void* self, fieldproof_time now) {
+static fieldproof_time on_time(void* self, fieldproof_time now) {
   device* me = self;
   me->now = now;
   island_timer(&me->firmware, &me->board, nanoseconds(now));
+  return next_time(me);
 }
 
-static fieldproof_time next_time(void* self) {
-  return picoseconds(island_timer_at(&((device*)self)->firmware));
-}
 static void end(void* self) {
   (void)self;
 }
@@ -115,7 +122,6 @@ const fieldproof_implementation* fieldproof_plugin(unsigned version) {
       .set_power = set_power,
       .receive = receive,
       .on_time = on_time,
-      .next_time = next_time,
       .end = end,
   };
   return version == FIELDPROOF_PLUGIN_VERSION ? &implementation : NULL;
