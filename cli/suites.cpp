@@ -19,6 +19,7 @@ Suites suites() {
 Suites suites_under(const Disturbances& disturbances) {
   Suites all;
   all.push_back(conformance::interbus_suite({.slave = {.attached = attached_slaves()},
+                                             .master = {.attached = attached_masters()},
                                              .disturbances = disturbances.of_plans,
                                              .stresses = disturbances.stresses}));
   all.push_back(conformance::valve_bus_suite({.node = {.attached = attached_nodes()},

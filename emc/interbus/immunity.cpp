@@ -52,7 +52,7 @@ class Oracle {
   bool has_missed() const { return has_missed_; }
 
   // At the end of a cycle: judges the images and gives both sides new values.
-  void on_cycle_end(bool is_data, bool accepted, bool is_corrupted) {
+  void on_cycle_end(kernel::Time now, bool is_data, bool accepted, bool is_corrupted) {
     if (is_data) {
       ++ledger_.sent;
       if (is_corrupted) ++ledger_.corrupted;
@@ -69,7 +69,7 @@ class Oracle {
     if (ledger_.accepted_wrong() != wrong_before_) ++ledger_.wrong_cycles;
     wrong_before_ = ledger_.accepted_wrong();
     has_latched_ = false;
-    exchange();
+    exchange(now);
   }
 
  private:
@@ -114,14 +114,14 @@ class Oracle {
     }
   }
 
-  void exchange() {
+  void exchange(kernel::Time now) {
     for (int position = 1; position <= static_cast<int>(ring_.size()); ++position) {
       const unsigned words = ring_.configuration(position).words;
       for (unsigned n = 0; n < words; ++n) {
         const unsigned word = ring_.first_word(position) + n;
         sent_[word] = static_cast<std::uint16_t>(random_.between(1, 0xFFFF));
         at_terminals_[word] = static_cast<std::uint16_t>(random_.between(1, 0xFFFF));
-        master_.write_output(word, sent_[word]);
+        master_.write_output(word, sent_[word], now);
         ring_.terminals(position).set_input(n, at_terminals_[word]);
       }
     }
@@ -266,9 +266,9 @@ class Run {
     return condition();
   }
 
-  void on_cycle_end(Time, bool is_data, bool accepted) {
+  void on_cycle_end(Time now, bool is_data, bool accepted) {
     const std::uint64_t changed = changed_transmissions();
-    oracle_.on_cycle_end(is_data, accepted, changed != changed_before_);
+    oracle_.on_cycle_end(now, is_data, accepted, changed != changed_before_);
     changed_before_ = changed;
     if (accepted && is_data && master_->status().state == MasterState::run) {
       is_exchanging_ = true;
