@@ -11,6 +11,7 @@
 #include "cli/serial_pool.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/pool.hpp"
+#include "protocols/interbus/attached_master.hpp"
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
@@ -125,6 +126,10 @@ std::optional<judge::Pics> node_on_real_line(const std::string& uri) {
 
 conformance::GivenSlaves::Make attached_slaves() {
   return attached<interbus::AttachedSlave, conformance::GivenSlaves::Make>({"interbus", "slave"});
+}
+
+conformance::GivenMasters::Make attached_masters() {
+  return attached<interbus::AttachedMaster, conformance::GivenMasters::Make>({"interbus", "master"});
 }
 
 conformance::GivenNodes::Make attached_nodes() {

@@ -34,6 +34,7 @@ std::optional<judge::Pics> node_on_real_line(const std::string& uri);
 
 // Implementations of one URI are kept from case to case, and as many are opened as cases run side by side.
 conformance::GivenSlaves::Make attached_slaves();
+conformance::GivenMasters::Make attached_masters();
 conformance::GivenNodes::Make attached_nodes();
 conformance::GivenHosts::Make attached_hosts();
 

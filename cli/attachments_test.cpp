@@ -140,20 +140,27 @@ INSTANTIATE_TEST_SUITE_P(
             "interbus/slave",
             60,
             {{{"output_octets_swapped", "data_cycle/process_data_is_exact", "output_word_wrong"},
-              {"latches_late", "data_cycle/outputs_change_after_the_check_phase", "outputs_latched_late"}}}}),
+              {"latches_late", "data_cycle/outputs_change_after_the_check_phase", "outputs_latched_late"}}}},
+        Served{"interbus/master",
+               43,
+               {{{"outputs_torn", "application/outputs_change_as_a_whole", "outputs_torn"},
+                 {"wrong_segment", "rejection/marked_status_names_the_segment", "wrong_segment"}}}}),
     [](const testing::TestParamInfo<Served>& one) {
       std::string name = one.param.role;
       std::ranges::replace(name, '/', '_');
       return name;
     });
 
-// A slave takes part in the cases of a network as well, in a process of its own at each place.
-TEST_F(Attachments, SlavesOfANetworkAreProcesses) {
+// A slave takes part in the cases of a network as well, in a process of its own at each place; so does a
+// master.
+TEST_F(Attachments, StationsOfANetworkAreProcesses) {
   const std::string slave = "exec:" + in_quotes(FIELDPROOF_EXE) + " station interbus/slave ";
   const std::string suite = "interbus/network/";
   const Cases inside = judged("ref", "**", {}, {}, suite);
   EXPECT_EQ(inside.size(), 7U);
   EXPECT_EQ(judged("slave@2=" + slave, "**", {}, {}, suite), inside);
+  const std::string master = "exec:" + in_quotes(FIELDPROOF_EXE) + " station interbus/master ";
+  EXPECT_EQ(judged("master=" + master, "**", {}, {}, suite), inside);
 }
 
 TEST_F(Attachments, NodeInCPassesAsAProcess) {

@@ -3,10 +3,13 @@
 #include <array>
 
 #include "conformance/assigned.hpp"
+#include "conformance/interbus/master_deviations.hpp"
 #include "conformance/interbus/slave_deviations.hpp"
 #include "conformance/valve_bus/host_deviations.hpp"
 #include "conformance/valve_bus/node_deviations.hpp"
+#include "protocols/interbus/attached_master.hpp"
 #include "protocols/interbus/attached_slave.hpp"
+#include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
@@ -30,6 +33,8 @@ std::unique_ptr<iut::Device> serve(const std::string& uri) {
 constexpr std::array kRoles{
     Role{"interbus", "slave",
          &serve<interbus::ServedSlave, interbus::Slave, &conformance::make_slave_deviation>},
+    Role{"interbus", "master",
+         &serve<interbus::ServedMaster, interbus::Master, &conformance::make_master_deviation>},
     Role{"valve_bus", "node",
          &serve<valve_bus::ServedNode, valve_bus::Node, &conformance::make_node_deviation>},
     Role{"valve_bus", "host",

@@ -9,6 +9,7 @@ namespace fieldproof::cli {
 Suites suites(const Disturbances& disturbances) {
   Suites all;
   all.push_back(conformance::interbus_suite({.slave = {.attached = attached_slaves()},
+                                             .master = {.attached = attached_masters()},
                                              .disturbances = disturbances.of_plans,
                                              .stresses = disturbances.stresses}));
   all.push_back(conformance::valve_bus_suite({.node = {.attached = attached_nodes()},

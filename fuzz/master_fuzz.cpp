@@ -338,9 +338,9 @@ void World::act_as_application(std::uint8_t choice) {
     case 0:
       return ring_.set_input(choice & 1, script_.word());
     case 1:
-      return master_.request_id_cycle();
+      return master_.request_id_cycle(segment_.now());
     case 2:
-      return master_.write_output(choice & 1, script_.word());
+      return master_.write_output(choice & 1, script_.word(), segment_.now());
     case 3:
       master_.stop(segment_.now());
       break;

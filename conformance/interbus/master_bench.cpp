@@ -56,6 +56,7 @@ void MasterBench::power_up(std::vector<VirtualStation> ring) {
     back_->set_connected(false);
     master_->on_cycle_end({});
     run_for(10 * kernel::kMillisecond);
+    master_->end();
   }
   configuration_.rules = rules_;
   places_.push_back({make_master_(configuration_), std::make_unique<RingEmulator>(rules_, std::move(ring))});
@@ -97,12 +98,12 @@ void MasterBench::begin_stress(const fault::Stress& stress) {
 }
 
 void MasterBench::write_output(unsigned word, std::uint16_t value) {
-  master_->write_output(word, value);
+  master_->write_output(word, value, now());
   segment_.refresh(master_seat_);
 }
 
 void MasterBench::request_id_cycle() {
-  master_->request_id_cycle();
+  master_->request_id_cycle(now());
   segment_.refresh(master_seat_);
 }
 

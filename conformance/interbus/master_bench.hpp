@@ -64,6 +64,10 @@ class MasterBench {
   // The same, and waits for run.
   void bring_up(CaseJudge& judge, std::vector<interbus::VirtualStation> ring);
   bool wait_for_run();
+  // The case is over. What the master does then is still its verdict.
+  void finish() {
+    if (master_ != nullptr) master_->end();
+  }
 
   interbus::MasterDevice& master() { return *master_; }
   interbus::RingEmulator& ring() { return *ring_; }

@@ -347,7 +347,7 @@ struct SilentAfterError final : Master {
 struct IdCyclesForEverAfterError final : Master {
   using Master::Master;
   void on_time(kernel::Time now) override {
-    if (supervision().rejected_cycles() > 0) request_id_cycle();
+    if (supervision().rejected_cycles() > 0) request_id_cycle(now);
     Master::on_time(now);
   }
 };

@@ -161,6 +161,16 @@ MasterBench::MakeMaster deviating_master(std::string_view name) {
   return row == rows().end() ? nullptr : row->make_master;
 }
 
+std::unique_ptr<MasterDevice> make_master_deviation(std::string_view name,
+                                                    const MasterConfiguration& configuration) {
+  if (const auto made = deviating_master(name)) return made(configuration);
+  std::vector<std::string_view> names;
+  for (const Row& row : rows()) names.push_back(row.name);
+  throw kernel::Error(kernel::ErrorKind::usage,
+                      fmt::format("there is no deviating master \"{}\"; near are {}", name,
+                                  fmt::join(config::nearest(name, names, 3), ", ")));
+}
+
 MasterBench::MakeMaster make_master(std::string_view uri) {
   if (uri == "ref") return make<interbus::Master>;
   constexpr std::string_view kDeviant = "deviant:";
@@ -168,14 +178,9 @@ MasterBench::MakeMaster make_master(std::string_view uri) {
     throw kernel::Error(kernel::ErrorKind::usage,
                         fmt::format("\"{}\" is no INTERBUS master; use ref or deviant:NAME", uri));
   }
-  const std::string_view name = uri.substr(kDeviant.size());
-  if (auto made = deviating_master(name)) return made;
-  std::vector<std::string_view> names;
-  for (const Row& row : rows()) names.push_back(row.name);
-  const auto near = config::nearest(name, names, 3);
-  throw kernel::Error(
-      kernel::ErrorKind::usage,
-      fmt::format("there is no deviating master \"{}\"; near are {}", name, fmt::join(near, ", ")));
+  const std::string name(uri.substr(kDeviant.size()));
+  make_master_deviation(name, {});  // while it is the caller's mistake
+  return deviating_master(name);
 }
 
 }  // namespace fieldproof::conformance

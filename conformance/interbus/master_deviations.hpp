@@ -16,6 +16,10 @@ const std::vector<Deviation>& master_deviations();
 // A deviating master by name, null for an unknown one.
 MasterBench::MakeMaster deviating_master(std::string_view name);
 
+// The same, made; throws kernel::Error(usage) with the nearest names for an unknown one.
+std::unique_ptr<interbus::MasterDevice> make_master_deviation(
+    std::string_view name, const interbus::MasterConfiguration& configuration);
+
 // What makes the master of a URI: "ref" or "deviant:NAME". Throws kernel::Error(usage) for anything else,
 // with the nearest names.
 MasterBench::MakeMaster make_master(std::string_view uri);

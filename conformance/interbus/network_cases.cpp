@@ -94,7 +94,7 @@ void every_word_is_exchanged(NetworkBench& bench, CaseJudge& judge) {
     for (unsigned word = 0; word < words; ++word) {
       outputs[word] = static_cast<std::uint16_t>(bench.random().next());
       inputs[word] = static_cast<std::uint16_t>(bench.random().next());
-      bench.master().write_output(word, outputs[word]);
+      bench.master().write_output(word, outputs[word], bench.segment().now());
     }
     const auto for_each_word = [&](const auto& visit) {
       unsigned word = 0;

@@ -135,15 +135,15 @@ class RecordedMaster final : public MasterDevice {
     device_->stop(now);
     look();
   }
-  void request_id_cycle() override {
-    log_.begin_call();
-    device_->request_id_cycle();
+  void request_id_cycle(kernel::Time now) override {
+    log_.begin_call(now);
+    device_->request_id_cycle(now);
     look();
   }
-  void write_output(unsigned word, std::uint16_t value) override {
+  void write_output(unsigned word, std::uint16_t value, kernel::Time now) override {
     // Also from within the hook, whose events come before and after.
-    log_.begin_call();
-    device_->write_output(word, value);
+    log_.begin_call(now);
+    device_->write_output(word, value, now);
     look();
   }
   std::uint16_t output(unsigned word) const override { return device_->output(word); }
@@ -316,8 +316,8 @@ class PlayedBackMaster final : public MasterDevice {
   void wire(segment::Port& out) override { out_ = &out; }
   void start(kernel::Time) override { play_call(); }
   void stop(kernel::Time) override { play_call(); }
-  void request_id_cycle() override { play_call(); }
-  void write_output(unsigned, std::uint16_t) override { play_call(); }
+  void request_id_cycle(kernel::Time) override { play_call(); }
+  void write_output(unsigned, std::uint16_t, kernel::Time) override { play_call(); }
   std::uint16_t output(unsigned word) const override {
     return word < view_.outputs.size() ? view_.outputs[word] : 0;
   }

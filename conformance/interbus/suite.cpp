@@ -212,6 +212,7 @@ Outcome Run::run(const MasterCase& master_case) {
   outcome.result = judge.run_procedure([&](CaseJudge& j) {
     master_case.procedure(bench, j);
     bench.line_watch().judge(j);
+    bench.finish();
   });
   finish(outcome, bench.segment().trace(), bench.now());
   keep(outcome);

@@ -5,12 +5,11 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "harness/iut/attached_case.hpp"
 #include "harness/iut/served_station.hpp"
 #include "protocols/interbus/device.hpp"
+#include "protocols/interbus/rule_settings.hpp"
 
 // A slave between the bench and an implementation outside, in both directions: AttachedSlave is a slave of
 // the bench that an iut::Device plays; ServedSlave is an iut::Device that a slave of ours plays.
@@ -27,7 +26,7 @@ inline constexpr iut::Item kReconfiguration = 0x201;  // the button is pressed
 inline constexpr iut::Item kRemotePlugged = 0x202;    // the bridge in the plug of OUT1 is closed
 inline constexpr iut::Item kBranchPlugged = 0x203;    // of OUT2
 
-std::vector<std::pair<std::string, std::int64_t>> slave_settings(const SlaveConfiguration& configuration);
+Settings slave_settings(const SlaveConfiguration& configuration);
 // The other way round, up to the name; a slave on a local bus comes back as one with the delays of such a
 // one.
 SlaveConfiguration slave_configuration_of(const iut::CaseBegin& begin);

@@ -116,11 +116,12 @@ class MasterDevice : public segment::Station {
  public:
   virtual void wire(segment::Port& out) = 0;  // the return line is heard as port 0
 
-  virtual void start(kernel::Time now) = 0;  // power-up: recognises the topology, checks it, runs
-  virtual void stop(kernel::Time now) = 0;   // outputs 0, then silence
-  virtual void request_id_cycle() = 0;       // instead of the next data cycle
+  // Orders of the application, also from within the hook below. Outputs go with the next cycle that begins.
+  virtual void start(kernel::Time now) = 0;             // power-up: recognises the topology, checks it, runs
+  virtual void stop(kernel::Time now) = 0;              // outputs 0, then silence
+  virtual void request_id_cycle(kernel::Time now) = 0;  // instead of the next data cycle
+  virtual void write_output(unsigned word, std::uint16_t value, kernel::Time now) = 0;
 
-  virtual void write_output(unsigned word, std::uint16_t value) = 0;
   virtual std::uint16_t output(unsigned word) const = 0;
   virtual std::uint16_t input(unsigned word) const = 0;
   virtual MasterStatus status() const = 0;

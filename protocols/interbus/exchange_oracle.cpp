@@ -38,7 +38,7 @@ void ExchangeOracle::on_cycle_end(kernel::Time now, bool is_data, bool accepted,
   if (ledger_.accepted_wrong() != wrong_before_) ++ledger_.wrong_cycles;
   wrong_before_ = ledger_.accepted_wrong();
   has_latched_ = false;
-  exchange();
+  exchange(now);
 }
 
 void ExchangeOracle::watch(int position) {
@@ -87,14 +87,14 @@ void ExchangeOracle::judge_outputs() {
   }
 }
 
-void ExchangeOracle::exchange() {
+void ExchangeOracle::exchange(kernel::Time now) {
   for (int position = 1; position <= static_cast<int>(ring_.size()); ++position) {
     const unsigned words = ring_.configuration(position).words;
     for (unsigned n = 0; n < words; ++n) {
       const unsigned word = ring_.first_word(position) + n;
       sent_[word] = static_cast<std::uint16_t>(random_.between(1, 0xFFFF));
       at_terminals_[word] = static_cast<std::uint16_t>(random_.between(1, 0xFFFF));
-      master_.write_output(word, sent_[word]);
+      master_.write_output(word, sent_[word], now);
       ring_.terminals(position).set_input(n, at_terminals_[word]);
     }
   }

@@ -73,7 +73,7 @@ class ExchangeOracle {
   void judge_inputs(kernel::Time now, bool is_good_data);
   void accept_wrong(const WrongWord& wrong);
   void judge_outputs();
-  void exchange();
+  void exchange(kernel::Time now);
 
   MasterDevice& master_;
   Ring& ring_;

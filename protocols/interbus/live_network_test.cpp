@@ -29,7 +29,7 @@ TEST(LiveNetworkTest, AnIdCycleIsNoDataCycle) {
   ASSERT_TRUE(live.bring_up());
   const kernel::Duration cycle = live.status().cycle_time;
   live.forget_starts();
-  live.master().request_id_cycle();
+  live.master().request_id_cycle(live.segment().now());
   const std::uint64_t before = live.status().data_cycles;
   live.segment().run_for(10 * cycle);
   EXPECT_EQ(live.data_cycle_starts().size(), live.status().data_cycles - before);

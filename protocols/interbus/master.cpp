@@ -204,7 +204,7 @@ std::vector<unsigned> Master::shift_order() const {
 
 // ---- application ----
 
-void Master::write_output(unsigned word, std::uint16_t value) {
+void Master::write_output(unsigned word, std::uint16_t value, kernel::Time) {
   if (word < outputs_.size() && state_ == MasterState::run) outputs_[word] = value;
 }
 

@@ -44,8 +44,8 @@ class Master : public MasterDevice, private TopologyDecisions {
   void wire(segment::Port& out) override { out_ = &out; }
   void start(kernel::Time now) override;
   void stop(kernel::Time now) override;
-  void request_id_cycle() override { id_cycle_requested_ = true; }
-  void write_output(unsigned word, std::uint16_t value) override;
+  void request_id_cycle(kernel::Time) override { id_cycle_requested_ = true; }
+  void write_output(unsigned word, std::uint16_t value, kernel::Time now) override;
   std::uint16_t output(unsigned word) const override { return word < outputs_.size() ? outputs_[word] : 0; }
   std::uint16_t input(unsigned word) const override { return word < inputs_.size() ? inputs_[word] : 0; }
   MasterStatus status() const override;

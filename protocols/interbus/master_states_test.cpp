@@ -161,7 +161,7 @@ const StateRow kRows[] = {
     {"never a return", [](OneStation& line) { cycles(line, Answer::none, kMany); }},
     {"ID requested",
      [](OneStation& line) {
-       line.master().request_id_cycle();
+       line.master().request_id_cycle(line.now());
        cycles(line, Answer::good, 2);
      }},
     {"other station", [](OneStation& line) { cycles(line, Answer::other_station, 2); }},

@@ -180,7 +180,7 @@ class Bench {
       const unsigned first = ring->first_word(position);
       for (unsigned word = 0; word < places[static_cast<std::size_t>(position - 1)].words; ++word) {
         ring->terminals(position).set_input(word, words.inputs[first + word]);
-        master.write_output(first + word, words.outputs[first + word]);
+        master.write_output(first + word, words.outputs[first + word], segment.now());
       }
     }
   }

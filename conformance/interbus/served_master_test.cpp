@@ -1,0 +1,95 @@
+// Subject: masters that are called as an implementation outside is, by calls and items alone: the suite
+// judges them to the bit as it does inside. In this process; cli proves the same of a process of their own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "conformance/interbus/master_cases.hpp"
+#include "conformance/interbus/master_deviations.hpp"
+#include "conformance/interbus/suite.hpp"
+#include "conformance/runner.hpp"
+#include "protocols/interbus/attached_master.hpp"
+#include "protocols/interbus/master.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using interbus::AttachedMaster;
+using interbus::MasterConfiguration;
+using interbus::ServedMaster;
+
+const Suite& inside() {
+  static const auto suite = interbus_suite();
+  return *suite;
+}
+
+// Plays a master by name as one outside; an empty name is the reference.
+std::unique_ptr<Suite> outside(const std::string& deviation) {
+  const auto attach = [deviation](const Wanted& wanted, const MasterConfiguration& configuration) {
+    const auto served = std::make_shared<ServedMaster>([deviation](const MasterConfiguration& told) {
+      return deviation.empty() ? std::make_unique<interbus::Master>(told)
+                               : make_master_deviation(deviation, told);
+    });
+    return std::make_unique<AttachedMaster>(iut::Attachment{served.get(), served, {}}, configuration,
+                                            wanted.case_id, wanted.seed);
+  };
+  return interbus_suite({.master = {.attached = attach}});
+}
+
+Setup setup_of(const std::string& uri) {
+  Setup setup;
+  setup.implementations.push_back({"master", 0, uri});
+  setup.seed = 1;
+  setup.volume = Volume::quick;
+  return setup;
+}
+
+void expect_equal(const TestCase& test_case, const Outcome& outside, const Outcome& inside) {
+  EXPECT_EQ(outside.result.verdict, inside.result.verdict) << test_case.id << outside.result.reason;
+  EXPECT_EQ(outside.result.reason, inside.result.reason) << test_case.id;
+  EXPECT_EQ(outside.result.fingerprint, inside.result.fingerprint) << test_case.id;
+}
+
+TEST(ServedMasters, ReferenceIsJudgedInEveryCaseAsInside) {
+  const auto suite = outside("");
+  int judged = 0;
+  for (const TestCase& test_case : suite->cases()) {
+    if (test_case.role() == "slave") continue;
+    ++judged;
+    expect_equal(test_case, suite->run(test_case, setup_of("outside")),
+                 inside().run(test_case, setup_of("ref")));
+  }
+  EXPECT_GT(judged, 40);
+}
+
+// In the cases that name it.
+class ServedDeviations : public testing::TestWithParam<std::string> {};
+
+TEST_P(ServedDeviations, AreJudgedAsInside) {
+  const auto suite = outside(GetParam());
+  int judged = 0;
+  for (const TestCase& test_case : suite->cases()) {
+    if (test_case.role() != "master" ||
+        std::ranges::count(test_case.catches, GetParam(), &Catch::deviation) == 0)
+      continue;
+    ++judged;
+    const Outcome outcome = suite->run(test_case, setup_of("outside"));
+    EXPECT_EQ(outcome.result.verdict, judge::Verdict::fail) << test_case.id;
+    expect_equal(test_case, outcome, inside().run(test_case, setup_of("deviant:" + GetParam())));
+  }
+  EXPECT_GT(judged, 0);
+}
+
+std::vector<std::string> deviation_names() {
+  std::vector<std::string> names;
+  for (const Deviation& one : master_deviations()) names.push_back(one.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ServedDeviations, testing::ValuesIn(deviation_names()),
+                         [](const testing::TestParamInfo<std::string>& one) { return one.param; });
+
+}  // namespace
+}  // namespace fieldproof::conformance
