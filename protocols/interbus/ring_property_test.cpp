@@ -131,9 +131,9 @@ class TelegramCounter final : public segment::Tap {
   line::TelegramCode code_{line::TelegramLayout{}};
 };
 
-class Bench {
+class RingBench {
  public:
-  explicit Bench(const NetworkDescription& description)
+  explicit RingBench(const NetworkDescription& description)
       : network(description), places(ring_order(network)), master(unconfigured(network)) {
     const std::size_t seat = segment.attach(master, "master");
     ring = std::make_unique<Ring>(segment, network, seat);
@@ -250,7 +250,7 @@ std::vector<FoundStation> described_stations(const std::vector<RingPlace>& place
   return stations;
 }
 
-void expect_exchange(Bench& bench) {
+void expect_exchange(RingBench& bench) {
   for (int round = 0; round < 3; ++round) {
     bench.exchange(any_words(bench.words()));
     RC_ASSERT(bench.has_inputs());
@@ -262,7 +262,7 @@ void expect_exchange(Bench& bench) {
 RC_GTEST_PROP(RingProperty, AnyRingIsFoundAndExchangesItsWords, ()) {
   const NetworkDescription network = any_network(40);
   RC_PRE(!check(network).has_value());
-  Bench bench(network);
+  RingBench bench(network);
   bench.bring_up();
   const MasterStatus status = bench.master.status();
   RC_ASSERT(status.configuration_error == "");
@@ -276,7 +276,7 @@ RC_GTEST_PROP(RingProperty, AnyRingIsFoundAndExchangesItsWords, ()) {
 RC_GTEST_PROP(RingProperty, DataCyclesFollowEachOtherAtTheStructuralCycleTime, ()) {
   const NetworkDescription network = any_network(12);
   RC_PRE(!check(network).has_value());
-  Bench bench(network);
+  RingBench bench(network);
   bench.bring_up();
   bench.run_cycles(2);
   bench.ends.clear();
@@ -290,7 +290,7 @@ RC_GTEST_PROP(RingProperty, DataCyclesFollowEachOtherAtTheStructuralCycleTime, (
 RC_GTEST_PROP(RingProperty, ItMakesNoDifferenceHowALinkDividesItsTelegrams, ()) {
   const NetworkDescription network = any_network(12);
   RC_PRE(!check(network).has_value());
-  Bench bench(network);
+  RingBench bench(network);
   const auto links = bench.ring->links();
   Divider forward(*rc::gen::arbitrary<std::uint64_t>());
   Divider back(*rc::gen::arbitrary<std::uint64_t>());
@@ -312,7 +312,7 @@ RC_GTEST_PROP(RingProperty, OneWrongLevelNeverBringsAWrongValue, ()) {
   NetworkDescription network = any_network(12);
   network.rules.end_telegrams = 0;
   RC_PRE(!check(network).has_value());
-  Bench bench(network);
+  RingBench bench(network);
   const auto links = bench.ring->links();
   OneFlip fault;
   links[*rc::gen::inRange<std::size_t>(0, links.size())]->set_channel(&fault);
