@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -15,6 +16,7 @@
 #include "cli/probe/deviations_in_c.hpp"
 #include "cli/probe/program_fixture.hpp"
 #include "harness/iut/peer.hpp"
+#include "harness/iut/plugin.hpp"
 #include "harness/iut/process.hpp"
 
 namespace fieldproof::cli {
@@ -263,6 +265,30 @@ TEST_F(Attachments, DeathInARunIsAVerdictWithEvidence) {
   EXPECT_EQ(dead.reason, "implementation_crashed");
   EXPECT_HOLDS(dead.findings, "was ended by signal 11");
   EXPECT_HOLDS(dead.findings, "log: the bus is gone");
+}
+
+class NobodyActs final : public iut::Bench {
+  void transmit(const iut::Transmission&) override { ADD_FAILURE(); }
+  void transmit(unsigned, line::Waveform&) override { ADD_FAILURE(); }
+  void write(iut::Item, std::uint64_t, kernel::Time) override { ADD_FAILURE(); }
+  std::uint64_t read(iut::Item, kernel::Time) override { return 0; }
+};
+
+// It is in this process: dividing by a rate of none would end the test.
+TEST(ExampleNode, HasARateOfItsOwnWhereNoneIsTold) {
+  const auto node = iut::load_plugin(VALVE_NODE_PLUGIN, "valve_bus", "node");
+  NobodyActs bench;
+  const iut::Character heard{kernel::kStart, kernel::kStart + 176 * kernel::kMicrosecond, 0x163};
+  for (const std::int64_t rate : {0, -1, 62'500}) {
+    iut::CaseBegin begin{"valve_bus/node/any", 0, {{"bit_rate", rate}}};
+    if (rate == 0) begin.settings.clear();
+    ASSERT_TRUE(node->begin(begin, bench));
+    node->set_power(true, kernel::kStart);
+    node->receive(0, std::span(&heard, 1), heard.busy_until);
+    // 4.5 characters of 11 bits and one bit, of 16 us each.
+    EXPECT_EQ(node->next_time() - heard.busy_until, 808 * kernel::kMicrosecond) << rate;
+    node->end();
+  }
 }
 
 TEST_F(Attachments, CommandThatIsNoneIsAMistakeOfTheCommandLine) {
