@@ -70,9 +70,9 @@ void ValveHostModel::on_heard(const line::CharacterReceiver::Received& one) {
   if (!one.character.is_good()) frame_.is_good = false;
   frame_.busy_until = one.busy_until;
   heard_until_ = one.busy_until;
-  // A character less: the host takes what is being said for what is heard.
-  const Duration talk = frame_.busy_until - frame_.start;
-  if (talk + character_notice(rules_) >= response_time_out(rules_)) was_busy_ = true;
+  // The host knows that it is over a delimiter and a character later.
+  const Duration talk = frame_.busy_until - frame_.start + delimiter(rules_) + character_notice(rules_);
+  if (talk >= response_time_out(rules_)) was_busy_ = true;
 }
 
 void ValveHostModel::end_frame() {
@@ -153,7 +153,8 @@ void ValveHostModel::on_response(const HostResponse& response, Time when) {
   FIELDPROOF_CHECK((frame.octets[0] ^ frame.octets[1]) == frame.octets[2], "the check of a response fits");
   FIELDPROOF_CHECK(frame.octets[0] == response.data0 && frame.octets[1] == response.data1,
                    "what is told is what arrived");
-  FIELDPROOF_CHECK(frame.start - read_->sent >= longest_gap(rules_), "a response does not come too early");
+  FIELDPROOF_CHECK(frame.start - read_->sent >= longest_gap(rules_) - kRoundedPosition,
+                   "a response does not come too early");
   known_.at(response.id) = response;
   read_.reset();
   was_busy_ = false;
