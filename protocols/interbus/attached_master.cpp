@@ -12,7 +12,6 @@
 namespace fieldproof::interbus {
 namespace {
 
-constexpr std::int64_t kAnHour = std::chrono::duration_cast<kernel::Duration>(std::chrono::hours(1)).count();
 constexpr std::size_t kTextOctets = 8;  // of an item
 
 constexpr std::uint64_t kMostPackedStation = (std::uint64_t{1} << 49) - 1;
@@ -37,7 +36,7 @@ std::optional<std::uint64_t> most_of(iut::Item item) {
   if (item >= kDataCycles && item <= kRejectedDataCycles) return kAny;
   if (item == kConsecutiveBad) return std::numeric_limits<std::uint32_t>::max();
   if (item == kQualityBit) return 1;
-  if (item == kCycleTime) return static_cast<std::uint64_t>(kAnHour);
+  if (item == kCycleTime) return static_cast<std::uint64_t>(kLongestCycle.count());
   if (item == kFaultPlace) return 0x1'FFFF'FFFF;
   if (item == kStationCount) return kMostMasterWords;
   if (item == kCycleEnd) return 3;
@@ -90,7 +89,7 @@ void AttachedMaster::call(kernel::Time now, Call&& call) {
 
 void AttachedMaster::start(kernel::Time now) {
   if (attached_ && !is_supplied_) {
-    is_supplied_ = true;
+    is_supplied_ = is_ordered_ = true;  // nor does a cycle end before the first order
     attached_->set_power(true, now);
   }
   order({MasterOrder::start, {}, now});

@@ -32,6 +32,7 @@ enum class MasterOrder : std::uint16_t { start = 1, stop = 2, id_cycle = 3, outp
 // How many of each kind of word a master may have.
 inline constexpr unsigned kMostMasterWords = 0x1000;
 inline constexpr unsigned kMostErrorTexts = 32;
+inline constexpr kernel::Duration kLongestCycle = 3'600 * kernel::kSecond;
 
 inline constexpr iut::Item kMasterState = 0;  // kept, in the order of MasterState
 inline constexpr iut::Item kDataCycles = 1;   // kept, since power-up

@@ -32,7 +32,6 @@ constexpr std::array kNumbers{
     ToldNumber{"max_cable_m", &Rules::max_cable_m, 0, 1'000'000},
 };
 
-constexpr std::int64_t kLongest = 3'600 * kernel::kSecond.count();
 constexpr unsigned kLengthCodes = 32;
 
 std::string numbered(std::string_view name, std::size_t n) {
@@ -105,7 +104,7 @@ MasterConfiguration master_configuration_of(const iut::CaseBegin& begin) {
   MasterConfiguration configuration;
   Rules& rules = configuration.rules;
   const auto span = [&](std::string_view name, kernel::Duration absent) {
-    return kernel::Duration{setting_within(begin, name, absent.count(), kLongest)};
+    return kernel::Duration{setting_within(begin, name, absent.count(), kLongestCycle.count())};
   };
   configuration.cycle_time = span("cycle_time_ps", {});
   rules.software_time = span("software_time_ps", rules.software_time);
