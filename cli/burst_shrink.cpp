@@ -1,11 +1,14 @@
 #include "cli/burst_shrink.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "cli/exit_code.hpp"
@@ -14,6 +17,8 @@
 #include "cli/stored_sequence.hpp"
 #include "cli/struck_bits.hpp"
 #include "conformance/minimise.hpp"
+#include "harness/fault/plan_file.hpp"
+#include "harness/kernel/error.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
@@ -23,23 +28,41 @@ namespace {
 // A plan lists no more.
 constexpr std::size_t kMostBits = 10'000;
 
-// A file of this process for what is tried; what is found goes where the caller said.
+// A folder of this process for what is tried; what is found goes where the caller said.
 class TriedPlan {
  public:
-  TriedPlan()
-      : path_(std::filesystem::temp_directory_path() /
-              fmt::format("fieldproof-shrink-{}.plan.json", ::getpid())) {}
+  TriedPlan() {
+    std::string name = (std::filesystem::temp_directory_path() / "fieldproof-shrink-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw kernel::Error(kernel::ErrorKind::configuration,
+                          fmt::format("{}: no folder can be made there: {}", name, std::strerror(errno)));
+    }
+    folder_ = name;
+  }
   TriedPlan(const TriedPlan&) = delete;
   TriedPlan& operator=(const TriedPlan&) = delete;
   ~TriedPlan() {
     std::error_code gone_already;
-    std::filesystem::remove(path_, gone_already);
+    std::filesystem::remove_all(folder_, gone_already);
   }
-  std::string path() const { return path_.string(); }
+  std::string path() const { return (folder_ / "plan.json").string(); }
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path folder_;
 };
+
+// The last bits, at most so many of them and no more than a plan can list.
+StruckBits last_bits(const StruckBits& struck, std::size_t most) {
+  std::set<std::pair<kernel::Time, std::string>> disturbances;
+  std::size_t count = 0;
+  while (count < std::min({most, struck.size(), kMostBits})) {
+    const StruckBit& one = struck[struck.size() - 1 - count];
+    disturbances.emplace(one.from, one.receiver);
+    if (disturbances.size() > fault::kMostDisturbances) break;
+    ++count;
+  }
+  return {struck.end() - static_cast<std::ptrdiff_t>(count), struck.end()};
+}
 
 // The case with all its disturbances, and a note of what they struck until it failed.
 struct DisturbedRun {
@@ -70,8 +93,8 @@ class BurstShrink {
   std::optional<StruckBits> run(const StruckBits& struck) {
     // The run ended where it failed, so what mattered lies near the end.
     for (std::size_t last = 1;; last *= 2) {
-      const std::size_t count = std::min({last, struck.size(), kMostBits});
-      StruckBits bits(struck.end() - static_cast<std::ptrdiff_t>(count), struck.end());
+      StruckBits bits = last_bits(struck, last);
+      const std::size_t count = bits.size();
       if (still_fails(bits)) {
         return conformance::fewest(std::move(bits),
                                    [this](const StruckBits& some) { return still_fails(some); });

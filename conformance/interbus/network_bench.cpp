@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "harness/kernel/check.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/observation.hpp"
 #include "protocols/interbus/timing.hpp"
@@ -62,6 +63,7 @@ NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkPa
 }
 
 interbus::ExchangeOracle& NetworkBench::begin_exchange() {
+  FIELDPROOF_CHECK(!exchange_, "a network exchanges words once");
   return exchange_.emplace(*master_, *ring_, random_.split("process data"));
 }
 

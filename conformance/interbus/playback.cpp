@@ -181,12 +181,34 @@ DeviceEvent read_event(const config::Value& value) {
 
 }  // namespace
 
+namespace {
+
+// Of the text of an event: names and instants, and numbers that are short mostly.
+std::size_t estimated_octets(const DeviceEvent& event) {
+  constexpr std::size_t kFixed = 400;
+  constexpr std::size_t kNumber = 8;
+  std::size_t numbers = 0;
+  std::size_t more = kFixed;
+  if (const auto* drive = std::get_if<DriveEvent>(&event.what)) more += drive->wave.levels.size() / 4;
+  if (const auto* view = std::get_if<ViewEvent>(&event.what)) {
+    const interbus::MasterStatus& status = view->status;
+    numbers = view->inputs.size() + view->outputs.size() + status.peripheral_faults.size() +
+              status.reconfigurations.size() + 6 * status.stations.size();
+    more += status.configuration_error.size();
+  }
+  return kNumber * numbers + more;
+}
+
+}  // namespace
+
 void DeviceRecording::add(std::size_t device, DeviceEvent event) {
-  if (event_count_ == kMostEvents) {
+  const std::size_t octets = estimated_octets(event);
+  if (is_truncated_ || event_count_ == kMostEvents || octets_ + octets > kMostOctets) {
     is_truncated_ = true;
     return;
   }
   ++event_count_;
+  octets_ += octets;
   devices_.at(device).push_back(std::move(event));
 }
 

@@ -15,8 +15,8 @@
 // application interface; and a device that does the same again at the same instants. So a stored run is
 // judged again without the implementation: the bench's own stimuli follow from the seed.
 //
-// Limits: at most kMostEvents events a run, then the recording says so. A played-back device answers nothing
-// that it was not asked in the recorded run: it is for the same case, seed and setup only.
+// Limits: at most kMostEvents events and kMostOctets a run, then the recording says so. A played-back device
+// answers nothing that it was not asked in the recorded run: it is for the same case, seed and setup only.
 namespace fieldproof::conformance {
 
 struct DriveEvent {
@@ -49,6 +49,8 @@ struct DeviceEvent {
 class DeviceRecording {
  public:
   static constexpr std::size_t kMostEvents = 20'000;
+  static constexpr std::size_t kMostOctets = 32U
+                                             << 20U;  // of the text, by estimate: half of what `load` takes
 
   std::size_t add_device() {
     devices_.emplace_back();
@@ -70,6 +72,7 @@ class DeviceRecording {
   std::string name_;
   std::deque<std::vector<DeviceEvent>> devices_;
   std::size_t event_count_ = 0;
+  std::size_t octets_ = 0;
   bool is_truncated_ = false;
 };
 

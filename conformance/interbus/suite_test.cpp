@@ -161,7 +161,7 @@ TEST(InterbusSuite, CasesOfStressesAreThereWithStresses) {
               judge::Verdict::pass)
         << test_case.id;
   }
-  EXPECT_EQ(stressed->deviations().size(), suite().deviations().size() + 2)
+  EXPECT_EQ(stressed->deviations().size(), suite().deviations().size() + 4)
       << "networks that only bursts tell";
 }
 

@@ -15,7 +15,6 @@ using config::ObjectReader;
 using config::Value;
 
 constexpr std::size_t kMostRules = 10'000;
-constexpr std::size_t kMostDisturbances = 100;
 constexpr std::size_t kMostLevels = 100'000;
 
 std::string pattern(const Value& value) {

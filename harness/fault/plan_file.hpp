@@ -25,6 +25,8 @@
 // written. Reading the canonical text gives the plan again.
 namespace fieldproof::fault {
 
+inline constexpr std::size_t kMostDisturbances = 2'000;  // of a plan
+
 struct PlanReading {
   // How an inserted telegram is written as levels; without it a plan that inserts one is refused.
   const line::TelegramCode* telegrams = nullptr;

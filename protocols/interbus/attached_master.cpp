@@ -25,6 +25,12 @@ std::uint64_t packed(const FaultLocation& location) {
   return std::uint64_t{1} << 32 | place(location.from) | place(location.to) << 16;
 }
 
+std::uint64_t packed(MasterOrder order, std::span<const std::uint16_t> operands) {
+  std::uint64_t value = static_cast<std::uint64_t>(order);
+  for (std::size_t n = 0; n < operands.size(); ++n) value |= std::uint64_t{operands[n]} << 16 * (n + 1);
+  return value;
+}
+
 bool is_within(iut::Item item, iut::Item first, unsigned count = kMostMasterWords) {
   return item >= first && item < first + count;
 }
@@ -79,6 +85,11 @@ void AttachedMaster::call(kernel::Time now, Call&& call) {
   is_called_ = true;
   attached_->call(now, call);
   is_called_ = false;
+}
+
+template <typename Call>
+void AttachedMaster::call_and_order(kernel::Time now, Call&& call) {
+  this->call(now, call);
   // An order ends no cycle, so nothing new is ordered meanwhile.
   while (!orders_.empty()) {
     const Order order = std::move(orders_.front());
@@ -117,11 +128,11 @@ void AttachedMaster::tell(const Order& order) {
 }
 
 void AttachedMaster::receive(segment::PortIndex port, const line::Waveform& reception) {
-  call(reception.start, [&](iut::Device& device) { device.receive(port, reception); });
+  call_and_order(reception.start, [&](iut::Device& device) { device.receive(port, reception); });
 }
 
 void AttachedMaster::on_time(kernel::Time now) {
-  call(now, [&](iut::Device& device) { device.on_time(now); });
+  call_and_order(now, [&](iut::Device& device) { device.on_time(now); });
 }
 
 void AttachedMaster::end() {
@@ -178,6 +189,7 @@ void AttachedMaster::transmit(const iut::Transmission&) {
 void AttachedMaster::transmit(unsigned port, line::Waveform& wave) {
   attached_->expect_drive(wave);
   if (port != 0) iut::refuse_impossible(fmt::format("drives port {}; a master has its line, port 0", port));
+  has_driven_ = true;
   out_->drive(wave);
 }
 
@@ -210,11 +222,20 @@ void AttachedMaster::keep(iut::Item item, std::uint64_t value) {
 
 void AttachedMaster::end_cycle(std::uint64_t value, kernel::Time when) {
   if (is_ordered_) iut::refuse_impossible("ends a cycle while its application orders something");
+  if (!std::exchange(has_driven_, false)) {
+    iut::refuse_impossible("ends a cycle, and has driven nothing since the one before");
+  }
   if (hook_) hook_(when, (value & 1) != 0, (value & 2) != 0);
 }
 
 std::uint64_t AttachedMaster::read(iut::Item item, kernel::Time) {
-  iut::refuse_impossible(fmt::format("reads item {}; a master has none to read", item));
+  if (item != kNextOrder) {
+    iut::refuse_impossible(fmt::format("reads item {}; a master has {} to read", item, kNextOrder));
+  }
+  if (orders_.empty()) return 0;
+  const Order order = std::move(orders_.front());
+  orders_.pop_front();
+  return packed(order.order, order.operands);
 }
 
 // ---- a master of ours ----
@@ -226,6 +247,10 @@ bool ServedMaster::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
   station().on_cycle_end([this](kernel::Time, bool is_data, bool is_accepted) {
     tell();
     this->bench().write(kCycleEnd, (is_data ? 1U : 0U) | (is_accepted ? 2U : 0U), now());
+    while (const std::uint64_t order = this->bench().read(kNextOrder, now())) {
+      obey(static_cast<MasterOrder>(order & 0xFFFF), static_cast<unsigned>(order >> 16 & 0xFFFF),
+           static_cast<std::uint16_t>(order >> 32), now());
+    }
   });
   return true;
 }
@@ -237,12 +262,16 @@ void ServedMaster::receive(unsigned, std::span<const iut::Character> characters,
   if (!is_known || characters.size() != 1 + operands) {
     throw kernel::Error(kernel::ErrorKind::implementation, "the bench orders what no master can do");
   }
-  act(now, [&] {
-    if (order == MasterOrder::start) station().start(now);
-    if (order == MasterOrder::stop) station().stop(now);
-    if (order == MasterOrder::id_cycle) station().request_id_cycle(now);
-    if (order == MasterOrder::output) station().write_output(characters[1].data, characters[2].data, now);
-  });
+  const unsigned word = operands > 0 ? characters[1].data : 0U;
+  const std::uint16_t value = operands > 0 ? characters[2].data : std::uint16_t{0};
+  act(now, [&] { obey(order, word, value, now); });
+}
+
+void ServedMaster::obey(MasterOrder order, unsigned word, std::uint16_t value, kernel::Time now) {
+  if (order == MasterOrder::start) station().start(now);
+  if (order == MasterOrder::stop) station().stop(now);
+  if (order == MasterOrder::id_cycle) station().request_id_cycle(now);
+  if (order == MasterOrder::output) station().write_output(word, value, now);
 }
 
 void ServedMaster::keep(unsigned item, std::uint64_t value) {

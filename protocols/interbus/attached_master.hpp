@@ -45,6 +45,8 @@ inline constexpr iut::Item kCycleTime = 7;     // kept, in force: ps
 inline constexpr iut::Item kFaultPlace = 8;    // kept: 0, or 1 << 32 | from + 1 | (to + 1) << 16
 inline constexpr iut::Item kStationCount = 9;  // kept
 inline constexpr iut::Item kCycleEnd = 10;     // told: 1 data cycle | 2 accepted
+// Read, behind a cycle end: order | word << 16 | value << 32, 0 when there is none left.
+inline constexpr iut::Item kNextOrder = 11;
 // Kept, + n each.
 inline constexpr iut::Item kErrorText = 0x100;         // of the configuration: octets 8n to 8n + 7, 8n lowest
 inline constexpr iut::Item kFoundStation = 0x1000;     // as packed_station
@@ -69,7 +71,8 @@ class AttachedMaster final : public MasterDevice, private iut::Bench {
   void wire(segment::Port& out) override { out_ = &out; }
   // Also switches the supply on, once.
   void start(kernel::Time now) override;
-  // What is ordered within the hook is told behind the call in which the cycle has ended.
+  // What is ordered within the hook the implementation may read at once; what it does not is told behind the
+  // call in which the cycle has ended.
   void stop(kernel::Time now) override { order({MasterOrder::stop, {}, now}); }
   void request_id_cycle(kernel::Time now) override { order({MasterOrder::id_cycle, {}, now}); }
   void write_output(unsigned word, std::uint16_t value, kernel::Time now) override;
@@ -95,6 +98,8 @@ class AttachedMaster final : public MasterDevice, private iut::Bench {
   void tell(const Order& order);
   template <typename Call>
   void call(kernel::Time now, Call&& call);
+  template <typename Call>
+  void call_and_order(kernel::Time now, Call&& call);
 
   void transmit(const iut::Transmission& transmission) override;
   void transmit(unsigned port, line::Waveform& wave) override;
@@ -110,6 +115,7 @@ class AttachedMaster final : public MasterDevice, private iut::Bench {
   CycleHook hook_;
   bool is_supplied_ = false;
   bool is_called_ = false;
+  bool has_driven_ = false;   // since the last cycle ended
   bool is_ordered_ = false;   // the call tells an order
   std::deque<Order> orders_;  // of the hook
   std::vector<std::uint64_t> kept_;
@@ -130,6 +136,7 @@ class ServedMaster final : public iut::ServedStation<MasterDevice> {
 
  private:
   void after_call() override { tell(); }
+  void obey(MasterOrder order, unsigned word, std::uint16_t value, kernel::Time now);
   void tell();
   void tell_error(const std::string& sentence);
   void tell_stations(const MasterStatus& status);

@@ -26,6 +26,17 @@ using testing::HasSubstr;
 constexpr kernel::Time kStartedAt{5 * kMillisecond};
 constexpr kernel::Time kCalledAt{20 * kMillisecond};
 
+void drive_something(iut::Bench& bench) {
+  line::Waveform wave{kCalledAt, 500'000, {}};
+  wave.levels.append(0b10110, 5);
+  bench.transmit(0, wave);
+}
+
+void end_good_cycle(iut::Bench& bench) {
+  drive_something(bench);
+  bench.write(kCycleEnd, 3, kCalledAt);
+}
+
 class AttachedMasterTest : public testing::Test, private segment::Port {
  protected:
   AttachedMasterTest() { master_.wire(*this); }
@@ -142,7 +153,7 @@ TEST(MasterSettings, ValuesOutsideOfTheirRangeAreBroughtIn) {
                                                              {"cycle_time_ps", -1}}});
   EXPECT_EQ(told.rules.status_pitch_bits, 5U);
   EXPECT_EQ(told.rules.quality_bad_cycles, 1U);
-  EXPECT_EQ(told.rules.max_stations, 2048U);
+  EXPECT_EQ(told.rules.max_stations, 4096U);
   EXPECT_EQ(told.expected.size(), kMostMasterWords);
   EXPECT_EQ(told.cycle_time, kernel::Duration{});
 }
@@ -182,12 +193,41 @@ TEST_F(AttachedMasterTest, OrdersWithinTheHookComeBehindTheCall) {
   std::size_t heard_in_the_call = 1;
   master_.on_cycle_end([&](kernel::Time now, bool, bool) { master_.write_output(1, 2, now); });
   EXPECT_EQ(complaint([&](iut::Bench& bench) {
-              bench.write(kCycleEnd, 3, kCalledAt);
+              end_good_cycle(bench);
               heard_in_the_call = device_.heard.size();
             }),
             "");
   EXPECT_EQ(heard_in_the_call, 0U);
   EXPECT_THAT(ordered(), ElementsAre(4, 1, 2));
+}
+
+TEST_F(AttachedMasterTest, OrdersWithinTheHookCanBeReadAtOnce) {
+  start();
+  device_.heard.clear();
+  master_.on_cycle_end([&](kernel::Time now, bool, bool) {
+    master_.write_output(0x123, 0xBEEF, now);
+    master_.request_id_cycle(now);
+  });
+  std::vector<std::uint64_t> orders;
+  EXPECT_EQ(complaint([&](iut::Bench& bench) {
+              end_good_cycle(bench);
+              do {
+                orders.push_back(bench.read(kNextOrder, kCalledAt));
+              } while (orders.back() != 0);
+            }),
+            "");
+  EXPECT_THAT(orders, ElementsAre(0xBEEF'0123'0004, 3, 0));
+  EXPECT_THAT(ordered(), ElementsAre());
+}
+
+TEST_F(AttachedMasterTest, ManyOrdersComeOneBehindTheOther) {
+  start();
+  device_.heard.clear();
+  master_.on_cycle_end([&](kernel::Time now, bool, bool) {
+    for (unsigned word = 0; word < kMostMasterWords; ++word) master_.write_output(word, 1, now);
+  });
+  EXPECT_EQ(complaint(&end_good_cycle), "");
+  EXPECT_EQ(ordered().size(), 3 * kMostMasterWords);
 }
 
 TEST_F(AttachedMasterTest, EndedOneIsNotCalledAgainAndKeepsWhatItHasTold) {
@@ -261,6 +301,7 @@ TEST_F(AttachedMasterTest, HookSeesWhatTheCycleHasChanged) {
               bench.write(kDataCycles, 9, kCalledAt);
               bench.write(kInputImage + 1, 0xCAFE, kCalledAt);
               bench.write(kOutputImage + 2, 0xBEEF, kCalledAt);
+              drive_something(bench);
               bench.write(kCycleEnd, 1, kCalledAt);
               bench.write(kDataCycles, 10, kCalledAt);
             }),
@@ -269,12 +310,7 @@ TEST_F(AttachedMasterTest, HookSeesWhatTheCycleHasChanged) {
 }
 
 TEST_F(AttachedMasterTest, DrivesItsLine) {
-  EXPECT_EQ(complaint([](iut::Bench& bench) {
-              line::Waveform wave{kCalledAt, 500'000, {}};
-              wave.levels.append(0b10110, 5);
-              bench.transmit(0, wave);
-            }),
-            "");
+  EXPECT_EQ(complaint(&drive_something), "");
   ASSERT_EQ(driven_.size(), 1U);
   EXPECT_EQ(driven_[0].start, kCalledAt);
 }
@@ -339,6 +375,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         WrongAct{"writes item 11, which a master does not have",
                  [](iut::Bench& bench) { bench.write(11, 0, kCalledAt); }},
+        WrongAct{"has driven nothing since the one before",
+                 [](iut::Bench& bench) {
+                   end_good_cycle(bench);
+                   bench.write(kCycleEnd, 3, kCalledAt);
+                 }},
         WrongAct{"writes item 288, which", [](iut::Bench& bench) { bench.write(0x120, 0, kCalledAt); }},
         WrongAct{"writes item 20480, which", [](iut::Bench& bench) { bench.write(0x5000, 0, kCalledAt); }},
         WrongAct{"writes 6 to item 0, which goes up to 5",
@@ -351,7 +392,7 @@ INSTANTIATE_TEST_SUITE_P(
                  [](iut::Bench& bench) { bench.write(kDataCycles, 1, kCalledAt + kMillisecond); }},
         WrongAct{"tells its application something at",
                  [](iut::Bench& bench) { bench.write(kDataCycles, 1, kCalledAt - kMillisecond); }},
-        WrongAct{"a master has none to read", [](iut::Bench& bench) { bench.read(0, kCalledAt); }},
+        WrongAct{"a master has 11 to read", [](iut::Bench& bench) { bench.read(0, kCalledAt); }},
         WrongAct{"drives port 1",
                  [](iut::Bench& bench) {
                    line::Waveform wave{kCalledAt, 500'000, {}};

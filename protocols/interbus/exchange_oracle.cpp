@@ -34,7 +34,10 @@ void ExchangeOracle::on_cycle_end(kernel::Time now, bool is_data, bool accepted,
   }
   was_rejected_ = !accepted;
   judge_inputs(now, is_data && accepted);
-  if (is_data && accepted) judge_outputs();
+  if (is_data && accepted) {
+    judge_outputs();
+    if (!has_missed_) ++good_cycles_;
+  }
   if (ledger_.accepted_wrong() != wrong_before_) ++ledger_.wrong_cycles;
   wrong_before_ = ledger_.accepted_wrong();
   has_latched_ = false;

@@ -53,7 +53,7 @@ class ExchangeOracle {
     kernel::Time when;
   };
 
-  // Must live as long as the ring, whose terminals tell it their changes.
+  // The ring's terminals tell it their changes: the ring is not run any more once it is gone.
   ExchangeOracle(MasterDevice& master, Ring& ring, kernel::Random random);
   ExchangeOracle(const ExchangeOracle&) = delete;
   ExchangeOracle& operator=(const ExchangeOracle&) = delete;
@@ -63,8 +63,9 @@ class ExchangeOracle {
   const ErrorLedger& ledger() const { return ledger_; }
   // Of the ledger.
   const std::optional<WrongWord>& first_wrong() const { return first_wrong_; }
-  // Whether the last good cycle was not put out somewhere.
+  // Whether the last good cycle was not put out somewhere; how many were put out everywhere.
   bool has_missed() const { return has_missed_; }
+  std::uint64_t good_cycles() const { return good_cycles_; }
 
   void on_cycle_end(kernel::Time now, bool is_data, bool accepted, bool is_corrupted);
 
@@ -85,6 +86,7 @@ class ExchangeOracle {
   bool has_latched_ = false;
   bool has_missed_ = false;
   bool was_rejected_ = false;
+  std::uint64_t good_cycles_ = 0;
   std::uint64_t wrong_before_ = 0;
   ErrorLedger ledger_;
   std::optional<WrongWord> first_wrong_;

@@ -25,9 +25,9 @@ constexpr std::array kNumbers{
     ToldNumber{"stop_after_bad_cycles", &Rules::stop_after_bad_cycles, 1, 1'000'000},
     ToldNumber{"quality_bad_cycles", &Rules::quality_bad_cycles, 1, 1'000'000},
     ToldNumber{"quality_window_cycles", &Rules::quality_window_cycles, 1, 1'000'000'000},
-    // Half of the words that a master may have.
-    ToldNumber{"max_stations", &Rules::max_stations, 0, kMostMasterWords / 2},
-    ToldNumber{"max_io_points", &Rules::max_io_points, 0, 16 * kMostMasterWords / 2},
+    // As many as there are items.
+    ToldNumber{"max_stations", &Rules::max_stations, 0, kMostMasterWords},
+    ToldNumber{"max_io_points", &Rules::max_io_points, 0, 16 * kMostMasterWords},
     ToldNumber{"max_levels", &Rules::max_levels, 0, 1'000},
     ToldNumber{"max_cable_m", &Rules::max_cable_m, 0, 1'000'000},
 };
