@@ -1,0 +1,504 @@
+#!/usr/bin/env python3
+"""An INTERBUS master, to be judged: fieldproof run 'interbus/master/**' --iut 'exec:python3 master.py'
+
+harness/iut/README.md describes the messages, protocols/interbus/README.md the master."""
+import struct
+import sys
+from collections import deque
+
+NEVER = 2**63 - 1
+SECOND = 10**12  # times are picoseconds
+HELLO, ECHO, CASE_BEGIN, RECEIVE_CHARACTERS, RECEIVE_LEVELS, ON_TIME = 1, 2, 3, 5, 6, 7
+CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT_LEVELS, WRITE = 129, 130, 131, 132, 134, 135
+START, STOP, ID_CYCLE, OUTPUT_WORD = 1, 2, 3, 4
+OFF, READY, IDENTIFICATION, RUN, LOCATING, BUS_STOP = range(6)
+STATE, DATA_CYCLES, ID_CYCLES, REJECTED, REJECTED_DATA, IN_A_ROW, QUALITY, CYCLE_TIME, PLACE, FOUND, ENDED = range(11)
+SENTENCE, STATION, MESSAGES, INPUT, OUTPUT = 0x100, 0x1000, 0x2000, 0x3000, 0x4000
+BRANCH, REMOTE = "branch", "remote"
+
+
+class Stream:
+    def __init__(self, source, sink):
+        self.source, self.sink = source, sink
+
+    def receive(self):
+        head = self.source.read(4)
+        return self.source.read(struct.unpack("<I", head)[0]) if len(head) == 4 else sys.exit(0)
+
+    def send(self, kind, form="", *values):
+        content = struct.pack("<" + form, *values)
+        self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
+        if kind not in (WRITE, TRANSMIT_LEVELS):
+            self.sink.flush()
+
+
+class Coding:
+    """Telegrams as text, a character for each level, and the check."""
+    def __init__(self, s):
+        self.s, self.rate, self.bit = s, s["bit_rate"], SECOND // s["bit_rate"]
+        octets = [f"{octet:08b}"[::1 if s["most_significant_first"] else -1] for octet in range(256)]
+        self.heads = {(is_id, is_check): self.head(is_id, is_check, True) for is_id in (0, 1) for is_check in (0, 1)}
+        self.data = {key: ["0" + head + bits + "1" for bits in octets] for key, head in self.heads.items()}
+        status = ("0" + self.head(0, 0, False) + "1").ljust(s["status_pitch_bits"], "1")
+        self.pause = status * 8
+        self.octet_of = {bits: octet for octet, bits in enumerate(octets)}
+        self.table = [self.shifted(high << 8) for high in range(256)]
+
+    def head(self, is_id, is_check, is_data):
+        levels = [""] * 3
+        for name, level, is_set in (("select", "select_level", is_id), ("control", "control_level", is_check),
+                                    ("flag", "data_flag_level", is_data)):
+            levels[self.s[name + "_place"]] = str(self.s[level] if is_set else 1 - self.s[level])
+        return "".join(levels)
+
+    def shifted(self, register):
+        for _ in range(8):
+            register = (register << 1) ^ (self.s["check_polynomial"] if register & 0x8000 else 0)
+        return register & 0xFFFF
+
+    def check(self, octets):
+        reflected, register, table = self.s["check_is_reflected"], self.s["check_preset"], self.table
+        turned = lambda value, bits: int(f"{value:0{bits}b}"[::-1], 2)
+        for octet in octets:
+            octet = turned(octet, 8) if reflected else octet
+            register = register << 8 & 0xFFFF ^ table[register >> 8 ^ octet]
+        value = (turned(register, 16) if reflected else register) ^ self.s["check_final_xor"]
+        return [value & 0xFF, value >> 8] if reflected else [value >> 8, value & 0xFF]
+
+    def frame_bits(self, telegrams):
+        return telegrams * (13000 + self.s["telegram_gap_millibits"]) // 1000
+
+    def cycle(self, is_id, words):
+        """The octets of the transfer phase, and the levels of the whole frame."""
+        octets = [octet for word in [self.s["loopback_word"]] + words for octet in (word >> 8, word & 0xFF)]
+        status = self.s["status_clean"]
+        behind = self.check(octets) + [status >> 8, status & 0xFF] + [0] * self.s["end_telegrams"]
+        telegrams = [self.data[is_id, 0][octet] for octet in octets]
+        telegrams += [self.data[is_id, 1][octet] for octet in behind]
+        pitch = 13000 + self.s["telegram_gap_millibits"]
+        return "".join([telegram.ljust((n + 1) * pitch // 1000 - n * pitch // 1000, "1")
+                        for n, telegram in enumerate(telegrams)])
+
+    def pause_of(self, bits):
+        pitch = self.s["status_pitch_bits"]
+        count = max(0, bits) // pitch
+        if len(self.pause) < count * pitch:
+            self.pause = self.pause[:pitch] * count
+        return self.pause[:count * pitch]
+
+
+class Returned:
+    """What has come back, put together from the transmissions that were heard."""
+    def __init__(self, coding):
+        self.coding, self.waves, self.heard = coding, [], 0
+
+    def add(self, start, rate, count, packed):
+        self.waves.append((start, rate, f"{int.from_bytes(packed, 'little'):0{count}b}"[::-1][:count]))
+
+    def forget(self):
+        self.waves = [wave for wave in self.waves if wave[0] + len(wave[2]) * SECOND // wave[1] > self.heard]
+
+    def levels(self, until):
+        """(start, rate, levels) of one line that is 1 where nobody speaks."""
+        rate = max(wave[1] for wave in self.waves)
+        begin, parts, end = self.waves[0][0], [], 0
+        for start, own_rate, levels in self.waves:
+            if start >= until:
+                break
+            if own_rate != rate:
+                levels = "".join([levels[n * own_rate // rate] for n in range(len(levels) * rate // own_rate)])
+            at = ((start - begin) * rate + SECOND // 2) // SECOND
+            parts.append("1" * (at - end) + levels[max(0, end - at):])
+            end = max(end, at + len(levels))
+        return begin, rate, "".join(parts)
+
+    def telegrams(self, until):
+        """(start, head, octet or None, stop level) of those not told yet that have ended by `until`."""
+        if not self.waves:
+            return
+        origin, rate, levels = self.levels(until)
+        coding, bit_rate = self.coding, self.coding.rate
+        heard = (until - origin) * rate // SECOND
+        levels += "1" * (14 * rate // bit_rate + 14)
+        at = max(0, (self.heard - origin) * rate // SECOND)
+        samples = [(2 * n + 1) * rate // (2 * bit_rate) for n in range(13)]
+        flag, is_data = self.coding.s["flag_place"], str(self.coding.s["data_flag_level"])
+        while (at := levels.find("0", at)) >= 0 and at < heard:
+            if rate == bit_rate:
+                text = levels[at:at + 13]
+            else:
+                text = "".join([levels[at + n] for n in samples])
+                if text[0] == "1":
+                    at += samples[0]
+                    continue
+            start = origin + at * SECOND // rate
+            count = 12 if text[1 + flag] == is_data else 4
+            if at + samples[count] >= heard:
+                return
+            at = levels.find("1", at + samples[count])
+            self.heard = origin + at * SECOND // rate
+            yield start, text[1:4], coding.octet_of[text[4:12]] if count == 12 else None, text[count]
+
+
+class Master:
+    def __init__(self, stream, settings):
+        self.stream, self.s, self.coding = stream, settings, Coding(settings)
+        self.returned, self.items = Returned(self.coding), {}
+        self.state, self.stations, self.last_driven = OFF, [], -SECOND
+        self.inputs, self.outputs = [], []
+        self.start_at = self.verdict_at = NEVER
+        self.search = self.is_stopping = None
+
+    def put(self, item, value, now):
+        if self.items.get(item, 0) != value:
+            self.items[item] = value
+            self.stream.send(WRITE, "HQq", item, value, now)
+
+    def count(self, item, now):
+        self.put(item, self.items.get(item, 0) + 1, now)
+
+    def enter(self, state, now):
+        self.state = state
+        self.put(STATE, state, now)
+
+    def say(self, sentence, now):
+        octets = sentence.encode()[:256].ljust(256, b"\0")
+        for n in range(32):
+            self.put(SENTENCE + n, int.from_bytes(octets[8 * n:8 * n + 8], "little"), now)
+
+    # ---- orders ----
+
+    def order(self, now, characters):
+        if characters[0] == START and self.state in (OFF, BUS_STOP):
+            self.say("", now)
+            self.put(PLACE, 0, now)
+            self.enter(READY, now)
+            self.begin_search(now)
+        elif characters[0] == STOP:
+            self.is_stopping = self.state == RUN
+            if not self.is_stopping:
+                self.silence(OFF, now)
+        elif characters[0] == ID_CYCLE:
+            self.is_id_needed = True
+        elif characters[0] == OUTPUT_WORD and self.state == RUN and characters[1] < len(self.outputs):
+            self.set_output(characters[1], characters[2], now)
+
+    def set_output(self, word, value, now):
+        self.outputs[word] = value
+        self.put(OUTPUT + word, value, now)
+
+    def silence(self, state, now):
+        self.start_at = self.verdict_at = NEVER
+        self.is_stopping = False
+        for word in range(len(self.outputs)):
+            self.set_output(word, 0, now)
+        self.enter(state, now)
+
+    # ---- recognition: stations join one by one, in the order of the ring ----
+
+    def begin_search(self, now):
+        """Behind a silence in which all stations fall into reset."""
+        quiet = 1000 * (self.s["silence_limit_ns"] + self.s["silence_tolerance_ns"]) + SECOND // 1000
+        self.start_at, self.verdict_at = max(now, self.last_driven + quiet), NEVER
+        self.found, self.open, self.search, self.tries = [], set(), self.searching(), 0
+        self.wanted = next(self.search)
+
+    def controls(self, stations):
+        s = self.s
+        return [(0 if (n, BRANCH) in self.open else s["control_local_off"]) |
+                (0 if (n, REMOTE) in self.open else s["control_remote_off"]) for n in range(stations)]
+
+    def searching(self):
+        """Yields how many stations the next ID cycle is for; is sent their ID codes, the first one first."""
+        probes = [(-1, REMOTE)]
+        while probes:
+            probe = probes.pop()
+            newcomer = len(self.found)
+            if probe not in self.open and self.found:
+                self.open.add(probe)
+                yield newcomer
+            self.probe = probe
+            self.open.add((newcomer, BRANCH))  # of the one that may answer now
+            ids = yield newcomer + 1
+            self.probe = None
+            if len(ids) == newcomer:
+                self.open -= {probe, (newcomer, BRANCH)}
+                continue
+            if error := self.take(ids[-1] & 0x1FFF, probe):
+                return error
+            probes += [(newcomer, REMOTE), (newcomer, BRANCH)]
+        yield len(self.found)
+
+    def take(self, code, probe):
+        before, words = probe[0], self.s.get(f"words_of_length_code_{code >> 8}")
+        at = len(self.found)
+        if words is None:
+            return f"station {at}: ID code {code:04X}h has no length"
+        level = self.found[before][3] + (probe[1] == BRANCH) if at else 1
+        self.found.append((code, words, before, level, probe[1] == BRANCH))
+        if at + 1 > self.s["max_stations"]:
+            return f"more than {self.s['max_stations']} stations"
+        if 16 * sum(station[1] for station in self.found) > self.s["max_io_points"]:
+            return f"station {at}: more than {self.s['max_io_points']} I/O points"
+        if level > self.s["max_levels"]:
+            return f"station {at}: more than {self.s['max_levels']} levels"
+
+    @staticmethod
+    def as_item(station):
+        code, words, before, _, is_branch = station
+        return code | words << 16 | before + 1 << 32 | is_branch << 48
+
+    def end_search(self, error, now):
+        self.search = None
+        if self.state == LOCATING:
+            return self.end_locating(now)
+        expected = [self.s[f"expected_station_{n}"] for n in range(self.s["expected_stations"])]
+        found = [self.as_item(station) for station in self.found]
+        if not error and expected and found != expected:
+            error = "the ring is not the expected one"
+        if error:
+            self.say(error, now)
+            return self.silence(BUS_STOP, now)
+        if len(found) < len(self.stations):
+            self.put(FOUND, len(found), now)
+        for n, item in enumerate(found):
+            self.put(STATION + n, item, now)
+        self.put(FOUND, len(found), now)
+        self.stations = self.found
+        # Image words as a cycle carries them: the last station first.
+        ends = [sum(station[1] for station in self.found[:n + 1]) for n in range(len(found))]
+        self.order_of_words = [word for n, end in reversed(list(enumerate(ends)))
+                               for word in range(end - self.found[n][1], end)]
+        for item, image in (INPUT, self.inputs), (OUTPUT, self.outputs):
+            image[:] = [0] * len(self.order_of_words)
+            for word in range(4096):
+                self.put(item + word, 0, now)
+        self.ring_delay = self.first_returned - self.cycle_start
+        telegrams = 6 + 2 * len(self.outputs) + self.s["end_telegrams"]
+        pitch = 13000 + self.s["telegram_gap_millibits"]
+        self.frame = telegrams * pitch * self.coding.bit // 1000
+        self.cycle_time = max(self.s["cycle_time_ps"], self.frame + self.ring_delay + self.s["software_time_ps"])
+        self.put(CYCLE_TIME, self.cycle_time, now)
+        self.is_id_needed = self.is_fault_open = False
+        self.bad_cycles, self.data_cycles = deque(), 0
+        self.put(IN_A_ROW, 0, now)
+        self.put(QUALITY, 0, now)
+        self.enter(RUN, now)
+
+    def end_locating(self, now):
+        for n, (old, new) in enumerate(zip(self.stations, self.found)):
+            if self.as_item(old) != self.as_item(new):
+                break
+        else:
+            n = min(len(self.stations), len(self.found))
+        if n < len(self.stations):
+            self.name_place(n, now)
+            self.say(f"station {n} is missing or another one", now)
+        elif len(self.found) > n:
+            self.say(f"station {n} is new", now)
+        self.silence(BUS_STOP, now)
+
+    def name_place(self, to, now):
+        before = self.stations[to][2] if to < len(self.stations) else len(self.stations) - 1
+        self.put(PLACE, 1 << 32 | before + 1 | (to + 1 if to < len(self.stations) else 0) << 16, now)
+
+    # ---- the cycle ----
+
+    def start_cycle(self, now):
+        s, coding = self.s, self.coding
+        self.is_id = bool(self.search) or (self.is_id_needed and not self.is_stopping)
+        if self.is_id:
+            self.sent = self.controls(self.wanted if self.search else len(self.stations))[::-1]
+        else:
+            self.sent = [self.outputs[word] for word in self.order_of_words] if not self.is_stopping else \
+                [0] * len(self.outputs)
+        levels = coding.cycle(self.is_id, self.sent)
+        frame = len(levels) * coding.bit
+        if self.search:
+            delay = len(self.sent) * (s["forward_delay_half_bits"] + s["return_delay_half_bits"]) * coding.bit // 2
+            delay += 2 * s["max_cable_m"] * s["cable_delay_ps_per_m"]
+        else:
+            delay = self.ring_delay
+        self.verdict_at = now + frame + frame // 64 + delay + 14 * coding.bit
+        span = frame + delay + s["software_time_ps"]
+        if not self.search:
+            span = -(-span // self.cycle_time) * self.cycle_time if self.is_id else self.cycle_time
+        self.verdict_at = min(self.verdict_at, now + span)
+        levels += coding.pause_of((span - frame) // coding.bit)
+        self.cycle_start, self.start_at = now, now + span
+        self.last_driven = now + len(levels) * coding.bit
+        self.stream.send(TRANSMIT_LEVELS, f"BqqI{(len(levels) + 7) // 8}s", 0, now, coding.rate, len(levels),
+                         int(levels[::-1], 2).to_bytes((len(levels) + 7) // 8, "little"))
+
+    def judge(self, now):
+        """The words that have come back, the last station's first; None when they must not be taken."""
+        coding, transfer, phase = self.coding, 2 * len(self.sent) + 2, self.is_id
+        heads = [coding.heads[phase, 0]] * transfer + [coding.heads[phase, 1]] * (4 + self.s["end_telegrams"])
+        octets, is_good = [], True
+        for start, head, octet, stop in self.returned.telegrams(now):
+            if not octets:
+                if octet is None or start < self.cycle_start:
+                    continue
+                self.first_returned = start
+            if len(octets) < len(heads):
+                is_good &= octet is not None and stop == "1" and head == heads[len(octets)]
+                octets.append(octet)
+            else:
+                is_good &= octet is None
+        self.has_heard = bool(octets)
+        self.returned.forget()
+        if not is_good or len(octets) != len(heads):
+            return None
+        status = octets[transfer + 2] << 8 | octets[transfer + 3]
+        if octets[transfer:transfer + 2] != coding.check(octets[:transfer]) or status != self.s["status_clean"]:
+            return None
+        words = [octets[n] << 8 | octets[n + 1] for n in range(0, transfer, 2)]
+        if words[-1] == self.s["loopback_word"]:
+            return words[:-1]
+        # A ring that is shorter by the station that was looked for.
+        is_short = self.search and self.probe and words[-2:] == [self.s["loopback_word"], self.sent[0]]
+        return words[:-2] if is_short else None
+
+    def finish_cycle(self, now):
+        self.verdict_at = NEVER
+        words = self.judge(now)
+        self.count(ID_CYCLES if self.is_id else DATA_CYCLES, now)
+        if words is None:
+            self.count(REJECTED, now)
+            if not self.is_id:
+                self.count(REJECTED_DATA, now)
+        is_id, is_good = self.is_id, words is not None
+        if self.search:
+            self.go_on(words, now)
+        elif self.is_id:
+            self.finish_id_cycle(words, now)
+        else:
+            self.finish_data_cycle(words, now)
+        self.put_always(ENDED, (not is_id) + 2 * is_good, now)
+
+    def put_always(self, item, value, now):
+        self.stream.send(WRITE, "HQq", item, value, now)
+
+    def go_on(self, words, now):
+        if words is None:
+            self.tries += 1
+            is_alone = self.state == READY and not self.found
+            if not is_alone and self.tries >= self.s["stop_after_bad_cycles"]:
+                self.end_search(f"nothing comes back behind station {len(self.found) - 1}", now)
+            return
+        self.tries = 0
+        if not words:
+            return
+        if self.state == READY:
+            self.enter(IDENTIFICATION, now)
+        try:
+            self.wanted = self.search.send(words[::-1])
+        except StopIteration as end:
+            self.read_messages(words[::-1], now)
+            self.end_search(end.value, now)
+
+    def read_messages(self, ids, now):
+        for n, code in enumerate(ids):
+            fault, request = code & self.s["message_peripheral_fault"], code & self.s["message_reconfiguration"]
+            self.put(MESSAGES + n, bool(fault) + 2 * bool(request), now)
+
+    def finish_id_cycle(self, words, now):
+        if words is None:
+            return self.reject(now)
+        ids = words[::-1]
+        self.is_id_needed = False
+        self.read_messages(ids, now)
+        if self.is_fault_open:
+            marked = [n for n, code in enumerate(ids) if code & self.s["message_check_error"]]
+            self.name_place(marked[0] if marked else len(ids), now)
+            self.is_fault_open = False
+        for n, code in enumerate(ids):
+            if code & 0x1FFF != self.stations[n][0]:
+                self.say(f"station {n} has the ID code {code & 0x1FFF:04X}h, not {self.stations[n][0]:04X}h", now)
+                return self.silence(BUS_STOP, now)
+
+    def finish_data_cycle(self, words, now):
+        self.data_cycles += 1
+        while self.bad_cycles and self.bad_cycles[0] <= self.data_cycles - self.s["quality_window_cycles"]:
+            self.bad_cycles.popleft()
+        if words is None:
+            self.bad_cycles.append(self.data_cycles)
+        self.put(QUALITY, int(len(self.bad_cycles) >= self.s["quality_bad_cycles"]), now)
+        if self.is_stopping and not any(self.sent):
+            return self.silence(OFF, now)
+        if words is None:
+            return self.reject(now)
+        self.put(IN_A_ROW, 0, now)
+        for word, value in zip(self.order_of_words, words):
+            if self.inputs[word] != value:
+                self.inputs[word] = value
+                self.put(INPUT + word, value, now)
+        for n in range(self.s["copies"]):
+            copy = self.s[f"copy_{n}"]
+            self.set_output(copy >> 16, self.inputs[copy & 0xFFFF], now)
+
+    def reject(self, now):
+        self.count(IN_A_ROW, now)
+        self.is_id_needed = self.is_fault_open = True
+        if self.items[IN_A_ROW] >= self.s["stop_after_bad_cycles"]:
+            self.silence(BUS_STOP, now)
+            self.begin_search(now)
+
+    # ---- time ----
+
+    def on_time(self, now):
+        if now >= self.verdict_at:
+            self.finish_cycle(now)
+        if now >= self.start_at:
+            if self.search and self.state == BUS_STOP:
+                self.enter(LOCATING, now)
+            self.start_cycle(now)
+
+    def next_time(self):
+        return min(self.verdict_at, self.start_at)
+
+
+def text_at(content, at):
+    end = at + 2 + struct.unpack_from("<H", content, at)[0]
+    return content[at + 2:end].decode(), end
+
+
+def master_for(stream, content):
+    name, at = text_at(content, 1)
+    settings, count = {}, struct.unpack_from("<8xH", content, at)[0]
+    at += 10
+    for _ in range(count):
+        key, at = text_at(content, at)
+        settings[key] = struct.unpack_from("<q", content, at)[0]
+        at += 8
+    return Master(stream, settings) if name.startswith("interbus/") else None
+
+
+def serve(stream):
+    master = None
+    while True:
+        message = stream.receive()
+        kind = message[0]
+        if kind == HELLO:
+            stream.send(CAPABILITIES, "HBH16s", 1, 2, 16, b"master in Python")
+            continue
+        if kind == ECHO:
+            stream.send(ECHOED, f"{len(message) - 1}s", message[1:])
+            continue
+        if kind == CASE_BEGIN:
+            master = master_for(stream, message)
+        elif kind == RECEIVE_CHARACTERS:
+            now, count = struct.unpack_from("<xxqH", message)
+            master.order(now, [struct.unpack_from("<16xH", message, 12 + 19 * n)[0] for n in range(count)])
+        elif kind == RECEIVE_LEVELS:
+            _, start, rate, count = struct.unpack_from("<xBqqI", message)
+            master.returned.add(start, rate, count, message[22:])
+        elif kind == ON_TIME:
+            master.on_time(struct.unpack("<xq", message)[0])
+        if master is None:
+            stream.send(UNSUPPORTED)
+        else:
+            stream.send(DONE, "q", master.next_time())
+
+
+serve(Stream(sys.stdin.buffer, sys.stdout.buffer))
