@@ -12,7 +12,8 @@ HELLO, ECHO, CASE_BEGIN, RECEIVE_CHARACTERS, RECEIVE_LEVELS, ON_TIME = 1, 2, 3, 
 CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT_LEVELS, WRITE = 129, 130, 131, 132, 134, 135
 START, STOP, ID_CYCLE, OUTPUT_WORD = 1, 2, 3, 4
 OFF, READY, IDENTIFICATION, RUN, LOCATING, BUS_STOP = range(6)
-STATE, DATA_CYCLES, ID_CYCLES, REJECTED, REJECTED_DATA, IN_A_ROW, QUALITY, CYCLE_TIME, PLACE, FOUND, ENDED = range(11)
+STATE, DATA_CYCLES, ID_CYCLES, REJECTED, REJECTED_DATA, IN_A_ROW, QUALITY = range(7)
+CYCLE_TIME, PLACE, FOUND, ENDED = range(7, 11)
 SENTENCE, STATION, MESSAGES, INPUT, OUTPUT = 0x100, 0x1000, 0x2000, 0x3000, 0x4000
 BRANCH, REMOTE = "branch", "remote"
 
@@ -37,7 +38,8 @@ class Coding:
     def __init__(self, s):
         self.s, self.rate, self.bit = s, s["bit_rate"], SECOND // s["bit_rate"]
         octets = [f"{octet:08b}"[::1 if s["most_significant_first"] else -1] for octet in range(256)]
-        self.heads = {(is_id, is_check): self.head(is_id, is_check, True) for is_id in (0, 1) for is_check in (0, 1)}
+        self.heads = {(is_id, is_check): self.head(is_id, is_check, True)
+                      for is_id in (0, 1) for is_check in (0, 1)}
         self.data = {key: ["0" + head + bits + "1" for bits in octets] for key, head in self.heads.items()}
         status = ("0" + self.head(0, 0, False) + "1").ljust(s["status_pitch_bits"], "1")
         self.pause = status * 8
@@ -65,11 +67,8 @@ class Coding:
         value = (turned(register, 16) if reflected else register) ^ self.s["check_final_xor"]
         return [value & 0xFF, value >> 8] if reflected else [value >> 8, value & 0xFF]
 
-    def frame_bits(self, telegrams):
-        return telegrams * (13000 + self.s["telegram_gap_millibits"]) // 1000
-
     def cycle(self, is_id, words):
-        """The octets of the transfer phase, and the levels of the whole frame."""
+        """The levels of a frame that carries `words` behind the loopback word."""
         octets = [octet for word in [self.s["loopback_word"]] + words for octet in (word >> 8, word & 0xFF)]
         status = self.s["status_clean"]
         behind = self.check(octets) + [status >> 8, status & 0xFF] + [0] * self.s["end_telegrams"]
@@ -98,46 +97,43 @@ class Returned:
     def forget(self):
         self.waves = [wave for wave in self.waves if wave[0] + len(wave[2]) * SECOND // wave[1] > self.heard]
 
-    def levels(self, until):
-        """(start, rate, levels) of one line that is 1 where nobody speaks."""
-        rate = max(wave[1] for wave in self.waves)
-        begin, parts, end = self.waves[0][0], [], 0
-        for start, own_rate, levels in self.waves:
-            if start >= until:
-                break
-            if own_rate != rate:
-                levels = "".join([levels[n * own_rate // rate] for n in range(len(levels) * rate // own_rate)])
-            at = ((start - begin) * rate + SECOND // 2) // SECOND
-            parts.append("1" * (at - end) + levels[max(0, end - at):])
-            end = max(end, at + len(levels))
-        return begin, rate, "".join(parts)
+    def lines(self, until):
+        """(start, rate, levels, end) of stretches: a transmission that follows another one continues it,
+        one that begins within another one, or has another rate, cuts it off."""
+        lines = []
+        for start, rate, levels in self.waves:
+            if lines and rate == lines[-1][1]:
+                begin, _, before = lines[-1]
+                at = ((start - begin) * rate + SECOND // 2) // SECOND
+                if at >= len(before):
+                    lines[-1] = begin, rate, before.ljust(at, "1") + levels
+                    continue
+            lines.append((start, rate, levels))
+        ends = [min(until, line[0]) for line in lines[1:]] + [until]
+        return [line + (end,) for line, end in zip(lines, ends)]
 
     def telegrams(self, until):
         """(start, head, octet or None, stop level) of those not told yet that have ended by `until`."""
-        if not self.waves:
-            return
-        origin, rate, levels = self.levels(until)
         coding, bit_rate = self.coding, self.coding.rate
-        heard = (until - origin) * rate // SECOND
-        levels += "1" * (14 * rate // bit_rate + 14)
-        at = max(0, (self.heard - origin) * rate // SECOND)
-        samples = [(2 * n + 1) * rate // (2 * bit_rate) for n in range(13)]
-        flag, is_data = self.coding.s["flag_place"], str(self.coding.s["data_flag_level"])
-        while (at := levels.find("0", at)) >= 0 and at < heard:
-            if rate == bit_rate:
-                text = levels[at:at + 13]
-            else:
-                text = "".join([levels[at + n] for n in samples])
-                if text[0] == "1":
+        flag, is_data = coding.s["flag_place"], str(coding.s["data_flag_level"])
+        for origin, rate, levels, end in self.lines(until):
+            samples = [(2 * n + 1) * rate // (2 * bit_rate) for n in range(13)]
+            known = (end - origin) * rate // SECOND
+            levels += "1" * (samples[12] + 1)
+            at = max(0, -((origin - self.heard) * rate // SECOND))
+            while 0 <= (at := levels.find("0", at)) < known:
+                text = levels[at:at + 13] if rate == bit_rate else "".join([levels[at + n] for n in samples])
+                if text[0] == "1":  # no start level
                     at += samples[0]
                     continue
-            start = origin + at * SECOND // rate
-            count = 12 if text[1 + flag] == is_data else 4
-            if at + samples[count] >= heard:
-                return
-            at = levels.find("1", at + samples[count])
-            self.heard = origin + at * SECOND // rate
-            yield start, text[1:4], coding.octet_of[text[4:12]] if count == 12 else None, text[count]
+                start = origin + at * SECOND // rate
+                count = 12 if text[1 + flag] == is_data else 4
+                if at + samples[count] >= known:
+                    break
+                # Behind a missing stop level the next edge counts.
+                at = levels.find("1", at + samples[count])
+                self.heard = origin + at * SECOND // rate
+                yield start, text[1:4], coding.octet_of[text[4:12]] if count == 12 else None, text[count]
 
 
 class Master:
@@ -147,7 +143,7 @@ class Master:
         self.state, self.stations, self.last_driven = OFF, [], -SECOND
         self.inputs, self.outputs = [], []
         self.start_at = self.verdict_at = NEVER
-        self.search = self.is_stopping = None
+        self.search, self.is_stopping, self.is_id_needed = None, False, False
 
     def put(self, item, value, now):
         if self.items.get(item, 0) != value:
@@ -222,7 +218,6 @@ class Master:
             ids = yield newcomer + 1
             self.probe = None
             if len(ids) == newcomer:
-                self.open -= {probe, (newcomer, BRANCH)}
                 continue
             if error := self.take(ids[-1] & 0x1FFF, probe):
                 return error
@@ -276,10 +271,12 @@ class Master:
         self.ring_delay = self.first_returned - self.cycle_start
         telegrams = 6 + 2 * len(self.outputs) + self.s["end_telegrams"]
         pitch = 13000 + self.s["telegram_gap_millibits"]
-        self.frame = telegrams * pitch * self.coding.bit // 1000
-        self.cycle_time = max(self.s["cycle_time_ps"], self.frame + self.ring_delay + self.s["software_time_ps"])
+        frame = telegrams * pitch * self.coding.bit // 1000
+        shortest = frame + self.ring_delay + self.s["software_time_ps"]
+        self.cycle_time = max(self.s["cycle_time_ps"], shortest)
         self.put(CYCLE_TIME, self.cycle_time, now)
-        self.is_id_needed = self.is_fault_open = False
+        self.is_fault_open = False
+        self.other_ring_before = None
         self.bad_cycles, self.data_cycles = deque(), 0
         self.put(IN_A_ROW, 0, now)
         self.put(QUALITY, 0, now)
@@ -299,8 +296,10 @@ class Master:
         self.silence(BUS_STOP, now)
 
     def name_place(self, to, now):
-        before = self.stations[to][2] if to < len(self.stations) else len(self.stations) - 1
-        self.put(PLACE, 1 << 32 | before + 1 | (to + 1 if to < len(self.stations) else 0) << 16, now)
+        """Between station `to`, or the master's input, and the one before."""
+        is_station = to < len(self.stations)
+        before = self.stations[to][2] if is_station else len(self.stations) - 1
+        self.put(PLACE, 1 << 32 | before + 1 | (to + 1 if is_station else 0) << 16, now)
 
     # ---- the cycle ----
 
@@ -308,14 +307,16 @@ class Master:
         s, coding = self.s, self.coding
         self.is_id = bool(self.search) or (self.is_id_needed and not self.is_stopping)
         if self.is_id:
+            self.is_id_needed = False
             self.sent = self.controls(self.wanted if self.search else len(self.stations))[::-1]
         else:
-            self.sent = [self.outputs[word] for word in self.order_of_words] if not self.is_stopping else \
-                [0] * len(self.outputs)
+            self.is_last = self.is_stopping
+            self.sent = [0 if self.is_last else self.outputs[word] for word in self.order_of_words]
         levels = coding.cycle(self.is_id, self.sent)
         frame = len(levels) * coding.bit
         if self.search:
-            delay = len(self.sent) * (s["forward_delay_half_bits"] + s["return_delay_half_bits"]) * coding.bit // 2
+            half_bits = s["forward_delay_half_bits"] + s["return_delay_half_bits"]
+            delay = len(self.sent) * half_bits * coding.bit // 2
             delay += 2 * s["max_cable_m"] * s["cable_delay_ps_per_m"]
         else:
             delay = self.ring_delay
@@ -334,7 +335,7 @@ class Master:
         """The words that have come back, the last station's first; None when they must not be taken."""
         coding, transfer, phase = self.coding, 2 * len(self.sent) + 2, self.is_id
         heads = [coding.heads[phase, 0]] * transfer + [coding.heads[phase, 1]] * (4 + self.s["end_telegrams"])
-        octets, is_good = [], True
+        octets, is_good, self.other_ring = [], True, None
         for start, head, octet, stop in self.returned.telegrams(now):
             if not octets:
                 if octet is None or start < self.cycle_start:
@@ -345,19 +346,21 @@ class Master:
                 octets.append(octet)
             else:
                 is_good &= octet is None
-        self.has_heard = bool(octets)
         self.returned.forget()
         if not is_good or len(octets) != len(heads):
             return None
         status = octets[transfer + 2] << 8 | octets[transfer + 3]
-        if octets[transfer:transfer + 2] != coding.check(octets[:transfer]) or status != self.s["status_clean"]:
+        check = coding.check(octets[:transfer])
+        if octets[transfer:transfer + 2] != check or status != self.s["status_clean"]:
             return None
         words = [octets[n] << 8 | octets[n + 1] for n in range(0, transfer, 2)]
         if words[-1] == self.s["loopback_word"]:
             return words[:-1]
         # A ring that is shorter by the station that was looked for.
-        is_short = self.search and self.probe and words[-2:] == [self.s["loopback_word"], self.sent[0]]
-        return words[:-2] if is_short else None
+        if self.search and self.probe and words[-2:] == [self.s["loopback_word"], self.sent[0]]:
+            return words[:-2]
+        self.other_ring = words if self.is_id else None
+        return None
 
     def finish_cycle(self, now):
         self.verdict_at = NEVER
@@ -374,12 +377,11 @@ class Master:
             self.finish_id_cycle(words, now)
         else:
             self.finish_data_cycle(words, now)
-        self.put_always(ENDED, (not is_id) + 2 * is_good, now)
-
-    def put_always(self, item, value, now):
-        self.stream.send(WRITE, "HQq", item, value, now)
+        self.stream.send(WRITE, "HQq", ENDED, (not is_id) + 2 * is_good, now)
 
     def go_on(self, words, now):
+        if self.state == BUS_STOP:  # whose silence has ended
+            self.enter(LOCATING, now)
         if words is None:
             self.tries += 1
             is_alone = self.state == READY and not self.found
@@ -399,14 +401,17 @@ class Master:
 
     def read_messages(self, ids, now):
         for n, code in enumerate(ids):
-            fault, request = code & self.s["message_peripheral_fault"], code & self.s["message_reconfiguration"]
-            self.put(MESSAGES + n, bool(fault) + 2 * bool(request), now)
+            fault, request = self.s["message_peripheral_fault"], self.s["message_reconfiguration"]
+            self.put(MESSAGES + n, bool(code & fault) + 2 * bool(code & request), now)
 
     def finish_id_cycle(self, words, now):
         if words is None:
+            # Intact, but for the place of the loopback word, twice in a row: it is another ring.
+            if self.other_ring and self.other_ring == self.other_ring_before:
+                return self.refuse_ring(self.other_ring, now)
+            self.other_ring_before = self.other_ring
             return self.reject(now)
-        ids = words[::-1]
-        self.is_id_needed = False
+        ids, self.other_ring_before = words[::-1], None
         self.read_messages(ids, now)
         if self.is_fault_open:
             marked = [n for n, code in enumerate(ids) if code & self.s["message_check_error"]]
@@ -414,8 +419,18 @@ class Master:
             self.is_fault_open = False
         for n, code in enumerate(ids):
             if code & 0x1FFF != self.stations[n][0]:
-                self.say(f"station {n} has the ID code {code & 0x1FFF:04X}h, not {self.stations[n][0]:04X}h", now)
+                self.say(f"station {n} is {code & 0x1FFF:04X}h, not {self.stations[n][0]:04X}h", now)
                 return self.silence(BUS_STOP, now)
+
+    def refuse_ring(self, words, now):
+        if self.s["loopback_word"] in words:
+            ids = words[:words.index(self.s["loopback_word"])][::-1]
+            n = next((n for n, code in enumerate(ids) if code & 0x1FFF != self.stations[n][0]), len(ids))
+            self.name_place(n, now)
+            self.say(f"{len(ids)} stations, not {len(self.stations)}; station {n} is missing", now)
+        else:
+            self.say(f"the ring is longer than {len(self.stations)} stations", now)
+        self.silence(BUS_STOP, now)
 
     def finish_data_cycle(self, words, now):
         self.data_cycles += 1
@@ -424,7 +439,7 @@ class Master:
         if words is None:
             self.bad_cycles.append(self.data_cycles)
         self.put(QUALITY, int(len(self.bad_cycles) >= self.s["quality_bad_cycles"]), now)
-        if self.is_stopping and not any(self.sent):
+        if self.is_last:
             return self.silence(OFF, now)
         if words is None:
             return self.reject(now)
@@ -450,8 +465,6 @@ class Master:
         if now >= self.verdict_at:
             self.finish_cycle(now)
         if now >= self.start_at:
-            if self.search and self.state == BUS_STOP:
-                self.enter(LOCATING, now)
             self.start_cycle(now)
 
     def next_time(self):
