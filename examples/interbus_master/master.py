@@ -259,15 +259,9 @@ class Master:
         for n, item in enumerate(found):
             self.put(STATION + n, item, now)
         self.put(FOUND, len(found), now)
-        self.stations = self.found
-        # Image words as a cycle carries them: the last station first.
-        ends = [sum(station[1] for station in self.found[:n + 1]) for n in range(len(found))]
-        self.order_of_words = [word for n, end in reversed(list(enumerate(ends)))
-                               for word in range(end - self.found[n][1], end)]
-        for item, image in (INPUT, self.inputs), (OUTPUT, self.outputs):
-            image[:] = [0] * len(self.order_of_words)
-            for word in range(4096):
-                self.put(item + word, 0, now)
+        if self.found != self.stations:  # of the same ring the inputs hold
+            self.stations = self.found
+            self.set_images(now)
         self.ring_delay = self.first_returned - self.cycle_start
         telegrams = 6 + 2 * len(self.outputs) + self.s["end_telegrams"]
         pitch = 13000 + self.s["telegram_gap_millibits"]
@@ -281,6 +275,17 @@ class Master:
         self.put(IN_A_ROW, 0, now)
         self.put(QUALITY, 0, now)
         self.enter(RUN, now)
+
+    def set_images(self, now):
+        """Words count from the first station on; a cycle carries them from the last one on."""
+        self.order_of_words, at = [], 0
+        for _, words, *_ in self.stations:
+            self.order_of_words[:0] = range(at, at + words)
+            at += words
+        for item, image in (INPUT, self.inputs), (OUTPUT, self.outputs):
+            for word in range(len(image)):
+                self.put(item + word, 0, now)
+            image[:] = [0] * at
 
     def end_locating(self, now):
         for n, (old, new) in enumerate(zip(self.stations, self.found)):
