@@ -184,6 +184,8 @@ class Master:
         self.put(OUTPUT + word, value, now)
 
     def silence(self, state, now):
+        """Nothing is driven any more; who was to stop does."""
+        state = OFF if self.is_stopping else state
         self.start_at = self.verdict_at = NEVER
         self.is_stopping = False
         for word in range(len(self.outputs)):
@@ -197,7 +199,7 @@ class Master:
         quiet = 1000 * (self.s["silence_limit_ns"] + self.s["silence_tolerance_ns"]) + SECOND // 1000
         self.start_at, self.verdict_at = max(now, self.last_driven + quiet), NEVER
         self.found, self.open, self.search, self.tries = [], set(), self.searching(), 0
-        self.wanted = next(self.search)
+        next(self.search)
 
     def controls(self, stations):
         s = self.s
@@ -205,24 +207,21 @@ class Master:
                 (0 if (n, REMOTE) in self.open else s["control_remote_off"]) for n in range(stations)]
 
     def searching(self):
-        """Yields how many stations the next ID cycle is for; is sent their ID codes, the first one first."""
+        """Is sent the ID codes that each good cycle brings, in the order of the ring."""
         probes = [(-1, REMOTE)]
         while probes:
             probe = probes.pop()
-            newcomer = len(self.found)
             if probe not in self.open and self.found:
                 self.open.add(probe)
-                yield newcomer
-            self.probe = probe
-            self.open.add((newcomer, BRANCH))  # of the one that may answer now
-            ids = yield newcomer + 1
-            self.probe = None
-            if len(ids) == newcomer:
-                continue
-            if error := self.take(ids[-1] & 0x1FFF, probe):
-                return error
-            probes += [(newcomer, REMOTE), (newcomer, BRANCH)]
-        yield len(self.found)
+                yield  # what is switched on now answers in the next cycle
+            newcomer = len(self.found)
+            self.open.add((newcomer, BRANCH))  # of the one that may answer
+            ids = yield
+            if len(ids) > newcomer:
+                if error := self.take(ids[-1] & 0x1FFF, probe):
+                    return error
+                probes += [(newcomer, REMOTE), (newcomer, BRANCH)]
+        yield
 
     def take(self, code, probe):
         before, words = probe[0], self.s.get(f"words_of_length_code_{code >> 8}")
@@ -270,7 +269,6 @@ class Master:
         self.cycle_time = max(self.s["cycle_time_ps"], shortest)
         self.put(CYCLE_TIME, self.cycle_time, now)
         self.is_fault_open = False
-        self.other_ring_before = None
         self.bad_cycles, self.data_cycles = deque(), 0
         self.put(IN_A_ROW, 0, now)
         self.put(QUALITY, 0, now)
@@ -288,23 +286,15 @@ class Master:
             image[:] = [0] * at
 
     def end_locating(self, now):
-        for n, (old, new) in enumerate(zip(self.stations, self.found)):
-            if self.as_item(old) != self.as_item(new):
-                break
-        else:
-            n = min(len(self.stations), len(self.found))
+        pairs = enumerate(zip(self.stations, self.found))
+        n = next((n for n, (old, new) in pairs if old != new), min(len(self.stations), len(self.found)))
         if n < len(self.stations):
-            self.name_place(n, now)
-            self.say(f"station {n} is missing or another one", now)
-        elif len(self.found) > n:
-            self.say(f"station {n} is new", now)
+            self.name_place(self.stations[n][2], n, now)
         self.silence(BUS_STOP, now)
 
-    def name_place(self, to, now):
-        """Between station `to`, or the master's input, and the one before."""
-        is_station = to < len(self.stations)
-        before = self.stations[to][2] if is_station else len(self.stations) - 1
-        self.put(PLACE, 1 << 32 | before + 1 | (to + 1 if is_station else 0) << 16, now)
+    def name_place(self, before, to, now):
+        """Between two stations; -1 is the master's output, or its input."""
+        self.put(PLACE, 1 << 32 | before + 1 | to + 1 << 16, now)
 
     # ---- the cycle ----
 
@@ -313,7 +303,7 @@ class Master:
         self.is_id = bool(self.search) or (self.is_id_needed and not self.is_stopping)
         if self.is_id:
             self.is_id_needed = False
-            self.sent = self.controls(self.wanted if self.search else len(self.stations))[::-1]
+            self.sent = self.controls(1 + len(self.found if self.search else self.stations))[::-1]
         else:
             self.is_last = self.is_stopping
             self.sent = [0 if self.is_last else self.outputs[word] for word in self.order_of_words]
@@ -337,10 +327,11 @@ class Master:
                          int(levels[::-1], 2).to_bytes((len(levels) + 7) // 8, "little"))
 
     def judge(self, now):
-        """The words that have come back, the last station's first; None when they must not be taken."""
+        """The words that have come back; None when they must not be taken. The last station's come first in
+        data cycles; ID codes are given in the order of the ring, however many they are."""
         coding, transfer, phase = self.coding, 2 * len(self.sent) + 2, self.is_id
         heads = [coding.heads[phase, 0]] * transfer + [coding.heads[phase, 1]] * (4 + self.s["end_telegrams"])
-        octets, is_good, self.other_ring = [], True, None
+        octets, is_good = [], True
         for start, head, octet, stop in self.returned.telegrams(now):
             if not octets:
                 if octet is None or start < self.cycle_start:
@@ -359,13 +350,12 @@ class Master:
         if octets[transfer:transfer + 2] != check or status != self.s["status_clean"]:
             return None
         words = [octets[n] << 8 | octets[n + 1] for n in range(0, transfer, 2)]
-        if words[-1] == self.s["loopback_word"]:
-            return words[:-1]
-        # A ring that is shorter by the station that was looked for.
-        if self.search and self.probe and words[-2:] == [self.s["loopback_word"], self.sent[0]]:
-            return words[:-2]
-        self.other_ring = words if self.is_id else None
-        return None
+        loopback, most = self.s["loopback_word"], len(words) - 1
+        if not self.is_id:
+            return words[:most] if words[most] == loopback else None
+        # An ID cycle has room for one station more than are known.
+        counts = [n for n in [most - 1, most, *range(most)] if words[n] == loopback]
+        return words[:counts[0]][::-1] if counts else None
 
     def finish_cycle(self, now):
         self.verdict_at = NEVER
@@ -384,24 +374,24 @@ class Master:
             self.finish_data_cycle(words, now)
         self.stream.send(WRITE, "HQq", ENDED, (not is_id) + 2 * is_good, now)
 
-    def go_on(self, words, now):
+    def go_on(self, ids, now):
         if self.state == BUS_STOP:  # whose silence has ended
             self.enter(LOCATING, now)
-        if words is None:
+        if ids is None or not len(self.found) <= len(ids) <= len(self.found) + 1:
             self.tries += 1
             is_alone = self.state == READY and not self.found
             if not is_alone and self.tries >= self.s["stop_after_bad_cycles"]:
                 self.end_search(f"nothing comes back behind station {len(self.found) - 1}", now)
             return
         self.tries = 0
-        if not words:
+        if not ids:
             return
         if self.state == READY:
             self.enter(IDENTIFICATION, now)
         try:
-            self.wanted = self.search.send(words[::-1])
+            self.search.send(ids)
         except StopIteration as end:
-            self.read_messages(words[::-1], now)
+            self.read_messages(ids, now)
             self.end_search(end.value, now)
 
     def read_messages(self, ids, now):
@@ -409,32 +399,25 @@ class Master:
             fault, request = self.s["message_peripheral_fault"], self.s["message_reconfiguration"]
             self.put(MESSAGES + n, bool(code & fault) + 2 * bool(code & request), now)
 
-    def finish_id_cycle(self, words, now):
-        if words is None:
-            # Intact, but for the place of the loopback word, twice in a row: it is another ring.
-            if self.other_ring and self.other_ring == self.other_ring_before:
-                return self.refuse_ring(self.other_ring, now)
-            self.other_ring_before = self.other_ring
+    def finish_id_cycle(self, ids, now):
+        if ids is None:
             return self.reject(now)
-        ids, self.other_ring_before = words[::-1], None
+        if [code & 0x1FFF for code in ids] != [station[0] for station in self.stations]:
+            return self.refuse_ring([code & 0x1FFF for code in ids], now)
         self.read_messages(ids, now)
         if self.is_fault_open:
             marked = [n for n, code in enumerate(ids) if code & self.s["message_check_error"]]
-            self.name_place(marked[0] if marked else len(ids), now)
+            self.name_place(marked[0] - 1 if marked else len(ids) - 1, marked[0] if marked else -1, now)
             self.is_fault_open = False
-        for n, code in enumerate(ids):
-            if code & 0x1FFF != self.stations[n][0]:
-                self.say(f"station {n} is {code & 0x1FFF:04X}h, not {self.stations[n][0]:04X}h", now)
-                return self.silence(BUS_STOP, now)
 
-    def refuse_ring(self, words, now):
-        if self.s["loopback_word"] in words:
-            ids = words[:words.index(self.s["loopback_word"])][::-1]
-            n = next((n for n, code in enumerate(ids) if code & 0x1FFF != self.stations[n][0]), len(ids))
-            self.name_place(n, now)
-            self.say(f"{len(ids)} stations, not {len(self.stations)}; station {n} is missing", now)
+    def refuse_ring(self, codes, now):
+        pairs, least = enumerate(zip(codes, self.stations)), min(len(codes), len(self.stations))
+        n = next((n for n, (code, station) in pairs if code != station[0]), least)
+        self.name_place(self.stations[n][2] if n < len(self.stations) else n - 1, n, now)
+        if len(codes) != len(self.stations):
+            self.say(f"{len(codes)} stations, not {len(self.stations)}", now)
         else:
-            self.say(f"the ring is longer than {len(self.stations)} stations", now)
+            self.say(f"station {n} is {codes[n]:04X}h, not {self.stations[n][0]:04X}h", now)
         self.silence(BUS_STOP, now)
 
     def finish_data_cycle(self, words, now):
@@ -462,7 +445,8 @@ class Master:
         self.is_id_needed = self.is_fault_open = True
         if self.items[IN_A_ROW] >= self.s["stop_after_bad_cycles"]:
             self.silence(BUS_STOP, now)
-            self.begin_search(now)
+            if self.state == BUS_STOP:
+                self.begin_search(now)
 
     # ---- time ----
 
