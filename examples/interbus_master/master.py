@@ -210,7 +210,7 @@ class Master:
         """Is sent the ID codes that each good cycle brings, in the order of the ring."""
         probes = [(-1, REMOTE)]
         while probes:
-            probe = probes.pop()
+            probe = self.probe = probes.pop()
             if probe not in self.open and self.found:
                 self.open.add(probe)
                 yield  # what is switched on now answers in the next cycle
@@ -381,7 +381,8 @@ class Master:
             self.tries += 1
             is_alone = self.state == READY and not self.found
             if not is_alone and self.tries >= self.s["stop_after_bad_cycles"]:
-                self.end_search(f"nothing comes back behind station {len(self.found) - 1}", now)
+                self.name_place(self.probe[0], len(self.found), now)
+                self.end_search(f"nothing comes back behind station {self.probe[0]}", now)
             return
         self.tries = 0
         if not ids:
