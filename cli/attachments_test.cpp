@@ -199,7 +199,7 @@ TEST_F(Attachments, InterbusSlaveInPythonPasses) {
   expect_passes("exec:" + in_quotes(python) + " " + in_quotes(slave), "interbus/slave/", 60);
 }
 
-// Written from the page of the role too. In a network real slaves answer it.
+// Its suite plays the ring; in a network slaves answer it.
 TEST_F(Attachments, InterbusMasterInPythonPasses) {
   const std::string python = installed("python3");
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
