@@ -199,6 +199,16 @@ TEST_F(Attachments, InterbusSlaveInPythonPasses) {
   expect_passes("exec:" + in_quotes(python) + " " + in_quotes(slave), "interbus/slave/", 60);
 }
 
+// Its suite plays the ring; in a network slaves answer it.
+TEST_F(Attachments, InterbusMasterInPythonPasses) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const fs::path master = kSourceFolder / "examples/interbus_master/master.py";
+  const std::string uri = "exec:" + in_quotes(python) + " " + in_quotes(master);
+  expect_passes(uri, "interbus/master/", 43);
+  expect_passes("master=" + uri, "interbus/network/", 7);
+}
+
 TEST_F(Attachments, NodeInNodeJsPasses) {
   const std::string node = installed("node");
   ASSERT_FALSE(node.empty()) << "there is no node on the PATH; script/setup test installs it";
