@@ -3,6 +3,7 @@
 #include <string>
 
 #include "harness/iut/device.hpp"
+#include "harness/iut/limits.hpp"
 #include "harness/iut/message.hpp"
 #include "harness/iut/peer.hpp"
 
@@ -17,9 +18,6 @@ struct RoleName {
 
 class MessageDevice final : public Device {
  public:
-  // Messages of an implementation within one call, and calls at one instant that it asks for; more are a
-  // flood.
-  static constexpr unsigned kMostActions = 10'000;
   static constexpr std::size_t kMostOctets = 8U << 20U;  // of the messages of one call
 
   // Says hello. Throws Misbehaviour for a peer that does not answer as it should, and

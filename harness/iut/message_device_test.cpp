@@ -305,7 +305,7 @@ TEST(MessageDeviceCall, ActionsWithoutEndAreAFlood) {
   script.hears().then("while " + Script::saying(write_message(0, 1, kernel::kStart)) + "; do :; done");
   const Blame blame = blame_for_power(script);
   EXPECT_EQ(blame.reason, reasons::kFloods);
-  EXPECT_THAT(blame.sentence, HasSubstr("more than 10000 things within one call"));
+  EXPECT_THAT(blame.sentence, HasSubstr("more than 20000 things within one call"));
 }
 
 // Each of them is a message that may be: together they would fill the memory.

@@ -47,7 +47,7 @@ static fieldproof_time set_power(void* context, int is_on, fieldproof_time now) 
   if (strcmp(self->does, "reads item 65537") == 0) bench->read(bench->context, 65537, now);
   if (strcmp(self->does, "drives at rate 0") == 0)
     bench->transmit_levels(bench->context, 0, now, 0, levels, 1);
-  for (n = 0; n <= 10000 && strcmp(self->does, "floods") == 0; ++n) bench->write(bench->context, 0, n, now);
+  for (n = 0; n <= 20000 && strcmp(self->does, "floods") == 0; ++n) bench->write(bench->context, 0, n, now);
   return self->next;
 }
 

@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "harness/iut/fieldproof_plugin.h"
+#include "harness/iut/limits.hpp"
 #include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/untrusted_text.hpp"
 
 namespace fieldproof::iut {
 namespace {
-
-constexpr unsigned kMostActions = 10'000;  // within one call, and calls at one instant
 
 [[noreturn]] void refuse_library(const std::string& name, const std::string& why) {
   throw kernel::Error(kernel::ErrorKind::implementation, fmt::format("{}: {}", name, why));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/iut/limits.hpp"
 #include "harness/iut/misbehaviour.hpp"
 
 namespace fieldproof::iut {
@@ -109,13 +110,13 @@ TEST(PluginTest, ActsAreCountedWithinEachCallAlone) {
   const auto device = odd_device("hears");
   Diary diary;
   ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
-  const std::vector<Character> most(10'000);
-  const std::vector<Character> too_many(10'001);
+  const std::vector<Character> most(kMostActions);
+  const std::vector<Character> too_many(kMostActions + 1);
   device->receive(5, most, kSupply);
   device->receive(5, most, kSupply);
   EXPECT_THROW(device->receive(5, too_many, kSupply), Misbehaviour);
   device->receive(5, most, kSupply);
-  EXPECT_EQ(diary.lines.size(), 40'000U);
+  EXPECT_EQ(diary.lines.size(), 4 * kMostActions);
 }
 
 TEST(PluginTest, RefusedCaseIsAnAnswerAndTheEndIsTheEnd) {
@@ -137,7 +138,7 @@ TEST(PluginTest, RateThatNoLineHasIsRefused) {
 }
 
 TEST(PluginTest, ActsWithoutEndAreAFlood) {
-  EXPECT_THAT(blamed_for("floods", reasons::kFloods), HasSubstr("more than 10000 things within one call"));
+  EXPECT_THAT(blamed_for("floods", reasons::kFloods), HasSubstr("more than 20000 things within one call"));
 }
 
 TEST(PluginTest, AskingForTheSameInstantWithoutEndIsAFlood) {

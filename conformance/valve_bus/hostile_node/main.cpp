@@ -169,7 +169,7 @@ const std::map<std::string, std::function<void(Hostile&)>, std::less<>>& Hostile
        }},
       {"flood",
        [](Hostile& node) {
-         for (int n = 0; n < 20'000; ++n) node.bench_->write(valve_bus::kValves, 0, node.now_);
+         for (int n = 0; n < 50'000; ++n) node.bench_->write(valve_bus::kValves, 0, node.now_);
        }},
       {"time_stands_still", [](Hostile& node) { node.is_time_stuck_ = true; }},
       {"drives_in_the_past",
