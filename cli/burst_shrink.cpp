@@ -96,8 +96,7 @@ class BurstShrink {
       StruckBits bits = last_bits(struck, last);
       const std::size_t count = bits.size();
       if (still_fails(bits)) {
-        return conformance::fewest(std::move(bits),
-                                   [this](const StruckBits& some) { return still_fails(some); });
+        return simplest_of(bits, struck);
       }
       if (count < last) return std::nullopt;
     }
@@ -113,6 +112,20 @@ class BurstShrink {
   std::size_t runs() const { return runs_; }
 
  private:
+  // Bits that only bring another one to its place are left when each is taken away alone: so one alone of all
+  // that were struck is tried, too, from the last one on.
+  StruckBits simplest_of(const StruckBits& bits, const StruckBits& struck) {
+    constexpr std::size_t kMostTried = 256;
+    StruckBits fewest =
+        conformance::fewest(bits, [this](const StruckBits& some) { return still_fails(some); });
+    if (fewest.size() == 1) return fewest;
+    for (std::size_t n = 0; n < std::min(struck.size(), kMostTried); ++n) {
+      StruckBits alone{struck[struck.size() - 1 - n]};
+      if (still_fails(alone)) return alone;
+    }
+    return fewest;
+  }
+
   static CaseFile quiet_of(CaseFile stored) {
     stored.is_quiet = true;
     return stored;

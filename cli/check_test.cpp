@@ -13,7 +13,7 @@ class Check : public ProgramFixture {
  protected:
   // The case of a run that failed, in the folder of the test.
   std::string failed_case(const std::string& selector, const std::string& uri) const {
-    EXPECT_EQ(call({"run", selector, "--iut", uri, "--out", "run"}).exit_code, kFailed);
+    EXPECT_EQ(call({"run", selector, "--iut", uri, "--volume", "quick", "--out", "run"}).exit_code, kFailed);
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "run")) {
       if (entry.path().filename() == "case.json") return entry.path().string();
     }
