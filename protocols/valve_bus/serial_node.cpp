@@ -31,7 +31,9 @@ SerialNode::SerialNode(SerialAttachment attachment, const NodeConfiguration& con
       configuration_(configuration),
       character_(character_time(configuration.rules)),
       step_(std::max(character_, kLeastStep)),
-      margin_(kMarginCharacters * character_ + 2 * step_ + 2 * attachment_.latency),
+      // With an upper channel it is known how much is on its way, and waited for.
+      margin_(kMarginCharacters * character_ + 2 * step_ +
+              (attachment_.upper == nullptr ? 2 : 0) * attachment_.latency),
       codec_(configuration.rules),
       code_(character_format(configuration.rules)),
       transmitter_(configuration.rules) {
