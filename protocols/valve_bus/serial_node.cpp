@@ -15,8 +15,9 @@ namespace {
 constexpr unsigned kMarginCharacters = 6;  // an answer of three, its driver, and a step
 constexpr kernel::Duration kLeastStep = 30 * kernel::kMicrosecond;
 constexpr kernel::Duration kPatience =
-    2 * kernel::kSecond;                          // with what has been handed over and is not there
-constexpr std::uint64_t kMostOctets = 1U << 20U;  // of a box within a case
+    2 * kernel::kSecond;                           // with what has been handed over and is not there
+constexpr std::uint64_t kMostOctets = 1U << 20U;   // of a box within a case
+constexpr std::uint64_t kMostUnasked = 1U << 14U;  // of a box behind what it was last sent
 constexpr std::size_t kKeptDoubts = 256;
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -235,10 +236,13 @@ void SerialNode::pump(kernel::Time now) {
 
 void SerialNode::hear(const iut::Arrival& arrival) {
   arrived_ += arrival.octets.size();
-  if (arrived_ > kMostOctets) {
+  const auto blame_flood = [](std::uint64_t most, const char* since) {
     throw iut::Misbehaviour(iut::reasons::kFloods,
-                            fmt::format("the implementation has sent more than {} octets", kMostOctets));
-  }
+                            fmt::format("the implementation has sent more than {} octets {}", most, since));
+  };
+  if (arrived_ - arrived_before_ > kMostUnasked)
+    blame_flood(kMostUnasked, "since it was last sent something");
+  if (arrived_ > kMostOctets) blame_flood(kMostOctets, "within a case");
   arrivals_.push_back(arrival);
 }
 
