@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/pics_file.hpp"
+#include "cli/run_setup.hpp"
 #include "cli/verbs.hpp"
 #include "reports/text_summary.hpp"
 

@@ -234,8 +234,8 @@ class Reel {
     play(event);
   }
   bool waits_for_call() const {
-    for (std::size_t n = timed_; n-- > call_ && events_[n].at == events_[timed_].at;) {
-      if (events_[n].call != 0) return true;
+    for (std::size_t n = timed_; n > call_ && events_[n - 1].at == events_[timed_].at; --n) {
+      if (events_[n - 1].call != 0) return true;
     }
     return false;
   }

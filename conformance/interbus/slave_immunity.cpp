@@ -119,7 +119,7 @@ void faults_of_chance(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arriva
                       Faults& faults) {
   const kernel::GeometricSkip skip(chance);
   Rejects rejects;
-  for (unsigned round = 0; round < bench.volume(60U, 4'000U); ++round) {
+  for (unsigned round = 0; round < bench.volume(100U, 4'000U); ++round) {
     const std::vector<std::uint16_t> before = bench.outputs();
     bench.terminals().forget_changes();
     bench.begin();
@@ -132,9 +132,13 @@ void faults_of_chance(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arriva
     if (round % 16 == 15)
       faults.longest_recovery = std::max(faults.longest_recovery, recover(bench, judge, arrivals));
   }
+  // Whether a telegram without its stop bit begins a transfer is a slave's own affair: it costs the next
+  // cycle or not.
   constexpr double kMargin = 0.2;
+  constexpr double kLeastMargin = 2;
+  const double margin = std::max(kMargin * rejects.by_model, kLeastMargin);
   judge.expect_between(fmt::format("cycles rejected at flips of {} %", 100 * chance), "", rejects.by_slave,
-                       (1 - kMargin) * rejects.by_model, (1 + kMargin) * rejects.by_model,
+                       rejects.by_model - margin, rejects.by_model + margin,
                        "rejects_other_than_what_arrived_broken");
 }
 
@@ -220,16 +224,15 @@ std::vector<SlaveCase> slave_immunity_cases() {
         .reference = {"Beckhoff BC4000 documentation",
                       "five cycle times until valid data are exchanged again", judge::Standing::searched},
         .details = {details::status_coding(),
-                    {sources::own("within 20 % of what the tester's own receiver rejects"),
+                    {sources::own("within 20 % of what the tester's own receiver rejects, or two cycles"),
                      {"rejects_other_than_what_arrived_broken"}}},
         .stimulus =
             "Data cycles between status telegrams, each level flipped with a chance of 0.1, 1 and 5 % at "
             "the slave's receiver; every 16 cycles the faults pause.",
         .expected =
             "After each cycle the outputs show the words before it, or the words that arrived when these "
-            "have a right check, and as many cycles are rejected as arrive broken, within 20 %; in the "
-            "pauses one of five "
-            "clean cycles is taken over.",
+            "have a right check, and as many cycles are rejected as arrive broken, within 20 % or two "
+            "cycles; in the pauses one of five clean cycles is taken over.",
         .tags = {"must", "long"},
         .catches = {{"latches_in_spite_of_own_error", "wrong_value_latched"},
                     {"locks_up_after_rejected_cycle", "no_recovery"},
