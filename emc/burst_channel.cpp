@@ -23,7 +23,7 @@ BurstStatistics& BurstStatistics::operator+=(const BurstStatistics& other) {
 
 BurstChannel::BurstChannel(BurstSchedule schedule, WrongOutput wrong, BurstReceiver receiver,
                            trace::Trace& trace, trace::Channel place)
-    : schedule_(std::move(schedule)),
+    : schedule_(schedule),
       wrong_(std::move(wrong)),
       reach_(wrong_.hull()),
       receiver_(std::move(receiver)),

@@ -36,7 +36,9 @@ double factor(kernel::Random& random) {
   return 1 - kTolerance + 2 * kTolerance * random.uniform();
 }
 
+// Of what is not negative.
 kernel::Duration scaled(kernel::Duration duration, double by) {
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): std::llround is a call, for each pulse
   return kernel::Duration{static_cast<std::int64_t>(static_cast<double>(duration.count()) * by + 0.5)};
 }
 

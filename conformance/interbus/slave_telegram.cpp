@@ -216,10 +216,7 @@ void transmissions_do_not_overlap(SlaveBench& bench, CaseJudge&) {
   }
 }
 
-}  // namespace
-
-std::vector<SlaveCase> slave_telegram_cases() {
-  std::vector<SlaveCase> cases;
+void add_cases_of_wrong_bits(std::vector<SlaveCase>& cases) {
   cases.push_back(
       {{.id = "interbus/slave/telegram/flipped_select_bit_rejects_the_cycle",
         .purpose = "IS-17",
@@ -292,6 +289,9 @@ std::vector<SlaveCase> slave_telegram_cases() {
                     {"does_not_resynchronise", "no_resynchronisation"}},
         .not_applicable = for_outputs()},
        stop_level_missing});
+}
+
+void add_cases_of_the_line(std::vector<SlaveCase>& cases) {
   cases.push_back(
       {{.id = "interbus/slave/telegram/short_glitch_is_ignored",
         .purpose = "IS-21",
@@ -352,6 +352,14 @@ std::vector<SlaveCase> slave_telegram_cases() {
         .catches = {{"drives_over_itself", "transmissions_overlap"}},
         .not_applicable = for_every_slave()},
        transmissions_do_not_overlap});
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_telegram_cases() {
+  std::vector<SlaveCase> cases;
+  add_cases_of_wrong_bits(cases);
+  add_cases_of_the_line(cases);
   return cases;
 }
 

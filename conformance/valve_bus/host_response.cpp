@@ -227,11 +227,11 @@ void the_ninth_bit_of_a_response_is_not_looked_at(HostBench& bench, CaseJudge& j
   }
 }
 
-}  // namespace
+judge::Reference silence_ends_a_frame() {
+  return valve_sources::own("silence of 3.5 characters ends a frame");
+}
 
-std::vector<HostCase> host_response_cases() {
-  const judge::Reference silence = valve_sources::own("silence of 3.5 characters ends a frame");
-  std::vector<HostCase> cases;
+void add_cases_of_octets(std::vector<HostCase>& cases) {
   cases.push_back({{.id = "valve_bus/host/response/is_told_once_with_its_id",
                     .purpose = "RH-02",
                     .requirement = "The PC is told the response to its read once, with the ID of the node "
@@ -275,7 +275,7 @@ std::vector<HostCase> host_response_cases() {
                     .purpose = "RH-10",
                     .requirement = "What begins within 10 bits of the request belongs to its frame and is no "
                                    "response.",
-                    .reference = silence,
+                    .reference = silence_ends_a_frame(),
                     .stimulus = "Responses that begin 2, 5 and 10 bits behind the request.",
                     .expected = "Nothing is told; the node is polled again and served.",
                     .tags = {"must", "timing"},
@@ -296,12 +296,15 @@ std::vector<HostCase> host_response_cases() {
                                 {"takes_first_three_octets", "wrong_length_told"},
                                 {"takes_last_three_octets", "wrong_length_told"}}},
                    other_lengths_are_refused});
+}
+
+void add_cases_of_characters(std::vector<HostCase>& cases) {
   cases.push_back(
       {{.id = "valve_bus/host/response/gaps_inside_a_response",
         .purpose = "RH-12",
         .requirement = "Inside a response up to 1.5 characters of silence are allowed; more "
                        "spoil it.",
-        .reference = silence,
+        .reference = silence_ends_a_frame(),
         .stimulus =
             "Responses with a gap of 0.5 to 3.4 characters in front of the second or the third octet.",
         .expected = "Told up to 1.4 characters, refused from 1.6 on.",
@@ -353,6 +356,14 @@ std::vector<HostCase> host_response_cases() {
                     .not_applicable = for_characters("P0")},
                    the_ninth_bit_of_a_response_is_not_looked_at,
                    {.characters = CharacterProfile::ninth_bit_one}});
+}
+
+}  // namespace
+
+std::vector<HostCase> host_response_cases() {
+  std::vector<HostCase> cases;
+  add_cases_of_octets(cases);
+  add_cases_of_characters(cases);
   return cases;
 }
 

@@ -61,7 +61,7 @@ void expect_octets(NodeBench& bench, CaseJudge& judge, const Transmission& answe
                    std::uint8_t data1) {
   const std::vector<std::uint8_t> octets = answer.octets();
   const std::array<std::uint8_t, 3> wanted{data0, data1, static_cast<std::uint8_t>(data0 ^ data1)};
-  const auto sighting = [&](std::string difference) {
+  const auto sighting = [&](const char* difference) {
     return [&, difference] {
       return Sighting{.expected = {fmt::format("{:02X}", fmt::join(wanted, " "))},
                       .actual = octets_text(octets),
