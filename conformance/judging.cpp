@@ -58,7 +58,7 @@ judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>
   std::string cannot_be_done;
   try {
     procedure(*this);
-  } catch (const CaseEnded&) {  // NOLINT(bugprone-empty-catch)
+  } catch (const CaseEnded&) {
     // The finding that ended it is kept.
   } catch (const iut::CannotBeDone& what) {
     cannot_be_done = what.what();

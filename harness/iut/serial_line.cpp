@@ -123,11 +123,10 @@ void SerialLine::open_device(const std::string& path) {
   path_ = path;
   port_ = std::make_unique<Port>();
   boost::system::error_code error;
-  port_->port.open(path, error);
-  if (error) refuse_line(path, fmt::format("cannot be opened: {}", error.message()));
+  if (port_->port.open(path, error)) refuse_line(path, fmt::format("cannot be opened: {}", error.message()));
   // Two who read one line get half of it each.
   if (::ioctl(descriptor(), TIOCEXCL) != 0) refuse_line(path, "cannot be taken for this program alone");
-  port_->port.set_option(SerialPort::flow_control(SerialPort::flow_control::none), error);
+  static_cast<void>(port_->port.set_option(SerialPort::flow_control(SerialPort::flow_control::none), error));
   ::fcntl(descriptor(), F_SETFL, ::fcntl(descriptor(), F_GETFL) | O_NONBLOCK);
   is_terminal_ = is_pseudo_terminal(descriptor());
   direction_ = is_terminal_ ? "a pseudo terminal has no direction" : set_direction(descriptor());
@@ -176,15 +175,13 @@ void SerialLine::set(std::int64_t bit_rate, const line::CharacterFormat& format)
   using Stop = SerialPort::stop_bits;
   const bool is_mark_or_space = format.parity == line::Parity::mark || format.parity == line::Parity::space;
   boost::system::error_code error;
-  const auto must = [&](const char* what) {
-    if (error) refuse_line(path_, fmt::format("does not take the {} of {}", what, format.text()));
+  const auto must = [&](const auto& option, const char* what) {
+    if (port.set_option(option, error))
+      refuse_line(path_, fmt::format("does not take the {} of {}", what, format.text()));
   };
-  port.set_option(SerialPort::character_size(format.data_bits), error);
-  must("data bits");
-  port.set_option(parity_option(format.parity), error);
-  must("parity");
-  port.set_option(Stop(format.stop_bits == line::StopBits::one ? Stop::one : Stop::two), error);
-  must("stop bits");
+  must(SerialPort::character_size(format.data_bits), "data bits");
+  must(parity_option(format.parity), "parity");
+  must(Stop(format.stop_bits == line::StopBits::one ? Stop::one : Stop::two), "stop bits");
   set_rate(bit_rate, is_mark_or_space);
 }
 
