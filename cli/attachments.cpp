@@ -2,15 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "cli/roles.hpp"
 #include "cli/serial_pool.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/pool.hpp"
+#include "harness/kernel/check.hpp"
 #include "protocols/interbus/attached_master.hpp"
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
@@ -57,8 +60,7 @@ std::string characters_of(const std::string& uri, const line::CharacterFormat& f
 iut::Attachment attachment_of(Pools& pools, const conformance::Wanted& wanted) {
   const std::string& uri = wanted.uri;
   if (is_in_process(uri)) {
-    const std::shared_ptr<iut::Device> device =
-        iut::load_plugin(plugin_path(uri), pools.role().protocol, pools.role().role);
+    const std::shared_ptr<iut::Device> device = library_of(uri, pools.role());
     return {device.get(), device, {}};
   }
   const auto lease = std::make_shared<iut::DevicePool::Lease>(pools.of(uri, wanted.limits).take());
@@ -100,6 +102,12 @@ std::string plugin_path(std::string_view uri) {
                                     uri));
   }
   return path;
+}
+
+std::unique_ptr<iut::Device> library_of(const std::string& uri, const iut::RoleName& role) {
+  const auto row = std::ranges::find(roles(), role.protocol + "/" + role.role, &Role::path);
+  FIELDPROOF_CHECK(row != roles().end(), "who attaches a library has a role for it");
+  return iut::load_plugin(plugin_path(uri), role.protocol, role.role, row->told);
 }
 
 std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role,

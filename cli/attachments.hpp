@@ -25,6 +25,9 @@ bool is_plugin_uri(std::string_view uri);
 bool is_in_process(std::string_view uri);
 std::string plugin_path(std::string_view uri);
 
+// The library, in this process, in a role of `roles()`.
+std::unique_ptr<iut::Device> library_of(const std::string& uri, const iut::RoleName& role);
+
 // Who is called by messages: exec:, unix:, tcp:, and a library in a process of its own.
 std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role,
                                          const iut::PeerLimits& limits = {});

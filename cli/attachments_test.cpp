@@ -265,6 +265,26 @@ TEST_F(Attachments, WhatCannotBeAttachedEndsTheRunWithAllThatIsKnown) {
   }
 }
 
+// Hosts and masters are told orders in characters; the others ask no more of the library than that it serves
+// the role.
+TEST_F(Attachments, LibraryWithoutCharactersIsRefusedBeforeTheRunWhereTheRoleIsToldSome) {
+  const std::string characters = "has no function 'receive'; its role is told characters";
+  const std::vector<std::pair<std::string, std::string>> all = {
+      {"valve_bus/node/read/is_answered", "does not serve the role 'valve_bus/node'"},
+      {"valve_bus/host/request/check_is_the_exclusive_or", characters},
+      {"interbus/slave/data_cycle/process_data_is_exact", "does not serve the role 'interbus/slave'"},
+      {"interbus/master/application/outputs_change_as_a_whole", characters},
+  };
+  for (const std::string place : {"", "?in-process"}) {
+    for (const auto& [test_case, sentence] : all) {
+      const Called called =
+          call({"run", test_case, "--volume", "quick", "--iut", "plugin:" ODD_PLUGIN_LEVELS_ONLY + place});
+      EXPECT_EQ(called.exit_code, 5) << test_case << place;
+      EXPECT_HOLDS(called.err, sentence);
+    }
+  }
+}
+
 // What can be read at once is one message: twenty of them end in the middle of the case.
 TEST_F(Attachments, DeathInARunIsAVerdictWithEvidence) {
   const std::string one = "read/is_answered";

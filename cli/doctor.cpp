@@ -11,7 +11,6 @@
 #include "cli/roles.hpp"
 #include "cli/serial_pool.hpp"
 #include "cli/verbs.hpp"
-#include "harness/iut/plugin.hpp"
 #include "harness/kernel/untrusted_text.hpp"
 
 // `fieldproof doctor`: can an implementation be attached, and how well does this machine know instants? What
@@ -148,7 +147,7 @@ void Doctor::examine(const std::string& uri) {
   } else if (uri.starts_with(iut::kSerialUri)) {
     examine_line(uri);
   } else if (is_in_process(uri)) {
-    const auto device = iut::load_plugin(plugin_path(uri), role_.protocol, role_.role);
+    const auto device = library_of(uri, role_);
     say("library", "loaded into this process");
   } else {
     const auto pool = pool_of(uri, role_);

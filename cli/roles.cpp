@@ -31,13 +31,13 @@ std::unique_ptr<iut::Device> serve(const std::string& uri) {
 }
 
 constexpr std::array kRoles{
-    Role{"interbus", "slave",
+    Role{"interbus", "slave", iut::Told::in_its_unit,
          &serve<interbus::ServedSlave, interbus::Slave, &conformance::make_slave_deviation>},
-    Role{"interbus", "master",
+    Role{"interbus", "master", iut::Told::in_characters_too,
          &serve<interbus::ServedMaster, interbus::Master, &conformance::make_master_deviation>},
-    Role{"valve_bus", "node",
+    Role{"valve_bus", "node", iut::Told::in_its_unit,
          &serve<valve_bus::ServedNode, valve_bus::Node, &conformance::make_node_deviation>},
-    Role{"valve_bus", "host",
+    Role{"valve_bus", "host", iut::Told::in_characters_too,
          &serve<valve_bus::ServedHost, valve_bus::Host, &conformance::make_host_deviation>},
 };
 

@@ -8,12 +8,14 @@
 #include <string_view>
 
 #include "harness/iut/device.hpp"
+#include "harness/iut/plugin.hpp"
 
 namespace fieldproof::cli {
 
 struct Role {
   std::string_view protocol;
   std::string_view name;
+  iut::Told told;
   // The station of `ref` or `deviant:NAME` as an implementation. Throws kernel::Error(usage) for a deviation
   // that is not there.
   std::unique_ptr<iut::Device> (*serve)(const std::string& uri);

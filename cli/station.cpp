@@ -12,7 +12,6 @@
 #include "cli/roles.hpp"
 #include "cli/station_on_line.hpp"
 #include "cli/verbs.hpp"
-#include "harness/iut/plugin.hpp"
 #include "harness/iut/server.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -39,7 +38,7 @@ void play_in_lock_step(const Role& role, const std::string& uri) {
       STDIN_FILENO, STDOUT_FILENO,
       [&](const iut::RoleName& wanted) -> std::unique_ptr<iut::Device> {
         if (wanted.protocol != role.protocol || wanted.role != role.name) return nullptr;
-        if (is_plugin) return iut::load_plugin(plugin_path(uri), wanted.protocol, wanted.role);
+        if (is_plugin) return library_of(uri, wanted);
         return role.serve(uri);
       },
       fmt::format("fieldproof {}", uri));

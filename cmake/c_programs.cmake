@@ -30,7 +30,7 @@ endif()
 
 # fieldproof_odd_plugins(test): libraries that no station would be, and their paths for the test.
 function(fieldproof_odd_plugins test)
-  foreach(kind IN ITEMS "" _OTHER_VERSION _LEAVES_OUT _NO_ENTRY)
+  foreach(kind IN ITEMS "" _OTHER_VERSION _LEAVES_OUT _NO_ENTRY _LEVELS_ONLY)
     string(TOLOWER odd_plugin${kind} name)
     add_library(${name} MODULE harness/iut/odd_plugin.c)
     fieldproof_c89(${name})

@@ -17,6 +17,7 @@
 
 #include "fuzz/octet_reader.hpp"
 #include "fuzz/reference_line.hpp"
+#include "fuzz/script.hpp"
 #include "fuzz/slave_model.hpp"
 #include "harness/kernel/check.hpp"
 #include "harness/segment/segment.hpp"
@@ -40,7 +41,6 @@ using fieldproof::kernel::kMillisecond;
 using fieldproof::kernel::Time;
 using fieldproof::line::Waveform;
 
-constexpr std::size_t kLargestInput = 512;
 constexpr unsigned kMostSteps = 40;
 constexpr std::uint16_t kInput = 0xC35A;
 constexpr std::uint16_t kMark = 0xBEEF;
@@ -108,7 +108,6 @@ class World {
 
   void step(OctetReader& input);
   void recover();
-  void compare();
 
  private:
   const Rules& rules() const { return configuration_.rules; }
@@ -117,10 +116,10 @@ class World {
   void pass(Duration duration);
   void append_cycle(Waveform& wave, std::span<const std::uint8_t> octets, bool is_id, std::uint16_t status);
   void telegrams(OctetReader& input, Waveform& wave);
-  void levels(OctetReader& input, Waveform& wave);
   void id_cycle(Waveform& wave, std::uint16_t control);
   void data_cycle(Waveform& wave, std::uint16_t value);
   void repaired_cycle(OctetReader& input, Waveform& wave);
+  void compare();
 
   fieldproof::segment::Segment segment_;
   SlaveConfiguration configuration_;
@@ -148,7 +147,7 @@ void World::drive(fieldproof::segment::PortIndex port, Waveform& wave) {
 }
 
 void World::send(fieldproof::segment::PortIndex port, Waveform& wave, std::uint8_t flip) {
-  if (flip != 0 && !wave.levels.empty()) wave.levels.flip(flip % wave.levels.size());
+  fieldproof::fuzz::flip_level(wave.levels, flip);
   drive(port, wave);
 }
 
@@ -172,10 +171,6 @@ void World::telegrams(OctetReader& input, Waveform& wave) {
     code_.append(wave.levels, header & 7, (header & 4) != 0 ? input.octet() : std::uint8_t{0});
     wave.levels.append_idle(header >> 6);
   }
-}
-
-void World::levels(OctetReader& input, Waveform& wave) {
-  for (const std::uint8_t octet : input.take(input.octet() % 32U + 1)) wave.levels.append(octet, 8);
 }
 
 void World::id_cycle(Waveform& wave, std::uint16_t control) {
@@ -202,12 +197,10 @@ void World::repaired_cycle(OctetReader& input, Waveform& wave) {
   append_cycle(wave, octets, (choice & 0x20) != 0, status);
 }
 
-// One step: what comes in the low bits of its octet, whether a level is flipped in the highest one.
 void World::step(OctetReader& input) {
-  const std::uint8_t choice = input.octet();
-  const std::uint8_t flip = (choice & 0x80) != 0 ? input.octet() : std::uint8_t{0};
+  const auto [kind, flip] = read_choice(input, 14);
   Waveform wave{segment_.now(), rules().bit_rate, {}};
-  switch ((choice & 0x7F) % 14) {
+  switch (kind) {
     case 0:
       id_cycle(wave, input.octet());
       return send(kFromUpstream, wave, flip);
@@ -221,11 +214,11 @@ void World::step(OctetReader& input) {
       telegrams(input, wave);
       return send(kFromUpstream, wave, flip);
     case 4:
-      levels(input, wave);
+      append_levels(input, wave.levels);
       return send(kFromUpstream, wave, flip);
     case 5:
-      wave.rate = (std::int64_t{input.octet()} + 1) * 31'250;
-      levels(input, wave);
+      wave.rate = read_rate(input);
+      append_levels(input, wave.levels);
       return send(kFromUpstream, wave, flip);
     case 6:
       return pass((std::int64_t{input.octet()} + 1) * kMicrosecond);
@@ -244,11 +237,11 @@ void World::step(OctetReader& input) {
       telegrams(input, wave);
       return send(kFromRemote, wave, flip);
     case 12:
-      levels(input, wave);
+      append_levels(input, wave.levels);
       return send(kFromRemote, wave, flip);
     default:
-      wave.rate = (std::int64_t{input.octet()} + 1) * 31'250;
-      levels(input, wave);
+      wave.rate = read_rate(input);
+      append_levels(input, wave.levels);
       return send(kFromBranch, wave, flip);
   }
 }
@@ -267,6 +260,7 @@ void World::compare() {
 // The line is idle for as long as a telegram may be cut; then one good cycle of each kind must do. Only an ID
 // cycle that broke off in its transfer takes the first good one as its own end.
 void World::recover() {
+  compare();
   pass(100 * kMicrosecond);
   const bool is_in_transfer = slave_.phase() == Slave::Phase::id_transfer;
   for (int left = is_in_transfer ? 2 : 1; left > 0; --left) {
@@ -287,17 +281,11 @@ void World::recover() {
   compare();
   pass(rules().silence_limit + kMillisecond);
   FIELDPROOF_CHECK(slave_.mode() == Slave::Mode::reset, "a silence resets a slave");
+  compare();
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size > kLargestInput) return -1;
-  OctetReader input(data, size);
-  World world(input.octet());
-  for (unsigned steps = 0; steps < kMostSteps && !input.is_empty(); ++steps) world.step(input);
-  world.compare();
-  world.recover();
-  world.compare();
-  return 0;
+  return fieldproof::fuzz::play_script<World>(data, size, kMostSteps);
 }

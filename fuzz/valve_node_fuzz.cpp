@@ -11,41 +11,34 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "fuzz/octet_reader.hpp"
+#include "fuzz/script.hpp"
+#include "fuzz/valve_line.hpp"
 #include "fuzz/valve_node_model.hpp"
 #include "harness/kernel/check.hpp"
-#include "harness/segment/medium.hpp"
-#include "harness/segment/segment.hpp"
 #include "protocols/valve_bus/node.hpp"
 
 namespace {
 
 using fieldproof::fuzz::OctetReader;
+using fieldproof::fuzz::ValveLine;
 using fieldproof::fuzz::ValveNodeModel;
 using fieldproof::fuzz::ValveWrite;
-using fieldproof::kernel::Duration;
 using fieldproof::kernel::kMillisecond;
-using fieldproof::kernel::Random;
 using fieldproof::kernel::Time;
 using fieldproof::line::Waveform;
-using fieldproof::valve_bus::CharacterProfile;
 using fieldproof::valve_bus::Node;
 using fieldproof::valve_bus::NodeConfiguration;
-using fieldproof::valve_bus::Rules;
 
-constexpr std::size_t kLargestInput = 512;
 constexpr unsigned kMostSteps = 48;
 constexpr std::uint8_t kWrite = 0;
 constexpr std::uint8_t kRead = 1;
 
 NodeConfiguration configuration(std::uint8_t choice) {
-  constexpr std::array kProfiles{CharacterProfile::ninth_bit_one, CharacterProfile::even_parity,
-                                 CharacterProfile::eight_bits};
   NodeConfiguration made;
-  made.rules.characters = kProfiles.at(choice % 3U);
+  made.rules.characters = fieldproof::fuzz::character_profile(choice);
   made.rules.answers_writes = (choice & 4U) != 0;
   if ((choice & 8U) != 0) made.rules.loss_limit = 20 * kMillisecond;
   made.boards = (choice & 16U) != 0 ? 1 : 2;
@@ -65,27 +58,16 @@ class Boards final : public fieldproof::valve_bus::NodeBoards {
   std::vector<ValveWrite> writes;
 };
 
-// Nobody listens at the place from which the input drives.
-class Tester final : public fieldproof::segment::Station {
- public:
-  void receive(fieldproof::segment::PortIndex, const Waveform&) override {}
-  void on_time(Time) override {}
-  Time next_time() const override { return fieldproof::kernel::kNever; }
-};
-
-class World {
+class World final : private ValveLine {
  public:
   explicit World(std::uint8_t choice)
-      : configuration_(configuration(choice)),
-        line_(segment_, "line", fieldproof::segment::ContentionRule::noise, Random(choice)),
+      : ValveLine(configuration(choice).rules, choice),
+        configuration_(configuration(choice)),
         node_(configuration_),
         model_(configuration_),
-        codec_(rules()),
         driven_(*this) {
-    const std::size_t tester_seat = segment_.attach(tester_station_, "tester");
-    seat_ = segment_.attach(node_, "node");
-    tester_ = &line_.attach("tester/in", tester_seat, 0, {});
-    auto& place = line_.attach("node/in", seat_, 0, {});
+    seat_ = segment().attach(node_, "node");
+    auto& place = medium().attach("node/in", seat_, 0, {});
     place.tap_arrived(model_);
     place.tap_driven(driven_);
     node_.wire(place, boards_);
@@ -95,76 +77,43 @@ class World {
 
   void step(OctetReader& input);
   void recover();
-  void compare();
 
  private:
   // What the node drives, with the instant at which it gives it to the line.
   class Driven final : public fieldproof::segment::Tap {
    public:
     explicit Driven(World& world) : world_(world) {}
-    void on_wave(const Waveform& wave) override { world_.model_.on_driven(wave, world_.segment_.now()); }
+    void on_wave(const Waveform& wave) override { world_.model_.on_driven(wave, world_.segment().now()); }
 
    private:
     World& world_;
   };
 
-  const Rules& rules() const { return configuration_.rules; }
   bool has_address() const { return configuration_.units < 10 && address() != 0; }
   std::uint8_t address() const {
     return static_cast<std::uint8_t>(10 * configuration_.tens + configuration_.units);
   }
+  void follow(Time now) override { model_.run_until(now); }
   void set_power(bool is_on);
-  void pass(Duration duration);
-  void drive(Waveform& wave, std::uint8_t flip);
-  void send(std::span<const std::uint8_t> octets, std::uint8_t flip);
   void command(std::uint8_t id, std::uint8_t kind, std::uint16_t data, std::uint8_t flip);
-  void octets_with_gaps(OctetReader& input, std::uint8_t flip);
-  void levels(OctetReader& input, std::int64_t rate, std::uint8_t flip);
+  void act(OctetReader& input);
+  void compare();
 
-  fieldproof::segment::Segment segment_;
   NodeConfiguration configuration_;
-  fieldproof::segment::Medium line_;
   Boards boards_;
-  Tester tester_station_;
   Node node_;
   ValveNodeModel model_;
-  fieldproof::valve_bus::CharacterCodec codec_;
   Driven driven_;
-  fieldproof::segment::MediumPort* tester_ = nullptr;
   std::size_t seat_ = 0;
   bool is_on_ = false;
 };
 
 void World::set_power(bool is_on) {
-  model_.run_until(segment_.now());
+  model_.run_until(segment().now());
   is_on_ = is_on;
-  model_.set_power(is_on, segment_.now());
-  node_.set_power(is_on, segment_.now());
-  segment_.refresh(seat_);
-}
-
-void World::pass(Duration duration) {
-  segment_.run_for(duration);
-  model_.run_until(segment_.now());
-}
-
-void World::drive(Waveform& wave, std::uint8_t flip) {
-  if (wave.levels.empty()) return;
-  if (flip != 0) wave.levels.flip(flip % wave.levels.size());
-  wave.start = segment_.now();
-  const Time end = wave.end();
-  tester_->drive(wave);
-  segment_.run_until(end);
-}
-
-// Each character on its own, as stations of the bus drive them.
-void World::send(std::span<const std::uint8_t> octets, std::uint8_t flip) {
-  const std::size_t hit = flip % std::max<std::size_t>(octets.size(), 1);
-  for (std::size_t n = 0; n < octets.size(); ++n) {
-    Waveform wave{segment_.now(), rules().bit_rate, {}};
-    codec_.append(wave.levels, octets.subspan(n, 1));
-    drive(wave, n == hit ? flip : std::uint8_t{0});
-  }
+  model_.set_power(is_on, segment().now());
+  node_.set_power(is_on, segment().now());
+  segment().refresh(seat_);
 }
 
 void World::command(std::uint8_t id, std::uint8_t kind, std::uint16_t data, std::uint8_t flip) {
@@ -175,25 +124,9 @@ void World::command(std::uint8_t id, std::uint8_t kind, std::uint16_t data, std:
   send(octets, flip);
 }
 
-void World::octets_with_gaps(OctetReader& input, std::uint8_t flip) {
-  const std::uint8_t choice = input.octet();
-  for (const std::uint8_t octet : input.take(choice % 8U + 1)) {
-    send(std::span(&octet, 1), flip);
-    if ((choice & 0xF0U) != 0) pass(bits(rules(), choice >> 3));
-  }
-}
-
-void World::levels(OctetReader& input, std::int64_t rate, std::uint8_t flip) {
-  Waveform wave{segment_.now(), rate, {}};
-  for (const std::uint8_t octet : input.take(input.octet() % 32U + 1)) wave.levels.append(octet, 8);
-  drive(wave, flip);
-}
-
-// One step: what comes in the low bits of its octet, whether a level is flipped in the highest one.
-void World::step(OctetReader& input) {
-  const std::uint8_t choice = input.octet();
-  const std::uint8_t flip = (choice & 0x80) != 0 ? input.octet() : std::uint8_t{0};
-  switch ((choice & 0x7F) % 12) {
+void World::act(OctetReader& input) {
+  const auto [kind_of_step, flip] = read_choice(input, 12);
+  switch (kind_of_step) {
     case 0:
       return command(address(), kWrite, input.word(), flip);
     case 1:
@@ -208,13 +141,9 @@ void World::step(OctetReader& input) {
     case 4:
       return levels(input, rules().bit_rate, flip);
     case 5:
-      return levels(input, (std::int64_t{input.octet()} + 1) * 31'250, flip);
-    case 6: {
-      const std::array<std::uint8_t, 2> data{input.octet(), input.octet()};
-      const std::array<std::uint8_t, 3> response{data[0], data[1],
-                                                 static_cast<std::uint8_t>(data[0] ^ data[1])};
-      return send(response, flip);
-    }
+      return levels(input, read_rate(input), flip);
+    case 6:
+      return respond(input.word(), flip);
     case 7:
       return pass(bits(rules(), input.octet()));
     case 8:
@@ -230,8 +159,13 @@ void World::step(OctetReader& input) {
 }
 
 void World::compare() {
-  model_.run_until(segment_.now());
+  model_.run_until(segment().now());
   FIELDPROOF_CHECK(boards_.writes == model_.writes(), "valves are written as what arrived says");
+}
+
+void World::step(OctetReader& input) {
+  act(input);
+  compare();
 }
 
 void World::recover() {
@@ -254,13 +188,5 @@ void World::recover() {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size > kLargestInput) return -1;
-  OctetReader input(data, size);
-  World world(input.octet());
-  for (unsigned steps = 0; steps < kMostSteps && !input.is_empty(); ++steps) {
-    world.step(input);
-    world.compare();
-  }
-  world.recover();
-  return 0;
+  return fieldproof::fuzz::play_script<World>(data, size, kMostSteps);
 }

@@ -7,7 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "conformance/interbus/slave_deviants.hpp"
+#include "conformance/interbus/slave_driving_deviants.hpp"
+#include "conformance/interbus/slave_frame_deviants.hpp"
+#include "conformance/interbus/slave_register_deviants.hpp"
+#include "conformance/interbus/slave_supervision_deviants.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
 

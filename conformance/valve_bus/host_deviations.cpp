@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "conformance/valve_bus/character_deviants.hpp"
-#include "conformance/valve_bus/host_deviants.hpp"
+#include "conformance/valve_bus/host_application_deviants.hpp"
+#include "conformance/valve_bus/host_request_deviants.hpp"
+#include "conformance/valve_bus/host_response_deviants.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
 

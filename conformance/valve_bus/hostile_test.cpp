@@ -98,14 +98,26 @@ std::size_t hostile_processes() {
   return count;
 }
 
+// What a loaded machine, under a sanitizer, may take for a run; and what a call may take of one that is right
+// but for the worst. Where the bench waits as long as it may the limit is shorter: it holds for the cases
+// before and behind it too, in which the implementation is right.
+constexpr std::chrono::milliseconds kPatience{20'000};
+constexpr std::chrono::milliseconds kShortest{2'000};
+
+// A child keeps the output open of one that is gone.
+bool makes_the_bench_wait(const Worst& worst) {
+  return worst.reason == "implementation_hangs" || worst.act == "leave_a_child";
+}
+
 // The run of three cases of which the second meets the worst; what the reference does is what the others are.
 class HostileNode : public testing::TestWithParam<std::string> {
  protected:
-  std::vector<judge::CaseResult> run(const std::string& act) {
-    const std::string uri =
-        fmt::format("exec:{} {} {} read/is_answered {}", FIELDPROOF_HOSTILE_NODE, act, GetParam(), mark());
+  std::vector<judge::CaseResult> run(const Worst& worst) {
+    const std::string uri = fmt::format("exec:{} {} {} read/is_answered {}", FIELDPROOF_HOSTILE_NODE,
+                                        worst.act, GetParam(), mark());
     iut::PeerLimits limits;
-    limits.call = std::chrono::milliseconds(1000);  // a loaded machine under a sanitizer is slow
+    limits.start = kPatience;
+    limits.call = makes_the_bench_wait(worst) ? kShortest : kPatience;
     iut::DevicePool pool(uri, {"valve_bus", "node"}, limits);
     const auto suite =
         valve_bus_suite({.node = {.attached = [&](const Wanted& wanted, const auto& configuration) {
@@ -129,9 +141,6 @@ class HostileNode : public testing::TestWithParam<std::string> {
   }
 };
 
-// The time that each may take: the limit of a call, and what a loaded machine adds.
-constexpr auto kPatience = std::chrono::seconds(20);
-
 TEST_P(HostileNode, CostsItsOwnVerdictAndNoOther) {
   const std::size_t descriptors = open_descriptors();
   for (const Worst& worst : worst_acts()) {
@@ -139,7 +148,7 @@ TEST_P(HostileNode, CostsItsOwnVerdictAndNoOther) {
     if (worst.act == "time_stands_still" && GetParam() == "end") continue;
     SCOPED_TRACE(fmt::format("{} in {}", worst.act, GetParam()));
     const auto begin = std::chrono::steady_clock::now();
-    const std::vector<judge::CaseResult> results = run(worst.act);
+    const std::vector<judge::CaseResult> results = run(worst);
     EXPECT_LT(std::chrono::steady_clock::now() - begin, kPatience);
     ASSERT_EQ(results.size(), 3U);
     EXPECT_EQ(results[0].verdict, judge::Verdict::pass) << results[0].reason;

@@ -8,8 +8,12 @@
 #include <utility>
 
 #include "conformance/valve_bus/character_deviants.hpp"
-#include "conformance/valve_bus/node_deviants.hpp"
+#include "conformance/valve_bus/node_answer_deviants.hpp"
+#include "conformance/valve_bus/node_command_deviants.hpp"
+#include "conformance/valve_bus/node_framing_deviants.hpp"
+#include "conformance/valve_bus/node_power_deviants.hpp"
 #include "conformance/valve_bus/node_sequence_deviants.hpp"
+#include "conformance/valve_bus/node_terminal_deviants.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
 

@@ -1,6 +1,7 @@
 /*
  * For plugin_test: a shared library that does what the role says by which it was asked for, when the supply
- * comes. Compiled with OTHER_VERSION, LEAVES_OUT or NO_ENTRY it is none that can be used.
+ * comes. Compiled with OTHER_VERSION, LEAVES_OUT or NO_ENTRY it is none that can be used; with LEVELS_ONLY it
+ * has no function for characters.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -64,6 +65,12 @@ static fieldproof_time receive(void* context, unsigned port, const fieldproof_ch
   return now + (fieldproof_time)count;
 }
 
+static fieldproof_time receive_levels(void* self, unsigned port, fieldproof_time start, fieldproof_time rate,
+                                      const unsigned char* levels, unsigned count, fieldproof_time now) {
+  (void)self, (void)port, (void)start, (void)rate, (void)levels, (void)count;
+  return now;
+}
+
 static fieldproof_time on_time(void* self, fieldproof_time now) {
   (void)self;
   return now;
@@ -85,18 +92,27 @@ static void end(void* context) {
 #define ON_TIME on_time
 #endif
 
+#ifdef LEVELS_ONLY
+#define UNIT FIELDPROOF_LEVELS
+#define RECEIVE 0
+#else
+#define UNIT FIELDPROOF_CHARACTERS
+#define RECEIVE receive
+#endif
+
 #ifdef NO_ENTRY
 #define fieldproof_plugin another_name
 FIELDPROOF_EXPORT const fieldproof_implementation* another_name(unsigned version);
 #endif
 const fieldproof_implementation* fieldproof_plugin(unsigned version) {
   static const fieldproof_implementation implementation = {VERSION, sizeof(fieldproof_implementation),
-                                                           "odd",   FIELDPROOF_CHARACTERS,
+                                                           "odd",   UNIT,
                                                            create,  free,
                                                            begin,   set_power,
-                                                           receive, 0,
+                                                           RECEIVE, receive_levels,
                                                            ON_TIME, end};
   (void)version;
   (void)on_time;
+  (void)receive;
   return &implementation;
 }

@@ -67,9 +67,10 @@ Plugin loaded(const std::string& path) {
 
 class PluginDevice final : public Device {
  public:
-  PluginDevice(Plugin plugin, const std::string& protocol, const std::string& role)
+  PluginDevice(Plugin plugin, const std::string& protocol, const std::string& role, Told told)
       : plugin_(std::move(plugin)), implementation_(plugin_.implementation) {
     check();
+    if (told == Told::in_characters_too && implementation_->receive == nullptr) refuse_characters();
     bench_.version = FIELDPROOF_PLUGIN_VERSION;
     bench_.size = sizeof bench_;
     bench_.context = this;
@@ -160,7 +161,8 @@ class PluginDevice final : public Device {
   }
 
   [[noreturn, gnu::noinline]] void refuse_characters() const {
-    refuse_library(plugin_.name, "has no function 'receive', and its role is told characters, too");
+    refuse_library(plugin_.name,
+                   "has no function 'receive'; its role is told characters whatever the unit of its line");
   }
 
   // `call` returns when on_time is wanted. Most calls do nothing to the bench: then that is all.
@@ -249,16 +251,16 @@ class PluginDevice final : public Device {
 }  // namespace
 
 std::unique_ptr<Device> load_plugin(const std::string& path, const std::string& protocol,
-                                    const std::string& role) {
-  return std::make_unique<PluginDevice>(loaded(path), protocol, role);
+                                    const std::string& role, Told told) {
+  return std::make_unique<PluginDevice>(loaded(path), protocol, role, told);
 }
 
 std::unique_ptr<Device> make_plugin(const fieldproof_implementation& implementation,
-                                    const std::string& protocol, const std::string& role) {
+                                    const std::string& protocol, const std::string& role, Told told) {
   const char* name = implementation.name != nullptr ? implementation.name : "without a name";
   return std::make_unique<PluginDevice>(
       Plugin{.name = "plugin " + kernel::escaped_line(name), .implementation = &implementation}, protocol,
-      role);
+      role, told);
 }
 
 }  // namespace fieldproof::iut

@@ -151,8 +151,9 @@ TEST(PluginTest, AskingForTheSameInstantWithoutEndIsAFlood) {
   EXPECT_THROW(call_again(), Misbehaviour);
 }
 
-TEST(PluginTest, ImplementationThatTheProgramHoldsIsCalledLikeALibrary) {
-  static constexpr fieldproof_implementation echo{
+// Of levels alone: it sends back what it hears.
+fieldproof_implementation echo_of_levels() {
+  return {
       .version = FIELDPROOF_PLUGIN_VERSION,
       .size = sizeof(fieldproof_implementation),
       .name = "echo",
@@ -174,6 +175,10 @@ TEST(PluginTest, ImplementationThatTheProgramHoldsIsCalledLikeALibrary) {
       .on_time = [](void*, fieldproof_time) { return FIELDPROOF_NEVER; },
       .end = [](void*) {},
   };
+}
+
+TEST(PluginTest, ImplementationThatTheProgramHoldsIsCalledLikeALibrary) {
+  const fieldproof_implementation echo = echo_of_levels();
   const auto device = make_plugin(echo, "odd", "echo");
   Diary diary;
   ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
@@ -182,6 +187,24 @@ TEST(PluginTest, ImplementationThatTheProgramHoldsIsCalledLikeALibrary) {
   device->receive(2, wave);
   EXPECT_THAT(diary.lines, ElementsAre("drives 2 1000 1101"));
   EXPECT_THROW(make_plugin(echo, "odd", "silence"), kernel::Error);
+}
+
+TEST(PluginTest, RoleThatIsToldCharactersTooNeedsWhoTakesThem) {
+  fieldproof_implementation echo = echo_of_levels();
+  try {
+    make_plugin(echo, "odd", "echo", Told::in_characters_too);
+    FAIL() << "it was made";
+  } catch (const kernel::Error& error) {
+    EXPECT_EQ(error.kind(), kernel::ErrorKind::implementation);
+    EXPECT_STREQ(
+        error.what(),
+        "plugin echo: has no function 'receive'; its role is told characters whatever the unit of its "
+        "line");
+  }
+  echo.receive = [](void*, unsigned, const fieldproof_character*, unsigned, fieldproof_time) {
+    return FIELDPROOF_NEVER;
+  };
+  EXPECT_NE(make_plugin(echo, "odd", "echo", Told::in_characters_too), nullptr);
 }
 
 // The library is between the bench and whoever catches: it must not be unwound.

@@ -205,14 +205,14 @@ TEST(SharedPoolThreads, CasesAtTheSameTimeShareTheOnlyConnection) {
   std::thread server([&] {
     only = listener.accept_and_answer({capabilities_message(), echoed_message(), unsupported_message()});
   });
-  DevicePool pool("unix:" + listener.path(), kValveNode, {milliseconds(1'000), milliseconds(20'000)});
+  DevicePool pool("unix:" + listener.path(), kValveNode, {milliseconds(2'000), milliseconds(20'000)});
   {
     auto first = pool.take();
     std::vector<std::thread> threads;
     for (int n = 0; n < 3; ++n) {
       threads.emplace_back([&] { EXPECT_EQ(failure_of([&] { pool.take().set_reusable(); }), ""); });
     }
-    std::this_thread::sleep_for(milliseconds(1'500));
+    std::this_thread::sleep_for(milliseconds(2'500));
     first.set_reusable();
     {
       const auto returned = std::move(first);
@@ -231,7 +231,7 @@ TEST(SharedPoolThreads, CaseThatNeedsTwoOfTheOnlyConnectionIsRefused) {
   std::thread server([&] {
     only = listener.accept_and_answer({capabilities_message(), echoed_message(), unsupported_message()});
   });
-  DevicePool pool("unix:" + listener.path(), kValveNode, {milliseconds(300), milliseconds(20'000)});
+  DevicePool pool("unix:" + listener.path(), kValveNode, {milliseconds(2'000), milliseconds(20'000)});
   const auto first = pool.take();
   EXPECT_THAT(failure_of([&] { pool.take(); }), HasSubstr("this case needs one more"));
   server.join();
