@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "conformance/interbus/rejections.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_expect.hpp"
 #include "harness/kernel/check.hpp"
@@ -10,15 +11,6 @@
 // IS-09 to IS-16: the frame check of both sides and the status word.
 namespace fieldproof::conformance {
 namespace {
-
-constexpr std::size_t kTrain = 32;  // cycles sent as one waveform
-
-// Positions in the code word of loopback word, register and check.
-using Pattern = std::span<const std::uint32_t>;
-
-std::string pattern_text(Pattern pattern) {
-  return fmt::format("bits {} of the code word flipped", fmt::join(pattern, ", "));
-}
 
 // Lets the message bits of earlier cycles be read.
 void read_messages(SlaveBench& bench) {
@@ -81,81 +73,6 @@ void check_bit_flipped(SlaveBench& bench, CaseJudge& judge) {
 
 // ---- many error patterns ----
 
-// Collects patterns and sends them, one a cycle, in trains of equal cycles; each must be rejected.
-class Rejections {
- public:
-  Rejections(SlaveBench& bench, CaseJudge& judge, std::string_view reason)
-      : bench_(bench), judge_(judge), reason_(reason) {
-    bench_.bring_up();
-    expect_good_cycle(bench_, judge_, "valid_cycle_rejected");
-    std::vector<std::uint16_t> words = bench_.random_words();
-    if (!words.empty()) words[0] = static_cast<std::uint16_t>(~bench_.outputs()[0]);
-    bench_.train().set_gap(1);
-    bench_.begin();
-    for (std::size_t n = 0; n < kTrain; ++n) bench_.append_data_cycle(words);
-    levels_ = bench_.train().levels();
-    for (std::size_t bit = 0; bit < bench_.code_word_bits(); ++bit)
-      places_.push_back(bench_.code_word_level(bench_.train().cycles()[0], bit));
-    pitch_ = bench_.train().cycles()[1].level - bench_.train().cycles()[0].level;
-  }
-
-  void add(Pattern pattern) {
-    if (ends_.empty()) bench_.channel().on_next();
-    const std::size_t offset = pitch_ * ends_.size();
-    for (const std::uint32_t bit : pattern) bench_.channel().flip(offset + places_[bit]);
-    flipped_.insert(flipped_.end(), pattern.begin(), pattern.end());
-    ends_.push_back(flipped_.size());
-    ++count_;
-    if (ends_.size() == kTrain) send();
-  }
-
-  // Fills the last train with its last pattern, and sends a good cycle.
-  void finish() {
-    while (!ends_.empty()) {
-      const std::size_t first = ends_.size() == 1 ? 0 : ends_[ends_.size() - 2];
-      add(std::vector<std::uint32_t>(flipped_.begin() + static_cast<std::ptrdiff_t>(first), flipped_.end()));
-      --count_;
-    }
-    bench_.train().set_gap(2);
-    expect_good_cycle(bench_, judge_, "no_recovery");
-    judge_.measure("error patterns", "", static_cast<double>(count_));
-  }
-
- private:
-  void send() {
-    bench_.train().levels().clear();
-    bench_.train().levels().append(levels_);
-    bench_.send();
-    judge_.expect_equal(bench_.out().data_telegrams().size(), bench_.train().data_telegram_count(),
-                        "telegram_lost", "data telegrams that left");
-    const std::uint16_t marked = bench_.rules().status_marked;
-    std::size_t first = 0;
-    for (std::size_t n = 0; n < ends_.size(); first = ends_[n++]) {
-      const std::optional<CycleOnLine> out = bench_.cycle_on(bench_.out(), n);
-      const bool is_marked = out && (out->status() & marked) == marked;
-      judge_.expect(is_marked, reason_, [&] {
-        return Sighting{.expected = {"the cycle is rejected: its status word leaves marked"},
-                        .actual = "the cycle was accepted: its status word left unmarked",
-                        .time = out ? bench_.out().start_of(out->telegrams[out->octets + 2]) : bench_.now(),
-                        .first_difference = pattern_text(Pattern(flipped_).subspan(first, ends_[n] - first))};
-      });
-    }
-    expect_no_change(bench_, judge_, "output_changed_by_rejected_cycle", "no cycle passes its check");
-    flipped_.clear();
-    ends_.clear();
-  }
-
-  SlaveBench& bench_;
-  CaseJudge& judge_;
-  std::string_view reason_;
-  line::Levels levels_;              // of the whole train
-  std::vector<std::size_t> places_;  // level of each bit of the first cycle's code word
-  std::size_t pitch_ = 0;            // levels from cycle to cycle
-  std::vector<std::uint32_t> flipped_;
-  std::vector<std::size_t> ends_;
-  std::uint64_t count_ = 0;
-};
-
 std::uint32_t random_bit(SlaveBench& bench) {
   return static_cast<std::uint32_t>(bench.random().below(bench.code_word_bits()));
 }
@@ -194,7 +111,7 @@ void add_burst(Rejections& rejections, std::uint32_t at, unsigned length, std::u
     if ((inner >> n & 1U) != 0) bits[count++] = at + 1 + n;
   }
   bits[count++] = at + length - 1;
-  rejections.add(Pattern(bits.data(), count));
+  rejections.add(BitPattern(bits.data(), count));
 }
 
 void bursts_are_rejected(SlaveBench& bench, CaseJudge& judge) {
@@ -318,19 +235,19 @@ void mark_of_others_is_kept(SlaveBench& bench, CaseJudge& judge) {
   }
 }
 
-}  // namespace
-
-std::vector<SlaveCase> slave_frame_check_cases() {
-  std::vector<SlaveCase> cases;
-  const judge::Reference per_segment = sources::practical_guide(
+judge::Reference checks_of_both_sides() {
+  return sources::practical_guide(
       "a check generator at the receive side and one at the send side of each device");
+}
+
+void add_cases_of_single_bits(std::vector<SlaveCase>& cases) {
   cases.push_back(
       {{.id = "interbus/slave/frame_check/leaves_for_what_the_slave_itself_sent",
         .purpose = "IS-09",
         .requirement =
             "In the check phase a slave sends the check of the bits that it sent itself, not of those "
             "that it received: polynomial x^16 + x^12 + x^5 + 1, register preset with ones.",
-        .reference = per_segment,
+        .reference = checks_of_both_sides(),
         .details = {details::check_coding()},
         .stimulus = "Valid data and ID cycles with random inputs and words, one after the other.",
         .expected = "The check that leaves equals the check, computed bit by bit, of the octets that left.",
@@ -365,7 +282,7 @@ std::vector<SlaveCase> slave_frame_check_cases() {
         .requirement =
             "An error in the check itself is an error like one in the data: each of its 16 bits is "
             "compared.",
-        .reference = per_segment,
+        .reference = checks_of_both_sides(),
         .details = {details::mark(), details::message(), details::status_coding()},
         .stimulus =
             "Data cycles in which one bit of the check is flipped at the slave's receiver, each bit in "
@@ -378,6 +295,9 @@ std::vector<SlaveCase> slave_frame_check_cases() {
                     {"tells_no_check_error", "message_missing"}},
         .not_applicable = for_every_slave()},
        check_bit_flipped});
+}
+
+void add_cases_of_patterns(std::vector<SlaveCase>& cases) {
   cases.push_back(
       {{.id = "interbus/slave/frame_check/two_and_three_flipped_bits_are_rejected",
         .purpose = "IS-12",
@@ -459,6 +379,14 @@ std::vector<SlaveCase> slave_frame_check_cases() {
                     {"clears_mark_of_others", "mark_of_others_cleared"}},
         .not_applicable = for_every_slave()},
        mark_of_others_is_kept});
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_frame_check_cases() {
+  std::vector<SlaveCase> cases;
+  add_cases_of_single_bits(cases);
+  add_cases_of_patterns(cases);
   return cases;
 }
 

@@ -1,13 +1,11 @@
 #include "protocols/interbus/exchange_oracle.hpp"
 
-#include <utility>
-
 namespace fieldproof::interbus {
 
 ExchangeOracle::ExchangeOracle(MasterDevice& master, Ring& ring, kernel::Random random)
     : master_(master),
       ring_(ring),
-      random_(std::move(random)),
+      random_(random),
       sent_(ring.word_count()),
       at_terminals_(ring.word_count()),
       held_(ring.word_count()),

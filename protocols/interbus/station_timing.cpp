@@ -58,7 +58,8 @@ class Way {
 Duration sample_to_latch(const NetworkDescription& network) {
   const Rules& rules = network.rules;
   // Telegram k begins at level 13 * k + floor(k * gap), see cycle_frame.hpp.
-  const std::int64_t last = kLoopbackOctets + timing_input(network).user_octets + kTrailerOctets - 1;
+  const auto last =
+      static_cast<std::int64_t>(kLoopbackOctets + timing_input(network).user_octets + kTrailerOctets - 1);
   const std::int64_t levels =
       std::int64_t{line::kDataTelegramLevels} * (last + 1) + last * rules.telegram_gap_millibits / 1'000;
   return kernel::levels_duration(levels, rules.bit_rate);
