@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/probe/capture_fixture.hpp"
@@ -112,6 +113,75 @@ TEST_F(ValveBusCapture, OfACleanRunShowsEveryFrameAndNothingIsWrong) {
   EXPECT_EQ(sum.responses, 32U);
   EXPECT_EQ(sum.arrived + sum.wrong_commands + sum.wrong_responses, 0U);
   EXPECT_TRUE(sum.notes.empty()) << sum.notes.begin()->first;
+}
+
+// The tester drives frames of five characters alone; each has one wrong bit or none.
+TEST_F(ValveBusCapture, OfWrongFramesFindsEachCheckThatIsWrong) {
+  const fs::path left = run("valve_bus/node/check/single_bit_errors_are_refused", {});
+  const reports::Reading reading = reports::read_with_tshark(kSourceFolder, left / "trace.pcapng", kFields);
+  if (!reading.is_available) GTEST_SKIP() << reading.output;
+  Sum sum;
+  hold(left, packets_in(reading.output), sum);
+  std::size_t frames = 0;
+  std::size_t wrong = 0;
+  unsigned check = 0;
+  std::size_t characters = 0;
+  for (const TraceLine& line : lines_in(left / "trace.txt")) {
+    if (!line.is_transmission() || line.channel != "tester/in") continue;
+    check ^= static_cast<unsigned>(std::stoul(line.words(), nullptr, 16));
+    if (++characters % 5 != 0) continue;
+    ++frames;
+    if (std::exchange(check, 0) != 0) ++wrong;
+  }
+  ASSERT_GE(wrong, 40U);
+  EXPECT_EQ(sum.commands, frames);
+  EXPECT_EQ(sum.wrong_commands, wrong);
+}
+
+TEST_F(ValveBusCapture, OfAFaultedRunShowsEachCharacterThatArrivedOtherwise) {
+  write("plan.json", R"({"rules": [{"when": {"receiver": "node/in", "frame_number": {"from": 3, "every": 7},
+                                             "bit": 3}, "effect": {"flip": {}}}]})");
+  call({"run", "valve_bus/node/read/**", "valve_bus/node/write/**", "--volume", "quick", "--record", "all",
+        "--out", "run", "--quiet", "--plan", "plan.json"});
+  Sum sum;
+  std::size_t faults = 0;
+  for (const auto& entry : fs::directory_iterator(folder_ / "run" / "cases")) {
+    const reports::Reading reading =
+        reports::read_with_tshark(kSourceFolder, entry.path() / "trace.pcapng", kFields);
+    if (!reading.is_available) GTEST_SKIP() << reading.output;
+    hold(entry.path(), packets_in(reading.output), sum);
+    for (const TraceLine& line : lines_in(entry.path() / "trace.txt")) faults += line.is_fault() ? 1U : 0U;
+  }
+  ASSERT_GE(faults, 5U);
+  EXPECT_EQ(sum.arrived, faults);
+  EXPECT_EQ(sum.changed_characters, faults);
+}
+
+// Lines that carry glitches, wrong characters, frames of all lengths, collisions and other rates.
+TEST_F(ValveBusCapture, OfDisturbedLinesIsTakenApartWithoutAMalformedPacket) {
+  call({"run", "valve_bus/node/line/**", "valve_bus/node/framing/**", "valve_bus/node/timing/other*",
+        "valve_bus/node/timing/wrong*", "valve_bus/host/response/**", "valve_bus/host/line/**",
+        "valve_bus/host/dip/**", "--volume", "quick", "--record", "all", "--out", "run", "--quiet"});
+  Sum sum;
+  std::map<std::string, std::size_t> variants;
+  for (const auto& entry : fs::directory_iterator(folder_ / "run" / "cases")) {
+    if (!fs::exists(entry.path() / "trace.pcapng")) continue;
+    const reports::Reading reading =
+        reports::read_with_tshark(kSourceFolder, entry.path() / "trace.pcapng", kFields);
+    if (!reading.is_available) GTEST_SKIP() << reading.output;
+    const std::vector<Packet> packets = packets_in(reading.output);
+    hold(entry.path(), packets, sum);
+    if (!packets.empty()) ++variants[packets.front().variant];
+  }
+  EXPECT_GT(variants["0"], 10U);
+  EXPECT_GT(variants["1"], 0U) << "a case with parity";
+  EXPECT_GT(sum.wrong_responses, 10U);
+  for (const char* note : {"The parity is wrong", "The stop bit is missing",
+                           "The gap in front of this character spoils its frame",
+                           "The block check does not fit the octets that it covers",
+                           "The frame before has 4 characters", "The frame before has 6 characters"}) {
+    EXPECT_GT(sum.notes[note], 0U) << note;
+  }
 }
 
 }  // namespace
