@@ -34,8 +34,8 @@ local of_packet = {
 local packet_notes = {
   changed = ProtoExpert.new("fieldproof.note.changed", "A fault changed this transmission on the way",
     expert.group.PROTOCOL, expert.severity.WARN),
-  version = ProtoExpert.new("fieldproof.note.version", "This dissector does not know the layout of the packet",
-    expert.group.UNDECODED, expert.severity.ERROR),
+  version = ProtoExpert.new("fieldproof.note.version",
+    "This dissector does not know the layout of the packet", expert.group.UNDECODED, expert.severity.ERROR),
   cut = ProtoExpert.new("fieldproof.note.cut", "The transmission is longer than the packet",
     expert.group.UNDECODED, expert.severity.NOTE),
 }
@@ -99,7 +99,9 @@ function packets.memory(proto, copy_of)
 end
 
 local function read_packet(tvb)
-  local packet = { tvb = tvb, flags = tvb(2, 1):uint(), protocol = tvb(1, 1):uint(), variant = tvb(3, 1):uint() }
+  local packet = { tvb = tvb, flags = tvb(2, 1):uint() }
+  packet.protocol = tvb(1, 1):uint()
+  packet.variant = tvb(3, 1):uint()
   packet.arrived = has_flag(packet.flags, 1)
   packet.changed = has_flag(packet.flags, 2)
   packet.lost = has_flag(packet.flags, 4)

@@ -1,5 +1,5 @@
 -- INTERBUS in the captures of fieldproof: telegrams in the levels, cycles over the packets of a line, and the
--- frame check. Loaded by fieldproof.lua, which hands over what it knows of packets; by itself it does nothing.
+-- frame check. Loaded by fieldproof.lua, which hands over how packets are read; alone it does nothing.
 --
 -- What cannot be told: a telegram that the end of a transmission cuts is shown as cut and not completed from
 -- the next one; levels off the grid of the bits are sampled once, in the middle of a bit.
@@ -8,8 +8,8 @@ if packets == nil then return end
 
 -- ---------------------------------------------------------------------------------------------------------
 -- INTERBUS, as fieldproof takes it to be. "unverified": a choice of the project or from memory, because the
--- standard was not at hand; wire compatibility with real INTERBUS is not claimed. Whoever has the standard, or
--- a network file with other rules, changes this table and nothing else.
+-- standard was not at hand; wire compatibility with real INTERBUS is not claimed. Whoever has the standard,
+-- or a network file with other rules, changes this table and nothing else.
 local INTERBUS = {
   header = { "sl", "cr", "fl" },  -- unverified: order of the header levels behind the start level
   select_is = 1,                  -- unverified: level of "SL set" (ID cycle)
@@ -140,7 +140,9 @@ local function add_telegram(packet, telegram, tree)
   branch:add(of_line.fl, range, telegram.is_data and 1 or 0)
   if telegram.is_data then branch:add(of_line.data, range, telegram.octet) end
   branch:add(of_line.stop, range, telegram.stop)
-  if packets.is_changed(packet, telegram.at, telegram.levels) then branch:add_proto_expert_info(line_notes.changed) end
+  if packets.is_changed(packet, telegram.at, telegram.levels) then
+    branch:add_proto_expert_info(line_notes.changed)
+  end
   if telegram.is_cut then branch:add_proto_expert_info(line_notes.cut) end
   if telegram.is_stop_missing then branch:add_proto_expert_info(line_notes.stop) end
 end

@@ -1,6 +1,6 @@
 -- The valve bus in the captures of fieldproof: characters in the levels, frames over the packets of a line
 -- (each character may be a transmission of its own), and the block check. Loaded by fieldproof.lua, which
--- hands over what it knows of packets; by itself it does nothing.
+-- hands over how packets are read; alone it does nothing.
 --
 -- What cannot be told at once: only silence ends a frame. A command is shown with its fifth character; three
 -- characters are shown as a response when their check fits, because they may still become a command. What a
@@ -13,14 +13,14 @@ if packets == nil then return end
 -- The valve bus, as fieldproof takes it to be. "unverified": a choice of the project, because the paper that
 -- describes the bus is silent. Whoever knows a real one changes this table and nothing else.
 local VALVE_BUS = {
-  start_is = 0,                   -- start-stop characters: idle and stop are the other level, lowest bit first
-  formats = {                     -- unverified which; 11 bits derived from the bit rate of an 8051 in mode 2
+  start_is = 0,                   -- start-stop characters: idle and stop are the other level
+  formats = {                     -- unverified: which; 11 bits are derived from serial mode 2 of the 8051
     [0] = { name = "P0", data_bits = 8, has_ninth = true },
     [1] = { name = "P1", data_bits = 8, has_parity = true },  -- even
     [2] = { name = "P2", data_bits = 8 },
   },
-  longest_gap_half_characters = 3,  -- unverified: more inside a frame spoils it
-  delimiter_half_characters = 7,    -- unverified: silence that ends a frame
+  gap_half_characters = 3,        -- unverified: more inside a frame spoils it
+  delimiter_half_characters = 7,  -- unverified: silence that ends a frame
   command_characters = 5,         -- seed: ID, COMMAND, DATA0, DATA1, BCC
   response_characters = 3,        -- seed: DATA0, DATA1, BCC
   commands = { [0] = "write", [1] = "read" },  -- seed
@@ -44,7 +44,8 @@ local of_bus = {
   data1 = ProtoField.uint8("valve_bus.data1", "DATA1", base.HEX),
   valves = ProtoField.string("valve_bus.valves", "Valves that are on"),
   check = ProtoField.uint8("valve_bus.check", "Block check", base.HEX),
-  check_calculated = ProtoField.uint8("valve_bus.check.calculated", "Block check as calculated here", base.HEX),
+  check_calculated = ProtoField.uint8("valve_bus.check.calculated", "Block check as calculated here",
+    base.HEX),
   check_good = ProtoField.bool("valve_bus.check.good", "Block check fits"),
   response_data0 = ProtoField.uint8("valve_bus.response.data0", "DATA0", base.HEX),
   response_data1 = ProtoField.uint8("valve_bus.response.data1", "DATA1", base.HEX),
@@ -68,7 +69,8 @@ local notes = {
   stop = note("stop", "The stop bit is missing", expert.group.PROTOCOL, expert.severity.ERROR),
   gap = note("gap", "The gap in front of this character spoils its frame", expert.group.PROTOCOL,
     expert.severity.WARN),
-  length = note("length", "The frame before has a wrong length", expert.group.PROTOCOL, expert.severity.ERROR),
+  length = note("length", "The frame before has a wrong length", expert.group.PROTOCOL,
+    expert.severity.ERROR),
   address = note("address", "No node has this ID", expert.group.PROTOCOL, expert.severity.NOTE),
   command = note("command", "This command is not defined", expert.group.PROTOCOL, expert.severity.NOTE),
 }
@@ -146,7 +148,8 @@ local function character_at(packet, edge)
   character.is_stop_missing = character.stop == VALVE_BUS.start_is
   character.is_good = not character.is_parity_wrong and not character.is_stop_missing
   character.busy_until = busy_until(packet, character, packet.stop_bit)
-  character.levels = math.max(math.min(math.ceil(levels_to(packet, packet.stop_bit + 1, 0)), packet.count - edge), 1)
+  local levels = math.ceil(levels_to(packet, packet.stop_bit + 1, 0))
+  character.levels = math.max(math.min(levels, packet.count - edge), 1)
   return character
 end
 
@@ -199,7 +202,7 @@ local function follow(packet, characters, frame, number, put)
     end
     frame = frame or { octets = {}, is_spoilt = false }
     character.is_late = frame.busy_until ~= nil and character.time - frame.busy_until
-      > bits_time(packet, VALVE_BUS.longest_gap_half_characters * bits / 2)
+      > bits_time(packet, VALVE_BUS.gap_half_characters * bits / 2)
     frame.octets[#frame.octets + 1] = character.octet
     frame.is_spoilt = frame.is_spoilt or character.is_late or not character.is_good
     frame.busy_until = character.busy_until
