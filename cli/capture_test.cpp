@@ -11,8 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/probe/program_fixture.hpp"
-#include "reports/wireshark/third_party_reader.hpp"
+#include "cli/probe/capture_fixture.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -49,27 +48,13 @@ struct Packet {
   std::string comment;
 };
 
-std::size_t count_of(std::string_view text, std::string_view part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
-
-std::size_t entries_of(const std::string& list) {
-  return list.empty() ? 0 : count_of(list, ",") + 1;
-}
-
-bool is_true(const std::string& field) {
-  return field == "1" || field == "True";
-}
-
 Packet packet_of(const std::vector<std::string>& row) {
   Packet packet;
   packet.has_arrived = is_true(row.at(0));
   packet.is_changed = is_true(row.at(1));
   packet.has_error_flag = is_true(row.at(2));
   packet.checks = entries_of(row.at(4));
-  packet.wrong_checks = count_of(row.at(3), "0") + count_of(row.at(3), "False");
+  packet.wrong_checks = false_entries_of(row.at(3));
   packet.telegrams = entries_of(row.at(5));
   packet.data_telegrams = entries_of(row.at(6));
   packet.changed_telegrams = count_of(row.at(7), kChangedTelegram);
@@ -101,33 +86,20 @@ void add_telegrams(const std::string& text, Told& told) {
   }
 }
 
-class Capture : public ProgramFixture {
- protected:
-  // Runs a case; gives the folder of what it left.
-  fs::path run(const std::string& id, std::vector<std::string> options) const {
-    std::vector<std::string> arguments = {"run", id, "--volume", "quick", "--record", "all", "--out", "run"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    call(arguments);
-    for (const auto& entry : fs::directory_iterator(folder_ / "run" / "cases")) return entry.path();
-    return {};
-  }
-
-  static Told told_in(const fs::path& file) {
-    Told told;
-    std::ifstream lines(file);
-    for (std::string line; std::getline(lines, line);) {
-      const std::size_t channel = line.find("  ") + 2;
-      std::string text = line.substr(line.find("  ", channel) + 2);
-      if (text.starts_with("fault: ")) {
-        ++told.faults;
-      } else if (text.find(" = ") == std::string::npos) {
-        ++told.transmissions;
-        add_telegrams(text.substr(0, text.find("  ")), told);
-      }
+Told told_in(const std::vector<TraceLine>& lines) {
+  Told told;
+  for (const TraceLine& line : lines) {
+    if (line.is_fault()) {
+      ++told.faults;
+    } else if (line.is_transmission()) {
+      ++told.transmissions;
+      add_telegrams(line.words(), told);
     }
-    return told;
   }
-};
+  return told;
+}
+
+using Capture = CaptureFixture;
 
 std::vector<Packet> packets_in(const std::string& output) {
   std::vector<Packet> packets;
@@ -141,7 +113,7 @@ TEST_F(Capture, OfACleanRunShowsEveryTelegramAndNothingIsWrong) {
   const fs::path left = run(kNetworkCase, {});
   const reports::Reading reading = reports::read_with_tshark(kSourceFolder, left / "trace.pcapng", kFields);
   if (!reading.is_available) GTEST_SKIP() << reading.output;
-  const Told told = told_in(left / "trace.txt");
+  const Told told = told_in(lines_in(left / "trace.txt"));
   const std::vector<Packet> packets = packets_in(reading.output);
   EXPECT_EQ(packets.size(), told.transmissions);
   ASSERT_GT(told.transmissions, 100U);
@@ -167,7 +139,7 @@ TEST_F(Capture, OfAFaultedRunFlagsExactlyWhatWasCorrupted) {
   const fs::path left = run(kNetworkCase, {"--plan", "plan.json"});
   const reports::Reading reading = reports::read_with_tshark(kSourceFolder, left / "trace.pcapng", kFields);
   if (!reading.is_available) GTEST_SKIP() << reading.output;
-  const Told told = told_in(left / "trace.txt");
+  const Told told = told_in(lines_in(left / "trace.txt"));
   const auto timeline = nlohmann::json::parse(read(left / "timeline.json"));
   ASSERT_FALSE(timeline["is_cut"].get<bool>());
   EXPECT_EQ(timeline["transmissions"].size(), told.transmissions);

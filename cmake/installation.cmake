@@ -19,7 +19,8 @@ foreach(folder IN ITEMS harness protocols emc reports cli)
     install(FILES "${schema}" DESTINATION "${data_folder}/${place}" COMPONENT runtime)
   endforeach()
 endforeach()
-install(FILES reports/wireshark/fieldproof.lua DESTINATION "${data_folder}/wireshark" COMPONENT runtime)
+file(GLOB dissectors CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/reports/wireshark/*.lua")
+install(FILES ${dissectors} DESTINATION "${data_folder}/wireshark" COMPONENT runtime)
 
 # Plug-ins in C need this directory and no library.
 add_library(fieldproof_plugin INTERFACE)

@@ -148,7 +148,7 @@ std::string payload(const Packet& packet, const trace::Notation& notation) {
   put(std::uint8_t{1});
   put(notation.capture_number());
   put(static_cast<std::uint8_t>(flags));
-  put(std::uint8_t{0});
+  put(notation.capture_variant());
   put(wave.start.time_since_epoch().count());
   put(wave.rate);
   put(notation.bit_rate());

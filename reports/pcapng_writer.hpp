@@ -15,7 +15,7 @@
 //   octet  0     1: version of this layout
 //   octet  1     protocol, trace::Notation::capture_number
 //   octet  2     flags: 1 arrived (else driven), 2 changed by a fault, 4 lost, 8 a mask follows the levels
-//   octet  3     0
+//   octet  3     variant of the protocol, trace::Notation::capture_variant
 //   octets 4     start in picoseconds since the start of the run, signed, 64 bit
 //   octets 12    levels per second, 64 bit
 //   octets 20    bits per second, 0 when unknown, 64 bit

@@ -63,7 +63,7 @@ TEST(PcapngWriter, PayloadIsAsTheHeaderSays) {
   const ReadBlock packet = blocks_of(capture_of(sample_recording())).at(5);
   const std::string payload = packet.body.substr(20, number_at(packet.body, 12));
   const std::string expected(
-      "\x01\xC8\x02\x00"
+      "\x01\xC8\x02\x07"
       "\x00\x00\x00\x00\x01\x31\x2D\x00"
       "\x00\x00\x00\x00\x00\x0F\x42\x40"
       "\x00\x00\x00\x00\x00\x0F\x42\x40"

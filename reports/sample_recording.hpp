@@ -17,6 +17,7 @@ class SampleNotation final : public trace::Notation {
  public:
   std::int64_t bit_rate() const override { return 1'000'000; }
   std::uint8_t capture_number() const override { return 200; }
+  std::uint8_t capture_variant() const override { return 7; }
   std::string brief(const line::Waveform& wave) const override { return wave.levels.text(); }
   std::unique_ptr<trace::Teller> teller() const override { return std::make_unique<SampleTeller>(); }
 

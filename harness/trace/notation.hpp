@@ -39,6 +39,8 @@ class Notation {
   virtual std::int64_t bit_rate() const = 0;
   // Which protocol a capture says that it holds; 0: none that a dissector would know.
   virtual std::uint8_t capture_number() const = 0;
+  // Which of the forms of that protocol, where it has several that levels alone do not tell apart.
+  virtual std::uint8_t capture_variant() const { return 0; }
   // As short as it can be: what stands in a line of trace.txt.
   virtual std::string brief(const line::Waveform& wave) const = 0;
   virtual std::unique_ptr<Teller> teller() const = 0;

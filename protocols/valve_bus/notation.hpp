@@ -15,12 +15,16 @@
 //   00 = check wrong        of five characters whose check does not
 namespace fieldproof::valve_bus {
 
+// Of captures; the dissector in reports/wireshark has the same. The variant is the character format.
+inline constexpr std::uint8_t kCaptureNumber = 2;
+
 class FrameNotation final : public trace::Notation {
  public:
   explicit FrameNotation(const Rules& rules) : rules_(rules) {}
 
   std::int64_t bit_rate() const override { return rules_.bit_rate; }
-  std::uint8_t capture_number() const override { return 2; }
+  std::uint8_t capture_number() const override { return kCaptureNumber; }
+  std::uint8_t capture_variant() const override { return static_cast<std::uint8_t>(rules_.characters); }
   std::string brief(const line::Waveform& wave) const override;
   std::unique_ptr<trace::Teller> teller() const override;
 
