@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
-"""An INTERBUS master, to be judged: fieldproof run 'interbus/master/**' --iut 'exec:python3 master.py'
+"""An INTERBUS master that hears levels: fieldproof run 'interbus/master/**' --iut 'exec:python3 master.py'
 
-harness/iut/README.md describes the messages, protocols/interbus/README.md the master."""
+harness/iut/README.md describes the messages, protocols/interbus/README.md the master. master_telegrams.py is the same
+master with telegrams; it does without the classes of levels here."""
 import struct
 import sys
 from collections import deque
 
 NEVER = 2**63 - 1
 SECOND = 10**12  # times are picoseconds
-HELLO, ECHO, CASE_BEGIN, RECEIVE_CHARACTERS, RECEIVE_LEVELS, ON_TIME = 1, 2, 3, 5, 6, 7
-CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT_LEVELS, WRITE = 129, 130, 131, 132, 134, 135
+HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE_CHARACTERS, RECEIVE_LEVELS, ON_TIME = range(1, 8)
+CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT_CHARACTERS, TRANSMIT_LEVELS, WRITE = range(129, 136)
+LINE, APPLICATION = 0, 1
 START, STOP, ID_CYCLE, OUTPUT_WORD = 1, 2, 3, 4
 OFF, READY, IDENTIFICATION, RUN, LOCATING, BUS_STOP = range(6)
 STATE, DATA_CYCLES, ID_CYCLES, REJECTED, REJECTED_DATA, IN_A_ROW, QUALITY = range(7)
@@ -29,29 +31,15 @@ class Stream:
     def send(self, kind, form="", *values):
         content = struct.pack("<" + form, *values)
         self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
-        if kind not in (WRITE, TRANSMIT_LEVELS):
+        if kind not in (WRITE, TRANSMIT_CHARACTERS, TRANSMIT_LEVELS):
             self.sink.flush()
 
 
-class Coding:
-    """Telegrams as text, a character for each level, and the check."""
+class Frame:
+    """The octets of a cycle, and the check."""
     def __init__(self, s):
         self.s, self.rate, self.bit = s, s["bit_rate"], SECOND // s["bit_rate"]
-        octets = [f"{octet:08b}"[::1 if s["most_significant_first"] else -1] for octet in range(256)]
-        self.heads = {(is_id, is_check): self.head(is_id, is_check, True)
-                      for is_id in (0, 1) for is_check in (0, 1)}
-        self.data = {key: ["0" + head + bits + "1" for bits in octets] for key, head in self.heads.items()}
-        status = ("0" + self.head(0, 0, False) + "1").ljust(s["status_pitch_bits"], "1")
-        self.pause = status * 8
-        self.octet_of = {bits: octet for octet, bits in enumerate(octets)}
         self.table = [self.shifted(high << 8) for high in range(256)]
-
-    def head(self, is_id, is_check, is_data):
-        levels = [""] * 3
-        for name, level, is_set in (("select", "select_level", is_id), ("control", "control_level", is_check),
-                                    ("flag", "data_flag_level", is_data)):
-            levels[self.s[name + "_place"]] = str(self.s[level] if is_set else 1 - self.s[level])
-        return "".join(levels)
 
     def shifted(self, register):
         for _ in range(8):
@@ -68,25 +56,50 @@ class Coding:
         return [value & 0xFF, value >> 8] if reflected else [value >> 8, value & 0xFF]
 
     def cycle(self, is_id, words):
-        """The levels of a frame that carries `words` behind the loopback word."""
+        """(is check, octet) of the telegrams that carry `words` behind the loopback word."""
         octets = [octet for word in [self.s["loopback_word"]] + words for octet in (word >> 8, word & 0xFF)]
         status = self.s["status_clean"]
         behind = self.check(octets) + [status >> 8, status & 0xFF] + [0] * self.s["end_telegrams"]
-        telegrams = [self.data[is_id, 0][octet] for octet in octets]
-        telegrams += [self.data[is_id, 1][octet] for octet in behind]
-        pitch = 13000 + self.s["telegram_gap_millibits"]
-        return "".join([telegram.ljust((n + 1) * pitch // 1000 - n * pitch // 1000, "1")
-                        for n, telegram in enumerate(telegrams)])
+        return [(0, octet) for octet in octets] + [(1, octet) for octet in behind]
 
-    def pause_of(self, bits):
+    def place(self, n):
+        """The bit at which telegram n of a cycle begins."""
+        return n * (13000 + self.s["telegram_gap_millibits"]) // 1000
+
+
+class Levels(Frame):
+    """Telegrams as text, a character for each level."""
+    def __init__(self, s):
+        super().__init__(s)
+        octets = [f"{octet:08b}"[::1 if s["most_significant_first"] else -1] for octet in range(256)]
+        heads = {(is_id, is_check): self.head(is_id, is_check, True)
+                 for is_id in (0, 1) for is_check in (0, 1)}
+        self.kind_of = {head: kind for kind, head in heads.items()}
+        self.data = {kind: ["0" + head + bits + "1" for bits in octets] for kind, head in heads.items()}
+        status = ("0" + self.head(0, 0, False) + "1").ljust(s["status_pitch_bits"], "1")
+        self.pause = status * 8
+        self.octet_of = {bits: octet for octet, bits in enumerate(octets)}
+
+    def head(self, is_id, is_check, is_data):
+        levels = [""] * 3
+        for name, level, is_set in (("select", "select_level", is_id), ("control", "control_level", is_check),
+                                    ("flag", "data_flag_level", is_data)):
+            levels[self.s[name + "_place"]] = str(self.s[level] if is_set else 1 - self.s[level])
+        return "".join(levels)
+
+    def text_of(self, is_id, telegrams):
+        return "".join([self.data[is_id, is_check][octet].ljust(self.place(n + 1) - self.place(n), "1")
+                        for n, (is_check, octet) in enumerate(telegrams)])
+
+    def pause_of(self, count):
+        """Status telegrams."""
         pitch = self.s["status_pitch_bits"]
-        count = max(0, bits) // pitch
         if len(self.pause) < count * pitch:
             self.pause = self.pause[:pitch] * count
         return self.pause[:count * pitch]
 
 
-class Returned:
+class ReturnedLevels:
     """What has come back, put together from the transmissions that were heard."""
     def __init__(self, coding):
         self.coding, self.waves, self.heard = coding, [], 0
@@ -113,7 +126,7 @@ class Returned:
         return [line + (end,) for line, end in zip(lines, ends)]
 
     def telegrams(self, until):
-        """(start, head, octet or None, stop level) of those not told yet that have ended by `until`."""
+        """(start, (is ID, is check), octet or None, has stop level) of those not told yet that have ended by `until`."""
         coding, bit_rate = self.coding, self.coding.rate
         flag, is_data = coding.s["flag_place"], str(coding.s["data_flag_level"])
         for origin, rate, levels, end in self.lines(until):
@@ -133,13 +146,14 @@ class Returned:
                 # Behind a missing stop level the next edge counts.
                 at = levels.find("1", at + samples[count])
                 self.heard = origin + at * SECOND // rate
-                yield start, text[1:4], coding.octet_of[text[4:12]] if count == 12 else None, text[count]
+                octet = coding.octet_of[text[4:12]] if count == 12 else None
+                yield start, coding.kind_of.get(text[1:4]), octet, text[count] == "1"
 
 
 class Master:
-    def __init__(self, stream, settings):
-        self.stream, self.s, self.coding = stream, settings, Coding(settings)
-        self.returned, self.items = Returned(self.coding), {}
+    """What all masters do; in which units it is said and heard is left to others."""
+    def __init__(self, stream, settings, coding, returned):
+        self.stream, self.s, self.coding, self.returned, self.items = stream, settings, coding, returned, {}
         self.state, self.stations, self.last_driven = OFF, [], -SECOND
         self.inputs, self.outputs = [], []
         self.start_at = self.verdict_at = NEVER
@@ -307,8 +321,8 @@ class Master:
         else:
             self.is_last = self.is_stopping
             self.sent = [0 if self.is_last else self.outputs[word] for word in self.order_of_words]
-        levels = coding.cycle(self.is_id, self.sent)
-        frame = len(levels) * coding.bit
+        telegrams = coding.cycle(self.is_id, self.sent)
+        frame = coding.place(len(telegrams)) * coding.bit
         if self.search:
             half_bits = s["forward_delay_half_bits"] + s["return_delay_half_bits"]
             delay = len(self.sent) * half_bits * coding.bit // 2
@@ -320,17 +334,17 @@ class Master:
         if not self.search:
             span = -(-span // self.cycle_time) * self.cycle_time if self.is_id else self.cycle_time
         self.verdict_at = min(self.verdict_at, now + span)
-        levels += coding.pause_of((span - frame) // coding.bit)
+        pitch = s["status_pitch_bits"] * coding.bit
+        pause = max(0, span - frame) // pitch
         self.cycle_start, self.start_at = now, now + span
-        self.last_driven = now + len(levels) * coding.bit
-        self.stream.send(TRANSMIT_LEVELS, f"BqqI{(len(levels) + 7) // 8}s", 0, now, coding.rate, len(levels),
-                         int(levels[::-1], 2).to_bytes((len(levels) + 7) // 8, "little"))
+        self.last_driven = now + frame + pause * pitch
+        self.drive(now, telegrams, pause)
 
     def judge(self, now):
         """The words that have come back; None when they must not be taken. The last station's come first in
         data cycles; ID codes are given in the order of the ring, however many they are."""
         coding, transfer, phase = self.coding, 2 * len(self.sent) + 2, self.is_id
-        heads = [coding.heads[phase, 0]] * transfer + [coding.heads[phase, 1]] * (4 + self.s["end_telegrams"])
+        heads = [(phase, 0)] * transfer + [(phase, 1)] * (4 + self.s["end_telegrams"])
         octets, is_good = [], True
         for start, head, octet, stop in self.returned.telegrams(now):
             if not octets:
@@ -338,7 +352,7 @@ class Master:
                     continue
                 self.first_returned = start
             if len(octets) < len(heads):
-                is_good &= octet is not None and stop == "1" and head == heads[len(octets)]
+                is_good &= octet is not None and stop and head == heads[len(octets)]
                 octets.append(octet)
             else:
                 is_good &= octet is None
@@ -461,12 +475,30 @@ class Master:
         return min(self.verdict_at, self.start_at)
 
 
+class LevelMaster(Master):
+    unit, name = 2, b"master in Python"
+
+    def __init__(self, stream, settings):
+        coding = Levels(settings)
+        super().__init__(stream, settings, coding, ReturnedLevels(coding))
+
+    def drive(self, now, telegrams, pause):
+        """A cycle and the status telegrams behind it."""
+        levels = self.coding.text_of(self.is_id, telegrams) + self.coding.pause_of(pause)
+        self.stream.send(TRANSMIT_LEVELS, f"BqqI{(len(levels) + 7) // 8}s", 0, now, self.coding.rate,
+                         len(levels), int(levels[::-1], 2).to_bytes((len(levels) + 7) // 8, "little"))
+
+    def hear(self, message):
+        _, start, rate, count = struct.unpack_from("<xBqqI", message)
+        self.returned.add(start, rate, count, message[22:])
+
+
 def text_at(content, at):
     end = at + 2 + struct.unpack_from("<H", content, at)[0]
     return content[at + 2:end].decode(), end
 
 
-def master_for(stream, content):
+def master_for(stream, content, kind_of_master):
     name, at = text_at(content, 1)
     settings, count = {}, struct.unpack_from("<8xH", content, at)[0]
     at += 10
@@ -474,28 +506,28 @@ def master_for(stream, content):
         key, at = text_at(content, at)
         settings[key] = struct.unpack_from("<q", content, at)[0]
         at += 8
-    return Master(stream, settings) if name.startswith("interbus/") else None
+    return kind_of_master(stream, settings) if name.startswith("interbus/") else None
 
 
-def serve(stream):
+def serve(stream, kind_of_master):
     master = None
     while True:
         message = stream.receive()
         kind = message[0]
         if kind == HELLO:
-            stream.send(CAPABILITIES, "HBH16s", 1, 2, 16, b"master in Python")
+            name = kind_of_master.name
+            stream.send(CAPABILITIES, f"HBH{len(name)}s", 1, kind_of_master.unit, len(name), name)
             continue
         if kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])
             continue
         if kind == CASE_BEGIN:
-            master = master_for(stream, message)
-        elif kind == RECEIVE_CHARACTERS:
+            master = master_for(stream, message, kind_of_master)
+        elif kind == RECEIVE_CHARACTERS and message[1] == APPLICATION:
             now, count = struct.unpack_from("<xxqH", message)
             master.order(now, [struct.unpack_from("<16xH", message, 12 + 19 * n)[0] for n in range(count)])
-        elif kind == RECEIVE_LEVELS:
-            _, start, rate, count = struct.unpack_from("<xBqqI", message)
-            master.returned.add(start, rate, count, message[22:])
+        elif kind in (RECEIVE_CHARACTERS, RECEIVE_LEVELS):
+            master.hear(message)
         elif kind == ON_TIME:
             master.on_time(struct.unpack("<xq", message)[0])
         if master is None:
@@ -504,4 +536,5 @@ def serve(stream):
             stream.send(DONE, "q", master.next_time())
 
 
-serve(Stream(sys.stdin.buffer, sys.stdout.buffer))
+if __name__ == "__main__":
+    serve(Stream(sys.stdin.buffer, sys.stdout.buffer), LevelMaster)

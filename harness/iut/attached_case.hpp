@@ -51,7 +51,8 @@ class AttachedCase {
     call(*attachment_.device);
     is_well_ = true;
   }
-  bool hears_levels() const { return attachment_.device->unit_kind() == UnitKind::levels; }
+  UnitKind unit_kind() const { return attachment_.device->unit_kind(); }
+  bool hears_levels() const { return unit_kind() == UnitKind::levels; }
   kernel::Time now() const { return now_; }
 
   // ---- what the implementation does ----

@@ -25,7 +25,14 @@ namespace fieldproof::iut {
 enum class UnitKind : std::uint8_t {
   characters = 1,  // of an asynchronous line, with their errors
   levels = 2,      // packed, at any rate
+  telegrams = 3,   // of a line code that the role has, as characters
 };
+
+// "telegrams"
+constexpr std::string_view name(UnitKind kind) {
+  if (kind == UnitKind::characters) return "characters";
+  return kind == UnitKind::levels ? "levels" : "telegrams";
+}
 
 struct Character {
   kernel::Time start{};       // of its start bit

@@ -43,9 +43,10 @@ typedef unsigned long long fieldproof_word;
 #define FIELDPROOF_NEVER ((fieldproof_time)(~(fieldproof_word)0 >> 1))
 
 /* How a line is told: FIELDPROOF_CHARACTERS are those of an asynchronous line, FIELDPROOF_LEVELS are packed
- * bits. */
+ * bits, FIELDPROOF_TELEGRAMS are those of a role that has some; they travel as characters. */
 #define FIELDPROOF_CHARACTERS 1
 #define FIELDPROOF_LEVELS 2
+#define FIELDPROOF_TELEGRAMS 3
 
 /* The bench keeps its characters in this shape and hands them over where they lie. */
 #if defined(__GNUC__)
@@ -79,7 +80,8 @@ typedef struct fieldproof_bench {
   unsigned version; /* FIELDPROOF_PLUGIN_VERSION of the bench */
   unsigned size;    /* of this struct; later versions are longer */
   void* context;
-  /* `count` characters without a gap from `start` on, with the driver on around them. */
+  /* `count` characters or telegrams without a gap from `start` on, with the driver on around them; a line of
+   * telegrams has no driver, and its instants are not looked at. */
   void (*transmit)(void* context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
                    fieldproof_time driver_off, const unsigned short* characters, unsigned count);
   /* `count` levels, the first in bit 0 of levels[0], each 1/rate seconds long. */
@@ -97,7 +99,7 @@ typedef struct fieldproof_implementation {
   unsigned version; /* FIELDPROOF_PLUGIN_VERSION */
   unsigned size;    /* sizeof(fieldproof_implementation) */
   const char* name;
-  int unit; /* FIELDPROOF_CHARACTERS or FIELDPROOF_LEVELS */
+  int unit; /* FIELDPROOF_CHARACTERS, FIELDPROOF_LEVELS or FIELDPROOF_TELEGRAMS */
 
   /* An instance for a role, or null for a role that is not served. `bench` stays valid until `destroy`. */
   void* (*create)(const char* protocol, const char* role, const fieldproof_bench* bench);
@@ -107,7 +109,7 @@ typedef struct fieldproof_implementation {
   int (*begin)(void* self, const fieldproof_case* test_case, fieldproof_time* next_time);
   /* The supply comes and goes; a case begins without it. Returns when on_time is wanted. */
   fieldproof_time (*set_power)(void* self, int is_on, fieldproof_time now);
-  /* Characters that are over. Returns when on_time is wanted. May be null with FIELDPROOF_LEVELS, unless the
+  /* Characters that are over, or telegrams when they begin. Returns when on_time is wanted. May be null with FIELDPROOF_LEVELS, unless the
    * role tells some all the same. */
   fieldproof_time (*receive)(void* self, unsigned port, const fieldproof_character* characters,
                              unsigned count, fieldproof_time now);

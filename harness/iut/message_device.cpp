@@ -35,9 +35,10 @@ MessageDevice::MessageDevice(Peer peer, const RoleName& role, const PeerLimits& 
                                       peer_.what(), version, kMessageVersion));
     }
     const std::uint8_t kind = reader.u8();
-    if (kind != static_cast<std::uint8_t>(UnitKind::characters) &&
-        kind != static_cast<std::uint8_t>(UnitKind::levels)) {
-      throw MessageError(fmt::format("unit {}; there are 1 (characters) and 2 (levels)", kind));
+    if (kind < static_cast<std::uint8_t>(UnitKind::characters) ||
+        kind > static_cast<std::uint8_t>(UnitKind::telegrams)) {
+      throw MessageError(
+          fmt::format("unit {}; there are 1 (characters), 2 (levels) and 3 (telegrams)", kind));
     }
     unit_kind_ = static_cast<UnitKind>(kind);
     own_name_ = kernel::escaped_line(reader.text());

@@ -85,9 +85,7 @@ class PluginDevice final : public Device {
   }
   ~PluginDevice() override { implementation_->destroy(self_); }
 
-  UnitKind unit_kind() const override {
-    return implementation_->unit == FIELDPROOF_LEVELS ? UnitKind::levels : UnitKind::characters;
-  }
+  UnitKind unit_kind() const override { return static_cast<UnitKind>(implementation_->unit); }
 
   bool begin(const CaseBegin& begin, Bench& bench) override {
     std::vector<fieldproof_setting> settings;
@@ -152,6 +150,11 @@ class PluginDevice final : public Device {
     const fieldproof_implementation& it = *implementation_;
     if (it.size < sizeof it)
       refuse_library(plugin_.name, "has a shorter table of functions than its version has");
+    if (it.unit < FIELDPROOF_CHARACTERS || it.unit > FIELDPROOF_TELEGRAMS) {
+      refuse_library(
+          plugin_.name,
+          fmt::format("has unit {}; there are 1 (characters), 2 (levels) and 3 (telegrams)", it.unit));
+    }
     const bool has_receive =
         it.unit == FIELDPROOF_LEVELS ? it.receive_levels != nullptr : it.receive != nullptr;
     if (it.create == nullptr || it.destroy == nullptr || it.begin == nullptr || it.set_power == nullptr ||

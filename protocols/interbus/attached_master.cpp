@@ -70,10 +70,7 @@ AttachedMaster::AttachedMaster(iut::Attachment attachment, const MasterConfigura
                                const std::string& case_id, std::uint64_t seed)
     : kept_(kMasterItems) {
   attached_.emplace(std::move(attachment));
-  if (!attached_->hears_levels()) {
-    throw kernel::Error(kernel::ErrorKind::implementation,
-                        "an INTERBUS master hears and says levels; this implementation announces characters");
-  }
+  front_ = front_of(*attached_, configuration.rules, "master");
   attached_->begin({case_id, seed, master_settings(configuration)}, *this);
 }
 
@@ -128,11 +125,25 @@ void AttachedMaster::tell(const Order& order) {
 }
 
 void AttachedMaster::receive(segment::PortIndex port, const line::Waveform& reception) {
-  call_and_order(reception.start, [&](iut::Device& device) { device.receive(port, reception); });
+  if (!front_) {
+    return call_and_order(reception.start, [&](iut::Device& device) { device.receive(port, reception); });
+  }
+  front_->hear(port, reception, [&](auto telegrams) { tell(telegrams, reception.start); });
+}
+
+void AttachedMaster::tell(std::span<const iut::Character> telegrams, kernel::Time now) {
+  call_and_order(now, [&](iut::Device& device) { device.receive(0, telegrams, now); });
 }
 
 void AttachedMaster::on_time(kernel::Time now) {
+  if (front_) front_->complete(now, [&](unsigned, auto telegrams) { tell(telegrams, now); });
+  if (front_ && attached_ && attached_->next_time() > now) return;
   call_and_order(now, [&](iut::Device& device) { device.on_time(now); });
+}
+
+kernel::Time AttachedMaster::next_time() const {
+  if (!attached_) return kernel::kNever;
+  return std::min(attached_->next_time(), front_ ? front_->next_time() : kernel::kNever);
 }
 
 void AttachedMaster::end() {
@@ -182,11 +193,17 @@ MasterStatus AttachedMaster::status() const {
 
 // ---- what the implementation does ----
 
-void AttachedMaster::transmit(const iut::Transmission&) {
-  iut::refuse_impossible("sends characters; an INTERBUS master says levels");
+void AttachedMaster::transmit(const iut::Transmission& said) {
+  if (!front_) iut::refuse_impossible("sends characters; this master has announced levels");
+  drive(said.port, front_->levels_of(said));
 }
 
 void AttachedMaster::transmit(unsigned port, line::Waveform& wave) {
+  if (front_) iut::refuse_impossible("drives levels; this master has announced telegrams");
+  drive(port, wave);
+}
+
+void AttachedMaster::drive(unsigned port, line::Waveform& wave) {
   attached_->expect_drive(wave);
   if (port != 0) iut::refuse_impossible(fmt::format("drives port {}; a master has its line, port 0", port));
   has_driven_ = true;

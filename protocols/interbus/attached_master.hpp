@@ -13,11 +13,13 @@
 #include "harness/iut/served_station.hpp"
 #include "protocols/interbus/device.hpp"
 #include "protocols/interbus/rule_settings.hpp"
+#include "protocols/interbus/telegram_front.hpp"
 
 // A master between the bench and an implementation outside, in both directions: AttachedMaster is a master of
 // the bench that an iut::Device plays; ServedMaster is an iut::Device that a master of ours plays.
 //
-// Port 0 is the line, in levels; a reception is told whole, when it begins. Port 1 is the application: its
+// Port 0 is the line, in levels or telegrams (telegram_front.hpp); a reception is told whole, when it begins.
+// Port 1 is the application: its
 // orders are told as characters whatever the unit, one order a call, each over at the instant of the call.
 // The implementation keeps the words that its application may look at up to date within the call in which
 // they change, and tells the end of each cycle behind them. It is told the settings of master_settings.
@@ -83,7 +85,7 @@ class AttachedMaster final : public MasterDevice, private iut::Bench {
 
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
   void on_time(kernel::Time now) override;
-  kernel::Time next_time() const override { return attached_ ? attached_->next_time() : kernel::kNever; }
+  kernel::Time next_time() const override;
   // Gives the implementation back; what it has told stays.
   void end() override;
 
@@ -101,6 +103,8 @@ class AttachedMaster final : public MasterDevice, private iut::Bench {
   template <typename Call>
   void call_and_order(kernel::Time now, Call&& call);
 
+  void tell(std::span<const iut::Character> telegrams, kernel::Time now);
+  void drive(unsigned port, line::Waveform& wave);
   void transmit(const iut::Transmission& transmission) override;
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
@@ -111,6 +115,7 @@ class AttachedMaster final : public MasterDevice, private iut::Bench {
   std::string error_text() const;
 
   std::optional<iut::AttachedCase> attached_;
+  std::unique_ptr<TelegramFront> front_;  // of one that hears telegrams
   segment::Port* out_ = nullptr;
   CycleHook hook_;
   bool is_supplied_ = false;

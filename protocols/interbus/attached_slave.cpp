@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/kernel/error.hpp"
+#include <algorithm>
 
 namespace fieldproof::interbus {
 namespace {
@@ -35,10 +35,7 @@ SlaveConfiguration slave_configuration_of(const iut::CaseBegin& begin) {
 AttachedSlave::AttachedSlave(iut::Attachment attachment, const SlaveConfiguration& configuration,
                              const std::string& case_id, std::uint64_t seed)
     : words_(configuration.words), attached_(std::move(attachment)) {
-  if (!attached_.hears_levels()) {
-    throw kernel::Error(kernel::ErrorKind::implementation,
-                        "an INTERBUS slave hears and says levels; this implementation announces characters");
-  }
+  front_ = front_of(attached_, configuration.rules, "slave");
   attached_.begin({case_id, seed, slave_settings(configuration)}, *this);
 }
 
@@ -50,14 +47,41 @@ void AttachedSlave::wire(const SlavePorts& ports, Terminals& terminals) {
 }
 
 void AttachedSlave::receive(segment::PortIndex port, const line::Waveform& reception) {
-  attached_.call(reception.start, [&](iut::Device& device) { device.receive(port, reception); });
+  if (!front_) {
+    return attached_.call(reception.start, [&](iut::Device& device) { device.receive(port, reception); });
+  }
+  front_->hear(port, reception, [&](auto telegrams) { tell(port, telegrams, reception.start); });
 }
 
-void AttachedSlave::transmit(const iut::Transmission&) {
-  iut::refuse_impossible("sends characters; an INTERBUS slave says levels");
+void AttachedSlave::tell(unsigned port, std::span<const iut::Character> telegrams, kernel::Time now) {
+  attached_.call(now, [&](iut::Device& device) { device.receive(port, telegrams, now); });
+}
+
+void AttachedSlave::on_time(kernel::Time now) {
+  if (front_) front_->complete(now, [&](unsigned port, auto telegrams) { tell(port, telegrams, now); });
+  if (!front_ || attached_.next_time() <= now) attached_.on_time(now);
+}
+
+kernel::Time AttachedSlave::next_time() const {
+  return std::min(attached_.next_time(), front_ ? front_->next_time() : kernel::kNever);
+}
+
+void AttachedSlave::end() {
+  if (front_) front_->reset();
+  attached_.end();
+}
+
+void AttachedSlave::transmit(const iut::Transmission& said) {
+  if (!front_) iut::refuse_impossible("sends characters; this slave has announced levels");
+  drive(said.port, front_->levels_of(said));
 }
 
 void AttachedSlave::transmit(unsigned port, line::Waveform& wave) {
+  if (front_) iut::refuse_impossible("drives levels; this slave has announced telegrams");
+  drive(port, wave);
+}
+
+void AttachedSlave::drive(unsigned port, line::Waveform& wave) {
   attached_.expect_drive(wave);
   if (port >= ports_.size() || ports_.at(port) == nullptr) {
     iut::refuse_impossible(fmt::format("drives port {}, where nothing is plugged in", port));

@@ -4,19 +4,21 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "harness/iut/attached_case.hpp"
 #include "harness/iut/served_station.hpp"
 #include "protocols/interbus/device.hpp"
 #include "protocols/interbus/rule_settings.hpp"
+#include "protocols/interbus/telegram_front.hpp"
 
 // A slave between the bench and an implementation outside, in both directions: AttachedSlave is a slave of
 // the bench that an iut::Device plays; ServedSlave is an iut::Device that a slave of ours plays.
 //
-// The implementation hears and says levels, on the ports of SlaveDevice. It is told a reception whole, when
-// it begins: what it drives passes on levels that have come by then. It writes and reads the items below, and
-// is told the settings of slave_settings.
+// The implementation hears and says levels or telegrams (telegram_front.hpp), on the ports of SlaveDevice. It
+// is told a reception whole, when it begins: what it drives passes on levels that have come by then. It
+// writes and reads the items below, and is told the settings of slave_settings.
 namespace fieldproof::interbus {
 
 inline constexpr iut::Item kOutputWord = 0x000;  // write, + word
@@ -42,11 +44,13 @@ class AttachedSlave final : public SlaveDevice, private iut::Bench {
     (on_branch ? branch_present_ : remote_present_) = present;
   }
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
-  void on_time(kernel::Time now) override { attached_.on_time(now); }
-  kernel::Time next_time() const override { return attached_.next_time(); }
-  void end() override { attached_.end(); }
+  void on_time(kernel::Time now) override;
+  kernel::Time next_time() const override;
+  void end() override;
 
  private:
+  void tell(unsigned port, std::span<const iut::Character> telegrams, kernel::Time now);
+  void drive(unsigned port, line::Waveform& wave);
   void transmit(const iut::Transmission& transmission) override;
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
@@ -54,6 +58,7 @@ class AttachedSlave final : public SlaveDevice, private iut::Bench {
 
   unsigned words_;
   iut::AttachedCase attached_;
+  std::unique_ptr<TelegramFront> front_;  // of one that hears telegrams
   std::array<segment::Port*, 3> ports_{};
   Terminals* terminals_ = nullptr;
   bool remote_present_ = true;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "harness/iut/misbehaviour.hpp"
+#include "harness/kernel/error.hpp"
 
 namespace fieldproof::valve_bus {
 namespace {
@@ -15,6 +16,14 @@ constexpr std::size_t kMostCharacters = 4096;
 
 CharacterProfile character_profile_of(const iut::CaseBegin& begin) {
   return static_cast<CharacterProfile>(std::clamp<std::int64_t>(iut::setting(begin, "characters", 0), 0, 2));
+}
+
+AttachedLine::AttachedLine(iut::AttachedCase& attached, const Rules& rules)
+    : attached_(attached), rules_(rules), codec_(rules), transmitter_(rules) {
+  if (attached.unit_kind() != iut::UnitKind::telegrams) return;
+  throw kernel::Error(kernel::ErrorKind::implementation,
+                      "a station of the valve bus hears and says characters or levels; this implementation "
+                      "announces telegrams");
 }
 
 void AttachedLine::begin(const Rules& rules, kernel::Time now) {

@@ -12,8 +12,8 @@ namespace fieldproof::valve_bus {
 
 class AttachedLine {
  public:
-  AttachedLine(iut::AttachedCase& attached, const Rules& rules)
-      : attached_(attached), rules_(rules), codec_(rules), transmitter_(rules) {}
+  // Throws kernel::Error for an implementation that announces what the valve bus does not have.
+  AttachedLine(iut::AttachedCase& attached, const Rules& rules);
 
   void wire(segment::Port& line) { line_ = &line; }
   // Nothing has been driven before `now`, and characters come as these rules say.

@@ -1,0 +1,125 @@
+// Subject: slaves and masters that are called as an implementation outside which hears and says telegrams:
+// the suites judge them as they do inside, but for what only levels can show.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "conformance/interbus/master_deviations.hpp"
+#include "conformance/interbus/slave_deviations.hpp"
+#include "conformance/interbus/suite.hpp"
+#include "conformance/runner.hpp"
+#include "protocols/interbus/attached_master.hpp"
+#include "protocols/interbus/attached_slave.hpp"
+#include "protocols/interbus/master.hpp"
+#include "protocols/interbus/slave.hpp"
+#include "protocols/interbus/telegram_speaker.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using interbus::MasterConfiguration;
+using interbus::SlaveConfiguration;
+
+const Suite& judged_inside() {
+  static const auto suite = interbus_suite();
+  return *suite;
+}
+
+iut::Attachment speaker_of(std::unique_ptr<iut::Device> served, unsigned line_ports) {
+  const auto device = std::make_shared<interbus::TelegramSpeaker>(std::move(served), line_ports);
+  return {device.get(), device, {}};
+}
+
+// Plays a station by name as one outside; an empty name is the reference.
+std::unique_ptr<Suite> in_telegrams(const std::string& deviation) {
+  const auto slave = [deviation](const Wanted& wanted, const SlaveConfiguration& configuration) {
+    auto served = std::make_unique<interbus::ServedSlave>([deviation](const SlaveConfiguration& told) {
+      return deviation.empty() ? std::make_unique<interbus::Slave>(told)
+                               : make_slave_deviation(deviation, told);
+    });
+    return std::make_unique<interbus::AttachedSlave>(speaker_of(std::move(served), 3), configuration,
+                                                     wanted.case_id, wanted.seed);
+  };
+  const auto master = [deviation](const Wanted& wanted, const MasterConfiguration& configuration) {
+    auto served = std::make_unique<interbus::ServedMaster>([deviation](const MasterConfiguration& told) {
+      return deviation.empty() ? std::make_unique<interbus::Master>(told)
+                               : make_master_deviation(deviation, told);
+    });
+    return std::make_unique<interbus::AttachedMaster>(speaker_of(std::move(served), 1), configuration,
+                                                      wanted.case_id, wanted.seed);
+  };
+  return interbus_suite({.slave = {.attached = slave}, .master = {.attached = master}});
+}
+
+Setup telegram_setup(const std::string& role, const std::string& uri) {
+  Setup setup;
+  setup.implementations.push_back({role, 0, uri});
+  setup.seed = 1;
+  setup.volume = Volume::quick;
+  return setup;
+}
+
+void expect_reference_is_judged_as_inside(const std::string& role) {
+  const auto suite = in_telegrams("");
+  int judged = 0;
+  for (const TestCase& test_case : suite->cases()) {
+    if (test_case.role() != role) continue;
+    ++judged;
+    const Outcome told = suite->run(test_case, telegram_setup(role, "outside"));
+    const Outcome known = judged_inside().run(test_case, telegram_setup(role, "ref"));
+    EXPECT_EQ(told.result.verdict, known.result.verdict) << test_case.id << told.result.reason;
+    EXPECT_EQ(told.result.reason, known.result.reason) << test_case.id;
+  }
+  EXPECT_GT(judged, 40);
+}
+
+TEST(ServedTelegrams, ReferenceSlaveIsJudgedInEveryCaseAsInside) {
+  expect_reference_is_judged_as_inside("slave");
+}
+
+TEST(ServedTelegrams, ReferenceMasterIsJudgedInEveryCaseAsInside) {
+  expect_reference_is_judged_as_inside("master");
+}
+
+struct Deviating {
+  std::string role;
+  std::string name;
+  friend void PrintTo(const Deviating& one, std::ostream* out) { *out << one.role << " " << one.name; }
+};
+
+class TelegramDeviations : public testing::TestWithParam<Deviating> {};
+
+// In the cases that name it.
+TEST_P(TelegramDeviations, AreJudgedAsInside) {
+  const auto& [role, name] = GetParam();
+  const auto suite = in_telegrams(name);
+  int judged = 0;
+  for (const TestCase& test_case : suite->cases()) {
+    if (test_case.role() != role || std::ranges::count(test_case.catches, name, &Catch::deviation) == 0)
+      continue;
+    ++judged;
+    const Outcome told = suite->run(test_case, telegram_setup(role, "outside"));
+    const Outcome known = judged_inside().run(test_case, telegram_setup(role, "deviant:" + name));
+    EXPECT_EQ(told.result.verdict, known.result.verdict) << test_case.id << told.result.reason;
+    EXPECT_EQ(told.result.reason, known.result.reason) << test_case.id;
+  }
+  EXPECT_GT(judged, 0);
+}
+
+std::vector<Deviating> all_deviations() {
+  std::vector<Deviating> all;
+  for (const Deviation& one : slave_deviations()) all.push_back({"slave", one.name});
+  for (const Deviation& one : master_deviations()) all.push_back({"master", one.name});
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TelegramDeviations, testing::ValuesIn(all_deviations()),
+                         [](const testing::TestParamInfo<Deviating>& one) {
+                           return one.param.role + "_" + one.param.name;
+                         });
+
+}  // namespace
+}  // namespace fieldproof::conformance
