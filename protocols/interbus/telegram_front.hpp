@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -38,7 +39,7 @@ class TelegramFront {
   template <typename Tell>
   void hear(unsigned port, const line::Waveform& reception, Tell&& tell) {
     heard_.clear();
-    receivers_.at(port).receive(reception, sink());
+    receivers_.at(port).receive(reception, std::bind_front(&TelegramFront::note, this));
     tell_heard(tell);
   }
 
@@ -48,7 +49,7 @@ class TelegramFront {
     for (unsigned port = 0; port < kPorts; ++port) {
       if (receivers_.at(port).pending_until() > now) continue;
       heard_.clear();
-      receivers_.at(port).flush(sink());
+      receivers_.at(port).flush(std::bind_front(&TelegramFront::note, this));
       tell_heard([&](std::span<const iut::Character> characters) { tell(port, characters); });
     }
   }
@@ -62,10 +63,8 @@ class TelegramFront {
   line::Waveform& levels_of(const iut::Transmission& said);
 
  private:
-  auto sink() {
-    return [this](const line::Waveform& wave, const line::Telegram& telegram) {
-      heard_.push_back(character_of(telegram, wave.time_of(telegram.level), said_.rate));
-    };
+  void note(const line::Waveform& wave, const line::Telegram& telegram) {
+    heard_.push_back(character_of(telegram, wave.time_of(telegram.level), said_.rate));
   }
   template <typename Tell>
   void tell_heard(Tell&& tell) {
