@@ -199,6 +199,26 @@ TEST_F(Attachments, InterbusSlaveInPythonPasses) {
   expect_passes("exec:" + in_quotes(python) + " " + in_quotes(slave), "interbus/slave/", 60);
 }
 
+// What looks at levels alone does not apply to one that hears telegrams; in a network both take part.
+TEST_F(Attachments, InterbusSlaveInPythonPassesInTelegrams) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const fs::path slave = kSourceFolder / "examples/interbus_slave/slave_telegrams.py";
+  const std::string uri = "exec:" + in_quotes(python) + " " + in_quotes(slave);
+  const Cases cases = judged(uri, "**", {}, {}, "interbus/slave/");
+  EXPECT_EQ(cases.size(), 60U);
+  int not_applicable = 0;
+  for (const auto& [id, one] : cases) {
+    if (one.verdict == "not-applicable") {
+      ++not_applicable;
+    } else {
+      EXPECT_EQ(one.verdict, "pass") << id << ": " << one.reason << one.findings;
+    }
+  }
+  EXPECT_EQ(not_applicable, 4);
+  expect_passes("slave@2=" + uri, "interbus/network/", 7);
+}
+
 // Its suite plays the ring; in a network slaves answer it.
 TEST_F(Attachments, InterbusMasterInPythonPasses) {
   const std::string python = installed("python3");
@@ -207,6 +227,39 @@ TEST_F(Attachments, InterbusMasterInPythonPasses) {
   const std::string uri = "exec:" + in_quotes(python) + " " + in_quotes(master);
   expect_passes(uri, "interbus/master/", 43);
   expect_passes("master=" + uri, "interbus/network/", 7);
+}
+
+TEST_F(Attachments, InterbusMasterInPythonPassesInTelegrams) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const fs::path master = kSourceFolder / "examples/interbus_master/master_telegrams.py";
+  const std::string uri = "exec:" + in_quotes(python) + " " + in_quotes(master);
+  expect_passes(uri, "interbus/master/", 43);
+  expect_passes("master=" + uri, "interbus/network/", 7);
+}
+
+// Verdicts and reasons, where levels are not all that is looked at; cases are in conformance's test of it.
+TEST_F(Attachments, BuiltInStationsInTelegramsAreJudgedAsInside) {
+  for (const auto& [role, deviation, test_case] :
+       {std::array{"slave", "output_octets_swapped", "data_cycle/process_data_is_exact"},
+        std::array{"master", "wrong_segment", "rejection/marked_status_names_the_segment"}}) {
+    const std::string suite = std::string("interbus/") + role + "/";
+    const std::string station =
+        "exec:" + in_quotes(FIELDPROOF_EXE) + " station interbus/" + role + " --units telegrams ";
+    for (const auto& [id, one] : judged(station, "**", {}, {}, suite)) {
+      EXPECT_TRUE(one.verdict == "pass" || one.verdict == "not-applicable") << id << one.findings;
+    }
+    const Case wrong = judged(station + "deviant:" + deviation, test_case, {}, {}, suite).at(test_case);
+    EXPECT_EQ(wrong.verdict, "fail");
+    EXPECT_EQ(wrong.reason,
+              judged(std::string("deviant:") + deviation, test_case, {}, {}, suite).at(test_case).reason);
+  }
+  for (const char* wrong : {"valve_bus/node --units telegrams", "interbus/slave --units octets"}) {
+    std::istringstream words(wrong);
+    std::vector<std::string> call_of{"station"};
+    for (std::string word; words >> word;) call_of.push_back(word);
+    EXPECT_EQ(call(call_of).exit_code, 64) << wrong;
+  }
 }
 
 TEST_F(Attachments, NodeInNodeJsPasses) {

@@ -55,6 +55,7 @@ constexpr std::array kOptions = {
     Option{"vcd", value, "FILE", "", "replay", "write the recording as a wave dump (VCD) here", true},
     Option{"cases", value, "N", "2000", "check", "how many sequences are drawn at most", true},
     Option{"case", value, "FILE", "<role>-<seed>.case.json, <file>.shrunk.json", "check shrink", "where what was found is written, for replay", true},
+    Option{"units", value, "levels|telegrams", "levels", "station", "what a built-in INTERBUS station hears and says", true},
     Option{"serial", value, "LINE", "", "station", "play it in wall-clock time on this serial line; a name that is not there yet becomes a pseudo terminal", true},
     Option{"upper", value, "PATH|-|none", "-", "station", "with --serial: where the upper tester's channel is: a socket to listen at, the standard streams, or none", true},
     Option{"runs", value, "N", "2", "verify", "how often each case is run (also -n)", true},

@@ -32,9 +32,9 @@ std::unique_ptr<iut::Device> serve(const std::string& uri) {
 
 constexpr std::array kRoles{
     Role{"interbus", "slave", iut::Told::in_its_unit,
-         &serve<interbus::ServedSlave, interbus::Slave, &conformance::make_slave_deviation>},
+         &serve<interbus::ServedSlave, interbus::Slave, &conformance::make_slave_deviation>, 3},
     Role{"interbus", "master", iut::Told::in_characters_too,
-         &serve<interbus::ServedMaster, interbus::Master, &conformance::make_master_deviation>},
+         &serve<interbus::ServedMaster, interbus::Master, &conformance::make_master_deviation>, 1},
     Role{"valve_bus", "node", iut::Told::in_its_unit,
          &serve<valve_bus::ServedNode, valve_bus::Node, &conformance::make_node_deviation>},
     Role{"valve_bus", "host", iut::Told::in_characters_too,

@@ -19,6 +19,8 @@ struct Role {
   // The station of `ref` or `deviant:NAME` as an implementation. Throws kernel::Error(usage) for a deviation
   // that is not there.
   std::unique_ptr<iut::Device> (*serve)(const std::string& uri);
+  // How many of its ports are lines on which it may hear and say telegrams.
+  unsigned telegram_ports = 0;
 
   std::string path() const { return std::string(protocol) + "/" + std::string(name); }
 };

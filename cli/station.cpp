@@ -14,6 +14,7 @@
 #include "cli/verbs.hpp"
 #include "harness/iut/server.hpp"
 #include "harness/kernel/error.hpp"
+#include "protocols/interbus/telegram_speaker.hpp"
 
 // `fieldproof station`: a built-in station, or one in a shared library, as an implementation in a process of
 // its own. A built-in one shows that the bench judges it there as it does inside, and stands in for an
@@ -30,8 +31,19 @@ const Role& role_named(const std::string& path) {
                                                             path, fmt::join(known, "', '")));
 }
 
+bool wants_telegrams(const Session& session, const Role& role, const std::string& uri) {
+  const std::string units = session.settings.text("units");
+  if (units == "levels") return false;
+  if (units != "telegrams") session.settings.refuse("units", "there are 'levels' and 'telegrams'");
+  if (role.telegram_ports == 0) {
+    session.settings.refuse("units", fmt::format("there are no telegrams for '{}'", role.path()));
+  }
+  if (is_plugin_uri(uri)) session.settings.refuse("units", "a library says itself what it hears");
+  return true;
+}
+
 // Lock step and virtual time, at the standard streams.
-void play_in_lock_step(const Role& role, const std::string& uri) {
+void play_in_lock_step(const Role& role, const std::string& uri, bool in_telegrams) {
   const bool is_plugin = is_plugin_uri(uri);
   if (!is_plugin) role.serve(uri);
   iut::serve(
@@ -39,7 +51,8 @@ void play_in_lock_step(const Role& role, const std::string& uri) {
       [&](const iut::RoleName& wanted) -> std::unique_ptr<iut::Device> {
         if (wanted.protocol != role.protocol || wanted.role != role.name) return nullptr;
         if (is_plugin) return library_of(uri, wanted);
-        return role.serve(uri);
+        if (!in_telegrams) return role.serve(uri);
+        return std::make_unique<interbus::TelegramSpeaker>(role.serve(uri), role.telegram_ports);
       },
       fmt::format("fieldproof {}", uri));
 }
@@ -49,8 +62,9 @@ void play_in_lock_step(const Role& role, const std::string& uri) {
 int station(Session& session) {
   const Role& role = role_named(session.operands.front());
   const std::string uri = session.operands.size() > 1 ? session.operands[1] : "ref";
+  const bool in_telegrams = wants_telegrams(session, role, uri);
   if (!session.settings.is_set("serial")) {
-    play_in_lock_step(role, uri);
+    play_in_lock_step(role, uri, in_telegrams);
   } else if (role.path() == kRoleOnLines) {
     play_on_line(session, uri);
   } else {

@@ -62,6 +62,23 @@ Setup telegram_setup(const std::string& role, const std::string& uri) {
   return setup;
 }
 
+// Cases about nothing but the levels of a slave's lines.
+const std::set<std::string>& of_levels() {
+  static const std::set<std::string> ids{"interbus/slave/telegram/short_glitch_is_ignored",
+                                         "interbus/slave/timing/bit_rate_within_one_percent_is_accepted",
+                                         "interbus/slave/timing/edge_jitter_is_accepted",
+                                         "interbus/slave/timing/pulses_leave_retimed"};
+  return ids;
+}
+
+// Deviations that cannot be said in telegrams: of a receiver or a driver of levels.
+const std::set<std::string>& unsayable() {
+  static const std::set<std::string> names{"start_bit_not_validated", "follows_any_rate",
+                                           "clock_too_fast",          "does_not_retime",
+                                           "no_clock_tolerance",      "master_drives_over_itself"};
+  return names;
+}
+
 void expect_reference_is_judged_as_inside(const std::string& role) {
   const auto suite = in_telegrams("");
   int judged = 0;
@@ -70,6 +87,11 @@ void expect_reference_is_judged_as_inside(const std::string& role) {
     ++judged;
     const Outcome told = suite->run(test_case, telegram_setup(role, "outside"));
     const Outcome known = judged_inside().run(test_case, telegram_setup(role, "ref"));
+    if (of_levels().contains(test_case.id)) {
+      EXPECT_EQ(told.result.verdict, judge::Verdict::not_applicable) << test_case.id;
+      EXPECT_NE(told.result.reason.find("hears and says telegrams"), std::string::npos) << test_case.id;
+      continue;
+    }
     EXPECT_EQ(told.result.verdict, known.result.verdict) << test_case.id << told.result.reason;
     EXPECT_EQ(told.result.reason, known.result.reason) << test_case.id;
   }
@@ -104,15 +126,20 @@ TEST_P(TelegramDeviations, AreJudgedAsInside) {
     const Outcome told = suite->run(test_case, telegram_setup(role, "outside"));
     const Outcome known = judged_inside().run(test_case, telegram_setup(role, "deviant:" + name));
     EXPECT_EQ(told.result.verdict, known.result.verdict) << test_case.id << told.result.reason;
-    EXPECT_EQ(told.result.reason, known.result.reason) << test_case.id;
+    // A cycle that comes in telegrams is known at its end: that the outputs are old is seen as their absence.
+    const bool is_seen_later = name == "outputs_one_cycle_late";
+    EXPECT_EQ(told.result.reason, is_seen_later ? "outputs_not_sent" : known.result.reason) << test_case.id;
   }
   EXPECT_GT(judged, 0);
 }
 
 std::vector<Deviating> all_deviations() {
   std::vector<Deviating> all;
-  for (const Deviation& one : slave_deviations()) all.push_back({"slave", one.name});
-  for (const Deviation& one : master_deviations()) all.push_back({"master", one.name});
+  const auto add = [&](const std::string& role, const std::string& name) {
+    if (!unsayable().contains(name) && !unsayable().contains(role + "_" + name)) all.push_back({role, name});
+  };
+  for (const Deviation& one : slave_deviations()) add("slave", one.name);
+  for (const Deviation& one : master_deviations()) add("master", one.name);
   return all;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/interbus/cycle_fields.hpp"
 #include "protocols/interbus/network.hpp"
@@ -121,6 +122,11 @@ SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
   }
   find_way();
   install(setting.plan);
+}
+
+void SlaveBench::require_line_interface() {
+  if (ring_.slave(position_).has_line_interface()) return;
+  throw iut::CannotBeDone("the slave hears and says telegrams; the levels of its lines are the bench's own");
 }
 
 // The chain of stations from the master to the IUT, each with the interface that leads on.

@@ -92,6 +92,10 @@ class SlaveBench final : private segment::Station {
   unsigned neighbour_words(bool on_branch) const { return neighbour_words_[on_branch ? 1 : 0]; }
   SlaveModel& model() { return model_; }
 
+  // For a case about nothing but finding telegrams in levels and making levels of them. Throws
+  // iut::CannotBeDone for an implementation that leaves both to the bench.
+  void require_line_interface();
+
   // ---- upper tester ----
   interbus::TerminalBlock& terminals() { return ring_.terminals(position_); }
   // What stands at the outputs now; a value that the slave gave for a later instant does not stand there yet.

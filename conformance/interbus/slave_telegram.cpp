@@ -158,6 +158,7 @@ void expect_nothing_before_the_cycle(SlaveBench& bench, CaseJudge& judge, const 
 }
 
 void short_glitch_is_ignored(SlaveBench& bench, CaseJudge& judge) {
+  bench.require_line_interface();
   start(bench, judge);
   unsigned idle = 14;  // bits, down to 1 and again
   for (unsigned round = 0; round < bench.volume(2U, 50U); ++round) {

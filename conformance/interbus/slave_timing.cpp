@@ -65,6 +65,7 @@ void expect_rate_rejected(SlaveBench& bench, CaseJudge& judge, double percent) {
 }
 
 void bit_rate_tolerance(SlaveBench& bench, CaseJudge& judge) {
+  bench.require_line_interface();
   bench.bring_up();
   expect_good_cycle(bench, judge, "valid_cycle_rejected");
   for (const double percent : {0.1, -0.1, 1.0, -1.0}) {
@@ -105,6 +106,7 @@ line::Levels with_moved_edges(const line::Levels& levels, Shift&& shift) {
 }
 
 void edge_jitter(SlaveBench& bench, CaseJudge& judge) {
+  bench.require_line_interface();
   bench.bring_up();
   for (unsigned n = 0; n < bench.volume(40U, 400U); ++n) {
     const std::vector<std::uint16_t> words =
@@ -195,6 +197,7 @@ double worst_edge(SlaveBench& bench) {
 }
 
 void pulses_are_retimed(SlaveBench& bench, CaseJudge& judge) {
+  bench.require_line_interface();
   bench.bring_up();
   double worst = 0;
   for (unsigned n = 0; n < bench.volume(8U, 100U); ++n) {

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """An INTERBUS master that hears levels: fieldproof run 'interbus/master/**' --iut 'exec:python3 master.py'
 
-harness/iut/README.md describes the messages, protocols/interbus/README.md the master. master_telegrams.py is the same
-master with telegrams; it does without the classes of levels here."""
+harness/iut/README.md describes the messages, protocols/interbus/README.md the master.
+master_telegrams.py is the same master with telegrams; it does without the classes of levels here."""
 import struct
 import sys
 from collections import deque
@@ -126,7 +126,7 @@ class ReturnedLevels:
         return [line + (end,) for line, end in zip(lines, ends)]
 
     def telegrams(self, until):
-        """(start, (is ID, is check), octet or None, has stop level) of those not told yet that have ended by `until`."""
+        """(start, (is ID, is check), octet or None, has stop level) of those not told yet that are over."""
         coding, bit_rate = self.coding, self.coding.rate
         flag, is_data = coding.s["flag_place"], str(coding.s["data_flag_level"])
         for origin, rate, levels, end in self.lines(until):

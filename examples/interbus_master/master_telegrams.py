@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""An INTERBUS master that hears telegrams: fieldproof run 'interbus/master/**' --iut 'exec:python3 master_telegrams.py'
+"""An INTERBUS master that hears telegrams:
+fieldproof run 'interbus/master/**' --iut 'exec:python3 master_telegrams.py'
 
 What a master does with its cycles is in master.py; here is how it says them and hears what comes back."""
 import struct

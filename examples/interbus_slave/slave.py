@@ -5,7 +5,8 @@ What a slave does with its telegrams is in slave_telegrams.py; here is how it fi
 import struct
 import sys
 
-from slave_telegrams import CONTROL, DATA, NEVER, SECOND, SELECT, TRANSMIT_LEVELS, UPSTREAM, Slave, Stream, serve
+from slave_telegrams import CONTROL, DATA, NEVER, SECOND, SELECT, TRANSMIT_LEVELS, UPSTREAM
+from slave_telegrams import Slave, Stream, serve
 
 
 class Receiver:

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""An INTERBUS slave that hears telegrams: fieldproof run 'interbus/slave/**' --iut 'exec:python3 slave_telegrams.py'
+"""An INTERBUS slave that hears telegrams:
+fieldproof run 'interbus/slave/**' --iut 'exec:python3 slave_telegrams.py'
 
 harness/iut/README.md describes the messages, protocols/interbus/README.md the slave."""
 import struct

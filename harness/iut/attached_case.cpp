@@ -97,8 +97,10 @@ void AttachedCase::expect_span(kernel::Time begin, kernel::Time end,
 void AttachedCase::expect_drive(const line::Waveform& wave) const {
   expect_supplied();
   if (wave.levels.empty()) refuse_impossible("drives no level at all");
-  expect_span(wave.start, is_within_reach(wave.start) ? wave.end() : wave.start, [&] {
-    return fmt::format("drives from {} to {}", kernel::describe(wave.start), kernel::describe(wave.end()));
+  // No sum of what lies further than time reaches.
+  const kernel::Time end = is_within_reach(wave.start) ? wave.end() : wave.start;
+  expect_span(wave.start, end, [&] {
+    return fmt::format("drives from {} to {}", kernel::describe(wave.start), kernel::describe(end));
   });
 }
 

@@ -109,8 +109,8 @@ typedef struct fieldproof_implementation {
   int (*begin)(void* self, const fieldproof_case* test_case, fieldproof_time* next_time);
   /* The supply comes and goes; a case begins without it. Returns when on_time is wanted. */
   fieldproof_time (*set_power)(void* self, int is_on, fieldproof_time now);
-  /* Characters that are over, or telegrams when they begin. Returns when on_time is wanted. May be null with FIELDPROOF_LEVELS, unless the
-   * role tells some all the same. */
+  /* Characters that are over, or telegrams when they begin. Returns when on_time is wanted. May be null with
+   * FIELDPROOF_LEVELS, unless the role tells some all the same. */
   fieldproof_time (*receive)(void* self, unsigned port, const fieldproof_character* characters,
                              unsigned count, fieldproof_time now);
   /* With FIELDPROOF_LEVELS: a transmission, and its end as `now`; the role says whether it is told then or

@@ -123,10 +123,10 @@ TEST(MessageDeviceHello, OtherVersionIsRefusedWithBothNumbers) {
 
 TEST(MessageDeviceHello, UnitThatThereIsNotIsNoMessage) {
   Script script;
-  script.answers(capabilities_message(1, 3)).stays();
+  script.answers(capabilities_message(1, 4)).stays();
   const Blame blame = blame_for([&] { device_of(script); });
   EXPECT_EQ(blame.reason, reasons::kGarbage);
-  EXPECT_THAT(blame.sentence, HasSubstr("unit 3"));
+  EXPECT_THAT(blame.sentence, HasSubstr("unit 4"));
 }
 
 TEST(MessageDeviceHello, AnswerOfAnotherTypeIsNamed) {

@@ -399,7 +399,7 @@ INSTANTIATE_TEST_SUITE_P(
                    wave.levels.append(0b1, 1);
                    bench.transmit(1, wave);
                  }},
-        WrongAct{"says levels",
+        WrongAct{"this master has announced levels",
                  [](iut::Bench& bench) { bench.transmit({0, kCalledAt, kCalledAt, kCalledAt, {1}}); }}));
 
 // ---- a master of ours ----

@@ -43,6 +43,7 @@ class AttachedSlave final : public SlaveDevice, private iut::Bench {
   void set_next_present(bool on_branch, bool present) override {
     (on_branch ? branch_present_ : remote_present_) = present;
   }
+  bool has_line_interface() const override { return front_ == nullptr; }
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
   void on_time(kernel::Time now) override;
   kernel::Time next_time() const override;

@@ -183,7 +183,7 @@ TEST_F(AttachedSlaveTest, DriveInThePastIsImpossible) {
 
 TEST_F(AttachedSlaveTest, CharactersAreImpossible) {
   EXPECT_THAT(complaint([](iut::Bench& bench) { bench.transmit({0, kNow, kNow, kNow, {1}}); }),
-              HasSubstr("says levels"));
+              HasSubstr("this slave has announced levels"));
 }
 
 TEST_F(AttachedSlaveTest, TerminalsAreReadAndWrittenByWord) {

@@ -53,6 +53,8 @@ class SlaveDevice : public segment::Station {
   virtual void wire(const SlavePorts& ports, Terminals& terminals) = 0;
   // The plug with the bridge at an outgoing interface is put in or pulled.
   virtual void set_next_present(bool on_branch, bool present) = 0;
+  // Whether it finds telegrams in levels itself, and makes levels of its own.
+  virtual bool has_line_interface() const { return true; }
 };
 
 // ---- master ----

@@ -99,6 +99,13 @@ TEST_F(AttachedNodeTest, DeviceIsToldTheCase) {
   EXPECT_EQ(device_.told.settings, node_settings(configuration_));
 }
 
+TEST_F(AttachedNodeTest, ImplementationInTelegramsCannotBeAttached) {
+  ActingDevice in_telegrams(iut::UnitKind::telegrams);
+  EXPECT_THAT(
+      [&] { AttachedNode(iut::Attachment{&in_telegrams, nullptr, {}}, {}, "valve_bus/node/x", 7); },
+      testing::ThrowsMessage<kernel::Error>(testing::HasSubstr("characters or levels; this implementation")));
+}
+
 TEST_F(AttachedNodeTest, RefusedCaseIsMisbehaviourAndNotEndedWell) {
   device_.serves = false;
   EXPECT_THROW(attach(), iut::Misbehaviour);
