@@ -145,7 +145,7 @@ std::string payload(const Packet& packet, const trace::Notation& notation) {
   if (packet.change != nullptr) flags |= kChanged;
   if (packet.change != nullptr && packet.change->arrivals.empty()) flags |= kLost;
   if (packet.sent != nullptr) flags |= kHasMask;
-  put(std::uint8_t{1});
+  put(std::uint8_t{2});
   put(notation.capture_number());
   put(static_cast<std::uint8_t>(flags));
   put(notation.capture_variant());
@@ -153,6 +153,7 @@ std::string payload(const Packet& packet, const trace::Notation& notation) {
   put(wave.rate);
   put(notation.bit_rate());
   put(static_cast<std::uint32_t>(wave.levels.size()));
+  put(packet.channel);
   const std::size_t count = std::min(wave.levels.size(), kMostLevels);
   append_packed(octets, wave.levels, count, nullptr);
   if (packet.sent != nullptr) append_packed(octets, wave.levels, count, packet.sent);

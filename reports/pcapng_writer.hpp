@@ -12,7 +12,7 @@
 //
 // A packet's payload (link type 147, USER0), numbers with the most significant octet first:
 //
-//   octet  0     1: version of this layout
+//   octet  0     2: version of this layout
 //   octet  1     protocol, trace::Notation::capture_number
 //   octet  2     flags: 1 arrived (else driven), 2 changed by a fault, 4 lost, 8 a mask follows the levels
 //   octet  3     variant of the protocol, trace::Notation::capture_variant
@@ -20,7 +20,8 @@
 //   octets 12    levels per second, 64 bit
 //   octets 20    bits per second, 0 when unknown, 64 bit
 //   octets 28    number of levels, 32 bit
-//   octets 32    the levels, the first in the most significant bit, the last octet filled with idle (1)
+//   octets 32    number of the channel, 32 bit: a dissector cannot always see the interface of a packet
+//   octets 36    the levels, the first in the most significant bit, the last octet filled with idle (1)
 //   then         the mask: as many bits, 1 where the level is not the one that was sent, filled with 0
 #pragma once
 

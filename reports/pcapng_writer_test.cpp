@@ -63,19 +63,20 @@ TEST(PcapngWriter, PayloadIsAsTheHeaderSays) {
   const ReadBlock packet = blocks_of(capture_of(sample_recording())).at(5);
   const std::string payload = packet.body.substr(20, number_at(packet.body, 12));
   const std::string expected(
-      "\x01\xC8\x02\x07"
+      "\x02\xC8\x02\x07"
       "\x00\x00\x00\x00\x01\x31\x2D\x00"
       "\x00\x00\x00\x00\x00\x0F\x42\x40"
       "\x00\x00\x00\x00\x00\x0F\x42\x40"
       "\x00\x00\x00\x08"
+      "\x00\x00\x00\x00"
       "\x6D",
-      33);
+      37);
   EXPECT_EQ(payload, expected);
   const ReadBlock arrived = blocks_of(capture_of(sample_recording())).at(6);
   const std::string with_mask = arrived.body.substr(20, number_at(arrived.body, 12));
-  ASSERT_EQ(with_mask.size(), 34U);
+  ASSERT_EQ(with_mask.size(), 38U);
   EXPECT_EQ(with_mask[2], 1 | 2 | 8);
-  EXPECT_EQ(with_mask.substr(32), "\x75\x18");
+  EXPECT_EQ(with_mask.substr(36), "\x75\x18");
 }
 
 TEST(PcapngWriter, AnotherProgramReadsWhatIsWritten) {
@@ -107,16 +108,16 @@ TEST(PcapngWriter, ALongTransmissionIsCutAndSaysSo) {
                                "_ws.expert.message");
   if (!reading.is_available) GTEST_SKIP() << reading.output;
   EXPECT_EQ(table_of(reading.output),
-            (Table{{"125040", "125032", "1000064", "The transmission is longer than the packet"}}));
+            (Table{{"125044", "125036", "1000064", "The transmission is longer than the packet"}}));
 }
 
 TEST(PcapngWriter, APacketOfAnotherLayoutIsNotTakenApart) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "trace.pcapng";
   std::string capture = capture_of(sample_recording());
-  const std::size_t payload = capture.find("\x01\xC8");
+  const std::size_t payload = capture.find("\x02\xC8");
   ASSERT_NE(payload, std::string::npos);
-  capture[payload] = 2;
+  capture[payload] = 1;
   write_text_file(file, capture);
   const Reading reading =
       read_with_tshark(FIELDPROOF_SOURCE_DIR, file, "-c 1 -T fields -e _ws.expert.message");

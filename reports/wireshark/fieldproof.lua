@@ -14,8 +14,8 @@ local NAMES = { [0] = "unknown", [1] = "INTERBUS", [2] = "valve bus" }
 -- ---------------------------------------------------------------------------------------------------------
 -- The packet.
 
-local VERSION = 1
-local HEADER_OCTETS = 32
+local VERSION = 2
+local HEADER_OCTETS = 36
 
 local fieldproof = Proto("fieldproof", "fieldproof capture")
 local of_packet = {
@@ -27,6 +27,7 @@ local of_packet = {
   start = ProtoField.int64("fieldproof.start_ps", "Start / ps"),
   rate = ProtoField.uint64("fieldproof.rate", "Levels per second"),
   bit_rate = ProtoField.uint64("fieldproof.bit_rate", "Bits per second"),
+  channel = ProtoField.uint32("fieldproof.channel", "Channel"),
   count = ProtoField.uint32("fieldproof.levels", "Number of levels"),
   levels = ProtoField.string("fieldproof.level", "Levels"),
   changed_levels = ProtoField.uint32("fieldproof.changed_levels", "Levels that are not as they were sent"),
@@ -41,8 +42,6 @@ local packet_notes = {
 }
 fieldproof.fields = of_packet
 fieldproof.experts = packet_notes
-
-local interface_of = Field.new("frame.interface_id")
 
 -- What the files of the protocols share.
 local packets = {}
@@ -86,12 +85,12 @@ function packets.memory(proto, copy_of)
   end
   return function(packet, pinfo, advance)
     if not pinfo.visited then
-      local line = interface_of() and tostring(interface_of()) or "0"
-      local own = line .. (packet.arrived and " heard" or " driven")
+      local heard = packet.channel .. " heard"
+      local own = packet.arrived and heard or packet.channel .. " driven"
       before[pinfo.number] = copy_of(lines[own]) or false
       lines[own] = advance(copy_of(lines[own]))
       if not packet.arrived and not packet.changed then
-        lines[line .. " heard"] = advance(copy_of(lines[line .. " heard"]))
+        lines[heard] = advance(copy_of(lines[heard]))
       end
     end
     return copy_of(before[pinfo.number] or nil)
@@ -109,6 +108,7 @@ local function read_packet(tvb)
   packet.rate = tvb(12, 8):uint64():tonumber()
   packet.bit_rate = tvb(20, 8):uint64():tonumber()
   packet.told_count = tvb(28, 4):uint()
+  packet.channel = tvb(32, 4):uint()
   local has_mask = has_flag(packet.flags, 8)
   local octets = tvb:len() - HEADER_OCTETS
   packet.count = math.min(packet.told_count, (has_mask and math.floor(octets / 2) or octets) * 8)
@@ -135,6 +135,7 @@ local function add_packet(packet, tree)
   branch:add(of_packet.rate, tvb(12, 8))
   branch:add(of_packet.bit_rate, tvb(20, 8))
   branch:add(of_packet.count, tvb(28, 4))
+  branch:add(of_packet.channel, tvb(32, 4))
   if packet.count > 0 then
     local shown = {}
     for n = 0, math.min(packet.count, 400) - 1 do shown[#shown + 1] = tostring(packet.levels[n]) end
