@@ -80,8 +80,9 @@ function(fieldproof_test_ground)
     Threads::Threads fieldproof_warnings)
   target_include_directories(fieldproof_test_ground INTERFACE "${CMAKE_SOURCE_DIR}")
   # What is fast is what they test; optimizing them as well would take a third of the time of their compilation, and
-  # under a sanitizer two thirds.
-  target_compile_options(fieldproof_test_ground INTERFACE $<IF:$<CONFIG:Release>,-O1,-O0>)
+  # under a sanitizer two thirds. Tests that COMPUTE would take six times as long for it.
+  target_compile_options(fieldproof_test_ground INTERFACE
+    $<IF:$<OR:$<CONFIG:Release>,$<BOOL:$<TARGET_PROPERTY:FIELDPROOF_COMPUTES>>>,-O1,-O0>)
   target_compile_definitions(fieldproof_test_ground INTERFACE FIELDPROOF_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   if(FIELDPROOF_PRECOMPILE)
     file(WRITE "${CMAKE_BINARY_DIR}/generated/precompiled.cpp" "")
@@ -100,9 +101,10 @@ function(fieldproof_cacheable_precompiled_headers name)
   endif()
 endfunction()
 
-# fieldproof_tests(name folder LINK targets...). Tests whose suite name contains "Threads" carry the label "threads".
+# fieldproof_tests(name folder [COMPUTE] LINK targets...). Tests whose suite name contains "Threads" carry the label
+# "threads". COMPUTE: most of their time passes in templates that are compiled with the tests.
 function(fieldproof_tests name folder)
-  cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(arg "COMPUTE" "" "LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS
     "${CMAKE_SOURCE_DIR}/${folder}/*_test.cpp" "${CMAKE_SOURCE_DIR}/${folder}/test_main.cpp")
   list(FILTER sources EXCLUDE REGEX "/node_modules/")
@@ -111,9 +113,10 @@ function(fieldproof_tests name folder)
   endif()
   fieldproof_test_ground()
   add_executable(${name} ${sources})
-  set_target_properties(${name} PROPERTIES UNITY_BUILD ${FIELDPROOF_UNITY})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${FIELDPROOF_UNITY} FIELDPROOF_COMPUTES ${arg_COMPUTE})
   target_link_libraries(${name} PRIVATE ${arg_LINK} fieldproof_test_ground fieldproof_instrumented)
-  if(FIELDPROOF_PRECOMPILE)
+  # Precompiled headers are of one optimization.
+  if(FIELDPROOF_PRECOMPILE AND (CMAKE_BUILD_TYPE STREQUAL "Release" OR NOT arg_COMPUTE))
     target_precompile_headers(${name} REUSE_FROM fieldproof_test_headers)
     fieldproof_cacheable_precompiled_headers(${name})
   endif()
