@@ -126,7 +126,10 @@ void SerialLine::open_device(const std::string& path) {
   if (port_->port.open(path, error)) refuse_line(path, fmt::format("cannot be opened: {}", error.message()));
   // Two who read one line get half of it each.
   if (::ioctl(descriptor(), TIOCEXCL) != 0) refuse_line(path, "cannot be taken for this program alone");
-  static_cast<void>(port_->port.set_option(SerialPort::flow_control(SerialPort::flow_control::none), error));
+  const SerialPort::flow_control no_flow_control(SerialPort::flow_control::none);
+  if (port_->port.set_option(no_flow_control, error)) {
+    refuse_line(path, fmt::format("cannot be used without flow control: {}", error.message()));
+  }
   ::fcntl(descriptor(), F_SETFL, ::fcntl(descriptor(), F_GETFL) | O_NONBLOCK);
   is_terminal_ = is_pseudo_terminal(descriptor());
   direction_ = is_terminal_ ? "a pseudo terminal has no direction" : set_direction(descriptor());
