@@ -207,6 +207,17 @@ TEST(PluginTest, RoleThatIsToldCharactersTooNeedsWhoTakesThem) {
   EXPECT_NE(make_plugin(echo, "odd", "echo", Told::in_characters_too), nullptr);
 }
 
+// A role that tells characters in spite of what it promised is refused when it does.
+TEST(PluginTest, CharactersAreRefusedWhereNobodyTakesThem) {
+  const fieldproof_implementation echo = echo_of_levels();
+  const auto device = make_plugin(echo, "odd", "echo");
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  const Character character;
+  EXPECT_THAT([&] { device->receive(0, std::span(&character, 1), kSupply); },
+              testing::ThrowsMessage<kernel::Error>(testing::HasSubstr("has no function 'receive'")));
+}
+
 // The library is between the bench and whoever catches: it must not be unwound.
 TEST(PluginTest, WhatTheBenchRefusesIsToldBehindTheCall) {
   const auto device = odd_device("hears");
