@@ -188,8 +188,8 @@ void random_faults(MasterBench& bench, CaseJudge& judge) {
 // What arrived at the master since it was asked last, seen by the tester's own receiver.
 class Returned {
  public:
-  explicit Returned(const interbus::Rules& rules)
-      : code_(rules.telegram), view_(code_, rules.bit_rate), model_(rules) {}
+  Returned(const segment::Segment& segment, const interbus::Rules& rules)
+      : code_(rules.telegram), view_(segment, code_, rules.bit_rate), model_(rules) {}
 
   segment::Tap& tap() { return view_; }
   // Whether a whole data cycle with a right check was among it.
@@ -209,7 +209,7 @@ class Returned {
 // The cycles of a master through bursts, and what they came to.
 class StressedRun {
  public:
-  explicit StressedRun(MasterBench& bench) : bench_(bench), returned_(bench.rules()) {}
+  explicit StressedRun(MasterBench& bench) : bench_(bench), returned_(bench.segment(), bench.rules()) {}
 
   void begin(CaseJudge& judge) {
     bench_.tap_arrived(returned_.tap());

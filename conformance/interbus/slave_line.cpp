@@ -14,7 +14,7 @@ void LineView::on_wave(const line::Waveform& wave) {
 
 void LineView::clear() {
   decode();
-  waves_.clear();
+  waves_.drop_first(decoded_);
   decoded_ = 0;
   origins_.clear();
   telegrams_.clear();
@@ -22,11 +22,18 @@ void LineView::clear() {
   status_count_ = sorted_ = 0;
 }
 
+// Nearly always all of them: looked for from the end.
+std::size_t LineView::begun() const {
+  std::size_t count = waves_.size();
+  while (count > 0 && waves_[count - 1].start > segment_.now()) --count;
+  return count;
+}
+
 void LineView::decode() {
   const auto sink = [this](const line::Waveform& wave, const line::Telegram& telegram) {
     keep(wave, telegram);
   };
-  for (; decoded_ < waves_.size(); ++decoded_) {
+  for (const std::size_t count = begun(); decoded_ < count; ++decoded_) {
     origin_of_ = nullptr;
     receiver_.receive(waves_[decoded_], sink);
   }
@@ -62,14 +69,6 @@ kernel::Time LineView::end_of(const SeenTelegram& telegram) const {
   return kernel::level_time(start_of(telegram),
                             telegram.is_data() ? line::kDataTelegramLevels : line::kStatusTelegramLevels,
                             bit_rate_);
-}
-
-std::size_t LineView::overlap_count() const {
-  std::size_t count = 0;
-  for (std::size_t n = 1; n < waves_.size(); ++n) {
-    if (waves_[n].start < waves_[n - 1].end()) ++count;
-  }
-  return count;
 }
 
 TrainWriter::TrainWriter(const interbus::Rules& rules)

@@ -8,14 +8,15 @@
 
 #include "harness/line/telegram_receiver.hpp"
 #include "harness/line/waveforms.hpp"
-#include "harness/segment/station.hpp"
+#include "harness/segment/segment.hpp"
 #include "protocols/interbus/rules.hpp"
 
 // The lower tester's ears and hands on one line: a view of the telegrams that passed there, and a writer of
 // trains of telegrams.
 //
 // A view keeps the waveforms since its last `clear` and decodes them when it is first asked, so a line that
-// nobody looks at costs a copy. A telegram that its own waveform cuts is completed by what follows, or by the
+// nobody looks at costs a copy. What a station drives ahead is there when its time has come, also behind a
+// `clear`. A telegram that its own waveform cuts is completed by what follows, or by the
 // idle line.
 namespace fieldproof::conformance {
 
@@ -31,14 +32,14 @@ struct SeenTelegram {
 
 class LineView final : public segment::Tap {
  public:
-  LineView(const line::TelegramCode& code, std::int64_t bit_rate)
-      : bit_rate_(bit_rate), receiver_(code, bit_rate) {}
+  LineView(const segment::Segment& segment, const line::TelegramCode& code, std::int64_t bit_rate)
+      : segment_(segment), bit_rate_(bit_rate), receiver_(code, bit_rate) {}
 
   void on_wave(const line::Waveform& wave) override;
   void clear();
 
   // Since the last clear, in order of time.
-  std::span<const line::Waveform> waves() const { return waves_; }
+  std::span<const line::Waveform> waves() const { return {waves_.data(), begun()}; }
   std::span<const SeenTelegram> telegrams();
   std::span<const SeenTelegram> data_telegrams();
   std::size_t status_count() {
@@ -48,14 +49,13 @@ class LineView final : public segment::Tap {
 
   kernel::Time start_of(const SeenTelegram& telegram) const;
   kernel::Time end_of(const SeenTelegram& telegram) const;
-  // Waveforms that began before the one before them had ended.
-  std::size_t overlap_count() const;
 
  private:
   struct Origin {
     kernel::Time start;
     std::int64_t rate;
   };
+  std::size_t begun() const;
   void decode();
   void keep(const line::Waveform& wave, const line::Telegram& telegram) {
     if (&wave != origin_of_) add_origin(wave);
@@ -65,6 +65,7 @@ class LineView final : public segment::Tap {
   }
   void add_origin(const line::Waveform& wave);
 
+  const segment::Segment& segment_;
   std::int64_t bit_rate_;
   line::TelegramReceiver receiver_;
   line::Waveforms waves_;

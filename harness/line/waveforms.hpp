@@ -55,6 +55,10 @@ class Waveforms {
   void take(Waveform& wave) { std::swap(next(), wave); }
 
   void clear() { size_ = 0; }
+  void drop_first(std::size_t count) {
+    for (std::size_t n = count; n < size_; ++n) std::swap(waves_[n - count], waves_[n]);
+    size_ -= count;
+  }
   // Drops those without levels.
   void drop_empty() {
     std::size_t kept = 0;
