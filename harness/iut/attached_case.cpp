@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "harness/iut/limits.hpp"
 #include "harness/iut/misbehaviour.hpp"
 
 namespace fieldproof::iut {
@@ -11,6 +12,10 @@ namespace {
 
 constexpr kernel::Duration kLongestDrive = 10 * kernel::kSecond;
 constexpr kernel::Duration kFarthestAhead = 3600 * kernel::kSecond;
+constexpr std::int64_t kMostLines = 3;         // that an implementation drives at a time: those of a slave
+constexpr std::int64_t kMostActs = 1'000'000;  // of a case, beside one for each microsecond
+// Who asks for kMostActions calls within this stands still: they are a nanosecond apart on average.
+constexpr kernel::Duration kStandstill = kMostActions * kernel::kNanosecond;
 
 bool is_within_reach(kernel::Time when) {
   return when.time_since_epoch() <= kFarthestAhead;
@@ -50,7 +55,23 @@ void AttachedCase::set_power(bool is_on, kernel::Time now) {
 }
 
 void AttachedCase::on_time(kernel::Time now) {
-  call(now, [&](Device& device) { device.on_time(now); });
+  call(now, [&](Device& device) {
+    count_call();
+    device.on_time(now);
+  });
+}
+
+void AttachedCase::count_call() {
+  if (++calls_ <= kMostActions) return;
+  if (now_ - counted_from_ < kStandstill) {
+    throw Misbehaviour(
+        reasons::kFloods,
+        fmt::format("the implementation has asked for {} calls since {}, and it is {}; its next "
+                    "time must lie behind the one that has come",
+                    kMostActions, kernel::describe(counted_from_), kernel::describe(now_)));
+  }
+  counted_from_ = now_;
+  calls_ = 0;
 }
 
 kernel::Time AttachedCase::next_time() const {
@@ -78,8 +99,17 @@ void AttachedCase::expect_ahead(kernel::Time when, std::string_view does) const 
       fmt::format("{} at {} when it is {}", does, kernel::describe(when), kernel::describe(now_)));
 }
 
+// What is kept of a case grows by each of them.
+void AttachedCase::count_act() {
+  if (++acts_ <= kMostActs + now_.time_since_epoch() / kernel::kMicrosecond) return;
+  throw Misbehaviour(reasons::kFloods,
+                     fmt::format("the implementation has driven lines and moved outputs {} times until {}",
+                                 acts_, kernel::describe(now_)));
+}
+
 void AttachedCase::expect_in_order(kernel::Time when, std::string_view does) {
   expect_ahead(when, does);
+  count_act();
   const auto last = last_.try_emplace(std::string(does), kernel::kStart).first;
   if (when < last->second) {
     refuse_impossible(fmt::format("{} at an instant that lies before the last one", does));
@@ -94,12 +124,22 @@ void AttachedCase::expect_span(kernel::Time begin, kernel::Time end,
   if (!is_near) refuse_impossible(describe());
 }
 
-void AttachedCase::expect_drive(const line::Waveform& wave) const {
+void AttachedCase::expect_drive(kernel::Time begin, kernel::Time end,
+                                const std::function<std::string()>& describe) {
+  expect_span(begin, end, describe);
+  count_act();
+  driven_ += end - begin;
+  if (driven_ <= kMostLines * now_.time_since_epoch() + kLongestDrive) return;
+  refuse_impossible(fmt::format("has driven {} of levels until {}; a line does not carry that",
+                                kernel::describe(driven_), kernel::describe(now_)));
+}
+
+void AttachedCase::expect_drive(const line::Waveform& wave) {
   expect_supplied();
   if (wave.levels.empty()) refuse_impossible("drives no level at all");
   // No sum of what lies further than time reaches.
   const kernel::Time end = is_within_reach(wave.start) ? wave.end() : wave.start;
-  expect_span(wave.start, end, [&] {
+  expect_drive(wave.start, end, [&] {
     return fmt::format("drives from {} to {}", kernel::describe(wave.start), kernel::describe(end));
   });
 }

@@ -61,12 +61,21 @@ class AttachedCase {
   void expect_ahead(kernel::Time when, std::string_view does) const;
   // The same for what is not done earlier than the last of its kind.
   void expect_in_order(kernel::Time when, std::string_view does);
-  void expect_drive(const line::Waveform& wave) const;
+  void expect_drive(const line::Waveform& wave);
+  // Together with all that it has driven in this case.
+  void expect_drive(kernel::Time begin, kernel::Time end, const std::function<std::string()>& describe);
   void expect_span(kernel::Time begin, kernel::Time end, const std::function<std::string()>& describe) const;
 
  private:
+  void count_call();
+  void count_act();
+
   Attachment attachment_;
   kernel::Time now_{};                                     // as the implementation was told it
+  kernel::Time counted_from_{};                            // the calls of on_time
+  unsigned calls_ = 0;                                     // since then
+  kernel::Duration driven_{};                              // on all lines
+  std::int64_t acts_ = 0;                                  // drives and moves
   std::map<std::string, kernel::Time, std::less<>> last_;  // of each kind
   bool has_begun_ = false;
   bool is_supplied_ = false;

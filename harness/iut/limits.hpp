@@ -4,8 +4,8 @@
 
 namespace fieldproof::iut {
 
-// What an implementation may do within one call, and how often it may ask for a call at one instant; more is
-// a flood. A master of the most words tells both images and reads as many orders: some 12'300.
+// What an implementation may do within one call, and how often it may ask for a call where time stands still;
+// more is a flood. A master of the most words tells both images and reads as many orders: some 12'300.
 inline constexpr unsigned kMostActions = 20'000;
 
 // How long an implementation in another process may take, in time of the machine. No verdict about a line

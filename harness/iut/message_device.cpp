@@ -82,7 +82,6 @@ bool MessageDevice::begin(const CaseBegin& begin, Bench& bench) {
   bench_ = &bench;
   case_begin_ = Peer::Clock::now();
   next_time_ = kernel::kNever;
-  calls_at_once_ = 0;
   return call(write_case_begin(writer_, begin), Refusal::allowed);
 }
 
@@ -100,15 +99,6 @@ void MessageDevice::receive(unsigned port, const line::Waveform& reception) {
 }
 
 void MessageDevice::on_time(kernel::Time now) {
-  calls_at_once_ = now == last_call_ ? calls_at_once_ + 1 : 0;
-  last_call_ = now;
-  if (calls_at_once_ > kMostActions) {
-    peer_.blame(
-        reasons::kFloods,
-        fmt::format("asks to be called at {} again and again; its next time must lie behind the one that "
-                    "has come",
-                    kernel::describe(now)));
-  }
   writer_.begin(MessageType::on_time).time(now);
   call(writer_.finish());
 }

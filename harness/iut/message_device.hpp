@@ -60,8 +60,6 @@ class MessageDevice final : public Device {
   Bench* bench_ = nullptr;
   Peer::Clock::time_point case_begin_ = Peer::Clock::now();
   kernel::Time next_time_ = kernel::kNever;
-  kernel::Time last_call_{};
-  unsigned calls_at_once_ = 0;
   line::Waveform wave_;
 };
 

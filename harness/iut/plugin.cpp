@@ -127,14 +127,6 @@ class PluginDevice final : public Device {
     });
   }
   void on_time(kernel::Time now) override {
-    calls_at_once_ = now == last_call_ ? calls_at_once_ + 1 : 0;
-    last_call_ = now;
-    if (calls_at_once_ > kMostActions) {
-      throw Misbehaviour(reasons::kFloods,
-                         fmt::format("{} asks to be called at {} again and again; its next time must lie "
-                                     "behind the one that has come",
-                                     plugin_.name, kernel::describe(now)));
-    }
     call([&] { return functions_.on_time(self_, ticks_of(now)); });
   }
   kernel::Time next_time() const override { return next_time_; }
@@ -249,8 +241,6 @@ class PluginDevice final : public Device {
   void* self_ = nullptr;
   Bench* case_bench_ = nullptr;
   kernel::Time next_time_ = kernel::kNever;
-  kernel::Time last_call_{};
-  unsigned calls_at_once_ = 0;
   unsigned actions_ = 0;  // within the call that runs
   std::exception_ptr failure_;
   std::vector<unsigned char> packed_;

@@ -141,16 +141,6 @@ TEST(PluginTest, ActsWithoutEndAreAFlood) {
   EXPECT_THAT(blamed_for("floods", reasons::kFloods), HasSubstr("more than 20000 things within one call"));
 }
 
-TEST(PluginTest, AskingForTheSameInstantWithoutEndIsAFlood) {
-  const auto device = odd_device("acts");
-  Diary diary;
-  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
-  const auto call_again = [&] {
-    for (unsigned n = 0; n < 2 * kMostActions; ++n) device->on_time(kSupply);
-  };
-  EXPECT_THROW(call_again(), Misbehaviour);
-}
-
 // Of levels alone: it sends back what it hears.
 fieldproof_implementation echo_of_levels() {
   return {

@@ -181,6 +181,57 @@ TEST_F(AttachedSlaveTest, DriveInThePastIsImpossible) {
               HasSubstr("drives from"));
 }
 
+// Each of them may be: together they would fill the memory.
+TEST_F(AttachedSlaveTest, DrivesMoreThanItsLinesCarry) {
+  EXPECT_THAT(complaint([](iut::Bench& bench) {
+                for (int n = 0; n < 6; ++n) {
+                  line::Waveform wave = wave_at(kNow);
+                  wave.levels.append_idle(1'000'000);
+                  bench.transmit(kFromUpstream, wave);
+                }
+              }),
+              HasSubstr("has driven 12.000060 s of levels until 20.000 ms"));
+}
+
+class AttachedSlaveFloods : public AttachedSlaveTest {
+ protected:
+  std::string flood_of(ActingDevice::Act act) {
+    device_.at_time = std::move(act);
+    attach();
+    try {
+      segment_.run_until(kNow + kMillisecond);
+    } catch (const iut::Misbehaviour& done) {
+      EXPECT_EQ(done.reason(), iut::reasons::kFloods);
+      return done.what();
+    }
+    return {};
+  }
+};
+
+TEST_F(AttachedSlaveFloods, MovesItsOutputsWithoutEnd) {
+  EXPECT_THAT(flood_of([](iut::Bench& bench) {
+                while (true) bench.write(0, 1, kNow);
+              }),
+              HasSubstr("1020001 times until 20.000 ms"));
+}
+
+TEST_F(AttachedSlaveFloods, AsksForTheSameInstantWithoutEnd) {
+  EXPECT_THAT(flood_of([this](iut::Bench&) { device_.next = kNow; }),
+              HasSubstr("20000 calls since 20.000 ms"));
+}
+
+TEST_F(AttachedSlaveFloods, CreepsOn) {
+  EXPECT_THAT(flood_of([this, n = 0](iut::Bench&) mutable { device_.next = kNow + kernel::Duration{++n}; }),
+              HasSubstr("20000 calls since 20.0000"));
+}
+
+// A clock of 100 MHz.
+TEST_F(AttachedSlaveFloods, FastClockIsNone) {
+  EXPECT_EQ(
+      flood_of([this, n = 0](iut::Bench&) mutable { device_.next = kNow + ++n * 10 * kernel::kNanosecond; }),
+      "");
+}
+
 TEST_F(AttachedSlaveTest, CharactersAreImpossible) {
   EXPECT_THAT(complaint([](iut::Bench& bench) { bench.transmit({0, kNow, kNow, kNow, {1}}); }),
               HasSubstr("this slave has announced levels"));

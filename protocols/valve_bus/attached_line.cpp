@@ -67,8 +67,8 @@ void AttachedLine::transmit(const iut::Transmission& transmission) {
                        kernel::describe(transmission.driver_on), kernel::describe(transmission.driver_off),
                        kernel::describe(length), kernel::describe(transmission.start));
   };
-  attached_.expect_span(transmission.driver_on, transmission.driver_off, describe);
   attached_.expect_span(transmission.driver_on, transmission.start, describe);
+  attached_.expect_drive(transmission.driver_on, transmission.driver_off, describe);
   if (transmission.start + length > transmission.driver_off + kernel::kNanosecond) {
     iut::refuse_impossible(describe());
   }

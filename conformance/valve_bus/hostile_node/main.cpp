@@ -46,7 +46,7 @@ class Hostile final : public iut::Device {
   iut::UnitKind unit_kind() const override { return right_.unit_kind(); }
   bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override {
     bench_ = &bench;
-    is_time_stuck_ = false;
+    is_time_stuck_ = is_time_creeping_ = false;
     is_due_ = begin.id.find(in_case_) != std::string::npos;
     const bool is_served = right_.begin(begin, bench);
     do_worst("begin", {});
@@ -62,10 +62,14 @@ class Hostile final : public iut::Device {
     do_worst("receive", reception.end());
   }
   void on_time(kernel::Time now) override {
+    now_ = now;
     right_.on_time(now);
     do_worst("on_time", now);
   }
-  kernel::Time next_time() const override { return is_time_stuck_ ? now_ : right_.next_time(); }
+  kernel::Time next_time() const override {
+    if (is_time_creeping_) return now_ + kernel::Duration{1};
+    return is_time_stuck_ ? now_ : right_.next_time();
+  }
   void end() override {
     right_.end();
     do_worst("end", now_);
@@ -102,6 +106,7 @@ class Hostile final : public iut::Device {
   kernel::Time now_{};
   bool is_due_ = false;
   bool is_time_stuck_ = false;
+  bool is_time_creeping_ = false;
 };
 
 const std::map<std::string, std::function<void(Hostile&)>, std::less<>>& Hostile::acts() {
@@ -172,6 +177,11 @@ const std::map<std::string, std::function<void(Hostile&)>, std::less<>>& Hostile
          for (int n = 0; n < 50'000; ++n) node.bench_->write(valve_bus::kValves, 0, node.now_);
        }},
       {"time_stands_still", [](Hostile& node) { node.is_time_stuck_ = true; }},
+      {"time_creeps", [](Hostile& node) { node.is_time_creeping_ = true; }},
+      {"drives_more_than_a_line",
+       [](Hostile& node) {
+         for (int n = 0; n < 3; ++n) node.transmit(0, kMicrosecond, kMicrosecond, 6 * kernel::kSecond);
+       }},
       {"drives_in_the_past",
        [](Hostile& node) { node.transmit(0, -kMillisecond, -kMillisecond, kMillisecond); }},
       {"drives_backwards",
