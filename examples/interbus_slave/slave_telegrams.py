@@ -26,7 +26,8 @@ class Stream:
     def send(self, kind, form="", *values):
         content = struct.pack("<" + form, *values)
         self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
-        self.sink.flush()
+        if kind not in (TRANSMIT_TELEGRAMS, TRANSMIT_LEVELS, WRITE):  # behind these comes `done`
+            self.sink.flush()
 
     def read(self, item, when):
         self.send(READ, "Hq", item, when)
