@@ -55,23 +55,24 @@ void AttachedCase::set_power(bool is_on, kernel::Time now) {
 }
 
 void AttachedCase::on_time(kernel::Time now) {
-  call(now, [&](Device& device) {
-    count_call();
-    device.on_time(now);
-  });
+  call(now, [&](Device& device) { tell_time(device, now); });
 }
 
-void AttachedCase::count_call() {
-  if (++calls_ <= kMostActions) return;
-  if (now_ - counted_from_ < kStandstill) {
-    throw Misbehaviour(
-        reasons::kFloods,
-        fmt::format("the implementation has asked for {} calls since {}, and it is {}; its next "
-                    "time must lie behind the one that has come",
-                    kMostActions, kernel::describe(counted_from_), kernel::describe(now_)));
+void AttachedCase::tell_time(Device& device, kernel::Time now) {
+  if (++calls_ > kMostActions) {
+    expect_time_to_pass();
+    counted_from_ = now_;
+    calls_ = 0;
   }
-  counted_from_ = now_;
-  calls_ = 0;
+  device.on_time(now);
+}
+
+void AttachedCase::expect_time_to_pass() const {
+  if (now_ - counted_from_ >= kStandstill) return;
+  throw Misbehaviour(reasons::kFloods,
+                     fmt::format("the implementation has asked for {} calls since {}, and it is {}; its next "
+                                 "time must lie behind the one that has come",
+                                 kMostActions, kernel::describe(counted_from_), kernel::describe(now_)));
 }
 
 kernel::Time AttachedCase::next_time() const {

@@ -39,6 +39,8 @@ class AttachedCase {
   void begin(const CaseBegin& begin, Bench& bench);
   void set_power(bool is_on, kernel::Time now);
   void on_time(kernel::Time now);
+  // Within a call: `device` is told that its time has come. A flood when it asked for that too often.
+  void tell_time(Device& device, kernel::Time now);
   kernel::Time next_time() const;
   // The case is over. Once; nothing when the implementation did wrong before.
   void end();
@@ -67,7 +69,7 @@ class AttachedCase {
   void expect_span(kernel::Time begin, kernel::Time end, const std::function<std::string()>& describe) const;
 
  private:
-  void count_call();
+  void expect_time_to_pass() const;
   void count_act();
 
   Attachment attachment_;

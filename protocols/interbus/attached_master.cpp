@@ -138,7 +138,7 @@ void AttachedMaster::tell(std::span<const iut::Character> telegrams, kernel::Tim
 void AttachedMaster::on_time(kernel::Time now) {
   if (front_) front_->complete(now, [&](unsigned, auto telegrams) { tell(telegrams, now); });
   if (front_ && attached_ && attached_->next_time() > now) return;
-  call_and_order(now, [&](iut::Device& device) { device.on_time(now); });
+  call_and_order(now, [&](iut::Device& device) { attached_->tell_time(device, now); });
 }
 
 kernel::Time AttachedMaster::next_time() const {

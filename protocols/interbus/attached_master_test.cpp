@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/iut/acting_device.hpp"
+#include "harness/iut/limits.hpp"
 #include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/segment/segment.hpp"
@@ -337,6 +338,15 @@ TEST_F(AttachedMasterTest, CycleWithinAnOrderIsImpossible) {
   } device;
   AttachedMaster master(iut::Attachment{&device, nullptr, {}}, {}, "interbus/master/x", 7);
   EXPECT_THROW(master.start(kStartedAt), iut::Misbehaviour);
+}
+
+TEST_F(AttachedMasterTest, AskingForTheSameInstantWithoutEndIsAFlood) {
+  device_.at_time = [this](iut::Bench&) { device_.next = kCalledAt; };
+  start();
+  const auto call_again = [this] {
+    for (unsigned n = 0; n < 2 * iut::kMostActions + 2; ++n) master_.on_time(kCalledAt);
+  };
+  EXPECT_THROW(call_again(), iut::Misbehaviour);
 }
 
 TEST_F(AttachedMasterTest, ImplementationInCharactersCannotBeAttached) {
