@@ -205,7 +205,8 @@ TEST_F(Attachments, InterbusSlaveInPythonPassesInTelegrams) {
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
   const fs::path slave = kSourceFolder / "examples/interbus_slave/slave_telegrams.py";
   const std::string uri = "exec:" + in_quotes(python) + " " + in_quotes(slave);
-  const Cases cases = judged(uri, "**", {}, {}, "interbus/slave/");
+  // With this seed a disturbed telegram comes half a bit before the one before it is over.
+  const Cases cases = judged(uri, "**", {{"FIELDPROOF_SEED", "3"}}, {}, "interbus/slave/");
   EXPECT_EQ(cases.size(), 60U);
   int not_applicable = 0;
   for (const auto& [id, one] : cases) {

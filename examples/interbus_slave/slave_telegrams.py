@@ -44,6 +44,7 @@ class Slave:
         self.on = self.forward = self.back = ()  # interfaces, for control, ways out and ways back
         self.is_switching, self.off_until = False, -1
         self.last, self.is_supervised, self.now = 0, False, 0
+        self.driven_until = [0, 0, 0]
 
     # ---- the way of a telegram ----
 
@@ -57,11 +58,16 @@ class Slave:
         port = self.next_port(source)
         half_bits = self.s["forward_delay_half_bits"] if source == UPSTREAM else 0
         half_bits += self.s["return_delay_half_bits"] if port == UPSTREAM else 0
-        # A telegram that came in parts is known late.
-        self.say(port, max(self.now, start + half_bits * self.bit // 2), telegram)
+        # A telegram that came in parts is known late; behind a disturbed one it may come half a bit early.
+        start = max(start + half_bits * self.bit // 2, self.now, self.driven_until[port])
+        self.driven_until[port] = start + self.time_of(telegram)
+        self.say(port, start, telegram)
 
     def say(self, port, start, telegram):
         self.stream.send(TRANSMIT_TELEGRAMS, "BqqqHH", port, start, start, start, 1, telegram)
+
+    def time_of(self, telegram):
+        return (13 if telegram & DATA else 5) * self.bit
 
     def hear(self, message):
         port, self.now, count = struct.unpack_from("<xBqH", message)
@@ -78,7 +84,7 @@ class Slave:
         is_check = telegram & (DATA | CONTROL) == DATA | CONTROL
         if self.is_switching and not is_check:
             self.forward, self.is_switching = self.on, False
-        self.last, self.is_supervised = start + (13 if telegram & DATA else 5) * self.bit, True
+        self.last, self.is_supervised = start + self.time_of(telegram), True
         if telegram & DATA:
             take = self.check if is_check else self.transfer
             telegram = telegram & ~0xFF | take(telegram & SELECT, start, telegram & 0xFF, stop)
