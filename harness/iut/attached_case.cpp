@@ -14,6 +14,7 @@ constexpr kernel::Duration kLongestDrive = 10 * kernel::kSecond;
 constexpr kernel::Duration kFarthestAhead = 3600 * kernel::kSecond;
 constexpr std::int64_t kMostLines = 3;         // that an implementation drives at a time: those of a slave
 constexpr std::int64_t kMostActs = 1'000'000;  // of a case, beside one for each microsecond
+constexpr std::int64_t kMostLevels = 100'000'000;  // the same, beside one for each nanosecond
 // Who asks for kMostActions calls within this stands still: they are a nanosecond apart on average.
 constexpr kernel::Duration kStandstill = kMostActions * kernel::kNanosecond;
 
@@ -140,6 +141,11 @@ void AttachedCase::expect_drive(const line::Waveform& wave) {
   if (wave.levels.empty()) refuse_impossible("drives no level at all");
   // No sum of what lies further than time reaches.
   const kernel::Time end = is_within_reach(wave.start) ? wave.end() : wave.start;
+  levels_ += static_cast<std::int64_t>(wave.levels.size());
+  if (levels_ > kMostLevels + now_.time_since_epoch() / kernel::kNanosecond) {
+    throw Misbehaviour(reasons::kFloods, fmt::format("the implementation has driven {} levels until {}",
+                                                     levels_, kernel::describe(now_)));
+  }
   expect_drive(wave.start, end, [&] {
     return fmt::format("drives from {} to {}", kernel::describe(wave.start), kernel::describe(end));
   });

@@ -78,6 +78,7 @@ class AttachedCase {
   unsigned calls_ = 0;                                     // since then
   kernel::Duration driven_{};                              // on all lines
   std::int64_t acts_ = 0;                                  // drives and moves
+  std::int64_t levels_ = 0;                                // of drives
   std::map<std::string, kernel::Time, std::less<>> last_;  // of each kind
   bool has_begun_ = false;
   bool is_supplied_ = false;

@@ -215,6 +215,17 @@ TEST_F(AttachedSlaveFloods, MovesItsOutputsWithoutEnd) {
               HasSubstr("1020001 times until 20.000 ms"));
 }
 
+TEST_F(AttachedSlaveFloods, DrivesFinerLevelsThanAnybodyLooksAt) {
+  EXPECT_THAT(flood_of([](iut::Bench& bench) {
+                for (int n = 0; n < 13; ++n) {
+                  line::Waveform wave{kNow, 100'000'000'000, {}};
+                  wave.levels.append_idle(10'000'000);
+                  bench.transmit(kFromUpstream, wave);
+                }
+              }),
+              HasSubstr("has driven 130000000 levels until 20.000 ms"));
+}
+
 TEST_F(AttachedSlaveFloods, AsksForTheSameInstantWithoutEnd) {
   EXPECT_THAT(flood_of([this](iut::Bench&) { device_.next = kNow; }),
               HasSubstr("20000 calls since 20.000 ms"));

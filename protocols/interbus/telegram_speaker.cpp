@@ -6,6 +6,13 @@
 #include "protocols/interbus/rule_settings.hpp"
 
 namespace fieldproof::interbus {
+namespace {
+
+// Between two telegrams of one reception. What is farther apart is told as two: levels cost memory, however
+// idle.
+constexpr std::int64_t kMostIdleBits = 65'536;
+
+}  // namespace
 
 bool TelegramSpeaker::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
   Rules rules;
@@ -53,6 +60,7 @@ bool TelegramSpeaker::goes_on(const iut::Character& telegram) {
   const kernel::Time end = heard_.end();
   if (heard_.levels.empty() || telegram.start < end) return false;
   const auto idle = kernel::levels_within(telegram.start - end, heard_.rate);
+  if (idle > kMostIdleBits) return false;
   for (const std::int64_t count : {idle, idle + 1}) {
     const auto level = static_cast<std::int64_t>(heard_.levels.size()) + count;
     if (kernel::level_time(heard_.start, level, heard_.rate) != telegram.start) continue;
