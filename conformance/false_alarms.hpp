@@ -1,0 +1,44 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "conformance/runner.hpp"
+
+// For tests of suites: the references pass, whatever is drawn.
+namespace fieldproof::conformance {
+
+// Sanitizers make a run some twenty times slower; what they look for does not hide in the seeds.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define FIELDPROOF_UNDER_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define FIELDPROOF_UNDER_SANITIZER
+#endif
+#endif
+#ifdef FIELDPROOF_UNDER_SANITIZER
+inline constexpr std::uint64_t kManySeeds = 3;
+#undef FIELDPROOF_UNDER_SANITIZER
+#else
+inline constexpr std::uint64_t kManySeeds = 100;
+#endif
+
+// The cases that the references of a suite do not pass with a seed, at quick volume.
+inline std::vector<std::string> false_alarms(const Suite& suite, std::uint64_t seed) {
+  Setup setup;
+  setup.seed = seed;
+  setup.volume = Volume::quick;
+  std::vector<std::string> alarms;
+  for (const TestCase& test_case : suite.cases()) {
+    if (is_canary(test_case)) continue;
+    const CaseRun done = run_case({&suite, &test_case}, setup);
+    if (done.outcome.result.verdict == judge::Verdict::pass) continue;
+    alarms.push_back(fmt::format("{} seed {}: {}", test_case.id, seed, done.outcome.result.reason));
+  }
+  return alarms;
+}
+
+}  // namespace fieldproof::conformance
