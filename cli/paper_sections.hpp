@@ -25,4 +25,10 @@ reports::PublishedSection valve_bus_cycle_times(const PaperSettings& settings);
 reports::PublishedSection valve_bus_block_check(const PaperSettings& settings);
 reports::PublishedSection valve_bus_resonance(const PaperSettings& settings);
 
+// Hong and Son, the delay of urgent data in the Foundation Fieldbus.
+reports::PublishedSection foundation_rotations(const PaperSettings& settings);
+reports::PublishedSection foundation_targets(const PaperSettings& settings);
+reports::PublishedSection foundation_shares(const PaperSettings& settings);
+reports::PublishedSection foundation_lengths(const PaperSettings& settings);
+
 }  // namespace fieldproof::cli
