@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/paper_sections.hpp"
+#include "protocols/fieldbus_dll/milliseconds.hpp"
 #include "protocols/fieldbus_dll/token_rotation.hpp"
 #include "protocols/fieldbus_dll/urgent_delay.hpp"
 
@@ -72,8 +73,7 @@ class Studied {
   // What must hold whatever the model says: as much leaves as arrives, so a rotation takes R / (1 - U).
   std::optional<bool> agrees() const {
     if (is_starved_) return std::nullopt;
-    const double expected =
-        static_cast<double>(traffic_.empty_rotation.count()) / 1e9 / (1 - traffic_.load());
+    const double expected = fieldbus_dll::ms(traffic_.empty_rotation) / (1 - traffic_.load());
     return std::abs(simulated_.mean_rotation - expected) <=
            kFlowTolerance * expected + 3 * simulated_.rotation_error;
   }

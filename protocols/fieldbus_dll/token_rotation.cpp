@@ -8,16 +8,12 @@
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/scheduler.hpp"
+#include "protocols/fieldbus_dll/milliseconds.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
 
-constexpr double kPicosecondsPerMs = 1e9;
 constexpr std::uint64_t kRotationsOfBatch = 1'000;
-
-double ms(kernel::Duration duration) {
-  return static_cast<double>(duration.count()) / kPicosecondsPerMs;
-}
 
 // A Poisson stream of arrivals, drawn when they are asked for.
 class Arrivals {

@@ -7,21 +7,17 @@
 #include <map>
 
 #include "harness/kernel/error.hpp"
+#include "protocols/fieldbus_dll/milliseconds.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
 
-constexpr double kPicosecondsPerMs = 1e9;
 constexpr double kNegligible = 1e-18;  // of a probability
 constexpr std::size_t kMostStates = 100'000;
 constexpr unsigned kMostQueues = 1024;
 constexpr double kLowestRate = 1e-6;
 constexpr double kHighestRate = 1e6;
 constexpr kernel::Duration kLongest = 3600 * kernel::kSecond;
-
-double ms(kernel::Duration duration) {
-  return static_cast<double>(duration.count()) / kPicosecondsPerMs;
-}
 
 void expect(bool holds, const char* what, const char* right) {
   if (holds) return;
