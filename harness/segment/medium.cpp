@@ -61,6 +61,7 @@ std::size_t MediumPort::first_group(kernel::Time& end) const {
 kernel::Time MediumPort::next() const {
   kernel::Time at = late_.empty() ? kernel::kNever : late_.front().end();
   if (flights_.empty()) return at;
+  if (senses_activity_ && !is_active_) return std::min(at, flights_.front().start);
   kernel::Time end;
   first_group(end);
   return std::min(at, end);
@@ -72,12 +73,22 @@ void MediumPort::tell_due(kernel::Time now) {
     late_.erase(late_.begin());
     tell(wave);
   }
+  if (senses_activity_) tell_activity(now);
   kernel::Time end;
   while (!flights_.empty()) {
     const std::size_t count = first_group(end);
     if (end > now) return;
     tell_group(count, end);
+    if (senses_activity_) tell_activity(now);
   }
+}
+
+void MediumPort::tell_activity(kernel::Time now) {
+  // What is over and not told yet is activity still: its end is told behind it.
+  const bool is_active = !flights_.empty() && flights_.front().start <= now;
+  if (is_active == is_active_) return;
+  is_active_ = is_active;
+  medium_.segment_.tell_activity(station_, port_, is_active);
 }
 
 void MediumPort::tell_group(std::size_t count, kernel::Time end) {

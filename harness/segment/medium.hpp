@@ -26,6 +26,9 @@
 // rate, each level as the line is in its middle. The medium must outlive the last run of its segment, and a
 // station must not drive it from its destructor.
 //
+// A station whose place senses activity is told besides when others begin to drive the line at its place and
+// when nobody of them does any more, whatever a fault makes of what they drive.
+//
 // Limit: propagation only; no attenuation, no reflections.
 namespace fieldproof::segment {
 
@@ -64,6 +67,9 @@ class MediumPort final : public Port, public Receiver {
   // their time are not heard before it.
   bool is_busy(kernel::Time now) const;
 
+  // From now on its station is told of activity.
+  void sense_activity() { senses_activity_ = true; }
+
   const std::string& name() const;
   trace::Channel trace_channel() const { return trace_channel_; }
 
@@ -92,6 +98,7 @@ class MediumPort final : public Port, public Receiver {
   std::size_t first_group(kernel::Time& end) const;
   kernel::Time next() const;
   void tell_due(kernel::Time now);
+  void tell_activity(kernel::Time now);
   void tell_group(std::size_t count, kernel::Time end);
   void pass(const line::Waveform& wave, kernel::Time now);
   void tell(const line::Waveform& wave);
@@ -102,6 +109,8 @@ class MediumPort final : public Port, public Receiver {
   PortIndex port_;
   kernel::Duration position_;
   bool hears_itself_;
+  bool senses_activity_ = false;
+  bool is_active_ = false;  // as its station knows
   kernel::Random random_;
   std::vector<Tap*> taps_;
   std::vector<Tap*> driven_taps_;

@@ -35,10 +35,16 @@ class Ear final : public Station {
     rate = reception.rate;
     if (answer != nullptr) std::exchange(answer, nullptr)->drive(answer_wave);
   }
+  void on_activity(PortIndex, bool begins, Time now) override {
+    activity += (begins ? "from " : "to ") + micros(now) + "; ";
+    if (!begins) told_before_end = heard;
+  }
   void on_time(Time) override {}
   Time next_time() const override { return kernel::kNever; }
 
   std::string heard;
+  std::string activity;
+  std::string told_before_end;
   std::int64_t rate = 0;
   MediumPort* answer = nullptr;
   line::Waveform answer_wave;
@@ -68,6 +74,33 @@ class Bus {
   std::vector<MediumPort*> ports;
   Medium medium;
 };
+
+TEST(Medium, TellsActivityOfOthersWhereItIsSensed) {
+  Bus bus;
+  for (MediumPort* port : bus.ports) port->sense_activity();
+  bus.drive(0, wave_of("0101", 5 * kMicrosecond));
+  bus.drive(2, wave_of("00", 9 * kMicrosecond));
+  bus.drive(0, wave_of("11", 9 * kMicrosecond));     // without a gap behind the first
+  bus.drive(0, wave_of("000", 100 * kMicrosecond));  // a while later
+  bus.run();
+  EXPECT_EQ(bus.ears[0].activity, "from 12; to 14; ");
+  EXPECT_EQ(bus.ears[1].activity, "from 6; to 13; from 101; to 104; ");
+  EXPECT_EQ(bus.ears[2].activity, "from 8; to 14; from 103; to 106; ");
+  EXPECT_EQ(bus.ears[2].told_before_end, bus.ears[2].heard);
+}
+
+TEST(Medium, ActivityIsWhatIsDrivenAndNotWhatAFaultMakesOfIt) {
+  Bus bus;
+  fault::ScriptedChannel channel;
+  channel.lose();
+  bus.ports[1]->sense_activity();
+  bus.ports[1]->set_channel(&channel);
+  bus.drive(0, wave_of("0101", 5 * kMicrosecond));
+  bus.run();
+  EXPECT_EQ(bus.ears[1].heard.find("0101"), std::string::npos);
+  EXPECT_EQ(bus.ears[1].activity, "from 6; to 10; ");
+  EXPECT_EQ(bus.ears[2].activity, "") << "who did not ask is not told";
+}
 
 TEST(Medium, TellsATransmissionAtItsEndAsItWasDriven) {
   Bus bus;

@@ -42,6 +42,9 @@ class Segment {
   void deliver(std::size_t station, PortIndex port, const line::Waveform& wave) {
     seats_[station].receive(port, wave);
   }
+  void tell_activity(std::size_t station, PortIndex port, bool begins) {
+    seats_[station].tell_activity(port, begins);
+  }
 
  private:
   // A station and its timer. The timer is armed lazily: when the wanted time moves later, as a supervision
@@ -51,6 +54,10 @@ class Segment {
     Seat(Segment& segment, Station& station);
     void receive(PortIndex port, const line::Waveform& wave) {
       station_.receive(port, wave);
+      refresh();
+    }
+    void tell_activity(PortIndex port, bool begins) {
+      station_.on_activity(port, begins, segment_.now());
       refresh();
     }
     void refresh();

@@ -25,6 +25,9 @@ class Station {
   virtual ~Station() = default;
 
   virtual void receive(PortIndex port, const line::Waveform& reception) = 0;
+  // On a bus whose place was asked to sense it: others begin to drive the line here, or nobody of them does
+  // any more. What they drove is told before its end.
+  virtual void on_activity(PortIndex /*port*/, bool /*begins*/, kernel::Time /*now*/) {}
   virtual void on_time(kernel::Time now) = 0;
   // When on_time is wanted, kNever for never. Asked after each receive and on_time. An instant that has
   // passed means now.
