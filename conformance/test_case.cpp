@@ -26,6 +26,17 @@ judge::Reference TestCase::rests_on() const {
   return all;
 }
 
+void rest_also_on(TestCase& test_case, const std::vector<Detail>& details) {
+  const auto is_told = [own = test_case.details](const std::string& reason) {
+    return std::ranges::any_of(
+        own, [&](const Detail& one) { return std::ranges::find(one.reasons, reason) != one.reasons.end(); });
+  };
+  for (Detail detail : details) {
+    std::erase_if(detail.reasons, is_told);
+    if (!detail.reasons.empty()) test_case.details.push_back(std::move(detail));
+  }
+}
+
 bool has_tag(const TestCase& test_case, std::string_view tag) {
   return std::find(test_case.tags.begin(), test_case.tags.end(), tag) != test_case.tags.end();
 }

@@ -58,6 +58,9 @@ struct TestCase {
   judge::Reference rests_on() const;
 };
 
+// Adds the details to the case, but for reasons that details of its own are about.
+void rest_also_on(TestCase& test_case, const std::vector<Detail>& details);
+
 bool has_tag(const TestCase& test_case, std::string_view tag);
 
 // A case that must fail on every implementation, to show that a failure is seen at all.

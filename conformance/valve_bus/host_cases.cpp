@@ -8,7 +8,8 @@ namespace fieldproof::conformance {
 namespace {
 
 HostCase host_canary() {
-  return {canary_of("host", "the case asks for a frame that no host sends."),
+  return {canary_of("valve_bus/host", valve_sources::own("rules of the suite"), "A read.",
+                    "the case asks for a frame that no host sends."),
           [](HostBench& bench, CaseJudge& judge) {
             bench.order({5, 1, 0, 0});
             const auto frame = bench.next_frame(bench.patience());

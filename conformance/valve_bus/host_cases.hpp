@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/valve_bus/bench_case.hpp"
+#include "conformance/bench_case.hpp"
 #include "conformance/valve_bus/host_bench.hpp"
 #include "conformance/valve_bus/sources.hpp"
 

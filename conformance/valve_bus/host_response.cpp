@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "conformance/valve_bus/characters_item.hpp"
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_expect.hpp"
 

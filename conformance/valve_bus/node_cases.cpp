@@ -8,7 +8,8 @@ namespace fieldproof::conformance {
 namespace {
 
 NodeCase canary() {
-  return {canary_of("node", "the case asks for an answer that no node gives."),
+  return {canary_of("valve_bus/node", valve_sources::own("rules of the suite"), "A read.",
+                    "the case asks for an answer that no node gives."),
           [](NodeBench& bench, CaseJudge& judge) {
             bench.read();
             bench.settle();

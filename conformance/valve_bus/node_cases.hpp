@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/valve_bus/bench_case.hpp"
+#include "conformance/bench_case.hpp"
 #include "conformance/valve_bus/node_bench.hpp"
 #include "conformance/valve_bus/sources.hpp"
 

@@ -9,9 +9,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-using Octets = NodeBench::Octets;
-
-Octets written(const valve_bus::Command& command) {
+NodeBench::Octets written(const valve_bus::Command& command) {
   const auto octets = octets_of(command);
   return {octets.begin(), octets.end()};
 }
@@ -29,12 +27,12 @@ void short_frames_are_discarded(NodeBench& bench, CaseJudge& judge) {
 void long_frames_are_discarded(NodeBench& bench, CaseJudge& judge) {
   for (const std::size_t more : {1U, 2U, 3U, 4U, 5U, 8U, 100U, 300U}) {
     const auto whole = bench.telling_write();
-    Octets frame(whole.begin(), whole.end());
+    NodeBench::Octets frame(whole.begin(), whole.end());
     frame.resize(frame.size() + more, 0);
     bench.send(frame);
     bench.settle();
     expect_ignored(bench, judge, "acts_on_long_frame", fmt::format("{} octets behind it", more));
-    Octets in_front(more, 0);
+    NodeBench::Octets in_front(more, 0);
     const auto behind = bench.telling_write();
     in_front.insert(in_front.end(), behind.begin(), behind.end());
     bench.send(in_front);
@@ -101,7 +99,7 @@ void gaps_inside_a_frame(NodeBench& bench, CaseJudge& judge) {
 void joined_frames_are_no_write(NodeBench& bench, CaseJudge& judge) {
   const std::uint8_t id = bench.address();
   const std::array<std::uint8_t, 3> response{id, 0x00, id};
-  const Octets poll = written({1, 1, 0, 0});
+  const NodeBench::Octets poll = written({1, 1, 0, 0});
   for (const bool has_delimiter : {false, true}) {
     bench.send(response);
     if (has_delimiter) bench.wait(bench.delimiter() + kernel::kMicrosecond);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "conformance/valve_bus/characters_item.hpp"
 #include "conformance/valve_bus/node_cases.hpp"
 #include "conformance/valve_bus/node_expect.hpp"
 

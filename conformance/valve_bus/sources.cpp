@@ -1,6 +1,5 @@
 #include "conformance/valve_bus/sources.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace fieldproof::conformance {
@@ -51,17 +50,6 @@ const std::vector<Detail>& host_details() {
       {own("silence of 3.5 characters ends a frame, whatever came before it"), {"does_not_recover"}},
   };
   return details;
-}
-
-void rest_also_on(TestCase& test_case, const std::vector<Detail>& details) {
-  const auto is_told = [own = test_case.details](const std::string& reason) {
-    return std::ranges::any_of(
-        own, [&](const Detail& one) { return std::ranges::find(one.reasons, reason) != one.reasons.end(); });
-  };
-  for (Detail detail : details) {
-    std::erase_if(detail.reasons, is_told);
-    if (!detail.reasons.empty()) test_case.details.push_back(std::move(detail));
-  }
 }
 
 }  // namespace fieldproof::conformance

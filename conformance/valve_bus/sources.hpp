@@ -21,7 +21,4 @@ judge::Reference derived(std::string place);     // follows from the paper
 const std::vector<Detail>& node_details();
 const std::vector<Detail>& host_details();
 
-// Adds the details to the case, but for reasons that details of its own are about.
-void rest_also_on(TestCase& test_case, const std::vector<Detail>& details);
-
 }  // namespace fieldproof::conformance

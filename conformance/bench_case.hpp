@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,10 +9,9 @@
 
 #include "conformance/judging.hpp"
 #include "conformance/test_case.hpp"
-#include "conformance/valve_bus/sources.hpp"
 
-// What the cases of both roles have in common: a procedure on a bench that is made for one run, chapters of
-// cases, and a canary behind them.
+// What cases that run on a bench of their protocol have in common: a procedure on a bench that is made for
+// one run, chapters of cases, and a canary behind them.
 namespace fieldproof::conformance {
 
 template <typename Bench, typename Needs>
@@ -66,22 +64,15 @@ std::vector<Case> cases_of(std::span<std::vector<Case> (*const)()> chapters,
   return all;
 }
 
-// Applies only where the implementation talks in this character format, or has not said in which.
-inline std::function<std::optional<std::string>(const judge::Pics&)> for_characters(std::string profile) {
-  return [profile = std::move(profile)](const judge::Pics& pics) -> std::optional<std::string> {
-    if (pics.text("characters", profile) == profile) return std::nullopt;
-    return "the implementation does not talk in characters " + profile;
-  };
-}
-
-// Asks for what no implementation of the role does.
-inline TestCase canary_of(const std::string& role, std::string expected) {
+// Asks for what no implementation of the role does, in any suite. `reference` is the suite's own.
+inline TestCase canary_of(const std::string& role, judge::Reference reference, std::string stimulus,
+                          std::string expected) {
   TestCase test_case;
-  test_case.id = "valve_bus/" + role + "/canary/a_failure_is_seen";
+  test_case.id = role + "/canary/a_failure_is_seen";
   test_case.purpose = "canary";
   test_case.requirement = "a failure of this suite is seen";
-  test_case.reference = valve_sources::own("rules of the suite");
-  test_case.stimulus = "A read.";
+  test_case.reference = std::move(reference);
+  test_case.stimulus = std::move(stimulus);
   test_case.expected = "The verdict is fail: " + std::move(expected);
   test_case.tags = {"canary"};
   return test_case;
