@@ -1,0 +1,61 @@
+#include "protocols/fieldbus_dll/line_end.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "harness/kernel/check.hpp"
+#include "harness/line/frame_check_16.hpp"
+
+namespace fieldproof::fieldbus_dll {
+namespace {
+
+const line::FrameCheck16& frame_check() {
+  static const line::FrameCheck16& check = line::shared_frame_check_16("CRC-16/PROFIBUS");
+  return check;
+}
+
+}  // namespace
+
+Octets with_check(std::span<const std::uint8_t> octets) {
+  Octets all(octets.begin(), octets.end());
+  const auto check = frame_check().check_octets(frame_check().update(frame_check().start(), octets));
+  all.insert(all.end(), check.begin(), check.end());
+  return all;
+}
+
+kernel::Time LineEnd::transmit(std::span<const std::uint8_t> octets, kernel::Time start) {
+  line::Levels half_bits;
+  code_.append(half_bits, with_check(octets), rules_.preamble_octets);
+  return drive(std::move(half_bits), start);
+}
+
+kernel::Time LineEnd::drive(line::Levels half_bits, kernel::Time start) {
+  FIELDPROOF_CHECK(line_ != nullptr, "a station that drives has been wired");
+  line::Waveform wave{start, 2 * rules_.bit_rate, std::move(half_bits)};
+  driven_until_ = wave.end();
+  line_->drive(wave);
+  return driven_until_;
+}
+
+std::vector<Arrived> LineEnd::receive(const line::Waveform& reception) {
+  std::vector<Arrived> arrived;
+  if (reception.start < driven_until_) return arrived;
+  for (line::DelimitedFrame& frame : line::delimited_frames_in(reception, rules_.bit_rate)) {
+    if (frame.end != line::FrameEnd::whole || frame.octets.size() <= kCheckOctets) continue;
+    if (!frame_check().is_residue(frame_check().update(frame_check().start(), frame.octets))) continue;
+    frame.octets.resize(frame.octets.size() - kCheckOctets);
+    arrived.push_back({std::move(frame.octets), reception.start, reception.end()});
+  }
+  return arrived;
+}
+
+void LineEnd::on_activity(bool begins, kernel::Time now) {
+  hears_activity_ = begins;
+  if (!begins) heard_until_ = now;
+}
+
+kernel::Time LineEnd::silent_since() const {
+  return hears_activity_ ? kernel::kNever : std::max(heard_until_, driven_until_);
+}
+
+}  // namespace fieldproof::fieldbus_dll
