@@ -1,6 +1,7 @@
 #include "cli/suites.hpp"
 
 #include "cli/attachments.hpp"
+#include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 
@@ -17,6 +18,8 @@ Suites suites(const Disturbances& disturbances) {
                                               .on_real_line = node_on_real_line,
                                               .disturbances = disturbances.of_plans,
                                               .stresses = disturbances.stresses}));
+  all.push_back(conformance::fieldbus_dll_suite(
+      {.isa_dle = {}, .isa_las = {}, .disturbances = disturbances.of_plans}));
   return all;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "conformance/gtest_catalogue.hpp"
+#include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 
@@ -16,7 +17,9 @@ int main(int argc, char** argv) {
   };
   const auto interbus = interbus_suite();
   const auto valve_bus = valve_bus_suite();
+  const auto fieldbus_dll = fieldbus_dll_suite();
   register_with_googletest(*interbus, at_quick_volume);
   register_with_googletest(*valve_bus, at_quick_volume);
+  register_with_googletest(*fieldbus_dll, at_quick_volume);
   return RUN_ALL_TESTS();
 }

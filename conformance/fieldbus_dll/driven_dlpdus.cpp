@@ -1,0 +1,86 @@
+#include "conformance/fieldbus_dll/driven_dlpdus.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "harness/line/delimited_frame.hpp"
+#include "harness/line/frame_check.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::size_t kHeader = 3;
+constexpr std::size_t kCheck = 2;
+
+// 1 falls in the middle of the bit; N+ stays high, N- low.
+constexpr std::string_view kPreambleOctet = "1001100110011001";
+constexpr std::string_view kStartDelimiter = "1011001001001101";
+constexpr std::string_view kEndDelimiter = "1011001100100110";
+
+const line::FrameCheck& frame_check() {
+  static const line::FrameCheck check(line::frame_check_named("CRC-16/PROFIBUS"));
+  return check;
+}
+
+// Follows exactly, with any of the lengths that a preamble may have?
+bool is_exact(const line::Levels& half_bits, std::span<const std::uint8_t> octets) {
+  const std::size_t without_preamble = half_bits_of_frame(octets, 0).size();
+  if (half_bits.size() <= without_preamble) return false;
+  const std::size_t preamble = (half_bits.size() - without_preamble) / kPreambleOctet.size();
+  return preamble >= 1 && preamble <= line::kMostPreambleOctets &&
+         half_bits == half_bits_of_frame(octets, static_cast<unsigned>(preamble));
+}
+
+}  // namespace
+
+Octets DrivenDlpdu::rest() const {
+  if (octets.size() <= kHeader) return {};
+  return {octets.begin() + kHeader, octets.end()};
+}
+
+std::string DrivenDlpdu::text() const {
+  std::string text = fmt::format("{:02X}", fmt::join(octets, " "));
+  if (!is_well_formed) return text + " in a frame that is none";
+  return has_right_check ? text : text + " with a wrong check";
+}
+
+Octets with_frame_check(std::span<const std::uint8_t> octets) {
+  Octets all(octets.begin(), octets.end());
+  const auto check = static_cast<unsigned>(frame_check().compute(octets));
+  all.push_back(static_cast<std::uint8_t>(check >> 8));
+  all.push_back(static_cast<std::uint8_t>(check & 0xFF));
+  return all;
+}
+
+line::Levels half_bits_of_frame(std::span<const std::uint8_t> octets, unsigned preamble_octets) {
+  std::string text;
+  for (unsigned n = 0; n < preamble_octets; ++n) text += kPreambleOctet;
+  text += kStartDelimiter;
+  for (const std::uint8_t octet : octets) {
+    for (unsigned bit = 8; bit-- > 0;) text += (octet >> bit & 1) != 0 ? "10" : "01";
+  }
+  text += kEndDelimiter;
+  return line::Levels::of_text(text);
+}
+
+void DrivenDlpdus::on_wave(const line::Waveform& wave) {
+  const line::Levels half_bits = line::half_bits_of(wave, bit_rate_);
+  DrivenDlpdu driven{wave.start, wave.end(), false, false, {}};
+  const std::vector<line::DelimitedFrame> frames = line::delimited_frames_in(wave, bit_rate_);
+  if (frames.size() == 1) {
+    driven.octets = frames.front().octets;
+    driven.is_well_formed = frames.front().end == line::FrameEnd::whole && is_exact(half_bits, driven.octets);
+  }
+  if (driven.octets.size() > kCheck) {
+    const std::span all(driven.octets);
+    driven.has_right_check = with_frame_check(all.first(all.size() - kCheck)) == driven.octets;
+    driven.octets.resize(driven.octets.size() - kCheck);
+  }
+  all_.push_back(std::move(driven));
+}
+
+}  // namespace fieldproof::conformance

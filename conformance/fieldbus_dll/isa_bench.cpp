@@ -1,0 +1,75 @@
+#include "conformance/fieldbus_dll/isa_bench.hpp"
+
+#include <algorithm>
+
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::IsaConfiguration;
+
+IsaConfiguration configuration_of(const IsaNeeds& needs, const IsaSetting& setting) {
+  IsaConfiguration configuration;
+  configuration.rules.link.bit_rate = needs.bit_rate;
+  configuration.address = setting.address;
+  configuration.schedule = needs.schedule;
+  configuration.begins_as_scheduler = needs.is_scheduler;
+  return configuration;
+}
+
+}  // namespace
+
+bool IsaUpperTester::was_delivered(const Octets& data) const {
+  return std::ranges::any_of(deliveries, [&](const Delivery& one) { return one.dlpdu.data == data; });
+}
+
+IsaBench::IsaBench(const IsaNeeds& needs, const IsaSetting& setting)
+    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume),
+      configuration_(configuration_of(needs, setting)),
+      station_(setting.make_station(configuration_)) {
+  if (setting.make_recorder)
+    segment().trace().set_recorder(setting.make_recorder(segment().trace(), rules()));
+  station_->wire(attach_station(*station_, setting.plan), user_);
+  station_->start(now());
+  refresh_station();
+}
+
+bool IsaBench::submit(fieldbus_dll::IsaService service, Priority priority, const Octets& data,
+                      std::uint8_t destination) {
+  const bool is_taken = station_->submit({service, priority, destination, data}, now());
+  refresh_station();
+  return is_taken;
+}
+
+void IsaBench::order_transfer(std::uint8_t node) {
+  station_->order_transfer(node, now());
+  refresh_station();
+}
+
+// ---- DLPDUs of the tester ----
+
+Octets IsaBench::et(Priority least) const {
+  return {control(rules().codes.et, least), address(), kScheduler};
+}
+
+Octets IsaBench::es(Priority least, unsigned duration) const {
+  return {control(rules().codes.es, least), address(), kScheduler, static_cast<std::uint8_t>(duration >> 8),
+          static_cast<std::uint8_t>(duration & 0xFF)};
+}
+
+Octets IsaBench::cd(Priority least) const {
+  return {control(rules().codes.cd, least), address(), kPeer};
+}
+
+Octets IsaBench::dt(Priority priority, const Octets& data, std::uint8_t source) const {
+  constexpr std::uint8_t kFinal = 0x04;
+  Octets octets{static_cast<std::uint8_t>(control(rules().codes.dt, priority) | kFinal), address(), source};
+  octets.insert(octets.end(), data.begin(), data.end());
+  return octets;
+}
+
+Octets IsaBench::ee(std::uint8_t source) const {
+  constexpr std::uint8_t kFinal = 0x04;
+  return {static_cast<std::uint8_t>(rules().codes.ee | kFinal), address(), source, 0};
+}
+
+}  // namespace fieldproof::conformance

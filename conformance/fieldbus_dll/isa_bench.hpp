@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "conformance/fieldbus_dll/link_bench.hpp"
+#include "protocols/fieldbus_dll/isa_device.hpp"
+
+// The bench of one case for a station of the profile ISA-D: a link with the implementation under test (IUT)
+// and the lower tester in the place of every other station, and the upper tester as the IUT's user.
+//
+// The lower tester drives what the case says and hears what the IUT drives as it leaves it. Verdicts rest on
+// that, and on what was delivered to the user.
+namespace fieldproof::conformance {
+
+// What schedules count in: an octet duration at 31.25 kbit/s.
+inline constexpr kernel::Duration kOctetAt31250 = 256 * kernel::kMicrosecond;
+
+// What a case needs around the IUT.
+struct IsaNeeds {
+  fieldbus_dll::IsaSchedule schedule{};  // of an IUT that is the scheduler
+  bool is_scheduler = true;              // when the case begins
+  std::int64_t bit_rate = 31'250;
+};
+
+// Who plays, and how.
+struct IsaSetting {
+  using MakeStation =
+      std::function<std::unique_ptr<fieldbus_dll::IsaDevice>(const fieldbus_dll::IsaConfiguration&)>;
+
+  MakeStation make_station;
+  std::uint8_t address = 0x21;  // of the IUT
+  std::uint64_t seed = 1;
+  Volume volume = Volume::full;
+  fault::Plan plan{};
+  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
+  std::function<trace::Recorder*(const trace::Trace&, const fieldbus_dll::IsaRules&)> make_recorder;
+};
+
+// The IUT's user.
+class IsaUpperTester final : public fieldbus_dll::IsaUser {
+ public:
+  struct Delivery {
+    fieldbus_dll::IsaDlpdu dlpdu;
+    kernel::Time when;
+  };
+
+  void on_data(const fieldbus_dll::IsaDlpdu& dlpdu, kernel::Time when) override {
+    deliveries.push_back({dlpdu, when});
+  }
+  void on_event(const fieldbus_dll::IsaEvent& event, kernel::Time) override { events.push_back(event); }
+  bool is_reply_coming(fieldbus_dll::Priority, kernel::Time) override { return works_on_reply; }
+
+  bool was_delivered(const Octets& data) const;
+
+  std::vector<Delivery> deliveries;
+  std::vector<fieldbus_dll::IsaEvent> events;
+  bool works_on_reply = false;
+};
+
+class IsaBench final : public LinkBench {
+ public:
+  using Priority = fieldbus_dll::Priority;
+
+  // Stations of the tester.
+  static constexpr std::uint8_t kScheduler = 0x10;
+  static constexpr std::uint8_t kPeer = 0x22;
+
+  IsaBench(const IsaNeeds& needs, const IsaSetting& setting);
+
+  const fieldbus_dll::IsaRules& rules() const { return configuration_.rules; }
+  std::uint8_t address() const { return configuration_.address; }
+  kernel::Duration reply_wait() const { return octets(rules().reply_wait_octets); }
+  kernel::Duration reply_forming() const { return octets(rules().reply_forming_octets); }
+
+  // ---- upper tester ----
+  IsaUpperTester& user() { return user_; }
+  // False when the IUT refuses it.
+  bool submit(fieldbus_dll::IsaService service, Priority priority, const Octets& data,
+              std::uint8_t destination = kPeer);
+  bool submit_unit_data(Priority priority, const Octets& data) {
+    return submit(fieldbus_dll::IsaService::unit_data, priority, data);
+  }
+  void order_transfer(std::uint8_t node);
+
+  // ---- DLPDUs of the tester ----
+  std::uint8_t control(std::uint8_t code, Priority priority) const {
+    return static_cast<std::uint8_t>(code | static_cast<unsigned>(priority));
+  }
+  Octets et(Priority least) const;
+  Octets es(Priority least, unsigned duration) const;
+  Octets cd(Priority least) const;
+  // A final DT to the IUT.
+  Octets dt(Priority priority, const Octets& data, std::uint8_t source = kPeer) const;
+  Octets ee(std::uint8_t source) const;
+
+  void finish() { station_->end(); }
+
+ private:
+  fieldbus_dll::IsaConfiguration configuration_;
+  IsaUpperTester user_;
+  std::unique_ptr<fieldbus_dll::IsaDevice> station_;
+};
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,119 @@
+#include "conformance/fieldbus_dll/isa_expect.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::EndReason;
+using fieldbus_dll::Priority;
+
+constexpr unsigned kTypeBits = 0xF0;
+constexpr unsigned kFinalBit = 0x04;
+constexpr unsigned kPriorityBits = 0x03;
+constexpr std::size_t kEeOctets = 4;
+
+void expect_ends_right(const IsaBench& bench, CaseJudge& judge, const DrivenDlpdu& end) {
+  const bool is_right = end.octets.size() == kEeOctets && end.octet(0) == bench.ee(0)[0] &&
+                        end.octet(1) == IsaBench::kScheduler && end.octet(2) == bench.address();
+  judge.expect(is_right, "dlpdu_wrong", [&] {
+    return Sighting{{fmt::format("EE: {:02X} {:02X} {:02X} and a reason", bench.ee(0)[0],
+                                 IsaBench::kScheduler, bench.address())},
+                    end.text(),
+                    end.begin};
+  });
+}
+
+}  // namespace
+
+bool is_type(const DrivenDlpdu& dlpdu, std::uint8_t code) {
+  return !dlpdu.octets.empty() && (dlpdu.octet(0) & kTypeBits) == code;
+}
+
+Priority priority_of(const DrivenDlpdu& dlpdu) {
+  return static_cast<Priority>(dlpdu.octet(0) & kPriorityBits);
+}
+
+bool is_final(const DrivenDlpdu& dlpdu) {
+  return (dlpdu.octet(0) & kFinalBit) != 0;
+}
+
+Octets expect_submitted(IsaBench& bench, CaseJudge& judge, fieldbus_dll::IsaService service,
+                        Priority priority, std::size_t size) {
+  const Octets data = bench.numbered_data(size);
+  judge.expect(bench.submit(service, priority, data), "data_refused", "data is accepted", "it was refused");
+  return data;
+}
+
+TokenUse expect_token_use(IsaBench& bench, CaseJudge& judge, kernel::Time from) {
+  const auto& codes = bench.rules().codes;
+  TokenUse use;
+  bool has_ended = false;
+  kernel::Time since = from;
+  for (const DrivenDlpdu& one : bench.listen()) {
+    judge.expect(!has_ended, "talks_behind_end",
+                 [&] { return Sighting{{"silence behind the EE"}, one.text(), one.begin}; });
+    expect_begins(judge, one, since, "answers_too_early", since + bench.reply_wait(), "answers_too_late");
+    since = one.end;
+    if (is_type(one, codes.ee)) {
+      expect_ends_right(bench, judge, one);
+      use.end = one;
+      has_ended = true;
+      continue;
+    }
+    judge.expect(is_type(one, codes.du), "unexpected_dlpdu",
+                 [&] { return Sighting{{"DU or EE"}, one.text(), one.begin}; });
+    use.data.push_back(one);
+  }
+  judge.expect(has_ended, "token_not_returned", "the token is returned by an EE", "no EE came");
+  return use;
+}
+
+void expect_data(CaseJudge& judge, const TokenUse& use, const std::vector<Octets>& data,
+                 std::string_view reason_for_missing, std::string_view reason_for_more) {
+  judge.expect(use.data.size() >= data.size(), reason_for_missing, [&] {
+    return Sighting{{fmt::format("{} data DLPDUs", data.size())}, fmt::format("{}", use.data.size())};
+  });
+  judge.expect(use.data.size() <= data.size(), reason_for_more, [&] {
+    const DrivenDlpdu& first = use.data[data.size()];
+    return Sighting{{fmt::format("{} data DLPDUs", data.size())},
+                    fmt::format("{}, the first one too many: {}", use.data.size(), first.text()),
+                    first.begin};
+  });
+  for (std::size_t n = 0; n < data.size(); ++n) {
+    judge.expect(use.data[n].rest() == data[n], "data_wrong", [&] {
+      return Sighting{{fmt::format("DLSDU {:02X}", fmt::join(data[n], " "))},
+                      use.data[n].text(),
+                      use.data[n].begin,
+                      fmt::format("data DLPDU {}", n + 1)};
+    });
+  }
+}
+
+void expect_end_reason(CaseJudge& judge, const TokenUse& use, EndReason reason) {
+  judge.expect(use.end.octet(3) == static_cast<std::uint8_t>(reason), "end_reason_wrong", [&] {
+    return Sighting{
+        {fmt::format("EE with reason {}", static_cast<unsigned>(reason))}, use.end.text(), use.end.begin};
+  });
+}
+
+void expect_serves(IsaBench& bench, CaseJudge& judge) {
+  const Octets data = bench.numbered_data(6);
+  judge.expect(bench.submit_unit_data(Priority::urgent, data), "does_not_recover", "data is accepted",
+               "it was refused");
+  // What was submitted before goes first.
+  bench.send(bench.es(Priority::time_available, 5'000));
+  const std::vector<DrivenDlpdu> all = bench.listen();
+  const bool is_served = std::ranges::any_of(all, [&](const DrivenDlpdu& one) {
+    return is_type(one, bench.rules().codes.du) && one.rest() == data;
+  });
+  judge.expect(is_served, "does_not_recover", [&] {
+    return Sighting{{"under a long ES, all that was submitted"},
+                    all.empty() ? std::string("silence") : all.front().text()};
+  });
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,42 @@
+#include "conformance/fieldbus_dll/isa_sources.hpp"
+
+#include <utility>
+
+namespace fieldproof::conformance {
+
+namespace isa_sources {
+judge::Reference paper(std::string place) {
+  return {"Hong, Kim, Kim and Ko, distributed control and the fieldbus", std::move(place),
+          judge::Standing::seed};
+}
+judge::Reference line(std::string place) {
+  return {"IEC 61158-2, as the open implementation nanoFIP has it", std::move(place),
+          judge::Standing::searched};
+}
+judge::Reference vendors(std::string place) {
+  return {"vendors' tables of link parameters", std::move(place), judge::Standing::searched};
+}
+judge::Reference memory(std::string place) {
+  return {"IEC 61158, from memory", std::move(place), judge::Standing::memory};
+}
+judge::Reference own(std::string place) {
+  return {"this project's choice", std::move(place), judge::Standing::own};
+}
+}  // namespace isa_sources
+
+const std::vector<Detail>& isa_details() {
+  using isa_sources::line;
+  using isa_sources::own;
+  using isa_sources::vendors;
+  static const std::vector<Detail> details{
+      {line("preamble and delimiters"), {"frame_malformed", "check_wrong"}},
+      {vendors("V(MID): silence behind every DLPDU"), {"gap_too_short", "answers_too_early"}},
+      {own("who is silent for V(RR) says nothing any more"), {"answers_too_late", "next_too_late"}},
+      {own("encoding of the profile ISA-D"),
+       {"dlpdu_wrong", "source_wrong", "end_reason_wrong", "unexpected_dlpdu"}},
+      {own("EE behind a single frame, too"), {"token_not_returned"}},
+  };
+  return details;
+}
+
+}  // namespace fieldproof::conformance

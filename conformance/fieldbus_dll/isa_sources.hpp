@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "conformance/test_case.hpp"
+#include "harness/judge/finding.hpp"
+
+// What the cases of the profile ISA-D rest on. The paper says who may speak when; addresses, encodings and
+// the values of all timers are this project's own choice.
+namespace fieldproof::conformance {
+
+namespace isa_sources {
+judge::Reference paper(std::string place);    // the paper on the ISA draft
+judge::Reference line(std::string place);     // IEC 61158-2, as an open implementation has it
+judge::Reference vendors(std::string place);  // tables of link parameters
+judge::Reference memory(std::string place);   // IEC 61158, from memory
+judge::Reference own(std::string place);      // where all of these are silent
+}  // namespace isa_sources
+
+// The reasons that rest on less than the case that finds them.
+const std::vector<Detail>& isa_details();
+
+}  // namespace fieldproof::conformance

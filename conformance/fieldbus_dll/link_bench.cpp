@@ -1,0 +1,108 @@
+#include "conformance/fieldbus_dll/link_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace fieldproof::conformance {
+
+LinkBench::LinkBench(const fieldbus_dll::LinkRules& link, std::uint64_t seed, Volume volume)
+    : link_(link),
+      volume_(volume),
+      random_(seed),
+      line_(segment_, "line", segment::ContentionRule::noise, random_),
+      tester_seat_(segment_.attach(*this, "tester")),
+      driven_(link.bit_rate),
+      sent_(link.bit_rate),
+      line_watch_(octets(1)) {}
+
+segment::MediumPort& LinkBench::attach_station(segment::Station& station, const fault::Plan& plan) {
+  station_seat_ = segment_.attach(station, "station");
+  tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
+  segment::MediumPort& place = line_.attach("station/in", station_seat_, 0, {});
+  place.sense_activity();
+  place.tap_driven(driven_);
+  place.tap_arrived(ear_);
+  tester_->tap_driven(sent_);
+  line_watch_.watch(place, segment_.trace());
+  if (!plan.empty()) {
+    plan_ = std::make_unique<fault::InstalledPlan>(plan, segment_.trace(), random_.split("plan"));
+    place.set_channel(plan_->channel_for({"station/in", place.trace_channel(), link_.bit_rate}));
+  }
+  return place;
+}
+
+Octets LinkBench::numbered_data(std::size_t size) {
+  ++number_;
+  Octets data{static_cast<std::uint8_t>(number_ >> 8), static_cast<std::uint8_t>(number_ & 0xFF)};
+  while (data.size() < size) data.push_back(static_cast<std::uint8_t>(random_.below(256)));
+  data.resize(size);
+  return data;
+}
+
+void LinkBench::run_until(kernel::Time time) {
+  if (time > now()) segment_.run_until(time);
+}
+
+kernel::Time LinkBench::send_wave(line::Waveform wave) {
+  wave.start = now();
+  const kernel::Time end = wave.end();
+  tester_->drive(wave);
+  run_until(end);
+  return end;
+}
+
+kernel::Time LinkBench::send_half_bits(line::Levels half_bits) {
+  return send_wave({now(), 2 * link_.bit_rate, std::move(half_bits)});
+}
+
+kernel::Time LinkBench::send(std::span<const std::uint8_t> octets) {
+  return send_half_bits(half_bits_of_frame(with_frame_check(octets)));
+}
+
+kernel::Time LinkBench::send_at(kernel::Time start, std::span<const std::uint8_t> octets) {
+  line::Waveform wave{start, 2 * link_.bit_rate, half_bits_of_frame(with_frame_check(octets))};
+  const kernel::Time end = wave.end();
+  tester_->drive(wave);
+  return end;
+}
+
+bool LinkBench::next_begins(kernel::Time limit) {
+  // In steps of a bit: the ear knows at once what the IUT begins.
+  while (!driven_.has_new() && now() < limit) run_until(std::min(limit, now() + octets(1) / 8));
+  return driven_.has_new();
+}
+
+std::optional<DrivenDlpdu> LinkBench::next(kernel::Time limit) {
+  if (!next_begins(limit)) return std::nullopt;
+  const DrivenDlpdu first = driven_.take_one();
+  run_until(first.end);
+  return first;
+}
+
+std::vector<DrivenDlpdu> LinkBench::listen() {
+  std::vector<DrivenDlpdu> all;
+  while (auto one = next()) all.push_back(std::move(*one));
+  return all;
+}
+
+std::vector<std::string> LinkBench::decode_lines() {
+  constexpr std::size_t kMostLines = 12;
+  std::vector<std::pair<kernel::Time, std::string>> all;
+  const auto tell = [&](std::string_view who, const std::vector<DrivenDlpdu>& dlpdus) {
+    for (const DrivenDlpdu& one : dlpdus) {
+      all.emplace_back(one.begin, fmt::format("{} {} to {}: {}", who, kernel::describe(one.begin),
+                                              kernel::describe(one.end), one.text()));
+    }
+  };
+  tell("tester drove", sent_.all());
+  tell("station drove", driven_.all());
+  std::ranges::stable_sort(all, {}, &std::pair<kernel::Time, std::string>::first);
+  const std::size_t first = all.size() - std::min(all.size(), kMostLines);
+  std::vector<std::string> lines;
+  for (std::size_t n = first; n < all.size(); ++n) lines.push_back(all[n].second);
+  return lines;
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "conformance/fieldbus_dll/driven_dlpdus.hpp"
+#include "conformance/line_watch.hpp"
+#include "conformance/test_case.hpp"
+#include "harness/fault/plan.hpp"
+#include "harness/kernel/random.hpp"
+#include "harness/segment/medium.hpp"
+#include "harness/segment/segment.hpp"
+#include "protocols/fieldbus_dll/link_rules.hpp"
+
+// A link with one station under test (IUT) and the lower tester in the place of every other station, whatever
+// the profile: what the benches of both have in common.
+//
+// The lower tester drives what the case says and hears what the IUT drives as it leaves it.
+namespace fieldproof::conformance {
+
+// Positions on the line are rounded to picoseconds, each for itself: limits are held to a nanosecond.
+inline constexpr kernel::Duration kLinkRounding = kernel::kNanosecond;
+
+class LinkBench : private segment::Station {
+ public:
+  // Who is on the line besides the IUT, and when.
+  struct Heard {
+    kernel::Time begin;
+    kernel::Time end;
+  };
+
+  template <typename Count>
+  Count volume(Count quick, Count full) const {
+    return volume_ == Volume::quick ? quick : full;
+  }
+  kernel::Random& random() { return random_; }
+  kernel::Time now() const { return segment_.now(); }
+  segment::Segment& segment() { return segment_; }
+
+  // ---- times of the link ----
+  const fieldbus_dll::LinkRules& link() const { return link_; }
+  kernel::Duration octets(std::int64_t count) const { return fieldbus_dll::octets(link_, count); }
+  kernel::Duration slot() const { return octets(link_.slot_time_octets); }
+  kernel::Duration least_gap() const { return octets(link_.inter_pdu_delay_octets); }
+  // V(MRD) x V(ST): who does not begin to answer until then says nothing any more.
+  kernel::Duration response_delay() const {
+    return octets(std::int64_t{link_.response_delay_slots} * link_.slot_time_octets);
+  }
+  // Of a frame around so many octets and their check, as the tester sends it.
+  kernel::Duration frame(std::size_t count_without_check) const {
+    return fieldbus_dll::frame_time(link_, count_without_check + 2);
+  }
+
+  // ---- lower tester ----
+  // The octets with their check from now on, and runs until they are over. Gives that instant.
+  kernel::Time send(std::span<const std::uint8_t> octets);
+  kernel::Time send(std::initializer_list<std::uint8_t> octets) {
+    return send(std::span(octets.begin(), octets.size()));
+  }
+  // Half bits, levels as they are.
+  kernel::Time send_half_bits(line::Levels half_bits);
+  kernel::Time send_wave(line::Waveform wave);
+  // At an instant that lies ahead; does not run. Gives its end.
+  kernel::Time send_at(kernel::Time start, std::span<const std::uint8_t> octets);
+  kernel::Time send_at(kernel::Time start, std::initializer_list<std::uint8_t> octets) {
+    return send_at(start, std::span(octets.begin(), octets.size()));
+  }
+  void wait(kernel::Duration duration) { segment_.run_for(duration); }
+  void run_until(kernel::Time time);
+
+  // Runs until the IUT begins a DLPDU that has not been taken by `next`; false: it was silent until `limit`.
+  bool next_begins(kernel::Time limit);
+  // The next DLPDU that the IUT begins before `limit`, when it is over; none: it was silent.
+  std::optional<DrivenDlpdu> next(kernel::Time limit);
+  std::optional<DrivenDlpdu> next() { return next(now() + patience()); }
+  // All that it drives until it has been silent for `patience()`.
+  std::vector<DrivenDlpdu> listen();
+  // Twice V(MRD) x V(ST): a station that has something to do does it sooner.
+  kernel::Duration patience() const { return 2 * response_delay(); }
+  // Data that no other has, so that what is on the line tells whose it is.
+  Octets numbered_data(std::size_t size);
+
+  // Everything that the IUT has driven, and when others were on the line.
+  std::span<const DrivenDlpdu> driven() const { return driven_.all(); }
+  std::span<const Heard> heard() const { return ear_.heard; }
+
+  std::vector<std::uint64_t> planned_hits() const {
+    return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
+  }
+  const LineWatch& line_watch() const { return line_watch_; }
+  // The last DLPDUs of both, in words.
+  std::vector<std::string> decode_lines();
+
+ protected:
+  LinkBench(const fieldbus_dll::LinkRules& link, std::uint64_t seed, Volume volume);
+  ~LinkBench() override = default;
+
+  // The place of the IUT, which is wired to it.
+  segment::MediumPort& attach_station(segment::Station& station, const fault::Plan& plan);
+  // The IUT was told something from outside of the line.
+  void refresh_station() { segment_.refresh(station_seat_); }
+
+ private:
+  struct Ear final : segment::Tap {
+    void on_wave(const line::Waveform& wave) override { heard.push_back({wave.start, wave.end()}); }
+    std::vector<Heard> heard;
+  };
+
+  void receive(segment::PortIndex, const line::Waveform&) override {}
+  void on_time(kernel::Time) override {}
+  kernel::Time next_time() const override { return kernel::kNever; }
+
+  fieldbus_dll::LinkRules link_;
+  Volume volume_;
+  kernel::Random random_;
+  segment::Segment segment_;
+  segment::Medium line_;
+  std::size_t tester_seat_;
+  std::size_t station_seat_ = 0;
+  segment::MediumPort* tester_ = nullptr;
+  DrivenDlpdus driven_;
+  DrivenDlpdus sent_;
+  Ear ear_;
+  LineWatch line_watch_;
+  std::unique_ptr<fault::InstalledPlan> plan_;
+  std::uint16_t number_ = 0;
+};
+
+}  // namespace fieldproof::conformance

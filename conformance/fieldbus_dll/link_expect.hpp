@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string_view>
+
+#include "conformance/fieldbus_dll/link_bench.hpp"
+#include "conformance/judging.hpp"
+
+// What cases of every profile of the data link require again and again, each with its reason codes.
+namespace fieldproof::conformance {
+
+// The IUT is silent: `reason`.
+void expect_silence(LinkBench& bench, CaseJudge& judge, std::string_view reason, std::string_view why);
+
+// The next DLPDU of the IUT; `reason` when it says nothing for twice V(RR), or until `limit`.
+DrivenDlpdu expect_next(LinkBench& bench, CaseJudge& judge, std::string_view reason, std::string_view what);
+DrivenDlpdu expect_next(LinkBench& bench, CaseJudge& judge, kernel::Time limit, std::string_view reason,
+                        std::string_view what);
+// It begins in this span, to a rounding.
+void expect_begins(CaseJudge& judge, const DrivenDlpdu& dlpdu, kernel::Time earliest,
+                   std::string_view reason_early, kernel::Time latest, std::string_view reason_late);
+
+// How each DLPDU of the IUT stands on the line, whatever the case was about: `frame_malformed`,
+// `check_wrong`, `gap_too_short`. For the end of a procedure.
+void judge_driven(const LinkBench& bench, CaseJudge& judge);
+
+}  // namespace fieldproof::conformance

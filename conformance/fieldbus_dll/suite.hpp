@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "conformance/assigned.hpp"
+#include "conformance/test_case.hpp"
+#include "harness/fault/plan.hpp"
+#include "protocols/fieldbus_dll/isa_device.hpp"
+
+// The suite of the data link of IEC 61158 type 1 and of its drafts: data link entities and link masters of
+// the profile ISA-D, and their deviations.
+//
+// Implementations of a role: `ref`, `deviant:NAME`, and what the suite was given.
+namespace fieldproof::conformance {
+
+using GivenIsaStations = GivenStations<fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration>;
+
+struct FieldbusDllGiven {
+  GivenIsaStations isa_dle{};
+  GivenIsaStations isa_las{};
+  std::vector<fault::DisturbanceKind> disturbances{};  // what a plan can name
+};
+
+std::unique_ptr<Suite> fieldbus_dll_suite(FieldbusDllGiven given = {});
+
+}  // namespace fieldproof::conformance
