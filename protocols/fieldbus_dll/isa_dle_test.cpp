@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "protocols/fieldbus_dll/isa_test_link.hpp"
+#include "protocols/fieldbus_dll/test_link.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {

@@ -12,8 +12,6 @@ namespace {
 
 constexpr unsigned kTypeBits = 0xF0;
 constexpr unsigned kReservedBit = 0x08;
-constexpr unsigned kFinalBit = 0x04;
-constexpr unsigned kPriorityBits = 0x03;
 constexpr std::size_t kHeader = 3;  // type, destination, source
 
 // How the types differ in their first octet and in what follows the addresses.
@@ -151,18 +149,6 @@ std::size_t octets_on_line(IsaType type, std::size_t data) {
 
 bool is_of_scheduler(IsaType type) {
   return type == IsaType::et || type == IsaType::es || type == IsaType::tl;
-}
-
-std::string_view text_of(Priority priority) {
-  switch (priority) {
-    case Priority::time_available:
-      return "time-available";
-    case Priority::normal:
-      return "normal";
-    case Priority::urgent:
-      return "urgent";
-  }
-  return "";
 }
 
 std::string describe(const IsaDlpdu& dlpdu) {

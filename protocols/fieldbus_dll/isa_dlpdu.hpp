@@ -51,6 +51,5 @@ bool is_of_scheduler(IsaType type);
 
 // "ES urgent 10 -> 21 for 1000 octets", "DT normal 22 -> 21 final: 41 42".
 std::string describe(const IsaDlpdu& dlpdu);
-std::string_view text_of(Priority priority);
 
 }  // namespace fieldproof::fieldbus_dll

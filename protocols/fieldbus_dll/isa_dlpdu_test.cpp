@@ -110,10 +110,10 @@ RC_GTEST_PROP(IsaDlpduProperty, WhateverIsReadIsWrittenTheSame, (const Octets& t
 
 TEST(IsaRules, EachNumberHasASource) {
   IsaRules rules;
-  for (const IsaFact& fact : facts(rules)) EXPECT_FALSE(fact.source.empty()) << fact.rule;
+  for (const Fact& fact : facts(rules)) EXPECT_FALSE(fact.source.empty()) << fact.rule;
   rules.reply_wait_octets = 35;
   std::size_t changed = 0;
-  for (const IsaFact& fact : facts(rules)) {
+  for (const Fact& fact : facts(rules)) {
     if (fact.source != "changed for this run") continue;
     ++changed;
     EXPECT_EQ(fact.rule, "reply_wait_octets");

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "protocols/fieldbus_dll/isa_test_link.hpp"
+#include "protocols/fieldbus_dll/test_link.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {

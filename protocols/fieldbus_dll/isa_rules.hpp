@@ -2,10 +2,9 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "harness/judge/verdict.hpp"
+#include "protocols/fieldbus_dll/facts.hpp"
 #include "protocols/fieldbus_dll/link_rules.hpp"
 
 // Every number of the data link of the ISA draft of 1993 (dS50.02 part 4) as this project runs it: the
@@ -44,15 +43,7 @@ struct IsaRules {
   friend bool operator==(const IsaRules&, const IsaRules&) = default;
 };
 
-// One line of the table of sources.
-struct IsaFact {
-  std::string_view rule;
-  std::string value;        // as a person reads it, with unit
-  std::string_view source;  // in own words
-  judge::Standing standing;
-};
-
-// Every number, in the order above. A value that differs from the reference's has the standing `own`.
-std::vector<IsaFact> facts(const IsaRules& rules);
+// Every number, in the order above.
+std::vector<Fact> facts(const IsaRules& rules);
 
 }  // namespace fieldproof::fieldbus_dll

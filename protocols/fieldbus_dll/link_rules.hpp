@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "harness/kernel/time.hpp"
 
@@ -12,6 +13,13 @@ namespace fieldproof::fieldbus_dll {
 
 // PP. What is more urgent is the greater.
 enum class Priority : std::uint8_t { time_available = 1, normal = 2, urgent = 3 };
+
+// Bits of the first octet of a DLPDU.
+inline constexpr unsigned kFinalBit = 0x04;
+inline constexpr unsigned kPriorityBits = 0x03;
+
+// "urgent".
+std::string_view text_of(Priority priority);
 
 struct LinkRules {
   std::int64_t bit_rate = 31'250;                      // bit/s; 1 and 2.5 Mbit/s, too
