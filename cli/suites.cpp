@@ -1,5 +1,7 @@
 #include "cli/suites.hpp"
 
+#include <utility>
+
 #include "cli/attachments.hpp"
 #include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/suite.hpp"
@@ -18,8 +20,9 @@ Suites suites(const Disturbances& disturbances) {
                                               .on_real_line = node_on_real_line,
                                               .disturbances = disturbances.of_plans,
                                               .stresses = disturbances.stresses}));
-  all.push_back(conformance::fieldbus_dll_suite(
-      {.isa_dle = {}, .isa_las = {}, .disturbances = disturbances.of_plans}));
+  conformance::FieldbusDllGiven fieldbus_dll;
+  fieldbus_dll.disturbances = disturbances.of_plans;
+  all.push_back(conformance::fieldbus_dll_suite(std::move(fieldbus_dll)));
   return all;
 }
 

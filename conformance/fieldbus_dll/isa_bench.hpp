@@ -15,9 +15,6 @@
 // that, and on what was delivered to the user.
 namespace fieldproof::conformance {
 
-// What schedules count in: an octet duration at 31.25 kbit/s.
-inline constexpr kernel::Duration kOctetAt31250 = 256 * kernel::kMicrosecond;
-
 // What a case needs around the IUT.
 struct IsaNeeds {
   fieldbus_dll::IsaSchedule schedule{};  // of an IUT that is the scheduler

@@ -8,7 +8,7 @@ namespace fieldproof::conformance {
 namespace {
 
 IsaCase canary(const std::string& role) {
-  return {canary_of("fieldbus_dll/" + role, isa_sources::own("rules of the suite"), "An ET.",
+  return {canary_of("fieldbus_dll/" + role, link_sources::own("rules of the suite"), "An ET.",
                     "the case asks for a DLPDU that no station sends."),
           [](IsaBench& bench, CaseJudge& judge) {
             bench.send(bench.et(fieldbus_dll::Priority::normal));

@@ -4,7 +4,7 @@
 
 #include "conformance/bench_case.hpp"
 #include "conformance/fieldbus_dll/isa_bench.hpp"
-#include "conformance/fieldbus_dll/isa_sources.hpp"
+#include "conformance/fieldbus_dll/link_sources.hpp"
 
 // The test cases for the profile ISA-D, ISA-01 to ISA-40 of the catalogue of test purposes, of both roles:
 // `isa_dle`, a data link entity, and `isa_las`, a link master.

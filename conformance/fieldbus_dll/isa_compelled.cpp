@@ -93,14 +93,14 @@ void lower_priorities_are_kept(IsaBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<IsaCase> isa_compelled_cases() {
-  using isa_sources::own;
-  using isa_sources::paper;
+  using link_sources::isa_paper;
+  using link_sources::own;
   const Detail forming{own("V(FD) is 24 octets, from the end of the CD"), {"reply_too_late"}};
   return {
       {{.id = "fieldbus_dll/isa_dle/compelled/data_is_sent",
         .purpose = "ISA-22",
         .requirement = "A station that is compelled sends its data in one DT and returns the reply token.",
-        .reference = paper("reply token"),
+        .reference = isa_paper("reply token"),
         .details = {forming},
         .stimulus = "A DLSDU is submitted, a CD comes.",
         .expected = "A final DT with it, begun between V(MID) and V(FD).",
@@ -113,7 +113,7 @@ std::vector<IsaCase> isa_compelled_cases() {
       {{.id = "fieldbus_dll/isa_dle/compelled/what_comes_behind_fd_is_kept",
         .purpose = "ISA-23",
         .requirement = "A station whose reply is not there within V(FD) is silent.",
-        .reference = paper("VC(FD): the time to form a reply"),
+        .reference = isa_paper("VC(FD): the time to form a reply"),
         .details = {forming, {own("what was too late answers the next CD"), {"late_data_lost"}}},
         .stimulus = "A CD; the user says that it works on the reply and submits it behind V(FD).",
         .expected = "Silence; the data answers the next CD.",
@@ -123,7 +123,7 @@ std::vector<IsaCase> isa_compelled_cases() {
       {{.id = "fieldbus_dll/isa_dle/compelled/what_comes_within_fd_is_sent",
         .purpose = "ISA-23",
         .requirement = "A reply that is there within V(FD) is sent.",
-        .reference = paper("VC(FD): the time to form a reply"),
+        .reference = isa_paper("VC(FD): the time to form a reply"),
         .details = {forming},
         .stimulus = "A CD; the user says that it works on the reply and submits it two octets before V(FD).",
         .expected = "A DT with it, begun within V(FD).",

@@ -112,13 +112,13 @@ void a_cd_in_place_of_a_reply_is_not_answered(IsaBench& bench, CaseJudge& judge)
 }  // namespace
 
 std::vector<IsaCase> isa_compelling_cases() {
-  using isa_sources::own;
-  using isa_sources::paper;
+  using link_sources::isa_paper;
+  using link_sources::own;
   return {
       {{.id = "fieldbus_dll/isa_dle/compelling/a_late_reply_is_waited_for",
         .purpose = "ISA-19",
         .requirement = "A reply that begins within V(RR) is taken, and the token holder goes on behind it.",
-        .reference = paper("VC(RR): the time for which a reply is waited for"),
+        .reference = isa_paper("VC(RR): the time for which a reply is waited for"),
         .stimulus = "An ES; the IUT compels the peer, which begins to reply an octet before V(RR) is over.",
         .expected = "The reply is delivered, and the next DLSDU follows it.",
         .tags = {"must", "timing"},
@@ -129,7 +129,7 @@ std::vector<IsaCase> isa_compelling_cases() {
       {{.id = "fieldbus_dll/isa_dle/compelling/a_missing_reply_costs_rr",
         .purpose = "ISA-20",
         .requirement = "Without a reply the token holder goes on when V(RR) is over, not before.",
-        .reference = paper("VC(RR): the time for which a reply is waited for"),
+        .reference = isa_paper("VC(RR): the time for which a reply is waited for"),
         .details = {{own("V(RR) is V(MRD) x V(ST), 32 octets, from the end of the CD"),
                      {"resumes_early", "resumes_late"}}},
         .stimulus = "An ES; the IUT compels the peer, which is silent.",
@@ -142,7 +142,7 @@ std::vector<IsaCase> isa_compelling_cases() {
       {{.id = "fieldbus_dll/isa_dle/compelling/a_reply_behind_rr_is_none",
         .purpose = "ISA-21",
         .requirement = "A reply that begins behind V(RR) is none, and nothing is sent into it.",
-        .reference = paper("VC(RR): the time for which a reply is waited for"),
+        .reference = isa_paper("VC(RR): the time for which a reply is waited for"),
         .details = {{own("late replies are discarded"), {"late_reply_taken"}}},
         .stimulus = "An ES; the IUT compels the peer, which begins to reply two octets behind V(RR).",
         .expected = "The IUT has begun before, or begins behind the reply; the reply is not delivered.",

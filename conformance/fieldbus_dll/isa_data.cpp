@@ -63,9 +63,9 @@ void data_is_delivered_to_whom_it_is_for(IsaBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<IsaCase> isa_data_cases() {
-  using isa_sources::memory;
-  using isa_sources::own;
-  using isa_sources::paper;
+  using link_sources::isa_paper;
+  using link_sources::memory;
+  using link_sources::own;
   return {
       {{.id = "fieldbus_dll/isa_dle/data/the_longest_is_sent_and_no_longer",
         .purpose = "ISA-27",
@@ -80,7 +80,7 @@ std::vector<IsaCase> isa_data_cases() {
         .purpose = "ISA-28",
         .requirement = "Data is delivered to the station that it is for, a DU to everybody to all; it is not "
                        "answered.",
-        .reference = paper("data and their stations"),
+        .reference = isa_paper("data and their stations"),
         .details = {{own("a DU may be for everybody, a DT for one station only"),
                      {"broadcast_not_delivered", "invalid_data_delivered"}}},
         .stimulus = "DU and DT to the station, to another, to everybody.",

@@ -10,7 +10,7 @@
 // The stations of the profile ISA-D that its suite must tell from the reference.
 namespace fieldproof::conformance {
 
-const std::vector<Deviation>& isa_deviations();
+std::vector<Deviation> isa_deviations();
 
 // Throws kernel::Error(usage) for a name that is none of this role, with the nearest ones.
 std::unique_ptr<fieldbus_dll::IsaDevice> make_isa_deviation(

@@ -110,13 +110,13 @@ void no_duration_is_no_token(IsaBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<IsaCase> isa_duration_cases() {
-  using isa_sources::own;
-  using isa_sources::paper;
+  using link_sources::isa_paper;
+  using link_sources::own;
   return {
       {{.id = "fieldbus_dll/isa_dle/duration/an_exact_fit_is_sent",
         .purpose = "ISA-08",
         .requirement = "A frame is sent under an ES when it, V(MID) and the EE end within its duration.",
-        .reference = paper("duration guarded on both sides"),
+        .reference = isa_paper("duration guarded on both sides"),
         .details = {{own("what the duration must hold"), {"exact_fit_not_sent"}}},
         .stimulus = "The start latency is measured; ES for exactly what a frame needs, of several lengths.",
         .expected = "The frame and the EE, which ends in time.",
@@ -138,7 +138,7 @@ std::vector<IsaCase> isa_duration_cases() {
       {{.id = "fieldbus_dll/isa_dle/duration/nothing_is_sent_behind_it",
         .purpose = "ISA-12",
         .requirement = "A station sends nothing behind the duration of its token, the EE included.",
-        .reference = paper("VC(RD) at the holder"),
+        .reference = isa_paper("VC(RD) at the holder"),
         .stimulus = "More data than fits; ES for 10, 20, 50, 100, 500, 5000 octets.",
         .expected = "The last frame ends within the duration.",
         .tags = {"must", "timing"},

@@ -101,7 +101,7 @@ IsaCase at_rate(std::int64_t bit_rate, const std::string& name) {
   return {{.id = "fieldbus_dll/isa_dle/line/a_token_is_used_at_" + name,
            .purpose = "ISA-01",
            .requirement = "All that is counted in octets scales with the bit rate.",
-           .reference = isa_sources::line("bit rates"),
+           .reference = link_sources::line("bit rates"),
            .stimulus = "Data, and an ET, at " + name + ".",
            .expected = "As at 31.25 kbit/s: one DU, an EE.",
            .tags = {"must"},
@@ -113,8 +113,8 @@ IsaCase at_rate(std::int64_t bit_rate, const std::string& name) {
 }  // namespace
 
 std::vector<IsaCase> isa_line_cases() {
-  using isa_sources::line;
-  using isa_sources::memory;
+  using link_sources::line;
+  using link_sources::memory;
   return {
       {{.id = "fieldbus_dll/isa_dle/line/all_preambles_are_taken",
         .purpose = "ISA-39",

@@ -151,14 +151,14 @@ void other_lengths_are_left(IsaBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<IsaCase> isa_rejection_cases() {
-  using isa_sources::line;
-  using isa_sources::own;
-  using isa_sources::paper;
+  using link_sources::isa_paper;
+  using link_sources::line;
+  using link_sources::own;
   return {
       {{.id = "fieldbus_dll/isa_dle/rejection/tokens_of_others_are_left",
         .purpose = "ISA-14",
         .requirement = "A station acts on tokens that are delegated to it, and on no others.",
-        .reference = paper("the token is delegated to a station"),
+        .reference = isa_paper("the token is delegated to a station"),
         .stimulus = "Data, and ET and ES to other stations.",
         .expected = "Silence.",
         .tags = {"must"},

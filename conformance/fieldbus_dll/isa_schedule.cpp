@@ -78,13 +78,13 @@ void a_token_that_comes_back_is_not_waited_for(IsaBench& bench, CaseJudge& judge
 }  // namespace
 
 std::vector<IsaCase> isa_schedule_cases() {
-  using isa_sources::own;
-  using isa_sources::paper;
+  using link_sources::isa_paper;
+  using link_sources::own;
   return {
       {{.id = "fieldbus_dll/isa_las/schedule/each_item_has_its_time",
         .purpose = "ISA-29",
         .requirement = "The scheduler delegates its token in the order and at the times of its schedule.",
-        .reference = paper("the link active scheduler passes the delegated token in scheduled order"),
+        .reference = isa_paper("the link active scheduler passes the delegated token in scheduled order"),
         .details = {{own("within one V(ST) of its time"), {"delegation_early", "delegation_late"}}},
         .stimulus = "A schedule of ten items; each holder returns its token at once.",
         .expected = "Ten tokens as scheduled, and no more.",
@@ -99,7 +99,7 @@ std::vector<IsaCase> isa_schedule_cases() {
       {{.id = "fieldbus_dll/isa_las/schedule/a_token_that_comes_back_is_not_waited_for",
         .purpose = "ISA-30",
         .requirement = "A token that comes back early ends its duration.",
-        .reference = paper("EE: the use of the token has ended"),
+        .reference = isa_paper("EE: the use of the token has ended"),
         .stimulus = "An ES for 400 octets whose holder returns it at once; the next item is due.",
         .expected = "The next token V(MID) behind the EE.",
         .tags = {"must", "timing"},

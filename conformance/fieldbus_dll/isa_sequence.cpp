@@ -89,13 +89,13 @@ void what_is_urgent_goes_next(IsaBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<IsaCase> isa_sequence_cases() {
-  using isa_sources::paper;
+  using link_sources::isa_paper;
   return {
       {{.id = "fieldbus_dll/isa_dle/sequence/all_is_sent_by_priority",
         .purpose = "ISA-06",
         .requirement = "Under an ES a station sends what it has, the higher priority first, and returns the "
                        "token by EE.",
-        .reference = paper("delegated token for a duration; higher priority first"),
+        .reference = isa_paper("delegated token for a duration; higher priority first"),
         .stimulus = "Two DLSDUs of each priority, a long ES.",
         .expected = "Two urgent, two normal, two time-available, an EE.",
         .tags = {"must"},
@@ -104,7 +104,7 @@ std::vector<IsaCase> isa_sequence_cases() {
       {{.id = "fieldbus_dll/isa_dle/sequence/lower_priorities_wait",
         .purpose = "ISA-07",
         .requirement = "Only data whose priority is at least that of the token is sent.",
-        .reference = paper("priority of the delegated token"),
+        .reference = isa_paper("priority of the delegated token"),
         .stimulus = "Data of all priorities; a long ES normal, then one time-available.",
         .expected = "Urgent and normal under the first, the rest under the second.",
         .tags = {"must"},
@@ -113,7 +113,7 @@ std::vector<IsaCase> isa_sequence_cases() {
       {{.id = "fieldbus_dll/isa_dle/sequence/what_is_not_used_is_returned",
         .purpose = "ISA-10",
         .requirement = "A station returns the token as soon as it needs it no more.",
-        .reference = paper("EE: the use of the token has ended"),
+        .reference = isa_paper("EE: the use of the token has ended"),
         .stimulus = "One DLSDU, a long ES.",
         .expected = "The EE between V(MID) and V(RR) behind the DU.",
         .tags = {"must", "timing"},
@@ -122,7 +122,7 @@ std::vector<IsaCase> isa_sequence_cases() {
       {{.id = "fieldbus_dll/isa_dle/sequence/what_is_urgent_goes_next",
         .purpose = "ISA-11",
         .requirement = "What becomes urgent while a frame is being sent is sent next.",
-        .reference = paper("higher priority first"),
+        .reference = isa_paper("higher priority first"),
         .stimulus = "An ES with two time-available DLSDUs; an urgent one while the first is on the line.",
         .expected = "The first, the urgent one, the second.",
         .tags = {"must"},

@@ -77,12 +77,12 @@ void the_most_urgent_is_sent(IsaBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<IsaCase> isa_single_token_cases() {
-  using isa_sources::paper;
+  using link_sources::isa_paper;
   return {
       {{.id = "fieldbus_dll/isa_dle/single_token/one_frame_is_sent",
         .purpose = "ISA-01",
         .requirement = "Under an ET a station sends one frame and returns the token by EE.",
-        .reference = paper("delegated token for a single frame"),
+        .reference = isa_paper("delegated token for a single frame"),
         .stimulus = "A DLSDU is submitted, an ET of its priority comes.",
         .expected = "One DU with it, then an EE, and silence.",
         .tags = {"must"},
@@ -94,7 +94,7 @@ std::vector<IsaCase> isa_single_token_cases() {
       {{.id = "fieldbus_dll/isa_dle/single_token/the_others_stay_queued",
         .purpose = "ISA-02",
         .requirement = "Under an ET a station sends one frame; what else is queued waits for the next token.",
-        .reference = paper("delegated token for a single frame"),
+        .reference = isa_paper("delegated token for a single frame"),
         .stimulus = "Three DLSDUs, then four ETs.",
         .expected = "One DU with each, in order; nothing with the fourth.",
         .tags = {"must"},
@@ -103,7 +103,7 @@ std::vector<IsaCase> isa_single_token_cases() {
       {{.id = "fieldbus_dll/isa_dle/single_token/an_empty_queue_returns_the_token",
         .purpose = "ISA-03",
         .requirement = "A station without data returns the token within V(RR).",
-        .reference = paper("EE: the use of the token has ended"),
+        .reference = isa_paper("EE: the use of the token has ended"),
         .stimulus = "ETs of each priority, nothing submitted.",
         .expected = "An EE alone, begun within V(RR).",
         .tags = {"must"},
@@ -114,7 +114,7 @@ std::vector<IsaCase> isa_single_token_cases() {
       {{.id = "fieldbus_dll/isa_dle/single_token/lower_priorities_wait",
         .purpose = "ISA-04",
         .requirement = "Only data whose priority is at least that of the token is sent.",
-        .reference = paper("priority of the delegated token"),
+        .reference = isa_paper("priority of the delegated token"),
         .stimulus = "Normal and time-available data; tokens urgent, normal, normal, time-available.",
         .expected = "Nothing, the normal one, nothing, the time-available one.",
         .tags = {"must"},
@@ -124,7 +124,7 @@ std::vector<IsaCase> isa_single_token_cases() {
       {{.id = "fieldbus_dll/isa_dle/single_token/the_most_urgent_is_sent",
         .purpose = "ISA-05",
         .requirement = "Data of the higher priority is sent first.",
-        .reference = paper("higher priority first"),
+        .reference = isa_paper("higher priority first"),
         .stimulus = "Data of all priorities is submitted, the least urgent first; an ET.",
         .expected = "The urgent one.",
         .tags = {"must"},

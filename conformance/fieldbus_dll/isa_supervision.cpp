@@ -96,15 +96,15 @@ void a_holder_may_wait_for_a_reply(IsaBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<IsaCase> isa_supervision_cases() {
-  using isa_sources::own;
-  using isa_sources::paper;
+  using link_sources::isa_paper;
+  using link_sources::own;
   const Detail times{own("V(RR) is 32 octets, VC(UC) the duration and V(ST)"),
                      {"reclaimed_early", "reclaimed_late"}};
   return {
       {{.id = "fieldbus_dll/isa_las/supervision/who_says_nothing_loses_the_token",
         .purpose = "ISA-31",
         .requirement = "A token whose holder says nothing is taken back when V(RR) is over.",
-        .reference = paper("duration guarded on both sides"),
+        .reference = isa_paper("duration guarded on both sides"),
         .details = {times},
         .stimulus = "An ES for 500 octets, silence; the next item is due.",
         .expected = "The next token within V(ST) behind V(RR), not before.",
@@ -136,7 +136,7 @@ std::vector<IsaCase> isa_supervision_cases() {
       {{.id = "fieldbus_dll/isa_las/supervision/who_keeps_the_token_loses_it_with_its_duration",
         .purpose = "ISA-33",
         .requirement = "A token that is not returned is taken back when its duration is over.",
-        .reference = paper("VC(UC) at the scheduler"),
+        .reference = isa_paper("VC(UC) at the scheduler"),
         .details = {times},
         .stimulus = "An ES for 100 octets; the holder sends one frame and falls silent.",
         .expected = "The next token within an octet behind VC(UC), not before.",

@@ -117,13 +117,13 @@ void the_lower_address_keeps_the_link(IsaBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<IsaCase> isa_transfer_cases() {
-  using isa_sources::own;
-  using isa_sources::paper;
+  using link_sources::isa_paper;
+  using link_sources::own;
   return {
       {{.id = "fieldbus_dll/isa_las/transfer/a_link_master_takes_over",
         .purpose = "ISA-35",
         .requirement = "A TL makes a link master the scheduler.",
-        .reference = paper("TL: the scheduling token goes to another link master"),
+        .reference = isa_paper("TL: the scheduling token goes to another link master"),
         .details = {{own("the first DLPDU within V(RR)"), {"taken_late"}},
                     {own("its schedule begins with the TL"), {"schedule_not_run"}}},
         .stimulus = "A TL to the IUT, whose schedule has an item after 60 octets and one after 130.",
@@ -137,7 +137,7 @@ std::vector<IsaCase> isa_transfer_cases() {
       {{.id = "fieldbus_dll/isa_las/transfer/what_is_not_taken_is_retaken",
         .purpose = "ISA-36",
         .requirement = "A scheduler whose heir says nothing takes the link back when V(RR) is over.",
-        .reference = paper("there is one scheduler"),
+        .reference = isa_paper("there is one scheduler"),
         .details = {{own("V(RR) supervises a TL"), {"retaken_early", "not_retaken"}}},
         .stimulus = "The IUT hands the link over; the heir is silent.",
         .expected = "A TL with the version of the schedule; the schedule goes on, not before V(RR) is over.",
@@ -150,7 +150,7 @@ std::vector<IsaCase> isa_transfer_cases() {
       {{.id = "fieldbus_dll/isa_las/transfer/what_is_taken_is_left",
         .purpose = "ISA-37",
         .requirement = "A scheduler that has handed the link over is one no more.",
-        .reference = paper("there is one scheduler"),
+        .reference = isa_paper("there is one scheduler"),
         .stimulus = "The IUT hands the link over; the heir sends a DU.",
         .expected = "No ET, ES or TL in three periods of the schedule.",
         .tags = {"must"},

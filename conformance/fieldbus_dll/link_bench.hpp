@@ -26,6 +26,9 @@ namespace fieldproof::conformance {
 // Positions on the line are rounded to picoseconds, each for itself: limits are held to a nanosecond.
 inline constexpr kernel::Duration kLinkRounding = kernel::kNanosecond;
 
+// What schedules count in: an octet duration at 31.25 kbit/s.
+inline constexpr kernel::Duration kOctetAt31250 = 256 * kernel::kMicrosecond;
+
 class LinkBench : private segment::Station {
  public:
   // Who is on the line besides the IUT, and when.

@@ -4,40 +4,51 @@
 #include <string>
 
 #include "conformance/case_recorder.hpp"
+#include "conformance/fieldbus_dll/ff_cases.hpp"
+#include "conformance/fieldbus_dll/ff_deviations.hpp"
 #include "conformance/fieldbus_dll/isa_cases.hpp"
 #include "conformance/fieldbus_dll/isa_deviations.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
+#include "protocols/fieldbus_dll/ff_las.hpp"
 #include "protocols/fieldbus_dll/isa_las.hpp"
-#include "protocols/fieldbus_dll/isa_notation.hpp"
+#include "protocols/fieldbus_dll/link_notation.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
-using fieldbus_dll::IsaConfiguration;
-using fieldbus_dll::IsaDevice;
-
-constexpr std::string_view kDle = "isa_dle";
-constexpr std::string_view kLas = "isa_las";
+constexpr std::string_view kIsaDle = "isa_dle";
+constexpr std::string_view kIsaLas = "isa_las";
+constexpr std::string_view kFfDevice = "ff_device";
+constexpr std::string_view kFfLas = "ff_las";
 constexpr std::uint8_t kDleAddress = 0x21;
 constexpr std::uint8_t kLasAddress = 0x10;
 
 class FieldbusDllSuite final : public Suite {
  public:
-  explicit FieldbusDllSuite(FieldbusDllGiven given) : given_(std::move(given)) {
+  explicit FieldbusDllSuite(FieldbusDllGiven given)
+      : given_(std::move(given)), deviations_(isa_deviations()) {
+    for (Deviation& one : ff_deviations()) deviations_.push_back(std::move(one));
     for (const IsaCase& one : isa_cases()) {
       cases_.push_back(one.test_case);
       isa_cases_[one.test_case.id] = &one;
     }
+    for (const FfCase& one : ff_cases()) {
+      cases_.push_back(one.test_case);
+      ff_cases_[one.test_case.id] = &one;
+    }
   }
 
   std::string_view protocol() const override { return "fieldbus_dll"; }
-  std::vector<std::string> roles() const override { return {std::string(kDle), std::string(kLas)}; }
+  std::vector<std::string> roles() const override {
+    return {std::string(kIsaDle), std::string(kIsaLas), std::string(kFfDevice), std::string(kFfLas)};
+  }
   bool has_own(std::string_view role) const override {
-    return role == kDle ? bool(given_.isa_dle.own) : role == kLas && bool(given_.isa_las.own);
+    if (role == kIsaDle || role == kIsaLas) return bool(given_isa(role).own);
+    return (role == kFfDevice || role == kFfLas) && bool(given_ff(role).own);
   }
   const std::vector<TestCase>& cases() const override { return cases_; }
-  const std::vector<Deviation>& deviations() const override { return isa_deviations(); }
+  const std::vector<Deviation>& deviations() const override { return deviations_; }
 
   std::vector<std::string> caveats(const Setup& setup) const override {
     return setup.plan_file.empty() ? std::vector<std::string>{} : load(setup).caveats();
@@ -51,59 +62,102 @@ class FieldbusDllSuite final : public Suite {
       throw kernel::Error(kernel::ErrorKind::usage,
                           "cases of the data link make the link that they need; leave out the network");
     }
-    setting_of(test_case, setup).make_station({});
+    if (isa_cases_.contains(test_case.id)) {
+      isa_setting(test_case, setup).make_station({});
+    } else {
+      ff_setting(test_case, setup).make_station({});
+    }
   }
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
-    IsaSetting setting = setting_of(test_case, setup);
+    if (const auto isa = isa_cases_.find(test_case.id); isa != isa_cases_.end())
+      return run_recorded<fieldbus_dll::IsaRules>(*isa->second, isa_setting(test_case, setup), setup.record);
+    return run_recorded<fieldbus_dll::FfRules>(*ff_cases_.at(test_case.id), ff_setting(test_case, setup),
+                                               setup.record);
+  }
+
+ private:
+  template <typename Rules, typename Case, typename Setting>
+  static Outcome run_recorded(const Case& one, Setting setting, bool is_recorded) {
     CaseRecorder recorder;
-    if (setup.record) {
-      setting.make_recorder = [&recorder](const trace::Trace& trace, const fieldbus_dll::IsaRules& rules) {
-        return &recorder.start(trace, std::make_shared<fieldbus_dll::IsaNotation>(rules));
+    if (is_recorded) {
+      setting.make_recorder = [&recorder](const trace::Trace& trace, const Rules& rules) {
+        return &recorder.start(trace, std::make_shared<fieldbus_dll::LinkNotation>(rules));
       };
     }
     Outcome outcome;
-    outcome.result = run_on_bench(*isa_cases_.at(test_case.id), setting);
+    outcome.result = run_on_bench(one, setting);
     recorder.keep(outcome);
     return outcome;
   }
 
- private:
   fault::Plan load(const Setup& setup) const {
     return fault::load_plan(setup.plan_file, {.disturbances = given_.disturbances});
   }
 
-  IsaSetting setting_of(const TestCase& test_case, const Setup& setup) const {
-    IsaSetting setting;
-    setting.address = test_case.role() == kLas ? kLasAddress : kDleAddress;
+  // What the setup says, of either profile.
+  template <typename Setting, typename Configuration, typename Make>
+  Setting setting_of(const TestCase& test_case, const Setup& setup, Make make) const {
+    Setting setting;
     setting.seed = setup.seed;
     setting.volume = setup.volume;
     if (!setup.plan_file.empty()) setting.plan = load(setup);
-    setting.make_station = [this, role = test_case.role(), uri = assigned_to(test_case, setup).uri,
+    setting.make_station = [this, make, role = test_case.role(), uri = assigned_to(test_case, setup).uri,
                             id = test_case.id, seed = setup.seed,
-                            limits = setup.limits](const IsaConfiguration& configuration) {
-      return make_station(role, {uri, id, seed, limits}, configuration);
+                            limits = setup.limits](const Configuration& configuration) {
+      return (this->*make)(role, {uri, id, seed, limits}, configuration);
     };
     return setting;
   }
 
-  std::unique_ptr<IsaDevice> make_station(const std::string& role, const Wanted& wanted,
-                                          const IsaConfiguration& configuration) const {
-    const bool is_las = role == kLas;
+  IsaSetting isa_setting(const TestCase& test_case, const Setup& setup) const {
+    auto setting = setting_of<IsaSetting, fieldbus_dll::IsaConfiguration>(
+        test_case, setup, &FieldbusDllSuite::make_isa_station);
+    setting.address = test_case.role() == kIsaLas ? kLasAddress : kDleAddress;
+    return setting;
+  }
+
+  FfSetting ff_setting(const TestCase& test_case, const Setup& setup) const {
+    auto setting = setting_of<FfSetting, fieldbus_dll::FfConfiguration>(test_case, setup,
+                                                                        &FieldbusDllSuite::make_ff_station);
+    setting.is_link_master = test_case.role() == kFfLas;
+    return setting;
+  }
+
+  const GivenIsaStations& given_isa(std::string_view role) const {
+    return role == kIsaLas ? given_.isa_las : given_.isa_dle;
+  }
+  const GivenFfStations& given_ff(std::string_view role) const {
+    return role == kFfLas ? given_.ff_las : given_.ff_device;
+  }
+
+  std::unique_ptr<fieldbus_dll::IsaDevice> make_isa_station(
+      const std::string& role, const Wanted& wanted,
+      const fieldbus_dll::IsaConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) {
-      if (is_las) return std::make_unique<fieldbus_dll::IsaLas>(configuration);
+      if (role == kIsaLas) return std::make_unique<fieldbus_dll::IsaLas>(configuration);
       return std::make_unique<fieldbus_dll::IsaDle>(configuration);
     }
-    const GivenIsaStations& given = is_las ? given_.isa_las : given_.isa_dle;
-    if (auto station = given.make(wanted, configuration)) return station;
-    return make_isa_deviation(
-        role, deviation_of(wanted.uri, is_las ? "link master of ISA-D" : "data link entity of ISA-D"),
-        configuration);
+    if (auto station = given_isa(role).make(wanted, configuration)) return station;
+    return make_isa_deviation(role, deviation_of(wanted.uri, "station of the profile ISA-D"), configuration);
+  }
+
+  std::unique_ptr<fieldbus_dll::FfDevice> make_ff_station(
+      const std::string& role, const Wanted& wanted,
+      const fieldbus_dll::FfConfiguration& configuration) const {
+    if (wanted.uri == kReferenceUri) {
+      if (role == kFfLas) return std::make_unique<fieldbus_dll::FfLas>(configuration);
+      return std::make_unique<fieldbus_dll::FfStation>(configuration);
+    }
+    if (auto station = given_ff(role).make(wanted, configuration)) return station;
+    return make_ff_deviation(role, deviation_of(wanted.uri, "station of the profile FF-P"), configuration);
   }
 
   FieldbusDllGiven given_;
   std::vector<TestCase> cases_;
+  std::vector<Deviation> deviations_;
   std::map<std::string, const IsaCase*, std::less<>> isa_cases_;
+  std::map<std::string, const FfCase*, std::less<>> ff_cases_;
 };
 
 }  // namespace

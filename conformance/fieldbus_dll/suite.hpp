@@ -6,19 +6,23 @@
 #include "conformance/assigned.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
+#include "protocols/fieldbus_dll/ff_device.hpp"
 #include "protocols/fieldbus_dll/isa_device.hpp"
 
 // The suite of the data link of IEC 61158 type 1 and of its drafts: data link entities and link masters of
-// the profile ISA-D, and their deviations.
+// the profile ISA-D, basic devices and link masters of the profile FF-P, and their deviations.
 //
 // Implementations of a role: `ref`, `deviant:NAME`, and what the suite was given.
 namespace fieldproof::conformance {
 
 using GivenIsaStations = GivenStations<fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration>;
+using GivenFfStations = GivenStations<fieldbus_dll::FfDevice, fieldbus_dll::FfConfiguration>;
 
 struct FieldbusDllGiven {
   GivenIsaStations isa_dle{};
   GivenIsaStations isa_las{};
+  GivenFfStations ff_device{};
+  GivenFfStations ff_las{};
   std::vector<fault::DisturbanceKind> disturbances{};  // what a plan can name
 };
 

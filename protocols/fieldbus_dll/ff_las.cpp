@@ -192,11 +192,11 @@ void FfLas::set_live(std::uint8_t node, bool is_live) {
   to_tell_.push_back({Priority::normal, kEverybody, live_list()});
 }
 
-void FfLas::await(FfLasState state, std::uint8_t node, kernel::Time end) {
+void FfLas::await(FfLasState state, std::uint8_t node, const Place& question) {
   enter_las(state);
   awaited_ = node;
   has_answered_ = false;
-  answer_until_ = end + response_delay(rules().link);
+  answer_until_ = answer_awaited_until(question);
   token_until_ = kernel::kNever;
 }
 
@@ -260,12 +260,12 @@ bool FfLas::compel(kernel::Time now) {
     say(dt3, now);
     return true;
   }
-  const kernel::Time end = transmit({.type = FfType::cd,
-                                     .priority = item.priority,
-                                     .has_long_addresses = is_long(item.address),
-                                     .destination = item.address},
-                                    now);
-  await(FfLasState::awaiting_reply, node_of(item.address), end);
+  const Place cd = ask({.type = FfType::cd,
+                        .priority = item.priority,
+                        .has_long_addresses = is_long(item.address),
+                        .destination = item.address},
+                       now);
+  await(FfLasState::awaiting_reply, node_of(item.address), cd);
   return true;
 }
 
@@ -303,8 +303,7 @@ bool FfLas::transfer(kernel::Time now) {
   const FfDlpdu tl{
       .type = FfType::tl, .node = *ordered_heir_, .schedule_version = configuration().schedule.version};
   if (!has_time(tl, response_delay(rules().link), now)) return false;
-  const kernel::Time end = transmit(tl, now);
-  await(FfLasState::transferring, *ordered_heir_, end);
+  await(FfLasState::transferring, *ordered_heir_, ask(tl, now));
   ordered_heir_.reset();
   return true;
 }
@@ -360,10 +359,10 @@ bool FfLas::pass_token(std::uint8_t node, kernel::Time now) {
   if (is_first_token_) begin_circulation(now);
   pt.priority = token_priority_;
   pt.duration = static_cast<std::uint16_t>(grant);
-  const kernel::Time end = transmit(pt, now);
+  const Place passed = ask(pt, now);
   ++turn_;
-  await(FfLasState::awaiting_holder, node, end);
-  token_until_ = end + octet_times(grant) + octet_times(rules().link.slot_time_octets);
+  await(FfLasState::awaiting_holder, node, passed);
+  token_until_ = passed.end + octet_times(grant) + octet_times(rules().link.slot_time_octets);
   return true;
 }
 
@@ -396,7 +395,7 @@ bool FfLas::probe(kernel::Time now) {
       response_delay(rules().link) + frame_time(rules().link, octets_on_line(pr, rules()));
   if (!has_time(pn, answer, now)) return false;
   last_probe_ = node;
-  await(FfLasState::awaiting_probe, node, transmit(pn, now));
+  await(FfLasState::awaiting_probe, node, ask(pn, now));
   return true;
 }
 

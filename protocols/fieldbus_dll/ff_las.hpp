@@ -71,12 +71,17 @@ class FfLas : public FfStation {
   virtual unsigned token_grant(kernel::Duration left) const;
   virtual kernel::Duration kept_free_before_cd() const;
   virtual kernel::Time due(const FfScheduleItem& item) const;
+  // To the next item of the schedule.
+  virtual void advance();
   virtual kernel::Duration time_distributed_every() const {
     return rules().time_distribution_period * 9 / 10;
   }
   virtual bool is_missed_too_often(unsigned misses) const { return misses >= rules().misses_until_removal; }
   virtual void on_token_used(std::uint8_t node) { misses_[node] = 0; }
   virtual kernel::Duration longest_silence() const;
+  virtual kernel::Time answer_awaited_until(const Place& question) const {
+    return question.end + response_delay(rules().link);
+  }
   virtual kernel::Duration rotation_of(kernel::Time last, kernel::Time now) const { return now - last; }
   virtual Octets live_list() const { return live_list_spdu(revision_, live_); }
 
@@ -102,12 +107,13 @@ class FfLas : public FfStation {
   void on_back(kernel::Time now);
   void miss(kernel::Time now);
   void set_live(std::uint8_t node, bool is_live);
-  void await(FfLasState state, std::uint8_t node, kernel::Time end);
+  void await(FfLasState state, std::uint8_t node, const Place& question);
+  // Sends what must be answered.
+  Place ask(const FfDlpdu& dlpdu, kernel::Time now) { return {now, transmit(dlpdu, now)}; }
   void say(const FfDlpdu& dlpdu, kernel::Time now);
   FfDlpdu time_dlpdu(kernel::Time now) const;
   kernel::Time next_cd() const;
   void set_schedule(kernel::Time now);
-  void advance();
   // A frame that begins now, and `more` behind it, ends before what is due.
   bool has_time(const FfDlpdu& dlpdu, kernel::Duration more, kernel::Time now) const;
   kernel::Time timer() const;

@@ -1,12 +1,16 @@
-#include "conformance/fieldbus_dll/isa_sources.hpp"
+#include "conformance/fieldbus_dll/link_sources.hpp"
 
 #include <utility>
 
 namespace fieldproof::conformance {
 
-namespace isa_sources {
-judge::Reference paper(std::string place) {
+namespace link_sources {
+judge::Reference isa_paper(std::string place) {
   return {"Hong, Kim, Kim and Ko, distributed control and the fieldbus", std::move(place),
+          judge::Standing::seed};
+}
+judge::Reference ff_paper(std::string place) {
+  return {"Hong and Son, delay of urgent data in the Foundation Fieldbus", std::move(place),
           judge::Standing::seed};
 }
 judge::Reference line(std::string place) {
@@ -22,12 +26,12 @@ judge::Reference memory(std::string place) {
 judge::Reference own(std::string place) {
   return {"this project's choice", std::move(place), judge::Standing::own};
 }
-}  // namespace isa_sources
+}  // namespace link_sources
 
 const std::vector<Detail>& isa_details() {
-  using isa_sources::line;
-  using isa_sources::own;
-  using isa_sources::vendors;
+  using link_sources::line;
+  using link_sources::own;
+  using link_sources::vendors;
   static const std::vector<Detail> details{
       {line("preamble and delimiters"), {"frame_malformed", "check_wrong"}},
       {vendors("V(MID): silence behind every DLPDU"), {"gap_too_short", "answers_too_early"}},
@@ -35,6 +39,21 @@ const std::vector<Detail>& isa_details() {
       {own("encoding of the profile ISA-D"),
        {"dlpdu_wrong", "source_wrong", "end_reason_wrong", "unexpected_dlpdu"}},
       {own("EE behind a single frame, too"), {"token_not_returned"}},
+  };
+  return details;
+}
+
+const std::vector<Detail>& ff_details() {
+  using link_sources::line;
+  using link_sources::memory;
+  using link_sources::own;
+  using link_sources::vendors;
+  static const std::vector<Detail> details{
+      {line("preamble and delimiters"), {"frame_malformed", "check_wrong"}},
+      {vendors("V(MID): silence behind every DLPDU"), {"gap_too_short", "answers_too_early"}},
+      {memory("V(MRD) x V(ST): until then an answer has begun"), {"answers_too_late"}},
+      {memory("octets of the DLPDUs"), {"dlpdu_wrong", "unexpected_dlpdu"}},
+      {own("what is answered behind something else"), {"does_not_recover"}},
   };
   return details;
 }

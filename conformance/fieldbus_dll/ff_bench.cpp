@@ -1,0 +1,137 @@
+#include "conformance/fieldbus_dll/ff_bench.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::FfAddress;
+using fieldbus_dll::FfConfiguration;
+
+constexpr std::uint8_t kDeviceNode = 0x21;
+constexpr std::uint8_t kMasterNode = 0x10;
+
+FfConfiguration configuration_of(const FfNeeds& needs, const FfSetting& setting) {
+  FfConfiguration configuration;
+  configuration.node = setting.is_link_master ? kMasterNode : kDeviceNode;
+  configuration.begins_as_scheduler = setting.is_link_master;
+  if (!setting.is_link_master) {
+    configuration.published = {FfBench::kPublished, FfBench::kPublished + 1};
+    configuration.subscribed = {FfBench::kSubscribed};
+  }
+  if (needs.change != nullptr) needs.change(configuration);
+  return configuration;
+}
+
+void append_address(Octets& octets, FfAddress address) {
+  const int size = fieldbus_dll::is_long(address) ? 4 : 2;
+  for (int n = size - 1; n >= 0; --n) octets.push_back(static_cast<std::uint8_t>(address >> (8 * n)));
+}
+
+}  // namespace
+
+bool FfUpperTester::was_delivered(const Octets& octets) const {
+  return std::ranges::any_of(data, [&](const fieldbus_dll::FfDlpdu& one) { return one.data == octets; });
+}
+
+FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
+    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume),
+      configuration_(configuration_of(needs, setting)),
+      station_(setting.make_station(configuration_)) {
+  if (setting.make_recorder)
+    segment().trace().set_recorder(setting.make_recorder(segment().trace(), rules()));
+  station_->wire(attach_station(*station_, setting.plan), user_);
+  has_started_ = station_->start(now());
+  refresh_station();
+  if (setting.is_link_master || !needs.is_live) return;
+  wait(octets(20));
+  send({rules().codes.pn, node()});
+  wait(patience());
+  send(activation(node()));
+  wait(patience());
+  while (next(now())) {
+  }
+}
+
+bool FfBench::submit(Priority priority, const Octets& data, FfAddress to) {
+  const bool is_taken = station_->submit({priority, to, data}, now());
+  refresh_station();
+  return is_taken;
+}
+
+bool FfBench::write(FfAddress address, const Octets& data) {
+  const bool is_taken = station_->write(address, data, now());
+  refresh_station();
+  return is_taken;
+}
+
+void FfBench::order_transfer(std::uint8_t node) {
+  station_->order_transfer(node, now());
+  refresh_station();
+}
+
+std::vector<DrivenDlpdu> FfBench::serve(kernel::Time until, const Answers& answers) {
+  std::vector<DrivenDlpdu> all;
+  while (const auto one = next(until)) {
+    all.push_back(*one);
+    if (const auto reply = answers(*one))
+      run_until(send_at(one->end + least_gap() + reply->later, reply->octets));
+  }
+  return all;
+}
+
+std::optional<FfBench::Reply> FfBench::returned(const DrivenDlpdu& dlpdu) const {
+  const auto& codes = rules().codes;
+  const unsigned code = dlpdu.octet(0);
+  constexpr unsigned kPriorityAndFinal = 0x07;
+  constexpr unsigned kLongToo = 0x0F;
+  if ((code & ~kPriorityAndFinal) == codes.pt && code != codes.rt) return Reply{{codes.rt}};
+  if ((code & ~kLongToo) == codes.cd) {
+    const FfAddress address = static_cast<FfAddress>(dlpdu.octet(1) << 8 | dlpdu.octet(2));
+    return Reply{dt3(address, {0x55})};
+  }
+  return std::nullopt;
+}
+
+// ---- DLPDUs of the tester ----
+
+Octets FfBench::pt(Priority least, unsigned duration) const {
+  return {control(rules().codes.pt, least), node(), static_cast<std::uint8_t>(duration >> 8),
+          static_cast<std::uint8_t>(duration & 0xFF)};
+}
+
+Octets FfBench::cd(FfAddress address) const {
+  Octets octets{control(rules().codes.cd, Priority::normal)};
+  append_address(octets, address);
+  return octets;
+}
+
+Octets FfBench::dt1(Priority priority, FfAddress to, FfAddress from, const Octets& data,
+                    bool is_final) const {
+  constexpr unsigned kLong = 0x08;
+  constexpr unsigned kFinal = 0x04;
+  Octets octets{control(rules().codes.dt1, priority)};
+  if (fieldbus_dll::is_long(to)) octets[0] |= kLong;
+  if (is_final) octets[0] |= kFinal;
+  append_address(octets, to);
+  append_address(octets, from);
+  octets.insert(octets.end(), data.begin(), data.end());
+  return octets;
+}
+
+Octets FfBench::dt3(FfAddress from, const Octets& data) const {
+  constexpr unsigned kFinal = 0x04;
+  Octets octets{static_cast<std::uint8_t>(control(rules().codes.dt3, Priority::normal) | kFinal)};
+  append_address(octets, from);
+  octets.push_back(1);
+  octets.insert(octets.end(), data.begin(), data.end());
+  return octets;
+}
+
+Octets FfBench::activation(std::uint8_t node) const {
+  return dt1(Priority::normal, fieldbus_dll::address_of(node), fieldbus_dll::address_of(kScheduler),
+             {static_cast<std::uint8_t>(fieldbus_dll::SpduKind::activation)});
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "conformance/fieldbus_dll/link_bench.hpp"
+#include "protocols/fieldbus_dll/ff_device.hpp"
+
+// The bench of one case for a station of the profile FF-P: a link with the implementation under test (IUT)
+// and the lower tester in the place of every other station, and the upper tester as the IUT's user.
+namespace fieldproof::conformance {
+
+// What a case needs around the IUT.
+struct FfNeeds {
+  // Of the configuration of the IUT; null: as it is.
+  void (*change)(fieldbus_dll::FfConfiguration&) = nullptr;
+  bool is_live = true;  // a device that has been probed and activated when the case begins
+};
+
+// Who plays, and how.
+struct FfSetting {
+  using MakeStation =
+      std::function<std::unique_ptr<fieldbus_dll::FfDevice>(const fieldbus_dll::FfConfiguration&)>;
+
+  MakeStation make_station;
+  bool is_link_master = false;
+  std::uint64_t seed = 1;
+  Volume volume = Volume::full;
+  fault::Plan plan{};
+  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
+  std::function<trace::Recorder*(const trace::Trace&, const fieldbus_dll::FfRules&)> make_recorder;
+};
+
+// The IUT's user.
+class FfUpperTester final : public fieldbus_dll::FfUser {
+ public:
+  void on_data(const fieldbus_dll::FfDlpdu& dlpdu, kernel::Time) override { data.push_back(dlpdu); }
+  void on_published(const fieldbus_dll::FfDlpdu& dlpdu, kernel::Time) override { published.push_back(dlpdu); }
+  void on_event(const fieldbus_dll::FfEvent& event, kernel::Time) override { events.push_back(event); }
+
+  bool was_delivered(const Octets& octets) const;
+
+  std::vector<fieldbus_dll::FfDlpdu> data;
+  std::vector<fieldbus_dll::FfDlpdu> published;
+  std::vector<fieldbus_dll::FfEvent> events;
+};
+
+class FfBench final : public LinkBench {
+ public:
+  using Priority = fieldbus_dll::Priority;
+
+  // Stations of the tester.
+  static constexpr std::uint8_t kScheduler = 0x10;
+  static constexpr std::uint8_t kPeer = 0x22;
+  static constexpr fieldbus_dll::FfAddress kPeersAddress = 0x2230;
+  // What the IUT of a device publishes, and to what it has subscribed.
+  static constexpr fieldbus_dll::FfAddress kPublished = 0x2120;
+  static constexpr fieldbus_dll::FfAddress kSubscribed = 0x2220;
+
+  FfBench(const FfNeeds& needs, const FfSetting& setting);
+
+  const fieldbus_dll::FfRules& rules() const { return configuration_.rules; }
+  const fieldbus_dll::FfConfiguration& configuration() const { return configuration_; }
+  std::uint8_t node() const { return configuration_.node; }
+  bool has_started() const { return has_started_; }
+
+  // ---- upper tester ----
+  FfUpperTester& user() { return user_; }
+  // False when the IUT refuses it.
+  bool submit(Priority priority, const Octets& data, fieldbus_dll::FfAddress to = kPeersAddress);
+  bool write(fieldbus_dll::FfAddress address, const Octets& data);
+  void order_transfer(std::uint8_t node);
+
+  // ---- DLPDUs of the tester ----
+  std::uint8_t control(std::uint8_t code, Priority priority) const {
+    return static_cast<std::uint8_t>(code | static_cast<unsigned>(priority));
+  }
+  Octets pt(Priority least, unsigned duration) const;  // to the IUT
+  Octets cd(fieldbus_dll::FfAddress address) const;
+  Octets dt1(Priority priority, fieldbus_dll::FfAddress to, fieldbus_dll::FfAddress from, const Octets& data,
+             bool is_final = false) const;
+  Octets dt3(fieldbus_dll::FfAddress from, const Octets& data) const;  // final
+  Octets activation(std::uint8_t node) const;
+
+  // What the tester says V(MID) behind a DLPDU of the IUT, or later; nothing: silence.
+  struct Reply {
+    Octets octets;
+    kernel::Duration later{};
+  };
+  using Answers = std::function<std::optional<Reply>(const DrivenDlpdu&)>;
+  // Answers all that the IUT says until then. Gives it.
+  std::vector<DrivenDlpdu> serve(kernel::Time until, const Answers& answers);
+  // Returns each token at once and answers each CD with a DT3; no probe is answered.
+  std::optional<Reply> returned(const DrivenDlpdu& dlpdu) const;
+
+  void finish() { station_->end(); }
+
+ private:
+  fieldbus_dll::FfConfiguration configuration_;
+  FfUpperTester user_;
+  std::unique_ptr<fieldbus_dll::FfDevice> station_;
+  bool has_started_ = false;
+};
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+
+#include "conformance/fieldbus_dll/ff_cases.hpp"
+#include "conformance/fieldbus_dll/ff_expect.hpp"
+
+// The circulation of the token: order, probes, and the priority that the rotation time steers.
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::FfConfiguration;
+using fieldbus_dll::Priority;
+
+constexpr std::int64_t kNodes = 4;
+
+// Four nodes return their tokens at once: a circulation is four tokens and a probe that nobody answers, in
+// octet durations 4 (PT 9, silence 8, RT 6, silence 8) and PN 7, V(MRD) x V(ST) 32.
+constexpr std::int64_t kFastRotation = kNodes * 31 + 39;
+
+template <std::int64_t target_octets>
+void four_nodes(FfConfiguration& configuration) {
+  configuration.live = {0x11, 0x12, 0x13, 0x14};
+  configuration.rules.target_rotation = target_octets * kOctetAt31250;
+}
+
+bool begins_circulation(const FfBench& bench, const DrivenDlpdu& dlpdu) {
+  return is_pt(bench, dlpdu) && has_final_use(dlpdu);
+}
+
+std::string_view priority_text(Priority priority) {
+  return fieldbus_dll::text_of(priority);
+}
+
+void tokens_go_round(FfBench& bench, CaseJudge& judge) {
+  const auto all = bench.serve(kernel::kStart + bench.octets(bench.volume(1'500, 20'000)),
+                               [&](const DrivenDlpdu& one) { return bench.returned(one); });
+  std::uint8_t next = 0x11;
+  std::size_t tokens = 0;
+  for (const DrivenDlpdu& one : all) {
+    if (!is_pt(bench, one)) continue;
+    judge.expect(one.octet(1) == next, "order_wrong",
+                 [&] { return Sighting{{fmt::format("PT for node {:02X}", next)}, one.text(), one.begin}; });
+    judge.expect(has_final_use(one) == (next == 0x11), "begin_not_marked", [&] {
+      return Sighting{{"the first token of a circulation marked, and no other"}, one.text(), one.begin};
+    });
+    next = next == 0x14 ? 0x11 : static_cast<std::uint8_t>(next + 1);
+    ++tokens;
+  }
+  judge.expect(tokens > 20, "no_token", "tokens", fmt::format("{}", tokens));
+}
+
+void each_circulation_probes(FfBench& bench, CaseJudge& judge) {
+  const auto& rules = bench.rules();
+  // Holders have much to say.
+  const auto busy = [&](const DrivenDlpdu& one) -> std::optional<FfBench::Reply> {
+    if (!is_pt(bench, one)) return bench.returned(one);
+    return FfBench::Reply{bench.dt1(Priority::urgent, 0x1030, fieldbus_dll::address_of(one.octet(1), 1),
+                                    Octets(40, 0x55), true)};
+  };
+  std::uint8_t last = 0;
+  std::size_t probes = 0;
+  std::size_t wraps = 0;
+  bool has_probed = true;
+  for (const DrivenDlpdu& one :
+       bench.serve(kernel::kStart + bench.octets(bench.volume(40'000, 100'000)), busy)) {
+    if (begins_circulation(bench, one)) {
+      judge.expect(has_probed, "no_probe",
+                   [&] { return Sighting{{"a PN between two circulations"}, one.text(), one.begin}; });
+      has_probed = false;
+    }
+    if (!is_of(one, rules.codes.pn)) continue;
+    has_probed = true;
+    ++probes;
+    const std::uint8_t node = one.octet(1);
+    const bool is_unpolled = node >= rules.first_unpolled && node < rules.first_unpolled + rules.unpolled;
+    judge.expect(!is_unpolled, "probes_unpolled", [&] {
+      return Sighting{{fmt::format("no PN for {:02X} to {:02X}", rules.first_unpolled,
+                                   rules.first_unpolled + rules.unpolled - 1)},
+                      one.text(),
+                      one.begin};
+    });
+    const bool is_live = node >= 0x10 && node <= 0x14;
+    judge.expect(!is_live, "probes_live_node",
+                 [&] { return Sighting{{"no PN for a live node"}, one.text(), one.begin}; });
+    const bool is_ascending = node > last;
+    if (!is_ascending) ++wraps;
+    judge.expect(is_ascending || node == 0x15, "probes_out_of_order", [&] {
+      return Sighting{{fmt::format("the next address behind {:02X}", last)}, one.text(), one.begin};
+    });
+    last = node;
+  }
+  judge.measure("probes", "", static_cast<double>(probes));
+  judge.expect(wraps >= 2, "probes_do_not_begin_anew", "the addresses are probed again and again",
+               fmt::format("{} probes, {} times from the beginning", probes, wraps));
+}
+
+// What the first token of each circulation said, and when.
+struct Circulation {
+  Priority priority;
+  kernel::Time begin;
+};
+
+// Of nodes that return their tokens at once, the last one of them so much later.
+std::vector<Circulation> circulations(FfBench& bench, std::size_t count, kernel::Duration later) {
+  std::vector<Circulation> all;
+  const auto answers = [&](const DrivenDlpdu& one) -> std::optional<FfBench::Reply> {
+    auto reply = bench.returned(one);
+    if (begins_circulation(bench, one)) all.push_back({priority_in(one), one.begin});
+    if (reply && is_pt(bench, one) && one.octet(1) == 0x14) reply->later = later;
+    return reply;
+  };
+  const kernel::Time end = bench.now() + bench.octets(static_cast<std::int64_t>(count) * 2 * kFastRotation);
+  while (all.size() < count && bench.now() < end)
+    bench.serve(std::min(end, bench.now() + bench.octets(20)), answers);
+  return all;
+}
+
+void expect_priorities(CaseJudge& judge, const std::vector<Circulation>& found,
+                       const std::vector<Priority>& wanted, std::string_view reason) {
+  for (std::size_t n = 0; n < wanted.size(); ++n) {
+    judge.expect(n < found.size() && found[n].priority == wanted[n], reason, [&] {
+      return Sighting{{fmt::format("circulation {} with priority {}", n + 1, priority_text(wanted[n]))},
+                      n < found.size() ? std::string(priority_text(found[n].priority)) : "no circulation"};
+    });
+  }
+}
+
+void a_fast_rotation_admits_more(FfBench& bench, CaseJudge& judge) {
+  using enum Priority;
+  expect_priorities(judge, circulations(bench, 6, {}), {urgent, normal, time_available, time_available},
+                    "priority_not_lowered");
+}
+
+void a_slow_rotation_admits_less(FfBench& bench, CaseJudge& judge) {
+  using enum Priority;
+  expect_priorities(judge, circulations(bench, 4, {}), {urgent, urgent, urgent, urgent},
+                    "priority_not_raised");
+}
+
+// Rotations of exactly V(TTRT), then shorter ones.
+void an_equal_rotation_is_slow(FfBench& bench, CaseJudge& judge) {
+  constexpr std::size_t kUntilSettled = 3;
+  const std::vector<Circulation> fast = circulations(bench, 6, {});
+  judge.expect(fast.size() == 6, "no_token", "six circulations", fmt::format("{}", fast.size()));
+  const kernel::Duration later = bench.rules().target_rotation - (fast[5].begin - fast[4].begin);
+  if (later < kernel::Duration{} || bench.least_gap() + later > bench.response_delay())
+    judge.inconclusive("rotation_not_adjustable", {{"a rotation that is 0 to 24 octets shorter than V(TTRT)"},
+                                                   kernel::describe(fast[5].begin - fast[4].begin)});
+  const std::vector<Circulation> equal = circulations(bench, 6 + kUntilSettled, later);
+  for (std::size_t n = kUntilSettled; n < equal.size(); ++n) {
+    judge.expect(equal[n].priority == Priority::urgent, "equal_rotation_is_fast", [&] {
+      return Sighting{{"a token for urgent data: the rotation before took V(TTRT)"},
+                      std::string(priority_text(equal[n].priority)),
+                      equal[n].begin};
+    });
+  }
+  const std::vector<Circulation> faster = circulations(bench, 3 + kUntilSettled, later - bench.octets(1));
+  judge.expect(faster.size() == 3 + kUntilSettled && faster.back().priority == Priority::time_available,
+               "priority_not_lowered", "tokens for all data: the rotation is shorter than V(TTRT)",
+               "otherwise");
+}
+
+}  // namespace
+
+std::vector<FfCase> ff_circulation_cases() {
+  using link_sources::ff_paper;
+  using link_sources::memory;
+  using link_sources::own;
+  using link_sources::vendors;
+  const Detail step{own("one step for each circulation; the first one is urgent"),
+                    {"priority_not_lowered", "priority_not_raised"}};
+  return {
+      {{.id = "fieldbus_dll/ff_las/circulation/tokens_go_round",
+        .purpose = "FF-18",
+        .requirement =
+            "The token is passed to each live node in the order of addresses; the first PT is marked.",
+        .reference = ff_paper("token circulation list"),
+        .details = {{vendors("the subfield Restart"), {"begin_not_marked"}}},
+        .stimulus = "Four live nodes that return the token at once.",
+        .expected = "11, 12, 13, 14, again and again, the first one marked.",
+        .tags = {"must"},
+        .catches = {{"descending_order", "order_wrong"}, {"begin_not_marked", "begin_not_marked"}}},
+       tokens_go_round,
+       {.change = four_nodes<1'000>}},
+      {{.id = "fieldbus_dll/ff_las/circulation/each_probes",
+        .purpose = "FF-23",
+        .requirement =
+            "Between two circulations an address is probed, in ascending order, without those of V(FUN) "
+            "and V(NUN).",
+        .reference = vendors("probing, V(FUN), V(NUN)"),
+        .stimulus = "Four nodes with much to say.",
+        .expected = "A PN between two circulations, for 15 to 24 and DF to F7, from the beginning then.",
+        .tags = {"must"},
+        .catches = {{"probes_unpolled", "probes_unpolled"},
+                    {"no_probe_when_busy", "no_probe"},
+                    {"probes_live_nodes", "probes_live_node"},
+                    {"probes_descending", "probes_out_of_order"}}},
+       each_circulation_probes,
+       {.change = four_nodes<1'000>}},
+      {{.id = "fieldbus_dll/ff_las/circulation/a_fast_rotation_admits_more",
+        .purpose = "FF-19",
+        .requirement = "While the rotation is shorter than V(TTRT), data of lower priority is admitted.",
+        .reference = ff_paper("ATRT below TTRT"),
+        .details = {step},
+        .stimulus = "Nodes that return the token at once; V(TTRT) half as long again.",
+        .expected = "Tokens urgent, normal, time-available.",
+        .tags = {"must", "timing"},
+        .catches = {{"steers_the_wrong_way", "priority_not_lowered"},
+                    {"steps_to_the_extreme", "priority_not_lowered"},
+                    {"rotation_counted_twice", "priority_not_lowered"}}},
+       a_fast_rotation_admits_more,
+       {.change = four_nodes<(3 * kFastRotation) / 2>}},
+      {{.id = "fieldbus_dll/ff_las/circulation/a_slow_rotation_admits_less",
+        .purpose = "FF-20",
+        .requirement = "While the rotation is not shorter than V(TTRT), only urgent data is admitted.",
+        .reference = ff_paper("ATRT not below TTRT"),
+        .details = {step},
+        .stimulus = "The same, V(TTRT) an octet shorter than a rotation.",
+        .expected = "Tokens for urgent data.",
+        .tags = {"must", "timing"},
+        .catches = {{"steers_the_wrong_way", "priority_not_raised"},
+                    {"target_ignored", "priority_not_raised"}}},
+       a_slow_rotation_admits_less,
+       {.change = four_nodes<kFastRotation - 1>}},
+      {{.id = "fieldbus_dll/ff_las/circulation/an_equal_rotation_is_slow",
+        .purpose = "FF-21",
+        .requirement = "A rotation of exactly V(TTRT) admits urgent data only.",
+        .reference = ff_paper("ATRT not below TTRT"),
+        .details = {step},
+        .stimulus =
+            "The last node returns the token so late that a rotation takes V(TTRT); then an octet sooner.",
+        .expected = "Tokens for urgent data; then for all.",
+        .tags = {"must", "timing"},
+        .catches = {{"equal_rotation_is_fast", "equal_rotation_is_fast"}}},
+       an_equal_rotation_is_slow,
+       {.change = four_nodes<kFastRotation + 16>}},
+  };
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,125 @@
+#include "conformance/fieldbus_dll/ff_expect.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::kFinalBit;
+using fieldbus_dll::kPriorityBits;
+using fieldbus_dll::Priority;
+
+constexpr unsigned kLongBit = 0x08;
+
+bool has_code(const DrivenDlpdu& dlpdu, std::uint8_t code, unsigned free_bits) {
+  return !dlpdu.octets.empty() && (dlpdu.octet(0) & ~free_bits) == code;
+}
+
+}  // namespace
+
+bool is_pt(const FfBench& bench, const DrivenDlpdu& dlpdu) {
+  const bool has_priority = (dlpdu.octet(0) & kPriorityBits) != 0;
+  return has_priority && has_code(dlpdu, bench.rules().codes.pt, kFinalBit | kPriorityBits);
+}
+
+bool is_cd(const FfBench& bench, const DrivenDlpdu& dlpdu) {
+  return has_code(dlpdu, bench.rules().codes.cd, kLongBit | kFinalBit | kPriorityBits);
+}
+
+bool is_dt1(const FfBench& bench, const DrivenDlpdu& dlpdu) {
+  return has_code(dlpdu, bench.rules().codes.dt1, kLongBit | kFinalBit | kPriorityBits);
+}
+
+bool is_dt3(const FfBench& bench, const DrivenDlpdu& dlpdu) {
+  return has_code(dlpdu, bench.rules().codes.dt3, kLongBit | kFinalBit | kPriorityBits);
+}
+
+bool is_of(const DrivenDlpdu& dlpdu, std::uint8_t code) {
+  return has_code(dlpdu, code, 0);
+}
+
+bool has_final_use(const DrivenDlpdu& dlpdu) {
+  return (dlpdu.octet(0) & kFinalBit) != 0;
+}
+
+Priority priority_in(const DrivenDlpdu& dlpdu) {
+  return static_cast<Priority>(dlpdu.octet(0) & kPriorityBits);
+}
+
+unsigned duration_in(const DrivenDlpdu& pt) {
+  return static_cast<unsigned>(pt.octet(2) << 8 | pt.octet(3));
+}
+
+Octets dlsdu_of(const DrivenDlpdu& dt1) {
+  const std::size_t header = (dt1.octet(0) & kLongBit) != 0 ? 9 : 5;
+  if (dt1.octets.size() <= header) return {};
+  return {dt1.octets.begin() + static_cast<std::ptrdiff_t>(header), dt1.octets.end()};
+}
+
+Octets expect_submitted(FfBench& bench, CaseJudge& judge, Priority priority, std::size_t size) {
+  const Octets data = bench.numbered_data(size);
+  judge.expect(bench.submit(priority, data), "data_refused", "data is accepted", "it was refused");
+  return data;
+}
+
+std::vector<DrivenDlpdu> expect_token_used(FfBench& bench, CaseJudge& judge, kernel::Time from) {
+  const auto& codes = bench.rules().codes;
+  std::vector<DrivenDlpdu> data;
+  bool is_returned = false;
+  kernel::Time since = from;
+  for (const DrivenDlpdu& one : bench.listen()) {
+    judge.expect(!is_returned, "token_returned_twice",
+                 [&] { return Sighting{{"silence: the token has been returned"}, one.text(), one.begin}; });
+    expect_begins(judge, one, since, "answers_too_early", since + bench.response_delay(), "answers_too_late");
+    since = one.end;
+    const bool is_data = is_dt1(bench, one);
+    judge.expect(is_data || is_of(one, codes.rt) || is_of(one, codes.ri), "unexpected_dlpdu",
+                 [&] { return Sighting{{"DT1, RI or RT"}, one.text(), one.begin}; });
+    if (is_data) data.push_back(one);
+    is_returned = is_of(one, codes.rt) || (is_data && has_final_use(one));
+  }
+  judge.expect(is_returned, "token_not_returned", "the token is returned, by RT or by F", "it was kept");
+  return data;
+}
+
+void expect_dlsdus(CaseJudge& judge, const std::vector<DrivenDlpdu>& data, const std::vector<Octets>& wanted,
+                   std::string_view reason_for_missing, std::string_view reason_for_more,
+                   std::string_view reason_for_others) {
+  judge.expect(data.size() >= wanted.size(), reason_for_missing, [&] {
+    return Sighting{{fmt::format("{} DT1", wanted.size())}, fmt::format("{}", data.size())};
+  });
+  judge.expect(data.size() <= wanted.size(), reason_for_more, [&] {
+    const DrivenDlpdu& first = data[wanted.size()];
+    return Sighting{{fmt::format("{} DT1", wanted.size())},
+                    fmt::format("{}, the first one too many: {}", data.size(), first.text()),
+                    first.begin};
+  });
+  for (std::size_t n = 0; n < wanted.size(); ++n) {
+    judge.expect(dlsdu_of(data[n]) == wanted[n], reason_for_others, [&] {
+      return Sighting{{fmt::format("DLSDU {:02X}", fmt::join(wanted[n], " "))},
+                      data[n].text(),
+                      data[n].begin,
+                      fmt::format("DT1 {}", n + 1)};
+    });
+  }
+}
+
+void expect_serves(FfBench& bench, CaseJudge& judge) {
+  const Octets data = bench.numbered_data(6);
+  judge.expect(bench.submit(Priority::urgent, data), "does_not_recover", "data is accepted",
+               "it was refused");
+  // What was submitted before goes first.
+  bench.send(bench.pt(Priority::time_available, 5'000));
+  const std::vector<DrivenDlpdu> all = bench.listen();
+  const bool is_served = std::ranges::any_of(
+      all, [&](const DrivenDlpdu& one) { return is_dt1(bench, one) && dlsdu_of(one) == data; });
+  judge.expect(is_served, "does_not_recover", [&] {
+    return Sighting{{"under a long PT, all that was submitted"},
+                    all.empty() ? std::string("silence") : all.front().text()};
+  });
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+
+#include "conformance/fieldbus_dll/ff_cases.hpp"
+#include "conformance/fieldbus_dll/ff_expect.hpp"
+#include "harness/line/frame_check.hpp"
+
+// Frames: checks, addresses, lengths, unknown DLPDUs, silence.
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::FfAddress;
+using fieldbus_dll::Priority;
+
+constexpr FfAddress kLink = 0x2130'0000;  // its upper half reads as an address of the station
+
+void wrong_checks_are_seen(FfBench& bench, CaseJudge& judge) {
+  bench.submit(Priority::urgent, bench.numbered_data(4));
+  const Octets right = with_frame_check(bench.pt(Priority::time_available, 500));
+  const std::size_t bits = 8 * right.size();
+  const auto send_wrong = [&](const std::vector<std::size_t>& flips, std::string_view what) {
+    Octets wrong = right;
+    for (const std::size_t bit : flips)
+      wrong[bit / 8] = static_cast<std::uint8_t>(wrong[bit / 8] ^ (0x80U >> bit % 8));
+    bench.send_half_bits(half_bits_of_frame(wrong));
+    expect_silence(bench, judge, "acts_on_wrong_check", what);
+  };
+  for (std::size_t bit = 0; bit < bits; ++bit) send_wrong({bit}, fmt::format("bit {} is wrong", bit));
+  for (std::size_t n = 0; n < bench.volume(std::size_t{40}, bits); ++n) {
+    const std::size_t first = bench.random().below(bits);
+    for (std::size_t second = first + 1; second < std::min(bits, first + bench.volume(std::size_t{6}, bits));
+         ++second)
+      send_wrong({first, second}, fmt::format("bits {} and {} are wrong", first, second));
+  }
+  for (int n = 0; n < bench.volume(40, 2'000); ++n) {
+    const std::size_t first = bench.random().below(bits - 15);
+    std::vector<std::size_t> burst{first, first + 15};
+    for (std::size_t bit = 1; bit < 15; ++bit) {
+      if (bench.random().below(2) == 1) burst.push_back(first + bit);
+    }
+    send_wrong(burst, fmt::format("16 bits from {} are disturbed", first));
+  }
+  line::FrameCheckParameters no_complement = line::frame_check_named("CRC-16/PROFIBUS");
+  no_complement.xorout = 0;
+  Octets other = bench.pt(Priority::time_available, 500);
+  const auto check = static_cast<unsigned>(line::FrameCheck(no_complement).compute(other));
+  other.push_back(static_cast<std::uint8_t>(check >> 8));
+  other.push_back(static_cast<std::uint8_t>(check & 0xFF));
+  bench.send_half_bits(half_bits_of_frame(other));
+  expect_silence(bench, judge, "acts_on_other_check", "its check is not complemented");
+  expect_serves(bench, judge);
+}
+
+void addresses_are_read_as_long_as_they_are(FfBench& bench, CaseJudge& judge) {
+  const FfAddress mine = 0x2130;
+  const Octets short_data = bench.numbered_data(12);
+  bench.send(bench.dt1(Priority::normal, mine, FfBench::kPeersAddress, short_data));
+  bench.wait(bench.octets(20));
+  judge.expect(bench.user().was_delivered(short_data), "short_address_not_heard",
+               "a DT1 to the station is delivered", "it was not");
+  bench.user().data.clear();
+  // To another node of a link whose number reads as the station's short address.
+  bench.send(
+      bench.dt1(Priority::normal, kLink | 0x5566, kLink | FfBench::kPeersAddress, bench.numbered_data(12)));
+  bench.wait(bench.octets(20));
+  judge.expect(bench.user().data.empty(), "long_address_misread", "a DT1 to another is not delivered",
+               "it was");
+  const Octets long_data = bench.numbered_data(12);
+  bench.send(bench.dt1(Priority::normal, kLink | mine, kLink | FfBench::kPeersAddress, long_data));
+  bench.wait(bench.octets(20));
+  const auto& data = bench.user().data;
+  judge.expect(data.empty() || data.front().data == long_data, "long_address_misread",
+               "with long addresses, the DLSDU or nothing is delivered", "something else was");
+  expect_serves(bench, judge);
+}
+
+void frames_are_as_long_as_the_paper_says(FfBench& bench, CaseJudge& judge) {
+  constexpr FfAddress kFar = 0x1000'2230;
+  constexpr std::size_t kUrgent = 64;
+  constexpr std::size_t kAvailable = 256;
+  for (const auto& [priority, size] :
+       {std::pair{Priority::urgent, kUrgent}, {Priority::time_available, kAvailable}}) {
+    const Octets data = bench.numbered_data(size);
+    judge.expect(bench.submit(priority, data, kFar), "data_refused", "data is accepted", "it was refused");
+    const kernel::Time end = bench.send(bench.pt(priority, 1'000));
+    const std::vector<DrivenDlpdu> sent = expect_token_used(bench, judge, end);
+    judge.expect(sent.size() == 1, "frames_missing", "one DT1", fmt::format("{}", sent.size()));
+    const kernel::Duration length = sent[0].end - sent[0].begin;
+    // 11 octets around the DLSDU, and preamble and delimiters around those.
+    const kernel::Duration wanted = bench.octets(static_cast<std::int64_t>(size) + 11 + 3);
+    judge.expect(
+        length + kLinkRounding >= wanted && length <= wanted + kLinkRounding, "frame_length_wrong",
+        [&] { return Sighting{{kernel::describe(wanted)}, kernel::describe(length), sent[0].begin}; });
+    judge.measure(fmt::format("a DT1 of {} octets of data", size), "us",
+                  static_cast<double>(length / kernel::kMicrosecond));
+  }
+}
+
+// Those that mean something to a device and are answered.
+bool is_for_device(const FfBench& bench, unsigned control) {
+  const auto& codes = bench.rules().codes;
+  const bool has_priority = (control & fieldbus_dll::kPriorityBits) != 0;
+  return (control & ~0x0FU) == codes.cd || control == codes.pn ||
+         (has_priority && (control & ~0x07U) == codes.pt);
+}
+
+void unknown_dlpdus_are_left(FfBench& bench, CaseJudge& judge) {
+  bench.submit(Priority::urgent, bench.numbered_data(4));
+  for (unsigned control = 0; control < 256; ++control) {
+    if (is_for_device(bench, control)) continue;
+    const auto octet = static_cast<std::uint8_t>(control);
+    for (const Octets& octets :
+         {Octets{octet}, Octets{octet, bench.node()}, Octets{octet, bench.node(), 0x01, 0xF4},
+          Octets{octet, bench.node(), 0x20, 0x22, 0x20, 0x55}}) {
+      bench.send(octets);
+      expect_silence(bench, judge, "acts_on_unknown", fmt::format("{:02X} asks for nothing", control));
+    }
+  }
+  expect_serves(bench, judge);
+}
+
+void silence_is_kept(FfBench& bench, CaseJudge& judge) {
+  for (int n = 0; n < bench.volume(3, 30); ++n) {
+    bench.write(FfBench::kPublished, bench.numbered_data(8));
+    for (int i = 0; i < 3; ++i) bench.submit(Priority::normal, bench.numbered_data(10));
+    bench.send(bench.pt(Priority::normal, 800));
+    bench.listen();
+    bench.send(bench.cd(FfBench::kPublished));
+    bench.listen();
+    bench.send({bench.rules().codes.pn, bench.node()});
+    bench.listen();
+  }
+  // judge_driven holds each gap.
+  judge.expect(!bench.driven().empty(), "token_not_returned", "answers", "silence");
+}
+
+}  // namespace
+
+std::vector<FfCase> ff_frame_cases() {
+  using link_sources::ff_paper;
+  using link_sources::line;
+  using link_sources::memory;
+  using link_sources::vendors;
+  return {
+      {{.id = "fieldbus_dll/ff_device/frame/wrong_checks_are_seen",
+        .purpose = "FF-37",
+        .requirement = "A DLPDU whose frame check does not fit is ignored.",
+        .reference = line("frame check 1DCF"),
+        .stimulus = "PTs with one and two wrong bits, with bursts of 16 bits, with a check of another kind.",
+        .expected = "Silence; a right PT is served then.",
+        .tags = {"must"},
+        .catches = {{"takes_other_residue", "acts_on_other_check"},
+                    {"check_of_high_octet", "acts_on_wrong_check"}}},
+       wrong_checks_are_seen},
+      {{.id = "fieldbus_dll/ff_device/frame/addresses_are_read_as_long_as_they_are",
+        .purpose = "FF-38",
+        .requirement = "Long and short addresses are told apart by L.",
+        .reference = memory("bit L"),
+        .stimulus = "DT1 with short addresses to the station, with long ones to another and to the station.",
+        .expected = "The first is delivered, the second not, the third whole or not at all.",
+        .tags = {"must"},
+        .catches = {{"long_read_as_short", "long_address_misread"}}},
+       addresses_are_read_as_long_as_they_are},
+      {{.id = "fieldbus_dll/ff_device/frame/are_as_long_as_the_paper_says",
+        .purpose = "FF-40",
+        .requirement = "Frames of 75 and 267 octets take 600 and 2136 us at 1 Mbit/s, and 24 us around them.",
+        .reference = ff_paper("lengths of the data"),
+        .stimulus = "Data of 64 and 256 octets with long addresses, at 1 Mbit/s.",
+        .expected = "Frames of 624 and 2160 us.",
+        .tags = {"must", "timing"},
+        .catches = {{"two_octets_of_preamble", "frame_length_wrong"}}},
+       frames_are_as_long_as_the_paper_says,
+       {.change =
+            [](fieldbus_dll::FfConfiguration& configuration) {
+              configuration.rules.link.bit_rate = 1'000'000;
+            }}},
+      {{.id = "fieldbus_dll/ff_device/frame/unknown_dlpdus_are_left",
+        .purpose = "FF-42",
+        .requirement = "What is not known is ignored, and the link goes on.",
+        .reference = memory("octets of the DLPDUs"),
+        .stimulus = "All first octets that ask for nothing, with four kinds of rest and right checks.",
+        .expected = "Silence; a right PT is served then.",
+        .tags = {"must"},
+        .catches = {{"priority_zero_taken", "acts_on_unknown"}, {"es_is_pt", "acts_on_unknown"}}},
+       unknown_dlpdus_are_left},
+      {{.id = "fieldbus_dll/ff_device/frame/silence_is_kept",
+        .purpose = "FF-35",
+        .requirement = "A station keeps V(MID) of silence behind its own DLPDUs and those of others.",
+        .reference = vendors("V(MID): silence behind every DLPDU"),
+        .stimulus = "Tokens, CDs and probes.",
+        .expected = "No DLPDU of the station sooner than V(MID) behind another.",
+        .tags = {"must", "timing"},
+        .catches = {{"short_silence", "gap_too_short"}, {"no_silence_behind_own", "gap_too_short"}}},
+       silence_is_kept},
+  };
+}
+
+}  // namespace fieldproof::conformance

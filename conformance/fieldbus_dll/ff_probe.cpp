@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include "conformance/fieldbus_dll/ff_cases.hpp"
+#include "conformance/fieldbus_dll/ff_expect.hpp"
+
+// PN: who is there; and rules that cannot be.
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::Priority;
+
+void a_probe_is_answered(FfBench& bench, CaseJudge& judge) {
+  bench.wait(bench.octets(50));
+  for (int n = 0; n < bench.volume(2, 20); ++n) {
+    const kernel::Time end = bench.send({bench.rules().codes.pn, bench.node()});
+    const DrivenDlpdu pr = expect_next(bench, judge, "no_probe_response", "a PR");
+    const Octets wanted{bench.rules().codes.pr, bench.node()};
+    judge.expect(pr.octets == wanted, "dlpdu_wrong",
+                 [&] { return Sighting{{"PR with the station's node"}, pr.text(), pr.begin}; });
+    expect_begins(judge, pr, end + bench.least_gap(), "answers_too_early", end + bench.response_delay(),
+                  "answers_too_late");
+    expect_silence(bench, judge, "talks_behind_answer", "one PR is sent");
+  }
+}
+
+void probes_of_others_are_left(FfBench& bench, CaseJudge& judge) {
+  for (unsigned node = 0; node < 256; node += static_cast<unsigned>(bench.volume(7, 1))) {
+    if (node == bench.node()) continue;
+    bench.send({bench.rules().codes.pn, static_cast<std::uint8_t>(node)});
+    expect_silence(bench, judge, "answers_others", fmt::format("the PN is for node {:02X}", node));
+  }
+  expect_serves(bench, judge);
+}
+
+void nothing_is_sent_before_activation(FfBench& bench, CaseJudge& judge) {
+  const Octets data = expect_submitted(bench, judge, Priority::urgent, 6);
+  bench.wait(bench.octets(50));
+  bench.send(bench.pt(Priority::time_available, 500));
+  expect_silence(bench, judge, "uses_token_offline", "the station is not in the live list");
+  bench.send({bench.rules().codes.pn, bench.node()});
+  bench.listen();
+  bench.send(bench.activation(bench.node()));
+  expect_silence(bench, judge, "talks_behind_answer", "an activation is not answered");
+  const kernel::Time end = bench.send(bench.pt(Priority::time_available, 500));
+  expect_dlsdus(judge, expect_token_used(bench, judge, end), {data}, "not_activated", "sent_twice");
+}
+
+void impossible_rules_are_refused(FfBench& bench, CaseJudge& judge) {
+  judge.expect(!bench.has_started(), "impossible_rules_taken", "V(MID) above (V(MRD) - 1) x V(ST) is refused",
+               "the station has started");
+  bench.wait(bench.octets(50));
+  bench.send({bench.rules().codes.pn, bench.node()});
+  expect_silence(bench, judge, "impossible_rules_taken", "the station has not started");
+}
+
+}  // namespace
+
+std::vector<FfCase> ff_probe_cases() {
+  using link_sources::memory;
+  using link_sources::own;
+  using link_sources::vendors;
+  return {
+      {{.id = "fieldbus_dll/ff_device/probe/is_answered",
+        .purpose = "FF-01",
+        .requirement = "A station that is not in the live list answers a PN within V(MRD) x V(ST).",
+        .reference = memory("PN and PR"),
+        .stimulus = "PNs for the station.",
+        .expected = "One PR each, begun between V(MID) and V(MRD) x V(ST).",
+        .tags = {"must", "timing"},
+        .catches = {{"no_probe_response", "no_probe_response"}, {"answers_late", "answers_too_late"}}},
+       a_probe_is_answered,
+       {.is_live = false}},
+      {{.id = "fieldbus_dll/ff_device/probe/others_are_left",
+        .purpose = "FF-02",
+        .requirement = "A station answers no PN for another.",
+        .reference = memory("PN and PR"),
+        .stimulus = "PNs for other nodes.",
+        .expected = "Silence.",
+        .tags = {"must"},
+        .catches = {{"answers_for_all_nodes", "answers_others"}}},
+       probes_of_others_are_left},
+      {{.id = "fieldbus_dll/ff_device/probe/nothing_is_sent_before_activation",
+        .purpose = "FF-01",
+        .requirement = "A station uses no token before it is activated.",
+        .reference = own("activation of a node"),
+        .stimulus = "A PT to a station that was not activated; PN, activation, PT.",
+        .expected = "Silence; a PR; silence; the data.",
+        .tags = {"must"},
+        .catches = {{"live_from_the_start", "uses_token_offline"}}},
+       nothing_is_sent_before_activation,
+       {.is_live = false}},
+      {{.id = "fieldbus_dll/ff_device/probe/impossible_rules_are_refused",
+        .purpose = "FF-36",
+        .requirement = "V(MID) is at most (V(MRD) - 1) x V(ST).",
+        .reference = vendors("range of V(MID)"),
+        .stimulus = "A station with V(MID) an octet above.",
+        .expected = "It does not start and says nothing.",
+        .tags = {"must"},
+        .catches = {{"impossible_rules_taken", "impossible_rules_taken"}}},
+       impossible_rules_are_refused,
+       {.change =
+            [](fieldbus_dll::FfConfiguration& configuration) {
+              configuration.rules.link.inter_pdu_delay_octets = 25;
+            },
+        .is_live = false}},
+  };
+}
+
+}  // namespace fieldproof::conformance
