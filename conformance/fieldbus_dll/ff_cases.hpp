@@ -24,6 +24,7 @@ std::vector<FfCase> ff_publisher_cases();
 std::vector<FfCase> ff_frame_cases();
 std::vector<FfCase> ff_schedule_cases();
 std::vector<FfCase> ff_circulation_cases();
+std::vector<FfCase> ff_rotation_cases();
 std::vector<FfCase> ff_live_list_cases();
 std::vector<FfCase> ff_time_cases();
 std::vector<FfCase> ff_claim_cases();

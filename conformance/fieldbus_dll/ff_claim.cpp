@@ -137,7 +137,8 @@ template <typename Say>
 void expect_leaves(FfBench& bench, CaseJudge& judge, Say say) {
   bench.serve(bench.now() + bench.octets(700), [&](const DrivenDlpdu& one) { return bench.returned(one); });
   // In the middle of a silence of the IUT's own.
-  while (const auto one = bench.next(bench.now() + bench.octets(200))) {
+  const kernel::Time latest = bench.now() + bench.octets(2'000);
+  while (const auto one = bench.next(latest)) {
     if (is_of(*one, bench.rules().codes.pn)) break;
     if (const auto reply = bench.returned(*one))
       bench.run_until(bench.send_at(one->end + bench.least_gap(), reply->octets));

@@ -40,7 +40,7 @@ std::optional<FfBench::Reply> kept_long(FfBench& bench, const DrivenDlpdu& dlpdu
 }
 
 // What is compelled when, in macrocycles with holders that keep their tokens long.
-void each_item_has_its_time(FfBench& bench, CaseJudge& judge) {
+void ff_each_item_has_its_time(FfBench& bench, CaseJudge& judge) {
   const auto& items = bench.configuration().schedule.items;
   const kernel::Duration most = bench.octets(bench.rules().scheduling_overhead_octets);
   const int cycles = bench.volume(20, 1'000);
@@ -171,7 +171,7 @@ std::vector<FfCase> ff_schedule_cases() {
         .catches = {{"token_over_due", "compelled_late"},
                     {"schedule_in_centiseconds", "compelled_late"},
                     {"item_skipped", "compelled_wrong"}}},
-       each_item_has_its_time,
+       ff_each_item_has_its_time,
        {.change = three_items}},
       {{.id = "fieldbus_dll/ff_las/schedule/a_token_ends_before_what_is_due",
         .purpose = "FF-15",

@@ -41,7 +41,7 @@ void all_is_sent_in_order(FfBench& bench, CaseJudge& judge) {
   }
 }
 
-void an_empty_queue_returns_the_token(FfBench& bench, CaseJudge& judge) {
+void ff_an_empty_queue_returns_the_token(FfBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(2, 20); ++n) {
     for (const Priority least : {Priority::urgent, Priority::normal, Priority::time_available}) {
       expect_dlsdus(judge, use_pt(bench, judge, least, 280), {}, "", "unexpected_dlpdu");
@@ -75,7 +75,7 @@ void what_fits_exactly_is_sent_and_no_more(FfBench& bench, CaseJudge& judge) {
   }
 }
 
-void nothing_is_sent_behind_the_duration(FfBench& bench, CaseJudge& judge) {
+void ff_nothing_is_sent_behind_the_duration(FfBench& bench, CaseJudge& judge) {
   // Short frames, too: of those some end just behind a duration.
   for (int n = 0; n < bench.volume(60, 300); ++n) {
     const std::uint64_t longest = n % 6 == 0 ? 250 : 12;
@@ -114,7 +114,7 @@ void what_does_not_fit_is_sent_next_time(FfBench& bench, CaseJudge& judge) {
   }
 }
 
-void tokens_of_others_are_left(FfBench& bench, CaseJudge& judge) {
+void ff_tokens_of_others_are_left(FfBench& bench, CaseJudge& judge) {
   expect_submitted(bench, judge, Priority::urgent, 6);
   for (unsigned node = 0; node < 256; node += static_cast<unsigned>(bench.volume(7, 1))) {
     if (node == bench.node()) continue;
@@ -126,7 +126,7 @@ void tokens_of_others_are_left(FfBench& bench, CaseJudge& judge) {
   expect_serves(bench, judge);
 }
 
-void the_longest_is_sent_and_no_longer(FfBench& bench, CaseJudge& judge) {
+void ff_the_longest_is_sent_and_no_longer(FfBench& bench, CaseJudge& judge) {
   for (const Priority priority : {Priority::urgent, Priority::normal, Priority::time_available}) {
     const std::size_t most = fieldbus_dll::most_data(bench.link(), priority);
     const Octets longest = bench.numbered_data(most);
@@ -172,7 +172,7 @@ std::vector<FfCase> ff_token_cases() {
         .expected = "One RT each.",
         .tags = {"must", "timing"},
         .catches = {{"no_return_when_empty", "token_not_returned"}, {"answers_late", "answers_too_late"}}},
-       an_empty_queue_returns_the_token},
+       ff_an_empty_queue_returns_the_token},
       {{.id = "fieldbus_dll/ff_device/token/what_fits_exactly_is_sent_and_no_more",
         .purpose = "FF-06",
         .requirement = "A DT1 is sent when it ends within the duration of the PT.",
@@ -197,7 +197,7 @@ std::vector<FfCase> ff_token_cases() {
         .catches = {{"overhead_not_charged", "talks_behind_duration"},
                     {"duration_ignored", "talks_behind_duration"},
                     {"duration_in_two_octets", "talks_behind_duration"}}},
-       nothing_is_sent_behind_the_duration},
+       ff_nothing_is_sent_behind_the_duration},
       {{.id = "fieldbus_dll/ff_device/token/what_does_not_fit_is_sent_next_time",
         .purpose = "FF-08",
         .requirement = "Data that does not fit waits for the next token, in order.",
@@ -224,7 +224,7 @@ std::vector<FfCase> ff_token_cases() {
         .expected = "Silence.",
         .tags = {"must"},
         .catches = {{"answers_for_all_nodes", "uses_token_of_others"}}},
-       tokens_of_others_are_left},
+       ff_tokens_of_others_are_left},
       {{.id = "fieldbus_dll/ff_device/token/the_longest_is_sent_and_no_longer",
         .purpose = "FF-39",
         .requirement = "A DLSDU has at most 64, 128, 256 octets when it is urgent, normal, time-available.",
@@ -233,7 +233,7 @@ std::vector<FfCase> ff_token_cases() {
         .expected = "The first are accepted and sent, the others refused.",
         .tags = {"must"},
         .catches = {{"urgent_as_long_as_normal", "too_long_taken"}}},
-       the_longest_is_sent_and_no_longer},
+       ff_the_longest_is_sent_and_no_longer},
   };
 }
 

@@ -81,7 +81,7 @@ class LinkBench : private segment::Station {
   // The next DLPDU that the IUT begins before `limit`, when it is over; none: it was silent.
   std::optional<DrivenDlpdu> next(kernel::Time limit);
   std::optional<DrivenDlpdu> next() { return next(now() + patience()); }
-  // All that it drives until it has been silent for `patience()`.
+  // All that it drives until it has been silent for `patience()`; at most a thousand DLPDUs.
   std::vector<DrivenDlpdu> listen();
   // Twice V(MRD) x V(ST): a station that has something to do does it sooner.
   kernel::Duration patience() const { return 2 * response_delay(); }

@@ -35,6 +35,10 @@ void expect_begins(CaseJudge& judge, const DrivenDlpdu& dlpdu, kernel::Time earl
 }
 
 void judge_driven(const LinkBench& bench, CaseJudge& judge) {
+  // Both are in the order of their ends, and in an hour of a busy link there are millions.
+  const std::span heard = bench.heard();
+  std::size_t next_heard = 0;
+  kernel::Time heard_until = kernel::kStart;
   kernel::Time own_end = kernel::kStart;
   for (const DrivenDlpdu& one : bench.driven()) {
     const auto sighting = [&](std::string expected) {
@@ -44,10 +48,9 @@ void judge_driven(const LinkBench& bench, CaseJudge& judge) {
       return sighting("preamble, start delimiter, whole octets, end delimiter, exact to the half bit");
     });
     judge.expect(one.has_right_check, "check_wrong", [&] { return sighting("a frame check that fits"); });
-    kernel::Time silent_since = own_end;
-    for (const LinkBench::Heard& heard : bench.heard()) {
-      if (heard.end <= one.begin) silent_since = std::max(silent_since, heard.end);
-    }
+    for (; next_heard < heard.size() && heard[next_heard].end <= one.begin; ++next_heard)
+      heard_until = std::max(heard_until, heard[next_heard].end);
+    const kernel::Time silent_since = std::max(own_end, heard_until);
     const bool is_first = silent_since == kernel::kStart;
     judge.expect(is_first || one.begin - silent_since + kLinkRounding >= bench.least_gap(), "gap_too_short",
                  [&] {

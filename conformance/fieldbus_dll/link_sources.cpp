@@ -23,6 +23,9 @@ judge::Reference vendors(std::string place) {
 judge::Reference memory(std::string place) {
   return {"IEC 61158, from memory", std::move(place), judge::Standing::memory};
 }
+judge::Reference calculated(std::string place) {
+  return {"computed from the rules of the token", std::move(place), judge::Standing::calc};
+}
 judge::Reference own(std::string place) {
   return {"this project's choice", std::move(place), judge::Standing::own};
 }

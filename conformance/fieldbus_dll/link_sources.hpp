@@ -12,12 +12,13 @@
 namespace fieldproof::conformance {
 
 namespace link_sources {
-judge::Reference isa_paper(std::string place);  // the paper on the ISA draft
-judge::Reference ff_paper(std::string place);   // the paper on the delay of urgent data
-judge::Reference line(std::string place);       // IEC 61158-2, as an open implementation has it
-judge::Reference vendors(std::string place);    // tables of link parameters
-judge::Reference memory(std::string place);     // IEC 61158, from memory
-judge::Reference own(std::string place);        // where all of these are silent
+judge::Reference isa_paper(std::string place);   // the paper on the ISA draft
+judge::Reference ff_paper(std::string place);    // the paper on the delay of urgent data
+judge::Reference line(std::string place);        // IEC 61158-2, as an open implementation has it
+judge::Reference vendors(std::string place);     // tables of link parameters
+judge::Reference memory(std::string place);      // IEC 61158, from memory
+judge::Reference calculated(std::string place);  // from the rules themselves
+judge::Reference own(std::string place);         // where all of these are silent
 }  // namespace link_sources
 
 // The reasons that rest on less than the case that finds them.

@@ -9,6 +9,7 @@
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/scheduler.hpp"
 #include "protocols/fieldbus_dll/milliseconds.hpp"
+#include "protocols/fieldbus_dll/poisson_arrivals.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
@@ -16,31 +17,9 @@ namespace {
 constexpr std::uint64_t kRotationsOfBatch = 1'000;
 
 // A Poisson stream of arrivals, drawn when they are asked for.
-class Arrivals {
- public:
-  Arrivals(double per_ms, const kernel::Random& random)
-      : mean_gap_(per_ms > 0 ? kPicosecondsPerMs / per_ms : 0), random_(random) {
-    draw();
-  }
-  kernel::Time next() const { return next_; }
-  void draw() {
-    if (mean_gap_ == 0) {
-      next_ = kernel::kNever;
-      return;
-    }
-    const double gap = -mean_gap_ * kernel::portable_log(1 - random_.uniform());
-    next_ += kernel::Duration{static_cast<std::int64_t>(gap)};
-  }
-
- private:
-  double mean_gap_;
-  kernel::Random random_;
-  kernel::Time next_ = kernel::kStart;
-};
-
 // Packets that are told apart.
 struct UrgentQueue {
-  Arrivals arrivals;
+  PoissonArrivals arrivals;
   std::deque<kernel::Time> waiting{};
 
   void fill(kernel::Time until) {
@@ -50,7 +29,7 @@ struct UrgentQueue {
 
 // Packets that are only counted.
 struct AvailableQueue {
-  Arrivals arrivals;
+  PoissonArrivals arrivals;
   std::uint64_t waiting = 0;
 
   void fill(kernel::Time until) {
@@ -103,10 +82,10 @@ class Token final : private kernel::Timer {
     const kernel::Random of_urgent = random.split("urgent");
     const kernel::Random of_available = random.split("time-available");
     for (unsigned n = 0; n < traffic.urgent_queues; ++n) {
-      urgent_.push_back({Arrivals(traffic.urgent_per_ms, of_urgent.split(n))});
+      urgent_.push_back({PoissonArrivals(traffic.urgent_per_ms, of_urgent.split(n))});
     }
     for (unsigned n = 0; n < traffic.available_queues; ++n) {
-      available_.push_back({Arrivals(traffic.available_per_ms, of_available.split(n))});
+      available_.push_back({PoissonArrivals(traffic.available_per_ms, of_available.split(n))});
     }
   }
 
