@@ -57,14 +57,20 @@ Octets with_frame_check(std::span<const std::uint8_t> octets) {
 }
 
 line::Levels half_bits_of_frame(std::span<const std::uint8_t> octets, unsigned preamble_octets) {
-  std::string text;
-  for (unsigned n = 0; n < preamble_octets; ++n) text += kPreambleOctet;
-  text += kStartDelimiter;
+  static const line::Levels preamble = line::Levels::of_text(kPreambleOctet);
+  static const line::Levels start = line::Levels::of_text(kStartDelimiter);
+  static const line::Levels end = line::Levels::of_text(kEndDelimiter);
+  // The first half of a bit is what it is, the second one the opposite; the first level in bit 0.
+  constexpr std::uint64_t kOne = 0b01;
+  constexpr std::uint64_t kZero = 0b10;
+  line::Levels levels;
+  for (unsigned n = 0; n < preamble_octets; ++n) levels.append(preamble);
+  levels.append(start);
   for (const std::uint8_t octet : octets) {
-    for (unsigned bit = 8; bit-- > 0;) text += (octet >> bit & 1) != 0 ? "10" : "01";
+    for (unsigned bit = 8; bit-- > 0;) levels.append((octet >> bit & 1) != 0 ? kOne : kZero, 2);
   }
-  text += kEndDelimiter;
-  return line::Levels::of_text(text);
+  levels.append(end);
+  return levels;
 }
 
 void DrivenDlpdus::on_wave(const line::Waveform& wave) {

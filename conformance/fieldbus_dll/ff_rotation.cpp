@@ -135,7 +135,7 @@ Rotations rotate(FfBench& bench, CaseJudge& judge, const fieldbus_dll::UrgentTra
 
 void rotations_are_as_computed(FfBench& bench, CaseJudge& judge) {
   const auto traffic = fieldbus_dll::paper_traffic(kLoad, 1, 1, bench.rules().target_rotation);
-  const Rotations found = rotate(bench, judge, traffic, bench.volume<std::uint64_t>(150, 5'000));
+  const Rotations found = rotate(bench, judge, traffic, bench.volume<std::uint64_t>(300, 5'000));
   // Every packet that comes is sent, so a rotation takes R / (1 - U) in the mean, whatever is admitted when.
   const double mean = fieldbus_dll::ms(traffic.empty_rotation) / (1 - kLoad);
   judge.expect_between("mean rotation", "ms", found.mean, 0.97 * mean, 1.03 * mean, "rotation_wrong");
