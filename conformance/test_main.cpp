@@ -2,8 +2,8 @@
 // explorer of an editor. At quick volume; `fieldproof run` makes the full one.
 #include <gtest/gtest.h>
 
-#include "conformance/gtest_catalogue.hpp"
 #include "conformance/fieldbus_dll/suite.hpp"
+#include "conformance/gtest_catalogue.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 

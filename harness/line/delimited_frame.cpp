@@ -125,6 +125,8 @@ Levels half_bits_of(const Waveform& wave, std::int64_t bit_rate) {
 }
 
 std::vector<DelimitedFrame> delimited_frames_in(const Waveform& wave, std::int64_t bit_rate) {
+  // Written half bit by half bit, as stations do, it is what it is.
+  if (wave.rate == 2 * bit_rate) return FrameFinder(wave.levels).find();
   return FrameFinder(half_bits_of(wave, bit_rate)).find();
 }
 
