@@ -13,7 +13,7 @@ namespace {
 
 trace::Told told(const line::DelimitedFrame& frame, const LinkNotation::Describe& describe_dlpdu) {
   const auto wrong = [&](std::string_view why) {
-    return trace::Told{fmt::format("{:02X} = {}", fmt::join(frame.octets, " "), why)};
+    return trace::Told{fmt::format("{:02X} ({})", fmt::join(frame.octets, " "), why)};
   };
   if (frame.end != line::FrameEnd::whole) return wrong(text_of(frame.end));
   const line::FrameCheck16& check = line::shared_frame_check_16("CRC-16/PROFIBUS");

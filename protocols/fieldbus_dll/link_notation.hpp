@@ -13,8 +13,8 @@
 // What was on a line of the data link, for a person, in the DLPDUs of one profile.
 //
 //   ES urgent 10 -> 21 for 1000 octets
-//   42 21 10 E1 DD = check wrong
-//   42 21 = code violation
+//   42 21 10 E1 DD (check wrong)
+//   42 21 (code violation)
 namespace fieldproof::fieldbus_dll {
 
 // Of captures. The variant is the profile.

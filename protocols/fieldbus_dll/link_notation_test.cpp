@@ -20,20 +20,20 @@ TEST(LinkNotation, TellsDlpdusOfItsProfile) {
   EXPECT_EQ(LinkNotation(FfRules{}).brief(frame_of(with_check(Octets{0x36, 0x20, 0x01, 0x18}))),
             "PT normal 20 for 280 octets, first");
   EXPECT_EQ(LinkNotation(FfRules{}).brief(frame_of(with_check(Octets{0x42, 0x21, 0x10}))),
-            "42 21 10 E1 DC = no DLPDU");
+            "42 21 10 E1 DC (no DLPDU)");
 }
 
 TEST(LinkNotation, TellsWhatIsWrongWithAFrame) {
   const LinkNotation notation(IsaRules{});
   const auto teller = notation.teller();
   const trace::Told wrong = teller->tell(frame_of({0x42, 0x21, 0x10, 0xE1, 0xDD}));
-  EXPECT_EQ(wrong.text, "42 21 10 E1 DD = check wrong");
+  EXPECT_EQ(wrong.text, "42 21 10 E1 DD (check wrong)");
   EXPECT_TRUE(wrong.is_check_wrong);
   line::Waveform cut = frame_of(with_check(Octets{0x42, 0x21, 0x10}));
   cut.levels.resize(32 + 40);
-  EXPECT_EQ(notation.brief(cut), "42 21 = signal lost");
+  EXPECT_EQ(notation.brief(cut), "42 21 (signal lost)");
   EXPECT_EQ(notation.brief({kernel::kStart, 62'500, line::Levels::of_text("0101")}), "no frame");
-  EXPECT_EQ(notation.brief(frame_of({})), " = check wrong");
+  EXPECT_EQ(notation.brief(frame_of({})), " (check wrong)");
 }
 
 }  // namespace
