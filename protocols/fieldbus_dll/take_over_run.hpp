@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "harness/kernel/time.hpp"
+#include "protocols/fieldbus_dll/ff_link.hpp"
 
 // A link of Foundation Fieldbus whose scheduler dies at a random instant: who takes over, when, and what of
 // the schedule is lost.
@@ -15,7 +16,7 @@ namespace fieldproof::fieldbus_dll {
 
 struct TakeOverSetting {
   std::uint64_t seed = 1;
-  double frame_loss = 0;  // 0 to 1
+  FfDisturb disturb{};
 };
 
 struct TakeOver {

@@ -16,7 +16,8 @@ class TakeOverAtRandomInstants : public testing::TestWithParam<double> {};
 TEST_P(TakeOverAtRandomInstants, IsByTheLowestLinkMasterInTimeAndAlone) {
   const kernel::Duration octet = kernel::levels_duration(8, 31'250);
   for (std::uint64_t seed = 1; seed <= kInstants; ++seed) {
-    const TakeOver found = run_take_over({.seed = seed, .frame_loss = GetParam()});
+    const TakeOver found = run_take_over(
+        {.seed = seed, .disturb = losing_frames(GetParam(), kernel::Random(seed).split("losses"))});
     ASSERT_EQ(found.claimer, 0x11) << seed;
     ASSERT_EQ(found.claims, 1U) << seed;
     ASSERT_GE(found.silence, take_over_silence()) << seed;

@@ -1,0 +1,352 @@
+#include "protocols/fieldbus_dll/control_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "harness/kernel/error.hpp"
+#include "protocols/fieldbus_dll/function_blocks.hpp"
+#include "protocols/fieldbus_dll/poisson_arrivals.hpp"
+
+namespace fieldproof::fieldbus_dll {
+namespace {
+
+constexpr std::uint8_t kScheduler = 0x10;
+constexpr std::uint8_t kFirstTalker = 0x11;
+constexpr std::uint8_t kTalkers = 8;
+constexpr std::uint8_t kTransmitter = 0x20;
+constexpr std::uint8_t kController = 0x21;
+constexpr std::uint8_t kValve = 0x22;
+constexpr std::uint8_t kLastNode = kValve;
+constexpr std::uint8_t kSelector = 0x20;
+
+constexpr std::size_t kMessageOctets = 128;
+constexpr std::uint64_t kMostMessages = 64;
+
+// Where in a period, in twentieths, which block runs.
+constexpr unsigned kSteps = 20;
+constexpr unsigned kInputStep = 0;
+constexpr unsigned kPidStep = 10;
+constexpr unsigned kOutputStep = 19;
+constexpr unsigned kStepsPerPoint = 2;
+
+// The process, its controller and what is asked of it.
+constexpr double kGain = 1;
+constexpr double kLag1 = 1;  // s
+constexpr double kLag2 = 0.4;
+constexpr double kControllerGain = 1.5;
+constexpr double kReset = 1.4;  // s
+constexpr double kRate = 0.1;
+constexpr double kLowSetpoint = 40;
+constexpr double kHighSetpoint = 60;
+constexpr unsigned kPeriodsPerSetpoint = 60;
+
+double in_seconds(kernel::Duration duration) {
+  return static_cast<double>(duration.count()) / 1e12;
+}
+
+void check(const ControlLoopSetting& setting) {
+  const auto refuse = [](const char* sentence) {
+    throw kernel::Error(kernel::ErrorKind::configuration, sentence);
+  };
+  const kernel::Duration period = setting.sampling_period;
+  if (period < 80 * kernel::kMillisecond || period > 10 * kernel::kSecond ||
+      period % (8 * kTick) != 0 * kTick)
+    refuse("a sampling period is a multiple of 250 us between 80 ms and 10 s");
+  if (setting.periods == 0 || setting.periods > 20'000) refuse("a control loop runs for 1 to 20000 periods");
+  if (!(setting.messages_per_s >= 0 && setting.messages_per_s <= 20))
+    refuse("a node sends 0 to 20 messages in a second");
+}
+
+// What one block sends another, and what of it is used.
+class Hop {
+ public:
+  void send() { ++figures_.sent; }
+  void arrive(const Signal& signal) { arrived_.push_back(signal); }
+
+  // The newest that has come since the last call.
+  std::optional<Signal> take() {
+    if (arrived_.empty()) {
+      if (figures_.used > 0) ++figures_.vacant;
+      return std::nullopt;
+    }
+    const Signal newest = arrived_.back();
+    ++figures_.used;
+    figures_.lost += arrived_.size() - 1;
+    arrived_.clear();
+    return newest;
+  }
+
+  HopFigures figures() const {
+    HopFigures figures = figures_;
+    figures.missing = figures.sent - figures.used - figures.lost;
+    return figures;
+  }
+
+ private:
+  HopFigures figures_;
+  std::vector<Signal> arrived_;
+};
+
+using Send = std::function<void(const Signal&)>;
+
+// The blocks and the process, from twentieth to twentieth of a period.
+class Loop {
+ public:
+  Loop(const ControlLoopSetting& setting, Send send_sample, Send send_order)
+      : step_time_(setting.sampling_period / kSteps),
+        pid_({.gain = kControllerGain,
+              .reset_s = kReset,
+              .rate_s = kRate,
+              .period_s = in_seconds(setting.sampling_period)}),
+        send_sample_(std::move(send_sample)),
+        send_order_(std::move(send_order)) {}
+
+  Hop& to_controller() { return to_controller_; }
+  Hop& to_valve() { return to_valve_; }
+
+  // All that happens at the instant of this step, then the process until the next.
+  void run(std::uint64_t step) {
+    const auto place = static_cast<unsigned>(step % kSteps);
+    begin_setpoint(step / kSteps);
+    if (place == kInputStep) measure(step);
+    if (place == kPidStep) control(step);
+    if (place == kOutputStep) move_valve(step);
+    if (step % kStepsPerPoint == 0) {
+      const double time = in_seconds(static_cast<std::int64_t>(step) * step_time_);
+      found_.course.push_back({time, setpoint_, process_.output(), output_.output()});
+    }
+    process_.advance(in_seconds(step_time_), output_.output());
+    judge();
+  }
+
+  ControlLoop found() {
+    found_.to_controller = to_controller_.figures();
+    found_.to_valve = to_valve_.figures();
+    return std::move(found_);
+  }
+
+ private:
+  void begin_setpoint(std::uint64_t period) {
+    const double wanted = period / kPeriodsPerSetpoint % 2 == 0 ? kHighSetpoint : kLowSetpoint;
+    if (wanted == setpoint_) return;
+    step_ = wanted - setpoint_;
+    setpoint_ = wanted;
+  }
+
+  void measure(std::uint64_t step) {
+    const Signal sample = input_.execute(process_.output());
+    sampled_.push_back(step);
+    to_controller_.send();
+    send_sample_(sample);
+  }
+
+  void control(std::uint64_t step) {
+    if (const auto newest = to_controller_.take()) {
+      measured_ = *newest;
+      found_.delay_to_controller.add(since_sample(measured_, step));
+    }
+    if (measured_.sample == 0) return;  // nothing has ever come
+    to_valve_.send();
+    send_order_(pid_.execute(measured_, setpoint_));
+  }
+
+  void move_valve(std::uint64_t step) {
+    const auto newest = to_valve_.take();
+    if (!newest) return;
+    found_.loop_delay.add(since_sample(*newest, step));
+    const double before = output_.output();
+    found_.valve_travel += std::abs(output_.execute(*newest) - before);
+  }
+
+  void judge() {
+    const double error = setpoint_ - process_.output();
+    found_.absolute_error += std::abs(error) * in_seconds(step_time_);
+    found_.overshoot = std::max(found_.overshoot, -100 * error / step_);
+  }
+
+  kernel::Duration since_sample(const Signal& signal, std::uint64_t step) const {
+    return static_cast<std::int64_t>(step - sampled_.at(signal.sample - 1)) * step_time_;
+  }
+
+  kernel::Duration step_time_;
+  AnalogInput input_{0, 100};
+  Pid pid_;
+  AnalogOutput output_;
+  Process process_{kGain, kLag1, kLag2};
+  Send send_sample_, send_order_;
+  Hop to_controller_, to_valve_;
+  Signal measured_;
+  double setpoint_ = 0;
+  double step_ = 0;                     // of the setpoint, the last
+  std::vector<std::uint64_t> sampled_;  // in which step, by sample
+  ControlLoop found_;
+};
+
+// The application of controller and valve: what arrives is new once.
+class Inbox final : public FfSilentUser {
+ public:
+  explicit Inbox(Hop& hop) : hop_(hop) {}
+  void on_data(const FfDlpdu& dlpdu, kernel::Time) override { put(dlpdu); }
+  void on_published(const FfDlpdu& dlpdu, kernel::Time) override {
+    if (std::exchange(writes_, dlpdu.writes) != dlpdu.writes) put(dlpdu);
+  }
+
+ private:
+  void put(const FfDlpdu& dlpdu) {
+    if (const auto signal = signal_of(dlpdu.data)) hop_.arrive(*signal);
+  }
+
+  Hop& hop_;
+  std::optional<std::uint8_t> writes_;
+};
+
+// A node that sends messages to its neighbour.
+struct Talker {
+  std::uint8_t node;
+  PoissonArrivals arrivals;
+  std::uint64_t submitted = 0;
+};
+
+class LoopOnLink {
+ public:
+  explicit LoopOnLink(const ControlLoopSetting& setting)
+      : setting_(setting),
+        random_(setting.seed),
+        link_(rules(), random_.split("link"), setting.disturb),
+        loop_(setting, sender(kTransmitter, kController), sender(kController, kValve)) {
+    link_.on_driven([this](const FfDriven& one) {
+      if (one.dlpdu.type == FfType::pt) live_.insert(one.dlpdu.node);
+      if (one.dlpdu.type == FfType::dt1) ++driven_[one.node];
+    });
+    link_.add_master(configuration(kScheduler), nobody_);
+    for (std::uint8_t n = 0; n < kTalkers; ++n) {
+      const auto node = static_cast<std::uint8_t>(kFirstTalker + n);
+      link_.add_device(configuration(node), nobody_);
+      talkers_.push_back({node, {setting.messages_per_s / 1'000, random_.split("messages").split(n)}});
+    }
+    link_.add_device(configuration(kTransmitter), nobody_);
+    link_.add_device(configuration(kController), controller_);
+    link_.add_device(configuration(kValve), valve_);
+  }
+
+  ControlLoop run() {
+    // A macrocycle begins whenever link time is a multiple of it.
+    const std::int64_t cycles =
+        (kLoopBegin + setting_.sampling_period - kernel::Duration{1}) / setting_.sampling_period;
+    const kernel::Time begin = kernel::kStart + cycles * setting_.sampling_period;
+    run_to(begin);
+    check_all_live();
+    for (std::uint64_t step = 0; step < std::uint64_t{setting_.periods} * kSteps; ++step) {
+      run_to(begin + static_cast<std::int64_t>(step) * (setting_.sampling_period / kSteps));
+      loop_.run(step);
+    }
+    return loop_.found();
+  }
+
+ private:
+  FfRules rules() const {
+    FfRules rules;
+    rules.target_rotation = setting_.target_rotation;
+    return rules;
+  }
+
+  FfConfiguration configuration(std::uint8_t node) const {
+    FfConfiguration configuration;
+    configuration.rules = rules();
+    configuration.node = node;
+    if (node == kTransmitter || node == kController) configuration.published = {address_of(node, kSelector)};
+    if (node == kController) configuration.subscribed = {address_of(kTransmitter, kSelector)};
+    if (node == kValve) configuration.subscribed = {address_of(kController, kSelector)};
+    if (node != kScheduler) return configuration;
+    configuration.begins_as_scheduler = true;
+    const auto ticks = static_cast<std::uint32_t>(setting_.sampling_period / kTick);
+    configuration.schedule = {.version = 1, .macrocycle = ticks, .items = {}};
+    if (setting_.way == DataWay::published) {
+      configuration.schedule.items = {{ticks / 8, address_of(kTransmitter, kSelector), Priority::normal},
+                                      {ticks / 8 * 5, address_of(kController, kSelector), Priority::normal}};
+    }
+    return configuration;
+  }
+
+  Send sender(std::uint8_t from, std::uint8_t to) {
+    return [this, from, to](const Signal& signal) {
+      if (setting_.way == DataWay::published) {
+        link_.write(from, address_of(from, kSelector), octets_of(signal));
+      } else {
+        link_.submit(from, {Priority::urgent, address_of(to, kSelector), octets_of(signal)});
+      }
+    };
+  }
+
+  // With what talkers want to say meanwhile.
+  void run_to(kernel::Time time) {
+    while (true) {
+      const auto next =
+          std::ranges::min_element(talkers_, {}, [](const Talker& talker) { return talker.arrivals.next(); });
+      if (next->arrivals.next() > time) break;
+      link_.run_to(next->arrivals.next());
+      talk(*next);
+    }
+    link_.run_to(time);
+  }
+
+  void talk(Talker& talker) {
+    talker.arrivals.draw();
+    if (talker.submitted - driven_[talker.node] >= kMostMessages) return;
+    ++talker.submitted;
+    const auto neighbour =
+        static_cast<std::uint8_t>(kFirstTalker + (talker.node - kFirstTalker + 1) % kTalkers);
+    link_.submit(talker.node, {Priority::time_available, address_of(neighbour, kSelector),
+                               Octets(kMessageOctets, talker.node)});
+  }
+
+  void check_all_live() const {
+    for (std::uint8_t node = kFirstTalker; node <= kLastNode; ++node) {
+      const bool is_used = node < kFirstTalker + kTalkers || node >= kTransmitter;
+      if (is_used && !live_.contains(node)) {
+        throw kernel::Error(kernel::ErrorKind::configuration,
+                            "not every node is live when the loop begins: the line is disturbed too much");
+      }
+    }
+  }
+
+  ControlLoopSetting setting_;
+  kernel::Random random_;
+  FfSilentUser nobody_;
+  FfLink link_;
+  Loop loop_;
+  Inbox controller_{loop_.to_controller()};
+  Inbox valve_{loop_.to_valve()};
+  std::vector<Talker> talkers_;
+  std::map<std::uint8_t, std::uint64_t> driven_;  // DT1, by node
+  std::set<std::uint8_t> live_;                   // had the token once
+};
+
+}  // namespace
+
+std::string_view text_of(DataWay way) {
+  return way == DataWay::published ? "published" : "by token";
+}
+
+ControlLoop run_control_loop(const ControlLoopSetting& setting) {
+  check(setting);
+  return LoopOnLink(setting).run();
+}
+
+ControlLoop run_loop_without_bus(const ControlLoopSetting& setting) {
+  check(setting);
+  Loop* self = nullptr;
+  Loop loop(
+      setting, [&self](const Signal& sample) { self->to_controller().arrive(sample); },
+      [&self](const Signal& order) { self->to_valve().arrive(order); });
+  self = &loop;
+  for (std::uint64_t step = 0; step < std::uint64_t{setting.periods} * kSteps; ++step) loop.run(step);
+  return loop.found();
+}
+
+}  // namespace fieldproof::fieldbus_dll
