@@ -7,13 +7,18 @@
 #include <utility>
 
 #include "emc/burst_channel.hpp"
-#include "emc/computed_once.hpp"
-#include "emc/coupling.hpp"
 
 namespace fieldproof::emc {
 namespace {
 
 using SharedResponse = ComputedOnce<LineResponse>;
+
+std::unique_ptr<BurstChannel> channel_at(const fault::StressPlace& place, BurstSchedule schedule,
+                                         WrongOutput wrong) {
+  return std::make_unique<BurstChannel>(std::move(schedule), std::move(wrong),
+                                        BurstReceiver{place.bit_rate, nullptr, line::Sampling{}, true, false},
+                                        place.trace, place.channel);
+}
 
 // One burst, with the tolerances of a run.
 BurstSchedule burst_at(kernel::Time from, BurstSettings settings, const kernel::Random& random) {
@@ -31,10 +36,8 @@ kernel::Duration longest_burst(Repetition repetition) {
 fault::Stress stress(const std::shared_ptr<SharedResponse>& response, const BurstSettings& settings,
                      const std::string& profile) {
   const auto make_channel = [response, settings](const fault::StressPlace& place) {
-    return std::make_unique<BurstChannel>(
-        burst_at(place.from, settings, place.random),
-        response->get().wrong_output(settings.level.open_circuit_volts(), settings.polarity),
-        BurstReceiver{place.bit_rate, nullptr, line::Sampling{}, true, false}, place.trace, place.channel);
+    return channel_at(place, burst_at(place.from, settings, place.random),
+                      response->get().wrong_output(settings.level.open_circuit_volts(), settings.polarity));
   };
   return {fmt::format("a burst of {}, {}, level {}, profile {}", text_of(settings.repetition),
                       text_of(settings.polarity), settings.level.text(), profile),
@@ -42,6 +45,21 @@ fault::Stress stress(const std::shared_ptr<SharedResponse>& response, const Burs
 }
 
 }  // namespace
+
+std::shared_ptr<ComputedOnce<WrongOutput>> wrong_output_of(const Profile& profile,
+                                                           const BurstSettings& settings) {
+  return std::make_shared<ComputedOnce<WrongOutput>>([coupling = profile.coupling, settings] {
+    return LineResponse(coupling).wrong_output(settings.level.open_circuit_volts(), settings.polarity);
+  });
+}
+
+MakeBursts lasting_bursts(const Profile& profile, const BurstSettings& settings) {
+  return [wrong = wrong_output_of(profile, settings), settings](const fault::StressPlace& place) {
+    BurstSettings here = settings;
+    here.on = place.from;
+    return channel_at(place, BurstSchedule(here, place.random), wrong->get());
+  };
+}
 
 std::vector<fault::Stress> burst_stresses(const Profile& profile, std::span<const Level> levels) {
   const auto response =

@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "emc/burst_channel.hpp"
-#include "emc/computed_once.hpp"
+#include "emc/burst_stress.hpp"
 #include "emc/effective_time.hpp"
 #include "emc/generator.hpp"
 #include "emc/profile.hpp"
@@ -89,29 +88,9 @@ Json json_of(const PlannedBursts& bursts) {
   return json;
 }
 
-BurstSchedule schedule_of(const PlannedBursts& bursts, const fault::StressPlace& place) {
-  BurstSettings settings = bursts.settings;
-  settings.on = place.from;
-  return {settings, place.random};
-}
-
-// The same at all receivers.
-std::shared_ptr<ComputedOnce<WrongOutput>> wrong_output_of(const PlannedBursts& bursts) {
-  return std::make_shared<ComputedOnce<WrongOutput>>([bursts] {
-    const double volts = bursts.settings.level.open_circuit_volts();
-    return LineResponse(bursts.profile.coupling).wrong_output(volts, bursts.settings.polarity);
-  });
-}
-
 DisturbanceModel read_burst_model(const Value& value) {
   const PlannedBursts bursts = read_bursts(value);
-  return {"bursts", json_of(bursts).dump(),
-          [bursts, wrong = wrong_output_of(bursts)](const fault::StressPlace& place) {
-            return std::make_unique<BurstChannel>(
-                schedule_of(bursts, place), wrong->get(),
-                BurstReceiver{place.bit_rate, nullptr, line::Sampling{}, true, false}, place.trace,
-                place.channel);
-          },
+  return {"bursts", json_of(bursts).dump(), lasting_bursts(bursts.profile, bursts.settings),
           caveats_of(bursts.profile)};
 }
 
@@ -200,7 +179,7 @@ DisturbanceModel model_of(const GilbertElliott& parameters) {
 
 DisturbanceModel fitted_model(const PlannedBursts& bursts) {
   return {"gilbert_elliott", Json{{"fitted_to", json_of(bursts)}}.dump(),
-          [bursts, wrong = wrong_output_of(bursts)](const fault::StressPlace& place) {
+          [bursts, wrong = wrong_output_of(bursts.profile, bursts.settings)](const fault::StressPlace& place) {
             const double flips = flips_per_pulse(wrong->get(), {}, place.bit_rate);
             const GilbertElliott fitted =
                 fitted_gilbert_elliott(flips, bursts.settings.repetition, place.bit_rate);

@@ -128,7 +128,7 @@ TEST(PlanDisturbances, RefuseWhatMeansNothing) {
   };
   is_refused(R"("bursts": {})", "bursts", "write either \"level\" or \"volts\"");
   is_refused(R"("bursts": {"volts": 10001})", "bursts/volts", "10000");
-  is_refused(R"("bursts": {"level": 1, "profile": "F"})", "bursts/profile", "B2");
+  is_refused(R"("bursts": {"level": 1, "profile": "G"})", "bursts/profile", "B2");
   is_refused(R"("bursts": {"level": 1, "profile": {"name": "mine", "coupling": {"ring_q": "x"}}})",
              "bursts/profile/coupling/ring_q", "number");
   is_refused(R"("bursts": {"level": 1, "repetition": "5 kHz"})", "bursts/repetition", "5kHz");

@@ -51,11 +51,25 @@ std::string section_text(const PublishedSection& section) {
   return text;
 }
 
+Json figure_json(const PublishedCurves& figure) {
+  Json curves = Json::array();
+  for (const PublishedCurves::Curve& curve : figure.curves) {
+    Json points = Json::array();
+    for (const PublishedCurves::Point& point : curve.points) points.push_back({point.x, point.y});
+    curves.push_back({{"name", as_utf8(curve.name)}, {"points", std::move(points)}});
+  }
+  return {{"name", as_utf8(figure.name)},
+          {"x_label", as_utf8(figure.x_label)},
+          {"y_label", as_utf8(figure.y_label)},
+          {"curves", std::move(curves)}};
+}
+
 Json section_json(const PublishedSection& section) {
   Json json = {{"heading", as_utf8(section.heading)},
                {"note", as_utf8(section.note)},
                {"rows", Json::array()},
-               {"traces", Json::array()}};
+               {"traces", Json::array()},
+               {"figures", Json::array()}};
   for (const PublishedRow& row : section.rows) {
     Json one = {{"what", as_utf8(row.what)},
                 {"published", nullptr},
@@ -69,6 +83,7 @@ Json section_json(const PublishedSection& section) {
   for (const PublishedTrace& one : section.traces) {
     json["traces"].push_back({{"name", as_utf8(one.name)}, {"trace", trace_json(one.trace)}});
   }
+  for (const PublishedCurves& one : section.figures) json["figures"].push_back(figure_json(one));
   return json;
 }
 

@@ -27,11 +27,28 @@ struct PublishedTrace {
   measure::Trace trace;
 };
 
+// Curves over one axis, as a figure of a paper shows them. Each has its own points, in order of x.
+struct PublishedCurves {
+  struct Point {
+    double x = 0;
+    double y = 0;
+  };
+  struct Curve {
+    std::string name;
+    std::vector<Point> points;
+  };
+  std::string name;
+  std::string x_label;  // with unit
+  std::string y_label;
+  std::vector<Curve> curves;
+};
+
 struct PublishedSection {
   std::string heading;
   std::string note;  // what the paper says or shows
   std::vector<PublishedRow> rows;
-  std::vector<PublishedTrace> traces;
+  std::vector<PublishedTrace> traces{};
+  std::vector<PublishedCurves> figures{};  // in the page alone; the text has the rows
 };
 
 struct Publication {

@@ -223,6 +223,10 @@ inline Publication sample_publication() {
   section.rows = {{"calculated", "0.755 ms", "0.7550 ms", "by the formula", true},
                   {"delay", "", "1.1 to 1.9 ms", "pictures only", std::nullopt}};
   section.traces = {{"50 Hz", sample_measurement().series[0].trace}};
+  section.figures = {{"Step <response>",
+                      "time, s",
+                      "per cent",
+                      {{"with bus", {{0, 0}, {1, 60.5}, {2, 50}}}, {"without bus", {{0, 0}, {1.5, 50}}}}}};
   return {"A paper", 7, {section}};
 }
 

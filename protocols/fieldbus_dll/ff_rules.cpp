@@ -57,6 +57,9 @@ constexpr std::array kFfRows{
     FfFactRow{"steers_by_three_steps",
               [](const FfRules& r) { return std::string(r.steers_by_three_steps ? "yes" : "no"); },
               kSourceOwn, Standing::own},
+    FfFactRow{"returns_with_last_data",
+              [](const FfRules& r) { return std::string(r.returns_with_last_data ? "yes" : "no"); },
+              kSourceOwn, Standing::own},
 };
 
 // A link parameter and what it may be.

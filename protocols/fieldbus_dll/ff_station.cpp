@@ -222,9 +222,9 @@ void FfStation::use_token(kernel::Time now) {
         now + frame_time(rules().link, octets_on_line(dt1, rules())) + silence_before_sending();
     const auto next = next_to_send(to_send_, least);
     const bool is_last = !next || !fits(dt1_of(to_send_.queue(*next).front()), next_begin);
-    dt1.is_final = is_last;
+    dt1.is_final = is_last && rules().returns_with_last_data;
     transmit(dt1, now);
-    if (!is_last || returns_by_rt(true)) return;
+    if (!dt1.is_final || returns_by_rt(true)) return;
   } else if (returns_by_rt(false)) {
     const FfDlpdu rt{.type = FfType::rt};
     if (fits(rt, now)) transmit(rt, now);

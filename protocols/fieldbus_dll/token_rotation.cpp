@@ -8,6 +8,7 @@
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/scheduler.hpp"
+#include "protocols/fieldbus_dll/batch_means.hpp"
 #include "protocols/fieldbus_dll/milliseconds.hpp"
 #include "protocols/fieldbus_dll/poisson_arrivals.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 
 constexpr std::uint64_t kRotationsOfBatch = 1'000;
 
-// A Poisson stream of arrivals, drawn when they are asked for.
 // Packets that are told apart.
 struct UrgentQueue {
   PoissonArrivals arrivals;
@@ -35,37 +35,6 @@ struct AvailableQueue {
   void fill(kernel::Time until) {
     for (; arrivals.next() <= until; arrivals.draw()) ++waiting;
   }
-};
-
-class BatchMeans {
- public:
-  explicit BatchMeans(std::uint64_t batch) : batch_(batch) {}
-  void add(double value) {
-    sum_ += value;
-    ++count_;
-    in_batch_ += value;
-    if (count_ % batch_ != 0) return;
-    means_.push_back(in_batch_ / static_cast<double>(batch_));
-    in_batch_ = 0;
-  }
-  std::uint64_t count() const { return count_; }
-  double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
-  double standard_error() const {
-    if (means_.size() < 2) return 0;
-    const auto n = static_cast<double>(means_.size());
-    double mean = 0;
-    for (const double one : means_) mean += one / n;
-    double squares = 0;
-    for (const double one : means_) squares += (one - mean) * (one - mean);
-    return std::sqrt(squares / (n - 1) / n);
-  }
-
- private:
-  std::uint64_t batch_;
-  std::uint64_t count_ = 0;
-  double sum_ = 0;
-  double in_batch_ = 0;
-  std::vector<double> means_;
 };
 
 class Token final : private kernel::Timer {

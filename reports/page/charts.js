@@ -168,6 +168,30 @@ export function logarithmicCurves(label, xLabel, yLabel, x, series) {
   return chartPlace(label, 240, make, 720);
 }
 
+// Curves {name, points: [x, y]}, each with points of its own, over linear axes.
+export function linearCurves(label, xLabel, yLabel, series) {
+  const colours = ["accent", "second", "third", "quiet"];
+  const at = [...new Set(series.flatMap((one) => one.points.map(([x]) => x)))].sort((a, b) => a - b);
+  const make = () => ({
+    data: [at, ...series.map((one) => {
+      const values = new Map(one.points);
+      return at.map((x) => values.get(x) ?? null);
+    })],
+    options: {
+      ...kQuiet,
+      scales: {x: {time: false}},
+      axes: [axis(xLabel, {size: 32}), axis(yLabel, {size: 52})],
+      series: [
+        {label: xLabel, value: (plot, value) => (value === null ? "" : number(value))},
+        ...series.map((one, n) => ({label: one.name, stroke: colour(colours[n % colours.length]), width: 1.5,
+          dash: n >= colours.length ? [6, 4] : undefined, spanGaps: true, points: {show: one.points.length <= 40, size: 5},
+          value: (plot, value) => (value === null ? "" : number(value))})),
+      ],
+    },
+  });
+  return chartPlace(label, 240, make, 720);
+}
+
 // Grid and labels at powers of ten, at most ten of them.
 const kDecades = {
   splits: (plot, which, low, high) => {

@@ -3,11 +3,18 @@ import { definitions, element, section } from "./dom.js";
 import { later } from "./later.js";
 import { documentCommand, documentsOf } from "./summary.js";
 import { table } from "./table.js";
+import { linearCurves } from "./charts.js";
 import { traceFigure } from "./timing.js";
 
 function agreement({ agrees }) {
   if (agrees === null) return element("span", {class: "quiet"}, "nothing to compare");
   return element("span", {class: `verdict ${agrees ? "pass" : "fail"}`}, agrees ? "agrees" : "differs");
+}
+
+function curvesFigure(figure) {
+  const label = `${figure.name}: ${figure.y_label} over ${figure.x_label}; ${figure.curves.map((one) => one.name).join(", ")}`;
+  return element("figure", {class: "wide"}, linearCurves(label, figure.x_label, figure.y_label, figure.curves),
+      element("figcaption", {}, figure.name, element("span", {class: "quiet"}, " drag to zoom, a double click shows all")));
 }
 
 function sectionPart(part) {
@@ -19,6 +26,7 @@ function sectionPart(part) {
         {title: "", cell: agreement},
         {title: "remark", kind: "text", cell: (row) => row.remark},
       ], part.rows),
+      (part.figures ?? []).map(curvesFigure),
       part.traces.map(({ name, trace }) => traceFigure(name, trace)));
 }
 

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+// The mean of values that depend on those before them, and its standard error from the means of successive
+// batches, which hardly do.
+namespace fieldproof::fieldbus_dll {
+
+class BatchMeans {
+ public:
+  explicit BatchMeans(std::uint64_t batch) : batch_(batch) {}
+  void add(double value) {
+    sum_ += value;
+    ++count_;
+    in_batch_ += value;
+    if (count_ % batch_ != 0) return;
+    means_.push_back(in_batch_ / static_cast<double>(batch_));
+    in_batch_ = 0;
+  }
+  std::uint64_t count() const { return count_; }
+  double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
+  double standard_error() const {
+    if (means_.size() < 2) return 0;
+    const auto n = static_cast<double>(means_.size());
+    double mean = 0;
+    for (const double one : means_) mean += one / n;
+    double squares = 0;
+    for (const double one : means_) squares += (one - mean) * (one - mean);
+    return std::sqrt(squares / (n - 1) / n);
+  }
+
+ private:
+  std::uint64_t batch_;
+  std::uint64_t count_ = 0;
+  double sum_ = 0;
+  double in_batch_ = 0;
+  std::vector<double> means_;
+};
+
+}  // namespace fieldproof::fieldbus_dll
