@@ -26,5 +26,21 @@ TEST(FoundationPaper, ThirdEquationAsPrintedIsShown) {
   EXPECT_THAT(section.rows[1].reproduced, HasSubstr("12493 as printed"));
 }
 
+TEST(FoundationPaper, StationsAgreeWithTheSimulationWithoutFrames) {
+  const reports::PublishedSection section = foundation_stations({.seed = 1, .duration = 3 * kernel::kSecond});
+  ASSERT_EQ(section.rows.size(), 9U);
+  for (const reports::PublishedRow& row : section.rows)
+    EXPECT_EQ(row.agrees, true) << row.what << ": " << row.reproduced << "; " << row.remark;
+}
+
+TEST(FoundationPaper, DrawsDelayOverTtrtForEachLoad) {
+  const reports::PublishedSection section = foundation_targets({});
+  ASSERT_EQ(section.figures.size(), 3U);
+  for (const reports::PublishedCurves& figure : section.figures) {
+    ASSERT_EQ(figure.curves.size(), 3U);
+    EXPECT_EQ(figure.curves[0].points.size(), 7U);
+  }
+}
+
 }  // namespace
 }  // namespace fieldproof::cli

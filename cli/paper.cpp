@@ -38,6 +38,10 @@ constexpr std::array kPapers = {
     Paper{"foundation",
           "S. H. Hong and B. K. Son, Delay Analysis of Urgent Data in the Foundation Fieldbus, 2003",
           "of 16 nodes at 1 Mbit/s"},
+    Paper{"fieldbus",
+          "S.-H. Hong, K.-A. Kim, J.-Y. Kim and S.-J. Ko, distributed control and automation systems and "
+          "fieldbus",
+          "of a control loop and eight other nodes"},
 };
 
 // In the order in which they are printed.
@@ -47,7 +51,8 @@ constexpr std::array kSections = {
     Section{"valve_bus", &valve_bus_cycle_times}, Section{"valve_bus", &valve_bus_block_check},
     Section{"valve_bus", &valve_bus_resonance},   Section{"foundation", &foundation_rotations},
     Section{"foundation", &foundation_targets},   Section{"foundation", &foundation_shares},
-    Section{"foundation", &foundation_lengths},
+    Section{"foundation", &foundation_lengths},   Section{"foundation", &foundation_stations},
+    Section{"fieldbus", &control_loop_quiet},     Section{"fieldbus", &control_loop_under_bursts},
 };
 
 const Paper& paper_named(const std::string& name) {

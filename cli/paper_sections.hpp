@@ -30,5 +30,10 @@ reports::PublishedSection foundation_rotations(const PaperSettings& settings);
 reports::PublishedSection foundation_targets(const PaperSettings& settings);
 reports::PublishedSection foundation_shares(const PaperSettings& settings);
 reports::PublishedSection foundation_lengths(const PaperSettings& settings);
+reports::PublishedSection foundation_stations(const PaperSettings& settings);
+
+// Hong, Kim, Kim and Ko, control loops over a fieldbus.
+reports::PublishedSection control_loop_quiet(const PaperSettings& settings);
+reports::PublishedSection control_loop_under_bursts(const PaperSettings& settings);
 
 }  // namespace fieldproof::cli

@@ -41,7 +41,7 @@ constexpr std::array kParameters{
                       "attenuation from common mode to differential"},
     CouplingParameter{"filter_mhz", "MHz", &Coupling::filter_mhz, 0.05, 100, Standing::own_choice,
                       "corner of the receiver's low-pass"},
-    CouplingParameter{"bit_v", "V", &Coupling::bit_v, 0.3, 3, Standing::own_choice,
+    CouplingParameter{"bit_v", "V", &Coupling::bit_v, 0.05, 3, Standing::own_choice,
                       "differential voltage of a level at the receiver"},
     CouplingParameter{"threshold_v", "V", &Coupling::threshold_v, -0.2, 0.2, Standing::standard,
                       "threshold of the receiver, within the limits of TIA-485-A"},

@@ -41,6 +41,8 @@ std::vector<Profile> make_built_in() {
   Profile e{"E", "unshielded, isolated, receiver of a 31.25 kbit/s bus", {}};
   e.coupling.filter_mhz = 0.1;
   e.coupling.bit_v = 0.375;
+  // The weakest signal that a receiver of IEC 61158-2 must accept: 150 mV from peak to peak.
+  const Profile e2 = changed(e, "E2", "the same with the weakest signal of that bus", &Coupling::bit_v, 0.075);
   // IEC 61158-2 at 1 Mbit/s: 5.5 V from peak to peak at least.
   Profile f{"F", "unshielded, isolated, receiver of a 1 Mbit/s bus", {}};
   f.coupling.filter_mhz = 3;
@@ -54,6 +56,7 @@ std::vector<Profile> make_built_in() {
       changed(a, "C", "shield bonded all around, not isolated", &Coupling::shield_db, 58),
       d,
       e,
+      e2,
       f,
   };
 }

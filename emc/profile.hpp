@@ -9,7 +9,7 @@
 #include "emc/coupling.hpp"
 #include "harness/config/document.hpp"
 
-// A named set of coupling parameters: an installation and its receivers. Nine are built in; more come from
+// A named set of coupling parameters: an installation and its receivers. Ten are built in; more come from
 // files:
 //
 //   { "name": "line_7", "title": "line 7, pigtails", "based_on": "B",

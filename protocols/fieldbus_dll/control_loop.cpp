@@ -53,6 +53,8 @@ void check(const ControlLoopSetting& setting) {
   const auto refuse = [](const char* sentence) {
     throw kernel::Error(kernel::ErrorKind::configuration, sentence);
   };
+  if (setting.bit_rate != 31'250 && setting.bit_rate != 1'000'000 && setting.bit_rate != 2'500'000)
+    refuse("a line has 31250, 1000000 or 2500000 bit/s");
   const kernel::Duration period = setting.sampling_period;
   if (period < 80 * kernel::kMillisecond || period > 10 * kernel::kSecond ||
       period % (8 * kTick) != 0 * kTick)
@@ -237,7 +239,8 @@ class LoopOnLink {
   ControlLoop run() {
     // A macrocycle begins whenever link time is a multiple of it.
     const std::int64_t cycles =
-        (kLoopBegin + setting_.sampling_period - kernel::Duration{1}) / setting_.sampling_period;
+        (loop_begin(setting_.bit_rate) + setting_.sampling_period - kernel::Duration{1}) /
+        setting_.sampling_period;
     const kernel::Time begin = kernel::kStart + cycles * setting_.sampling_period;
     run_to(begin);
     check_all_live();
@@ -251,6 +254,7 @@ class LoopOnLink {
  private:
   FfRules rules() const {
     FfRules rules;
+    rules.link.bit_rate = setting_.bit_rate;
     rules.target_rotation = setting_.target_rotation;
     return rules;
   }

@@ -10,10 +10,9 @@
 // A control loop closed over a link of Foundation Fieldbus: how long from sample to valve, how many samples
 // are lost, how often does a block find nothing new, and what does that cost the process?
 //
-// A scheduler (10), a transmitter (AI, 20), a controller (PID, 21) and a valve (AO, 22) at 31.25 kbit/s,
-// beside eight nodes that send messages of 128 octets to each other. Each block runs once in a sampling
-// period, at the same place of it whatever the way of its data: AI at 0, PID at 1/2, AO at 19/20. Data go one
-// of two ways:
+// A scheduler (10), a transmitter (AI, 20), a controller (PID, 21) and a valve (AO, 22), beside eight nodes
+// that send messages of 128 octets to each other. Each block runs once in a sampling period, at the same
+// place of it whatever the way of its data: AI at 0, PID at 1/2, AO at 19/20. Data go one of two ways:
 //   published  into a buffer, which the scheduler compels at 1/8 and at 5/8 of the period
 //   by token   as urgent data, when the token comes
 //
@@ -32,16 +31,20 @@ std::string_view text_of(DataWay way);
 struct ControlLoopSetting {
   std::uint64_t seed = 1;
   DataWay way = DataWay::published;
+  std::int64_t bit_rate = 31'250;
   kernel::Duration sampling_period = 250 * kernel::kMillisecond;
   unsigned periods = 480;
-  double messages_per_s =
-      0;  // of each of the eight other nodes, time-available; one with 64 waiting drops more
+  // Of each of the eight other nodes, time-available; one with 64 waiting drops more.
+  double messages_per_s = 0;
   kernel::Duration target_rotation = 60 * kernel::kSecond;  // V(TTRT)
   FfDisturb disturb{};                                      // of all receivers, from the beginning on
 };
 
-// The link runs for so long before the loop begins: by then each node is live.
-inline constexpr kernel::Duration kLoopBegin = 20 * kernel::kSecond;
+// The link runs for so long before the loop begins, or up to a sampling period longer: by then each node is
+// live.
+inline kernel::Duration loop_begin(std::int64_t bit_rate) {
+  return (bit_rate < 1'000'000 ? 20 : 1) * kernel::kSecond;
+}
 
 // The way between two blocks: from AI to PID, from PID to AO. sent == used + lost + missing.
 struct HopFigures {
@@ -74,9 +77,9 @@ struct ControlLoop {
   std::vector<LoopPoint> course;              // ten in a sampling period
 };
 
-// Throws kernel::Error(configuration): a period that is no multiple of 250 us or not within 80 ms and 10 s,
-// no period or more than 20 000, a rate that is negative or above 20; and when not all nodes are live by
-// kLoopBegin.
+// Throws kernel::Error(configuration): another rate than the three of the line, a period that is no multiple
+// of 250 us or not within 80 ms and 10 s, no period or more than 20 000, a rate that is negative or above 20;
+// and when not all nodes are live by loop_begin.
 ControlLoop run_control_loop(const ControlLoopSetting& setting);
 
 // The same blocks at the same instants without a bus: what is sent has arrived.

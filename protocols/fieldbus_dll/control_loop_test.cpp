@@ -147,6 +147,7 @@ TEST(ControlLoopTest, RefusesWhatCannotBeRun) {
   };
   refused([](ControlLoopSetting& setting) { setting.sampling_period = 79 * kernel::kMillisecond; });
   refused([](ControlLoopSetting& setting) { setting.sampling_period += kernel::Duration{1}; });
+  refused([](ControlLoopSetting& setting) { setting.bit_rate = 9'600; });
   refused([](ControlLoopSetting& setting) { setting.periods = 0; });
   refused([](ControlLoopSetting& setting) { setting.messages_per_s = -1; });
   refused([](ControlLoopSetting& setting) { setting.messages_per_s = std::nan(""); });

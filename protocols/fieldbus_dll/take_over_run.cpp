@@ -27,8 +27,15 @@ FfSchedule schedule() {
   return all;
 }
 
-FfConfiguration configuration_of(std::uint8_t node) {
+FfRules rules_at(std::int64_t bit_rate) {
+  FfRules rules;
+  rules.link.bit_rate = bit_rate;
+  return rules;
+}
+
+FfConfiguration configuration_of(std::uint8_t node, const FfRules& rules) {
   FfConfiguration configuration;
+  configuration.rules = rules;
   configuration.node = node;
   configuration.published = {address_of(node, kSelector)};
   configuration.schedule = schedule();
@@ -56,9 +63,9 @@ std::vector<kernel::Time> due_in(kernel::Time from, kernel::Time to) {
   return all;
 }
 
-bool is_compelled(const std::vector<Driven>& driven, kernel::Time due) {
-  // Link time is told in ticks, and an item may be late by V(MSO).
-  const kernel::Duration late = octets(FfRules{}.link, FfRules{}.scheduling_overhead_octets);
+bool is_compelled(const std::vector<Driven>& driven, kernel::Time due, const FfRules& rules) {
+  // Link time is told in ticks, and an item may be late by V(MSO) and, where octets are short, by a tick.
+  const kernel::Duration late = octets(rules.link, rules.scheduling_overhead_octets) + kTick;
   return std::ranges::any_of(driven, [&](const Driven& one) {
     return one.type == FfType::cd && one.begin >= due - kTick && one.begin <= due + late;
   });
@@ -66,22 +73,23 @@ bool is_compelled(const std::vector<Driven>& driven, kernel::Time due) {
 
 }  // namespace
 
-kernel::Duration take_over_silence() {
-  const FfRules rules;
+kernel::Duration take_over_silence(std::int64_t bit_rate) {
+  const FfRules rules = rules_at(bit_rate);
   return octets(rules.link,
                 std::int64_t{kMasters[1]} * rules.link.slot_time_octets + rules.claim_delay_octets);
 }
 
 TakeOver run_take_over(const TakeOverSetting& setting) {
+  const FfRules rules = rules_at(setting.bit_rate);
   kernel::Random random(setting.seed);
-  FfLink link({}, random.split("link"), setting.disturb);
+  FfLink link(rules, random.split("link"), setting.disturb);
   std::vector<Driven> driven;
   link.on_driven(
       [&driven](const FfDriven& one) { driven.push_back({one.dlpdu.type, one.node, one.begin, one.end}); });
   FfSilentUser user;
-  for (const std::uint8_t node : kMasters) link.add_master(configuration_of(node), user);
+  for (const std::uint8_t node : kMasters) link.add_master(configuration_of(node, rules), user);
   for (const std::uint8_t node : kPublishers) {
-    link.add_device(configuration_of(node), user);
+    link.add_device(configuration_of(node, rules), user);
     link.write(node, address_of(node, kSelector), {1, 2});
   }
   const kernel::Time death = kernel::kStart + kBegin +
@@ -111,10 +119,10 @@ TakeOver run_take_over(const TakeOverSetting& setting) {
   if (found.claimer == 0) return found;
   // CL, V(MID) and TD, and what must be kept free before an item.
   constexpr std::int64_t kUntilReady = 7 + 8 + 12 + 8 + 16;
-  const kernel::Time ready = claimed + octets(FfRules{}.link, kUntilReady);
+  const kernel::Time ready = claimed + octets(rules.link, kUntilReady);
   found.due_meanwhile = static_cast<unsigned>(due_in(death, ready).size());
   for (const kernel::Time due : due_in(death, end - kMacrocycleTime / 2)) {
-    if (!is_compelled(driven, due)) ++found.not_compelled;
+    if (!is_compelled(driven, due, rules)) ++found.not_compelled;
   }
   return found;
 }

@@ -9,13 +9,14 @@
 // the schedule is lost.
 //
 // Three link masters (10, the scheduler; 11 and 14) and three publishers (20, 21, 22), each compelled twice
-// in a macrocycle of 500 ms, at 31.25 kbit/s with the rules of the reference. From its death on nothing that
+// in a macrocycle of 500 ms, with the rules of the reference. From its death on nothing that
 // the scheduler drives reaches the line; a frame that it has begun is sent to its end. Each receiver loses
 // each frame with the same probability; that somebody is active is heard all the same.
 namespace fieldproof::fieldbus_dll {
 
 struct TakeOverSetting {
   std::uint64_t seed = 1;
+  std::int64_t bit_rate = 31'250;
   FfDisturb disturb{};
 };
 
@@ -29,7 +30,7 @@ struct TakeOver {
 };
 
 // What V(ST) x V(TN) and V(MICD) say about `silence`, for link master 11.
-kernel::Duration take_over_silence();
+kernel::Duration take_over_silence(std::int64_t bit_rate = 31'250);
 
 TakeOver run_take_over(const TakeOverSetting& setting);
 

@@ -2,20 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include "protocols/fieldbus_dll/take_over_instants.hpp"
+
 namespace fieldproof::fieldbus_dll {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::uint64_t kInstants = 10;
-#else
-constexpr std::uint64_t kInstants = 200;
-#endif
 
 class TakeOverAtRandomInstants : public testing::TestWithParam<double> {};
 
 TEST_P(TakeOverAtRandomInstants, IsByTheLowestLinkMasterInTimeAndAlone) {
   const kernel::Duration octet = kernel::levels_duration(8, 31'250);
-  for (std::uint64_t seed = 1; seed <= kInstants; ++seed) {
+  for (std::uint64_t seed = 1; seed <= instants_of_test(200); ++seed) {
     const TakeOver found = run_take_over(
         {.seed = seed, .disturb = losing_frames(GetParam(), kernel::Random(seed).split("losses"))});
     ASSERT_EQ(found.claimer, 0x11) << seed;

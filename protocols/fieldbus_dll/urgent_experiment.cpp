@@ -13,9 +13,9 @@ namespace fieldproof::fieldbus_dll {
 namespace {
 
 constexpr std::uint8_t kFirstNode = 0x11;
-constexpr kernel::Duration kWarmUp = 11 * kernel::kSecond;
-constexpr std::uint64_t kDelaysOfBatch = 50;
-constexpr std::uint64_t kRotationsOfBatch = 50;
+constexpr kernel::Duration kWarmUp = 3 * kernel::kSecond;
+constexpr double kBatchesOfRun = 40;  // about
+constexpr std::uint64_t kSmallestBatch = 5;
 
 // Frames are 11 octets longer than their data, the silence behind them is 51.
 constexpr unsigned kSilence = 51;
@@ -46,6 +46,10 @@ void check_experiment(const UrgentTraffic& traffic, kernel::Duration duration) {
       traffic.empty_rotation != paper.empty_rotation) {
     throw kernel::Error(kernel::ErrorKind::configuration,
                         "the experiment has the paper's 16 nodes, lengths and empty rotation");
+  }
+  if (traffic.load() >= 1) {
+    throw kernel::Error(kernel::ErrorKind::configuration,
+                        "of a load of 1 or more a rotation of the experiment would never end");
   }
   if (duration < kernel::kSecond || duration > 86'400 * kernel::kSecond) {
     throw kernel::Error(kernel::ErrorKind::configuration, "the experiment takes between 1 s and a day");
@@ -79,10 +83,19 @@ class PacketQueue {
   bool is_given_ = false;
 };
 
+// Of so many values as are expected.
+std::uint64_t batch_of(double values) {
+  return std::max(kSmallestBatch, static_cast<std::uint64_t>(values / kBatchesOfRun));
+}
+
 class Experiment {
  public:
-  Experiment(const UrgentTraffic& traffic, std::uint64_t seed)
-      : rules_(rules_of(traffic)), link_(rules_, kernel::Random(seed).split("link")) {
+  Experiment(const UrgentTraffic& traffic, kernel::Duration duration, std::uint64_t seed)
+      : duration_(duration),
+        rules_(rules_of(traffic)),
+        link_(rules_, kernel::Random(seed).split("link")),
+        delays_(batch_of(ms(duration) * kExperimentNodes * traffic.urgent_per_ms)),
+        rotations_(batch_of(ms(duration) / (ms(traffic.empty_rotation) / (1 - traffic.load())))) {
     link_.on_driven([this](const FfDriven& one) { hear(one); });
     FfConfiguration scheduler{.rules = rules_, .node = kFirstNode - 1};
     scheduler.begins_as_scheduler = true;
@@ -95,10 +108,10 @@ class Experiment {
     }
   }
 
-  ExperimentFigures run(kernel::Duration duration) {
+  ExperimentFigures run() {
     link_.run_to(kernel::kStart + kWarmUp);
     counts_ = true;
-    link_.run_to(kernel::kStart + kWarmUp + duration);
+    link_.run_to(kernel::kStart + kWarmUp + duration_);
     found_.urgent_packets = delays_.count();
     found_.mean_delay = delays_.mean();
     found_.standard_error = delays_.standard_error();
@@ -121,8 +134,10 @@ class Experiment {
   void on_token(const FfDriven& pt) {
     if (pt.dlpdu.begins_circulation) begin_rotation(pt);
     const unsigned n = pt.dlpdu.node - kFirstNode;
-    give(n, urgent_[n], Priority::urgent, kUrgentData, pt.end);
-    give(n, available_[n], Priority::time_available, kAvailableData, pt.end);
+    // A station looks at what waits when it may begin to send.
+    const kernel::Time looks = pt.end + octets(rules_.link, kSilence);
+    give(n, urgent_[n], Priority::urgent, kUrgentData, looks);
+    give(n, available_[n], Priority::time_available, kAvailableData, looks);
   }
 
   void begin_rotation(const FfDriven& pt) {
@@ -149,6 +164,7 @@ class Experiment {
     if (counts_) delays_.add(ms(dt1.end + octets(rules_.link, kSilence) - arrived));
   }
 
+  kernel::Duration duration_;
   FfRules rules_;
   FfSilentUser nobody_;
   FfLink link_;
@@ -156,8 +172,8 @@ class Experiment {
   std::vector<PacketQueue> available_;
   bool counts_ = false;
   kernel::Time rotation_began_ = kernel::kStart;
-  BatchMeans delays_{kDelaysOfBatch};
-  BatchMeans rotations_{kRotationsOfBatch};
+  BatchMeans delays_;
+  BatchMeans rotations_;
   std::uint64_t with_all_data_ = 0;
   ExperimentFigures found_;
 };
@@ -167,7 +183,7 @@ class Experiment {
 ExperimentFigures run_urgent_experiment(const UrgentTraffic& traffic, kernel::Duration duration,
                                         std::uint64_t seed) {
   check_experiment(traffic, duration);
-  return Experiment(traffic, seed).run(duration);
+  return Experiment(traffic, duration, seed).run();
 }
 
 }  // namespace fieldproof::fieldbus_dll

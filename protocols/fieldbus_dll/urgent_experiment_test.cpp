@@ -50,15 +50,16 @@ TEST(UrgentExperimentTest, ARotationThatEqualsItsTargetIsTooLong) {
   UrgentTraffic traffic = traffic_of(0.35, 16'600);
   traffic.available_per_ms = 0;
   traffic.urgent_per_ms = 0.01;
-  const double at = run_urgent_experiment(traffic, 20 * kernel::kSecond, 1).priority_1;
+  const double at = run_urgent_experiment(traffic, 5 * kernel::kSecond, 1).priority_1;
   traffic.target_rotation += 8 * kernel::kMicrosecond;
-  const double above = run_urgent_experiment(traffic, 20 * kernel::kSecond, 1).priority_1;
+  const double above = run_urgent_experiment(traffic, 5 * kernel::kSecond, 1).priority_1;
   EXPECT_GT(above, at + 0.05);
 }
 
 TEST(UrgentExperimentTest, RefusesWhatIsNotThePapersLink) {
   UrgentTraffic traffic = traffic_of(0.2, 34'816);
   EXPECT_THROW(run_urgent_experiment(traffic, kernel::kMillisecond, 1), kernel::Error);
+  EXPECT_THROW(run_urgent_experiment(traffic_of(1, 34'816), kernel::kSecond, 1), kernel::Error);
   traffic.urgent_queues = 15;
   EXPECT_THROW(run_urgent_experiment(traffic, kernel::kSecond, 1), kernel::Error);
 }

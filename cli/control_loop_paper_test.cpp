@@ -1,0 +1,38 @@
+// Subject: the sections about a control loop over the fieldbus.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/paper_sections.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+using testing::HasSubstr;
+
+PaperSettings short_run() {
+  return {.seed = 1, .duration = 15 * kernel::kSecond};
+}
+
+TEST(ControlLoopPaper, LossAndVacantSamplingCostWhatThePaperSays) {
+  const reports::PublishedSection section = control_loop_quiet(short_run());
+  ASSERT_EQ(section.rows.size(), 10U);
+  // Published data are as good as no bus.
+  EXPECT_EQ(section.rows[0].reproduced, section.rows[1].reproduced);
+  for (const std::size_t row : {8U, 9U}) {
+    EXPECT_EQ(section.rows[row].agrees, true) << section.rows[row].reproduced;
+    EXPECT_FALSE(section.rows[row].published.empty());
+  }
+  ASSERT_EQ(section.figures.size(), 2U);
+  EXPECT_EQ(section.figures[0].curves.size(), 3U);
+  EXPECT_EQ(section.figures[0].curves[0].points.size(), 600U);  // ten in each of 60 periods
+}
+
+TEST(ControlLoopPaper, BurstsAndLossesAreToldSampleBySample) {
+  const reports::PublishedSection section = control_loop_under_bursts(short_run());
+  ASSERT_EQ(section.rows.size(), 10U);
+  EXPECT_THAT(section.rows[0].remark, HasSubstr("0 of 60 lost, 0 missing, 0 vacant"));
+  EXPECT_NE(section.rows[9].reproduced, section.rows[0].reproduced);
+}
+
+}  // namespace
+}  // namespace fieldproof::cli
