@@ -168,13 +168,13 @@ export function logarithmicCurves(label, xLabel, yLabel, x, series) {
   return chartPlace(label, 240, make, 720);
 }
 
-// Curves {name, points: [x, y]}, each with points of its own, over linear axes.
+// Curves {name, points: {x, y}}, each with points of its own, over linear axes.
 export function linearCurves(label, xLabel, yLabel, series) {
   const colours = ["accent", "second", "third", "quiet"];
-  const at = [...new Set(series.flatMap((one) => one.points.map(([x]) => x)))].sort((a, b) => a - b);
+  const at = [...new Set(series.flatMap((one) => one.points.map(({x}) => x)))].sort((a, b) => a - b);
   const make = () => ({
     data: [at, ...series.map((one) => {
-      const values = new Map(one.points);
+      const values = new Map(one.points.map(({x, y}) => [x, y]));
       return at.map((x) => values.get(x) ?? null);
     })],
     options: {
