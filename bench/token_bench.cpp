@@ -1,14 +1,24 @@
 // Urgent packets under the token of a Foundation Fieldbus: the simulation on the scheduler beside a loop
-// without any event queue. Both draw the same arrivals, so their delays are the same to the digit; that is
-// checked when a row is set up.
+// without any event queue, and beside ns-3's simulator with each of its queues. All draw the same arrivals,
+// so their delays are the same to the digit; that is checked when a row is set up.
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "bench/rows.hpp"
 #include "harness/kernel/random.hpp"
+#include "protocols/fieldbus_dll/milliseconds.hpp"
+#include "protocols/fieldbus_dll/poisson_arrivals.hpp"
 #include "protocols/fieldbus_dll/token_rotation.hpp"
+
+#ifdef FIELDPROOF_HAVE_NS3
+#include <ns3/nstime.h>
+#include <ns3/object-factory.h>
+#include <ns3/simulator.h>
+#endif
 
 namespace fieldproof::bench {
 namespace {
@@ -93,10 +103,139 @@ double by_scheduler() {
   return fieldbus_dll::rotate_token(traffic_of_the_paper(), kRun).mean_delay;
 }
 
+#ifdef FIELDPROOF_HAVE_NS3
+// Each visit of the token and each end of an urgent transmission is an event of ns-3's simulator, and so is
+// each arrival, as users of ns-3 write it; or arrivals are drawn when the token looks at them, as ours are. A
+// step of its time is a picosecond here.
+enum class Ns3Arrivals { events, drawn_at_visits };
+
+class OnNs3 {
+ public:
+  OnNs3(const UrgentTraffic& traffic, const char* queue, Ns3Arrivals arrivals)
+      : traffic_(traffic), has_events_(arrivals == Ns3Arrivals::events) {
+    ns3::ObjectFactory factory;
+    factory.SetTypeId(queue);
+    ns3::Simulator::SetScheduler(factory);
+    const kernel::Random random(kRun.seed);
+    for (std::uint64_t n = 0; n < kNs3Nodes; ++n) {
+      urgent_.emplace_back(traffic.urgent_per_ms, random.split("urgent").split(n));
+      available_.emplace_back(traffic.available_per_ms, random.split("time-available").split(n));
+    }
+  }
+  ~OnNs3() { ns3::Simulator::Destroy(); }
+  OnNs3(const OnNs3&) = delete;
+  OnNs3& operator=(const OnNs3&) = delete;
+
+  double mean_delay() {
+    if (has_events_) {
+      for (Queue& queue : urgent_) queue.expect();
+      for (Queue& queue : available_) queue.expect();
+    }
+    schedule(overhead_, &OnNs3::on_token);
+    ns3::Simulator::Run();
+    return sum_ / static_cast<double>(count_);
+  }
+
+ private:
+  static constexpr std::size_t kNs3Nodes = 16;
+
+  static kernel::Time now() { return kernel::kStart + kernel::Duration{ns3::Simulator::Now().GetTimeStep()}; }
+
+  class Queue {
+   public:
+    Queue(double per_ms, const kernel::Random& random) : arrivals_(per_ms, random) {}
+    void expect() {
+      const kernel::Duration until = arrivals_.next() - now();
+      ns3::Simulator::Schedule(ns3::TimeStep(static_cast<std::uint64_t>(until.count())), &Queue::on_arrival,
+                               this);
+    }
+    // Is there a packet, and have those come that come without an event?
+    bool is_empty(bool has_events) {
+      for (; !has_events && arrivals_.next() <= now(); arrivals_.draw()) waiting_.push_back(arrivals_.next());
+      return waiting_.empty();
+    }
+    kernel::Time take() {
+      const kernel::Time first = waiting_.front();
+      waiting_.pop_front();
+      return first;
+    }
+
+   private:
+    void on_arrival() {
+      waiting_.push_back(arrivals_.next());
+      arrivals_.draw();
+      expect();
+    }
+
+    fieldbus_dll::PoissonArrivals arrivals_;
+    std::deque<kernel::Time> waiting_;
+  };
+
+  void schedule(kernel::Duration after, void (OnNs3::*what)()) {
+    ns3::Simulator::Schedule(ns3::TimeStep(static_cast<std::uint64_t>(after.count())), what, this);
+  }
+
+  void on_token() {
+    if (urgent_[at_].is_empty(has_events_)) {
+      on_urgent_sent();
+      return;
+    }
+    const kernel::Time arrived = urgent_[at_].take();
+    if (rotation_ >= kRun.warm_up_rotations) {
+      sum_ += fieldbus_dll::ms(now() + traffic_.urgent_length - arrived);
+      if (++count_ == kRun.urgent_packets) ns3::Simulator::Stop();
+    }
+    schedule(traffic_.urgent_length, &OnNs3::on_urgent_sent);
+  }
+
+  void on_urgent_sent() {
+    if (!admits_all_ || available_[at_].is_empty(has_events_)) {
+      leave({});
+      return;
+    }
+    available_[at_].take();
+    leave(traffic_.available_length);
+  }
+
+  // The next visit, when this transmission is over.
+  void leave(kernel::Duration transmission) {
+    if (++at_ == kNs3Nodes) {
+      at_ = 0;
+      ++rotation_;
+      const kernel::Time end = now() + transmission;
+      admits_all_ = end - start_ < traffic_.target_rotation;
+      start_ = end;
+    }
+    schedule(transmission + overhead_, &OnNs3::on_token);
+  }
+
+  UrgentTraffic traffic_;
+  bool has_events_;
+  kernel::Duration overhead_ = traffic_.empty_rotation / std::int64_t{kNs3Nodes};
+  std::vector<Queue> urgent_, available_;
+  std::size_t at_ = 0;
+  std::uint64_t rotation_ = 0;
+  bool admits_all_ = true;
+  kernel::Time start_ = kernel::kStart;
+  double sum_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+template <const char* queue, Ns3Arrivals arrivals = Ns3Arrivals::events>
+double by_ns3() {
+  return OnNs3(traffic_of_the_paper(), queue, arrivals).mean_delay();
+}
+
+constexpr char kMapQueue[] = "ns3::MapScheduler";
+constexpr char kHeapQueue[] = "ns3::HeapScheduler";
+constexpr char kPriorityQueue[] = "ns3::PriorityQueueScheduler";
+constexpr char kCalendarQueue[] = "ns3::CalendarScheduler";
+#endif
+
 Row row(const char* name, const char* against, double target, double (*simulate)()) {
   return {"urgent packets under a token", name, "packets", against, target, [simulate] {
-            if (by_hand() != by_scheduler()) {
-              throw std::logic_error("the token on the scheduler has other delays than the loop");
+            if (by_hand() != simulate()) {
+              throw std::logic_error("a simulation of the token has other delays than the loop");
             }
             return [simulate] {
               if (!(simulate() > 0)) throw std::logic_error("nobody has waited");
@@ -105,9 +244,24 @@ Row row(const char* name, const char* against, double target, double (*simulate)
           }};
 }
 
-// At most three times the loop's time is asked for.
-const Rows kToken({row("a loop without events", "", 0, &by_hand),
-                   row("on the scheduler", "a loop", 0.33, &by_scheduler)});
+std::vector<Row> rows_of_token() {
+  std::vector<Row> rows;
+#ifdef FIELDPROOF_HAVE_NS3
+  rows.push_back(row("ns-3, map (its default)", "", 0, &by_ns3<kMapQueue>));
+  rows.push_back(row("ns-3, heap", "", 0, &by_ns3<kHeapQueue>));
+  rows.push_back(row("ns-3, priority queue", "", 0, &by_ns3<kPriorityQueue>));
+  rows.push_back(row("ns-3, calendar", "", 0, &by_ns3<kCalendarQueue>));
+  rows.push_back(row("arrivals drawn at visits, on ns-3, priority queue", "", 0,
+                     &by_ns3<kPriorityQueue, Ns3Arrivals::drawn_at_visits>));
+#endif
+  rows.push_back(row("a loop without events", "", 0, &by_hand));
+  // At most three times the loop's time, and at most a fifth of ns-3's, are asked for.
+  rows.push_back(row("on the scheduler, beside the loop", "a loop", 0.33, &by_scheduler));
+  rows.push_back(row("on the scheduler, beside ns-3", "ns-3", 5, &by_scheduler));
+  return rows;
+}
+
+const Rows kToken(rows_of_token());
 
 }  // namespace
 }  // namespace fieldproof::bench
