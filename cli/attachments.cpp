@@ -14,6 +14,8 @@
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/pool.hpp"
 #include "harness/kernel/check.hpp"
+#include "protocols/fieldbus_dll/attached_ff_device.hpp"
+#include "protocols/fieldbus_dll/attached_isa_device.hpp"
 #include "protocols/interbus/attached_master.hpp"
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
@@ -154,6 +156,15 @@ conformance::GivenNodes::Make attached_nodes() {
 
 conformance::GivenHosts::Make attached_hosts() {
   return attached<valve_bus::AttachedHost, conformance::GivenHosts::Make>({"valve_bus", "host"});
+}
+
+conformance::GivenIsaStations::Make attached_isa_stations(const std::string& role) {
+  return attached<fieldbus_dll::AttachedIsaDevice, conformance::GivenIsaStations::Make>(
+      {"fieldbus_dll", role});
+}
+
+conformance::GivenFfStations::Make attached_ff_stations(const std::string& role) {
+  return attached<fieldbus_dll::AttachedFfDevice, conformance::GivenFfStations::Make>({"fieldbus_dll", role});
 }
 
 }  // namespace fieldproof::cli

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "harness/iut/pool.hpp"
@@ -40,5 +41,8 @@ conformance::GivenSlaves::Make attached_slaves();
 conformance::GivenMasters::Make attached_masters();
 conformance::GivenNodes::Make attached_nodes();
 conformance::GivenHosts::Make attached_hosts();
+// Of the data link, by role.
+conformance::GivenIsaStations::Make attached_isa_stations(const std::string& role);
+conformance::GivenFfStations::Make attached_ff_stations(const std::string& role);
 
 }  // namespace fieldproof::cli

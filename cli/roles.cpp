@@ -3,10 +3,16 @@
 #include <array>
 
 #include "conformance/assigned.hpp"
+#include "conformance/fieldbus_dll/ff_deviations.hpp"
+#include "conformance/fieldbus_dll/isa_deviations.hpp"
 #include "conformance/interbus/master_deviations.hpp"
 #include "conformance/interbus/slave_deviations.hpp"
 #include "conformance/valve_bus/host_deviations.hpp"
 #include "conformance/valve_bus/node_deviations.hpp"
+#include "protocols/fieldbus_dll/attached_ff_device.hpp"
+#include "protocols/fieldbus_dll/attached_isa_device.hpp"
+#include "protocols/fieldbus_dll/ff_las.hpp"
+#include "protocols/fieldbus_dll/isa_las.hpp"
 #include "protocols/interbus/attached_master.hpp"
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/interbus/master.hpp"
@@ -30,6 +36,23 @@ std::unique_ptr<iut::Device> serve(const std::string& uri) {
   });
 }
 
+constexpr const char kIsaDle[] = "isa_dle";
+constexpr const char kIsaLas[] = "isa_las";
+constexpr const char kFfDevice[] = "ff_device";
+constexpr const char kFfLas[] = "ff_las";
+
+// Deviations of the data link stand in one table for both roles of a profile.
+template <const char* role>
+std::unique_ptr<fieldbus_dll::IsaDevice> isa_deviation_of(const std::string& name,
+                                                          const fieldbus_dll::IsaConfiguration& of) {
+  return conformance::make_isa_deviation(role, name, of);
+}
+template <const char* role>
+std::unique_ptr<fieldbus_dll::FfDevice> ff_deviation_of(const std::string& name,
+                                                        const fieldbus_dll::FfConfiguration& of) {
+  return conformance::make_ff_deviation(role, name, of);
+}
+
 constexpr std::array kRoles{
     Role{"interbus", "slave", iut::Told::in_its_unit,
          &serve<interbus::ServedSlave, interbus::Slave, &conformance::make_slave_deviation>, 3},
@@ -39,6 +62,14 @@ constexpr std::array kRoles{
          &serve<valve_bus::ServedNode, valve_bus::Node, &conformance::make_node_deviation>},
     Role{"valve_bus", "host", iut::Told::in_characters_too,
          &serve<valve_bus::ServedHost, valve_bus::Host, &conformance::make_host_deviation>},
+    Role{"fieldbus_dll", kIsaDle, iut::Told::in_characters_too,
+         &serve<fieldbus_dll::ServedIsaDevice, fieldbus_dll::IsaDle, &isa_deviation_of<kIsaDle>>},
+    Role{"fieldbus_dll", kIsaLas, iut::Told::in_characters_too,
+         &serve<fieldbus_dll::ServedIsaDevice, fieldbus_dll::IsaLas, &isa_deviation_of<kIsaLas>>},
+    Role{"fieldbus_dll", kFfDevice, iut::Told::in_characters_too,
+         &serve<fieldbus_dll::ServedFfDevice, fieldbus_dll::FfStation, &ff_deviation_of<kFfDevice>>},
+    Role{"fieldbus_dll", kFfLas, iut::Told::in_characters_too,
+         &serve<fieldbus_dll::ServedFfDevice, fieldbus_dll::FfLas, &ff_deviation_of<kFfLas>>},
 };
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "cli/suites.hpp"
 
-#include <utility>
-
 #include "cli/attachments.hpp"
 #include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/suite.hpp"
@@ -20,9 +18,11 @@ Suites suites(const Disturbances& disturbances) {
                                               .on_real_line = node_on_real_line,
                                               .disturbances = disturbances.of_plans,
                                               .stresses = disturbances.stresses}));
-  conformance::FieldbusDllGiven fieldbus_dll;
-  fieldbus_dll.disturbances = disturbances.of_plans;
-  all.push_back(conformance::fieldbus_dll_suite(std::move(fieldbus_dll)));
+  all.push_back(conformance::fieldbus_dll_suite({.isa_dle = {.attached = attached_isa_stations("isa_dle")},
+                                                 .isa_las = {.attached = attached_isa_stations("isa_las")},
+                                                 .ff_device = {.attached = attached_ff_stations("ff_device")},
+                                                 .ff_las = {.attached = attached_ff_stations("ff_las")},
+                                                 .disturbances = disturbances.of_plans}));
   return all;
 }
 

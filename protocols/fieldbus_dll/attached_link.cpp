@@ -1,0 +1,189 @@
+#include "protocols/fieldbus_dll/attached_link.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/iut/misbehaviour.hpp"
+#include "harness/kernel/error.hpp"
+
+namespace fieldproof::fieldbus_dll {
+namespace {
+
+constexpr std::size_t kMostFrameOctets = 300;  // of IEC 61158-2, with its check
+
+unsigned count_in(const iut::CaseBegin& begin, std::string_view name, std::int64_t absent,
+                  std::int64_t most) {
+  return static_cast<unsigned>(std::clamp<std::int64_t>(iut::setting(begin, name, absent), 0, most));
+}
+
+}  // namespace
+
+std::string nth(std::string_view name, std::size_t n) {
+  return fmt::format("{}_{}", name, n);
+}
+
+void tell_link(const LinkRules& rules, LinkSettings& settings) {
+  settings.insert(settings.end(), {{"bit_rate", rules.bit_rate},
+                                   {"preamble_octets", rules.preamble_octets},
+                                   {"slot_time_octets", rules.slot_time_octets},
+                                   {"response_delay_slots", rules.response_delay_slots},
+                                   {"inter_pdu_delay_octets", rules.inter_pdu_delay_octets}});
+  for (std::size_t n = 0; n < rules.most_data.size(); ++n)
+    settings.emplace_back(fmt::format("most_data_{}", n + 1), static_cast<std::int64_t>(rules.most_data[n]));
+}
+
+LinkRules link_of(const iut::CaseBegin& begin) {
+  const LinkRules absent;
+  LinkRules rules;
+  rules.bit_rate =
+      std::clamp<std::int64_t>(iut::setting(begin, "bit_rate", absent.bit_rate), 1, 1'000'000'000);
+  rules.preamble_octets = std::clamp(count_in(begin, "preamble_octets", absent.preamble_octets, 8), 1U, 8U);
+  rules.slot_time_octets = count_in(begin, "slot_time_octets", absent.slot_time_octets, 65'535);
+  rules.response_delay_slots = count_in(begin, "response_delay_slots", absent.response_delay_slots, 65'535);
+  rules.inter_pdu_delay_octets =
+      count_in(begin, "inter_pdu_delay_octets", absent.inter_pdu_delay_octets, 65'535);
+  for (std::size_t n = 0; n < rules.most_data.size(); ++n) {
+    rules.most_data[n] = count_in(begin, fmt::format("most_data_{}", n + 1),
+                                  static_cast<std::int64_t>(absent.most_data[n]), 65'535);
+  }
+  return rules;
+}
+
+void put_number(Octets& octets, std::uint64_t number, unsigned size) {
+  while (size-- > 0) octets.push_back(static_cast<std::uint8_t>(number >> 8 * size));
+}
+
+std::uint64_t number_at(std::span<const std::uint8_t> octets, std::size_t at, unsigned size) {
+  std::uint64_t number = 0;
+  for (const std::uint8_t octet : octets.subspan(at, size)) number = number << 8 | octet;
+  return number;
+}
+
+AttachedLink::AttachedLink(iut::AttachedCase& attached, const LinkRules& rules)
+    : attached_(attached), rules_(rules) {
+  if (attached.unit_kind() != iut::UnitKind::characters) return;
+  throw kernel::Error(kernel::ErrorKind::implementation,
+                      "a station of the data link hears and says levels or telegrams; this implementation "
+                      "announces characters");
+}
+
+// ---- what it is told ----
+
+void AttachedLink::receive(const line::Waveform& reception) {
+  if (hears_frames()) {
+    tell_frame(reception);
+  } else {
+    attached_.call(reception.end(), [&](iut::Device& device) { device.receive(kLinePort, reception); });
+  }
+}
+
+line::Waveform AttachedLink::wave_of(std::span<const std::uint8_t> octets, kernel::Time start) const {
+  line::Waveform wave{start, 2 * rules_.bit_rate, {}};
+  code_.append(wave.levels, octets, rules_.preamble_octets);
+  return wave;
+}
+
+void AttachedLink::tell_frame(const line::Waveform& reception) {
+  const auto frames = line::delimited_frames_in(reception, rules_.bit_rate);
+  const bool is_one = frames.size() == 1 && frames[0].end == line::FrameEnd::whole &&
+                      wave_of(frames[0].octets, reception.start).levels == reception.levels;
+  if (!is_one) throw iut::CannotBeDone("an implementation that hears telegrams hears whole frames only");
+  const unsigned before = rules_.preamble_octets + 1;
+  std::vector<iut::Character> characters;
+  for (const std::uint8_t octet : frames[0].octets) {
+    const auto place = static_cast<std::int64_t>(before + characters.size());
+    characters.push_back(
+        {reception.start + octets(rules_, place), reception.start + octets(rules_, place + 1), octet});
+  }
+  attached_.call(reception.end(),
+                 [&](iut::Device& device) { device.receive(kLinePort, characters, reception.end()); });
+}
+
+void AttachedLink::on_activity(bool begins, kernel::Time now) {
+  const iut::Character one{now, now, static_cast<std::uint16_t>(begins ? 1 : 0)};
+  attached_.call(now, [&](iut::Device& device) { device.receive(kActivityPort, std::span(&one, 1), now); });
+}
+
+bool AttachedLink::ask(const Octets& request, kernel::Time now) {
+  std::vector<iut::Character> characters;
+  for (const std::uint8_t octet : request) characters.push_back({now, now, octet});
+  is_refused_ = false;
+  attached_.call(now, [&](iut::Device& device) { device.receive(kUserPort, characters, now); });
+  return !is_refused_;
+}
+
+bool AttachedLink::start(kernel::Time now) {
+  is_refused_ = false;
+  attached_.set_power(true, now);
+  return !is_refused_;
+}
+
+void AttachedLink::on_time(kernel::Time now) {
+  drive_due(now);
+  if (attached_.next_time() <= now) attached_.on_time(now);
+}
+
+kernel::Time AttachedLink::next_time() const {
+  const kernel::Time wanted = attached_.next_time();
+  return ahead_.empty() ? wanted : std::min(wanted, ahead_.front().start);
+}
+
+// ---- what it does ----
+
+void AttachedLink::transmit(const iut::Transmission& transmission) {
+  attached_.expect_supplied();
+  if (transmission.port != kLinePort) {
+    iut::refuse_impossible(fmt::format("drives port {}; the line is port 0", transmission.port));
+  }
+  if (!hears_frames()) iut::refuse_impossible("drives telegrams, having announced levels");
+  const std::size_t count = transmission.characters.size();
+  if (count == 0 || count > kMostFrameOctets) {
+    iut::refuse_impossible(
+        fmt::format("drives a frame of {} octets; there are 1 to {}", count, kMostFrameOctets));
+  }
+  Octets octets;
+  for (const std::uint16_t one : transmission.characters) {
+    if (one > 0xFF) iut::refuse_impossible(fmt::format("drives {} as an octet", one));
+    octets.push_back(static_cast<std::uint8_t>(one));
+  }
+  // No sum of an instant that lies further than time reaches.
+  attached_.expect_ahead(transmission.start, "drives a frame");
+  drive(wave_of(octets, transmission.start));
+}
+
+void AttachedLink::transmit(unsigned port, line::Waveform& wave) {
+  attached_.expect_supplied();
+  if (port != kLinePort) iut::refuse_impossible(fmt::format("drives port {}; the line is port 0", port));
+  drive(std::exchange(wave, {}));
+}
+
+void AttachedLink::drive(line::Waveform&& wave) {
+  attached_.expect_drive(wave);
+  if (wave.start < driven_until_) {
+    iut::refuse_impossible(fmt::format("drives from {} on, and drives already until {}",
+                                       kernel::describe(wave.start), kernel::describe(driven_until_)));
+  }
+  driven_until_ = wave.end();
+  ahead_.push_back(std::move(wave));
+  drive_due(attached_.now());
+}
+
+void AttachedLink::drive_due(kernel::Time now) {
+  while (!ahead_.empty() && ahead_.front().start <= now) {
+    line::Waveform wave = std::move(ahead_.front());
+    ahead_.pop_front();
+    line_->drive(wave);
+  }
+}
+
+Octets AttachedLink::told_octets(const iut::Transmission& transmission) {
+  Octets octets;
+  for (const std::uint16_t one : transmission.characters) {
+    if (one > 0xFF || octets.size() >= kMostFrameOctets) iut::refuse_impossible("tells its user no octets");
+    octets.push_back(static_cast<std::uint8_t>(one));
+  }
+  return octets;
+}
+
+}  // namespace fieldproof::fieldbus_dll

@@ -1,0 +1,161 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "harness/iut/attached_case.hpp"
+#include "harness/iut/served_station.hpp"
+#include "protocols/fieldbus_dll/line_end.hpp"
+
+// The line of the data link as an implementation outside hears and drives it, whatever its profile and role.
+//
+//   port 0  the line: levels that are half a bit wide, told when a transmission is over; or telegrams, which
+//           are the octets of a frame, its check among them, without preamble and delimiters
+//   port 1  one character when others begin to drive the line (1) and when they cease (0)
+//   port 2  the user: characters are the octets of what it asks for, and of what it is told
+//
+// An implementation that hears frames is no receiver of its own: a case that drives anything but whole
+// frames, as this link has them, does not apply to it.
+namespace fieldproof::fieldbus_dll {
+
+inline constexpr unsigned kLinePort = 0;
+inline constexpr unsigned kActivityPort = 1;
+inline constexpr unsigned kUserPort = 2;
+
+// Words that an implementation writes or reads, in each role.
+inline constexpr iut::Item kRefused = 0;  // told within `power` or a request of the user: it is not taken
+inline constexpr iut::Item kEvent = 1;    // told: kind | node << 8
+
+using LinkSettings = std::vector<std::pair<std::string, std::int64_t>>;
+
+// "published_3".
+std::string nth(std::string_view name, std::size_t n);
+
+// How many under the name itself, and each under its `nth` name.
+template <typename Values>
+void tell_list(std::string_view name, const Values& values, LinkSettings& settings) {
+  settings.emplace_back(std::string(name), static_cast<std::int64_t>(values.size()));
+  for (std::size_t n = 0; n < values.size(); ++n) settings.emplace_back(nth(name, n), values[n]);
+}
+
+// Settings by their names, each within what its type holds.
+class SettingsReader {
+ public:
+  static constexpr std::int64_t kMostListed = 1'000;
+
+  explicit SettingsReader(const iut::CaseBegin& begin) : begin_(begin) {}
+
+  template <typename Number>
+  Number number(std::string_view name, Number absent) const {
+    constexpr auto kMost = static_cast<std::int64_t>(std::min<std::uint64_t>(
+        std::numeric_limits<std::int64_t>::max(), std::numeric_limits<Number>::max()));
+    return static_cast<Number>(
+        std::clamp<std::int64_t>(iut::setting(begin_, name, static_cast<std::int64_t>(absent)), 0, kMost));
+  }
+  bool truth(std::string_view name, bool absent) const {
+    return iut::setting(begin_, name, absent ? 1 : 0) != 0;
+  }
+  Priority priority(std::string_view name) const {
+    return static_cast<Priority>(std::clamp<std::int64_t>(iut::setting(begin_, name, 1), 1, 3));
+  }
+  std::size_t count(std::string_view name) const {
+    return static_cast<std::size_t>(std::clamp<std::int64_t>(iut::setting(begin_, name, 0), 0, kMostListed));
+  }
+  template <typename Number>
+  std::vector<Number> list(std::string_view name) const {
+    std::vector<Number> all;
+    for (std::size_t n = 0; n < count(name); ++n) all.push_back(number<Number>(nth(name, n), 0));
+    return all;
+  }
+
+ private:
+  const iut::CaseBegin& begin_;
+};
+
+// Numbers of the link as settings, and back; what is not told is as in `absent`.
+void tell_link(const LinkRules& rules, LinkSettings& settings);
+LinkRules link_of(const iut::CaseBegin& begin);
+
+// Numbers in an octet string of the user, the high octet first.
+void put_number(Octets& octets, std::uint64_t number, unsigned size);
+std::uint64_t number_at(std::span<const std::uint8_t> octets, std::size_t at, unsigned size);
+
+class AttachedLink {
+ public:
+  // Throws kernel::Error for an implementation that announces characters.
+  AttachedLink(iut::AttachedCase& attached, const LinkRules& rules);
+
+  void wire(segment::Port& line) { line_ = &line; }
+  void receive(const line::Waveform& reception);
+  void on_activity(bool begins, kernel::Time now);
+  // Of the user. False: the implementation has refused it.
+  bool ask(const Octets& request, kernel::Time now);
+  // The supply, which begins and ends what the station does.
+  bool start(kernel::Time now);
+  void refuse() { is_refused_ = true; }
+
+  void on_time(kernel::Time now);
+  kernel::Time next_time() const;
+
+  // What the implementation drives on the line, now or later.
+  void transmit(const iut::Transmission& transmission);
+  void transmit(unsigned port, line::Waveform& wave);
+  // Of a transmission at the user's port: its octets.
+  static Octets told_octets(const iut::Transmission& transmission);
+
+ private:
+  bool hears_frames() const { return attached_.unit_kind() == iut::UnitKind::telegrams; }
+  void tell_frame(const line::Waveform& reception);
+  line::Waveform wave_of(std::span<const std::uint8_t> octets, kernel::Time start) const;
+  void drive(line::Waveform&& wave);
+  void drive_due(kernel::Time now);
+
+  iut::AttachedCase& attached_;
+  LinkRules rules_;
+  line::DelimitedFrameCode code_;
+  segment::Port* line_ = nullptr;
+  bool is_refused_ = false;
+  kernel::Time driven_until_ = kernel::kStart;
+  std::deque<line::Waveform> ahead_;  // whose time has not come yet
+};
+
+// A station of ours, as an implementation: what both profiles share.
+template <typename Station>
+class ServedLink : public iut::ServedStation<Station> {
+ public:
+  void receive(unsigned, const line::Waveform& reception) override {
+    this->act(reception.end(), [&] { this->station().receive(kLinePort, reception); });
+  }
+  void receive(unsigned port, std::span<const iut::Character> characters, kernel::Time now) override {
+    Octets octets;
+    for (const iut::Character& one : characters) octets.push_back(static_cast<std::uint8_t>(one.data));
+    if (octets.empty()) return;
+    this->act(now, [&] {
+      if (port == kActivityPort) {
+        this->station().on_activity(kLinePort, octets.front() != 0, now);
+      } else if (!asked(octets, now)) {
+        refuse(now);
+      }
+    });
+  }
+
+ protected:
+  virtual bool asked(const Octets& request, kernel::Time now) = 0;
+  void refuse(kernel::Time now) { this->bench().write(kRefused, 1, now); }
+  void tell_user(const Octets& octets, kernel::Time when) {
+    const kernel::Time now = this->not_past(when);
+    this->bench().transmit({kUserPort, now, now, now, {octets.begin(), octets.end()}});
+  }
+  void tell_event(std::uint64_t kind, std::uint8_t node, kernel::Time when) {
+    this->bench().write(kEvent, kind | std::uint64_t{node} << 8, this->not_past(when));
+  }
+};
+
+}  // namespace fieldproof::fieldbus_dll
