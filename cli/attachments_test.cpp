@@ -146,7 +146,23 @@ INSTANTIATE_TEST_SUITE_P(
         Served{"interbus/master",
                43,
                {{{"outputs_torn", "application/outputs_change_as_a_whole", "outputs_torn"},
-                 {"wrong_segment", "rejection/marked_status_names_the_segment", "wrong_segment"}}}}),
+                 {"wrong_segment", "rejection/marked_status_names_the_segment", "wrong_segment"}}}},
+        Served{"fieldbus_dll/isa_dle",
+               35,
+               {{{"no_frame_under_et", "single_token/one_frame_is_sent", "no_data_frame"},
+                 {"priority_inverted", "single_token/lower_priorities_wait", "lower_priority_sent"}}}},
+        Served{"fieldbus_dll/isa_las",
+               12,
+               {{{"schedule_late", "schedule/each_item_has_its_time", "delegation_late"},
+                 {"never_retakes", "transfer/what_is_not_taken_is_retaken", "not_retaken"}}}},
+        Served{"fieldbus_dll/ff_device",
+               23,
+               {{{"buffer_torn", "publisher/a_buffer_is_published_whole", "buffer_torn"},
+                 {"fit_is_strict", "token/what_fits_exactly_is_sent_and_no_more", "exact_fit_not_sent"}}}},
+        Served{"fieldbus_dll/ff_las",
+               25,
+               {{{"token_over_due", "schedule/each_item_has_its_time", "compelled_late"},
+                 {"probes_unpolled", "circulation/each_probes", "probes_unpolled"}}}}),
     [](const testing::TestParamInfo<Served>& one) {
       std::string name = one.param.role;
       std::ranges::replace(name, '/', '_');
@@ -237,6 +253,14 @@ TEST_F(Attachments, InterbusMasterInPythonPassesInTelegrams) {
   const std::string uri = "exec:" + in_quotes(python) + " " + in_quotes(master);
   expect_passes(uri, "interbus/master/", 43);
   expect_passes("master=" + uri, "interbus/network/", 7);
+}
+
+// It hears frames; no case of its role drives anything else.
+TEST_F(Attachments, FfDeviceInPythonPasses) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const fs::path device = kSourceFolder / "examples/ff_device/device.py";
+  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device), "fieldbus_dll/ff_device/", 23);
 }
 
 // Verdicts and reasons, where levels are not all that is looked at; cases are in conformance's test of it.

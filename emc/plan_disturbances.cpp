@@ -178,15 +178,16 @@ DisturbanceModel model_of(const GilbertElliott& parameters) {
 }
 
 DisturbanceModel fitted_model(const PlannedBursts& bursts) {
-  return {"gilbert_elliott", Json{{"fitted_to", json_of(bursts)}}.dump(),
-          [bursts, wrong = wrong_output_of(bursts.profile, bursts.settings)](const fault::StressPlace& place) {
-            const double flips = flips_per_pulse(wrong->get(), {}, place.bit_rate);
-            const GilbertElliott fitted =
-                fitted_gilbert_elliott(flips, bursts.settings.repetition, place.bit_rate);
-            return std::make_unique<BitFlips>(
-                place, std::make_unique<GilbertElliottChannel>(fitted, random_of(place)));
-          },
-          caveats_of(bursts.profile)};
+  return {
+      "gilbert_elliott", Json{{"fitted_to", json_of(bursts)}}.dump(),
+      [bursts, wrong = wrong_output_of(bursts.profile, bursts.settings)](const fault::StressPlace& place) {
+        const double flips = flips_per_pulse(wrong->get(), {}, place.bit_rate);
+        const GilbertElliott fitted =
+            fitted_gilbert_elliott(flips, bursts.settings.repetition, place.bit_rate);
+        return std::make_unique<BitFlips>(place,
+                                          std::make_unique<GilbertElliottChannel>(fitted, random_of(place)));
+      },
+      caveats_of(bursts.profile)};
 }
 
 DisturbanceModel read_gilbert_elliott(const Value& value) {

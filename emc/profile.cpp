@@ -42,7 +42,8 @@ std::vector<Profile> make_built_in() {
   e.coupling.filter_mhz = 0.1;
   e.coupling.bit_v = 0.375;
   // The weakest signal that a receiver of IEC 61158-2 must accept: 150 mV from peak to peak.
-  const Profile e2 = changed(e, "E2", "the same with the weakest signal of that bus", &Coupling::bit_v, 0.075);
+  const Profile e2 =
+      changed(e, "E2", "the same with the weakest signal of that bus", &Coupling::bit_v, 0.075);
   // IEC 61158-2 at 1 Mbit/s: 5.5 V from peak to peak at least.
   Profile f{"F", "unshielded, isolated, receiver of a 1 Mbit/s bus", {}};
   f.coupling.filter_mhz = 3;

@@ -96,7 +96,8 @@ TEST(ProfileTest, NamesAreFoundInAnyCaseAndMisspellingsToldWithTheNearest) {
     FAIL();
   } catch (const kernel::Error& error) {
     EXPECT_EQ(error.kind(), kernel::ErrorKind::usage);
-    EXPECT_NE(std::string(error.what()).find("A, A2, A3, B, B2, C, D, E, E2, F"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("A, A2, A3, B, B2, C, D, E, E2, F"), std::string::npos)
+        << error.what();
   }
 }
 

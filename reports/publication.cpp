@@ -55,7 +55,8 @@ Json figure_json(const PublishedCurves& figure) {
   Json curves = Json::array();
   for (const PublishedCurves::Curve& curve : figure.curves) {
     Json points = Json::array();
-    for (const PublishedCurves::Point& point : curve.points) points.push_back({{"x", point.x}, {"y", point.y}});
+    for (const PublishedCurves::Point& point : curve.points)
+      points.push_back({{"x", point.x}, {"y", point.y}});
     curves.push_back({{"name", as_utf8(curve.name)}, {"points", std::move(points)}});
   }
   return {{"name", as_utf8(figure.name)},

@@ -42,7 +42,8 @@ class DrivenDlpdus final : public segment::Tap {
   const std::vector<DrivenDlpdu>& all() const { return all_; }
   // The first one that was not taken yet; there is one.
   DrivenDlpdu take_one() { return all_[taken_++]; }
-  bool has_new() const { return taken_ < all_.size(); }
+  // One that has not been taken began until then.
+  bool has_new(kernel::Time until) const { return taken_ < all_.size() && all_[taken_].begin <= until; }
 
  private:
   std::int64_t bit_rate_;

@@ -50,7 +50,8 @@ FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
   wait(patience());
   send(activation(node()));
   wait(patience());
-  while (next(now())) {
+  const kernel::Time begin = now();
+  while (next(begin)) {
   }
 }
 

@@ -70,8 +70,8 @@ kernel::Time LinkBench::send_at(kernel::Time start, std::span<const std::uint8_t
 
 bool LinkBench::next_begins(kernel::Time limit) {
   // In steps of an octet: the ear knows at once what the IUT begins, and no frame is as short.
-  while (!driven_.has_new() && now() < limit) run_until(std::min(limit, now() + octets(1)));
-  return driven_.has_new();
+  while (!driven_.has_new(limit) && now() < limit) run_until(std::min(limit, now() + octets(1)));
+  return driven_.has_new(limit);
 }
 
 std::optional<DrivenDlpdu> LinkBench::next(kernel::Time limit) {

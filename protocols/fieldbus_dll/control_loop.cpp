@@ -49,7 +49,7 @@ double in_seconds(kernel::Duration duration) {
   return static_cast<double>(duration.count()) / 1e12;
 }
 
-void check(const ControlLoopSetting& setting) {
+void check_loop(const ControlLoopSetting& setting) {
   const auto refuse = [](const char* sentence) {
     throw kernel::Error(kernel::ErrorKind::configuration, sentence);
   };
@@ -338,12 +338,12 @@ std::string_view text_of(DataWay way) {
 }
 
 ControlLoop run_control_loop(const ControlLoopSetting& setting) {
-  check(setting);
+  check_loop(setting);
   return LoopOnLink(setting).run();
 }
 
 ControlLoop run_loop_without_bus(const ControlLoopSetting& setting) {
-  check(setting);
+  check_loop(setting);
   Loop* self = nullptr;
   Loop loop(
       setting, [&self](const Signal& sample) { self->to_controller().arrive(sample); },
