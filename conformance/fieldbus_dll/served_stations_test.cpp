@@ -1,0 +1,126 @@
+// Subject: stations of the data link that are called as an implementation outside is, by calls and items
+// alone: the suite judges them to the bit as it does inside. In this process; cli proves the same of a
+// process of their own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "conformance/fieldbus_dll/ff_deviations.hpp"
+#include "conformance/fieldbus_dll/isa_deviations.hpp"
+#include "conformance/fieldbus_dll/suite.hpp"
+#include "protocols/fieldbus_dll/attached_ff_device.hpp"
+#include "protocols/fieldbus_dll/attached_isa_device.hpp"
+#include "protocols/fieldbus_dll/ff_las.hpp"
+#include "protocols/fieldbus_dll/isa_las.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::AttachedFfDevice;
+using fieldbus_dll::AttachedIsaDevice;
+using fieldbus_dll::FfConfiguration;
+using fieldbus_dll::FfDevice;
+using fieldbus_dll::IsaConfiguration;
+using fieldbus_dll::IsaDevice;
+using fieldbus_dll::ServedFfDevice;
+using fieldbus_dll::ServedIsaDevice;
+
+const Suite& suite_inside() {
+  static const auto suite = fieldbus_dll_suite();
+  return *suite;
+}
+
+// An empty name is the reference.
+std::unique_ptr<FfDevice> station_named(const std::string& role, const std::string& deviation,
+                                        const FfConfiguration& configuration) {
+  if (!deviation.empty()) return make_ff_deviation(role, deviation, configuration);
+  if (role == "ff_las") return std::make_unique<fieldbus_dll::FfLas>(configuration);
+  return std::make_unique<fieldbus_dll::FfStation>(configuration);
+}
+std::unique_ptr<IsaDevice> station_named(const std::string& role, const std::string& deviation,
+                                         const IsaConfiguration& configuration) {
+  if (!deviation.empty()) return make_isa_deviation(role, deviation, configuration);
+  if (role == "isa_las") return std::make_unique<fieldbus_dll::IsaLas>(configuration);
+  return std::make_unique<fieldbus_dll::IsaDle>(configuration);
+}
+
+// Plays the station as one outside.
+template <typename Given, typename Attached, typename Served, typename Configuration>
+Given given_as_outside(const std::string& role, const std::string& deviation) {
+  Given given;
+  given.attached = [role, deviation](const Wanted& wanted, const Configuration& configuration) {
+    const auto served = std::make_shared<Served>(
+        [role, deviation](const Configuration& told) { return station_named(role, deviation, told); });
+    return std::make_unique<Attached>(iut::Attachment{served.get(), served, {}}, configuration,
+                                      wanted.case_id, wanted.seed);
+  };
+  return given;
+}
+
+std::unique_ptr<Suite> suite_outside(const std::string& role, const std::string& deviation) {
+  const auto isa = given_as_outside<GivenIsaStations, AttachedIsaDevice, ServedIsaDevice, IsaConfiguration>;
+  const auto ff = given_as_outside<GivenFfStations, AttachedFfDevice, ServedFfDevice, FfConfiguration>;
+  FieldbusDllGiven given;
+  if (role == "isa_dle") given.isa_dle = isa(role, deviation);
+  if (role == "isa_las") given.isa_las = isa(role, deviation);
+  if (role == "ff_device") given.ff_device = ff(role, deviation);
+  if (role == "ff_las") given.ff_las = ff(role, deviation);
+  return fieldbus_dll_suite(given);
+}
+
+Outcome outcome_of(const Suite& suite, const TestCase& test_case, const std::string& uri) {
+  Setup setup;
+  setup.implementations.push_back({test_case.role(), 0, uri});
+  setup.seed = 1;
+  setup.volume = Volume::quick;
+  return suite.run(test_case, setup);
+}
+
+void expect_judged_alike(const TestCase& test_case, const Outcome& outside, const Outcome& inside) {
+  EXPECT_EQ(outside.result.verdict, inside.result.verdict) << test_case.id << outside.result.reason;
+  EXPECT_EQ(outside.result.reason, inside.result.reason) << test_case.id;
+  EXPECT_EQ(outside.result.fingerprint, inside.result.fingerprint) << test_case.id;
+}
+
+class ServedLinkRoles : public testing::TestWithParam<std::string> {};
+
+TEST_P(ServedLinkRoles, ReferenceIsJudgedInEveryCaseAsInside) {
+  const auto suite = suite_outside(GetParam(), "");
+  int judged = 0;
+  for (const TestCase& test_case : suite->cases()) {
+    if (test_case.role() != GetParam()) continue;
+    ++judged;
+    expect_judged_alike(test_case, outcome_of(*suite, test_case, "outside"),
+                        outcome_of(suite_inside(), test_case, "ref"));
+  }
+  EXPECT_GT(judged, 10);
+}
+
+// In the cases that name them.
+TEST_P(ServedLinkRoles, DeviationsAreJudgedAsInside) {
+  for (const Deviation& deviation : suite_inside().deviations()) {
+    if (deviation.role != GetParam()) continue;
+    const auto suite = suite_outside(GetParam(), deviation.name);
+    int judged = 0;
+    for (const TestCase& test_case : suite->cases()) {
+      if (test_case.role() != GetParam() ||
+          std::ranges::count(test_case.catches, deviation.name, &Catch::deviation) == 0)
+        continue;
+      ++judged;
+      const Outcome outcome = outcome_of(*suite, test_case, "outside");
+      EXPECT_EQ(outcome.result.verdict, judge::Verdict::fail) << test_case.id << " " << deviation.name;
+      expect_judged_alike(test_case, outcome,
+                          outcome_of(suite_inside(), test_case, "deviant:" + deviation.name));
+    }
+    EXPECT_GT(judged, 0) << deviation.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ServedLinkRoles, testing::Values("isa_dle", "isa_las", "ff_device", "ff_las"),
+                         [](const testing::TestParamInfo<std::string>& one) { return one.param; });
+
+}  // namespace
+}  // namespace fieldproof::conformance
