@@ -71,6 +71,7 @@ void a_node_that_answers_is_activated(FfBench& bench, CaseJudge& judge) {
 
 // The node takes part in the first circulations, then misses tokens as the pattern says: true is a miss.
 struct Misses {
+  std::size_t tokens = 0;
   std::size_t tokens_until_removal = 0;  // that it missed in a row, at the end
   bool is_removed = false;
   bool is_told = false;
@@ -79,17 +80,16 @@ struct Misses {
 
 Misses miss(FfBench& bench, const std::function<bool(std::size_t)>& misses, std::int64_t octet_times) {
   Misses found;
-  std::size_t tokens = 0;
   std::size_t circulations_without = 0;
   const auto answers = [&](const DrivenDlpdu& one) -> std::optional<FfBench::Reply> {
-    if (const auto list = told(bench, one, fieldbus_dll::kEverybody); list && tokens > 0)
+    if (const auto list = told(bench, one, fieldbus_dll::kEverybody); list && found.tokens > 0)
       found.is_told |= !is_live_in(*list, kKnown);
     if (is_probe_of(bench, one, kKnown)) found.is_probed = true;
-    if (is_of(one, bench.rules().codes.pn) && tokens > 0 && ++circulations_without > 1)
+    if (is_of(one, bench.rules().codes.pn) && found.tokens > 0 && ++circulations_without > 1)
       found.is_removed = true;
     if (!is_token_for(bench, one, kKnown)) return bench.returned(one);
     circulations_without = 0;
-    if (!misses(tokens++)) {
+    if (!misses(found.tokens++)) {
       found.tokens_until_removal = 0;
       return bench.returned(one);
     }
@@ -117,6 +117,8 @@ void who_misses_two_and_answers_stays(FfBench& bench, CaseJudge& judge) {
       miss(bench, [](std::size_t token) { return token % 3 != 2; }, bench.volume(6'000, 60'000));
   judge.expect(!found.is_removed && !found.is_told, "removed_too_early",
                "11 stays in the live list: it has answered in between", "it was removed");
+  judge.expect(found.tokens > 3, "no_token", "PTs for 11, over and over",
+               fmt::format("{} of them", found.tokens));
 }
 
 }  // namespace

@@ -62,7 +62,9 @@ kernel::Time LinkBench::send(std::span<const std::uint8_t> octets) {
 }
 
 kernel::Time LinkBench::send_at(kernel::Time start, std::span<const std::uint8_t> octets) {
-  line::Waveform wave{start, 2 * link_.bit_rate, half_bits_of_frame(with_frame_check(octets))};
+  // A station that drives over itself ends a DLPDU while another lasts.
+  line::Waveform wave{std::max(start, now()), 2 * link_.bit_rate,
+                      half_bits_of_frame(with_frame_check(octets))};
   const kernel::Time end = wave.end();
   tester_->drive(wave);
   return end;

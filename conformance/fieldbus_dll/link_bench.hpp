@@ -68,7 +68,7 @@ class LinkBench : private segment::Station {
   // Half bits, levels as they are.
   kernel::Time send_half_bits(line::Levels half_bits);
   kernel::Time send_wave(line::Waveform wave);
-  // At an instant that lies ahead; does not run. Gives its end.
+  // At an instant that lies ahead, else now; does not run. Gives its end.
   kernel::Time send_at(kernel::Time start, std::span<const std::uint8_t> octets);
   kernel::Time send_at(kernel::Time start, std::initializer_list<std::uint8_t> octets) {
     return send_at(start, std::span(octets.begin(), octets.size()));

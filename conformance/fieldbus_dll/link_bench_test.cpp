@@ -1,0 +1,96 @@
+// Subject: a bench of the data link ends each of its cases, whatever the station does.
+#include "conformance/fieldbus_dll/link_bench.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "conformance/fieldbus_dll/suite.hpp"
+#include "protocols/fieldbus_dll/line_end.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+// How a station never stops: a DLPDU behind the other one, with so much silence between.
+struct Babble {
+  Octets octets;
+  std::int64_t silence_octets;
+};
+
+// Hears nothing and takes every order.
+template <typename Device>
+class Babbler : public Device {
+ public:
+  Babbler(const fieldbus_dll::LinkRules& rules, Babble babble)
+      : rules_(rules), babble_(std::move(babble)), line_(rules) {}
+
+  void receive(segment::PortIndex, const line::Waveform&) override {}
+  void on_time(kernel::Time now) override { next_ = line_.transmit(babble_.octets, now) + silence(); }
+  kernel::Time next_time() const override { return next_; }
+
+ protected:
+  fieldbus_dll::LineEnd& line() { return line_; }
+
+ private:
+  kernel::Duration silence() const { return fieldbus_dll::octets(rules_, babble_.silence_octets); }
+
+  fieldbus_dll::LinkRules rules_;
+  Babble babble_;
+  fieldbus_dll::LineEnd line_;
+  kernel::Time next_ = kernel::kStart;
+};
+
+class FfBabbler final : public Babbler<fieldbus_dll::FfDevice> {
+ public:
+  using Babbler::Babbler;
+  void wire(segment::Port& place, fieldbus_dll::FfUser&) override { line().wire(place); }
+  bool start(kernel::Time) override { return true; }
+  bool submit(const fieldbus_dll::FfRequest&, kernel::Time) override { return true; }
+  bool write(fieldbus_dll::FfAddress, const Octets&, kernel::Time) override { return true; }
+};
+
+class IsaBabbler final : public Babbler<fieldbus_dll::IsaDevice> {
+ public:
+  using Babbler::Babbler;
+  void wire(segment::Port& place, fieldbus_dll::IsaUser&) override { line().wire(place); }
+  bool submit(const fieldbus_dll::IsaRequest&, kernel::Time) override { return true; }
+};
+
+template <typename Station, typename Given, typename Configuration>
+Given babbling(const Babble& babble) {
+  Given given;
+  given.own = [babble](const Wanted&, const Configuration& configuration) {
+    return std::make_unique<Station>(configuration.rules.link, babble);
+  };
+  return given;
+}
+
+class StationsThatNeverStop : public testing::TestWithParam<Babble> {};
+
+TEST_P(StationsThatNeverStop, FailEveryCase) {
+  const auto ff = babbling<FfBabbler, GivenFfStations, fieldbus_dll::FfConfiguration>(GetParam());
+  const auto isa = babbling<IsaBabbler, GivenIsaStations, fieldbus_dll::IsaConfiguration>(GetParam());
+  const auto suite =
+      fieldbus_dll_suite({.isa_dle = isa, .isa_las = isa, .ff_device = ff, .ff_las = ff, .disturbances = {}});
+  conformance::Setup setup;
+  setup.volume = Volume::quick;
+  for (const TestCase& test_case : suite->cases()) {
+    setup.implementations = {{test_case.role(), 0, "own"}};
+    const judge::CaseResult result = suite->run(test_case, setup).result;
+    // Who babbles keeps the line active.
+    const bool may_pass = test_case.id.ends_with("/the_line_is_kept_active");
+    EXPECT_TRUE(may_pass || result.verdict == judge::Verdict::fail) << test_case.id;
+    EXPECT_LT(result.virtual_time, 600 * kernel::kSecond) << test_case.id;
+  }
+}
+
+// Nothing at all, a return of a token, a token for everybody, and what passes for data.
+INSTANTIATE_TEST_SUITE_P(Babble, StationsThatNeverStop,
+                         testing::Values(Babble{{0x34}, 0}, Babble{{0x34}, 8},
+                                         Babble{{0x33, 0x22, 0x01, 0x00}, 8},
+                                         Babble{{0xD3, 0x22, 0x30, 0x21, 0x01, 0x01}, 8}),
+                         [](const auto& one) { return std::to_string(one.index); });
+
+}  // namespace
+}  // namespace fieldproof::conformance
