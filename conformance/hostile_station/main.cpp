@@ -1,7 +1,9 @@
-// A node that is right until a call in the case that it is told, and then does the worst: what the bench
-// makes of implementations that crash, hang, flood or talk nonsense is tested with it.
+// A station that is right until a call in the case that it is told, and then does the worst: what the bench
+// makes of implementations that crash, hang, flood or talk nonsense is tested with it. A node of the valve
+// bus, or a basic device of the data link: whom the bench asks for.
 //
-//   hostile_node ACT CALL CASE [MARK]    "segv receive data_is_not_looked_at"; a mark is for who looks for it
+//   hostile_station ACT CALL CASE [MARK]    "segv receive data_is_not_looked_at"; a mark is for who looks for
+//   it
 #include <fcntl.h>
 #include <signal.h>
 #include <unistd.h>
@@ -13,6 +15,8 @@
 #include <string>
 
 #include "harness/iut/server.hpp"
+#include "protocols/fieldbus_dll/attached_ff_device.hpp"
+#include "protocols/fieldbus_dll/ff_station.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
 #include "protocols/valve_bus/node.hpp"
 
@@ -35,43 +39,64 @@ void say(std::span<const std::uint8_t> message) {
   while (true) ::pause();
 }
 
+// A station that is right, and an item that it may write 0 to.
+struct RightStation {
+  std::unique_ptr<iut::Device> device;
+  iut::Item written;
+};
+
+RightStation right_station(const iut::RoleName& role) {
+  if (role.protocol == "valve_bus") {
+    return {std::make_unique<valve_bus::ServedNode>(
+                [](const auto& configuration) { return std::make_unique<valve_bus::Node>(configuration); }),
+            valve_bus::kValves};
+  }
+  return {std::make_unique<fieldbus_dll::ServedFfDevice>([](const auto& configuration) {
+            return std::make_unique<fieldbus_dll::FfStation>(configuration);
+          }),
+          fieldbus_dll::kEvent};
+}
+
 class Hostile final : public iut::Device {
  public:
-  Hostile(std::string act, std::string call, std::string in_case)
+  Hostile(std::string act, std::string call, std::string in_case, RightStation right)
       : act_(std::move(act)),
         call_(std::move(call)),
         in_case_(std::move(in_case)),
-        right_([](const auto& configuration) { return std::make_unique<valve_bus::Node>(configuration); }) {}
+        written_(right.written),
+        right_(std::move(right.device)) {}
 
-  iut::UnitKind unit_kind() const override { return right_.unit_kind(); }
+  iut::UnitKind unit_kind() const override { return right_->unit_kind(); }
   bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override {
     bench_ = &bench;
     is_time_stuck_ = is_time_creeping_ = false;
     is_due_ = begin.id.find(in_case_) != std::string::npos;
-    const bool is_served = right_.begin(begin, bench);
+    const bool is_served = right_->begin(begin, bench);
     do_worst("begin", {});
     return is_served;
   }
   void set_power(bool is_on, kernel::Time now) override {
-    right_.set_power(is_on, now);
+    right_->set_power(is_on, now);
     do_worst("power", now);
   }
-  void receive(unsigned, std::span<const iut::Character>, kernel::Time) override {}
+  void receive(unsigned port, std::span<const iut::Character> characters, kernel::Time now) override {
+    right_->receive(port, characters, now);
+  }
   void receive(unsigned port, const line::Waveform& reception) override {
-    right_.receive(port, reception);
+    right_->receive(port, reception);
     do_worst("receive", reception.end());
   }
   void on_time(kernel::Time now) override {
     now_ = now;
-    right_.on_time(now);
+    right_->on_time(now);
     do_worst("on_time", now);
   }
   kernel::Time next_time() const override {
     if (is_time_creeping_) return now_ + kernel::Duration{1};
-    return is_time_stuck_ ? now_ : right_.next_time();
+    return is_time_stuck_ ? now_ : right_->next_time();
   }
   void end() override {
-    right_.end();
+    right_->end();
     do_worst("end", now_);
   }
 
@@ -101,7 +126,8 @@ class Hostile final : public iut::Device {
   std::string act_;
   std::string call_;
   std::string in_case_;
-  valve_bus::ServedNode right_;
+  iut::Item written_;
+  std::unique_ptr<iut::Device> right_;
   iut::Bench* bench_ = nullptr;
   kernel::Time now_{};
   bool is_due_ = false;
@@ -173,26 +199,29 @@ const std::map<std::string, std::function<void(Hostile&)>, std::less<>>& Hostile
          hang();
        }},
       {"flood",
-       [](Hostile& node) {
-         for (int n = 0; n < 50'000; ++n) node.bench_->write(valve_bus::kValves, 0, node.now_);
+       [](Hostile& station) {
+         for (int n = 0; n < 50'000; ++n) station.bench_->write(station.written_, 0, station.now_);
        }},
-      {"time_stands_still", [](Hostile& node) { node.is_time_stuck_ = true; }},
-      {"time_creeps", [](Hostile& node) { node.is_time_creeping_ = true; }},
+      {"time_stands_still", [](Hostile& station) { station.is_time_stuck_ = true; }},
+      {"time_creeps", [](Hostile& station) { station.is_time_creeping_ = true; }},
       {"drives_more_than_a_line",
-       [](Hostile& node) {
-         for (int n = 0; n < 3; ++n) node.transmit(0, kMicrosecond, kMicrosecond, 6 * kernel::kSecond);
+       [](Hostile& station) {
+         for (int n = 0; n < 3; ++n) station.transmit(0, kMicrosecond, kMicrosecond, 6 * kernel::kSecond);
        }},
       {"drives_in_the_past",
-       [](Hostile& node) { node.transmit(0, -kMillisecond, -kMillisecond, kMillisecond); }},
+       [](Hostile& station) { station.transmit(0, -kMillisecond, -kMillisecond, kMillisecond); }},
       {"drives_backwards",
-       [](Hostile& node) { node.transmit(0, kMillisecond, 10 * kMicrosecond, 5 * kMicrosecond); }},
+       [](Hostile& station) { station.transmit(0, kMillisecond, 10 * kMicrosecond, 5 * kMicrosecond); }},
       {"drives_for_ever",
-       [](Hostile& node) { node.transmit(0, kMicrosecond, 2 * kMicrosecond, 100'000 * kernel::kSecond); }},
+       [](Hostile& station) {
+         station.transmit(0, kMicrosecond, 2 * kMicrosecond, 100'000 * kernel::kSecond);
+       }},
       {"drives_another_port",
-       [](Hostile& node) { node.transmit(7, kMicrosecond, 5 * kMicrosecond, kMillisecond); }},
-      {"writes_what_is_not_there", [](Hostile& node) { node.bench_->write(77, 1, node.now_); }},
-      {"writes_too_much", [](Hostile& node) { node.bench_->write(valve_bus::kValves, 0x10000, node.now_); }},
-      {"reads_what_is_not_there", [](Hostile& node) { node.bench_->read(77, node.now_); }},
+       [](Hostile& station) { station.transmit(7, kMicrosecond, 5 * kMicrosecond, kMillisecond); }},
+      {"writes_what_is_not_there", [](Hostile& station) { station.bench_->write(77, 1, station.now_); }},
+      {"writes_too_much",
+       [](Hostile& station) { station.bench_->write(station.written_, 0x10000, station.now_); }},
+      {"reads_what_is_not_there", [](Hostile& station) { station.bench_->read(77, station.now_); }},
   };
   return all;
 }
@@ -207,8 +236,10 @@ int main(int argc, char** argv) {
   try {
     iut::serve(
         STDIN_FILENO, STDOUT_FILENO,
-        [&](const iut::RoleName&) { return std::make_unique<Hostile>(argv[1], argv[2], argv[3]); },
-        "hostile node");
+        [&](const iut::RoleName& role) {
+          return std::make_unique<Hostile>(argv[1], argv[2], argv[3], conformance::right_station(role));
+        },
+        "hostile station");
   } catch (const std::exception&) {
     return 5;  // the bench does not listen any more
   }

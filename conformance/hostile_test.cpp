@@ -13,15 +13,57 @@
 #include <vector>
 
 #include "conformance/catalogue.hpp"
+#include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/runner.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "harness/iut/pool.hpp"
+#include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
-constexpr std::string_view kCaseOfTheWorst = "valve_bus/node/read/is_answered";
+// Its station outside comes from this pool.
+template <typename Attached, typename Configuration>
+auto attached_from(iut::DevicePool& pool) {
+  return [&pool](const Wanted& wanted, const Configuration& configuration) {
+    const auto lease = std::make_shared<iut::DevicePool::Lease>(pool.take());
+    return std::make_unique<Attached>(iut::Attachment{&**lease, lease, [lease] { lease->set_reusable(); }},
+                                      configuration, wanted.case_id, wanted.seed);
+  };
+}
+
+// A role, and three of its cases in the order of the suite; the worst is done in the second.
+struct AttackedRole {
+  iut::RoleName name;
+  std::string before;
+  std::string attacked;
+  std::string behind;
+  std::unique_ptr<Suite> (*suite)(iut::DevicePool&);
+
+  std::string prefix() const { return name.protocol + "/" + name.role + "/"; }
+};
+
+const AttackedRole kNodeRole{
+    {"valve_bus", "node"},
+    "write/drives_the_valves",
+    "read/is_answered",
+    "command/undefined_commands_are_ignored",
+    [](iut::DevicePool& pool) {
+      return valve_bus_suite(
+          {.node = {.attached = attached_from<valve_bus::AttachedNode, valve_bus::NodeConfiguration>(pool)}});
+    }};
+const AttackedRole kDeviceRole{
+    {"fieldbus_dll", "ff_device"},
+    "probe/is_answered",
+    "token/is_returned_once",
+    "publisher/the_latest_write_is_published",
+    [](iut::DevicePool& pool) {
+      FieldbusDllGiven given;
+      given.ff_device.attached =
+          attached_from<fieldbus_dll::AttachedFfDevice, fieldbus_dll::FfConfiguration>(pool);
+      return fieldbus_dll_suite(std::move(given));
+    }};
 
 struct Worst {
   std::string act;
@@ -111,30 +153,34 @@ bool makes_the_bench_wait(const Worst& worst) {
   return worst.reason == "implementation_hangs" || worst.act == "leave_a_child";
 }
 
+struct Attack {
+  const AttackedRole* role;
+  std::string call;
+
+  friend void PrintTo(const Attack& one, std::ostream* out) {
+    *out << one.role->name.role << " " << one.call;
+  }
+};
+
 // The run of three cases of which the second meets the worst; what the reference does is what the others are.
-class HostileNode : public testing::TestWithParam<std::string> {
+class HostileStation : public testing::TestWithParam<Attack> {
  protected:
   std::vector<judge::CaseResult> run(const Worst& worst) {
-    const std::string uri = fmt::format("exec:{} {} {} read/is_answered {}", FIELDPROOF_HOSTILE_NODE,
-                                        worst.act, GetParam(), mark());
+    const AttackedRole& role = *GetParam().role;
+    const std::string uri = fmt::format("exec:{} {} {} {} {}", FIELDPROOF_HOSTILE_STATION, worst.act,
+                                        GetParam().call, role.attacked, mark());
     iut::PeerLimits limits;
     limits.start = kPatience;
     limits.call = makes_the_bench_wait(worst) ? kShortest : kPatience;
-    iut::DevicePool pool(uri, {"valve_bus", "node"}, limits);
-    const auto suite =
-        valve_bus_suite({.node = {.attached = [&](const Wanted& wanted, const auto& configuration) {
-                           const auto lease = std::make_shared<iut::DevicePool::Lease>(pool.take());
-                           return std::make_unique<valve_bus::AttachedNode>(
-                               iut::Attachment{&**lease, lease, [lease] { lease->set_reusable(); }},
-                               configuration, wanted.case_id, wanted.seed);
-                         }}});
+    iut::DevicePool pool(uri, role.name, limits);
+    const auto suite = role.suite(pool);
     conformance::Setup setup;
     setup.volume = Volume::quick;
-    setup.implementations = {{"node", 0, uri}};
+    setup.implementations = {{role.name.role, 0, uri}};
     std::vector<judge::CaseResult> results;
     for (const TestCase& one : suite->cases()) {
-      if (one.id != "valve_bus/node/write/drives_the_valves" && one.id != kCaseOfTheWorst &&
-          one.id != "valve_bus/node/command/undefined_commands_are_ignored") {
+      if (one.id != role.prefix() + role.before && one.id != role.prefix() + role.attacked &&
+          one.id != role.prefix() + role.behind) {
         continue;
       }
       results.push_back(run_case({suite.get(), &one}, setup).outcome.result);
@@ -143,12 +189,12 @@ class HostileNode : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(HostileNode, CostsItsOwnVerdictAndNoOther) {
+TEST_P(HostileStation, CostsItsOwnVerdictAndNoOther) {
   const std::size_t descriptors = open_descriptors();
   for (const Worst& worst : worst_acts()) {
     // Behind the end of a case nobody asks for a next time.
-    if (worst.act.starts_with("time_") && GetParam() == "end") continue;
-    SCOPED_TRACE(fmt::format("{} in {}", worst.act, GetParam()));
+    if (worst.act.starts_with("time_") && GetParam().call == "end") continue;
+    SCOPED_TRACE(fmt::format("{} in {}", worst.act, GetParam().call));
     const auto begin = std::chrono::steady_clock::now();
     const std::vector<judge::CaseResult> results = run(worst);
     EXPECT_LT(std::chrono::steady_clock::now() - begin, kPatience);
@@ -157,9 +203,10 @@ TEST_P(HostileNode, CostsItsOwnVerdictAndNoOther) {
     EXPECT_EQ(results[1].verdict, judge::Verdict::fail);
     if (worst.act == "answers_twice") {
       // One answer too many is seen at once, or by what it does to those behind it.
-      EXPECT_TRUE(results[1].reason.starts_with("implementation_")) << results[1].reason;
+      const bool is_blamed = results[1].reason.starts_with("implementation_");
+      EXPECT_TRUE(is_blamed || GetParam().role == &kDeviceRole) << results[1].reason;
     } else {
-      EXPECT_EQ(results[1].reason, expected_reason(worst, GetParam()));
+      EXPECT_EQ(results[1].reason, expected_reason(worst, GetParam().call));
     }
     EXPECT_EQ(results[2].verdict, judge::Verdict::pass) << results[2].reason;
     EXPECT_EQ(open_descriptors(), descriptors);
@@ -168,8 +215,11 @@ TEST_P(HostileNode, CostsItsOwnVerdictAndNoOther) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InEachCall, HostileNode, testing::Values("begin", "power", "receive", "end"),
-                         [](const auto& call) { return call.param; });
+INSTANTIATE_TEST_SUITE_P(InEachCall, HostileStation,
+                         testing::Values(Attack{&kNodeRole, "begin"}, Attack{&kNodeRole, "power"},
+                                         Attack{&kNodeRole, "receive"}, Attack{&kNodeRole, "end"},
+                                         Attack{&kDeviceRole, "power"}, Attack{&kDeviceRole, "receive"}),
+                         [](const auto& one) { return one.param.role->name.role + "_" + one.param.call; });
 
 }  // namespace
 }  // namespace fieldproof::conformance
