@@ -207,6 +207,14 @@ TEST_F(Attachments, NodeInPythonPasses) {
   expect_passes("exec:" + in_quotes(python) + " " + in_quotes(kExamples / "node.py"));
 }
 
+// Finds frames in levels, with a check of its own.
+TEST_F(Attachments, FfDeviceWithAReceiverInPythonPasses) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const fs::path device = kSourceFolder / "examples/ff_device/receiver.py";
+  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device), "fieldbus_dll/ff_device/", 23);
+}
+
 // Written from the page of the role.
 TEST_F(Attachments, InterbusSlaveInPythonPasses) {
   const std::string python = installed("python3");
