@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-// The mean of values that depend on those before them, and its standard error from the means of successive
-// batches, which hardly do.
+// A mean of values that depend on each other, and how far it may be off.
 namespace fieldproof::fieldbus_dll {
 
+// The standard error is that of the means of successive batches of `batch` values, which is 1 or more.
 class BatchMeans {
  public:
   explicit BatchMeans(std::uint64_t batch) : batch_(batch) {}

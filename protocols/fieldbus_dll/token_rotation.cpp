@@ -1,7 +1,6 @@
 #include "protocols/fieldbus_dll/token_rotation.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <vector>
 
