@@ -72,6 +72,10 @@ TEST(NetworkSchemaTest, TakesTheNetworksOfTheExamples) {
              "valid");
 }
 
+TEST(TokenNetworkSchemaTest, TakesTheNetworkOfTheExamples) {
+  expect_all("protocols/fieldbus_dll/token_network", {kSourceFolder / "examples/foundation.json"}, "valid");
+}
+
 TEST(BurstProfileSchemaTest, TakesWhatTheReaderTakes) {
   expect_corpus(kBurstProfile, "good", "valid");
 }

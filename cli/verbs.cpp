@@ -23,6 +23,7 @@ constexpr std::array kVerbs = {
     Verb{"emc", "PROTOCOL", 1, 1, "a network under IEC 61000-4-4 bursts: criterion and ledger by level, repetition, polarity", &emc_protocol},
     Verb{"residual", "", 0, 0, "probability that a frame check takes a corrupted telegram for a good one", &residual},
     Verb{"measure", "PROTOCOL", 1, 1, "cycle time, jitter and skew of a network, theory beside measurement", &measure_protocol},
+    Verb{"plan", "NETWORK.json", 1, 1, "the target rotation time of a Foundation Fieldbus that keeps a bound of urgent delays, proven by simulation", &plan},
     Verb{"report", "RUNDIR|FILE...", 1, kAny, "stored runs and documents (emc, measure, paper, residual, matrix) as one HTML page", &report},
     Verb{"station", "PROTOCOL/ROLE [ref|deviant:NAME|plugin:LIBRARY|exec:PROGRAM]", 1, 2, "play a station on standard input and output, for --iut exec:, or on a serial line", &station},
     Verb{"doctor", "", 0, 0, "can the implementation be attached, and how well does this machine know instants", &doctor},

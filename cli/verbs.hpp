@@ -37,6 +37,7 @@ int residual(Session& session);
 int emc_protocol(Session& session);
 int measure_protocol(Session& session);
 int paper(Session& session);
+int plan(Session& session);
 int report(Session& session);
 int station(Session& session);
 int doctor(Session& session);

@@ -233,6 +233,7 @@ class TokenPath {
     const kernel::Duration rotation = now_ - rotation_start_;
     if (is_counting_) {
       lengths_.add(ms(rotation));
+      longest_ = std::max(longest_, rotation);
       ++admitted_to_[lowest_admitted_];
       counted_waits_ = waited_;
     }
@@ -267,6 +268,7 @@ class TokenPath {
     if (it.rotations == 0) return it;
     it.mean_rotation = lengths_.mean();
     it.rotation_error = lengths_.standard_error();
+    it.longest_rotation = ms(longest_);
     for (unsigned p = 0; p < kTokenPriorities; ++p) {
       it.admitted_to[p] = static_cast<double>(admitted_to_[p]) / static_cast<double>(it.rotations);
     }
@@ -297,6 +299,7 @@ class TokenPath {
   const TrafficRun run_;
   std::array<std::vector<StreamQueue>, kTokenPriorities> queues_;
   std::vector<PriorityTotal> totals_;
+  kernel::Duration longest_{};
   BatchMeans lengths_{kRotationsOfTrafficBatch};
   NextItem item_;
 

@@ -95,6 +95,7 @@ struct TrafficFigures {
   std::array<StreamFigures, kTokenPriorities> all;
   std::uint64_t rotations = 0;
   double mean_rotation = 0;                            // ms
+  double longest_rotation = 0;                         // ms
   double rotation_error = 0;                           // standard error of it
   std::array<double, kTokenPriorities> admitted_to{};  // share of rotations, by the lowest admitted priority
   double waits_for_schedule = 0;                       // W, share of time

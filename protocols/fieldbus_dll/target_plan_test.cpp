@@ -1,0 +1,63 @@
+#include "protocols/fieldbus_dll/target_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include "protocols/fieldbus_dll/milliseconds.hpp"
+
+namespace fieldproof::fieldbus_dll {
+namespace {
+
+using kernel::kMicrosecond;
+using kernel::kMillisecond;
+
+// Eight equal nodes with much time-available data.
+TokenTraffic planned_traffic(double available_per_ms) {
+  TokenTraffic traffic;
+  TokenNode node;
+  node.overhead = 1 * kMillisecond;
+  node.streams[kUrgent] = {0.01, 600 * kMicrosecond};
+  node.streams[kTimeAvailable] = {available_per_ms, 2 * kMillisecond};
+  traffic.nodes.assign(8, node);
+  return traffic;
+}
+
+TEST(TargetPlan, AWideBoundTakesTheTargetThatAdmitsAll) {
+  const TargetPlan plan = plan_target(planned_traffic(0.01), {.at_most = 200 * kMillisecond}, 1);
+  ASSERT_TRUE(plan.is_proven);
+  EXPECT_EQ(plan.searched.size(), kTargets);
+  EXPECT_EQ(plan.tried.back().target, plan.searched.back().target);
+  EXPECT_EQ(plan.tried.back().figures.admitted_to[kTimeAvailable], 1);
+  EXPECT_GT(plan.tried.back().error, 0);
+}
+
+// More time-available data than the token carries: only a short target keeps them from urgent packets.
+TEST(TargetPlan, ATightBoundCostsTimeAvailableData) {
+  const TokenTraffic traffic = planned_traffic(0.2);
+  const TargetPlan wide = plan_target(traffic, {.at_most = 200 * kMillisecond}, 1);
+  const TargetPlan tight = plan_target(traffic, {.at_most = 9 * kMillisecond}, 1);
+  ASSERT_TRUE(wide.is_proven);
+  ASSERT_TRUE(tight.is_proven);
+  EXPECT_LT(tight.tried.back().target, wide.tried.back().target);
+  EXPECT_LE(tight.tried.back().reached + tight.tried.back().error, 9);
+  EXPECT_TRUE(wide.tried.back().figures.nodes[0][kTimeAvailable].is_unstable);
+}
+
+TEST(TargetPlan, WhatCannotBeMetIsNotProvenAndTheBestIsTold) {
+  const TargetPlan plan = plan_target(planned_traffic(0.2), {.at_most = 2 * kMillisecond}, 1);
+  EXPECT_FALSE(plan.is_proven);
+  EXPECT_TRUE(plan.tried.empty());
+  for (const TargetRun& run : plan.searched) EXPECT_GE(run.reached, plan.searched[plan.best].reached);
+}
+
+TEST(TargetPlan, AShareIsProvenWithItsConfidence) {
+  const TargetPlan plan = plan_target(planned_traffic(0.01), {.at_most = 25 * kMillisecond, .share = 0.9}, 1);
+  ASSERT_TRUE(plan.is_proven);
+  EXPECT_GE(plan.tried.back().reached - plan.tried.back().error, 0.9);
+  EXPECT_EQ(plan.tried.back().reached,
+            plan_target(planned_traffic(0.01), {.at_most = 25 * kMillisecond, .share = 0.9}, 1)
+                .tried.back()
+                .reached);
+}
+
+}  // namespace
+}  // namespace fieldproof::fieldbus_dll

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "protocols/fieldbus_dll/target_plan.hpp"
+
+// A network whose target rotation time is to be planned, as a file has it (token_network.schema.json).
+namespace fieldproof::config {
+class Document;
+}
+
+namespace fieldproof::fieldbus_dll {
+
+struct TokenNetwork {
+  std::string name;
+  TokenTraffic traffic;  // without a target
+  DelayBound bound;
+
+  // Throw kernel::Error(configuration), which says where and what would be right.
+  static TokenNetwork load(const std::filesystem::path& file);
+  static TokenNetwork read(const config::Document& document);
+};
+
+}  // namespace fieldproof::fieldbus_dll
