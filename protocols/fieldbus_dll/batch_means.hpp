@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,7 @@ class BatchMeans {
     in_batch_ = 0;
   }
   std::uint64_t count() const { return count_; }
+  std::size_t batches() const { return means_.size(); }
   double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
   double standard_error() const {
     if (means_.size() < 2) return 0;

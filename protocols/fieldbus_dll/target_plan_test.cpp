@@ -59,5 +59,14 @@ TEST(TargetPlan, AShareIsProvenWithItsConfidence) {
                 .reached);
 }
 
+// Packets so rare that the visits of the token end the simulation still have an error to their mean.
+TEST(TargetPlan, RarePacketsAreProvenWithAnErrorOfTheirOwn) {
+  TokenTraffic traffic = planned_traffic(0);
+  for (TokenNode& node : traffic.nodes) node.streams[kUrgent].per_ms = 2e-4;
+  const TargetPlan plan = plan_target(traffic, {.at_most = 20 * kMillisecond}, 1);
+  ASSERT_TRUE(plan.is_proven);
+  EXPECT_GT(plan.tried.back().error, 0);
+}
+
 }  // namespace
 }  // namespace fieldproof::fieldbus_dll

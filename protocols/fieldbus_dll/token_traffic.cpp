@@ -122,6 +122,7 @@ class StreamQueue {
     StreamFigures it;
     it.is_unstable = has_overflowed_ || grows(ms(counted));
     it.packets = delays_.count();
+    it.batches = delays_.batches();
     it.mean_delay = delays_.mean();
     it.standard_error = delays_.standard_error();
     it.largest_delay = ms(largest_);
@@ -282,6 +283,7 @@ class TokenPath {
     if (all.is_unstable) return all;
     const PriorityTotal& total = totals_[priority];
     all.packets = total.delays.count();
+    all.batches = total.delays.batches();
     all.mean_delay = total.delays.mean();
     all.standard_error = total.delays.standard_error();
     all.largest_delay = ms(total.largest);

@@ -79,6 +79,7 @@ struct StreamFigures {
   // More comes than leaves: delays are those of the time simulated, and grow with it.
   bool is_unstable = false;
   std::uint64_t packets = 0;
+  std::size_t batches = 0;    // that the standard errors rest on; they are 0 with fewer than 2
   double mean_delay = 0;      // ms, from the arrival to the end of the transmission
   double standard_error = 0;  // of it
   double largest_delay = 0;   // ms
