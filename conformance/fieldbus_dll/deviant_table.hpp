@@ -26,6 +26,7 @@ struct DeviantTable {
     std::string_view mutant;
     std::string_view description;
     Make make;
+    bool is_for_check = false;
   };
   struct Role {
     std::string_view role;
@@ -52,7 +53,7 @@ struct DeviantTable {
     for (const Role& role : roles) {
       for (const Row& row : role.rows) {
         all.push_back({std::string(row.name), std::string(row.mutant), std::string(role.role),
-                       std::string(row.description)});
+                       std::string(row.description), row.is_for_check});
       }
     }
     return all;

@@ -3,6 +3,7 @@
 #include "conformance/fieldbus_dll/deviant_table.hpp"
 #include "conformance/fieldbus_dll/ff_device_deviants.hpp"
 #include "conformance/fieldbus_dll/ff_las_deviants.hpp"
+#include "conformance/fieldbus_dll/ff_sequence_deviants.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -89,6 +90,35 @@ std::vector<FfRow> ff_frame_rows() {
       {"no_silence_behind_own", "", "begins an octet behind its own frames",
        FfTable::station<NoSilenceBehindOwn>()},
   };
+}
+
+std::vector<FfRow> ff_sequence_rows() {
+  using namespace ff_deviants;
+  std::vector<FfRow> rows{
+      {"token_kept_behind_probe", "", "uses a token though another node was probed meanwhile",
+       FfTable::station<TokenKeptBehindProbe>()},
+      {"answer_kept_behind_other", "", "answers though another node was probed meanwhile",
+       FfTable::station<AnswerKeptBehindOther>()},
+      {"data_ends_token", "", "drops the token when it hears data", FfTable::station<DataEndsToken>()},
+      {"deaf_behind_fault", "", "misses what comes behind a faulty frame",
+       FfTable::station<DeafBehindFault>()},
+      {"newest_first", "", "sends what was submitted last", FfTable::station<NewestFirst>()},
+      {"least_of_last_token", "", "sends by the priority of the token before",
+       FfTable::station<LeastOfLastToken>()},
+      {"duration_of_last_token_too", "", "adds the duration of the token before",
+       FfTable::station<DurationOfLastTokenToo>()},
+      {"each_third_return_missing", "", "does not send each third RT",
+       FfTable::station<EachThirdReturnMissing>()},
+      {"second_of_priority_lost", "", "forgets urgent data that waits behind a token",
+       FfTable::station<SecondOfPriorityLost>()},
+      {"tail_of_last_write", "", "keeps the tail of a longer buffer", FfTable::station<TailOfLastWrite>()},
+      {"writes_between_cds_count_once", "", "counts only the first write behind a CD",
+       FfTable::station<WritesBetweenCdsCountOnce>()},
+      {"buffers_share_the_count", "", "counts the writes of all its buffers together",
+       FfTable::station<BuffersShareTheCount>()},
+  };
+  for (FfRow& row : rows) row.is_for_check = true;
+  return rows;
 }
 
 std::vector<FfRow> ff_schedule_rows() {
@@ -193,7 +223,7 @@ std::vector<FfRow> ff_claim_rows() {
 const FfTable& ff_table() {
   static const FfTable table = [] {
     FfTable::Role device{"ff_device", {}};
-    for (auto group : {ff_token_rows, ff_publisher_rows, ff_frame_rows}) {
+    for (auto group : {ff_token_rows, ff_publisher_rows, ff_frame_rows, ff_sequence_rows}) {
       for (FfRow& row : group()) device.rows.push_back(std::move(row));
     }
     FfTable::Role las{"ff_las", {}};

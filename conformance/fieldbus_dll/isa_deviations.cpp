@@ -1,6 +1,7 @@
 #include "conformance/fieldbus_dll/isa_deviations.hpp"
 
 #include "conformance/fieldbus_dll/deviant_table.hpp"
+#include "conformance/fieldbus_dll/isa_check_deviants.hpp"
 #include "conformance/fieldbus_dll/isa_frame_deviants.hpp"
 #include "conformance/fieldbus_dll/isa_las_deviants.hpp"
 #include "conformance/fieldbus_dll/isa_reply_deviants.hpp"
@@ -145,6 +146,28 @@ std::vector<IsaRow> isa_frame_rows() {
   };
 }
 
+std::vector<IsaRow> isa_check_rows() {
+  using namespace isa_deviants;
+  std::vector<IsaRow> rows{
+      {"token_kept_behind_token", "", "uses a token though another station got one meanwhile",
+       IsaTable::station<TokenKeptBehindToken>()},
+      {"reply_kept_behind_token", "", "replies though another station got a token meanwhile",
+       IsaTable::station<ReplyKeptBehindToken>()},
+      {"deaf_behind_fault", "", "misses what comes behind a faulty frame",
+       IsaTable::station<IsaDeafBehindFault>()},
+      {"newest_first", "", "sends what was submitted last", IsaTable::station<IsaNewestFirst>()},
+      {"least_of_last_token", "", "sends by the priority of the token before",
+       IsaTable::station<IsaLeastOfLastToken>()},
+      {"duration_of_last_token_too", "", "adds the duration of the token before",
+       IsaTable::station<IsaDurationOfLastTokenToo>()},
+      {"reply_repeated", "", "replies with what it has replied before", IsaTable::station<ReplyRepeated>()},
+      {"missing_reply_costs_the_token", "", "sends nothing more under a token when a reply is missing",
+       IsaTable::station<MissingReplyCostsTheToken>()},
+  };
+  for (IsaRow& row : rows) row.is_for_check = true;
+  return rows;
+}
+
 std::vector<IsaRow> isa_las_rows() {
   using namespace isa_deviants;
   return {
@@ -192,7 +215,7 @@ std::vector<IsaRow> isa_las_rows() {
 const IsaTable& isa_table() {
   static const IsaTable table = [] {
     IsaTable::Role dle{"isa_dle", {}};
-    for (auto group : {isa_token_rows, isa_duration_rows, isa_reply_rows, isa_frame_rows}) {
+    for (auto group : {isa_token_rows, isa_duration_rows, isa_reply_rows, isa_frame_rows, isa_check_rows}) {
       for (IsaRow& row : group()) dle.rows.push_back(std::move(row));
     }
     return IsaTable{{std::move(dle), {"isa_las", isa_las_rows()}}};

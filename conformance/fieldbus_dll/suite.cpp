@@ -1,13 +1,16 @@
 #include "conformance/fieldbus_dll/suite.hpp"
 
+#include <array>
 #include <map>
 #include <string>
 
 #include "conformance/case_recorder.hpp"
 #include "conformance/fieldbus_dll/ff_cases.hpp"
 #include "conformance/fieldbus_dll/ff_deviations.hpp"
+#include "conformance/fieldbus_dll/ff_sequence.hpp"
 #include "conformance/fieldbus_dll/isa_cases.hpp"
 #include "conformance/fieldbus_dll/isa_deviations.hpp"
+#include "conformance/fieldbus_dll/isa_sequence_check.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
@@ -74,6 +77,24 @@ class FieldbusDllSuite final : public Suite {
       return run_recorded<fieldbus_dll::IsaRules>(*isa->second, isa_setting(test_case, setup), setup.record);
     return run_recorded<fieldbus_dll::FfRules>(*ff_cases_.at(test_case.id), ff_setting(test_case, setup),
                                                setup.record);
+  }
+
+  std::span<const SequenceRole> sequence_roles() const override {
+    static const std::array roles{isa_dle_sequence_role(), ff_device_sequence_role()};
+    return roles;
+  }
+  Outcome run_sequence(const SequenceRole& role, const Sequence& sequence,
+                       const Setup& setup) const override {
+    if (role.test_case.role() == kIsaDle) {
+      const IsaCase one{role.test_case, [&sequence](IsaBench& bench, CaseJudge& judge) {
+                          run_isa_dle_sequence(sequence, bench, judge);
+                        }};
+      return run_recorded<fieldbus_dll::IsaRules>(one, isa_setting(role.test_case, setup), setup.record);
+    }
+    const FfCase one{role.test_case, [&sequence](FfBench& bench, CaseJudge& judge) {
+                       run_ff_device_sequence(sequence, bench, judge);
+                     }};
+    return run_recorded<fieldbus_dll::FfRules>(one, ff_setting(role.test_case, setup), setup.record);
   }
 
  private:

@@ -1,0 +1,195 @@
+#include "conformance/fieldbus_dll/ff_model.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "conformance/fieldbus_dll/link_bench.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::FfAddress;
+using fieldbus_dll::Priority;
+using kernel::Time;
+
+constexpr std::array kPrioritiesOfFf{Priority::urgent, Priority::normal, Priority::time_available};
+constexpr unsigned kFinalUse = 0x04;
+constexpr unsigned kLongUse = 0x08;
+// Control octet and two short addresses.
+constexpr std::size_t kHeaderOfDt1 = 5;
+
+std::size_t number_of(Priority priority) {
+  return static_cast<std::size_t>(priority);
+}
+
+}  // namespace
+
+FfModel::FfModel(const fieldbus_dll::FfConfiguration& configuration) : configuration_(configuration) {
+  for (const FfAddress address : configuration.published) buffers_[address] = {};
+}
+
+// ---- the user ----
+
+std::size_t FfModel::most_data(Priority priority) const {
+  return configuration_.rules.link.most_data.at(number_of(priority) - 1);
+}
+
+bool FfModel::submit(Priority priority, const Octets& data) {
+  if (data.size() > most_data(priority)) return false;
+  queues_.at(number_of(priority)).push_back(data);
+  return true;
+}
+
+bool FfModel::write(FfAddress address, const Octets& data) {
+  const auto found = buffers_.find(address);
+  if (found == buffers_.end() || data.size() > most_data(Priority::urgent)) return false;
+  found->second.data = data;
+  ++found->second.writes;
+  return true;
+}
+
+// ---- what was heard ----
+
+void FfModel::hear_dlpdu(Time end) {
+  answer_.reset();
+  silent_since_ = end;
+}
+
+void FfModel::hear_other(bool is_of_scheduler, Time end) {
+  hear_dlpdu(end);
+  if (is_of_scheduler) token_.reset();
+}
+
+void FfModel::hear_token(Priority least, unsigned duration, Time end) {
+  hear_dlpdu(end);
+  token_ = Token{least, end + fieldbus_dll::octets(configuration_.rules.link, duration)};
+}
+
+void FfModel::hear_probe(Time end) {
+  hear_other(true, end);
+  answer_ = Answer{{configuration_.rules.codes.pr, configuration_.node},
+                   "dlpdu_wrong",
+                   end + response_delay(configuration_.rules.link)};
+}
+
+void FfModel::hear_cd(FfAddress address, Priority priority, Time end) {
+  hear_other(true, end);
+  const auto& codes = configuration_.rules.codes;
+  const Time until = end + response_delay(configuration_.rules.link);
+  const auto found = buffers_.find(address);
+  if (found == buffers_.end() || found->second.writes == 0) {
+    const std::uint8_t why = found == buffers_.end() ? 0 : 1;
+    answer_ = Answer{{static_cast<std::uint8_t>(codes.sr | kFinalUse), why}, "dlpdu_wrong", until};
+    return;
+  }
+  Octets dt3{static_cast<std::uint8_t>(codes.dt3 | kFinalUse | static_cast<unsigned>(priority)),
+             static_cast<std::uint8_t>(address >> 8), static_cast<std::uint8_t>(address & 0xFFU),
+             static_cast<std::uint8_t>(found->second.writes & 0xFFU)};
+  dt3.insert(dt3.end(), found->second.data.begin(), found->second.data.end());
+  answer_ = Answer{std::move(dt3), "published_wrong", until};
+}
+
+// ---- what is said ----
+
+Time FfModel::earliest() const {
+  const auto& link = configuration_.rules.link;
+  return silent_since_ + fieldbus_dll::octets(link, link.inter_pdu_delay_octets);
+}
+
+Time FfModel::latest_of_token() const {
+  return silent_since_ + response_delay(configuration_.rules.link);
+}
+
+Time FfModel::end_of(std::size_t octets, Time begin) const {
+  constexpr std::size_t kCheck = 2;
+  return begin + frame_time(configuration_.rules.link, octets + kCheck);
+}
+
+std::optional<FfModel::Next> FfModel::next_to_send() const {
+  for (const Priority priority : kPrioritiesOfFf) {
+    const auto& queue = queues_.at(number_of(priority));
+    if (priority >= token_->least && !queue.empty()) return Next{priority, queue.front()};
+  }
+  return std::nullopt;
+}
+
+bool FfModel::fits(const Next& next, Time begin) const {
+  return end_of(kHeaderOfDt1 + next.data.size(), begin) <= token_->ends;
+}
+
+std::optional<FfModel::Objection> FfModel::say(const DrivenDlpdu& dlpdu) {
+  const bool is_early = dlpdu.begin + kLinkRounding < earliest();
+  if (is_early) return Objection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
+  if (!answer_ && !token_) return Objection{"speaks_unasked", "silence: nothing that it heard asks for it"};
+  auto objection = answer_ ? say_answer(dlpdu) : say_under_token(dlpdu);
+  silent_since_ = dlpdu.end;
+  return objection;
+}
+
+std::optional<FfModel::Objection> FfModel::say_answer(const DrivenDlpdu& dlpdu) {
+  const Answer answer = *std::exchange(answer_, std::nullopt);
+  if (dlpdu.begin > answer.until + kLinkRounding)
+    return Objection{"answers_too_late", "it begins within V(MRD) x V(ST), or is not sent"};
+  if (dlpdu.octets == answer.octets) return std::nullopt;
+  return Objection{answer.reason, fmt::format("{:02X}", fmt::join(answer.octets, " "))};
+}
+
+std::optional<FfModel::Objection> FfModel::say_under_token(const DrivenDlpdu& dlpdu) {
+  if (dlpdu.end > token_->ends + kLinkRounding)
+    return Objection{"longer_than_the_token", "all that it sends ends within the duration of the token"};
+  if (dlpdu.begin > latest_of_token() + kLinkRounding)
+    return Objection{"answers_too_late", "who holds the token is not silent for longer than V(MRD) x V(ST)"};
+  const auto& codes = configuration_.rules.codes;
+  if (dlpdu.octets == Octets{codes.rt}) return return_token(dlpdu);
+  const unsigned free = kLongUse | kFinalUse | 0x03U;
+  if ((dlpdu.octet(0) & ~free) == codes.dt1) return say_data(dlpdu);
+  return Objection{"unexpected_dlpdu", "DT1 or RT"};
+}
+
+std::optional<FfModel::Objection> FfModel::say_data(const DrivenDlpdu& dlpdu) {
+  const auto next = next_to_send();
+  if (!next) return Objection{"sends_other_data", "RT: nothing may be sent under this token"};
+  const auto priority = static_cast<Priority>(dlpdu.octet(0) & 0x03U);
+  const Octets& octets = dlpdu.octets;
+  const bool is_next =
+      priority == next->priority && octets.size() >= kHeaderOfDt1 &&
+      std::equal(octets.begin() + kHeaderOfDt1, octets.end(), next->data.begin(), next->data.end());
+  if (!is_next) {
+    return Objection{"sends_other_data", fmt::format("the most urgent that waits, {}: {:02X}",
+                                                     text_of(next->priority), fmt::join(next->data, " "))};
+  }
+  queues_.at(number_of(priority)).pop_front();
+  if ((dlpdu.octet(0) & kFinalUse) == 0) return std::nullopt;
+  // Who needs its time between two frames returns the token a little sooner.
+  const auto behind = next_to_send();
+  const Time again = dlpdu.end + response_delay(configuration_.rules.link);
+  const bool is_held_back = behind && fits(*behind, again);
+  token_.reset();
+  if (!is_held_back) return std::nullopt;
+  return Objection{"data_held_back", "more data: there is some, and it fits"};
+}
+
+std::optional<FfModel::Objection> FfModel::return_token(const DrivenDlpdu& dlpdu) {
+  const auto next = next_to_send();
+  const bool is_held_back = next && fits(*next, dlpdu.begin);
+  token_.reset();
+  if (!is_held_back) return std::nullopt;
+  return Objection{"data_held_back", fmt::format("{:02X}", fmt::join(next->data, " "))};
+}
+
+std::optional<FfModel::Objection> FfModel::be_silent() {
+  const auto& link = configuration_.rules.link;
+  const Time slot_later = earliest() + fieldbus_dll::octets(link, link.slot_time_octets);
+  if (const auto answer = std::exchange(answer_, std::nullopt)) {
+    if (slot_later > answer->until) return std::nullopt;
+    return Objection{"no_answer", fmt::format("{:02X}", fmt::join(answer->octets, " "))};
+  }
+  const auto token = std::exchange(token_, std::nullopt);
+  if (!token || end_of(1, slot_later) > token->ends) return std::nullopt;
+  return Objection{"token_not_returned", "the token is returned, by RT or by F"};
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,123 @@
+#include "conformance/fieldbus_dll/ff_model.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::Priority;
+using kernel::Time;
+
+constexpr std::uint8_t kRt = 0x34;
+
+// In octet durations from the start.
+Time octet_at(std::int64_t count) {
+  return kernel::kStart + fieldbus_dll::octets({}, count);
+}
+
+DrivenDlpdu said_at(std::int64_t begin, Octets octets) {
+  const auto on_line = static_cast<std::int64_t>(octets.size()) + 5;
+  return {octet_at(begin), octet_at(begin + on_line), true, true, std::move(octets)};
+}
+
+Octets dt1_said(unsigned control, const Octets& data) {
+  Octets octets{static_cast<std::uint8_t>(control), 0x22, 0x30, 0x21, 0x01};
+  octets.insert(octets.end(), data.begin(), data.end());
+  return octets;
+}
+
+FfModel model_of_device() {
+  fieldbus_dll::FfConfiguration configuration;
+  configuration.node = 0x21;
+  configuration.published = {0x2120};
+  return FfModel(configuration);
+}
+
+std::string reason_in(const std::optional<FfModel::Objection>& objection) {
+  return objection ? objection->reason : "";
+}
+
+TEST(FfModel, AnUnusedTokenIsReturnedInTime) {
+  FfModel model = model_of_device();
+  model.hear_token(Priority::normal, 100, octet_at(10));
+  EXPECT_EQ(reason_in(model.be_silent()), "token_not_returned");
+  model.hear_token(Priority::normal, 100, octet_at(10));
+  EXPECT_EQ(reason_in(model.say(said_at(18, {kRt}))), "");
+  EXPECT_EQ(reason_in(model.say(said_at(40, {kRt}))), "speaks_unasked");
+  model.hear_token(Priority::normal, 100, octet_at(60));
+  EXPECT_EQ(reason_in(model.say(said_at(67, {kRt}))), "answers_too_early");
+  model.hear_token(Priority::normal, 100, octet_at(80));
+  EXPECT_EQ(reason_in(model.say(said_at(113, {kRt}))), "answers_too_late");
+}
+
+TEST(FfModel, AnRtThatDoesNotFitIsNotMissed) {
+  FfModel model = model_of_device();
+  model.hear_token(Priority::normal, 13, octet_at(10));
+  EXPECT_EQ(reason_in(model.be_silent()), "");
+  model.hear_token(Priority::normal, 13, octet_at(10));
+  EXPECT_EQ(reason_in(model.say(said_at(18, {kRt}))), "longer_than_the_token");
+}
+
+TEST(FfModel, WantsTheMostUrgentFirstAndAll) {
+  FfModel model = model_of_device();
+  ASSERT_TRUE(model.submit(Priority::normal, {1}));
+  ASSERT_TRUE(model.submit(Priority::urgent, {2}));
+  EXPECT_FALSE(model.submit(Priority::urgent, Octets(65)));
+  model.hear_token(Priority::normal, 200, octet_at(10));
+  EXPECT_EQ(reason_in(model.say(said_at(18, dt1_said(0xD3, {2})))), "");
+  EXPECT_EQ(reason_in(model.say(said_at(37, dt1_said(0xD6, {1})))), "");
+  EXPECT_EQ(reason_in(model.be_silent()), "");
+}
+
+TEST(FfModel, ObjectsToOtherDataAndToDataHeldBack) {
+  FfModel model = model_of_device();
+  ASSERT_TRUE(model.submit(Priority::normal, {1}) && model.submit(Priority::urgent, {2}));
+  model.hear_token(Priority::normal, 200, octet_at(10));
+  EXPECT_EQ(reason_in(model.say(said_at(18, dt1_said(0xD2, {1})))), "sends_other_data");
+  model.hear_token(Priority::normal, 200, octet_at(100));
+  EXPECT_EQ(reason_in(model.say(said_at(108, {kRt}))), "data_held_back");
+  model.hear_token(Priority::normal, 200, octet_at(200));
+  EXPECT_EQ(reason_in(model.say(said_at(208, dt1_said(0xD7, {2})))), "data_held_back");
+  model.hear_token(Priority::urgent, 200, octet_at(300));
+  EXPECT_EQ(reason_in(model.say(said_at(308, dt1_said(0xD6, {1})))), "sends_other_data");
+}
+
+TEST(FfModel, PublishesTheLastWriteWithItsNumber) {
+  FfModel model = model_of_device();
+  model.hear_cd(0x2120, Priority::normal, octet_at(10));
+  EXPECT_EQ(reason_in(model.say(said_at(18, {0x17, 1}))), "");
+  EXPECT_FALSE(model.write(0x2121, {1}));
+  ASSERT_TRUE(model.write(0x2120, {1}) && model.write(0x2120, {7}));
+  model.hear_cd(0x2120, Priority::urgent, octet_at(40));
+  EXPECT_EQ(reason_in(model.say(said_at(48, {0x57, 0x21, 0x20, 2, 7}))), "");
+  model.hear_cd(0x2120, Priority::urgent, octet_at(80));
+  EXPECT_EQ(reason_in(model.say(said_at(88, {0x57, 0x21, 0x20, 1, 7}))), "published_wrong");
+  model.hear_cd(0x2121, Priority::urgent, octet_at(120));
+  EXPECT_EQ(reason_in(model.be_silent()), "no_answer");
+}
+
+TEST(FfModel, WhatIsHeardTakesBackWhatIsDue) {
+  FfModel model = model_of_device();
+  model.hear_probe(octet_at(10));
+  model.hear_other(false, octet_at(20));
+  EXPECT_EQ(reason_in(model.say(said_at(28, {0x27, 0x21}))), "speaks_unasked");
+  model.hear_token(Priority::normal, 200, octet_at(50));
+  model.hear_other(false, octet_at(60));
+  EXPECT_EQ(reason_in(model.say(said_at(68, {kRt}))), "");
+  model.hear_token(Priority::normal, 200, octet_at(100));
+  model.hear_other(true, octet_at(110));
+  EXPECT_EQ(reason_in(model.be_silent()), "");
+}
+
+TEST(FfModel, NoiseDelaysAnAnswerUntilItIsNotDueAnyMore) {
+  FfModel model = model_of_device();
+  model.hear_probe(octet_at(10));
+  model.hear_noise(octet_at(20));
+  EXPECT_EQ(reason_in(model.say(said_at(28, {0x27, 0x21}))), "");
+  model.hear_probe(octet_at(100));
+  model.hear_noise(octet_at(125));
+  EXPECT_EQ(reason_in(model.be_silent()), "");
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance

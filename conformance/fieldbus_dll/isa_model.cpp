@@ -1,0 +1,203 @@
+#include "conformance/fieldbus_dll/isa_model.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "conformance/fieldbus_dll/link_bench.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::IsaService;
+using fieldbus_dll::Priority;
+using kernel::Duration;
+using kernel::Time;
+
+constexpr std::array kPrioritiesOfIsa{Priority::urgent, Priority::normal, Priority::time_available};
+constexpr std::uint8_t kFinalOfIsa = 0x04;
+constexpr std::size_t kHeaderOfIsa = 3;
+constexpr std::size_t kOctetsOfAnEnd = kHeaderOfIsa + 1;
+
+std::uint8_t control_with(std::uint8_t code, Priority priority) {
+  return static_cast<std::uint8_t>(code | static_cast<unsigned>(priority));
+}
+
+}  // namespace
+
+bool IsaModel::submit(IsaService service, Priority priority, std::uint8_t destination, const Octets& data) {
+  const auto number = static_cast<std::size_t>(priority);
+  if (data.size() > rules_.link.most_data.at(number - 1)) return false;
+  (service == IsaService::reply_data ? replies_ : to_send_)
+      .at(number)
+      .push_back({service == IsaService::compel, priority, destination, data});
+  return true;
+}
+
+// ---- what was heard ----
+
+// A DLPDU came in place of a reply, and nothing else comes of it: the station has no token any more.
+bool IsaModel::is_another_dlpdu_for_waiting(Time end) {
+  silent_since_ = end;
+  answer_.reset();
+  if (!std::exchange(awaited_, std::nullopt)) return false;
+  token_.reset();
+  return true;
+}
+
+void IsaModel::hear_other(bool is_of_scheduler, Time end) {
+  if (!is_another_dlpdu_for_waiting(end) && is_of_scheduler) token_.reset();
+}
+
+void IsaModel::hear_token(Priority least, std::optional<unsigned> duration, std::uint8_t from, Time end) {
+  if (is_another_dlpdu_for_waiting(end)) return;
+  token_ = Token{from, least, {}};
+  if (duration) token_->ends = end + times(*duration);
+}
+
+void IsaModel::hear_cd(Priority least, std::uint8_t from, Time end) {
+  if (is_another_dlpdu_for_waiting(end)) return;
+  // Who holds a token is not compelled; whose token is over holds none.
+  if (token_ && token_->ends && *token_->ends <= end) token_.reset();
+  if (token_) return;
+  answer_ = Answer{least, from, end + times(rules_.reply_forming_octets)};
+}
+
+void IsaModel::hear_dt(std::uint8_t from, Time end) {
+  if (awaited_ && awaited_->node == from) {
+    awaited_.reset();
+    silent_since_ = end;
+    return;
+  }
+  hear_other(false, end);
+}
+
+// ---- what is said ----
+
+Duration IsaModel::frame_of(std::size_t octets) const {
+  constexpr std::size_t kCheck = 2;
+  return frame_time(rules_.link, octets + kCheck);
+}
+
+Time IsaModel::earliest() const {
+  const Time silent = silent_since_ + times(rules_.link.inter_pdu_delay_octets);
+  return awaited_ ? std::max(awaited_->until, silent) : silent;
+}
+
+std::deque<IsaModel::Request>* IsaModel::most_urgent(Queues& queues, Priority least) {
+  for (const Priority priority : kPrioritiesOfIsa) {
+    auto& queue = queues.at(static_cast<std::size_t>(priority));
+    if (priority >= least && !queue.empty()) return &queue;
+  }
+  return nullptr;
+}
+
+std::optional<std::uint8_t> IsaModel::compelled() const {
+  if (!awaited_) return std::nullopt;
+  return awaited_->node;
+}
+
+std::optional<IsaModel::Objection> IsaModel::say(const DrivenDlpdu& dlpdu) {
+  const Time begin = dlpdu.begin + kLinkRounding;
+  if (awaited_ && begin < awaited_->until)
+    return Objection{"does_not_wait_for_reply", "V(RR) of silence behind its CD, or a reply"};
+  if (begin < earliest()) return Objection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
+  if (!answer_ && !token_) return Objection{"speaks_unasked", "silence: nothing that it heard asks for it"};
+  auto objection = answer_ ? say_reply(dlpdu) : say_under_token(dlpdu);
+  silent_since_ = dlpdu.end;
+  return objection;
+}
+
+Octets IsaModel::expected_reply() {
+  auto* const queue = most_urgent(replies_, answer_->least);
+  const Priority priority = queue == nullptr ? answer_->least : queue->front().priority;
+  Octets dt{static_cast<std::uint8_t>(control_with(rules_.codes.dt, priority) | kFinalOfIsa), answer_->to,
+            address_};
+  if (queue == nullptr) return dt;
+  dt.insert(dt.end(), queue->front().data.begin(), queue->front().data.end());
+  queue->pop_front();
+  return dt;
+}
+
+std::optional<IsaModel::Objection> IsaModel::say_reply(const DrivenDlpdu& dlpdu) {
+  const Octets expected = expected_reply();
+  const Time until = std::exchange(answer_, std::nullopt)->until;
+  if (dlpdu.begin > until + kLinkRounding)
+    return Objection{"replies_too_late", "it begins within V(FD), or is not sent"};
+  if (dlpdu.octets == expected) return std::nullopt;
+  return Objection{"reply_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
+}
+
+bool IsaModel::fits(const Request& request, Time begin) const {
+  if (!token_->ends) return true;
+  Duration needed = times(rules_.link.inter_pdu_delay_octets) + frame_of(kOctetsOfAnEnd);
+  if (request.compels) {
+    const std::size_t reply = most_data(rules_.link, request.priority);
+    needed += frame_of(kHeaderOfIsa) + times(rules_.reply_wait_octets) + frame_of(kHeaderOfIsa + reply);
+  } else {
+    needed += frame_of(kHeaderOfIsa + request.data.size());
+  }
+  return begin + needed <= *token_->ends + kLinkRounding;
+}
+
+std::optional<IsaModel::Objection> IsaModel::say_under_token(const DrivenDlpdu& dlpdu) {
+  const Time since = awaited_ ? earliest() : silent_since_;
+  awaited_.reset();
+  if (dlpdu.begin > since + times(rules_.reply_wait_octets) + kLinkRounding)
+    return Objection{"answers_too_late", "who holds the token is not silent for longer than V(RR)"};
+  if (token_->ends && dlpdu.end > *token_->ends + kLinkRounding)
+    return Objection{"longer_than_the_token", "all that it sends ends within the duration of the token"};
+  return (dlpdu.octet(0) & 0xF0U) == rules_.codes.ee ? say_end(dlpdu) : say_request(dlpdu);
+}
+
+std::optional<IsaModel::Objection> IsaModel::say_request(const DrivenDlpdu& dlpdu) {
+  if (!token_->ends && token_->is_used)
+    return Objection{"sends_two_frames", "EE: under an ET there is one frame"};
+  auto* const queue = most_urgent(to_send_, token_->least);
+  if (queue == nullptr) return Objection{"sends_other_data", "EE: nothing may be sent under this token"};
+  const Request request = queue->front();
+  Octets expected{control_with(request.compels ? rules_.codes.cd : rules_.codes.du, request.priority),
+                  request.destination, address_};
+  expected.insert(expected.end(), request.data.begin(), request.data.end());
+  Octets said = dlpdu.octets;
+  // Whether a DU has F is not said anywhere.
+  if (!said.empty() && !request.compels) said[0] &= static_cast<std::uint8_t>(~kFinalOfIsa);
+  if (said != expected) return Objection{"sends_other_data", fmt::format("{:02X}", fmt::join(expected, " "))};
+  if (!fits(request, dlpdu.begin))
+    return Objection{"sends_without_time", "EE: what must follow does not end within the duration"};
+  queue->pop_front();
+  token_->is_used = true;
+  if (request.compels) awaited_ = Awaited{request.destination, dlpdu.end + times(rules_.reply_wait_octets)};
+  return std::nullopt;
+}
+
+std::optional<IsaModel::Objection> IsaModel::say_end(const DrivenDlpdu& dlpdu) {
+  const bool is_done = !token_->ends && token_->is_used;
+  auto* const queue = most_urgent(to_send_, token_->least);
+  if (!is_done && queue != nullptr && fits(queue->front(), dlpdu.begin))
+    return Objection{"data_held_back", "the most urgent that waits: it fits"};
+  const std::uint8_t reason = is_done ? 2 : queue == nullptr ? 0 : 1;
+  const Octets expected{static_cast<std::uint8_t>(rules_.codes.ee | kFinalOfIsa), token_->from, address_,
+                        reason};
+  token_.reset();
+  if (dlpdu.octets == expected) return std::nullopt;
+  return Objection{"end_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
+}
+
+std::optional<IsaModel::Objection> IsaModel::be_silent() {
+  const Time slot_later = earliest() + times(rules_.link.slot_time_octets);
+  awaited_.reset();
+  if (answer_ && slot_later <= answer_->until) {
+    const Octets expected = expected_reply();
+    answer_.reset();
+    return Objection{"no_reply", fmt::format("{:02X}", fmt::join(expected, " "))};
+  }
+  answer_.reset();
+  const auto token = std::exchange(token_, std::nullopt);
+  if (!token || (token->ends && slot_later + frame_of(kOctetsOfAnEnd) > *token->ends)) return std::nullopt;
+  return Objection{"token_not_returned", "EE"};
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,29 @@
+#include "conformance/fieldbus_dll/isa_sequence_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include "conformance/fieldbus_dll/sequence_checks.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+const SequenceChecks& isa_dle_checks() {
+  static const SequenceChecks checks{"isa_dle", isa_dle_sequence_role()};
+  return checks;
+}
+
+TEST(IsaDleSequence, TheReferenceFollowsTheModel) {
+  isa_dle_checks().expect_reference_follows(2'000);
+}
+
+TEST(IsaDleSequence, FindsEachStationForCheckWithFewCommands) {
+  isa_dle_checks().expect_finds_each(8, 4'000, 5);
+}
+
+// Else it would be no fault of sequences.
+TEST(IsaDleSequence, NoSingleCommandTellsThem) {
+  isa_dle_checks().expect_single_commands_pass(250);
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance

@@ -1,0 +1,36 @@
+#include "conformance/fieldbus_dll/link_sequence.hpp"
+
+#include <array>
+#include <utility>
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::array<std::int64_t, 5> kLinkSilences{0, 4, kLinkSettles, kLinkSettles, kLinkSettles};
+
+}  // namespace
+
+SequenceNumber link_silence() {
+  return {"silence", 0, kLinkSettles, kLinkSettles, kLinkSilences, true};
+}
+
+bool send_link_command(LinkBench& bench, const Octets& octets, const SequenceCommand& command) {
+  const line::Levels whole = half_bits_of_frame(with_frame_check(octets));
+  line::Levels half_bits = whole;
+  const std::size_t units = whole.size() / kHalfBitsOfAnOctet - 1;
+  // What is dropped is low whatever was flipped in it.
+  for (const SequenceFaultKind kind : {SequenceFaultKind::flip, SequenceFaultKind::drop}) {
+    for (const SequenceFault& fault : command.faults) {
+      if (fault.kind != kind || fault.unit >= units) continue;
+      const std::size_t first = (fault.unit + 1U) * kHalfBitsOfAnOctet;
+      if (kind == SequenceFaultKind::drop) half_bits.fill(first, first + kHalfBitsOfAnOctet, false);
+      if (kind == SequenceFaultKind::flip && fault.value < kHalfBitsOfAnOctet)
+        half_bits.flip(first + fault.value);
+    }
+  }
+  const bool is_whole = half_bits == whole;
+  bench.send_half_bits(std::move(half_bits));
+  return is_whole;
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include "conformance/fieldbus_dll/link_bench.hpp"
+#include "conformance/sequence.hpp"
+
+// What sequences of every profile of the data link have in common: the silence behind a command, and how it
+// is put on the line with its faults. A unit is an octet of a frame, its delimiters included; the preamble is
+// none, because of a frame with a part of it any receiver may hear the rest.
+namespace fieldproof::conformance {
+
+inline constexpr unsigned kHalfBitsOfAnOctet = 16;
+
+// The tester waits until the station has nothing more to say. Else it goes on after so many octet durations,
+// less than V(MID), before the station may begin.
+inline constexpr std::int64_t kLinkSettles = 100;
+
+// Behind what the command sends, to the next.
+SequenceNumber link_silence();
+
+// Sends the octets in a frame, their check behind them. False: with faults, after which it is no frame to
+// anybody.
+bool send_link_command(LinkBench& bench, const Octets& octets, const SequenceCommand& command);
+
+}  // namespace fieldproof::conformance
