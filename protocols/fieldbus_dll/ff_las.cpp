@@ -112,7 +112,7 @@ void FfLas::on_activity(segment::PortIndex port, bool begins, kernel::Time now) 
   FfStation::on_activity(port, begins, now);
   // Who has begun to answer may fall silent no longer than who has not.
   const bool is_awaiting = las_ == FfLasState::awaiting_holder || las_ == FfLasState::awaiting_reply ||
-                           las_ == FfLasState::awaiting_probe;
+                           las_ == FfLasState::awaiting_probe || las_ == FfLasState::transferring;
   if (!begins && is_awaiting) answer_until_ = std::max(answer_until_, now + response_delay(rules().link));
 }
 

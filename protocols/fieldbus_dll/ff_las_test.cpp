@@ -155,6 +155,29 @@ TEST_F(FfLasTest, HandsTheLinkOver) {
   EXPECT_NE(master_users_[1]->take().find("transfer failed 51\n"), std::string::npos);
 }
 
+// What it may have begun is nobody's any more when the line is silent, and no sooner.
+TEST_F(FfLasTest, AnHeirThatCannotBeUnderstoodMayGoOn) {
+  add_master(master(0x10, true));
+  fault::ScriptedChannel channel;
+  link_.place(0).set_channel(&channel);
+  link_.run_to(130);
+  masters_[0].order_transfer(0x33, link_.now());
+  link_.refresh();
+  while (link_.heard().find("TL 33") == std::string::npos) link_.wait(1);
+  link_.wait(20);
+  constexpr std::size_t kInAnOctet = 40;
+  channel.on_next().flip(kInAnOctet);
+  FfDlpdu long_one = activation(0x22);
+  long_one.data.resize(30);
+  link_.say(long_one);
+  link_.heard();
+  link_.wait(31);
+  EXPECT_EQ(link_.heard(), "");
+  link_.wait(60);
+  EXPECT_NE(link_.heard(), "");
+  EXPECT_NE(master_users_[0]->take().find("transfer failed 51\n"), std::string::npos);
+}
+
 TEST_F(FfLasTest, LeavesWhenAnotherIsTheScheduler) {
   add_master(master(0x10, true));
   link_.run_to(130);
