@@ -69,7 +69,9 @@ std::string priorities_text(const TargetRun& run) {
 
 bool has_model(const TokenTraffic& traffic) {
   const auto& first = traffic.nodes.front();
-  return traffic.schedule.empty() && std::ranges::all_of(traffic.nodes, [&](const auto& node) {
+  const bool has_its_rule = traffic.rule == fieldbus_dll::TokenRule::all_or_urgent;
+  return has_its_rule && traffic.schedule.empty() &&
+         std::ranges::all_of(traffic.nodes, [&](const auto& node) {
            if (node.overhead != first.overhead || node.streams[fieldbus_dll::kNormal].per_ms > 0)
              return false;
            return std::ranges::equal(node.streams, first.streams, [](const auto& a, const auto& b) {
@@ -80,7 +82,8 @@ bool has_model(const TokenTraffic& traffic) {
 
 std::string model_text(const TokenTraffic& traffic, kernel::Duration target) {
   if (!has_model(traffic))
-    return "  model           none: it has equal nodes, two priorities and no schedule\n";
+    return "  model           none: it has equal nodes, two priorities, tokens for all or urgent data, no "
+           "schedule\n";
   const auto& streams = traffic.nodes.front().streams;
   fieldbus_dll::UrgentTraffic equal;
   equal.urgent_queues = equal.available_queues = static_cast<unsigned>(traffic.nodes.size());

@@ -11,10 +11,11 @@ namespace {
 class PlanVerb : public ProgramFixture {
  protected:
   Called plan(const std::string& bound, const std::string& per_s = "10") const {
-    write("network.json", R"({"name": "four nodes", "bit_rate": "1 Mbit/s", "nodes": [{"count": 4,
+    write("network.json",
+          R"({"name": "four nodes", "bit_rate": "1 Mbit/s", "rule": "all_or_urgent", "nodes": [{"count": 4,
           "overhead": "1 ms", "urgent": {"octets": 75, "per_s": 10},
           "time_available": {"octets": 250, "per_s": )" +
-                              per_s + R"(}}], "urgent_delay": )" + bound + "}");
+              per_s + R"(}}], "urgent_delay": )" + bound + "}");
     return call({"plan", "network.json"});
   }
 };

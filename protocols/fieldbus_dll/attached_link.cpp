@@ -108,15 +108,17 @@ void AttachedLink::on_activity(bool begins, kernel::Time now) {
 bool AttachedLink::ask(const Octets& request, kernel::Time now) {
   std::vector<iut::Character> characters;
   for (const std::uint8_t octet : request) characters.push_back({now, now, octet});
-  is_refused_ = false;
-  attached_.call(now, [&](iut::Device& device) { device.receive(kUserPort, characters, now); });
-  return !is_refused_;
+  return is_taken(
+      [&] { attached_.call(now, [&](iut::Device& device) { device.receive(kUserPort, characters, now); }); });
 }
 
 bool AttachedLink::start(kernel::Time now) {
-  is_refused_ = false;
-  attached_.set_power(true, now);
-  return !is_refused_;
+  return is_taken([&] { attached_.set_power(true, now); });
+}
+
+void AttachedLink::refuse() {
+  if (!is_asking_) iut::refuse_impossible("refuses something, and nothing is asked of it");
+  is_refused_ = true;
 }
 
 void AttachedLink::on_time(kernel::Time now) {

@@ -99,7 +99,8 @@ class AttachedLink {
   bool ask(const Octets& request, kernel::Time now);
   // The supply, which begins and ends what the station does.
   bool start(kernel::Time now);
-  void refuse() { is_refused_ = true; }
+  // What is asked for at the moment is not taken. Misbehaviour where nothing is.
+  void refuse();
 
   void on_time(kernel::Time now);
   kernel::Time next_time() const;
@@ -111,6 +112,14 @@ class AttachedLink {
   static Octets told_octets(const iut::Transmission& transmission);
 
  private:
+  template <typename Ask>
+  bool is_taken(Ask&& ask) {
+    is_asking_ = true;
+    is_refused_ = false;
+    ask();
+    is_asking_ = false;
+    return !is_refused_;
+  }
   bool hears_frames() const { return attached_.unit_kind() == iut::UnitKind::telegrams; }
   void tell_frame(const line::Waveform& reception);
   line::Waveform wave_of(std::span<const std::uint8_t> octets, kernel::Time start) const;
@@ -121,6 +130,7 @@ class AttachedLink {
   LinkRules rules_;
   line::DelimitedFrameCode code_;
   segment::Port* line_ = nullptr;
+  bool is_asking_ = false;
   bool is_refused_ = false;
   kernel::Time driven_until_ = kernel::kStart;
   std::deque<line::Waveform> ahead_;  // whose time has not come yet

@@ -44,7 +44,8 @@ bool IsaDle::submit(const IsaRequest& request, kernel::Time) {
       request.service == IsaService::reply_data ||
       (request.destination >= rules().first_address && request.destination <= rules().last_address) ||
       (request.service == IsaService::unit_data && request.destination == rules().everybody);
-  if (!is_address || is_too_long(request)) return false;
+  const bool has_stray_data = request.service == IsaService::compel && !request.data.empty();
+  if (!is_address || has_stray_data || is_too_long(request)) return false;
   (request.service == IsaService::reply_data ? replies_ : to_send_).push(request);
   return true;
 }

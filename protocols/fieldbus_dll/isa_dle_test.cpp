@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "protocols/fieldbus_dll/test_link.hpp"
 
 namespace fieldproof::fieldbus_dll {
@@ -160,6 +162,13 @@ TEST_F(IsaDleTest, AReplyThatAUserPromisedAndDoesNotGiveIsNone) {
 }
 
 // ---- whatever the state ----
+
+TEST_F(IsaDleTest, ACdThatShouldCarryDataIsRefused) {
+  EXPECT_FALSE(dle_.submit({IsaService::compel, Priority::normal, kPeer, {0xAB}}, link_.now()));
+  link_.say(token(IsaType::es, Priority::normal, kNode, 2'000));
+  link_.wait(100);
+  EXPECT_NE(link_.heard().find("EE"), std::string::npos);
+}
 
 TEST_F(IsaDleTest, WhatIsNoDlpduIsAsIfNothingWere) {
   link_.say(

@@ -3,13 +3,10 @@
 #include <filesystem>
 #include <string>
 
+#include "harness/config/document.hpp"
 #include "protocols/fieldbus_dll/target_plan.hpp"
 
 // A network whose target rotation time is to be planned, as a file has it (token_network.schema.json).
-namespace fieldproof::config {
-class Document;
-}
-
 namespace fieldproof::fieldbus_dll {
 
 struct TokenNetwork {
