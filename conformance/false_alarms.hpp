@@ -7,24 +7,12 @@
 #include <vector>
 
 #include "conformance/runner.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 // For tests of suites: the references pass, whatever is drawn.
 namespace fieldproof::conformance {
 
-// Sanitizers make a run some twenty times slower; what they look for does not hide in the seeds.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define FIELDPROOF_UNDER_SANITIZER
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define FIELDPROOF_UNDER_SANITIZER
-#endif
-#endif
-#ifdef FIELDPROOF_UNDER_SANITIZER
-inline constexpr std::uint64_t kManySeeds = 3;
-#undef FIELDPROOF_UNDER_SANITIZER
-#else
-inline constexpr std::uint64_t kManySeeds = 100;
-#endif
+inline constexpr std::uint64_t kManySeeds = kernel::kIsSanitized ? 3 : 100;
 
 // The cases that the references of a suite do not pass with a seed, at quick volume.
 inline std::vector<std::string> false_alarms(const Suite& suite, std::uint64_t seed) {

@@ -6,16 +6,13 @@
 #include <utility>
 
 #include "harness/kernel/error.hpp"
+#include "harness/kernel/sanitized.hpp"
 #include "protocols/fieldbus_dll/token_rotation.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr kernel::Duration kLong = 10 * kernel::kSecond;
-#else
-constexpr kernel::Duration kLong = 40 * kernel::kSecond;
-#endif
+constexpr kernel::Duration kLong = (kernel::kIsSanitized ? 5 : 40) * kernel::kSecond;
 
 UrgentTraffic traffic_of(double load, int target_us) {
   return paper_traffic(load, 1, 1, target_us * kernel::kMicrosecond);
