@@ -3,6 +3,7 @@
 #include "conformance/fieldbus_dll/deviant_table.hpp"
 #include "conformance/fieldbus_dll/ff_device_deviants.hpp"
 #include "conformance/fieldbus_dll/ff_las_deviants.hpp"
+#include "conformance/fieldbus_dll/ff_las_sequence_deviants.hpp"
 #include "conformance/fieldbus_dll/ff_sequence_deviants.hpp"
 
 namespace fieldproof::conformance {
@@ -11,6 +12,7 @@ namespace {
 using fieldbus_dll::FfConfiguration;
 using fieldbus_dll::FfDevice;
 using fieldbus_dll::FfDlpdu;
+using fieldbus_dll::FfLas;
 using fieldbus_dll::FfRules;
 using fieldbus_dll::FfStation;
 using fieldbus_dll::FfType;
@@ -102,7 +104,7 @@ std::vector<FfRow> ff_sequence_rows() {
       {"data_ends_token", "", "drops the token when it hears data", FfTable::station<DataEndsToken>()},
       {"deaf_behind_fault", "", "misses what comes behind a faulty frame",
        FfTable::station<DeafBehindFault>()},
-      {"newest_first", "", "sends what was submitted last", FfTable::station<NewestFirst>()},
+      {"newest_first", "", "sends what was submitted last", FfTable::station<NewestFirst<FfStation>>()},
       {"least_of_last_token", "", "sends by the priority of the token before",
        FfTable::station<LeastOfLastToken>()},
       {"duration_of_last_token_too", "", "adds the duration of the token before",
@@ -220,6 +222,33 @@ std::vector<FfRow> ff_claim_rows() {
   };
 }
 
+std::vector<FfRow> ff_las_sequence_rows() {
+  using namespace ff_deviants;
+  std::vector<FfRow> rows{
+      {"misses_of_all_count", "", "counts the tokens that nodes miss in a row, whoever they are",
+       FfTable::station<MissesOfAllCount>()},
+      {"misses_forgiven_by_others", "", "forgets all misses when any node uses its token",
+       FfTable::station<MissesForgivenByOthers>()},
+      {"misses_survive_removal", "", "removes who was removed before behind one miss",
+       FfTable::station<MissesSurviveRemoval>()},
+      {"removed_never_found_again", "", "takes no probe response of who was removed",
+       FfTable::station<RemovedNeverFoundAgain>()},
+      {"returning_node_not_activated", "", "does not activate who was removed before",
+       FfTable::station<ReturningNodeNotActivated>()},
+      {"only_first_change_told", "", "tells the live list once", FfTable::station<OnlyFirstChangeTold>()},
+      {"unanswered_item_dropped", "", "compels no more what was not answered twice",
+       FfTable::station<UnansweredItemDropped>()},
+      {"all_admitted_behind_two_slow", "", "admits all data at once behind two slow rotations",
+       FfTable::station<AllAdmittedBehindTwoSlow>()},
+      {"second_time_request_ignored", "", "tells the time to who asks once",
+       FfTable::station<SecondTimeRequestIgnored>()},
+      {"own_data_newest_first", "", "sends what its user submitted last",
+       FfTable::station<NewestFirst<FfLas>>()},
+  };
+  for (FfRow& row : rows) row.is_for_check = true;
+  return rows;
+}
+
 const FfTable& ff_table() {
   static const FfTable table = [] {
     FfTable::Role device{"ff_device", {}};
@@ -227,7 +256,8 @@ const FfTable& ff_table() {
       for (FfRow& row : group()) device.rows.push_back(std::move(row));
     }
     FfTable::Role las{"ff_las", {}};
-    for (auto group : {ff_schedule_rows, ff_circulation_rows, ff_live_list_rows, ff_claim_rows}) {
+    for (auto group :
+         {ff_schedule_rows, ff_circulation_rows, ff_live_list_rows, ff_claim_rows, ff_las_sequence_rows}) {
       for (FfRow& row : group()) las.rows.push_back(std::move(row));
     }
     return FfTable{{std::move(device), std::move(las)}};

@@ -120,46 +120,49 @@ bool FfModel::fits(const Next& next, Time begin) const {
   return end_of(kHeaderOfDt1 + next.data.size(), begin) <= token_->ends;
 }
 
-std::optional<FfModel::Objection> FfModel::say(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> FfModel::say(const DrivenDlpdu& dlpdu) {
   const bool is_early = dlpdu.begin + kLinkRounding < earliest();
-  if (is_early) return Objection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
-  if (!answer_ && !token_) return Objection{"speaks_unasked", "silence: nothing that it heard asks for it"};
+  if (is_early) return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
+  if (!answer_ && !token_)
+    return LinkObjection{"speaks_unasked", "silence: nothing that it heard asks for it"};
   auto objection = answer_ ? say_answer(dlpdu) : say_under_token(dlpdu);
   silent_since_ = dlpdu.end;
   return objection;
 }
 
-std::optional<FfModel::Objection> FfModel::say_answer(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> FfModel::say_answer(const DrivenDlpdu& dlpdu) {
   const Answer answer = *std::exchange(answer_, std::nullopt);
   if (dlpdu.begin > answer.until + kLinkRounding)
-    return Objection{"answers_too_late", "it begins within V(MRD) x V(ST), or is not sent"};
+    return LinkObjection{"answers_too_late", "it begins within V(MRD) x V(ST), or is not sent"};
   if (dlpdu.octets == answer.octets) return std::nullopt;
-  return Objection{answer.reason, fmt::format("{:02X}", fmt::join(answer.octets, " "))};
+  return LinkObjection{answer.reason, fmt::format("{:02X}", fmt::join(answer.octets, " "))};
 }
 
-std::optional<FfModel::Objection> FfModel::say_under_token(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> FfModel::say_under_token(const DrivenDlpdu& dlpdu) {
   if (dlpdu.end > token_->ends + kLinkRounding)
-    return Objection{"longer_than_the_token", "all that it sends ends within the duration of the token"};
+    return LinkObjection{"longer_than_the_token", "all that it sends ends within the duration of the token"};
   if (dlpdu.begin > latest_of_token() + kLinkRounding)
-    return Objection{"answers_too_late", "who holds the token is not silent for longer than V(MRD) x V(ST)"};
+    return LinkObjection{"answers_too_late",
+                         "who holds the token is not silent for longer than V(MRD) x V(ST)"};
   const auto& codes = configuration_.rules.codes;
   if (dlpdu.octets == Octets{codes.rt}) return return_token(dlpdu);
   const unsigned free = kLongUse | kFinalUse | 0x03U;
   if ((dlpdu.octet(0) & ~free) == codes.dt1) return say_data(dlpdu);
-  return Objection{"unexpected_dlpdu", "DT1 or RT"};
+  return LinkObjection{"unexpected_dlpdu", "DT1 or RT"};
 }
 
-std::optional<FfModel::Objection> FfModel::say_data(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> FfModel::say_data(const DrivenDlpdu& dlpdu) {
   const auto next = next_to_send();
-  if (!next) return Objection{"sends_other_data", "RT: nothing may be sent under this token"};
+  if (!next) return LinkObjection{"sends_other_data", "RT: nothing may be sent under this token"};
   const auto priority = static_cast<Priority>(dlpdu.octet(0) & 0x03U);
   const Octets& octets = dlpdu.octets;
   const bool is_next =
       priority == next->priority && octets.size() >= kHeaderOfDt1 &&
       std::equal(octets.begin() + kHeaderOfDt1, octets.end(), next->data.begin(), next->data.end());
   if (!is_next) {
-    return Objection{"sends_other_data", fmt::format("the most urgent that waits, {}: {:02X}",
-                                                     text_of(next->priority), fmt::join(next->data, " "))};
+    return LinkObjection{"sends_other_data",
+                         fmt::format("the most urgent that waits, {}: {:02X}", text_of(next->priority),
+                                     fmt::join(next->data, " "))};
   }
   queues_.at(number_of(priority)).pop_front();
   if ((dlpdu.octet(0) & kFinalUse) == 0) return std::nullopt;
@@ -169,27 +172,27 @@ std::optional<FfModel::Objection> FfModel::say_data(const DrivenDlpdu& dlpdu) {
   const bool is_held_back = behind && fits(*behind, again);
   token_.reset();
   if (!is_held_back) return std::nullopt;
-  return Objection{"data_held_back", "more data: there is some, and it fits"};
+  return LinkObjection{"data_held_back", "more data: there is some, and it fits"};
 }
 
-std::optional<FfModel::Objection> FfModel::return_token(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> FfModel::return_token(const DrivenDlpdu& dlpdu) {
   const auto next = next_to_send();
   const bool is_held_back = next && fits(*next, dlpdu.begin);
   token_.reset();
   if (!is_held_back) return std::nullopt;
-  return Objection{"data_held_back", fmt::format("{:02X}", fmt::join(next->data, " "))};
+  return LinkObjection{"data_held_back", fmt::format("{:02X}", fmt::join(next->data, " "))};
 }
 
-std::optional<FfModel::Objection> FfModel::be_silent() {
+std::optional<LinkObjection> FfModel::be_silent() {
   const auto& link = configuration_.rules.link;
   const Time slot_later = earliest() + fieldbus_dll::octets(link, link.slot_time_octets);
   if (const auto answer = std::exchange(answer_, std::nullopt)) {
     if (slot_later > answer->until) return std::nullopt;
-    return Objection{"no_answer", fmt::format("{:02X}", fmt::join(answer->octets, " "))};
+    return LinkObjection{"no_answer", fmt::format("{:02X}", fmt::join(answer->octets, " "))};
   }
   const auto token = std::exchange(token_, std::nullopt);
   if (!token || end_of(1, slot_later) > token->ends) return std::nullopt;
-  return Objection{"token_not_returned", "the token is returned, by RT or by F"};
+  return LinkObjection{"token_not_returned", "the token is returned, by RT or by F"};
 }
 
 }  // namespace fieldproof::conformance

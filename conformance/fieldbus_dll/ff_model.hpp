@@ -8,6 +8,7 @@
 #include <string>
 
 #include "conformance/fieldbus_dll/driven_dlpdus.hpp"
+#include "conformance/fieldbus_dll/link_objection.hpp"
 #include "protocols/fieldbus_dll/ff_device.hpp"
 
 // What a live basic device must say, told from what it heard and what its user wants: a model of the rules
@@ -28,11 +29,6 @@ namespace fieldproof::conformance {
 
 class FfModel {
  public:
-  // What does not follow from what was heard.
-  struct Objection {
-    std::string reason;
-    std::string expected;  // in words
-  };
   using Priority = fieldbus_dll::Priority;
 
   explicit FfModel(const fieldbus_dll::FfConfiguration& configuration);
@@ -51,9 +47,9 @@ class FfModel {
   void hear_noise(kernel::Time end) { silent_since_ = end; }
 
   // ---- what the station says ----
-  std::optional<Objection> say(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> say(const DrivenDlpdu& dlpdu);
   // It says nothing more, for as long as it may wait.
-  std::optional<Objection> be_silent();
+  std::optional<LinkObjection> be_silent();
 
  private:
   struct Token {
@@ -81,10 +77,10 @@ class FfModel {
   kernel::Time end_of(std::size_t octets, kernel::Time begin) const;
   std::optional<Next> next_to_send() const;
   bool fits(const Next& next, kernel::Time begin) const;
-  std::optional<Objection> say_answer(const DrivenDlpdu& dlpdu);
-  std::optional<Objection> say_under_token(const DrivenDlpdu& dlpdu);
-  std::optional<Objection> say_data(const DrivenDlpdu& dlpdu);
-  std::optional<Objection> return_token(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> say_answer(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> say_under_token(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> say_data(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> return_token(const DrivenDlpdu& dlpdu);
 
   fieldbus_dll::FfConfiguration configuration_;
   std::array<std::deque<Octets>, 4> queues_;  // by priority

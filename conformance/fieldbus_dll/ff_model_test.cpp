@@ -33,7 +33,7 @@ FfModel model_of_device() {
   return FfModel(configuration);
 }
 
-std::string reason_in(const std::optional<FfModel::Objection>& objection) {
+std::string reason_in(const std::optional<LinkObjection>& objection) {
   return objection ? objection->reason : "";
 }
 

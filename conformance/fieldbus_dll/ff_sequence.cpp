@@ -220,8 +220,7 @@ class FfSequenceRun {
     object(model_.be_silent(), "silence", bench_.now());
   }
 
-  void object(const std::optional<FfModel::Objection>& objection, const std::string& actual,
-              kernel::Time when) {
+  void object(const std::optional<LinkObjection>& objection, const std::string& actual, kernel::Time when) {
     if (objection) judge_.fail(objection->reason, {{objection->expected}, actual, when});
   }
 

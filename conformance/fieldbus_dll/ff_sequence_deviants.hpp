@@ -52,11 +52,12 @@ class DeafBehindFault : public FfStation {
 
 // ---- what a token leaves behind ----
 
-class NewestFirst : public FfStation {
-  using FfStation::FfStation;
+template <typename Base>
+class NewestFirst : public Base {
+  using Base::Base;
   bool submit(const FfRequest& request, Time now) override {
-    if (!FfStation::submit(request, now)) return false;
-    auto& queue = queues().queue(request.priority);
+    if (!Base::submit(request, now)) return false;
+    auto& queue = this->queues().queue(request.priority);
     std::rotate(queue.begin(), queue.end() - 1, queue.end());
     return true;
   }

@@ -99,12 +99,14 @@ std::optional<std::uint8_t> IsaModel::compelled() const {
   return awaited_->node;
 }
 
-std::optional<IsaModel::Objection> IsaModel::say(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> IsaModel::say(const DrivenDlpdu& dlpdu) {
   const Time begin = dlpdu.begin + kLinkRounding;
   if (awaited_ && begin < awaited_->until)
-    return Objection{"does_not_wait_for_reply", "V(RR) of silence behind its CD, or a reply"};
-  if (begin < earliest()) return Objection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
-  if (!answer_ && !token_) return Objection{"speaks_unasked", "silence: nothing that it heard asks for it"};
+    return LinkObjection{"does_not_wait_for_reply", "V(RR) of silence behind its CD, or a reply"};
+  if (begin < earliest())
+    return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
+  if (!answer_ && !token_)
+    return LinkObjection{"speaks_unasked", "silence: nothing that it heard asks for it"};
   auto objection = answer_ ? say_reply(dlpdu) : say_under_token(dlpdu);
   silent_since_ = dlpdu.end;
   return objection;
@@ -121,13 +123,13 @@ Octets IsaModel::expected_reply() {
   return dt;
 }
 
-std::optional<IsaModel::Objection> IsaModel::say_reply(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> IsaModel::say_reply(const DrivenDlpdu& dlpdu) {
   const Octets expected = expected_reply();
   const Time until = std::exchange(answer_, std::nullopt)->until;
   if (dlpdu.begin > until + kLinkRounding)
-    return Objection{"replies_too_late", "it begins within V(FD), or is not sent"};
+    return LinkObjection{"replies_too_late", "it begins within V(FD), or is not sent"};
   if (dlpdu.octets == expected) return std::nullopt;
-  return Objection{"reply_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
+  return LinkObjection{"reply_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
 }
 
 bool IsaModel::fits(const Request& request, Time begin) const {
@@ -142,21 +144,21 @@ bool IsaModel::fits(const Request& request, Time begin) const {
   return begin + needed <= *token_->ends + kLinkRounding;
 }
 
-std::optional<IsaModel::Objection> IsaModel::say_under_token(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> IsaModel::say_under_token(const DrivenDlpdu& dlpdu) {
   const Time since = awaited_ ? earliest() : silent_since_;
   awaited_.reset();
   if (dlpdu.begin > since + times(rules_.reply_wait_octets) + kLinkRounding)
-    return Objection{"answers_too_late", "who holds the token is not silent for longer than V(RR)"};
+    return LinkObjection{"answers_too_late", "who holds the token is not silent for longer than V(RR)"};
   if (token_->ends && dlpdu.end > *token_->ends + kLinkRounding)
-    return Objection{"longer_than_the_token", "all that it sends ends within the duration of the token"};
+    return LinkObjection{"longer_than_the_token", "all that it sends ends within the duration of the token"};
   return (dlpdu.octet(0) & 0xF0U) == rules_.codes.ee ? say_end(dlpdu) : say_request(dlpdu);
 }
 
-std::optional<IsaModel::Objection> IsaModel::say_request(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> IsaModel::say_request(const DrivenDlpdu& dlpdu) {
   if (!token_->ends && token_->is_used)
-    return Objection{"sends_two_frames", "EE: under an ET there is one frame"};
+    return LinkObjection{"sends_two_frames", "EE: under an ET there is one frame"};
   auto* const queue = most_urgent(to_send_, token_->least);
-  if (queue == nullptr) return Objection{"sends_other_data", "EE: nothing may be sent under this token"};
+  if (queue == nullptr) return LinkObjection{"sends_other_data", "EE: nothing may be sent under this token"};
   const Request request = queue->front();
   Octets expected{control_with(request.compels ? rules_.codes.cd : rules_.codes.du, request.priority),
                   request.destination, address_};
@@ -164,40 +166,41 @@ std::optional<IsaModel::Objection> IsaModel::say_request(const DrivenDlpdu& dlpd
   Octets said = dlpdu.octets;
   // Whether a DU has F is not said anywhere.
   if (!said.empty() && !request.compels) said[0] &= static_cast<std::uint8_t>(~kFinalOfIsa);
-  if (said != expected) return Objection{"sends_other_data", fmt::format("{:02X}", fmt::join(expected, " "))};
+  if (said != expected)
+    return LinkObjection{"sends_other_data", fmt::format("{:02X}", fmt::join(expected, " "))};
   if (!fits(request, dlpdu.begin))
-    return Objection{"sends_without_time", "EE: what must follow does not end within the duration"};
+    return LinkObjection{"sends_without_time", "EE: what must follow does not end within the duration"};
   queue->pop_front();
   token_->is_used = true;
   if (request.compels) awaited_ = Awaited{request.destination, dlpdu.end + times(rules_.reply_wait_octets)};
   return std::nullopt;
 }
 
-std::optional<IsaModel::Objection> IsaModel::say_end(const DrivenDlpdu& dlpdu) {
+std::optional<LinkObjection> IsaModel::say_end(const DrivenDlpdu& dlpdu) {
   const bool is_done = !token_->ends && token_->is_used;
   auto* const queue = most_urgent(to_send_, token_->least);
   if (!is_done && queue != nullptr && fits(queue->front(), dlpdu.begin))
-    return Objection{"data_held_back", "the most urgent that waits: it fits"};
+    return LinkObjection{"data_held_back", "the most urgent that waits: it fits"};
   const std::uint8_t reason = is_done ? 2 : queue == nullptr ? 0 : 1;
   const Octets expected{static_cast<std::uint8_t>(rules_.codes.ee | kFinalOfIsa), token_->from, address_,
                         reason};
   token_.reset();
   if (dlpdu.octets == expected) return std::nullopt;
-  return Objection{"end_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
+  return LinkObjection{"end_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
 }
 
-std::optional<IsaModel::Objection> IsaModel::be_silent() {
+std::optional<LinkObjection> IsaModel::be_silent() {
   const Time slot_later = earliest() + times(rules_.link.slot_time_octets);
   awaited_.reset();
   if (answer_ && slot_later <= answer_->until) {
     const Octets expected = expected_reply();
     answer_.reset();
-    return Objection{"no_reply", fmt::format("{:02X}", fmt::join(expected, " "))};
+    return LinkObjection{"no_reply", fmt::format("{:02X}", fmt::join(expected, " "))};
   }
   answer_.reset();
   const auto token = std::exchange(token_, std::nullopt);
   if (!token || (token->ends && slot_later + frame_of(kOctetsOfAnEnd) > *token->ends)) return std::nullopt;
-  return Objection{"token_not_returned", "EE"};
+  return LinkObjection{"token_not_returned", "EE"};
 }
 
 }  // namespace fieldproof::conformance

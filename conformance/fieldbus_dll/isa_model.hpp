@@ -7,6 +7,7 @@
 #include <string>
 
 #include "conformance/fieldbus_dll/driven_dlpdus.hpp"
+#include "conformance/fieldbus_dll/link_objection.hpp"
 #include "protocols/fieldbus_dll/isa_device.hpp"
 
 // What a data link entity of the profile ISA-D must say, told from what it heard and what its user wants: a
@@ -25,11 +26,6 @@ namespace fieldproof::conformance {
 
 class IsaModel {
  public:
-  // What does not follow from what was heard.
-  struct Objection {
-    std::string reason;
-    std::string expected;  // in words
-  };
   using Priority = fieldbus_dll::Priority;
 
   IsaModel(const fieldbus_dll::IsaRules& rules, std::uint8_t address) : rules_(rules), address_(address) {}
@@ -48,9 +44,9 @@ class IsaModel {
   void hear_noise(kernel::Time end) { silent_since_ = end; }
 
   // ---- what the station says ----
-  std::optional<Objection> say(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> say(const DrivenDlpdu& dlpdu);
   // It says nothing more, for as long as it may wait.
-  std::optional<Objection> be_silent();
+  std::optional<LinkObjection> be_silent();
   // It has compelled this station, which may reply now.
   std::optional<std::uint8_t> compelled() const;
 
@@ -85,10 +81,10 @@ class IsaModel {
   bool is_another_dlpdu_for_waiting(kernel::Time end);
   bool fits(const Request& request, kernel::Time begin) const;
   Octets expected_reply();
-  std::optional<Objection> say_reply(const DrivenDlpdu& dlpdu);
-  std::optional<Objection> say_under_token(const DrivenDlpdu& dlpdu);
-  std::optional<Objection> say_request(const DrivenDlpdu& dlpdu);
-  std::optional<Objection> say_end(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> say_reply(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> say_under_token(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> say_request(const DrivenDlpdu& dlpdu);
+  std::optional<LinkObjection> say_end(const DrivenDlpdu& dlpdu);
 
   fieldbus_dll::IsaRules rules_;
   std::uint8_t address_;

@@ -25,7 +25,7 @@ Octets end_said(std::uint8_t reason) {
   return {0x64, 0x10, 0x21, reason};
 }
 
-std::string isa_reason_in(const std::optional<IsaModel::Objection>& objection) {
+std::string isa_reason_in(const std::optional<LinkObjection>& objection) {
   return objection ? objection->reason : "";
 }
 

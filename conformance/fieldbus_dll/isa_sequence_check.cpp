@@ -223,8 +223,7 @@ class IsaSequenceRun {
     model_.hear_dt(from, bench_.now());
   }
 
-  void object(const std::optional<IsaModel::Objection>& objection, const std::string& actual,
-              kernel::Time when) {
+  void object(const std::optional<LinkObjection>& objection, const std::string& actual, kernel::Time when) {
     if (objection) judge_.fail(objection->reason, {{objection->expected}, actual, when});
   }
 

@@ -7,6 +7,7 @@
 #include "conformance/case_recorder.hpp"
 #include "conformance/fieldbus_dll/ff_cases.hpp"
 #include "conformance/fieldbus_dll/ff_deviations.hpp"
+#include "conformance/fieldbus_dll/ff_las_sequence.hpp"
 #include "conformance/fieldbus_dll/ff_sequence.hpp"
 #include "conformance/fieldbus_dll/isa_cases.hpp"
 #include "conformance/fieldbus_dll/isa_deviations.hpp"
@@ -80,7 +81,7 @@ class FieldbusDllSuite final : public Suite {
   }
 
   std::span<const SequenceRole> sequence_roles() const override {
-    static const std::array roles{isa_dle_sequence_role(), ff_device_sequence_role()};
+    static const std::array roles{isa_dle_sequence_role(), ff_device_sequence_role(), ff_las_sequence_role()};
     return roles;
   }
   Outcome run_sequence(const SequenceRole& role, const Sequence& sequence,
@@ -91,9 +92,12 @@ class FieldbusDllSuite final : public Suite {
                         }};
       return run_recorded<fieldbus_dll::IsaRules>(one, isa_setting(role.test_case, setup), setup.record);
     }
-    const FfCase one{role.test_case, [&sequence](FfBench& bench, CaseJudge& judge) {
-                       run_ff_device_sequence(sequence, bench, judge);
-                     }};
+    const bool is_las = role.test_case.role() == kFfLas;
+    const FfCase one{role.test_case,
+                     [&sequence, is_las](FfBench& bench, CaseJudge& judge) {
+                       (is_las ? run_ff_las_sequence : run_ff_device_sequence)(sequence, bench, judge);
+                     },
+                     is_las ? ff_las_sequence_needs() : FfNeeds{}};
     return run_recorded<fieldbus_dll::FfRules>(one, ff_setting(role.test_case, setup), setup.record);
   }
 

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "conformance/fieldbus_dll/driven_dlpdus.hpp"
+#include "conformance/fieldbus_dll/link_objection.hpp"
+#include "protocols/fieldbus_dll/ff_device.hpp"
+
+// What a link active scheduler of the profile FF-P must say and may not, told from what it said before, what
+// others answered and what its user wants: a model of the rules that shares nothing with the stations but
+// their numbers. Nobody else is a scheduler, and nothing is heard that was not asked for.
+//
+//   V(MID) of silence in front of each DLPDU, and never a silence of V(ST) x 16
+//   nothing while a token, a CD or a probe is out: until it is answered, the line was silent for V(MRD) x
+//   V(ST), or the token is over
+//   each item of the schedule in its order, not before it is due, and before all else when it is; at most
+//   V(MSO) behind the instant at which the line is free
+//   tokens from V(DMDT) to V(DTHT) that end before the next item, once in a circulation to each live node,
+//   in the order of addresses, the first one marked, with the priority that the rotations before lead to
+//   between two circulations a probe, ascending, of nodes that are not live and may be polled
+//   who misses three tokens in a row is not live any more; who answers a probe is, from the next circulation
+//   on; both is told within two circulations
+//   link time goes on in what is told of it, once in V(TDP) and to who asks
+//
+// A faulty answer may be taken for an answer or for none; the model holds the scheduler to neither, until it
+// shows which.
+namespace fieldproof::conformance {
+
+class FfLasModel {
+ public:
+  using Priority = fieldbus_dll::Priority;
+  using Found = std::optional<LinkObjection>;
+
+  explicit FfLasModel(const fieldbus_dll::FfConfiguration& configuration);
+
+  // False: the station must refuse it.
+  bool submit(Priority priority, const Octets& data);
+
+  // ---- what others say, until `end`; instants never decrease ----
+  void hear_answer(kernel::Time end);  // what ends a token or a CD
+  void hear_data(kernel::Time end);    // of a holder that goes on
+  void hear_time_request(kernel::Time end);
+  void hear_probe_response(kernel::Time end);
+  void hear_noise(kernel::Time end);
+
+  // ---- what the station says ----
+  Found say(const DrivenDlpdu& dlpdu);
+  // What must have been said by now.
+  Found end() const;
+
+  // It may not be silent until then.
+  kernel::Time silent_until() const;
+  bool is_surely_live(std::uint8_t node) const { return nodes_.at(node).is_live && !is_open(node); }
+
+ private:
+  static constexpr unsigned kNodes = 256;
+
+  struct Node {
+    bool is_live = false;
+    std::size_t live_since = 0;  // the number of a circulation, of which it is no part
+    // Tokens that it missed in a row, with and without its faulty answers.
+    unsigned fewest_misses = 0;
+    unsigned most_misses = 0;
+  };
+  struct Question {
+    std::uint8_t node;
+    kernel::Time token_ends = kernel::kNever;  // of anything else
+    bool is_token = false;
+    bool is_answered = false;  // to its end
+    bool is_heard = false;     // something of its holder
+    bool is_noisy = false;
+  };
+  struct Told {
+    std::uint64_t ticks;
+    kernel::Time end;
+  };
+
+  const fieldbus_dll::FfRules& rules() const { return configuration_.rules; }
+  kernel::Duration times(std::int64_t octets) const;
+  kernel::Time due() const;
+  // It may have been removed, and may not.
+  bool is_open(std::uint8_t node) const;
+  bool is_polled(unsigned node) const;
+
+  Found close_question(kernel::Time now);
+  void count_token(const Question& token);
+  void remove(std::uint8_t node);
+  void show_live(std::uint8_t node);
+  Found say_dlpdu(const DrivenDlpdu& dlpdu);
+  Found say_cd(const DrivenDlpdu& cd);
+  Found say_token(const DrivenDlpdu& pt);
+  Found begin_circulation(const DrivenDlpdu& pt);
+  Found go_on(const DrivenDlpdu& pt);
+  Found pass_over(unsigned first, unsigned behind_last);
+  Found check_grant(const DrivenDlpdu& pt) const;
+  Found check_told() const;
+  std::vector<Priority> priorities_behind(kernel::Duration rotation) const;
+  Found say_probe(const DrivenDlpdu& pn);
+  Found say_time(const DrivenDlpdu& td);
+  Found say_data(const DrivenDlpdu& dt1);
+  Found say_activation(fieldbus_dll::FfAddress to);
+  Found say_live_list(const Octets& list);
+  Found say_of_user(const DrivenDlpdu& dt1, const Octets& data);
+
+  fieldbus_dll::FfConfiguration configuration_;
+  std::array<Node, kNodes> nodes_{};
+  std::array<std::deque<Octets>, 4> queues_;  // by priority
+
+  kernel::Time silent_since_ = kernel::kStart;
+  kernel::Time free_since_ = kernel::kStart;  // it may have begun what it says now
+  std::optional<Question> question_;
+  bool is_asked_for_time_ = false;
+  kernel::Time time_told_ = kernel::kStart;
+  std::optional<Told> told_;
+  std::size_t items_done_ = 0;
+
+  std::optional<std::uint8_t> last_token_;         // of this circulation
+  std::optional<kernel::Time> circulation_begin_;  // not known behind a circulation without a token
+  std::optional<Priority> priority_;
+  std::size_t circulations_ = 0;
+  unsigned probes_ = 0;  // since the last token
+  std::optional<std::uint8_t> last_probe_;
+
+  // The number of the circulation since which it is to be told.
+  std::map<std::uint8_t, std::size_t> to_activate_;
+  std::optional<std::size_t> list_changed_;
+};
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,223 @@
+#include "conformance/fieldbus_dll/ff_las_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::Priority;
+using kernel::Time;
+
+constexpr std::uint8_t kLas = 0x10;
+constexpr unsigned kFirstMark = 0x04;
+// 500 ms are 1953.125 octet durations.
+constexpr std::uint32_t kDue = 16'000;
+constexpr std::int64_t kBeforeDue = 1'953;
+
+// A link at 31.25 kbit/s: an octet takes 256 us, V(MID) is 8, V(MRD) x V(ST) 32 octets. It tells what is said
+// and answered, V(MID) behind what was last on the line.
+class FfLasModelTest : public testing::Test {
+ protected:
+  static fieldbus_dll::FfConfiguration configuration() {
+    fieldbus_dll::FfConfiguration made;
+    made.node = kLas;
+    made.live = {0x11, 0x12};
+    made.schedule = {.version = 1, .macrocycle = 32'000, .items = {{kDue, 0x1120, Priority::normal}}};
+    made.rules.target_rotation = fieldbus_dll::octets({}, 200);
+    return made;
+  }
+
+  static Time octet_at(std::int64_t count) { return kernel::kStart + fieldbus_dll::octets({}, count); }
+
+  // The reason of the objection; empty: none.
+  std::string says(Octets octets, std::int64_t later = 8) {
+    const std::int64_t begin = now_ + later;
+    now_ = begin + static_cast<std::int64_t>(octets.size()) + 5;
+    const auto found = model_.say({octet_at(begin), octet_at(now_), true, true, std::move(octets)});
+    return found ? found->reason : "";
+  }
+  std::string passes(std::uint8_t node, unsigned mark = 0, Priority priority = Priority::urgent,
+                     std::uint8_t grant = 100) {
+    return says({static_cast<std::uint8_t>(0x30U | mark | static_cast<unsigned>(priority)), node, 0, grant});
+  }
+  std::string probes(std::uint8_t node) { return says({0x26, node}); }
+
+  Time heard_end(std::int64_t octets) { return octet_at(now_ += 8 + octets); }
+  void returned() { model_.hear_answer(heard_end(6)); }
+  // What comes next comes behind V(MRD) x V(ST) of silence.
+  void unanswered() { now_ += 24; }
+
+  // IDLEs keep the line, until a DLPDU that comes V(MID) behind would begin there.
+  void idle_until(std::int64_t octet) {
+    while (octet - now_ > 120) EXPECT_EQ(says({0x10}, 80), "");
+    now_ = octet - 8;
+  }
+
+  void circulate(Priority priority) {
+    EXPECT_EQ(passes(0x11, kFirstMark, priority), "");
+    returned();
+    EXPECT_EQ(passes(0x12, 0, priority), "");
+    returned();
+  }
+  void probe_in_vain(std::uint8_t node) {
+    EXPECT_EQ(probes(node), "");
+    unanswered();
+  }
+
+  FfLasModel model_{configuration()};
+  std::int64_t now_ = 0;
+};
+
+TEST_F(FfLasModelTest, CirculationsGoUpToAllPrioritiesWhileTheyAreFast) {
+  circulate(Priority::urgent);
+  probe_in_vain(0x13);
+  circulate(Priority::normal);
+  probe_in_vain(0x14);
+  circulate(Priority::time_available);
+  probe_in_vain(0x15);
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::normal), "priority_wrong");
+}
+
+TEST_F(FfLasModelTest, ASlowRotationGoesAStepBack) {
+  circulate(Priority::urgent);
+  probe_in_vain(0x13);
+  circulate(Priority::normal);
+  probe_in_vain(0x14);
+  idle_until(now_ + 250);
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::urgent), "");
+}
+
+TEST_F(FfLasModelTest, EachLiveNodeHasItsTurnBetweenProbes) {
+  EXPECT_EQ(passes(0x12, kFirstMark), "order_wrong");
+}
+
+TEST_F(FfLasModelTest, ANodeMayNotBePassedOver) {
+  EXPECT_EQ(passes(0x11, kFirstMark), "");
+  returned();
+  probe_in_vain(0x13);
+  EXPECT_EQ(passes(0x11, kFirstMark), "order_wrong");
+}
+
+TEST_F(FfLasModelTest, CirculationsAreMarkedAndHaveAProbeBetween) {
+  circulate(Priority::urgent);
+  EXPECT_EQ(passes(0x11), "begin_not_marked");
+  returned();
+  EXPECT_EQ(passes(0x12), "");
+  returned();
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::normal), "no_probe");
+}
+
+TEST_F(FfLasModelTest, WaitsForAnAnswerOrForSilence) {
+  EXPECT_EQ(passes(0x11, kFirstMark), "");
+  EXPECT_EQ(passes(0x12), "does_not_wait");
+}
+
+TEST_F(FfLasModelTest, ATokenThatIsOverIsTakenBack) {
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::urgent, 90), "");
+  model_.hear_data(heard_end(85));
+  EXPECT_EQ(passes(0x12), "");
+}
+
+TEST_F(FfLasModelTest, WhoMissesThreeTokensIsRemovedAndThatIsTold) {
+  for (const auto& [priority, node] : {std::pair{Priority::urgent, 0x13}, {Priority::normal, 0x14}}) {
+    EXPECT_EQ(passes(0x11, kFirstMark, priority), "");
+    unanswered();
+    EXPECT_EQ(passes(0x12, 0, priority), "");
+    returned();
+    probe_in_vain(static_cast<std::uint8_t>(node));
+  }
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::time_available), "");
+  unanswered();
+  EXPECT_EQ(passes(0x12, 0, Priority::time_available), "");
+  returned();
+  EXPECT_FALSE(model_.is_surely_live(0x11));
+  probe_in_vain(0x15);
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::time_available), "token_for_removed");
+}
+
+TEST_F(FfLasModelTest, AFaultyAnswerLeavesOpenWhoIsLive) {
+  for (const auto& [priority, node] :
+       {std::pair{Priority::urgent, 0x13}, {Priority::normal, 0x14}, {Priority::time_available, 0x15}}) {
+    EXPECT_EQ(passes(0x11, kFirstMark, priority), "");
+    model_.hear_noise(heard_end(6));
+    unanswered();
+    EXPECT_EQ(passes(0x12, 0, priority), "");
+    returned();
+    probe_in_vain(static_cast<std::uint8_t>(node));
+  }
+  EXPECT_FALSE(model_.is_surely_live(0x11));
+  // It has removed it; now that has to be told.
+  EXPECT_EQ(passes(0x12, kFirstMark, Priority::time_available), "");
+  returned();
+  EXPECT_EQ(probes(0x11), "");
+}
+
+TEST_F(FfLasModelTest, WhoAnswersAProbeIsActivatedAndPartOfTheNextCirculation) {
+  circulate(Priority::urgent);
+  EXPECT_EQ(probes(0x13), "");
+  model_.hear_probe_response(heard_end(7));
+  EXPECT_EQ(says({0xD2, 0x14, 0x00, kLas, 0x00, 0x01}), "unexpected_dlpdu");
+  EXPECT_EQ(says({0xD2, 0x13, 0x00, kLas, 0x00, 0x01}), "");
+  Octets list{0xD2, 0xFF, 0xFF, kLas, 0x00, 0x02, 0x01};
+  list.resize(7 + 32);
+  list[7 + 2] = 0xF0;
+  EXPECT_EQ(says(list), "");
+  list[7 + 2] = 0xE0;
+  EXPECT_EQ(says(list), "live_list_wrong");
+  // What was told made the rotation slow.
+  circulate(Priority::urgent);
+  EXPECT_EQ(passes(0x13), "");
+}
+
+TEST_F(FfLasModelTest, WhatIsDueGoesFirst) {
+  idle_until(kBeforeDue + 1);
+  EXPECT_EQ(passes(0x11, kFirstMark), "compelled_late");
+}
+
+TEST_F(FfLasModelTest, WhatIsDueGoesAtItsTime) {
+  idle_until(kBeforeDue - 1);
+  EXPECT_EQ(says({0xA2, 0x11, 0x20}), "compelled_early");
+}
+
+TEST_F(FfLasModelTest, WhatIsDueGoesSoon) {
+  idle_until(kBeforeDue - 12);
+  EXPECT_EQ(says({0x10}), "");  // until 6 octets before
+  EXPECT_EQ(says({0xA2, 0x11, 0x20}, 8 + 17), "compelled_late");
+}
+
+TEST_F(FfLasModelTest, WhatIsDueIsCompelledAsItsItemSays) {
+  idle_until(kBeforeDue + 1);
+  EXPECT_EQ(says({0xA2, 0x11, 0x21}), "compelled_wrong");
+  EXPECT_EQ(says({0xA2, 0x11, 0x20}), "");
+}
+
+TEST_F(FfLasModelTest, ATokenEndsBeforeWhatIsDue) {
+  idle_until(kBeforeDue - 9 - 100);
+  EXPECT_EQ(passes(0x11, kFirstMark), "");
+  returned();
+  EXPECT_EQ(passes(0x12), "token_over_due");
+}
+
+TEST_F(FfLasModelTest, TheTimeGoesOnAndIsToldToWhoAsks) {
+  EXPECT_EQ(says({0x11, 0, 0, 0, 0, 0, 100}), "");
+  EXPECT_EQ(passes(0x11, kFirstMark), "");
+  model_.hear_time_request(heard_end(7));
+  // 8 + 9 + 8 + 7 + 8 + 12 octet durations of 8.192 ticks behind the first.
+  EXPECT_EQ(says({0x11, 0, 0, 0, 0, 0x02, 0x0E}), "");
+  model_.hear_time_request(heard_end(7));
+  EXPECT_EQ(says({0x10}), "time_request_ignored");
+}
+
+TEST_F(FfLasModelTest, ItsUsersDataIsSentTheMostUrgentFirst) {
+  ASSERT_TRUE(model_.submit(Priority::normal, {1}) && model_.submit(Priority::urgent, {2}));
+  EXPECT_FALSE(model_.submit(Priority::urgent, Octets(65)));
+  EXPECT_TRUE(model_.end().has_value());
+  EXPECT_EQ(says({0xD3, 0x22, 0x30, kLas, 0x01, 2}), "");
+  EXPECT_FALSE(model_.end().has_value());
+  EXPECT_EQ(says({0xD2, 0x22, 0x30, kLas, 0x01, 3}), "sends_other_data");
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance

@@ -1,0 +1,40 @@
+#include "conformance/fieldbus_dll/ff_las_sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "conformance/fieldbus_dll/sequence_checks.hpp"
+#include "harness/kernel/sanitized.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+const SequenceChecks& ff_las_checks() {
+  static const SequenceChecks checks{"ff_las", ff_las_sequence_role()};
+  return checks;
+}
+
+TEST(FfLasSequence, TheReferenceFollowsTheModel) {
+  ff_las_checks().expect_reference_follows(kernel::kIsSanitized ? 100 : 1'000);
+}
+
+TEST(FfLasSequence, FindsEachSchedulerForCheckWithFewCommands) {
+  ff_las_checks().expect_finds_each(10, 4'000, 5);
+}
+
+// Else it would be no fault of sequences.
+TEST(FfLasSequence, NoSingleCommandTellsThem) {
+  ff_las_checks().expect_single_commands_pass(250);
+}
+
+// Nobody else claims the link in a sequence, or gets it; a rotation of V(TTRT) to an octet is left open.
+TEST(FfLasSequence, FindsWhatTheCatalogueNames) {
+  ff_las_checks().expect_finds_all_but(
+      {"equal_rotation_is_fast", "claims_after_one_slot", "never_claims", "claims_a_slot_late",
+       "claims_a_slot_early", "frames_do_not_save_the_link", "noise_does_not_save_the_link",
+       "transfer_ignored", "transfer_not_checked", "takes_transfer_of_others", "never_leaves",
+       "stays_behind_claim"},
+      300);
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance
