@@ -58,6 +58,9 @@ if(FIELDPROOF_COVERAGE)
   add_link_options(--coverage)
 endif()
 
+# Paths in messages begin at the root of the project: builds in different places tell the same.
+add_compile_options("-fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=")
+
 find_program(ccache_program ccache)
 if(ccache_program AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   # A precompiled header can only be cached when ccache does not mistrust its time stamps and __TIME__.

@@ -1,20 +1,11 @@
 #include "harness/kernel/check.hpp"
 
-#include <string_view>
 #include <utility>
 
 namespace fieldproof::kernel {
 namespace {
 
 thread_local CheckContext* innermost = nullptr;
-
-// The path from the root of the project on: builds in different places tell the same.
-std::string_view from_the_root(std::string_view file) {
-  constexpr std::string_view own_name = "harness/kernel/check.cpp";
-  const std::string_view own_file = __FILE__;
-  const std::string_view root = own_file.substr(0, own_file.size() - own_name.size());
-  return file.starts_with(root) ? file.substr(root.size()) : file;
-}
 
 }  // namespace
 
@@ -34,7 +25,7 @@ std::string CheckContext::describe_all() {
 }
 
 void throw_broken_invariant(const char* expression, const std::string& sentence, const char* file, int line) {
-  std::string text(from_the_root(file));
+  std::string text(file);
   text += ':' + std::to_string(line) + ": " + sentence + " (" + expression + " does not hold)";
   const std::string context = CheckContext::describe_all();
   if (!context.empty()) text += " [" + context + ']';
