@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "conformance/fieldbus_dll/sequence_checks.hpp"
-#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -14,7 +13,7 @@ const SequenceChecks& ff_las_checks() {
 }
 
 TEST(FfLasSequence, TheReferenceFollowsTheModel) {
-  ff_las_checks().expect_reference_follows(kernel::kIsSanitized ? 100 : 1'000);
+  ff_las_checks().expect_reference_follows(1'000);
 }
 
 TEST(FfLasSequence, FindsEachSchedulerForCheckWithFewCommands) {

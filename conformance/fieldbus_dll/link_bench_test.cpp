@@ -7,6 +7,7 @@
 #include <string>
 
 #include "conformance/fieldbus_dll/suite.hpp"
+#include "harness/kernel/sanitized.hpp"
 #include "protocols/fieldbus_dll/line_end.hpp"
 
 namespace fieldproof::conformance {
@@ -75,7 +76,9 @@ TEST_P(StationsThatNeverStop, FailEveryCase) {
       fieldbus_dll_suite({.isa_dle = isa, .isa_las = isa, .ff_device = ff, .ff_las = ff, .disturbances = {}});
   conformance::Setup setup;
   setup.volume = Volume::quick;
-  for (const TestCase& test_case : suite->cases()) {
+  const std::vector<TestCase>& cases = suite->cases();
+  for (std::size_t n = 0; n < cases.size(); n += kernel::kIsSanitized ? 5 : 1) {
+    const TestCase& test_case = cases[n];
     setup.implementations = {{test_case.role(), 0, "own"}};
     const judge::CaseResult result = suite->run(test_case, setup).result;
     // Who babbles keeps the line active.

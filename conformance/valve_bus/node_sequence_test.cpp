@@ -7,6 +7,7 @@
 #include "conformance/sequence_check.hpp"
 #include "conformance/sequence_draw.hpp"
 #include "conformance/valve_bus/suite.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -45,7 +46,7 @@ std::string told(const Sequence& sequence) {
 
 TEST(NodeSequence, TheReferenceFollowsTheModel) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    SequenceSearch one = search_of("ref", 700);
+    SequenceSearch one = search_of("ref", kernel::kIsSanitized ? 140 : 700);
     one.setup.seed = seed;
     const SequenceSearchResult result = search(one);
     EXPECT_EQ(result.passed, one.cases) << seed << "\n"
@@ -76,7 +77,7 @@ TEST(NodeSequence, FindsEachNodeForCheckWithAtMostFourCommands) {
 TEST(NodeSequence, NoSingleCommandTellsThem) {
   const SequenceSource source(node_sequence_role().vocabulary, kFixedSeed);
   std::vector<Sequence> single;
-  for (std::uint64_t n = 0; single.size() < 300; ++n) {
+  for (std::uint64_t n = 0; single.size() < (kernel::kIsSanitized ? 60U : 300U); ++n) {
     for (const SequenceCommand& command : source.draw(n)) single.push_back({command});
   }
   for (const std::string& name : nodes_for_check()) {
