@@ -27,7 +27,8 @@ struct Section {
 struct Paper {
   std::string_view name;
   std::string_view title;
-  std::string_view network;  // that its sections simulate
+  std::string_view network;                          // that its sections simulate
+  kernel::Duration shortest = kernel::kMillisecond;  // virtual time of a signal
 };
 
 constexpr std::array kPapers = {
@@ -37,7 +38,7 @@ constexpr std::array kPapers = {
           "of the valve bus"},
     Paper{"foundation",
           "S. H. Hong and B. K. Son, Delay Analysis of Urgent Data in the Foundation Fieldbus, 2003",
-          "of 16 nodes at 1 Mbit/s"},
+          "of 16 nodes at 1 Mbit/s", kernel::kSecond},
     Paper{"fieldbus",
           "S.-H. Hong, K.-A. Kim, J.-Y. Kim and S.-J. Ko, distributed control and automation systems and "
           "fieldbus",
@@ -71,6 +72,12 @@ int paper(Session& session) {
   PaperSettings settings;
   settings.seed = session.settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
   settings.duration = virtual_time_from(session.settings);
+  if (settings.duration < chosen.shortest) {
+    throw kernel::Error(
+        kernel::ErrorKind::usage,
+        fmt::format("--duration {}: the sections of paper {} need {} at least",
+                    kernel::describe(settings.duration), chosen.name, kernel::describe(chosen.shortest)));
+  }
   session.terminal.print(simulation_header(session, settings.seed, "", chosen.network));
   reports::Publication publication{std::string(chosen.title), settings.seed, {}};
   session.terminal.begin_progress(

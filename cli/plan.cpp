@@ -6,6 +6,8 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/verbs.hpp"
+#include "harness/kernel/error.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 #include "protocols/fieldbus_dll/milliseconds.hpp"
 #include "protocols/fieldbus_dll/token_network.hpp"
 #include "protocols/fieldbus_dll/urgent_delay.hpp"
@@ -32,15 +34,20 @@ std::string reached_text(const TargetRun& run, const DelayBound& bound) {
   return fmt::format("mean {:.4f} ms (+- {:.4f}) {}", run.reached, run.error, node);
 }
 
+std::string met_text(const TargetRun& run) {
+  if (run.meets_bound) return "met";
+  return run.fewest > 0 ? "not met" : "not met: a node with urgent packets sent none";
+}
+
 std::string searched_text(const TargetPlan& plan, const DelayBound& bound) {
   std::string text = fmt::format("\n{:>12}  {:>12}  {:>16}  {}\n", "TTRT ms",
                                  bound.share ? "within %" : "mean ms", "time-avail. ms", "bound");
   for (const TargetRun& run : plan.searched) {
     const auto& rest = run.figures.all[fieldbus_dll::kTimeAvailable];
-    text += fmt::format("{:>12.3f}  {:>12.4f}  {:>16}  {}\n", fieldbus_dll::ms(run.target),
-                        bound.share ? 100 * run.reached : run.reached,
-                        rest.is_unstable ? "unstable" : fmt::format("{:.3f}", rest.mean_delay),
-                        run.meets_bound ? "met" : "not met");
+    text +=
+        fmt::format("{:>12.3f}  {:>12.4f}  {:>16}  {}\n", fieldbus_dll::ms(run.target),
+                    bound.share ? 100 * run.reached : run.reached,
+                    rest.is_unstable ? "unstable" : fmt::format("{:.3f}", rest.mean_delay), met_text(run));
   }
   return text;
 }
@@ -86,17 +93,34 @@ std::string model_text(const TokenTraffic& traffic, kernel::Duration target) {
            "schedule\n";
   const auto& streams = traffic.nodes.front().streams;
   fieldbus_dll::UrgentTraffic equal;
+  const auto& available = streams[fieldbus_dll::kTimeAvailable];
   equal.urgent_queues = equal.available_queues = static_cast<unsigned>(traffic.nodes.size());
   equal.urgent_length = streams[fieldbus_dll::kUrgent].length;
   equal.urgent_per_ms = streams[fieldbus_dll::kUrgent].per_ms;
-  equal.available_length = streams[fieldbus_dll::kTimeAvailable].length;
-  equal.available_per_ms = streams[fieldbus_dll::kTimeAvailable].per_ms;
+  // Without packets their length is of no matter, and has to be one.
+  equal.available_length = available.per_ms > 0 ? available.length : equal.urgent_length;
+  equal.available_per_ms = available.per_ms;
   equal.empty_rotation = traffic.empty_rotation();
   equal.target_rotation = target;
-  const fieldbus_dll::UrgentDelay model = fieldbus_dll::urgent_delay(equal);
+  fieldbus_dll::UrgentDelay model;
+  try {
+    model = fieldbus_dll::urgent_delay(equal);
+  } catch (const kernel::Error& error) {
+    return fmt::format("  model           none: {}\n", error.what());
+  }
+  if (equal.load() >= 1) return "  model           none: it has loads under 1\n";
   if (model.is_urgent_unstable) return "  model           no stationary state: urgent queues grow\n";
+  if (model.is_available_saturated)
+    return "  model           no stationary state: time-available queues grow\n";
   return fmt::format("  model           mean delay of urgent packets {:.4f} ms (Hong and Son, (26))\n",
                      model.delay);
+}
+
+// What the worst node does not say.
+std::string why_not_text(const TargetRun& tried) {
+  if (tried.meets_bound) return "; time-available queues grow";
+  if (tried.fewest >= fieldbus_dll::kFewPackets) return "";
+  return fmt::format("; a node sent {} packets, too few to tell", tried.fewest);
 }
 
 std::string plan_text(const TargetPlan& plan, const TokenNetwork& network) {
@@ -109,8 +133,9 @@ std::string plan_text(const TargetPlan& plan, const TokenNetwork& network) {
   }
   const TargetRun& best = plan.searched[plan.best];
   for (const TargetRun& tried : plan.tried) {
-    text += fmt::format("\nTTRT {:.3f} ms does not stand a longer simulation: {}",
-                        fieldbus_dll::ms(tried.target), reached_text(tried, network.bound));
+    text +=
+        fmt::format("\nTTRT {:.3f} ms does not stand a longer simulation: {}{}",
+                    fieldbus_dll::ms(tried.target), reached_text(tried, network.bound), why_not_text(tried));
   }
   return text + fmt::format("\nno TTRT is proven to meet the bound; the best is {:.3f} ms: {}\n{}",
                             fieldbus_dll::ms(best.target), reached_text(best, network.bound),
@@ -122,11 +147,12 @@ std::string plan_text(const TargetPlan& plan, const TokenNetwork& network) {
 int plan(Session& session) {
   const TokenNetwork network = TokenNetwork::load(session.operands.front());
   const std::uint64_t seed = session.settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
-  session.terminal.print(fmt::format(
-      "{}: {} nodes, empty rotation {:g} ms, load {:.4f}, schedule {:.4f}, "
-      "seed {}\n{}\n",
-      network.name, network.traffic.nodes.size(), fieldbus_dll::ms(network.traffic.empty_rotation()),
-      network.traffic.load(), network.traffic.scheduled_load(), seed, text_of_bound(network.bound)));
+  session.terminal.print(
+      fmt::format("{}: {} nodes, empty rotation {:g} ms, load {:.4f}, schedule {:.4f}, "
+                  "seed {}\n{}\n",
+                  kernel::escaped_line(network.name), network.traffic.nodes.size(),
+                  fieldbus_dll::ms(network.traffic.empty_rotation()), network.traffic.load(),
+                  network.traffic.scheduled_load(), seed, text_of_bound(network.bound)));
   const TargetPlan plan = fieldbus_dll::plan_target(network.traffic, network.bound, seed);
   session.terminal.print(plan_text(plan, network));
   return plan.is_proven ? kAllAsExpected : kFailed;

@@ -49,6 +49,16 @@ TEST_F(PlanVerb, RefusesAWrongFileAndSaysWhere) {
   EXPECT_HOLDS(called.err, "/urgent_delay/at_most");
 }
 
+TEST_F(PlanVerb, WithoutTimeAvailableDataTheModelStandsBesideIt) {
+  write("network.json", R"({"name": "\u001b[31mred", "bit_rate": "1 Mbit/s", "rule": "all_or_urgent",
+      "nodes": [{"count": 4, "overhead": "1 ms", "urgent": {"octets": 75, "per_s": 4}}],
+      "urgent_delay": {"at_most": "60 ms"}})");
+  const Called called = call({"plan", "network.json"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_HOLDS(called.out, "Hong and Son");
+  EXPECT_EQ(called.out.find('\x1b'), std::string::npos) << "what a file names steers no terminal";
+}
+
 TEST_F(PlanVerb, PlansTheExample) {
   const Called called = call({"plan", (kSourceFolder / "examples/foundation.json").string()});
   EXPECT_EQ(called.exit_code, 0) << called.err;

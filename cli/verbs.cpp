@@ -27,7 +27,7 @@ constexpr std::array kVerbs = {
     Verb{"report", "RUNDIR|FILE...", 1, kAny, "stored runs and documents (emc, measure, paper, residual, matrix) as one HTML page", &report},
     Verb{"station", "PROTOCOL/ROLE [ref|deviant:NAME|plugin:LIBRARY|exec:PROGRAM]", 1, 2, "play a station on standard input and output, for --iut exec:, or on a serial line", &station},
     Verb{"doctor", "", 0, 0, "can the implementation be attached, and how well does this machine know instants", &doctor},
-    Verb{"paper", "[NAME]", 0, 1, "what a paper published beside what is reproduced of it: interbus, valve_bus, foundation [interbus]", &paper},
+    Verb{"paper", "[NAME]", 0, 1, "what a paper published beside what is reproduced of it: interbus, valve_bus, foundation, fieldbus [interbus]", &paper},
 };
 // clang-format on
 

@@ -100,8 +100,8 @@ bool is_reproduced(const Publication& publication) {
 std::string publication_text(const Publication& publication) {
   std::string text = fmt::format("{}\n", escaped_line(publication.title));
   for (const PublishedSection& section : publication.sections) text += section_text(section);
-  return text + (is_reproduced(publication) ? "\nevery published number is reproduced\n"
-                                            : "\nnot every published number is reproduced\n");
+  return text + (is_reproduced(publication) ? "\nall that is published and compared here agrees\n"
+                                            : "\nnot all that is published and compared here agrees\n");
 }
 
 std::string publication_json(const Publication& publication) {

@@ -38,7 +38,7 @@ TEST(PublicationTest, OneRowThatDiffersIsNoReproduction) {
   publication.sections[0].rows[0].agrees = false;
   EXPECT_FALSE(is_reproduced(publication));
   EXPECT_NE(publication_text(publication).find("DIFFERS"), std::string::npos);
-  EXPECT_NE(publication_text(publication).find("not every published number"), std::string::npos);
+  EXPECT_NE(publication_text(publication).find("not all that is published"), std::string::npos);
 }
 
 }  // namespace

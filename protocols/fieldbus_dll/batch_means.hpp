@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 // A mean of values that depend on each other, and how far it may be off.
@@ -22,6 +23,7 @@ class BatchMeans {
   }
   std::uint64_t count() const { return count_; }
   std::size_t batches() const { return means_.size(); }
+  const std::vector<double>& means() const { return means_; }
   double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
   double standard_error() const {
     if (means_.size() < 2) return 0;
@@ -31,6 +33,17 @@ class BatchMeans {
     double squares = 0;
     for (const double one : means_) squares += (one - mean) * (one - mean);
     return std::sqrt(squares / (n - 1) / n);
+  }
+  // Do the values grow with the simulation? The last third of it has twice the mean of the first one, which
+  // chance does not make of so many.
+  bool grows() const {
+    constexpr std::size_t kFewBatches = 9;
+    constexpr std::uint64_t kFewValues = 300;
+    if (means_.size() < kFewBatches || count_ < kFewValues) return false;
+    const auto third = static_cast<std::ptrdiff_t>(means_.size() / 3);
+    const double first = std::accumulate(means_.begin(), means_.begin() + third, 0.0);
+    const double last = std::accumulate(means_.end() - third, means_.end(), 0.0);
+    return last > 2 * first;
   }
 
  private:

@@ -313,8 +313,10 @@ class LoopOnLink {
     for (std::uint8_t node = kFirstTalker; node <= kLastNode; ++node) {
       const bool is_used = node < kFirstTalker + kTalkers || node >= kTransmitter;
       if (is_used && !live_.contains(node)) {
-        throw kernel::Error(kernel::ErrorKind::configuration,
-                            "not every node is live when the loop begins: the line is disturbed too much");
+        throw kernel::Error(
+            kernel::ErrorKind::configuration,
+            "not every node is live when the loop begins: the line is disturbed, or has too little time "
+            "beside the schedule and the messages");
       }
     }
   }

@@ -46,28 +46,47 @@ FfConfiguration configuration_of(std::uint8_t node, const FfRules& rules) {
 // What one station drives.
 struct Driven {
   FfType type;
+  FfAddress address;  // CD: whose data; DT3: of these
   std::uint8_t node;
   kernel::Time begin;
   kernel::Time end;
 };
 
+FfAddress of_publisher(const FfDlpdu& dlpdu) {
+  return dlpdu.type == FfType::dt3 ? dlpdu.source : dlpdu.destination;
+}
+
+struct Due {
+  kernel::Time time;
+  FfAddress address;
+};
+
 // All that is due in a span, by the schedule.
-std::vector<kernel::Time> due_in(kernel::Time from, kernel::Time to) {
-  std::vector<kernel::Time> all;
+std::vector<Due> due_in(kernel::Time from, kernel::Time to) {
+  std::vector<Due> all;
   for (kernel::Time cycle = kernel::kStart; cycle < to; cycle += kMacrocycleTime) {
     for (const FfScheduleItem& item : schedule().items) {
       const kernel::Time due = cycle + std::int64_t{item.at} * kTick;
-      if (due >= from && due < to) all.push_back(due);
+      if (due >= from && due < to) all.push_back({due, item.address});
     }
   }
   return all;
 }
 
-bool is_compelled(const std::vector<Driven>& driven, kernel::Time due, const FfRules& rules) {
+const Driven* cd_for(const std::vector<Driven>& driven, const Due& due, const FfRules& rules) {
   // Link time is told in ticks, and an item may be late by V(MSO) and, where octets are short, by a tick.
   const kernel::Duration late = octets(rules.link, rules.scheduling_overhead_octets) + kTick;
+  const auto found = std::ranges::find_if(driven, [&](const Driven& one) {
+    return one.type == FfType::cd && one.address == due.address && one.begin >= due.time - kTick &&
+           one.begin <= due.time + late;
+  });
+  return found == driven.end() ? nullptr : &*found;
+}
+
+bool is_answered(const std::vector<Driven>& driven, const Driven& cd, const FfRules& rules) {
+  const kernel::Time until = cd.end + response_delay(rules.link);
   return std::ranges::any_of(driven, [&](const Driven& one) {
-    return one.type == FfType::cd && one.begin >= due - kTick && one.begin <= due + late;
+    return one.type == FfType::dt3 && one.address == cd.address && one.begin > cd.end && one.begin <= until;
   });
 }
 
@@ -84,8 +103,9 @@ TakeOver run_take_over(const TakeOverSetting& setting) {
   kernel::Random random(setting.seed);
   FfLink link(rules, random.split("link"), setting.disturb);
   std::vector<Driven> driven;
-  link.on_driven(
-      [&driven](const FfDriven& one) { driven.push_back({one.dlpdu.type, one.node, one.begin, one.end}); });
+  link.on_driven([&driven](const FfDriven& one) {
+    driven.push_back({one.dlpdu.type, of_publisher(one.dlpdu), one.node, one.begin, one.end});
+  });
   FfSilentUser user;
   for (const std::uint8_t node : kMasters) link.add_master(configuration_of(node, rules), user);
   for (const std::uint8_t node : kPublishers) {
@@ -121,8 +141,13 @@ TakeOver run_take_over(const TakeOverSetting& setting) {
   constexpr std::int64_t kUntilReady = 7 + 8 + 12 + 8 + 16;
   const kernel::Time ready = claimed + octets(rules.link, kUntilReady);
   found.due_meanwhile = static_cast<unsigned>(due_in(death, ready).size());
-  for (const kernel::Time due : due_in(death, end - kMacrocycleTime / 2)) {
-    if (!is_compelled(driven, due, rules)) ++found.not_compelled;
+  for (const Due& due : due_in(death, end - kMacrocycleTime / 2)) {
+    const Driven* const cd = cd_for(driven, due, rules);
+    if (cd == nullptr) {
+      ++found.not_compelled;
+    } else if (!is_answered(driven, *cd, rules)) {
+      ++found.not_published;
+    }
   }
   return found;
 }

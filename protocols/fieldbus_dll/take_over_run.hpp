@@ -27,6 +27,7 @@ struct TakeOver {
   unsigned foreign_frames = 0;  // only a scheduler sends, by another than the one that there is
   unsigned due_meanwhile = 0;   // items of the schedule, from the death until the claimer may compel
   unsigned not_compelled = 0;   // of those and of all that were due in the two macrocycles behind
+  unsigned not_published = 0;   // what was compelled of these, and not answered with its data
 };
 
 // What V(ST) x V(TN) and V(MICD) say about `silence`, for link master 11.

@@ -20,6 +20,9 @@ TEST_P(TakeOverAtRandomInstants, IsByTheLowestLinkMasterInTimeAndAlone) {
     ASSERT_LE(found.silence, take_over_silence() + octet) << seed;
     ASSERT_EQ(found.foreign_frames, 0U) << seed;
     ASSERT_LE(found.not_compelled, found.due_meanwhile) << seed;
+    if (GetParam() == 0) {
+      ASSERT_EQ(found.not_published, 0U) << seed;
+    }
   }
 }
 

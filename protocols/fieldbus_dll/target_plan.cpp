@@ -10,8 +10,7 @@ namespace fieldproof::fieldbus_dll {
 namespace {
 
 constexpr double kHalfWidth95 = 1.96;
-constexpr std::uint64_t kFewPackets = 100;  // that prove nothing
-constexpr std::size_t kFewBatches = 20;     // the same, of a standard error
+constexpr std::size_t kFewBatches = 20;  // that prove nothing of a standard error
 
 // What no rotation reaches: each queue sends, and so do all items of the macrocycles that it touches.
 kernel::Duration unreachable(const TokenTraffic& traffic) {
@@ -30,41 +29,52 @@ std::vector<kernel::Duration> targets_of(const TokenTraffic& traffic, const Traf
   free.target = unreachable(traffic);
   const double longest = pass_token(free, search).longest_rotation;
   const kernel::Duration shortest = traffic.empty_rotation();
+  // Whole microseconds: what is told is what was proven.
+  const auto whole = [](kernel::Duration target) {
+    return target / kernel::kMicrosecond * kernel::kMicrosecond;
+  };
   const auto range = kernel::Duration{static_cast<std::int64_t>(longest * kPicosecondsPerMs)} - shortest;
   std::vector<kernel::Duration> targets;
   for (unsigned n = 0; n + 1 < kTargets; ++n) {
-    targets.push_back(shortest + n * (std::max(range, kernel::Duration::zero()) / (kTargets - 2)));
+    targets.push_back(whole(shortest + n * (std::max(range, kernel::Duration::zero()) / (kTargets - 2))));
   }
-  targets.push_back(free.target);
+  targets.push_back(whole(free.target + kernel::kMicrosecond));
   return targets;
 }
+
+enum class Judges { search, proof };
 
 bool is_worse(double one, double other, bool is_share) {
   return is_share ? one < other : one > other;
 }
 
-TargetRun judged(kernel::Duration target, TrafficFigures figures, const DelayBound& bound, double width) {
+// What is held with 95 %: the mean or the share, and what it is off by at most.
+double held(const StreamFigures& urgent, bool is_share, Judges judges) {
+  const bool is_proof = judges == Judges::proof;
+  if (is_share) return is_proof ? urgent.least_within : urgent.within;
+  return urgent.mean_delay + (is_proof ? kHalfWidth95 * urgent.standard_error : 0);
+}
+
+TargetRun judged(kernel::Duration target, TrafficFigures figures, const DelayBound& bound, Judges judges) {
   TargetRun run{.target = target, .figures = std::move(figures)};
-  bool has_node = false;
-  bool is_unstable = false;
-  bool has_error = true;
-  std::uint64_t fewest = ~std::uint64_t{0};
+  const bool is_share = bound.share.has_value();
+  std::optional<double> worst;
+  bool is_met = true;
   for (std::size_t n = 0; n < run.figures.nodes.size(); ++n) {
     const StreamFigures& urgent = run.figures.nodes[n][kUrgent];
     if (urgent.arrive_per_ms == 0) continue;
-    is_unstable |= urgent.is_unstable;
-    fewest = std::min(fewest, urgent.packets);
-    has_error &= urgent.batches >= kFewBatches;
-    const double reached = bound.share ? urgent.within : urgent.mean_delay;
-    if (has_node && !is_worse(reached, run.reached, bound.share.has_value())) continue;
-    has_node = true;
+    const double this_one = held(urgent, is_share, judges);
+    is_met &= !urgent.is_unstable && urgent.packets > 0;
+    is_met &= is_share ? this_one >= *bound.share : this_one <= ms(bound.at_most);
+    if (judges == Judges::proof) is_met &= urgent.packets >= kFewPackets && urgent.batches >= kFewBatches;
+    run.fewest = worst ? std::min(run.fewest, urgent.packets) : urgent.packets;
+    if (worst && !is_worse(this_one, *worst, is_share)) continue;
+    worst = this_one;
     run.worst_node = n;
-    run.reached = reached;
-    run.error = width * (bound.share ? urgent.within_error : urgent.standard_error);
+    run.reached = is_share ? urgent.within : urgent.mean_delay;
+    run.error = std::abs(this_one - run.reached);
   }
-  const bool is_within =
-      bound.share ? run.reached - run.error >= *bound.share : run.reached + run.error <= ms(bound.at_most);
-  run.meets_bound = !is_unstable && fewest >= kFewPackets && is_within && (width == 0 || has_error);
+  run.meets_bound = worst && is_met;
   return run;
 }
 
@@ -103,6 +113,21 @@ std::vector<const TargetRun*> candidates(const std::vector<TargetRun>& searched)
   return order;
 }
 
+// Of those in which each node has sent something, if there is one.
+std::size_t best_of(const std::vector<TargetRun>& searched, bool is_share) {
+  std::size_t best = 0;
+  for (std::size_t n = 1; n < searched.size(); ++n) {
+    const bool has_more = searched[best].fewest == 0 && searched[n].fewest > 0;
+    const bool has_less = searched[best].fewest > 0 && searched[n].fewest == 0;
+    if (has_more || (!has_less && is_worse(searched[best].reached, searched[n].reached, is_share))) best = n;
+  }
+  return best;
+}
+
+bool begins_to_grow(const TargetRun& searched, const TargetRun& longer) {
+  return !searched.figures.all[kTimeAvailable].is_unstable && longer.figures.all[kTimeAvailable].is_unstable;
+}
+
 // Packets that a proof counts: half of what its visits take, if that is less, so that its batches are full.
 std::uint64_t packets_of_proof(const TrafficFigures& searched, const TrafficRun& proof) {
   double packets = 0;
@@ -128,18 +153,20 @@ TargetPlan plan_target(const TokenTraffic& traffic, const DelayBound& bound, std
   TokenTraffic tried = traffic;
   for (const kernel::Duration target : targets_of(traffic, search)) {
     tried.target = target;
-    plan.searched.push_back(judged(target, pass_token(tried, search), bound, 0));
-    if (is_worse(plan.searched[plan.best].reached, plan.searched.back().reached, bound.share.has_value())) {
-      plan.best = plan.searched.size() - 1;
-    }
+    plan.searched.push_back(judged(target, pass_token(tried, search), bound, Judges::search));
   }
+  plan.best = best_of(plan.searched, bound.share.has_value());
+  const TargetRun* last = nullptr;
   for (const TargetRun* candidate : candidates(plan.searched)) {
     if (plan.tried.size() == kMostProofs) break;
+    // The same rotations: the target parts none of them.
+    if (last != nullptr && last->figures.mean_rotation == candidate->figures.mean_rotation) continue;
+    last = candidate;
     tried.target = candidate->target;
     TrafficRun longer = proof;
     longer.urgent_packets = packets_of_proof(candidate->figures, proof);
-    plan.tried.push_back(judged(tried.target, pass_token(tried, longer), bound, kHalfWidth95));
-    plan.is_proven = plan.tried.back().meets_bound;
+    plan.tried.push_back(judged(tried.target, pass_token(tried, longer), bound, Judges::proof));
+    plan.is_proven = plan.tried.back().meets_bound && !begins_to_grow(*candidate, plan.tried.back());
     if (plan.is_proven) break;
   }
   return plan;

@@ -68,5 +68,37 @@ TEST(TargetPlan, RarePacketsAreProvenWithAnErrorOfTheirOwn) {
   EXPECT_GT(plan.tried.back().error, 0);
 }
 
+// What no rotation admits has no delay, and is not harmed least for that.
+TEST(TargetPlan, AShortTargetDoesNotStarveRareTimeAvailableData) {
+  TokenTraffic traffic = planned_traffic(2e-6);
+  const TargetPlan plan = plan_target(traffic, {.at_most = 200 * kMillisecond}, 1);
+  EXPECT_TRUE(plan.searched.front().figures.all[kTimeAvailable].is_unstable);
+  ASSERT_TRUE(plan.is_proven);
+  EXPECT_GT(plan.tried.back().figures.all[kTimeAvailable].packets, 0U);
+}
+
+TEST(TargetPlan, ANodeWithFewPacketsDoesNotProveAShareByHavingNoMiss) {
+  TokenTraffic traffic = planned_traffic(0.01);
+  traffic.nodes[3].streams[kUrgent].per_ms = 1e-5;
+  const DelayBound bound{.at_most = 40 * kMillisecond, .share = 0.9999};
+  const TargetPlan plan = plan_target(traffic, bound, 1);
+  EXPECT_FALSE(plan.is_proven);
+  for (const TargetRun& tried : plan.tried) EXPECT_EQ(tried.worst_node, 3U);
+}
+
+// 628 packets in a second where 625 can go.
+TEST(TargetPlan, UrgentQueuesThatGrowSlowlyAreNotAPlan) {
+  TokenTraffic traffic = planned_traffic(0);
+  traffic.nodes.resize(1);
+  traffic.nodes[0].streams[kUrgent].per_ms = 0.628;
+  const TargetPlan plan = plan_target(traffic, {.at_most = 10 * kernel::kSecond}, 1);
+  EXPECT_FALSE(plan.is_proven);
+}
+
+TEST(TargetPlan, TargetsAreWholeMicroseconds) {
+  const TargetPlan plan = plan_target(planned_traffic(0.01), {.at_most = 200 * kMillisecond}, 1);
+  for (const TargetRun& run : plan.searched) EXPECT_EQ(run.target % kMicrosecond, kernel::Duration{});
+}
+
 }  // namespace
 }  // namespace fieldproof::fieldbus_dll

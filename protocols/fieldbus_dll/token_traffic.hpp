@@ -76,7 +76,7 @@ struct TrafficRun {
 };
 
 struct StreamFigures {
-  // More comes than leaves: delays are those of the time simulated, and grow with it.
+  // More comes than leaves, or nothing does: delays are those of the time simulated, and grow with it.
   bool is_unstable = false;
   std::uint64_t packets = 0;
   std::size_t batches = 0;    // that the standard errors rest on; they are 0 with fewer than 2
@@ -84,7 +84,7 @@ struct StreamFigures {
   double standard_error = 0;  // of it
   double largest_delay = 0;   // ms
   double within = 0;          // share of packets with a delay up to the bound
-  double within_error = 0;    // standard error of it
+  double least_within = 0;    // what it is at least, with 97.5 %
   double arrive_per_ms = 0;   // as configured
   double leave_per_ms = 0;
   std::uint64_t waiting = 0;  // at the end
@@ -103,7 +103,7 @@ struct TrafficFigures {
 };
 
 // Throws kernel::Error(configuration) for what is outside of the ranges above, a schedule whose items
-// overlap, and one that has no room between its items for the token.
+// overlap or are not in order, and one that has no room between its items for the token or a packet.
 void check(const TokenTraffic& traffic);
 
 // Throws as `check` does; also for a run that counts fewer than 100 urgent packets.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "harness/kernel/error.hpp"
 #include "protocols/fieldbus_dll/milliseconds.hpp"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kNegligible = 1e-18;  // of a probability
 constexpr std::size_t kMostStates = 100'000;
+constexpr double kTruncated = 1e-9;  // of all probability, by them
 constexpr unsigned kMostQueues = 1024;
 constexpr double kLowestRate = 1e-6;
 constexpr double kHighestRate = 1e6;
@@ -195,6 +197,8 @@ void wait(const UrgentTraffic& traffic, UrgentDelay& it) {
     it.at_visit = states_at_visit(arrivals_in(it.rotation, traffic.urgent_per_ms), it.rho);
     it.at_departure = states_at_departure(it.at_visit, it.rho, traffic.urgent_per_ms * length);
   }
+  expect(std::abs(1 - std::accumulate(it.at_departure.begin(), it.at_departure.end(), 0.0)) < kTruncated,
+         "more than 100 000 packets that may wait", "urgent data that leave more room");
   for (std::size_t n = 0; n < it.at_departure.size(); ++n) {
     const double p = it.at_departure[n];
     it.mean_at_departure += static_cast<double>(n) * p;
