@@ -63,6 +63,7 @@ std::vector<FfRow> ff_publisher_rows() {
       {"published_not_final", "", "keeps the token behind a DT3", FfTable::station<PublishedNotFinal>()},
       {"buffer_torn", "FF-21", "publishes half of an old buffer", FfTable::station<BufferTorn>()},
       {"counts_reads", "", "counts CDs as writes", FfTable::station<CountsReads>()},
+      {"counts_to_255", "", "does not begin anew behind 255 writes", FfTable::station<CountsTo255>()},
       {"counts_nothing", "", "does not count writes", FfTable::station<CountsNothing>()},
       {"publishes_anything", "", "answers a CD for any of its addresses with its buffer",
        FfTable::station<PublishesAnything>()},
@@ -85,6 +86,7 @@ std::vector<FfRow> ff_frame_rows() {
       {"es_is_pt", "", "takes an ES for a PT", FfTable::station<ReadsControlAs>(+[](Octet octet) {
          return (octet & 0xF8) == 0x38 ? static_cast<Octet>(octet & 0xF7) : octet;
        })},
+      {"tail_ignored", "", "takes a DLPDU with an octet behind it", FfTable::station<TailIgnored>()},
       {"two_octets_of_preamble", "", "sends two octets of preamble",
        FfTable::with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 2; })},
       {"short_silence", "", "begins V(MID) / 2 behind what was on the line",

@@ -232,6 +232,17 @@ class CountsNothing : public FfStation {
   }
 };
 
+class CountsTo255 : public FfStation {
+  using FfStation::FfStation;
+  bool write(FfAddress address, const Octets& data, Time now) override {
+    Buffer* const buffer = buffer_of(address);
+    const bool is_full = buffer != nullptr && buffer->writes == 255;
+    if (!FfStation::write(address, data, now)) return false;
+    if (is_full) buffer->writes = 255;
+    return true;
+  }
+};
+
 class PublishesAnything : public FfStation {
   using FfStation::FfStation;
   void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {
@@ -274,6 +285,15 @@ class TakesOtherChecks : public FfStation {
       all.push_back({std::move(frame.octets), reception.start, reception.end()});
     }
     return all;
+  }
+};
+
+class TailIgnored : public FfStation {
+  using FfStation::FfStation;
+  std::optional<FfDlpdu> understood(HeardOctets octets) const override {
+    auto whole = FfStation::understood(octets);
+    if (whole || octets.size() < 2) return whole;
+    return FfStation::understood(octets.first(octets.size() - 1));
   }
 };
 

@@ -115,6 +115,18 @@ void unknown_dlpdus_are_left(FfBench& bench, CaseJudge& judge) {
       expect_silence(bench, judge, "acts_on_unknown", fmt::format("{:02X} asks for nothing", control));
     }
   }
+  const auto& codes = bench.rules().codes;
+  const Octets pt = bench.pt(Priority::urgent, 500);
+  const Octets cd = bench.cd(FfBench::kPublished);
+  for (const Octets& whole : {Octets{codes.pn, bench.node()}, pt, cd}) {
+    Octets longer = whole;
+    longer.push_back(0);
+    for (const Octets& octets : {longer, Octets(whole.begin(), whole.end() - 1)}) {
+      bench.send(octets);
+      expect_silence(bench, judge, "acts_on_unknown",
+                     "a known first octet with another length asks for nothing");
+    }
+  }
   expect_serves(bench, judge);
 }
 
@@ -177,10 +189,14 @@ std::vector<FfCase> ff_frame_cases() {
         .purpose = "FF-42",
         .requirement = "What is not known is ignored, and the link goes on.",
         .reference = memory("octets of the DLPDUs"),
-        .stimulus = "All first octets that ask for nothing, with four kinds of rest and right checks.",
+        .stimulus =
+            "All first octets that ask for nothing, with four kinds of rest and right checks; PN, PT and CD "
+            "an octet too long and too short.",
         .expected = "Silence; a right PT is served then.",
         .tags = {"must"},
-        .catches = {{"priority_zero_taken", "acts_on_unknown"}, {"es_is_pt", "acts_on_unknown"}}},
+        .catches = {{"priority_zero_taken", "acts_on_unknown"},
+                    {"es_is_pt", "acts_on_unknown"},
+                    {"tail_ignored", "acts_on_unknown"}}},
        unknown_dlpdus_are_left},
       {{.id = "fieldbus_dll/ff_device/frame/silence_is_kept",
         .purpose = "FF-35",

@@ -96,6 +96,12 @@ void what_is_not_fresh_shows(FfBench& bench, CaseJudge& judge) {
     judge.expect(writes_in(fresh) == static_cast<std::uint8_t>(writes_in(first) + 1), "freshness_wrong",
                  [&] { return Sighting{{"one write more"}, fresh.text(), fresh.begin}; });
   }
+  const DrivenDlpdu before = expect_published(bench, judge);
+  for (int n = 0; n < 256; ++n) write_some(bench, judge, 8);
+  const DrivenDlpdu behind = expect_published(bench, judge);
+  judge.expect(writes_in(behind) == writes_in(before), "freshness_wrong", [&] {
+    return Sighting{{"the number of writes as before: its octet went round"}, behind.text(), behind.begin};
+  });
 }
 
 void an_unknown_address_is_not_published(FfBench& bench, CaseJudge& judge) {
@@ -166,10 +172,12 @@ std::vector<FfCase> ff_publisher_cases() {
         .requirement = "A buffer that was not written since is sent again, and a subscriber can see that.",
         .reference = own("the number of writes in a DT3"),
         .details = {returned},
-        .stimulus = "A write, two CDs, a write, a CD.",
-        .expected = "The same data and number of writes twice, then one more.",
+        .stimulus = "A write, two CDs, a write, a CD; 256 writes and a CD.",
+        .expected = "The same data and number of writes twice, then one more; the same number.",
         .tags = {"must"},
-        .catches = {{"counts_reads", "freshness_wrong"}, {"counts_nothing", "freshness_wrong"}}},
+        .catches = {{"counts_reads", "freshness_wrong"},
+                    {"counts_nothing", "freshness_wrong"},
+                    {"counts_to_255", "freshness_wrong"}}},
        what_is_not_fresh_shows},
       {{.id = "fieldbus_dll/ff_device/publisher/an_unknown_address_is_not_published",
         .purpose = "FF-13",
