@@ -212,7 +212,7 @@ TEST_F(Attachments, FfDeviceWithAReceiverInPythonPasses) {
   const std::string python = installed("python3");
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
   const fs::path device = kSourceFolder / "examples/ff_device/receiver.py";
-  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device), "fieldbus_dll/ff_device/", 23);
+  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device), "fieldbus_dll/ff_device/", 24);
 }
 
 // Written from the page of the role.
@@ -268,7 +268,7 @@ TEST_F(Attachments, FfDeviceInPythonPasses) {
   const std::string python = installed("python3");
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
   const fs::path device = kSourceFolder / "examples/ff_device/device.py";
-  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device), "fieldbus_dll/ff_device/", 23);
+  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device), "fieldbus_dll/ff_device/", 24);
 }
 
 // Verdicts and reasons, where levels are not all that is looked at; cases are in conformance's test of it.

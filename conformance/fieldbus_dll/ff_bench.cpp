@@ -56,6 +56,7 @@ FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
 }
 
 bool FfBench::submit(Priority priority, const Octets& data, FfAddress to) {
+  destinations_.insert(to);
   const bool is_taken = station_->submit({priority, to, data}, now());
   refresh_station();
   return is_taken;
@@ -65,11 +66,6 @@ bool FfBench::write(FfAddress address, const Octets& data) {
   const bool is_taken = station_->write(address, data, now());
   refresh_station();
   return is_taken;
-}
-
-void FfBench::order_transfer(std::uint8_t node) {
-  station_->order_transfer(node, now());
-  refresh_station();
 }
 
 std::vector<DrivenDlpdu> FfBench::serve(kernel::Time until, const Answers& answers) {
@@ -97,9 +93,11 @@ std::optional<FfBench::Reply> FfBench::returned(const DrivenDlpdu& dlpdu) const 
 
 // ---- DLPDUs of the tester ----
 
-Octets FfBench::pt(Priority least, unsigned duration) const {
-  return {control(rules().codes.pt, least), node(), static_cast<std::uint8_t>(duration >> 8),
-          static_cast<std::uint8_t>(duration & 0xFF)};
+Octets FfBench::pt(Priority least, unsigned duration) {
+  begins_circulation_ = !begins_circulation_;
+  const unsigned mark = begins_circulation_ ? fieldbus_dll::kFinalBit : 0U;
+  return {static_cast<std::uint8_t>(control(rules().codes.pt, least) | mark), node(),
+          static_cast<std::uint8_t>(duration >> 8), static_cast<std::uint8_t>(duration & 0xFF)};
 }
 
 Octets FfBench::cd(FfAddress address) const {

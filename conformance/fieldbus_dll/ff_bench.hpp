@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -73,13 +74,15 @@ class FfBench final : public LinkBench {
   // False when the IUT refuses it.
   bool submit(Priority priority, const Octets& data, fieldbus_dll::FfAddress to = kPeersAddress);
   bool write(fieldbus_dll::FfAddress address, const Octets& data);
-  void order_transfer(std::uint8_t node);
+  // To which it has submitted.
+  const std::set<fieldbus_dll::FfAddress>& destinations() const { return destinations_; }
 
   // ---- DLPDUs of the tester ----
   std::uint8_t control(std::uint8_t code, Priority priority) const {
     return static_cast<std::uint8_t>(code | static_cast<unsigned>(priority));
   }
-  Octets pt(Priority least, unsigned duration) const;  // to the IUT
+  // To the IUT; every other one begins a circulation.
+  Octets pt(Priority least, unsigned duration);
   Octets cd(fieldbus_dll::FfAddress address) const;
   Octets dt1(Priority priority, fieldbus_dll::FfAddress to, fieldbus_dll::FfAddress from, const Octets& data,
              bool is_final = false) const;
@@ -102,6 +105,8 @@ class FfBench final : public LinkBench {
  private:
   fieldbus_dll::FfConfiguration configuration_;
   FfUpperTester user_;
+  bool begins_circulation_ = false;
+  std::set<fieldbus_dll::FfAddress> destinations_;
   std::unique_ptr<fieldbus_dll::FfDevice> station_;
   bool has_started_ = false;
 };

@@ -1,5 +1,7 @@
 #include "conformance/fieldbus_dll/ff_cases.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 
 #include "conformance/fieldbus_dll/ff_expect.hpp"
@@ -18,11 +20,28 @@ FfCase ff_canary(const std::string& role) {
           }};
 }
 
+// Whose they are, and for whom: to whom the user submits, or between data link entities.
+void judge_addresses(const FfBench& bench, CaseJudge& judge) {
+  for (const DrivenDlpdu& one : bench.driven()) {
+    if (!is_dt1(bench, one)) continue;
+    const auto [to, from] = addresses_in(one);
+    const bool is_of_entity = from == fieldbus_dll::address_of(bench.node());
+    const bool is_right =
+        fieldbus_dll::node_of(from) == bench.node() && (is_of_entity || bench.destinations().contains(to));
+    judge.expect(is_right, "dlpdu_wrong", [&] {
+      return Sighting{{fmt::format("a DT1 from node {:02X}, to where its user submitted", bench.node())},
+                      one.text(),
+                      one.begin};
+    });
+  }
+}
+
 }  // namespace
 
 void judge_end(FfBench& bench, CaseJudge& judge) {
   bench.line_watch().judge(judge);
   judge_driven(bench, judge);
+  judge_addresses(bench, judge);
   bench.finish();
 }
 

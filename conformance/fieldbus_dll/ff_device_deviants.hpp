@@ -288,6 +288,39 @@ class TakesOtherChecks : public FfStation {
   }
 };
 
+class MarkedTokenUnknown : public FfStation {
+  using FfStation::FfStation;
+  std::optional<FfDlpdu> understood(HeardOctets octets) const override {
+    auto dlpdu = FfStation::understood(octets);
+    if (dlpdu && dlpdu->type == FfType::pt && dlpdu->begins_circulation) dlpdu.reset();
+    return dlpdu;
+  }
+};
+
+class SendsOtherAddress : public FfStation {
+ public:
+  SendsOtherAddress(const FfConfiguration& configuration, FfAddress FfDlpdu::* field)
+      : FfStation(configuration), field_(field) {}
+
+ private:
+  Octets written(const FfDlpdu& dlpdu) const override {
+    constexpr FfAddress kOtherNode = 0x0100;
+    FfDlpdu other = dlpdu;
+    if (other.type == FfType::dt1) other.*field_ ^= kOtherNode;
+    return FfStation::written(other);
+  }
+  FfAddress FfDlpdu::* field_;
+};
+
+class AnswersCdOffline : public FfStation {
+  using FfStation::FfStation;
+  void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {
+    if (dlpdu.type == FfType::cd && state() == fieldbus_dll::FfState::offline)
+      return answer({.type = FfType::sr, .is_final = true}, place);
+    FfStation::on_dlpdu(dlpdu, place);
+  }
+};
+
 class TailIgnored : public FfStation {
   using FfStation::FfStation;
   std::optional<FfDlpdu> understood(HeardOctets octets) const override {
@@ -306,6 +339,11 @@ class TakesOtherResidue : public TakesOtherChecks {
     return fieldbus_dll::with_check(HeardOctets(other).first(other.size() - fieldbus_dll::kCheckOctets)) ==
            other;
   }
+};
+
+class CheckOfTokensOnly : public TakesOtherChecks {
+  using TakesOtherChecks::TakesOtherChecks;
+  bool takes(const Octets& octets) const override { return (octets[0] & ~0x07) != rules().codes.pt; }
 };
 
 class CheckOfHighOctet : public TakesOtherChecks {

@@ -53,6 +53,16 @@ unsigned duration_in(const DrivenDlpdu& pt) {
   return static_cast<unsigned>(pt.octet(2) << 8 | pt.octet(3));
 }
 
+AddressesOfDt1 addresses_in(const DrivenDlpdu& dt1) {
+  const std::size_t size = (dt1.octet(0) & kLongBit) != 0 ? 4 : 2;
+  const auto address = [&](std::size_t first) {
+    fieldbus_dll::FfAddress one = 0;
+    for (std::size_t n = 0; n < size; ++n) one = one << 8 | dt1.octet(first + n);
+    return one;
+  };
+  return {address(1), address(1 + size)};
+}
+
 Octets dlsdu_of(const DrivenDlpdu& dt1) {
   const std::size_t header = (dt1.octet(0) & kLongBit) != 0 ? 9 : 5;
   if (dt1.octets.size() <= header) return {};

@@ -19,6 +19,12 @@ bool is_of(const DrivenDlpdu& dlpdu, std::uint8_t code);
 bool has_final_use(const DrivenDlpdu& dlpdu);
 fieldbus_dll::Priority priority_in(const DrivenDlpdu& dlpdu);
 unsigned duration_in(const DrivenDlpdu& pt);
+// Destination and source of a DT1.
+struct AddressesOfDt1 {
+  fieldbus_dll::FfAddress to;
+  fieldbus_dll::FfAddress from;
+};
+AddressesOfDt1 addresses_in(const DrivenDlpdu& dt1);
 // The DLSDU of a DT1 with short addresses.
 Octets dlsdu_of(const DrivenDlpdu& dt1);
 

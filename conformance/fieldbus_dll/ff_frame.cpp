@@ -50,6 +50,28 @@ void wrong_checks_are_seen(FfBench& bench, CaseJudge& judge) {
   expect_serves(bench, judge);
 }
 
+// Everything that a device acts on, with each bit wrong once.
+void wrong_checks_are_seen_whatever_comes(FfBench& bench, CaseJudge& judge) {
+  bench.write(FfBench::kPublished, bench.numbered_data(4));
+  const Octets told = bench.dt1(Priority::normal, fieldbus_dll::address_of(bench.node(), 0x30),
+                                FfBench::kPeersAddress, bench.numbered_data(6));
+  for (const Octets& dlpdu : {Octets{bench.rules().codes.pn, bench.node()}, bench.cd(FfBench::kPublished),
+                              bench.dt3(FfBench::kSubscribed, bench.numbered_data(6)), told}) {
+    const Octets right = with_frame_check(dlpdu);
+    for (std::size_t bit = 0; bit < 8 * right.size(); bit += bench.volume(std::size_t{3}, std::size_t{1})) {
+      Octets wrong = right;
+      wrong[bit / 8] = static_cast<std::uint8_t>(wrong[bit / 8] ^ (0x80U >> bit % 8));
+      bench.send_half_bits(half_bits_of_frame(wrong));
+      expect_silence(bench, judge, "acts_on_wrong_check", fmt::format("bit {} is wrong", bit));
+      judge.expect(bench.user().data.empty() && bench.user().published.empty(), "acts_on_wrong_check",
+                   "nothing is delivered: the check does not fit", "something was");
+    }
+  }
+  bench.send(told);
+  bench.wait(bench.octets(20));
+  judge.expect(bench.user().data.size() == 1, "does_not_recover", "a right DT1 is delivered", "it was not");
+}
+
 void addresses_are_read_as_long_as_they_are(FfBench& bench, CaseJudge& judge) {
   const FfAddress mine = 0x2130;
   const Octets short_data = bench.numbered_data(12);
@@ -163,6 +185,15 @@ std::vector<FfCase> ff_frame_cases() {
         .catches = {{"takes_other_residue", "acts_on_other_check"},
                     {"check_of_high_octet", "acts_on_wrong_check"}}},
        wrong_checks_are_seen},
+      {{.id = "fieldbus_dll/ff_device/frame/wrong_checks_are_seen_whatever_comes",
+        .purpose = "FF-37",
+        .requirement = "A DLPDU whose frame check does not fit is ignored.",
+        .reference = line("frame check 1DCF"),
+        .stimulus = "PN, CD, a DT3 of the publisher and a DT1 to the station, each with each bit wrong once.",
+        .expected = "Silence, and nothing is delivered; a right DT1 is.",
+        .tags = {"must"},
+        .catches = {{"check_of_tokens_only", "acts_on_wrong_check"}}},
+       wrong_checks_are_seen_whatever_comes},
       {{.id = "fieldbus_dll/ff_device/frame/addresses_are_read_as_long_as_they_are",
         .purpose = "FF-38",
         .requirement = "Long and short addresses are told apart by L.",

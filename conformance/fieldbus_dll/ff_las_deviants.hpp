@@ -24,6 +24,14 @@ class NoAllowanceForPt : public FfLas {
   }
 };
 
+class CutToTheLeast : public FfLas {
+  using FfLas::FfLas;
+  unsigned token_grant(Duration left) const override {
+    const unsigned grant = FfLas::token_grant(left);
+    return grant < rules().token_holding_octets ? std::min(grant, rules().least_token_octets) : grant;
+  }
+};
+
 class ScheduleInCentiseconds : public FfLas {
   using FfLas::FfLas;
   Time due(const FfScheduleItem& item) const override {

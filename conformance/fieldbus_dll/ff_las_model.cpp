@@ -228,6 +228,11 @@ FfLasModel::Found FfLasModel::check_grant(const DrivenDlpdu& pt) const {
     return LinkObjection{"token_too_short", fmt::format("{} octets at least", rules().least_token_octets)};
   if (grant > rules().token_holding_octets)
     return LinkObjection{"token_too_long", fmt::format("{} octets at most", rules().token_holding_octets)};
+  // V(MSO) and V(MID) are kept free.
+  const std::int64_t free = rules().scheduling_overhead_octets + rules().link.inter_pdu_delay_octets;
+  const bool is_cut = grant < rules().token_holding_octets && due() != kernel::kNever;
+  if (is_cut && pt.end + times(grant + free + 2) < due())
+    return LinkObjection{"token_shorter_than_the_time", "all the time that is left before the next item"};
   if (pt.end + times(grant) > due())
     return LinkObjection{"token_over_due",
                          fmt::format("a token that ends before {}", kernel::describe(due()))};

@@ -26,6 +26,7 @@ class FfLasModelTest : public testing::Test {
     made.live = {0x11, 0x12};
     made.schedule = {.version = 1, .macrocycle = 32'000, .items = {{kDue, 0x1120, Priority::normal}}};
     made.rules.target_rotation = fieldbus_dll::octets({}, 200);
+    made.rules.token_holding_octets = 100;
     return made;
   }
 
@@ -115,8 +116,8 @@ TEST_F(FfLasModelTest, WaitsForAnAnswerOrForSilence) {
 }
 
 TEST_F(FfLasModelTest, ATokenThatIsOverIsTakenBack) {
-  EXPECT_EQ(passes(0x11, kFirstMark, Priority::urgent, 90), "");
-  model_.hear_data(heard_end(85));
+  EXPECT_EQ(passes(0x11, kFirstMark), "");
+  model_.hear_data(heard_end(95));
   EXPECT_EQ(passes(0x12), "");
 }
 
@@ -198,6 +199,11 @@ TEST_F(FfLasModelTest, ATokenEndsBeforeWhatIsDue) {
   EXPECT_EQ(passes(0x11, kFirstMark), "");
   returned();
   EXPECT_EQ(passes(0x12), "token_over_due");
+}
+
+TEST_F(FfLasModelTest, ATokenThatIsCutUsesTheTime) {
+  idle_until(1'000);
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::urgent, 90), "token_shorter_than_the_time");
 }
 
 TEST_F(FfLasModelTest, TheTimeGoesOnAndIsToldToWhoAsks) {

@@ -320,7 +320,8 @@ std::vector<Detail> ff_las_sequence_details() {
   std::vector<Detail> details = ff_details();
   details.push_back({own("what a scheduler says when"),
                      {"does_not_wait", "order_wrong", "begin_not_marked", "token_for_removed",
-                      "priority_wrong", "time_request_ignored", "data_not_sent", "sends_other_data"}});
+                      "token_shorter_than_the_time", "priority_wrong", "time_request_ignored",
+                      "data_not_sent", "sends_other_data"}});
   details.push_back({own("what has changed is told within two circulations"),
                      {"not_activated", "live_list_not_told", "live_list_wrong"}});
   details.push_back(

@@ -80,15 +80,17 @@ struct Misses {
 
 Misses miss(FfBench& bench, const std::function<bool(std::size_t)>& misses, std::int64_t octet_times) {
   Misses found;
-  std::size_t circulations_without = 0;
+  std::size_t probes_without = 0;
   const auto answers = [&](const DrivenDlpdu& one) -> std::optional<FfBench::Reply> {
     if (const auto list = told(bench, one, fieldbus_dll::kEverybody); list && found.tokens > 0)
       found.is_told |= !is_live_in(*list, kKnown);
     if (is_probe_of(bench, one, kKnown)) found.is_probed = true;
-    if (is_of(one, bench.rules().codes.pn) && found.tokens > 0 && ++circulations_without > 1)
+    // A circulation has a probe, or several.
+    constexpr std::size_t kMostProbes = 6;
+    if (is_of(one, bench.rules().codes.pn) && found.tokens > 0 && ++probes_without > kMostProbes)
       found.is_removed = true;
     if (!is_token_for(bench, one, kKnown)) return bench.returned(one);
-    circulations_without = 0;
+    probes_without = 0;
     if (!misses(found.tokens++)) {
       found.tokens_until_removal = 0;
       return bench.returned(one);

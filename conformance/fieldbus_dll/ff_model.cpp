@@ -82,7 +82,7 @@ void FfModel::hear_cd(FfAddress address, Priority priority, Time end) {
   const auto found = buffers_.find(address);
   if (found == buffers_.end() || found->second.writes == 0) {
     const std::uint8_t why = found == buffers_.end() ? 0 : 1;
-    answer_ = Answer{{static_cast<std::uint8_t>(codes.sr | kFinalUse), why}, "dlpdu_wrong", until};
+    answer_ = Answer{{static_cast<std::uint8_t>(codes.sr | kFinalUse), why}, "dlpdu_wrong", until, true};
     return;
   }
   Octets dt3{static_cast<std::uint8_t>(codes.dt3 | kFinalUse | static_cast<unsigned>(priority)),
@@ -135,6 +135,14 @@ std::optional<LinkObjection> FfModel::say_answer(const DrivenDlpdu& dlpdu) {
   if (dlpdu.begin > answer.until + kLinkRounding)
     return LinkObjection{"answers_too_late", "it begins within V(MRD) x V(ST), or is not sent"};
   if (dlpdu.octets == answer.octets) return std::nullopt;
+  Octets without_final = answer.octets;
+  without_final[0] = static_cast<std::uint8_t>(without_final[0] & ~kFinalUse);
+  if (dlpdu.octets == without_final && dlpdu.octet(0) != answer.octets[0]) {
+    answer_ = Answer{{configuration_.rules.codes.rt},
+                     "token_not_returned",
+                     dlpdu.end + response_delay(configuration_.rules.link)};
+    return std::nullopt;
+  }
   return LinkObjection{answer.reason, fmt::format("{:02X}", fmt::join(answer.octets, " "))};
 }
 
@@ -146,6 +154,8 @@ std::optional<LinkObjection> FfModel::say_under_token(const DrivenDlpdu& dlpdu) 
                          "who holds the token is not silent for longer than V(MRD) x V(ST)"};
   const auto& codes = configuration_.rules.codes;
   if (dlpdu.octets == Octets{codes.rt}) return return_token(dlpdu);
+  constexpr std::size_t kRi = 3;
+  if (dlpdu.octet(0) == codes.ri && dlpdu.octets.size() == kRi) return std::nullopt;
   const unsigned free = kLongUse | kFinalUse | 0x03U;
   if ((dlpdu.octet(0) & ~free) == codes.dt1) return say_data(dlpdu);
   return LinkObjection{"unexpected_dlpdu", "DT1 or RT"};
@@ -187,11 +197,11 @@ std::optional<LinkObjection> FfModel::be_silent() {
   const auto& link = configuration_.rules.link;
   const Time slot_later = earliest() + fieldbus_dll::octets(link, link.slot_time_octets);
   if (const auto answer = std::exchange(answer_, std::nullopt)) {
-    if (slot_later > answer->until) return std::nullopt;
+    if (slot_later > answer->until || answer->may_be_left) return std::nullopt;
     return LinkObjection{"no_answer", fmt::format("{:02X}", fmt::join(answer->octets, " "))};
   }
   const auto token = std::exchange(token_, std::nullopt);
-  if (!token || end_of(1, slot_later) > token->ends) return std::nullopt;
+  if (!token || end_of(1, latest_of_token()) > token->ends) return std::nullopt;
   return LinkObjection{"token_not_returned", "the token is returned, by RT or by F"};
 }
 

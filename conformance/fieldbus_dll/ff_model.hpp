@@ -19,6 +19,7 @@
 //   within
 //                    the duration; the token is returned by F or by RT as soon as nothing fits any more
 //   CD of its own    DT3 with the buffer as it was written last, and with the number of its writes; else SR
+//                    or nothing; without F an RT behind it
 //   PN of its own    PR
 //   another DLPDU    an answer that has not begun is not due any more; one of a scheduler takes a token back
 //   anything else    nothing; what is due waits for V(MID) of silence
@@ -60,6 +61,7 @@ class FfModel {
     Octets octets;
     std::string reason;  // when it is another one
     kernel::Time until;
+    bool may_be_left = false;
   };
   struct Buffer {
     Octets data;

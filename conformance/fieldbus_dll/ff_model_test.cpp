@@ -92,8 +92,14 @@ TEST(FfModel, PublishesTheLastWriteWithItsNumber) {
   EXPECT_EQ(reason_in(model.say(said_at(48, {0x57, 0x21, 0x20, 2, 7}))), "");
   model.hear_cd(0x2120, Priority::urgent, octet_at(80));
   EXPECT_EQ(reason_in(model.say(said_at(88, {0x57, 0x21, 0x20, 1, 7}))), "published_wrong");
-  model.hear_cd(0x2121, Priority::urgent, octet_at(120));
+  model.hear_cd(0x2120, Priority::urgent, octet_at(120));
   EXPECT_EQ(reason_in(model.be_silent()), "no_answer");
+  // SR or nothing.
+  model.hear_cd(0x2121, Priority::urgent, octet_at(160));
+  EXPECT_EQ(reason_in(model.be_silent()), "");
+  model.hear_cd(0x2120, Priority::urgent, octet_at(200));
+  EXPECT_EQ(reason_in(model.say(said_at(208, {0x53, 0x21, 0x20, 2, 7}))), "");
+  EXPECT_EQ(reason_in(model.say(said_at(226, {kRt}))), "");
 }
 
 TEST(FfModel, WhatIsHeardTakesBackWhatIsDue) {

@@ -37,6 +37,8 @@ void nothing_is_sent_before_activation(FfBench& bench, CaseJudge& judge) {
   bench.wait(bench.octets(50));
   bench.send(bench.pt(Priority::time_available, 500));
   expect_silence(bench, judge, "uses_token_offline", "the station is not in the live list");
+  bench.send(bench.cd(FfBench::kPublished));
+  expect_silence(bench, judge, "answers_offline", "the station is not in the live list");
   bench.send({bench.rules().codes.pn, bench.node()});
   bench.listen();
   bench.send(bench.activation(bench.node()));
@@ -83,10 +85,11 @@ std::vector<FfCase> ff_probe_cases() {
         .purpose = "FF-01",
         .requirement = "A station uses no token before it is activated.",
         .reference = own("activation of a node"),
-        .stimulus = "A PT to a station that was not activated; PN, activation, PT.",
+        .stimulus = "A PT and a CD to a station that was not activated; PN, activation, PT.",
         .expected = "Silence; a PR; silence; the data.",
         .tags = {"must"},
-        .catches = {{"live_from_the_start", "uses_token_offline"}}},
+        .catches = {{"live_from_the_start", "uses_token_offline"},
+                    {"answers_cd_offline", "answers_offline"}}},
        nothing_is_sent_before_activation,
        {.is_live = false}},
       {{.id = "fieldbus_dll/ff_device/probe/impossible_rules_are_refused",

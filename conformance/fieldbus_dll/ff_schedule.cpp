@@ -105,6 +105,36 @@ void a_token_ends_before_what_is_due(FfBench& bench, CaseJudge& judge) {
   judge.expect(tokens > 20, "no_token", "tokens between the CDs", fmt::format("{}", tokens));
 }
 
+// Holders return a long token at once: what matters are those in front of a CD.
+void a_token_in_front_of_a_cd_uses_the_time(FfBench& bench, CaseJudge& judge) {
+  const auto& rules = bench.rules();
+  const kernel::Duration macrocycle = kMacrocycle * fieldbus_dll::kTick;
+  const kernel::Duration free = bench.octets(rules.scheduling_overhead_octets) + bench.least_gap();
+  const auto all = bench.serve(kernel::kStart + bench.volume(10, 200) * macrocycle,
+                               [&](const DrivenDlpdu& one) { return kept_long(bench, one); });
+  std::size_t cut = 0;
+  for (const DrivenDlpdu& pt : all) {
+    const unsigned grant = duration_in(pt);
+    if (!is_pt(bench, pt) || grant >= rules.token_holding_octets) continue;
+    ++cut;
+    const kernel::Duration phase = (pt.end - kernel::kStart) % macrocycle;
+    kernel::Duration left = macrocycle;
+    for (const auto& item : bench.configuration().schedule.items) {
+      const kernel::Duration at = item.at * fieldbus_dll::kTick;
+      left = std::min(left, phase <= at ? at - phase : at + macrocycle - phase);
+    }
+    const auto sighting = [&] {
+      return Sighting{{fmt::format("a token that ends V(MSO) and V(MID) before the CD in {}, to two octets",
+                                   kernel::describe(left))},
+                      pt.text(),
+                      pt.begin};
+    };
+    judge.expect(bench.octets(grant) <= left - free + kLinkRounding, "token_over_due", sighting);
+    judge.expect(bench.octets(grant + 2) >= left - free, "token_shorter_than_the_time", sighting);
+  }
+  judge.expect(cut > 3, "no_token", "tokens that are cut in front of a CD", fmt::format("{}", cut));
+}
+
 // The next thing that is said behind a CD which nobody answers.
 void a_missing_answer_costs_its_time(FfBench& bench, CaseJudge& judge) {
   std::optional<DrivenDlpdu> cd;
@@ -187,11 +217,14 @@ std::vector<FfCase> ff_schedule_cases() {
         .purpose = "FF-16",
         .requirement = "A token in front of a CD is as long as the time that is left.",
         .reference = memory("duration of a PT in front of a CD"),
+        .details = {{link_sources::own("as long as possible, V(MSO) and V(MID) kept free"),
+                     {"token_shorter_than_the_time", "token_over_due"}}},
         .stimulus = "As before.",
-        .expected = "As before.",
+        .expected = "Tokens in front of a CD end V(MSO) and V(MID) before it, to two octets.",
         .tags = {"must", "timing"},
-        .catches = {{"no_allowance_for_pt", "token_over_due"}}},
-       a_token_ends_before_what_is_due,
+        .catches = {{"no_allowance_for_pt", "token_over_due"},
+                    {"cut_to_the_least", "token_shorter_than_the_time"}}},
+       a_token_in_front_of_a_cd_uses_the_time,
        {.change = three_items}},
       {{.id = "fieldbus_dll/ff_las/schedule/a_missing_answer_costs_its_time",
         .purpose = "FF-17",

@@ -50,6 +50,10 @@ void judge_driven(const LinkBench& bench, CaseJudge& judge) {
     judge.expect(one.has_right_check, "check_wrong", [&] { return sighting("a frame check that fits"); });
     for (; next_heard < heard.size() && heard[next_heard].end <= one.begin; ++next_heard)
       heard_until = std::max(heard_until, heard[next_heard].end);
+    const bool is_over_another =
+        next_heard < heard.size() && heard[next_heard].begin < one.begin && one.begin < heard[next_heard].end;
+    judge.expect(!is_over_another, "gap_too_short",
+                 [&] { return sighting("silence of V(MID): another is on the line"); });
     const kernel::Time silent_since = std::max(own_end, heard_until);
     const bool is_first = silent_since == kernel::kStart;
     judge.expect(is_first || one.begin - silent_since + kLinkRounding >= bench.least_gap(), "gap_too_short",

@@ -147,6 +147,8 @@ class Device:
             behind = 1 + count * size_of_address + (kind == "dt3")
             if size < behind or kind == "cd" and size != behind:
                 return None
+            if kind != "cd" and size - behind > self.s[f"most_data_{first & PRIORITY}"]:
+                return None
             # A long address is one that needs it.
             is_long = [octets[1 + 4 * n:3 + 4 * n] != b"\0\0" for n in range(count)]
             return kind if not first & LONG or all(is_long) else None

@@ -37,9 +37,9 @@ class BatchMeans {
   // Do the values grow with the simulation? The last third of it has twice the mean of the first one, which
   // chance does not make of so many.
   bool grows() const {
-    constexpr std::size_t kFewBatches = 9;
+    constexpr std::size_t kFewMeans = 9;
     constexpr std::uint64_t kFewValues = 300;
-    if (means_.size() < kFewBatches || count_ < kFewValues) return false;
+    if (means_.size() < kFewMeans || count_ < kFewValues) return false;
     const auto third = static_cast<std::ptrdiff_t>(means_.size() / 3);
     const double first = std::accumulate(means_.begin(), means_.begin() + third, 0.0);
     const double last = std::accumulate(means_.end() - third, means_.end(), 0.0);
