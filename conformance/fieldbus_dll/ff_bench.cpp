@@ -68,6 +68,11 @@ bool FfBench::write(FfAddress address, const Octets& data) {
   return is_taken;
 }
 
+void FfBench::order_transfer(std::uint8_t node) {
+  station_->order_transfer(node, now());
+  refresh_station();
+}
+
 std::vector<DrivenDlpdu> FfBench::serve(kernel::Time until, const Answers& answers) {
   std::vector<DrivenDlpdu> all;
   while (const auto one = next(until)) {

@@ -74,6 +74,7 @@ class FfBench final : public LinkBench {
   // False when the IUT refuses it.
   bool submit(Priority priority, const Octets& data, fieldbus_dll::FfAddress to = kPeersAddress);
   bool write(fieldbus_dll::FfAddress address, const Octets& data);
+  void order_transfer(std::uint8_t node);
   // To which it has submitted.
   const std::set<fieldbus_dll::FfAddress>& destinations() const { return destinations_; }
 

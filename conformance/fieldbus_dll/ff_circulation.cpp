@@ -93,6 +93,18 @@ void each_circulation_probes(FfBench& bench, CaseJudge& judge) {
                fmt::format("{} probes, {} times from the beginning", probes, wraps));
 }
 
+void its_own_data_has_its_turn(FfBench& bench, CaseJudge& judge) {
+  for (int n = 0; n < bench.volume(2, 20); ++n) {
+    const Octets data = expect_submitted(bench, judge, Priority::urgent, 10);
+    bool is_sent = false;
+    bench.serve(bench.now() + bench.octets(3 * kFastRotation), [&](const DrivenDlpdu& one) {
+      is_sent |= is_dt1(bench, one) && dlsdu_of(one) == data;
+      return bench.returned(one);
+    });
+    judge.expect(is_sent, "own_data_not_sent", "urgent data of its user, once in a circulation", "none");
+  }
+}
+
 // What the first token of each circulation said, and when.
 struct Circulation {
   Priority priority;
@@ -195,6 +207,16 @@ std::vector<FfCase> ff_circulation_cases() {
                     {"probes_live_nodes", "probes_live_node"},
                     {"probes_descending", "probes_out_of_order"}}},
        each_circulation_probes,
+       {.change = four_nodes<1'000>}},
+      {{.id = "fieldbus_dll/ff_las/circulation/its_own_data_has_its_turn",
+        .purpose = "FF-18",
+        .requirement = "The scheduler itself has a turn in each circulation.",
+        .reference = own("the scheduler's own turn"),
+        .stimulus = "Four live nodes that return the token at once; its user submits.",
+        .expected = "The data within three rotations.",
+        .tags = {"must"},
+        .catches = {{"own_data_kept", "own_data_not_sent"}}},
+       its_own_data_has_its_turn,
        {.change = four_nodes<1'000>}},
       {{.id = "fieldbus_dll/ff_las/circulation/a_fast_rotation_admits_more",
         .purpose = "FF-19",

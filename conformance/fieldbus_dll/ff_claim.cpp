@@ -131,6 +131,54 @@ void a_wrong_transfer_is_none(FfBench& bench, CaseJudge& judge) {
                "the station spoke");
   bench.send(transfer_to(bench, 0x15));
   judge.expect(!bench.next(), "takes_transfer_of_others", "silence: the TL is for 15", "the station spoke");
+  Octets older = transfer_to(bench, bench.node());
+  older.back() ^= 1;
+  bench.send(older);
+  judge.expect(!bench.next(), "takes_other_schedule",
+               "silence: the TL is for another version of the schedule", "the station spoke");
+}
+
+// Whoever else is the scheduler speaks now and then.
+void expect_silent_in_standby(FfBench& bench, CaseJudge& judge) {
+  for (int i = 0; i < 6; ++i) {
+    const auto one = bench.next(bench.now() + bench.octets(60));
+    judge.expect(!one.has_value(), "two_schedulers",
+                 [&] { return Sighting{{"silence: another is the scheduler"}, one->text(), one->begin}; });
+    speak(bench);
+  }
+}
+
+void a_transfer_is_made_when_it_is_ordered(FfBench& bench, CaseJudge& judge) {
+  const auto answers = [&](const DrivenDlpdu& one) { return bench.returned(one); };
+  bench.serve(bench.now() + bench.octets(300), answers);
+  bench.order_transfer(0x15);
+  const kernel::Time latest = bench.now() + bench.octets(600);
+  bool is_made = false;
+  while (!is_made) {
+    const DrivenDlpdu one = expect_next(bench, judge, latest, "not_transferred", "a TL for 15");
+    is_made = one.octets == transfer_to(bench, 0x15);
+    if (const auto reply = answers(one))
+      bench.run_until(bench.send_at(one.end + bench.least_gap(), reply->octets));
+  }
+  bench.wait(bench.least_gap());
+  bench.send({bench.rules().codes.pn, 0x16});
+  expect_silent_in_standby(bench, judge);
+}
+
+void a_link_master_in_standby_is_a_device(FfBench& bench, CaseJudge& judge) {
+  bench.wait(bench.octets(30));
+  bench.send({bench.rules().codes.pn, bench.node()});
+  const DrivenDlpdu pr = expect_next(bench, judge, "not_a_device", "a PR");
+  judge.expect(pr.octets == Octets{bench.rules().codes.pr, bench.node()}, "not_a_device",
+               [&] { return Sighting{{"a PR"}, pr.text(), pr.begin}; });
+  bench.wait(bench.least_gap());
+  bench.send(bench.activation(bench.node()));
+  bench.wait(bench.octets(20));
+  for (int n = 0; n < bench.volume(2, 20); ++n) {
+    const Octets data = expect_submitted(bench, judge, Priority::urgent, 6);
+    const kernel::Time end = bench.send(bench.pt(Priority::normal, 280));
+    expect_dlsdus(judge, expect_token_used(bench, judge, end), {data}, "not_a_device", "sent_twice");
+  }
 }
 
 template <typename Say>
@@ -145,12 +193,7 @@ void expect_leaves(FfBench& bench, CaseJudge& judge, Say say) {
   }
   bench.wait(bench.least_gap());
   say();
-  for (int i = 0; i < 6; ++i) {
-    const auto one = bench.next(bench.now() + bench.octets(60));
-    judge.expect(!one.has_value(), "two_schedulers",
-                 [&] { return Sighting{{"silence: another is the scheduler"}, one->text(), one->begin}; });
-    speak(bench);
-  }
+  expect_silent_in_standby(bench, judge);
 }
 
 void a_second_scheduler_is_left_the_link(FfBench& bench, CaseJudge& judge) {
@@ -228,14 +271,38 @@ std::vector<FfCase> ff_claim_cases() {
        {.change = standby}},
       {{.id = "fieldbus_dll/ff_las/transfer/a_wrong_one_is_none",
         .purpose = "FF-33",
-        .requirement = "A TL with a wrong check, or for another, is none.",
+        .requirement = "A TL with a wrong check, for another, or for another schedule is none.",
         .reference = memory("TL"),
-        .stimulus = "A TL whose last bit is wrong, a TL for 15.",
+        .details = {{own("version of the schedule in a TL"), {"takes_other_schedule"}}},
+        .stimulus = "A TL whose last bit is wrong, a TL for 15, one with another version.",
         .expected = "Silence.",
         .tags = {"must"},
         .catches = {{"transfer_not_checked", "acts_on_wrong_check"},
-                    {"takes_transfer_of_others", "takes_transfer_of_others"}}},
+                    {"takes_transfer_of_others", "takes_transfer_of_others"},
+                    {"schedule_version_ignored", "takes_other_schedule"}}},
        a_wrong_transfer_is_none,
+       {.change = standby}},
+      {{.id = "fieldbus_dll/ff_las/transfer/is_made_when_ordered",
+        .purpose = "FF-33",
+        .requirement =
+            "A scheduler that is told to hands the link over by TL, and leaves when another speaks.",
+        .reference = memory("TL"),
+        .details = {{own("version of the schedule in a TL"), {"not_transferred"}}},
+        .stimulus = "The user orders a transfer to 15; then another probes.",
+        .expected = "A TL for 15; silence.",
+        .tags = {"must"},
+        .catches = {{"order_ignored", "not_transferred"}, {"stays_behind_transfer", "two_schedulers"}}},
+       a_transfer_is_made_when_it_is_ordered,
+       {.change = scheduler}},
+      {{.id = "fieldbus_dll/ff_las/claim/a_link_master_in_standby_is_a_device",
+        .purpose = "FF-03",
+        .requirement = "A link master that is not the scheduler answers probes and uses tokens as a device.",
+        .reference = memory("link masters that are not the scheduler"),
+        .stimulus = "PN, activation, and PTs with data waiting.",
+        .expected = "A PR, the data.",
+        .tags = {"must"},
+        .catches = {{"deaf_in_standby", "not_a_device"}}},
+       a_link_master_in_standby_is_a_device,
        {.change = standby}},
       {{.id = "fieldbus_dll/ff_las/claim/a_second_scheduler_is_left_the_link",
         .purpose = "FF-34",

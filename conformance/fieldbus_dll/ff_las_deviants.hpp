@@ -282,6 +282,45 @@ class TransferNotChecked : public FfLas {
   }
 };
 
+class ScheduleVersionIgnored : public FfLas {
+  using FfLas::FfLas;
+  void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {
+    FfDlpdu other = dlpdu;
+    if (other.type == FfType::tl) other.schedule_version = configuration().schedule.version;
+    FfLas::on_dlpdu(other, place);
+  }
+};
+
+class OrderIgnored : public FfLas {
+  using FfLas::FfLas;
+  void order_transfer(std::uint8_t, Time) override {}
+};
+
+class StaysBehindTransfer : public FfLas {
+  using FfLas::FfLas;
+  void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {
+    if (las_state() != fieldbus_dll::FfLasState::transferring) FfLas::on_dlpdu(dlpdu, place);
+  }
+  bool leaves_to(const FfDlpdu&) const override { return false; }
+};
+
+class DeafInStandby : public FfLas {
+  using FfLas::FfLas;
+  void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {
+    const bool is_of_a_device =
+        dlpdu.type == FfType::pn || dlpdu.type == FfType::pt || dlpdu.type == FfType::cd;
+    if (is_scheduler() || !is_of_a_device) FfLas::on_dlpdu(dlpdu, place);
+  }
+};
+
+class OwnDataKept : public FfLas {
+  using FfLas::FfLas;
+  std::optional<Priority> next_to_send(const Queues& queues, Priority least) const override {
+    if (is_scheduler()) return std::nullopt;
+    return FfLas::next_to_send(queues, least);
+  }
+};
+
 class NeverLeaves : public FfLas {
   using FfLas::FfLas;
   bool leaves_to(const FfDlpdu&) const override { return false; }
