@@ -31,7 +31,8 @@ TEST(FfLasSequence, FindsWhatTheCatalogueNames) {
       {"equal_rotation_is_fast", "claims_after_one_slot", "never_claims", "claims_a_slot_late",
        "claims_a_slot_early", "frames_do_not_save_the_link", "noise_does_not_save_the_link",
        "transfer_ignored", "transfer_not_checked", "takes_transfer_of_others", "never_leaves",
-       "stays_behind_claim"},
+       "stays_behind_claim", "schedule_version_ignored", "order_ignored", "stays_behind_transfer",
+       "deaf_in_standby"},
       300);
 }
 
