@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -135,9 +136,10 @@ std::string mark() {
 std::size_t hostile_processes() {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    std::ifstream file(entry.path() / "cmdline");
-    const std::string line{std::istreambuf_iterator<char>(file), {}};
-    if (line.find(mark()) != std::string::npos) ++count;
+    // A process that ends while it is looked at cannot be read: this way that is no more than an empty line.
+    std::ostringstream line;
+    line << std::ifstream(entry.path() / "cmdline").rdbuf();
+    if (line.str().find(mark()) != std::string::npos) ++count;
   }
   return count;
 }

@@ -36,12 +36,44 @@ void judge_addresses(const FfBench& bench, CaseJudge& judge) {
   }
 }
 
+// Is it an address of this station's link, whatever link a long address names?
+bool is_same_address(fieldbus_dll::FfAddress one, fieldbus_dll::FfAddress other) {
+  constexpr fieldbus_dll::FfAddress kNodeAndSelector = 0xFFFF;
+  return (one & kNodeAndSelector) == (other & kNodeAndSelector);
+}
+
+// Entities tell each other what no user is told.
+bool is_between_entities(const AddressesOfDt1& addresses) {
+  const auto is_of_entity = [](fieldbus_dll::FfAddress one) { return (one & 0xFF) == fieldbus_dll::kEntity; };
+  return is_of_entity(addresses.from) &&
+         (is_of_entity(addresses.to) || addresses.to == fieldbus_dll::kEverybody);
+}
+
+void judge_what_its_user_was_told(FfBench& bench, CaseJudge& judge) {
+  const auto is_data = [&](const DrivenDlpdu& sent, const fieldbus_dll::FfDlpdu& told) {
+    if (!is_dt1(bench, sent)) return false;
+    const AddressesOfDt1 addresses = addresses_in(sent);
+    return !is_between_entities(addresses) && is_same_address(addresses.to, told.destination) &&
+           is_same_address(addresses.from, told.source) && priority_in(sent) == told.priority &&
+           dlsdu_of(sent) == told.data;
+  };
+  const auto is_buffer = [&](const DrivenDlpdu& sent, const fieldbus_dll::FfDlpdu& told) {
+    if (!is_dt3(bench, sent)) return false;
+    const BufferOfDt3 buffer = buffer_in(sent);
+    return is_same_address(buffer.from, told.source) && buffer.writes == told.writes &&
+           buffer.data == told.data;
+  };
+  judge_told(bench, judge, bench.user().data, is_data);
+  judge_told(bench, judge, bench.user().published, is_buffer);
+}
+
 }  // namespace
 
 void judge_end(FfBench& bench, CaseJudge& judge) {
   bench.line_watch().judge(judge);
   judge_driven(bench, judge);
   judge_addresses(bench, judge);
+  judge_what_its_user_was_told(bench, judge);
   bench.finish();
 }
 

@@ -105,19 +105,72 @@ void its_own_data_has_its_turn(FfBench& bench, CaseJudge& judge) {
   }
 }
 
+// The next token for a node; those of others are returned at once.
+DrivenDlpdu next_token_for(FfBench& bench, CaseJudge& judge, std::uint8_t node) {
+  const kernel::Time latest = bench.now() + bench.octets(10 * kFastRotation);
+  for (;;) {
+    const DrivenDlpdu one =
+        expect_next(bench, judge, latest, "no_token", fmt::format("a PT for {:02X}", node));
+    if (is_pt(bench, one) && one.octet(1) == node) return one;
+    if (const auto reply = bench.returned(one))
+      bench.run_until(bench.send_at(one.end + bench.least_gap(), reply->octets));
+  }
+}
+
+Octets data_from(const FfBench& bench, std::uint8_t node, bool is_final) {
+  return bench.dt1(Priority::urgent, fieldbus_dll::address_of(FfBench::kScheduler, 0x30),
+                   fieldbus_dll::address_of(node, 1), Octets(20, 0x55), is_final);
+}
+
+// The holder sends for ever, with silences of twice V(MID).
+void who_overstays_is_stopped(FfBench& bench, CaseJudge& judge) {
+  for (int n = 0; n < bench.volume(2, 20); ++n) {
+    const DrivenDlpdu pt = next_token_for(bench, judge, 0x12);
+    const kernel::Time over = pt.end + bench.octets(duration_in(pt));
+    const kernel::Time latest = over + bench.slot() + 2 * bench.frame(32);
+    std::optional<DrivenDlpdu> next;
+    for (kernel::Time end = pt.end; !next && end < latest;) {
+      end = bench.send_at(end + 2 * bench.least_gap(), data_from(bench, 0x12, false));
+      bench.run_until(end);
+      next = bench.next(end + 2 * bench.least_gap() - kLinkRounding);
+    }
+    judge.expect(next.has_value(), "holder_not_stopped", [&] {
+      return Sighting{
+          {fmt::format("the token of 12 taken back in a silence behind {}", kernel::describe(over))},
+          "the station was silent",
+          latest};
+    });
+    expect_begins(judge, *next, over, "holder_stopped_early", latest, "holder_not_stopped");
+  }
+}
+
+// A DT1 with F of another, and nothing of the holder.
+void a_return_of_another_is_none(FfBench& bench, CaseJudge& judge) {
+  for (int n = 0; n < bench.volume(2, 20); ++n) {
+    const DrivenDlpdu pt = next_token_for(bench, judge, 0x12);
+    const kernel::Time end = bench.send_at(pt.end + bench.least_gap(), data_from(bench, 0x13, true));
+    bench.run_until(end);
+    const kernel::Time over = end + bench.response_delay();
+    const DrivenDlpdu next = expect_next(bench, judge, over + 4 * bench.slot(), "goes_on_late",
+                                         "the scheduler goes on when the holder says nothing");
+    expect_begins(judge, next, over, "takes_return_of_another", over + 2 * bench.slot(), "goes_on_late");
+  }
+}
+
 // What the first token of each circulation said, and when.
 struct Circulation {
   Priority priority;
   kernel::Time begin;
 };
 
-// Of nodes that return their tokens at once, the last one of them so much later.
-std::vector<Circulation> circulations(FfBench& bench, std::size_t count, kernel::Duration later) {
+// Of nodes that return their tokens at once, those from `first_late` on so much later.
+std::vector<Circulation> circulations(FfBench& bench, std::size_t count, kernel::Duration later,
+                                      std::uint8_t first_late = 0x14) {
   std::vector<Circulation> all;
   const auto answers = [&](const DrivenDlpdu& one) -> std::optional<FfBench::Reply> {
     auto reply = bench.returned(one);
     if (begins_circulation(bench, one)) all.push_back({priority_in(one), one.begin});
-    if (reply && is_pt(bench, one) && one.octet(1) == 0x14) reply->later = later;
+    if (reply && is_pt(bench, one) && one.octet(1) >= first_late) reply->later = later;
     return reply;
   };
   const kernel::Time end = bench.now() + bench.octets(static_cast<std::int64_t>(count) * 2 * kFastRotation);
@@ -146,6 +199,18 @@ void a_slow_rotation_admits_less(FfBench& bench, CaseJudge& judge) {
   using enum Priority;
   expect_priorities(judge, circulations(bench, 4, {}), {urgent, urgent, urgent, urgent},
                     "priority_not_raised");
+}
+
+void slower_rotations_admit_less_step_by_step(FfBench& bench, CaseJudge& judge) {
+  using enum Priority;
+  expect_priorities(judge, circulations(bench, 5, {}), {urgent, normal, time_available},
+                    "priority_not_lowered");
+  const std::vector<Circulation> slow = circulations(bench, 6, bench.octets(20), 0x11);
+  const auto first =
+      std::ranges::find_if(slow, [](const Circulation& one) { return one.priority != time_available; });
+  judge.expect(slow.end() - first >= 2, "priority_not_raised",
+               "tokens for less than all data, then for urgent data", "tokens for all");
+  expect_priorities(judge, {first, slow.end()}, {normal, urgent}, "priority_not_raised");
 }
 
 // Rotations of exactly V(TTRT), then shorter ones.
@@ -243,6 +308,39 @@ std::vector<FfCase> ff_circulation_cases() {
                     {"target_ignored", "priority_not_raised"}}},
        a_slow_rotation_admits_less,
        {.change = four_nodes<kFastRotation - 1>}},
+      {{.id = "fieldbus_dll/ff_las/circulation/slower_rotations_admit_less_step_by_step",
+        .purpose = "FF-20",
+        .requirement = "When rotations become slower than V(TTRT), the priority rises one step for each.",
+        .reference = ff_paper("ATRT not below TTRT"),
+        .details = {step},
+        .stimulus = "Nodes that return the token at once, then 20 octets later each; V(TTRT) is in between.",
+        .expected = "Tokens for all data; normal, urgent.",
+        .tags = {"must", "timing"},
+        .catches = {{"steps_back_to_the_extreme", "priority_not_raised"}}},
+       slower_rotations_admit_less_step_by_step,
+       {.change = four_nodes<kFastRotation + 40>}},
+      {{.id = "fieldbus_dll/ff_las/circulation/who_overstays_is_stopped",
+        .purpose = "FF-18",
+        .requirement = "A token comes back to the scheduler when its duration is over.",
+        .reference = ff_paper("duration of the token"),
+        .details = {{own("the scheduler takes it in a silence of V(MID), a V(ST) behind the duration"),
+                     {"holder_not_stopped", "holder_stopped_early"}}},
+        .stimulus = "A holder that sends for ever, with silences of twice V(MID).",
+        .expected = "The scheduler speaks in a silence behind the duration, not before.",
+        .tags = {"must", "timing"},
+        .catches = {{"holder_never_stopped", "holder_not_stopped"}}},
+       who_overstays_is_stopped,
+       {.change = four_nodes<1'000>}},
+      {{.id = "fieldbus_dll/ff_las/circulation/a_return_of_another_is_none",
+        .purpose = "FF-18",
+        .requirement = "A token is returned by who holds it.",
+        .reference = own("DT1 with F of another"),
+        .stimulus = "A PT for 12; a DT1 with F of 13.",
+        .expected = "Silence for V(MRD) x V(ST) behind it, no more than two slot times more.",
+        .tags = {"must", "timing"},
+        .catches = {{"return_of_anybody_taken", "takes_return_of_another"}}},
+       a_return_of_another_is_none,
+       {.change = four_nodes<1'000>}},
       {{.id = "fieldbus_dll/ff_las/circulation/an_equal_rotation_is_slow",
         .purpose = "FF-21",
         .requirement = "A rotation of exactly V(TTRT) admits urgent data only.",

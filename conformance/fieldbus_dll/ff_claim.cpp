@@ -1,4 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <set>
 
 #include "conformance/fieldbus_dll/ff_cases.hpp"
 #include "conformance/fieldbus_dll/ff_expect.hpp"
@@ -61,6 +64,55 @@ void a_silent_link_is_claimed(FfBench& bench, CaseJudge& judge) {
     has_passed |= is_pt(bench, one);
   }
   judge.expect(has_compelled && has_passed, "link_not_run", "CDs and PTs behind the CL", "none");
+}
+
+void the_macrocycle_goes_on(FfBench& bench, CaseJudge& judge) {
+  const auto& schedule = bench.configuration().schedule;
+  const kernel::Duration macrocycle = schedule.macrocycle * fieldbus_dll::kTick;
+  // Link time, which the station has not counted from its own start.
+  const std::uint32_t told = 7 * schedule.macrocycle + 1'234;
+  bench.wait(bench.octets(30));
+  const kernel::Time end =
+      bench.send({bench.rules().codes.td, 0, 0, 0, 0, static_cast<std::uint8_t>(told >> 8),
+                  static_cast<std::uint8_t>(told & 0xFF)});
+  const kernel::Duration into = (told % schedule.macrocycle) * fieldbus_dll::kTick;
+  const kernel::Duration at = schedule.items[0].at * fieldbus_dll::kTick;
+  expect_claim(bench, judge, end);
+  std::size_t compelled = 0;
+  for (const DrivenDlpdu& one :
+       bench.serve(bench.now() + bench.volume(4, 40) * macrocycle,
+                   [&](const DrivenDlpdu& dlpdu) { return bench.returned(dlpdu); })) {
+    if (!is_cd(bench, one)) continue;
+    const kernel::Duration late = (one.begin + kLinkRounding - end + into + macrocycle - at) % macrocycle;
+    judge.expect(late <= bench.octets(bench.rules().scheduling_overhead_octets) + 2 * kLinkRounding,
+                 "macrocycle_lost", [&] {
+                   return Sighting{{"the CD at its place in the macrocycle, as link time tells it"},
+                                   fmt::format("{} behind it", kernel::describe(late)),
+                                   one.begin};
+                 });
+    ++compelled;
+  }
+  judge.expect(compelled > 2, "link_not_run", "a CD in each macrocycle", fmt::format("{}", compelled));
+}
+
+void who_was_told_to_be_live_gets_the_token(FfBench& bench, CaseJudge& judge) {
+  std::vector<bool> live(256);
+  live[0x12] = live[0x15] = true;
+  bench.wait(bench.octets(30));
+  const kernel::Time end = bench.send(bench.dt1(Priority::normal, fieldbus_dll::kEverybody,
+                                                fieldbus_dll::address_of(FfBench::kScheduler),
+                                                fieldbus_dll::live_list_spdu(9, live)));
+  expect_claim(bench, judge, end);
+  std::set<unsigned> passed;
+  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(1'200), [&](const DrivenDlpdu& dlpdu) {
+         return bench.returned(dlpdu);
+       })) {
+    if (is_pt(bench, one)) passed.insert(one.octet(1));
+  }
+  judge.expect(passed == std::set<unsigned>{0x12, 0x15}, "live_list_not_kept", [&] {
+    return Sighting{{"PTs for 12 and 15, as the live list says"},
+                    fmt::format("for {:02X}", fmt::join(passed, " "))};
+  });
 }
 
 void the_lower_master_is_left_the_link(FfBench& bench, CaseJudge& judge) {
@@ -148,18 +200,35 @@ void expect_silent_in_standby(FfBench& bench, CaseJudge& judge) {
   }
 }
 
-void a_transfer_is_made_when_it_is_ordered(FfBench& bench, CaseJudge& judge) {
+// The TL for 15 that the user orders.
+DrivenDlpdu expect_transfer_made(FfBench& bench, CaseJudge& judge) {
   const auto answers = [&](const DrivenDlpdu& one) { return bench.returned(one); };
   bench.serve(bench.now() + bench.octets(300), answers);
   bench.order_transfer(0x15);
   const kernel::Time latest = bench.now() + bench.octets(600);
-  bool is_made = false;
-  while (!is_made) {
+  for (;;) {
     const DrivenDlpdu one = expect_next(bench, judge, latest, "not_transferred", "a TL for 15");
-    is_made = one.octets == transfer_to(bench, 0x15);
+    if (one.octets == transfer_to(bench, 0x15)) return one;
     if (const auto reply = answers(one))
       bench.run_until(bench.send_at(one.end + bench.least_gap(), reply->octets));
   }
+}
+
+void a_transfer_that_is_not_taken_is_taken_back(FfBench& bench, CaseJudge& judge) {
+  const DrivenDlpdu tl = expect_transfer_made(bench, judge);
+  const kernel::Time over = tl.end + bench.response_delay();
+  const DrivenDlpdu next = expect_next(bench, judge, over + 40 * bench.slot(), "not_taken_back",
+                                       "the scheduler goes on: its heir says nothing");
+  expect_begins(judge, next, over, "taken_back_early", over + 2 * bench.slot(), "not_taken_back");
+  bool has_compelled = is_cd(bench, next);
+  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(900),
+                                            [&](const DrivenDlpdu& dlpdu) { return bench.returned(dlpdu); }))
+    has_compelled |= is_cd(bench, one);
+  judge.expect(has_compelled, "schedule_not_run", "the CD of its schedule", "none");
+}
+
+void a_transfer_is_made_when_it_is_ordered(FfBench& bench, CaseJudge& judge) {
+  expect_transfer_made(bench, judge);
   bench.wait(bench.least_gap());
   bench.send({bench.rules().codes.pn, 0x16});
   expect_silent_in_standby(bench, judge);
@@ -227,6 +296,27 @@ std::vector<FfCase> ff_claim_cases() {
                     {"claims_a_slot_late", "claim_late"}}},
        a_silent_link_is_claimed,
        {.change = standby}},
+      {{.id = "fieldbus_dll/ff_las/claim/the_macrocycle_goes_on",
+        .purpose = "FF-29",
+        .requirement = "Who claims the link runs the schedule by the link time that was told.",
+        .reference = memory("link time and macrocycle"),
+        .stimulus = "A TD, then silence.",
+        .expected = "A CL; each CD at its place in the macrocycle, at most V(MSO) later.",
+        .tags = {"must", "timing"},
+        .catches = {{"schedule_from_the_claim", "macrocycle_lost"}}},
+       the_macrocycle_goes_on,
+       {.change = standby}},
+      {{.id = "fieldbus_dll/ff_las/claim/who_was_told_to_be_live_gets_the_token",
+        .purpose = "FF-24",
+        .requirement = "Who claims the link knows the live nodes from the live list that was told.",
+        .reference = memory("live list of a link master"),
+        .details = {{own("how a live list is told"), {"live_list_not_kept"}}},
+        .stimulus = "A live list with 12 and 15, then silence.",
+        .expected = "A CL; PTs for 12 and 15.",
+        .tags = {"must"},
+        .catches = {{"told_live_list_ignored", "live_list_not_kept"}}},
+       who_was_told_to_be_live_gets_the_token,
+       {.change = standby}},
       {{.id = "fieldbus_dll/ff_las/claim/the_lower_master_is_left_the_link",
         .purpose = "FF-30",
         .requirement = "Of two link masters the one with the smaller V(ST) x V(TN) has the link.",
@@ -293,6 +383,18 @@ std::vector<FfCase> ff_claim_cases() {
         .tags = {"must"},
         .catches = {{"order_ignored", "not_transferred"}, {"stays_behind_transfer", "two_schedulers"}}},
        a_transfer_is_made_when_it_is_ordered,
+       {.change = scheduler}},
+      {{.id = "fieldbus_dll/ff_las/transfer/what_is_not_taken_is_taken_back",
+        .purpose = "FF-33",
+        .requirement = "A scheduler whose heir says nothing goes on behind V(MRD) x V(ST).",
+        .reference = memory("TL"),
+        .details = {{own("V(MRD) x V(ST) supervises a TL"), {"taken_back_early", "not_taken_back"}}},
+        .stimulus = "The user orders a transfer to 15, which is silent.",
+        .expected =
+            "A TL for 15; the schedule goes on within two slot times behind V(MRD) x V(ST), not before.",
+        .tags = {"must", "timing"},
+        .catches = {{"never_retakes", "not_taken_back"}}},
+       a_transfer_that_is_not_taken_is_taken_back,
        {.change = scheduler}},
       {{.id = "fieldbus_dll/ff_las/claim/a_link_master_in_standby_is_a_device",
         .purpose = "FF-03",

@@ -16,6 +16,7 @@ using fieldbus_dll::FfLas;
 using fieldbus_dll::FfRules;
 using fieldbus_dll::FfStation;
 using fieldbus_dll::FfType;
+using fieldbus_dll::FfUser;
 using FfTable = DeviantTable<FfDevice, FfConfiguration>;
 using FfRow = FfTable::Row;
 
@@ -46,6 +47,16 @@ std::vector<FfRow> ff_token_rows() {
        FfTable::station<SendsOtherAddress>(&FfDlpdu::source)},
       {"answers_cd_offline", "", "answers a CD without having been activated",
        FfTable::station<AnswersCdOffline>()},
+      {"activated_by_anything", "", "takes whatever an entity tells it for its activation",
+       FfTable::station<ActivatedByAnything>()},
+      {"activated_by_broadcast", "", "takes an activation of everybody for its own",
+       FfTable::station<ActivatedByBroadcast>()},
+      {"activated_by_its_users_data", "", "takes data for its user for its activation",
+       FfTable::station<ActivatedByItsUsersData>()},
+      {"silence_of_the_usual_link", "", "keeps the usual V(MID), whatever its link's is",
+       FfTable::station<SilenceOfTheUsualLink>()},
+      {"answers_in_the_usual_time", "", "answers within the usual V(MRD) x V(ST), whatever its link's is",
+       FfTable::station<AnswersInTheUsualTime>()},
       {"returns_twice", "FF-7", "returns a token by F and by RT", FfTable::station<ReturnsTwice>()},
       {"never_final", "", "sends its last frame without F", FfTable::station<NeverFinal>()},
       {"queue_lost_with_token", "", "forgets what did not fit", FfTable::station<QueueLostWithToken>()},
@@ -95,6 +106,32 @@ std::vector<FfRow> ff_frame_rows() {
          return (octet & 0xF8) == 0x38 ? static_cast<Octet>(octet & 0xF7) : octet;
        })},
       {"check_of_tokens_only", "", "looks at the check of PTs only", FfTable::station<CheckOfTokensOnly>()},
+      {"tells_other_source", "", "tells its user another source",
+       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+         dlpdu.source ^= 0x0100;
+         tell_user(user, dlpdu, when);
+       })},
+      {"tells_normal_priority", "", "tells its user normal priority, whatever came",
+       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+         dlpdu.priority = fieldbus_dll::Priority::normal;
+         tell_user(user, dlpdu, when);
+       })},
+      {"tells_no_writes", "", "tells its user of a DT3 no number of writes",
+       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+         dlpdu.writes = 0;
+         tell_user(user, dlpdu, when);
+       })},
+      {"tells_twice", "", "tells its user everything twice",
+       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+         tell_user(user, dlpdu, when);
+         tell_user(user, dlpdu, when);
+       })},
+      {"deaf_to_broadcasts", "", "does not tell its user what is for everybody",
+       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+         if (dlpdu.destination != fieldbus_dll::kEverybody) tell_user(user, dlpdu, when);
+       })},
+      {"tells_live_lists", "", "tells its user what data link entities tell each other",
+       FfTable::station<TellsLiveLists>()},
       {"tail_ignored", "", "takes a DLPDU with an octet behind it", FfTable::station<TailIgnored>()},
       {"two_octets_of_preamble", "", "sends two octets of preamble",
        FfTable::with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 2; })},
@@ -172,6 +209,15 @@ std::vector<FfRow> ff_circulation_rows() {
       {"steps_to_the_extreme", "FF-4", "admits everything at once", FfTable::station<StepsToTheExtreme>()},
       {"rotation_counted_twice", "FF-3", "counts parts of a rotation twice",
        FfTable::station<RotationCountedTwice>()},
+      {"steps_back_to_the_extreme", "", "admits urgent data only at once behind a slow rotation",
+       FfTable::station<StepsBackToTheExtreme>()},
+      {"holder_never_stopped", "", "lets a holder overstay its token",
+       FfTable::station<HolderNeverStopped>()},
+      {"return_of_anybody_taken", "", "takes a DT1 with F of anybody for the return of the token",
+       FfTable::station<ReturnOfAnybodyTaken>()},
+      {"own_buffer_kept", "", "does not publish its own buffer",
+       FfTable::station<IdlesInPlaceOf>(
+           +[](const FfDlpdu& dlpdu, const FfConfiguration&) { return dlpdu.type == FfType::dt3; })},
       {"target_ignored", "", "does not look at V(TTRT)", FfTable::station<TargetIgnored>()},
       {"equal_rotation_is_fast", "FF-1", "takes a rotation of V(TTRT) for a fast one",
        FfTable::station<EqualRotationIsFast>()},
@@ -196,6 +242,10 @@ std::vector<FfRow> ff_live_list_rows() {
        })},
       {"live_list_reversed", "FF-23", "tells its live list with the bits turned",
        FfTable::station<LiveListReversed>()},
+      {"probe_response_of_anybody_taken", "", "takes a PR of anybody for that of the node that it has probed",
+       FfTable::station<ProbeResponseOfAnybodyTaken>()},
+      {"told_live_list_ignored", "", "does not keep the live list that it is told",
+       FfTable::station<ToldLiveListIgnored>()},
       {"removed_after_one_miss", "FF-12", "removes who misses one token",
        FfTable::station<RemovesBehind>(1U)},
       {"removed_after_four_misses", "", "removes who misses four tokens",
@@ -232,6 +282,10 @@ std::vector<FfRow> ff_claim_rows() {
       {"order_ignored", "", "does not hand the link over when it is told to",
        FfTable::station<OrderIgnored>()},
       {"stays_behind_transfer", "", "stays though its heir speaks", FfTable::station<StaysBehindTransfer>()},
+      {"never_retakes", "", "does not take back what its heir does not take",
+       FfTable::station<NeverRetakes>()},
+      {"schedule_from_the_claim", "", "begins its schedule anew when it claims the link",
+       FfTable::station<ScheduleFromTheClaim>()},
       {"deaf_in_standby", "", "is no device while another is the scheduler",
        FfTable::station<DeafInStandby>()},
       {"own_data_kept", "", "does not send what its user submits", FfTable::station<OwnDataKept>()},

@@ -321,6 +321,85 @@ class AnswersCdOffline : public FfStation {
   }
 };
 
+// Its user hears of what comes through this.
+class TellsOtherwise : public FfStation, private fieldbus_dll::FfUser {
+ public:
+  using Tell = void (*)(fieldbus_dll::FfUser& user, FfDlpdu dlpdu, Time when);
+  TellsOtherwise(const FfConfiguration& configuration, Tell how) : FfStation(configuration), tell_(how) {}
+
+  void wire(segment::Port& line, fieldbus_dll::FfUser& user) override {
+    told_ = &user;
+    FfStation::wire(line, *this);
+  }
+
+ private:
+  void on_data(const FfDlpdu& dlpdu, Time when) override { tell_(*told_, dlpdu, when); }
+  void on_published(const FfDlpdu& dlpdu, Time when) override { tell_(*told_, dlpdu, when); }
+  void on_event(const fieldbus_dll::FfEvent& event, Time when) override { told_->on_event(event, when); }
+
+  Tell tell_;
+  fieldbus_dll::FfUser* told_ = nullptr;
+};
+
+inline void tell_user(fieldbus_dll::FfUser& user, const FfDlpdu& dlpdu, Time when) {
+  if (dlpdu.type == FfType::dt3) return user.on_published(dlpdu, when);
+  user.on_data(dlpdu, when);
+}
+
+class TellsLiveLists : public FfStation {
+  using FfStation::FfStation;
+  void on_spdu(const FfDlpdu& dlpdu, Time now) override {
+    FfStation::on_spdu(dlpdu, now);
+    user().on_data(dlpdu, now);
+  }
+};
+
+class ActivatedByAnything : public FfStation {
+  using FfStation::FfStation;
+  void on_spdu(const FfDlpdu& dlpdu, Time now) override {
+    FfDlpdu other = dlpdu;
+    other.data[0] = static_cast<std::uint8_t>(fieldbus_dll::SpduKind::activation);
+    FfStation::on_spdu(other, now);
+  }
+};
+
+class ActivatedByBroadcast : public FfStation {
+  using FfStation::FfStation;
+  void on_spdu(const FfDlpdu& dlpdu, Time now) override {
+    FfDlpdu other = dlpdu;
+    other.destination = fieldbus_dll::address_of(node());
+    FfStation::on_spdu(other, now);
+  }
+};
+
+class ActivatedByItsUsersData : public FfStation {
+  using FfStation::FfStation;
+  void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {
+    FfStation::on_dlpdu(dlpdu, place);
+    if (dlpdu.type == FfType::dt1 && is_mine(fieldbus_dll::node_of(dlpdu.destination)) &&
+        state() == fieldbus_dll::FfState::offline)
+      enter(fieldbus_dll::FfState::idle);
+  }
+};
+
+class SilenceOfTheUsualLink : public FfStation {
+  using FfStation::FfStation;
+  Duration silence_before_sending() const override {
+    return octet_times(fieldbus_dll::LinkRules{}.inter_pdu_delay_octets);
+  }
+};
+
+class AnswersInTheUsualTime : public FfStation {
+  using FfStation::FfStation;
+  Duration silence_before_sending() const override {
+    // As slowly as a usual link allows.
+    return response_delay(fieldbus_dll::LinkRules{});
+  }
+  Time answer_until(const Place& place) const override {
+    return place.end + 2 * response_delay(fieldbus_dll::LinkRules{});
+  }
+};
+
 class TailIgnored : public FfStation {
   using FfStation::FfStation;
   std::optional<FfDlpdu> understood(HeardOctets octets) const override {

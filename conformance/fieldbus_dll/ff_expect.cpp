@@ -18,6 +18,21 @@ bool has_code(const DrivenDlpdu& dlpdu, std::uint8_t code, unsigned free_bits) {
   return !dlpdu.octets.empty() && (dlpdu.octet(0) & ~free_bits) == code;
 }
 
+std::size_t octets_of_address(const DrivenDlpdu& dlpdu) {
+  return (dlpdu.octet(0) & kLongBit) != 0 ? 4 : 2;
+}
+
+fieldbus_dll::FfAddress address_at(const DrivenDlpdu& dlpdu, std::size_t first) {
+  fieldbus_dll::FfAddress one = 0;
+  for (std::size_t n = 0; n < octets_of_address(dlpdu); ++n) one = one << 8 | dlpdu.octet(first + n);
+  return one;
+}
+
+Octets behind(const DrivenDlpdu& dlpdu, std::size_t header) {
+  if (dlpdu.octets.size() <= header) return {};
+  return {dlpdu.octets.begin() + static_cast<std::ptrdiff_t>(header), dlpdu.octets.end()};
+}
+
 }  // namespace
 
 bool is_pt(const FfBench& bench, const DrivenDlpdu& dlpdu) {
@@ -54,19 +69,17 @@ unsigned duration_in(const DrivenDlpdu& pt) {
 }
 
 AddressesOfDt1 addresses_in(const DrivenDlpdu& dt1) {
-  const std::size_t size = (dt1.octet(0) & kLongBit) != 0 ? 4 : 2;
-  const auto address = [&](std::size_t first) {
-    fieldbus_dll::FfAddress one = 0;
-    for (std::size_t n = 0; n < size; ++n) one = one << 8 | dt1.octet(first + n);
-    return one;
-  };
-  return {address(1), address(1 + size)};
+  const std::size_t size = octets_of_address(dt1);
+  return {address_at(dt1, 1), address_at(dt1, 1 + size)};
 }
 
 Octets dlsdu_of(const DrivenDlpdu& dt1) {
-  const std::size_t header = (dt1.octet(0) & kLongBit) != 0 ? 9 : 5;
-  if (dt1.octets.size() <= header) return {};
-  return {dt1.octets.begin() + static_cast<std::ptrdiff_t>(header), dt1.octets.end()};
+  return behind(dt1, 1 + 2 * octets_of_address(dt1));
+}
+
+BufferOfDt3 buffer_in(const DrivenDlpdu& dt3) {
+  const std::size_t size = octets_of_address(dt3);
+  return {address_at(dt3, 1), dt3.octet(1 + size), behind(dt3, 2 + size)};
 }
 
 Octets expect_submitted(FfBench& bench, CaseJudge& judge, Priority priority, std::size_t size) {

@@ -25,8 +25,14 @@ struct AddressesOfDt1 {
   fieldbus_dll::FfAddress from;
 };
 AddressesOfDt1 addresses_in(const DrivenDlpdu& dt1);
-// The DLSDU of a DT1 with short addresses.
 Octets dlsdu_of(const DrivenDlpdu& dt1);
+// What a DT3 carries.
+struct BufferOfDt3 {
+  fieldbus_dll::FfAddress from = 0;
+  std::uint8_t writes = 0;
+  Octets data{};
+};
+BufferOfDt3 buffer_in(const DrivenDlpdu& dt3);
 
 // Data that no other has, accepted by the IUT: `data_refused`.
 Octets expect_submitted(FfBench& bench, CaseJudge& judge, fieldbus_dll::Priority priority, std::size_t size);

@@ -95,6 +95,37 @@ void addresses_are_read_as_long_as_they_are(FfBench& bench, CaseJudge& judge) {
   expect_serves(bench, judge);
 }
 
+// What is told is held to what was sent, whatever the case: see judge_end.
+void what_comes_is_told_as_it_is(FfBench& bench, CaseJudge& judge) {
+  constexpr FfAddress kOther = 0x3540;
+  const FfAddress mine = fieldbus_dll::address_of(bench.node(), 0x30);
+  const FfAddress entity_of_scheduler = fieldbus_dll::address_of(FfBench::kScheduler);
+  for (int n = 0; n < bench.volume(2, 20); ++n) {
+    for (const Priority priority : {Priority::time_available, Priority::normal, Priority::urgent}) {
+      bench.send(bench.dt1(priority, mine, FfBench::kPeersAddress, bench.numbered_data(6)));
+      bench.wait(bench.octets(20));
+      bench.send(bench.dt1(priority, fieldbus_dll::kEverybody, kOther, bench.numbered_data(6)));
+      bench.wait(bench.octets(20));
+    }
+    bench.send(bench.dt1(Priority::normal, fieldbus_dll::kEverybody, entity_of_scheduler,
+                         fieldbus_dll::live_list_spdu(static_cast<std::uint8_t>(n), {})));
+    bench.wait(bench.octets(20));
+    Octets dt3 = bench.dt3(FfBench::kSubscribed, bench.numbered_data(6));
+    dt3[3] = static_cast<std::uint8_t>(n + 7);
+    bench.send(dt3);
+    bench.wait(bench.octets(20));
+  }
+  const auto rounds = static_cast<std::size_t>(bench.volume(2, 20));
+  judge.expect(bench.user().data.size() >= 6 * rounds, "not_told", [&] {
+    return Sighting{{fmt::format("{} DT1 are told", 6 * rounds)},
+                    fmt::format("{}", bench.user().data.size())};
+  });
+  judge.expect(bench.user().published.size() >= rounds, "not_told", [&] {
+    return Sighting{{fmt::format("{} DT3 are told", rounds)},
+                    fmt::format("{}", bench.user().published.size())};
+  });
+}
+
 void frames_are_as_long_as_the_paper_says(FfBench& bench, CaseJudge& judge) {
   constexpr FfAddress kFar = 0x1000'2230;
   constexpr std::size_t kUrgent = 64;
@@ -173,6 +204,7 @@ std::vector<FfCase> ff_frame_cases() {
   using link_sources::ff_paper;
   using link_sources::line;
   using link_sources::memory;
+  using link_sources::own;
   using link_sources::vendors;
   return {
       {{.id = "fieldbus_dll/ff_device/frame/wrong_checks_are_seen",
@@ -203,6 +235,23 @@ std::vector<FfCase> ff_frame_cases() {
         .tags = {"must"},
         .catches = {{"long_read_as_short", "long_address_misread"}}},
        addresses_are_read_as_long_as_they_are},
+      {{.id = "fieldbus_dll/ff_device/frame/what_comes_is_told_as_it_is",
+        .purpose = "FF-38",
+        .requirement = "A user is told what was sent to it: data, source, destination, priority.",
+        .reference = memory("DT1 and DT3 at the interface to the user"),
+        .details = {{own("the number of writes in a DT3; what entities tell each other"),
+                     {"told_otherwise"}}},
+        .stimulus =
+            "DT1 of two stations in each priority, to the station and to everybody; a live list; DT3.",
+        .expected = "Each DT1 and DT3 is told once, as it was sent; the live list is not.",
+        .tags = {"must"},
+        .catches = {{"tells_other_source", "told_otherwise"},
+                    {"tells_normal_priority", "told_otherwise"},
+                    {"tells_no_writes", "told_otherwise"},
+                    {"tells_twice", "told_otherwise"},
+                    {"tells_live_lists", "told_otherwise"},
+                    {"deaf_to_broadcasts", "not_told"}}},
+       what_comes_is_told_as_it_is},
       {{.id = "fieldbus_dll/ff_device/frame/are_as_long_as_the_paper_says",
         .purpose = "FF-40",
         .requirement = "Frames of 75 and 267 octets take 600 and 2136 us at 1 Mbit/s, and 24 us around them.",

@@ -148,6 +148,23 @@ class RotationCountedTwice : public FfLas {
   Duration rotation_of(Time last, Time now) const override { return 2 * FfLas::rotation_of(last, now); }
 };
 
+class StepsBackToTheExtreme : public FfLas {
+  using FfLas::FfLas;
+  Priority next_priority(Priority now, bool is_too_slow) const override {
+    return is_too_slow ? Priority::urgent : FfLas::next_priority(now, is_too_slow);
+  }
+};
+
+class HolderNeverStopped : public FfLas {
+  using FfLas::FfLas;
+  Time holder_until(Time, unsigned) const override { return kernel::kNever; }
+};
+
+class ReturnOfAnybodyTaken : public FfLas {
+  using FfLas::FfLas;
+  bool is_from_awaited(const FfDlpdu&) const override { return true; }
+};
+
 class TargetIgnored : public FfLas {
   using FfLas::FfLas;
   bool is_too_slow(Duration) const override { return false; }
@@ -196,6 +213,15 @@ class RemovesBehind : public FfLas {
 class MissesNotForgotten : public FfLas {
   using FfLas::FfLas;
   void on_token_used(std::uint8_t) override {}
+};
+
+class ProbeResponseOfAnybodyTaken : public FfLas {
+  using FfLas::FfLas;
+  void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {
+    FfDlpdu other = dlpdu;
+    if (other.type == FfType::pr) other.node = awaited();
+    FfLas::on_dlpdu(other, place);
+  }
 };
 
 // ---- time ----
@@ -302,6 +328,29 @@ class StaysBehindTransfer : public FfLas {
     if (las_state() != fieldbus_dll::FfLasState::transferring) FfLas::on_dlpdu(dlpdu, place);
   }
   bool leaves_to(const FfDlpdu&) const override { return false; }
+};
+
+class NeverRetakes : public FfLas {
+  using FfLas::FfLas;
+  bool retakes() const override { return false; }
+};
+
+class ScheduleFromTheClaim : public FfLas {
+  using FfLas::FfLas;
+  Time put_on_line(const Octets& octets, Time now) override {
+    if (octets[0] == rules().codes.cl) claimed_ = now;
+    return FfLas::put_on_line(octets, now);
+  }
+  Time due(const FfScheduleItem& item) const override {
+    const Duration macrocycle = configuration().schedule.macrocycle * fieldbus_dll::kTick;
+    return FfLas::due(item) + (claimed_ - kernel::kStart) % macrocycle;
+  }
+  Time claimed_ = kernel::kStart;
+};
+
+class ToldLiveListIgnored : public FfLas {
+  using FfLas::FfLas;
+  void on_spdu(const FfDlpdu& dlpdu, Time now) override { FfStation::on_spdu(dlpdu, now); }
 };
 
 class DeafInStandby : public FfLas {

@@ -117,7 +117,7 @@ SequenceVocabulary ff_las_vocabulary() {
                      .numbers = {{"priority", 1, 3, 3}, {"size", 2, 66, 8, kLasSizes}},
                      .weight = 4}},
           .unit = "octet",
-          .levels_per_unit = kHalfBitsOfAnOctet};
+          .levels_per_unit = kFlipsOfAnOctet};
 }
 
 class FfLasSequenceRun {

@@ -69,6 +69,23 @@ void a_node_that_answers_is_activated(FfBench& bench, CaseJudge& judge) {
   judge.expect(listed.has_value(), "live_list_not_told", "the live list for everybody", "none");
 }
 
+void a_probe_response_of_another_is_none(FfBench& bench, CaseJudge& judge) {
+  constexpr std::uint8_t kElsewhere = 0x30;
+  std::size_t probes = 0;
+  const auto answers = [&](const DrivenDlpdu& one) -> std::optional<FfBench::Reply> {
+    const bool is_told = is_dt1(bench, one) && fieldbus_dll::node_of(addresses_in(one).to) != kKnown;
+    judge.expect(!is_told, "takes_probe_response_of_another", [&] {
+      return Sighting{
+          {"no activation and no live list: nobody has answered its own probe"}, one.text(), one.begin};
+    });
+    if (!is_of(one, bench.rules().codes.pn) || one.octet(1) == kElsewhere) return bench.returned(one);
+    ++probes;
+    return FfBench::Reply{{bench.rules().codes.pr, kElsewhere}};
+  };
+  bench.serve(kernel::kStart + bench.octets(1'500), answers);
+  judge.expect(probes > 3, "no_probe", "PNs", fmt::format("{}", probes));
+}
+
 // The node takes part in the first circulations, then misses tokens as the pattern says: true is a miss.
 struct Misses {
   std::size_t tokens = 0;
@@ -144,6 +161,16 @@ std::vector<FfCase> ff_live_list_cases() {
                     {"live_list_not_told", "live_list_not_told"},
                     {"new_node_without_token", "no_token_for_new_node"}}},
        a_node_that_answers_is_activated,
+       {.change = one_node}},
+      {{.id = "fieldbus_dll/ff_las/live_list/a_probe_response_of_another_is_none",
+        .purpose = "FF-24",
+        .requirement = "A node is found by its own answer to its own probe.",
+        .reference = memory("PN and PR"),
+        .stimulus = "PRs of node 30 to the PNs for others.",
+        .expected = "Nobody is activated.",
+        .tags = {"must"},
+        .catches = {{"probe_response_of_anybody_taken", "takes_probe_response_of_another"}}},
+       a_probe_response_of_another_is_none,
        {.change = one_node}},
       {{.id = "fieldbus_dll/ff_las/live_list/who_misses_three_tokens_is_removed",
         .purpose = "FF-25",

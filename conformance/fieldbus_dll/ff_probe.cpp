@@ -9,6 +9,13 @@ namespace {
 
 using fieldbus_dll::Priority;
 
+template <unsigned silence, unsigned response_slots, unsigned slot>
+void times_of_link(fieldbus_dll::FfConfiguration& configuration) {
+  configuration.rules.link.inter_pdu_delay_octets = silence;
+  configuration.rules.link.response_delay_slots = response_slots;
+  configuration.rules.link.slot_time_octets = slot;
+}
+
 void a_probe_is_answered(FfBench& bench, CaseJudge& judge) {
   bench.wait(bench.octets(50));
   for (int n = 0; n < bench.volume(2, 20); ++n) {
@@ -32,6 +39,18 @@ void probes_of_others_are_left(FfBench& bench, CaseJudge& judge) {
   expect_serves(bench, judge);
 }
 
+// An activation of another and of everybody, a live list, data for the user.
+std::vector<Octets> what_activates_nothing(FfBench& bench) {
+  using fieldbus_dll::address_of;
+  const fieldbus_dll::FfAddress scheduler = address_of(FfBench::kScheduler);
+  const auto kind = static_cast<std::uint8_t>(fieldbus_dll::SpduKind::activation);
+  const Octets list = fieldbus_dll::live_list_spdu(1, std::vector<bool>(256, true));
+  return {bench.activation(0x22), bench.dt1(Priority::normal, fieldbus_dll::kEverybody, scheduler, {kind}),
+          bench.dt1(Priority::normal, fieldbus_dll::kEverybody, scheduler, list),
+          bench.dt1(Priority::normal, address_of(bench.node()), scheduler, list),
+          bench.dt1(Priority::normal, address_of(bench.node(), 0x30), FfBench::kPeersAddress, {kind})};
+}
+
 void nothing_is_sent_before_activation(FfBench& bench, CaseJudge& judge) {
   const Octets data = expect_submitted(bench, judge, Priority::urgent, 6);
   bench.wait(bench.octets(50));
@@ -41,6 +60,12 @@ void nothing_is_sent_before_activation(FfBench& bench, CaseJudge& judge) {
   expect_silence(bench, judge, "answers_offline", "the station is not in the live list");
   bench.send({bench.rules().codes.pn, bench.node()});
   bench.listen();
+  for (const Octets& other : what_activates_nothing(bench)) {
+    bench.send(other);
+    bench.wait(bench.octets(20));
+    bench.send(bench.pt(Priority::time_available, 500));
+    expect_silence(bench, judge, "uses_token_offline", "what was sent is no activation of the station");
+  }
   bench.send(bench.activation(bench.node()));
   expect_silence(bench, judge, "talks_behind_answer", "an activation is not answered");
   const kernel::Time end = bench.send(bench.pt(Priority::time_available, 500));
@@ -72,6 +97,26 @@ std::vector<FfCase> ff_probe_cases() {
         .catches = {{"no_probe_response", "no_probe_response"}, {"answers_late", "answers_too_late"}}},
        a_probe_is_answered,
        {.is_live = false}},
+      {{.id = "fieldbus_dll/ff_device/probe/is_answered_after_a_longer_silence",
+        .purpose = "FF-01",
+        .requirement = "V(MID) is that of the link.",
+        .reference = vendors("V(MID), V(MRD), V(ST)"),
+        .stimulus = "PNs on a link with V(MID) 20, V(MRD) 3 and V(ST) 10.",
+        .expected = "One PR each, begun between 20 and 30 octet durations behind the PN.",
+        .tags = {"must", "timing"},
+        .catches = {{"silence_of_the_usual_link", "answers_too_early"}}},
+       a_probe_is_answered,
+       {.change = times_of_link<20, 3, 10>, .is_live = false}},
+      {{.id = "fieldbus_dll/ff_device/probe/is_answered_within_a_shorter_time",
+        .purpose = "FF-01",
+        .requirement = "V(MRD) and V(ST) are those of the link.",
+        .reference = vendors("V(MID), V(MRD), V(ST)"),
+        .stimulus = "PNs on a link with V(MID) 5, V(MRD) 4 and V(ST) 5.",
+        .expected = "One PR each, begun between 5 and 20 octet durations behind the PN.",
+        .tags = {"must", "timing"},
+        .catches = {{"answers_in_the_usual_time", "answers_too_late"}}},
+       a_probe_is_answered,
+       {.change = times_of_link<5, 4, 5>, .is_live = false}},
       {{.id = "fieldbus_dll/ff_device/probe/others_are_left",
         .purpose = "FF-02",
         .requirement = "A station answers no PN for another.",
@@ -85,10 +130,15 @@ std::vector<FfCase> ff_probe_cases() {
         .purpose = "FF-01",
         .requirement = "A station uses no token before it is activated.",
         .reference = own("activation of a node"),
-        .stimulus = "A PT and a CD to a station that was not activated; PN, activation, PT.",
+        .stimulus = "A PT and a CD to a station that was not activated; a PN; what activates others, live "
+                    "lists, data, "
+                    "each with a PT; an activation, a PT.",
         .expected = "Silence; a PR; silence; the data.",
         .tags = {"must"},
         .catches = {{"live_from_the_start", "uses_token_offline"},
+                    {"activated_by_anything", "uses_token_offline"},
+                    {"activated_by_broadcast", "uses_token_offline"},
+                    {"activated_by_its_users_data", "uses_token_offline"},
                     {"answers_cd_offline", "answers_offline"}}},
        nothing_is_sent_before_activation,
        {.is_live = false}},

@@ -8,8 +8,6 @@
 namespace fieldproof::conformance {
 namespace {
 
-constexpr std::size_t kDt3Header = 4;  // with a short address
-
 // The DT3 to a CD for the first buffer of the station.
 DrivenDlpdu expect_published(FfBench& bench, CaseJudge& judge) {
   const kernel::Time end = bench.send(bench.cd(FfBench::kPublished));
@@ -20,9 +18,7 @@ DrivenDlpdu expect_published(FfBench& bench, CaseJudge& judge) {
   const DrivenDlpdu& dt3 = all.front();
   expect_begins(judge, dt3, end + bench.least_gap(), "answers_too_early", end + bench.response_delay(),
                 "answers_too_late");
-  const bool is_right =
-      dt3.octet(1) == FfBench::kPublished >> 8 && dt3.octet(2) == (FfBench::kPublished & 0xFF);
-  judge.expect(is_right, "dlpdu_wrong",
+  judge.expect(buffer_in(dt3).from == FfBench::kPublished, "dlpdu_wrong",
                [&] { return Sighting{{"the address of the buffer as the source"}, dt3.text(), dt3.begin}; });
   const bool is_returned_by_rt = all.size() == 2 && is_of(all[1], bench.rules().codes.rt);
   judge.expect(all.size() == 1 || is_returned_by_rt, "unexpected_dlpdu", [&] {
@@ -33,12 +29,8 @@ DrivenDlpdu expect_published(FfBench& bench, CaseJudge& judge) {
   return dt3;
 }
 
-Octets buffer_in(const DrivenDlpdu& dt3) {
-  return {dt3.octets.begin() + kDt3Header, dt3.octets.end()};
-}
-
 void expect_buffer(CaseJudge& judge, const DrivenDlpdu& dt3, const Octets& wanted, std::string_view reason) {
-  judge.expect(dt3.octets.size() >= kDt3Header && buffer_in(dt3) == wanted, reason, [&] {
+  judge.expect(buffer_in(dt3).data == wanted, reason, [&] {
     return Sighting{{fmt::format("buffer {:02X}", fmt::join(wanted, " "))}, dt3.text(), dt3.begin};
   });
 }
@@ -69,7 +61,7 @@ void a_buffer_is_published_whole(FfBench& bench, CaseJudge& judge) {
     bench.wait(bench.octets(static_cast<std::int64_t>(bench.random().below(24))));
     const Octets after = write_some(bench, judge, 16);
     const DrivenDlpdu dt3 = expect_next(bench, judge, "not_published", "a DT3");
-    const Octets found = dt3.octets.size() >= kDt3Header ? buffer_in(dt3) : Octets{};
+    const Octets found = buffer_in(dt3).data;
     judge.expect(found == before || found == after, "buffer_torn", [&] {
       return Sighting{{fmt::format("the old buffer {:02X}", fmt::join(before, " ")),
                        fmt::format("the new one {:02X}", fmt::join(after, " "))},
@@ -82,7 +74,7 @@ void a_buffer_is_published_whole(FfBench& bench, CaseJudge& judge) {
 }
 
 void what_is_not_fresh_shows(FfBench& bench, CaseJudge& judge) {
-  const auto writes_in = [](const DrivenDlpdu& dt3) { return dt3.octet(3); };
+  const auto writes_in = [](const DrivenDlpdu& dt3) { return buffer_in(dt3).writes; };
   for (int n = 0; n < bench.volume(2, 20); ++n) {
     const Octets data = write_some(bench, judge, 8);
     const DrivenDlpdu first = expect_published(bench, judge);

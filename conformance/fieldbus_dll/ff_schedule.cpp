@@ -14,6 +14,7 @@ using fieldbus_dll::Priority;
 constexpr FfAddress kFirst = 0x1120;
 constexpr FfAddress kSecond = 0x1220;
 constexpr FfAddress kThird = 0x1320;
+constexpr FfAddress kOwn = 0x1020;             // of the scheduler
 constexpr std::uint32_t kMacrocycle = 16'000;  // 500 ms
 
 // Offsets that are no octet durations: 31.25 us, 155.125 ms, 320 ms.
@@ -156,6 +157,37 @@ void a_missing_answer_costs_its_time(FfBench& bench, CaseJudge& judge) {
   judge.expect(seen > 5, "not_compelled", "CDs", fmt::format("{}", seen));
 }
 
+void its_own_item(FfConfiguration& configuration) {
+  three_items(configuration);
+  configuration.published = {kOwn};
+  configuration.schedule.items[1].address = kOwn;
+}
+
+void its_own_buffer_is_published(FfBench& bench, CaseJudge& judge) {
+  const kernel::Duration macrocycle = kMacrocycle * fieldbus_dll::kTick;
+  const kernel::Duration at = bench.configuration().schedule.items[1].at * fieldbus_dll::kTick;
+  const kernel::Duration most = bench.octets(bench.rules().scheduling_overhead_octets);
+  for (int n = 0; n < bench.volume(3, 30); ++n) {
+    const Octets data = bench.numbered_data(8);
+    judge.expect(bench.write(kOwn, data), "write_refused", "the buffer is written", "it was not");
+    const kernel::Time due = kernel::kStart + n * macrocycle + at;
+    bool is_published = false;
+    for (const DrivenDlpdu& one :
+         bench.serve(kernel::kStart + (n + 1) * macrocycle,
+                     [&](const DrivenDlpdu& dlpdu) { return bench.returned(dlpdu); })) {
+      if (!is_dt3(bench, one)) continue;
+      const BufferOfDt3 buffer = buffer_in(one);
+      judge.expect(buffer.from == kOwn && buffer.data == data, "buffer_wrong", [&] {
+        return Sighting{{fmt::format("{:04X} as it was written last", kOwn)}, one.text(), one.begin};
+      });
+      expect_begins(judge, one, due, "compelled_early", due + most, "compelled_late");
+      is_published = true;
+    }
+    judge.expect(is_published, "own_buffer_not_published", "a DT3 of the scheduler in each macrocycle",
+                 "none");
+  }
+}
+
 void nothing_but_cds(FfConfiguration& configuration) {
   configuration.rules.least_token_octets = 3'000;
   configuration.live = {0x11};
@@ -236,6 +268,16 @@ std::vector<FfCase> ff_schedule_cases() {
         .catches = {{"answer_time_from_begin", "goes_on_early"}, {"answer_time_doubled", "goes_on_late"}}},
        a_missing_answer_costs_its_time,
        {.change = three_items}},
+      {{.id = "fieldbus_dll/ff_las/schedule/its_own_buffer_is_published",
+        .purpose = "FF-14",
+        .requirement = "What the scheduler itself publishes has its time, too.",
+        .reference = link_sources::own("a scheduler that publishes: a DT3 without a CD"),
+        .stimulus = "A schedule with a buffer of the scheduler, which is written in each macrocycle.",
+        .expected = "A DT3 with the last write, from its time to V(MSO) later.",
+        .tags = {"must", "timing"},
+        .catches = {{"own_buffer_kept", "own_buffer_not_published"}}},
+       its_own_buffer_is_published,
+       {.change = its_own_item}},
       {{.id = "fieldbus_dll/ff_las/schedule/the_line_is_kept_active",
         .purpose = "FF-41",
         .requirement =

@@ -92,7 +92,7 @@ SequenceVocabulary ff_device_vocabulary() {
                  .numbers = {{"octets", 1, 10'000, 40, kFfWaits}},
                  .weight = 1}},
       .unit = "octet",
-      .levels_per_unit = kHalfBitsOfAnOctet};
+      .levels_per_unit = kFlipsOfAnOctet};
 }
 
 class FfSequenceRun {

@@ -18,11 +18,24 @@ IsaCase canary(const std::string& role) {
           }};
 }
 
+void judge_what_its_user_was_told(IsaBench& bench, CaseJudge& judge) {
+  std::vector<fieldbus_dll::IsaDlpdu> told;
+  for (const IsaUpperTester::Delivery& one : bench.user().deliveries) told.push_back(one.dlpdu);
+  const auto& codes = bench.rules().codes;
+  judge_told(bench, judge, told, [&](const DrivenDlpdu& sent, const fieldbus_dll::IsaDlpdu& one) {
+    const std::uint8_t code = one.type == fieldbus_dll::IsaType::du ? codes.du : codes.dt;
+    return is_type(sent, code) &&
+           (sent.octet(0) & fieldbus_dll::kPriorityBits) == static_cast<unsigned>(one.priority) &&
+           sent.octet(1) == one.destination && sent.octet(2) == one.source && sent.rest() == one.data;
+  });
+}
+
 }  // namespace
 
 void judge_end(IsaBench& bench, CaseJudge& judge) {
   bench.line_watch().judge(judge);
   judge_driven(bench, judge);
+  judge_what_its_user_was_told(bench, judge);
   for (const DrivenDlpdu& one : bench.driven()) {
     judge.expect(one.octet(2) == bench.address(), "source_wrong", [&] {
       return Sighting{{"the station's own address as the source"}, one.text(), one.begin};

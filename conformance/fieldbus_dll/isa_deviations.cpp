@@ -13,6 +13,7 @@ namespace {
 using fieldbus_dll::EndReason;
 using fieldbus_dll::IsaConfiguration;
 using fieldbus_dll::IsaDevice;
+using fieldbus_dll::IsaDlpdu;
 using fieldbus_dll::IsaRules;
 using fieldbus_dll::IsaType;
 
@@ -112,6 +113,11 @@ std::vector<IsaRow> isa_reply_rows() {
       {"broadcast_not_delivered", "", "does not deliver data for everybody",
        IsaTable::station<BroadcastNotDelivered>()},
       {"broadcast_answered", "", "answers data for everybody", IsaTable::station<BroadcastAnswered>()},
+      {"tells_other_source", "", "tells its user another source",
+       IsaTable::station<TellsOtherwise>(+[](IsaDlpdu& dlpdu) { dlpdu.source ^= 1; })},
+      {"tells_normal_priority", "", "tells its user normal priority, whatever came",
+       IsaTable::station<TellsOtherwise>(
+           +[](IsaDlpdu& dlpdu) { dlpdu.priority = fieldbus_dll::Priority::normal; })},
       {"others_data_delivered", "", "delivers data for others", IsaTable::station<OthersDataDelivered>()},
       {"dt_to_everybody_delivered", "", "delivers a DT to everybody",
        IsaTable::station<DtToEverybodyDelivered>()},
@@ -207,6 +213,14 @@ std::vector<IsaRow> isa_las_rows() {
        IsaTable::station<TransferWithoutVersion>()},
       {"keeps_schedule_behind_transfer", "ISA-18", "goes on with its schedule behind a TL",
        IsaTable::station<KeepsScheduleBehindTransfer>()},
+      {"period_doubled", "", "runs each second period of its schedule only",
+       IsaTable::station<PeriodDoubled>()},
+      {"own_data_kept", "", "does not send what its user submits", IsaTable::station<OwnDataKept>()},
+      {"own_data_over_due", "", "sends what its user submits whatever is due",
+       IsaTable::station<OwnDataOverDue>()},
+      {"takes_transfer_of_others", "", "takes a TL for another", IsaTable::station<TakesTransferOfOthers>()},
+      {"deaf_in_standby", "", "uses no token while another is the scheduler",
+       IsaTable::station<DeafInStandby>()},
       {"never_yields", "", "stays when a lower address is the scheduler", IsaTable::station<Yields>(false)},
       {"always_yields", "", "leaves to a higher address, too", IsaTable::station<Yields>(true)},
   };

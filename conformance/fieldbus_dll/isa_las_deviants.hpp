@@ -25,6 +25,34 @@ class ItemsSkipped : public IsaLas {
   int passed_ = 0;
 };
 
+// Each round of the schedule begins two periods behind the last one.
+class PeriodDoubled : public IsaLas {
+  using IsaLas::IsaLas;
+  void advance() override {
+    IsaLas::advance();
+    ++passed_;
+  }
+  Time due(const IsaScheduleItem& item) const override {
+    const auto& schedule = configuration().schedule;
+    return IsaLas::due(item) + (passed_ / static_cast<int>(schedule.items.size())) * schedule.period;
+  }
+  int passed_ = 0;
+};
+
+class OwnDataKept : public IsaLas {
+  using IsaLas::IsaLas;
+  bool submit(const IsaRequest& request, Time now) override {
+    return las_state() == LasState::scheduling || IsaLas::submit(request, now);
+  }
+};
+
+class OwnDataOverDue : public IsaLas {
+  using IsaLas::IsaLas;
+  Duration needed_for(const IsaRequest& request) const override {
+    return las_state() == LasState::scheduling ? Duration{} : IsaLas::needed_for(request);
+  }
+};
+
 class DelegatesUrgentOnly : public IsaLas {
   using IsaLas::IsaLas;
   Octets written(const IsaDlpdu& dlpdu) const override {
@@ -117,6 +145,22 @@ class IgnoresTransfer : public IsaLas {
   using IsaLas::IsaLas;
   void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
     if (dlpdu.type != IsaType::tl) IsaLas::on_dlpdu(dlpdu, place);
+  }
+};
+
+class TakesTransferOfOthers : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    IsaDlpdu other = dlpdu;
+    if (other.type == IsaType::tl) other.destination = address();
+    IsaLas::on_dlpdu(other, place);
+  }
+};
+
+class DeafInStandby : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    if (las_state() != LasState::standby || dlpdu.type == IsaType::tl) IsaLas::on_dlpdu(dlpdu, place);
   }
 };
 

@@ -118,6 +118,22 @@ class OneOctetLess : public IsaDle {
   }
 };
 
+// Reads data with something changed.
+class TellsOtherwise : public IsaDle {
+ public:
+  using Change = void (*)(IsaDlpdu&);
+  TellsOtherwise(const IsaConfiguration& configuration, Change change)
+      : IsaDle(configuration), change_(change) {}
+
+ private:
+  std::optional<IsaDlpdu> understood(Heard octets) const override {
+    auto dlpdu = IsaDle::understood(octets);
+    if (dlpdu && (dlpdu->type == IsaType::du || dlpdu->type == IsaType::dt)) change_(*dlpdu);
+    return dlpdu;
+  }
+  Change change_;
+};
+
 class BroadcastNotDelivered : public IsaDle {
   using IsaDle::IsaDle;
   bool is_delivered(const IsaDlpdu& dlpdu) const override {

@@ -75,6 +75,62 @@ void a_token_that_comes_back_is_not_waited_for(IsaBench& bench, CaseJudge& judge
                 back + bench.least_gap() + bench.slot(), "next_too_late");
 }
 
+constexpr int kOctetsOfPeriod = 200;
+constexpr int kItemInPeriod = 20;
+constexpr std::uint8_t kHolderInSchedule = 0x21;
+
+IsaSchedule one_item_a_period() {
+  return {.version = 1,
+          .period = kOctetsOfPeriod * kOctetAt31250,
+          .items = {{kItemInPeriod * kOctetAt31250, IsaType::et, kHolderInSchedule, Priority::normal, 0}}};
+}
+
+// The token of a period, in time, and returned at once; instant by which it is back.
+kernel::Time expect_token_of_period(IsaBench& bench, CaseJudge& judge, int period) {
+  const kernel::Time due =
+      kernel::kStart + (std::int64_t{period} * kOctetsOfPeriod + kItemInPeriod) * kOctetAt31250;
+  const DrivenDlpdu et =
+      expect_next(bench, judge, due + 2 * bench.slot(), "delegation_missing", "the token of this period");
+  judge.expect(is_type(et, bench.rules().codes.et), "delegation_wrong",
+               [&] { return Sighting{{"an ET"}, et.text(), et.begin}; });
+  expect_begins(judge, et, due - bench.slot(), "delegation_early", due + bench.slot(), "delegation_late");
+  const kernel::Time back = bench.send_at(et.end + bench.least_gap(), bench.ee(kHolderInSchedule));
+  bench.run_until(back);
+  return back;
+}
+
+void the_schedule_goes_round(IsaBench& bench, CaseJudge& judge) {
+  for (int n = 0; n < bench.volume(4, 100); ++n) expect_token_of_period(bench, judge, n);
+}
+
+void its_own_data_goes_between(IsaBench& bench, CaseJudge& judge) {
+  constexpr std::size_t kShort = 10;
+  constexpr std::size_t kLong = 60;
+  // Less than the long one needs, before the next token.
+  constexpr int kLeft = 40;
+  const auto expect_own = [&](const Octets& data, kernel::Time latest) {
+    const DrivenDlpdu du =
+        expect_next(bench, judge, latest, "own_data_not_sent", "a DU of the scheduler's user");
+    judge.expect(is_type(du, bench.rules().codes.du) && du.rest() == data, "own_data_not_sent",
+                 [&] { return Sighting{{"a DU with the data of its user"}, du.text(), du.begin}; });
+  };
+  int period = 0;
+  for (int n = 0; n < bench.volume(2, 20); ++n) {
+    const kernel::Time back = expect_token_of_period(bench, judge, period++);
+    const Octets fits = bench.numbered_data(kShort);
+    judge.expect(bench.submit_unit_data(Priority::normal, fits), "data_refused", "data is accepted",
+                 "it was not");
+    expect_own(fits, back + bench.octets(60));
+    const kernel::Time next =
+        kernel::kStart + (std::int64_t{period} * kOctetsOfPeriod + kItemInPeriod) * kOctetAt31250;
+    bench.run_until(next - bench.octets(kLeft));
+    const Octets waits = bench.numbered_data(kLong);
+    judge.expect(bench.submit_unit_data(Priority::urgent, waits), "data_refused", "data is accepted",
+                 "it was not");
+    expect_own(waits, expect_token_of_period(bench, judge, period++) + bench.octets(60));
+  }
+}
+
 }  // namespace
 
 std::vector<IsaCase> isa_schedule_cases() {
@@ -106,6 +162,28 @@ std::vector<IsaCase> isa_schedule_cases() {
         .catches = {{"waits_out_duration", "next_too_late"}}},
        a_token_that_comes_back_is_not_waited_for,
        {.schedule = overdue_second()}},
+      {{.id = "fieldbus_dll/isa_las/schedule/goes_round",
+        .purpose = "ISA-29",
+        .requirement = "The scheduler delegates its token in the order and at the times of its schedule.",
+        .reference = isa_paper("the link active scheduler passes the delegated token in scheduled order"),
+        .details = {{own("the period of a schedule; within one V(ST) of its time"),
+                     {"delegation_missing", "delegation_early", "delegation_late"}}},
+        .stimulus = "A schedule with one ET in each period of 200 octet durations.",
+        .expected = "The ET in each period.",
+        .tags = {"must", "timing"},
+        .catches = {{"period_doubled", "delegation_missing"}}},
+       the_schedule_goes_round,
+       {.schedule = one_item_a_period()}},
+      {{.id = "fieldbus_dll/isa_las/schedule/its_own_data_goes_between",
+        .purpose = "ISA-29",
+        .requirement = "What the scheduler's own user submits goes between the items of the schedule.",
+        .reference = own("the scheduler's own data, where it ends before the next item"),
+        .stimulus = "Data that ends before the next token, and data that does not.",
+        .expected = "The first before it; the second behind it, and the token in time.",
+        .tags = {"must", "timing"},
+        .catches = {{"own_data_kept", "own_data_not_sent"}, {"own_data_over_due", "delegation_wrong"}}},
+       its_own_data_goes_between,
+       {.schedule = one_item_a_period()}},
   };
 }
 

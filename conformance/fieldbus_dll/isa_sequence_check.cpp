@@ -95,7 +95,7 @@ SequenceVocabulary isa_dle_vocabulary() {
                  .numbers = {{"octets", 1, 10'000, 40, kIsaWaits}},
                  .weight = 1}},
       .unit = "octet",
-      .levels_per_unit = kHalfBitsOfAnOctet};
+      .levels_per_unit = kFlipsOfAnOctet};
 }
 
 class IsaSequenceRun {

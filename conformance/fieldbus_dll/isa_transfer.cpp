@@ -71,6 +71,32 @@ void a_link_master_takes_over(IsaBench& bench, CaseJudge& judge) {
                });
 }
 
+void a_wrong_transfer_is_none_for_a_dle(IsaBench& bench, CaseJudge& judge) {
+  bench.wait(bench.octets(300));
+  Octets wrong = with_frame_check(Octets{bench.rules().codes.tl, bench.address(), kLower, 0, 1});
+  wrong.back() ^= 1;
+  bench.send_half_bits(half_bits_of_frame(wrong));
+  expect_no_scheduler(bench, judge, "the check of the TL is wrong");
+  bench.send({bench.rules().codes.tl, kHeir, kLower, 0, 1});
+  expect_no_scheduler(bench, judge, "the TL is for another");
+}
+
+void a_dle_in_standby_uses_tokens(IsaBench& bench, CaseJudge& judge) {
+  bench.wait(bench.octets(300));
+  for (int n = 0; n < bench.volume(2, 20); ++n) {
+    const Octets data = bench.numbered_data(8);
+    judge.expect(bench.submit_unit_data(Priority::normal, data), "data_refused", "data is accepted",
+                 "it was not");
+    const kernel::Time end = bench.send(bench.et(Priority::normal));
+    const DrivenDlpdu du = expect_next(bench, judge, "token_not_used", "a DU");
+    expect_begins(judge, du, end + bench.least_gap(), "answers_too_early", end + bench.reply_wait(),
+                  "answers_too_late");
+    judge.expect(is_type(du, bench.rules().codes.du) && du.rest() == data, "token_not_used",
+                 [&] { return Sighting{{"a DU with the data of its user"}, du.text(), du.begin}; });
+    bench.listen();
+  }
+}
+
 DrivenDlpdu expect_transfer(IsaBench& bench, CaseJudge& judge) {
   serve_one(bench, judge);
   // So late that the next item of the schedule is due while the TL is on the line.
@@ -133,6 +159,26 @@ std::vector<IsaCase> isa_transfer_cases() {
                     {"shows_itself_late", "taken_late"},
                     {"schedule_not_begun", "schedule_not_run"}}},
        a_link_master_takes_over,
+       {.schedule = late_items(), .is_scheduler = false}},
+      {{.id = "fieldbus_dll/isa_las/transfer/a_wrong_one_is_none",
+        .purpose = "ISA-35",
+        .requirement = "A TL with a wrong check or for another makes a link master no scheduler.",
+        .reference = isa_paper("there is one scheduler"),
+        .stimulus = "A TL whose last bit is wrong, a TL for another.",
+        .expected = "No ET, ES or TL.",
+        .tags = {"must"},
+        .catches = {{"takes_transfer_of_others", "two_schedulers"}}},
+       a_wrong_transfer_is_none_for_a_dle,
+       {.schedule = late_items(), .is_scheduler = false}},
+      {{.id = "fieldbus_dll/isa_las/transfer/in_standby_it_uses_tokens",
+        .purpose = "ISA-35",
+        .requirement = "A link master that is not the scheduler uses tokens as every station.",
+        .reference = isa_paper("link masters that are not the scheduler"),
+        .stimulus = "Data, and an ET to the IUT.",
+        .expected = "The data, begun within V(RR).",
+        .tags = {"must"},
+        .catches = {{"deaf_in_standby", "token_not_used"}}},
+       a_dle_in_standby_uses_tokens,
        {.schedule = late_items(), .is_scheduler = false}},
       {{.id = "fieldbus_dll/isa_las/transfer/what_is_not_taken_is_retaken",
         .purpose = "ISA-36",

@@ -90,6 +90,8 @@ class LinkBench : private segment::Station {
 
   // Everything that the IUT has driven, and when others were on the line.
   std::span<const DrivenDlpdu> driven() const { return driven_.all(); }
+  // Everything that the lower tester has.
+  std::span<const DrivenDlpdu> sent() const { return sent_.all(); }
   std::span<const Heard> heard() const { return ear_.heard; }
 
   std::vector<std::uint64_t> planned_hits() const {

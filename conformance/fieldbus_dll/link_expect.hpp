@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <string_view>
+#include <vector>
 
 #include "conformance/fieldbus_dll/link_bench.hpp"
 #include "conformance/judging.hpp"
@@ -18,6 +20,24 @@ DrivenDlpdu expect_next(LinkBench& bench, CaseJudge& judge, kernel::Time limit, 
 // It begins in this span, to a rounding.
 void expect_begins(CaseJudge& judge, const DrivenDlpdu& dlpdu, kernel::Time earliest,
                    std::string_view reason_early, kernel::Time latest, std::string_view reason_late);
+
+// What the user of the IUT was told was sent by the tester as it was told: in that order, and no more often:
+// `told_otherwise`. `is_told(sent, told)`: this was sent, for the user, and says the same. For the end of a
+// procedure.
+template <typename Told, typename IsTold>
+void judge_told(const LinkBench& bench, CaseJudge& judge, const std::vector<Told>& all_told, IsTold is_told) {
+  const auto sent = bench.sent();
+  auto next = sent.begin();
+  for (const Told& told : all_told) {
+    next = std::find_if(next, sent.end(), [&](const DrivenDlpdu& one) {
+      return one.is_well_formed && one.has_right_check && is_told(one, told);
+    });
+    judge.expect(next != sent.end(), "told_otherwise", [&] {
+      return Sighting{{"its user is told what was sent to it, once and as it was"}, describe(told)};
+    });
+    ++next;
+  }
+}
 
 // How each DLPDU of the IUT stands on the line, whatever the case was about: `frame_malformed`,
 // `check_wrong`, `gap_too_short`. For the end of a procedure.

@@ -8,6 +8,16 @@ namespace {
 
 constexpr std::array<std::int64_t, 5> kLinkSilences{0, 4, kLinkSettles, kLinkSettles, kLinkSettles};
 
+constexpr int kMostBitsFlipped = 2;
+
+void flip(line::Levels& half_bits, std::size_t first, std::uint32_t what, int& bits_left) {
+  if (what < kHalfBitsOfAnOctet) return half_bits.flip(first + what);
+  if (what >= kFlipsOfAnOctet || bits_left-- <= 0) return;
+  const std::size_t bit = first + 2 * std::size_t{what - kHalfBitsOfAnOctet};
+  half_bits.flip(bit);
+  half_bits.flip(bit + 1);
+}
+
 }  // namespace
 
 SequenceNumber link_silence() {
@@ -18,14 +28,14 @@ bool send_link_command(LinkBench& bench, const Octets& octets, const SequenceCom
   const line::Levels whole = half_bits_of_frame(with_frame_check(octets));
   line::Levels half_bits = whole;
   const std::size_t units = whole.size() / kHalfBitsOfAnOctet - 1;
+  int bits_left = kMostBitsFlipped;
   // What is dropped is low whatever was flipped in it.
   for (const SequenceFaultKind kind : {SequenceFaultKind::flip, SequenceFaultKind::drop}) {
     for (const SequenceFault& fault : command.faults) {
       if (fault.kind != kind || fault.unit >= units) continue;
       const std::size_t first = (fault.unit + 1U) * kHalfBitsOfAnOctet;
       if (kind == SequenceFaultKind::drop) half_bits.fill(first, first + kHalfBitsOfAnOctet, false);
-      if (kind == SequenceFaultKind::flip && fault.value < kHalfBitsOfAnOctet)
-        half_bits.flip(first + fault.value);
+      if (kind == SequenceFaultKind::flip) flip(half_bits, first, fault.value, bits_left);
     }
   }
   const bool is_whole = half_bits == whole;

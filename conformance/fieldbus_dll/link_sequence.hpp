@@ -11,6 +11,9 @@
 namespace fieldproof::conformance {
 
 inline constexpr unsigned kHalfBitsOfAnOctet = 16;
+// What a flip can hit: a half bit, which breaks the code, and behind those a whole bit, which only the frame
+// check sees. Of whole bits two are flipped at most: the check sees any three of a frame.
+inline constexpr unsigned kFlipsOfAnOctet = kHalfBitsOfAnOctet + 8;
 
 // The tester waits until the station has nothing more to say. Else it goes on after so many octet durations,
 // less than V(MID), before the station may begin.

@@ -161,7 +161,7 @@ void FfLas::on_answer_time_over(kernel::Time now) {
       return on_back(now);
     case FfLasState::transferring:
       tell(FfEventKind::transfer_failed, awaited_, now);
-      return on_back(now);
+      return retakes() ? on_back(now) : enter_las(FfLasState::standby);
     default:
       return on_back(now);
   }
@@ -362,7 +362,7 @@ bool FfLas::pass_token(std::uint8_t node, kernel::Time now) {
   const Place passed = ask(pt, now);
   ++turn_;
   await(FfLasState::awaiting_holder, node, passed);
-  token_until_ = passed.end + octet_times(grant) + octet_times(rules().link.slot_time_octets);
+  token_until_ = holder_until(passed.end, grant);
   return true;
 }
 

@@ -82,6 +82,11 @@ class FfLas : public FfStation {
   virtual kernel::Time answer_awaited_until(const Place& question) const {
     return question.end + response_delay(rules().link);
   }
+  // Who holds a token may use it until then; behind that it is taken back where it leaves the line silent.
+  virtual kernel::Time holder_until(kernel::Time passed, unsigned grant) const {
+    return passed + octet_times(grant) + octet_times(rules().link.slot_time_octets);
+  }
+  virtual bool retakes() const { return true; }
   virtual kernel::Duration rotation_of(kernel::Time last, kernel::Time now) const { return now - last; }
   virtual Octets live_list() const { return live_list_spdu(revision_, live_); }
 
