@@ -53,6 +53,19 @@ TEST_F(Check, SearchesAnAttachedNodeAndAnInterbusSlave) {
   EXPECT_EQ(call({"check", "interbus/slave", "--cases", "100"}).exit_code, kAllAsExpected);
 }
 
+TEST_F(Check, SearchesEachRoleOfTheDataLinkHereAndInAProcess) {
+  for (const std::string role : {"fieldbus_dll/isa_dle", "fieldbus_dll/ff_device", "fieldbus_dll/ff_las"}) {
+    const std::string deviation = role == "fieldbus_dll/ff_las" ? "misses_of_all_count" : "newest_first";
+    EXPECT_EQ(call({"check", role, "--iut", "deviant:" + deviation}).exit_code, kFailed) << role;
+    const std::string station = "exec:'" FIELDPROOF_EXE "' station " + role + " ";
+    const Called passed = call({"check", role, "--iut", station + "ref", "--cases", "20"});
+    EXPECT_EQ(passed.exit_code, kAllAsExpected) << role << passed.out << passed.err;
+    const Called found =
+        call({"check", role, "--iut", station + "deviant:" + deviation, "--case", "found.json"});
+    EXPECT_EQ(found.exit_code, kFailed) << role << found.out << found.err;
+  }
+}
+
 TEST_F(Check, RefusesWhatItCannotServe) {
   const Called no_role = call({"check", "valve_bus/host"});
   EXPECT_EQ(no_role.exit_code, kUsage);

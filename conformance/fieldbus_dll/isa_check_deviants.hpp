@@ -30,6 +30,20 @@ class ReplyKeptBehindToken : public IsaDle {
   }
 };
 
+// A DU in between changes nothing about what it does.
+class GoesOnBehindData : public IsaDle {
+ public:
+  GoesOnBehindData(const IsaConfiguration& configuration, fieldbus_dll::DleState state)
+      : IsaDle(configuration), state_(state) {}
+
+ private:
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    if (dlpdu.type != IsaType::du || state() != state_) return IsaDle::on_dlpdu(dlpdu, place);
+    if (is_delivered(dlpdu)) deliver(dlpdu, place.end);
+  }
+  fieldbus_dll::DleState state_;
+};
+
 class IsaDeafBehindFault : public IsaDle {
   using IsaDle::IsaDle;
   std::vector<Arrived> heard_in(const line::Waveform& reception) override {

@@ -191,6 +191,7 @@ std::optional<LinkObjection> IsaModel::say_end(const DrivenDlpdu& dlpdu) {
 
 std::optional<LinkObjection> IsaModel::be_silent() {
   const Time slot_later = earliest() + times(rules_.link.slot_time_octets);
+  const Time latest = (awaited_ ? earliest() : silent_since_) + times(rules_.reply_wait_octets);
   awaited_.reset();
   if (answer_ && slot_later <= answer_->until) {
     const Octets expected = expected_reply();
@@ -199,7 +200,8 @@ std::optional<LinkObjection> IsaModel::be_silent() {
   }
   answer_.reset();
   const auto token = std::exchange(token_, std::nullopt);
-  if (!token || (token->ends && slot_later + frame_of(kOctetsOfAnEnd) > *token->ends)) return std::nullopt;
+  // An EE that would begin as late as it may has no place any more.
+  if (!token || (token->ends && latest + frame_of(kOctetsOfAnEnd) > *token->ends)) return std::nullopt;
   return LinkObjection{"token_not_returned", "EE"};
 }
 

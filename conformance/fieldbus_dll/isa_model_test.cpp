@@ -53,9 +53,11 @@ TEST(IsaModel, AnEsIsForWhatEndsInTime) {
   model.hear_token(Priority::normal, 34, 0x10, isa_octet_at(300));
   EXPECT_EQ(isa_reason_in(model.say(isa_said_at(308, {0x32, 0x22, 0x21, 7}))), "");
   EXPECT_EQ(isa_reason_in(model.say(isa_said_at(325, end_said(0)))), "");
-  model.hear_token(Priority::normal, 34, 0x10, isa_octet_at(400));
+  // Who begins as late as V(RR) has time for an EE, or none.
+  const auto latest = static_cast<unsigned>(fieldbus_dll::IsaRules{}.reply_wait_octets + 9);
+  model.hear_token(Priority::normal, latest, 0x10, isa_octet_at(400));
   EXPECT_EQ(isa_reason_in(model.be_silent()), "token_not_returned");
-  model.hear_token(Priority::normal, 16, 0x10, isa_octet_at(500));
+  model.hear_token(Priority::normal, latest - 1, 0x10, isa_octet_at(500));
   EXPECT_EQ(isa_reason_in(model.be_silent()), "");
 }
 

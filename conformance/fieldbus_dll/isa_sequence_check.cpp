@@ -35,7 +35,7 @@ enum class IsaWord : std::uint8_t {
 };
 
 // What the tester does behind a CD of the station.
-enum class Peer : std::uint8_t { silent, replies, stranger_replies };
+enum class Peer : std::uint8_t { silent, replies, stranger_replies, stranger_sends };
 
 SequenceNumber isa_priority(std::string_view name = "priority") {
   return {name, 1, 3, 1};
@@ -87,8 +87,8 @@ SequenceVocabulary isa_dle_vocabulary() {
                  .numbers = {isa_priority(), {"size", 0, 260, 8, kIsaSizes}},
                  .weight = 4},
                 {.word = "peer",
-                 .meaning = "who is compelled is silent, replies, or another does",
-                 .numbers = {{"does", 0, 2, 0}},
+                 .meaning = "who is compelled is silent, replies, or another does, or sends data to a third",
+                 .numbers = {{"does", 0, 3, 0}},
                  .weight = 2},
                 {.word = "wait",
                  .meaning = "silence of so many octet durations",
@@ -217,6 +217,11 @@ class IsaSequenceRun {
     const std::uint8_t from = peer_ == Peer::replies ? *node : kStranger;
     const Octets content = bench_.numbered_data(4);
     bench_.wait(bench_.least_gap());
+    if (peer_ == Peer::stranger_sends) {
+      bench_.send(
+          {bench_.control(bench_.rules().codes.du, Priority::normal), IsaBench::kPeer, kStranger, 0x55});
+      return model_.hear_other(false, bench_.now());
+    }
     bench_.send(bench_.dt(Priority::normal, content, from));
     // What is no reply costs the token, and is nothing else.
     if (peer_ == Peer::replies) data_.push_back(content);

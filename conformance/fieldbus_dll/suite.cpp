@@ -28,6 +28,10 @@ constexpr std::string_view kFfLas = "ff_las";
 constexpr std::uint8_t kDleAddress = 0x21;
 constexpr std::uint8_t kLasAddress = 0x10;
 
+bool is_of_isa(std::string_view role) {
+  return role == kIsaDle || role == kIsaLas;
+}
+
 class FieldbusDllSuite final : public Suite {
  public:
   explicit FieldbusDllSuite(FieldbusDllGiven given)
@@ -48,7 +52,7 @@ class FieldbusDllSuite final : public Suite {
     return {std::string(kIsaDle), std::string(kIsaLas), std::string(kFfDevice), std::string(kFfLas)};
   }
   bool has_own(std::string_view role) const override {
-    if (role == kIsaDle || role == kIsaLas) return bool(given_isa(role).own);
+    if (is_of_isa(role)) return bool(given_isa(role).own);
     return (role == kFfDevice || role == kFfLas) && bool(given_ff(role).own);
   }
   const std::vector<TestCase>& cases() const override { return cases_; }
@@ -66,7 +70,7 @@ class FieldbusDllSuite final : public Suite {
       throw kernel::Error(kernel::ErrorKind::usage,
                           "cases of the data link make the link that they need; leave out the network");
     }
-    if (isa_cases_.contains(test_case.id)) {
+    if (is_of_isa(test_case.role())) {
       isa_setting(test_case, setup).make_station({});
     } else {
       ff_setting(test_case, setup).make_station({});
@@ -86,7 +90,7 @@ class FieldbusDllSuite final : public Suite {
   }
   Outcome run_sequence(const SequenceRole& role, const Sequence& sequence,
                        const Setup& setup) const override {
-    if (role.test_case.role() == kIsaDle) {
+    if (is_of_isa(role.test_case.role())) {
       const IsaCase one{role.test_case, [&sequence](IsaBench& bench, CaseJudge& judge) {
                           run_isa_dle_sequence(sequence, bench, judge);
                         }};
