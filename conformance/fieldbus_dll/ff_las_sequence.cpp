@@ -342,7 +342,8 @@ const SequenceRole& ff_las_sequence_role() {
            "live, with the priority that rotations lead to, and tells what has changed.",
        .reference = link_sources::ff_paper("the scheduler: CD by its schedule, tokens in between"),
        .details = ff_las_sequence_details(),
-       .stimulus = "Commands at random, with half bits and bits that are flipped and octets that are missing.",
+       .stimulus =
+           "Commands at random, with half bits and bits that are flipped and octets that are missing.",
        .expected = "What a model of the rules says.",
        .tags = {},
        .catches = {}},

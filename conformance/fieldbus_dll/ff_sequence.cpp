@@ -264,7 +264,8 @@ const SequenceRole& ff_device_sequence_role() {
            "allows, in time, and nothing else.",
        .reference = link_sources::memory("functions of a basic device"),
        .details = ff_sequence_details(),
-       .stimulus = "Commands at random, with half bits and bits that are flipped and octets that are missing.",
+       .stimulus =
+           "Commands at random, with half bits and bits that are flipped and octets that are missing.",
        .expected = "What a model of the rules says.",
        .tags = {},
        .catches = {}},

@@ -258,7 +258,8 @@ const SequenceRole& isa_dle_sequence_role() {
            "in time, and nothing else.",
        .reference = link_sources::isa_paper("tokens, compelled data and their timers"),
        .details = isa_check_details(),
-       .stimulus = "Commands at random, with half bits and bits that are flipped and octets that are missing.",
+       .stimulus =
+           "Commands at random, with half bits and bits that are flipped and octets that are missing.",
        .expected = "What a model of the rules says.",
        .tags = {},
        .catches = {}},
