@@ -83,11 +83,16 @@ class Attachments : public ProgramFixture {
     return std::stoul(prepared({"list", suite + "**", "--count"}).run().out);
   }
 
-  void expect_passes(const std::string& uri, const std::string& suite = std::string(kSuite)) {
+  // Who hears telegrams hears whole ones: cases under bursts and about broken codes are not for it.
+  void expect_passes(const std::string& uri, const std::string& suite = std::string(kSuite),
+                     bool hears_telegrams = false) {
     const Cases cases = judged(uri, "**", {}, {}, suite);
     EXPECT_EQ(cases.size(), count_of(suite)) << uri;
     for (const auto& [id, one] : cases) {
-      EXPECT_EQ(one.verdict, "pass") << uri << ": " << id << ": " << one.reason << one.findings;
+      const bool is_left_out =
+          hears_telegrams && (id.starts_with("immunity/") || id == "frame/without_its_code_is_none");
+      EXPECT_EQ(one.verdict, is_left_out ? "not-applicable" : "pass")
+          << uri << ": " << id << ": " << one.reason << one.findings;
     }
   }
 
@@ -262,7 +267,7 @@ TEST_F(Attachments, FfDeviceInPythonPasses) {
   const std::string python = installed("python3");
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
   const fs::path device = kSourceFolder / "examples/ff_device/device.py";
-  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device), "fieldbus_dll/ff_device/");
+  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device), "fieldbus_dll/ff_device/", true);
 }
 
 // Verdicts and reasons, where levels are not all that is looked at; cases are in conformance's test of it.

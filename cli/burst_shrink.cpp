@@ -72,9 +72,8 @@ struct DisturbedRun {
 
 DisturbedRun run_disturbed(const CaseFile& stored, const Session& session) {
   const auto struck = std::make_shared<StruckBits>();
-  const Disturbances all = all_disturbances();
-  const auto stresses = stored.is_quiet ? quiet(all.stresses) : watched(all.stresses, struck);
-  const conformance::Catalogue catalogue(session.make_suites({stresses, watched(all.of_plans, struck)}));
+  const Disturbances all = watched(all_disturbances(), struck);
+  const conformance::Catalogue catalogue(session.make_suites(stored.is_quiet ? without_stresses(all) : all));
   const conformance::CaseRun done = conformance::run_case(catalogue.at(stored.id), stored.setup);
   return {std::move(*struck), done.outcome.result};
 }

@@ -190,9 +190,8 @@ std::string wave_dump_of(const conformance::CaseRun& done) {
 
 StoredEntry::StoredEntry(const CaseFile& stored, const Session& session) {
   if (stored.is_quiet) {
-    const Disturbances all = all_disturbances();
     quiet_ =
-        std::make_unique<conformance::Catalogue>(session.make_suites({quiet(all.stresses), all.of_plans}));
+        std::make_unique<conformance::Catalogue>(session.make_suites(without_stresses(all_disturbances())));
   }
   entry_ = &(quiet_ ? *quiet_ : session.catalogue).at(stored.id);
 }

@@ -6,7 +6,7 @@
 namespace fieldproof::cli {
 
 Disturbances all_disturbances() {
-  return {emc::catalogue_stresses(), emc::plan_disturbances()};
+  return {emc::catalogue_stresses(), emc::catalogue_link_stresses(), emc::plan_disturbances()};
 }
 
 }  // namespace fieldproof::cli

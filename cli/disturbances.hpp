@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <vector>
 
 #include "harness/fault/disturbance.hpp"
@@ -11,6 +13,7 @@ namespace fieldproof::cli {
 // `shrink` and quiet replays run it with others: with some that are noted, and with none.
 struct Disturbances {
   std::vector<fault::Stress> stresses;
+  std::map<std::int64_t, std::vector<fault::Stress>> link_stresses;  // of lines of IEC 61158-2, by bit rate
   std::vector<fault::DisturbanceKind> of_plans;
 };
 

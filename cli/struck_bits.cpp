@@ -82,23 +82,26 @@ ordered_json disturbances_of(std::span<const StruckBit> struck) {
   return disturbances;
 }
 
-}  // namespace
+using MakeChannel = decltype(fault::Stress::make_channel);
 
-std::vector<fault::Stress> watched(std::span<const fault::Stress> stresses,
-                                   const std::shared_ptr<StruckBits>& struck) {
-  std::vector<fault::Stress> all(stresses.begin(), stresses.end());
-  for (fault::Stress& stress : all) {
-    stress.make_channel = [make = stress.make_channel, struck](const fault::StressPlace& place) {
-      return std::make_unique<WatchedChannel>(make(place), place, struck);
-    };
+// `change` makes another MakeChannel of each.
+template <typename Change>
+void change_stresses(Disturbances& all, Change change) {
+  for (fault::Stress& stress : all.stresses) stress.make_channel = change(stress.make_channel);
+  for (auto& [bit_rate, stresses] : all.link_stresses) {
+    for (fault::Stress& stress : stresses) stress.make_channel = change(stress.make_channel);
   }
-  return all;
 }
 
-std::vector<fault::DisturbanceKind> watched(std::span<const fault::DisturbanceKind> kinds,
-                                            const std::shared_ptr<StruckBits>& struck) {
-  std::vector<fault::DisturbanceKind> all(kinds.begin(), kinds.end());
-  for (fault::DisturbanceKind& kind : all) {
+}  // namespace
+
+Disturbances watched(Disturbances all, const std::shared_ptr<StruckBits>& struck) {
+  change_stresses(all, [&struck](const MakeChannel& make) {
+    return [make, struck](const fault::StressPlace& place) {
+      return std::make_unique<WatchedChannel>(make(place), place, struck);
+    };
+  });
+  for (fault::DisturbanceKind& kind : all.of_plans) {
     kind.read = [read = kind.read, struck](const config::Value& value) {
       fault::DisturbanceModel model = read(value);
       model.make_channel = [make = model.make_channel, struck](const fault::StressPlace& place) {
@@ -110,11 +113,8 @@ std::vector<fault::DisturbanceKind> watched(std::span<const fault::DisturbanceKi
   return all;
 }
 
-std::vector<fault::Stress> quiet(std::span<const fault::Stress> stresses) {
-  std::vector<fault::Stress> all(stresses.begin(), stresses.end());
-  for (fault::Stress& stress : all) {
-    stress.make_channel = [](const fault::StressPlace&) { return nullptr; };
-  }
+Disturbances without_stresses(Disturbances all) {
+  change_stresses(all, [](const MakeChannel&) { return [](const fault::StressPlace&) { return nullptr; }; });
   return all;
 }
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/fault/disturbance.hpp"
-#include "harness/fault/stress.hpp"
+#include "cli/disturbances.hpp"
+#include "harness/kernel/time.hpp"
 
 namespace fieldproof::cli {
 
@@ -30,13 +30,10 @@ struct StruckBit {
 using StruckBits = std::vector<StruckBit>;
 
 // The same disturbances, with a note in `struck` of all that they do.
-std::vector<fault::Stress> watched(std::span<const fault::Stress> stresses,
-                                   const std::shared_ptr<StruckBits>& struck);
-std::vector<fault::DisturbanceKind> watched(std::span<const fault::DisturbanceKind> kinds,
-                                            const std::shared_ptr<StruckBits>& struck);
+Disturbances watched(Disturbances all, const std::shared_ptr<StruckBits>& struck);
 
-// Stresses that disturb nothing, for as long as those do.
-std::vector<fault::Stress> quiet(std::span<const fault::Stress> stresses);
+// The same for plans; stresses disturb nothing, for as long as those do.
+Disturbances without_stresses(Disturbances all);
 
 // The text of a plan with these bits instead of all disturbances of `plan`, which is the text of one, or
 // empty.

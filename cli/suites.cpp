@@ -22,7 +22,8 @@ Suites suites(const Disturbances& disturbances) {
                                                  .isa_las = {.attached = attached_isa_stations("isa_las")},
                                                  .ff_device = {.attached = attached_ff_stations("ff_device")},
                                                  .ff_las = {.attached = attached_ff_stations("ff_las")},
-                                                 .disturbances = disturbances.of_plans}));
+                                                 .disturbances = disturbances.of_plans,
+                                                 .stresses = disturbances.link_stresses}));
   return all;
 }
 

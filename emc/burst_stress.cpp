@@ -79,9 +79,21 @@ std::vector<fault::Stress> burst_stresses(const Profile& profile, std::span<cons
   return stresses;
 }
 
+namespace {
+
+std::vector<fault::Stress> two_highest_levels(const std::string& profile) {
+  return burst_stresses(Profile::named(profile), std::array{Level::standard(PortKind::signal, 4),
+                                                            Level::standard(PortKind::signal, 3)});
+}
+
+}  // namespace
+
 std::vector<fault::Stress> catalogue_stresses() {
-  return burst_stresses(Profile::named("A"), std::array{Level::standard(PortKind::signal, 4),
-                                                        Level::standard(PortKind::signal, 3)});
+  return two_highest_levels("A");
+}
+
+std::map<std::int64_t, std::vector<fault::Stress>> catalogue_link_stresses() {
+  return {{31'250, two_highest_levels("E2")}, {1'000'000, two_highest_levels("F")}};
 }
 
 }  // namespace fieldproof::emc

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,5 +35,9 @@ std::vector<fault::Stress> burst_stresses(const Profile& profile, std::span<cons
 // What the catalogue of test cases uses: profile A, in which a receiver is hit, at the two highest levels of
 // a signal port, 5 and 100 kHz, both polarities.
 std::vector<fault::Stress> catalogue_stresses();
+
+// The same for lines of IEC 61158-2, by their bit rates: profile E2, in which the weakest signal of 31.25
+// kbit/s is hit, and F for 1 Mbit/s.
+std::map<std::int64_t, std::vector<fault::Stress>> catalogue_link_stresses();
 
 }  // namespace fieldproof::emc

@@ -36,7 +36,7 @@ bool FfUpperTester::was_delivered(const Octets& octets) const {
 }
 
 FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
-    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume),
+    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume, setting.stresses),
       configuration_(configuration_of(needs, setting)),
       station_(setting.make_station(configuration_)) {
   if (setting.make_recorder)

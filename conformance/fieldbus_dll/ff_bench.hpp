@@ -32,6 +32,7 @@ struct FfSetting {
   std::uint64_t seed = 1;
   Volume volume = Volume::full;
   fault::Plan plan{};
+  const LinkStresses* stresses = nullptr;  // must outlive the bench
   // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
   std::function<trace::Recorder*(const trace::Trace&, const fieldbus_dll::FfRules&)> make_recorder;
 };

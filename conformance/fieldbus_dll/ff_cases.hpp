@@ -28,5 +28,6 @@ std::vector<FfCase> ff_rotation_cases();
 std::vector<FfCase> ff_live_list_cases();
 std::vector<FfCase> ff_time_cases();
 std::vector<FfCase> ff_claim_cases();
+std::vector<FfCase> ff_immunity_cases();
 
 }  // namespace fieldproof::conformance

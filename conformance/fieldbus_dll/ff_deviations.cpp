@@ -106,6 +106,10 @@ std::vector<FfRow> ff_frame_rows() {
          return (octet & 0xF8) == 0x38 ? static_cast<Octet>(octet & 0xF7) : octet;
        })},
       {"check_of_tokens_only", "", "looks at the check of PTs only", FfTable::station<CheckOfTokensOnly>()},
+      {"takes_violated_frames", "", "takes frames with code violations, whatever their check",
+       FfTable::station<TakesViolatedFrames>()},
+      {"stuck_behind_violation", "", "hears nothing any more behind a code violation",
+       FfTable::station<FfStuckBehindViolation>()},
       {"tells_other_source", "", "tells its user another source",
        FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.source ^= 0x0100;

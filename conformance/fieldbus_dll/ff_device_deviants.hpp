@@ -420,6 +420,39 @@ class TakesOtherResidue : public TakesOtherChecks {
   }
 };
 
+// A symbol without an edge in its middle is taken for what its first half says, and the check is left alone.
+class TakesViolatedFrames : public FfStation {
+  using FfStation::FfStation;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    constexpr std::size_t kDelimiter = 16;
+    const std::int64_t bit_rate = rules().link.bit_rate;
+    const auto frames = line::delimited_frames_in(reception, bit_rate);
+    if (frames.empty() || frames.front().end != line::FrameEnd::code_violation)
+      return FfStation::heard_in(reception);
+    line::Waveform mended{reception.start, 2 * bit_rate, line::half_bits_of(reception, bit_rate)};
+    const std::size_t first = frames.front().half_bit + kDelimiter;
+    for (std::size_t at = first; at + kDelimiter < mended.levels.size(); at += 2)
+      mended.levels.set(at + 1, !mended.levels[at]);
+    std::vector<Arrived> all;
+    for (line::DelimitedFrame& frame : line::delimited_frames_in(mended, bit_rate)) {
+      if (frame.octets.size() <= fieldbus_dll::kCheckOctets) continue;
+      frame.octets.resize(frame.octets.size() - fieldbus_dll::kCheckOctets);
+      all.push_back({frame.octets, reception.start, reception.end()});
+    }
+    return all;
+  }
+};
+
+class FfStuckBehindViolation : public FfStation {
+  using FfStation::FfStation;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    for (const line::DelimitedFrame& frame : line::delimited_frames_in(reception, rules().link.bit_rate))
+      is_stuck_ |= frame.end == line::FrameEnd::code_violation;
+    return is_stuck_ ? std::vector<Arrived>{} : FfStation::heard_in(reception);
+  }
+  bool is_stuck_ = false;
+};
+
 class CheckOfTokensOnly : public TakesOtherChecks {
   using TakesOtherChecks::TakesOtherChecks;
   bool takes(const Octets& octets) const override { return (octets[0] & ~0x07) != rules().codes.pt; }

@@ -72,6 +72,26 @@ void wrong_checks_are_seen_whatever_comes(FfBench& bench, CaseJudge& judge) {
   judge.expect(bench.user().data.size() == 1, "does_not_recover", "a right DT1 is delivered", "it was not");
 }
 
+// Behind the preamble, of which any part will do, each half bit is turned once.
+void a_frame_without_its_code_is_none(FfBench& bench, CaseJudge& judge) {
+  constexpr std::size_t kPreamble = 16;
+  bench.submit(Priority::urgent, bench.numbered_data(4));
+  const Octets told = bench.dt1(Priority::normal, fieldbus_dll::address_of(bench.node(), 0x30),
+                                FfBench::kPeersAddress, bench.numbered_data(6));
+  for (const Octets& dlpdu : {bench.pt(Priority::time_available, 500), told}) {
+    const line::Levels right = half_bits_of_frame(with_frame_check(dlpdu));
+    for (std::size_t n = kPreamble; n < right.size(); n += bench.volume(std::size_t{3}, std::size_t{1})) {
+      line::Levels wrong = right;
+      wrong.flip(n);
+      bench.send_half_bits(std::move(wrong));
+      expect_silence(bench, judge, "acts_on_violation", fmt::format("half bit {} is turned", n));
+      judge.expect(bench.user().data.empty(), "acts_on_violation", "nothing is told: there is no frame",
+                   "something was");
+    }
+  }
+  expect_serves(bench, judge);
+}
+
 void addresses_are_read_as_long_as_they_are(FfBench& bench, CaseJudge& judge) {
   const FfAddress mine = 0x2130;
   const Octets short_data = bench.numbered_data(12);
@@ -226,6 +246,16 @@ std::vector<FfCase> ff_frame_cases() {
         .tags = {"must"},
         .catches = {{"check_of_tokens_only", "acts_on_wrong_check"}}},
        wrong_checks_are_seen_whatever_comes},
+      {{.id = "fieldbus_dll/ff_device/frame/without_its_code_is_none",
+        .purpose = "FF-37",
+        .requirement = "A frame with a symbol that is none, or without a delimiter, is ignored.",
+        .reference = line("Manchester code, N+ and N-, delimiters"),
+        .stimulus = "A PT and a DT1 to the station with each half bit turned once, but for the preamble.",
+        .expected = "Silence, and nothing is told; a right PT is served then.",
+        .tags = {"must"},
+        .catches = {{"takes_violated_frames", "acts_on_violation"},
+                    {"stuck_behind_violation", "does_not_recover"}}},
+       a_frame_without_its_code_is_none},
       {{.id = "fieldbus_dll/ff_device/frame/addresses_are_read_as_long_as_they_are",
         .purpose = "FF-38",
         .requirement = "Long and short addresses are told apart by L.",

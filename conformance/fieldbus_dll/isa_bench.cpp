@@ -23,7 +23,7 @@ bool IsaUpperTester::was_delivered(const Octets& data) const {
 }
 
 IsaBench::IsaBench(const IsaNeeds& needs, const IsaSetting& setting)
-    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume),
+    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume, setting.stresses),
       configuration_(configuration_of(needs, setting)),
       station_(setting.make_station(configuration_)) {
   if (setting.make_recorder)

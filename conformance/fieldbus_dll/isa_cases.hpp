@@ -29,5 +29,6 @@ std::vector<IsaCase> isa_line_cases();
 std::vector<IsaCase> isa_schedule_cases();
 std::vector<IsaCase> isa_supervision_cases();
 std::vector<IsaCase> isa_transfer_cases();
+std::vector<IsaCase> isa_immunity_cases();
 
 }  // namespace fieldproof::conformance

@@ -7,7 +7,18 @@
 
 namespace fieldproof::conformance {
 
-LinkBench::LinkBench(const fieldbus_dll::LinkRules& link, std::uint64_t seed, Volume volume)
+namespace {
+
+std::span<const fault::Stress> stresses_at(std::int64_t bit_rate, const LinkStresses* all) {
+  const auto found = all == nullptr ? LinkStresses::const_iterator{} : all->find(bit_rate);
+  if (all == nullptr || found == all->end()) return {};
+  return found->second;
+}
+
+}  // namespace
+
+LinkBench::LinkBench(const fieldbus_dll::LinkRules& link, std::uint64_t seed, Volume volume,
+                     const LinkStresses* stresses)
     : link_(link),
       volume_(volume),
       random_(seed),
@@ -15,12 +26,15 @@ LinkBench::LinkBench(const fieldbus_dll::LinkRules& link, std::uint64_t seed, Vo
       tester_seat_(segment_.attach(*this, "tester")),
       driven_(link.bit_rate),
       sent_(link.bit_rate),
+      arrived_(link.bit_rate),
+      stressed_(stresses_at(link.bit_rate, stresses)),
       line_watch_(octets(1)) {}
 
 segment::MediumPort& LinkBench::attach_station(segment::Station& station, const fault::Plan& plan) {
   station_seat_ = segment_.attach(station, "station");
   tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
   segment::MediumPort& place = line_.attach("station/in", station_seat_, 0, {});
+  place_ = &place;
   place.sense_activity();
   place.tap_driven(driven_);
   place.tap_arrived(ear_);
@@ -68,6 +82,24 @@ kernel::Time LinkBench::send_at(kernel::Time start, std::span<const std::uint8_t
   const kernel::Time end = wave.end();
   tester_->drive(wave);
   return end;
+}
+
+void LinkBench::begin_stress(const fault::Stress& stress, kernel::Duration later) {
+  if (stress_number_ == 0) place_->tap_arrived(arrived_);
+  const kernel::Random random = random_.split("stress").split(stress_number_++);
+  // The levels of the line are half bits.
+  stressed_.begin(stress, *place_,
+                  {2 * link_.bit_rate, now() + later, random, segment_.trace(), place_->trace_channel()});
+}
+
+std::vector<DrivenDlpdu> LinkBench::arrived_unsent() const {
+  std::vector<DrivenDlpdu> all;
+  for (const DrivenDlpdu& one : arrived_.all()) {
+    const bool is_sent =
+        std::ranges::any_of(sent_.all(), [&](const DrivenDlpdu& sent) { return sent.octets == one.octets; });
+    if (one.has_right_check && !is_sent) all.push_back(one);
+  }
+  return all;
 }
 
 bool LinkBench::next_begins(kernel::Time limit) {

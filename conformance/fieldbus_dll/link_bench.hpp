@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "conformance/fieldbus_dll/driven_dlpdus.hpp"
 #include "conformance/line_watch.hpp"
+#include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/kernel/random.hpp"
@@ -28,6 +30,9 @@ inline constexpr kernel::Duration kLinkRounding = kernel::kNanosecond;
 
 // What schedules count in: an octet duration at 31.25 kbit/s.
 inline constexpr kernel::Duration kOctetAt31250 = 256 * kernel::kMicrosecond;
+
+// For lines of a bit rate each; a bench at another rate has none.
+using LinkStresses = std::map<std::int64_t, std::vector<fault::Stress>>;
 
 class LinkBench : private segment::Station {
  public:
@@ -94,6 +99,15 @@ class LinkBench : private segment::Station {
   std::span<const DrivenDlpdu> sent() const { return sent_.all(); }
   std::span<const Heard> heard() const { return ear_.heard; }
 
+  // ---- stress ----
+  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
+  // From so much later on, until it is ended.
+  void begin_stress(const fault::Stress& stress, kernel::Duration later);
+  void end_stress() { stressed_.end(); }
+  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
+  // What has arrived under stress with a check that fits, though nobody sent it: no station can know better.
+  std::vector<DrivenDlpdu> arrived_unsent() const;
+
   std::vector<std::uint64_t> planned_hits() const {
     return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
   }
@@ -102,7 +116,9 @@ class LinkBench : private segment::Station {
   std::vector<std::string> decode_lines();
 
  protected:
-  LinkBench(const fieldbus_dll::LinkRules& link, std::uint64_t seed, Volume volume);
+  // Stresses must outlive the bench; null: there are none.
+  LinkBench(const fieldbus_dll::LinkRules& link, std::uint64_t seed, Volume volume,
+            const LinkStresses* stresses);
   ~LinkBench() override = default;
 
   // The place of the IUT, which is wired to it.
@@ -128,8 +144,12 @@ class LinkBench : private segment::Station {
   std::size_t tester_seat_;
   std::size_t station_seat_ = 0;
   segment::MediumPort* tester_ = nullptr;
+  segment::MediumPort* place_ = nullptr;  // of the IUT
   DrivenDlpdus driven_;
   DrivenDlpdus sent_;
+  DrivenDlpdus arrived_;  // under stress, and from the first one on
+  StressedReceiver stressed_;
+  std::uint64_t stress_number_ = 0;
   Ear ear_;
   LineWatch line_watch_;
   std::unique_ptr<fault::InstalledPlan> plan_;

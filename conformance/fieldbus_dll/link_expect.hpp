@@ -29,13 +29,13 @@ void judge_told(const LinkBench& bench, CaseJudge& judge, const std::vector<Told
   const auto sent = bench.sent();
   auto next = sent.begin();
   for (const Told& told : all_told) {
-    next = std::find_if(next, sent.end(), [&](const DrivenDlpdu& one) {
-      return one.is_well_formed && one.has_right_check && is_told(one, told);
-    });
-    judge.expect(next != sent.end(), "told_otherwise", [&] {
+    const auto is_same = [&](const DrivenDlpdu& one) { return one.has_right_check && is_told(one, told); };
+    const auto found = std::find_if(next, sent.end(), is_same);
+    if (found == sent.end() && std::ranges::any_of(bench.arrived_unsent(), is_same)) continue;
+    judge.expect(found != sent.end(), "told_otherwise", [&] {
       return Sighting{{"its user is told what was sent to it, once and as it was"}, describe(told)};
     });
-    ++next;
+    next = found + 1;
   }
 }
 

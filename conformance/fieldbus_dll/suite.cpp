@@ -37,11 +37,16 @@ class FieldbusDllSuite final : public Suite {
   explicit FieldbusDllSuite(FieldbusDllGiven given)
       : given_(std::move(given)), deviations_(isa_deviations()) {
     for (Deviation& one : ff_deviations()) deviations_.push_back(std::move(one));
+    const auto is_left_out = [this](const TestCase& one) {
+      return given_.stresses.empty() && has_tag(one, kStressTag);
+    };
     for (const IsaCase& one : isa_cases()) {
+      if (is_left_out(one.test_case)) continue;
       cases_.push_back(one.test_case);
       isa_cases_[one.test_case.id] = &one;
     }
     for (const FfCase& one : ff_cases()) {
+      if (is_left_out(one.test_case)) continue;
       cases_.push_back(one.test_case);
       ff_cases_[one.test_case.id] = &one;
     }
@@ -131,6 +136,7 @@ class FieldbusDllSuite final : public Suite {
     setting.seed = setup.seed;
     setting.volume = setup.volume;
     if (!setup.plan_file.empty()) setting.plan = load(setup);
+    setting.stresses = &given_.stresses;
     setting.make_station = [this, make, role = test_case.role(), uri = assigned_to(test_case, setup).uri,
                             id = test_case.id, seed = setup.seed,
                             limits = setup.limits](const Configuration& configuration) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "conformance/assigned.hpp"
+#include "conformance/fieldbus_dll/link_bench.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
 #include "protocols/fieldbus_dll/ff_device.hpp"
@@ -24,6 +25,7 @@ struct FieldbusDllGiven {
   GivenFfStations ff_device{};
   GivenFfStations ff_las{};
   std::vector<fault::DisturbanceKind> disturbances{};  // what a plan can name
+  LinkStresses stresses{};  // for cases with the tag `bursts`; without any they are left out
 };
 
 std::unique_ptr<Suite> fieldbus_dll_suite(FieldbusDllGiven given = {});
