@@ -107,7 +107,53 @@ struct DisturbedLine {
   std::int64_t bit_rate;
 };
 
+std::string told_relationship(std::string_view what, const fieldbus_dll::RelationshipFigures& figures) {
+  if (figures.delay.is_empty()) return fmt::format("{}: {} sent, none arrived", what, figures.sent);
+  return fmt::format("{} {:.0f} to {:.0f} ms, mean {:.0f} ms ({} of {} missing)", what,
+                     delay_ms(figures.delay.min()), delay_ms(figures.delay.max()),
+                     figures.delay.mean() / fieldbus_dll::kPicosecondsPerMs, figures.missing, figures.sent);
+}
+
+PublishedRow operator_row(std::string what, const ControlLoop& loop) {
+  return {std::move(what), "",
+          fmt::format("{}; {}; {}", told_relationship("responses", loop.requests),
+                      told_relationship("alarms", loop.alarms), told_relationship("trends", loop.trends)),
+          fmt::format("{}; the transmitter is without the token for {:.0f} ms at most",
+                      loop.requests.arrived > 0 ? told_loop(loop) : "no setpoint has ever come",
+                      fieldbus_dll::ms(loop.longest_without_token)),
+          std::nullopt};
+}
+
 }  // namespace
+
+PublishedSection control_loop_with_operator(const PaperSettings& settings) {
+  PublishedSection section;
+  section.heading = "What else applications say: requests and their responses, alarms, trends";
+  section.note =
+      "Neither paper has them. Beside the published loop an operator writes each new setpoint and reads once "
+      "a second, as a client; the transmitter reports alarms as urgent and trends as time-available data to "
+      "everybody. V(TTRT) decides who waits: a short one holds back trends and messages, a long one lets "
+      "alarms wait behind them; below the rotation without any data nothing but urgent data goes, and no "
+      "setpoint ever comes. Nothing is sent again but a setpoint without a response, after 5 s.";
+  const auto loop_of = [&](double messages, kernel::Duration target, double loss) {
+    ControlLoopSetting setting = loop_setting(settings, DataWay::published, messages);
+    setting.has_operator = true;
+    setting.target_rotation = target;
+    if (loss > 0)
+      setting.disturb = fieldbus_dll::losing_frames(loss, kernel::Random(settings.seed).split("losses"));
+    return run_control_loop(setting);
+  };
+  for (const double messages : {0.0, kMessages}) {
+    for (const std::int64_t target_ms : {100, 300, 60'000}) {
+      section.rows.push_back(
+          operator_row(fmt::format("{} messages per node and second, TTRT {} ms", messages, target_ms),
+                       loop_of(messages, target_ms * kernel::kMillisecond, 0)));
+    }
+  }
+  section.rows.push_back(operator_row("0 messages, TTRT 300 ms, 5 % of frames lost",
+                                      loop_of(0, 300 * kernel::kMillisecond, 0.05)));
+  return section;
+}
 
 PublishedSection control_loop_quiet(const PaperSettings& settings) {
   PublishedSection section;

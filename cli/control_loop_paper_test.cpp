@@ -38,5 +38,16 @@ TEST(ControlLoopPaper, BurstsAndLossesAreToldSampleBySample) {
   EXPECT_NE(section.rows[9].reproduced, section.rows[0].reproduced);
 }
 
+TEST(ControlLoopPaper, AnOperatorSeesWhatTheTargetRotationCosts) {
+  const reports::PublishedSection section =
+      control_loop_with_operator({.seed = 1, .duration = 5 * kernel::kSecond});
+  ASSERT_EQ(section.rows.size(), 7U);
+  for (const reports::PublishedRow& row : section.rows) {
+    EXPECT_THAT(row.reproduced, HasSubstr("responses"));
+    EXPECT_THAT(row.reproduced, HasSubstr("alarms"));
+    EXPECT_THAT(row.reproduced, HasSubstr("trends"));
+  }
+}
+
 }  // namespace
 }  // namespace fieldproof::cli

@@ -47,13 +47,14 @@ constexpr std::array kPapers = {
 
 // In the order in which they are printed.
 constexpr std::array kSections = {
-    Section{"interbus", &interbus_cycle_times},   Section{"interbus", &interbus_highest_frequency},
-    Section{"interbus", &interbus_square_waves},  Section{"interbus", &interbus_bursts},
-    Section{"valve_bus", &valve_bus_cycle_times}, Section{"valve_bus", &valve_bus_block_check},
-    Section{"valve_bus", &valve_bus_resonance},   Section{"foundation", &foundation_rotations},
-    Section{"foundation", &foundation_targets},   Section{"foundation", &foundation_shares},
-    Section{"foundation", &foundation_lengths},   Section{"foundation", &foundation_stations},
-    Section{"fieldbus", &control_loop_quiet},     Section{"fieldbus", &control_loop_under_bursts},
+    Section{"interbus", &interbus_cycle_times},       Section{"interbus", &interbus_highest_frequency},
+    Section{"interbus", &interbus_square_waves},      Section{"interbus", &interbus_bursts},
+    Section{"valve_bus", &valve_bus_cycle_times},     Section{"valve_bus", &valve_bus_block_check},
+    Section{"valve_bus", &valve_bus_resonance},       Section{"foundation", &foundation_rotations},
+    Section{"foundation", &foundation_targets},       Section{"foundation", &foundation_shares},
+    Section{"foundation", &foundation_lengths},       Section{"foundation", &foundation_stations},
+    Section{"fieldbus", &control_loop_quiet},         Section{"fieldbus", &control_loop_under_bursts},
+    Section{"fieldbus", &control_loop_with_operator},
 };
 
 const Paper& paper_named(const std::string& name) {

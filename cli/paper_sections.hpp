@@ -35,5 +35,6 @@ reports::PublishedSection foundation_stations(const PaperSettings& settings);
 // Hong, Kim, Kim and Ko, control loops over a fieldbus.
 reports::PublishedSection control_loop_quiet(const PaperSettings& settings);
 reports::PublishedSection control_loop_under_bursts(const PaperSettings& settings);
+reports::PublishedSection control_loop_with_operator(const PaperSettings& settings);
 
 }  // namespace fieldproof::cli

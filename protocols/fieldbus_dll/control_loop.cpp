@@ -1,6 +1,7 @@
 #include "protocols/fieldbus_dll/control_loop.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -11,6 +12,7 @@
 #include "harness/kernel/error.hpp"
 #include "protocols/fieldbus_dll/function_blocks.hpp"
 #include "protocols/fieldbus_dll/poisson_arrivals.hpp"
+#include "protocols/fieldbus_dll/relationships.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
@@ -21,7 +23,7 @@ constexpr std::uint8_t kTalkers = 8;
 constexpr std::uint8_t kTransmitter = 0x20;
 constexpr std::uint8_t kController = 0x21;
 constexpr std::uint8_t kValve = 0x22;
-constexpr std::uint8_t kLastNode = kValve;
+constexpr std::uint8_t kOperator = 0x23;
 constexpr std::uint8_t kSelector = 0x20;
 
 constexpr std::size_t kMessageOctets = 128;
@@ -44,6 +46,12 @@ constexpr double kRate = 0.1;
 constexpr double kLowSetpoint = 40;
 constexpr double kHighSetpoint = 60;
 constexpr unsigned kPeriodsPerSetpoint = 60;
+
+// The operator: what it asks and is told, and how often.
+constexpr kernel::Duration kReadEvery = kernel::kSecond;
+constexpr kernel::Duration kLongestWait = 5 * kernel::kSecond;  // for a response
+constexpr double kAlarmAt = (kLowSetpoint + kHighSetpoint) / 2;
+constexpr std::size_t kTrendOctets = 60;
 
 double in_seconds(kernel::Duration duration) {
   return static_cast<double>(duration.count()) / 1e12;
@@ -94,7 +102,35 @@ class Hop {
   std::vector<Signal> arrived_;
 };
 
+// How long what is numbered takes, by its numbers.
+class Delays {
+ public:
+  void send(std::uint8_t number, kernel::Time now) {
+    ++figures_.sent;
+    sent_.at(number) = now;
+  }
+  void arrive(std::uint8_t number, kernel::Time now) { arrive_since(sent_.at(number), now); }
+  void send() { ++figures_.sent; }
+  void arrive_since(kernel::Time sent, kernel::Time now) {
+    ++figures_.arrived;
+    figures_.delay.add(now - sent);
+  }
+  RelationshipFigures figures() const {
+    RelationshipFigures figures = figures_;
+    figures.missing = figures.sent - figures.arrived;
+    return figures;
+  }
+
+ private:
+  RelationshipFigures figures_;
+  std::array<kernel::Time, 256> sent_{};
+};
+
 using Send = std::function<void(const Signal&)>;
+
+double wanted_setpoint(std::uint64_t period) {
+  return period / kPeriodsPerSetpoint % 2 == 0 ? kHighSetpoint : kLowSetpoint;
+}
 
 // The blocks and the process, from twentieth to twentieth of a period.
 class Loop {
@@ -110,6 +146,11 @@ class Loop {
 
   Hop& to_controller() { return to_controller_; }
   Hop& to_valve() { return to_valve_; }
+  // From now on the controller knows a setpoint when it is told, not when it is wanted.
+  void wait_for_setpoints() { is_told_setpoints_ = true; }
+  void tell_setpoint(double setpoint) { known_setpoint_ = setpoint; }
+  const Signal& measured() const { return measured_; }
+  double process() const { return process_.output(); }
 
   // All that happens at the instant of this step, then the process until the next.
   void run(std::uint64_t step) {
@@ -134,10 +175,11 @@ class Loop {
 
  private:
   void begin_setpoint(std::uint64_t period) {
-    const double wanted = period / kPeriodsPerSetpoint % 2 == 0 ? kHighSetpoint : kLowSetpoint;
+    const double wanted = wanted_setpoint(period);
     if (wanted == setpoint_) return;
     step_ = wanted - setpoint_;
     setpoint_ = wanted;
+    if (!is_told_setpoints_) known_setpoint_ = wanted;
   }
 
   void measure(std::uint64_t step) {
@@ -154,7 +196,7 @@ class Loop {
     }
     if (measured_.sample == 0) return;  // nothing has ever come
     to_valve_.send();
-    send_order_(pid_.execute(measured_, setpoint_));
+    send_order_(pid_.execute(measured_, known_setpoint_));
   }
 
   void move_valve(std::uint64_t step) {
@@ -184,6 +226,8 @@ class Loop {
   Hop to_controller_, to_valve_;
   Signal measured_;
   double setpoint_ = 0;
+  double known_setpoint_ = 0;  // to the controller
+  bool is_told_setpoints_ = false;
   double step_ = 0;                     // of the setpoint, the last
   std::vector<std::uint64_t> sampled_;  // in which step, by sample
   ControlLoop found_;
@@ -207,6 +251,85 @@ class Inbox final : public FfSilentUser {
   std::optional<std::uint8_t> writes_;
 };
 
+// What the operator asks and is told, beside the loop.
+class Operation {
+ public:
+  using SubmitAt = std::function<bool(std::uint8_t node, const FfRequest& request)>;
+
+  Operation(Loop& loop, FfUser& rest_of_controller, FfUser& nobody, const SubmitAt& submit)
+      : loop_(loop),
+        transmitter_(submitting(submit, kTransmitter), nobody),
+        controller_(submitting(submit, kController), rest_of_controller),
+        operator_(submitting(submit, kOperator), nobody) {
+    controller_.serve([this](std::uint8_t, const Octets& request, kernel::Time) { return serve(request); });
+    operator_.on_response([this](const Relationships::Response& one) {
+      requests_.arrive_since(one.asked, one.came);
+      if (written_) setpoint_ = *std::exchange(written_, std::nullopt);
+    });
+    operator_.on_report([this](const Relationships::Report& one) {
+      (one.priority == Priority::urgent ? alarms_ : trends_).arrive(one.number, one.came);
+    });
+  }
+
+  Relationships& transmitter() { return transmitter_; }
+  Relationships& controller() { return controller_; }
+  Relationships& at_operator() { return operator_; }
+
+  // Before the blocks of this instant, `since` the loop began.
+  void run(std::uint64_t period, kernel::Duration since, kernel::Time now) {
+    if (operator_.give_up(kLongestWait, now) > 0) written_.reset();
+    // Written again until the controller has confirmed it.
+    if (const double wanted = wanted_setpoint(period);
+        wanted != setpoint_ && ask({.value = static_cast<float>(wanted), .status = SignalStatus::good}, now))
+      written_ = wanted;
+    if (since >= next_read_) {
+      // Where the last one still waits, it is not asked again.
+      ask({}, now);
+      report(trends_, Priority::time_available, Octets(kTrendOctets, 0), now);
+      next_read_ += kReadEvery;
+    }
+    const bool is_high = loop_.process() >= kAlarmAt;
+    if (is_high != was_high_) report(alarms_, Priority::urgent, octets_of(Signal{}), now);
+    was_high_ = is_high;
+  }
+
+  void tell(ControlLoop& found) const {
+    found.requests = requests_.figures();
+    found.alarms = alarms_.figures();
+    found.trends = trends_.figures();
+  }
+
+ private:
+  static Relationships::Submit submitting(const SubmitAt& submit, std::uint8_t node) {
+    return [submit, node](const FfRequest& request) { return submit(node, request); };
+  }
+
+  // A good value is a setpoint, another signal asks for the value that is known.
+  Octets serve(const Octets& request) {
+    const auto signal = signal_of(request);
+    if (signal && signal->status == SignalStatus::good) loop_.tell_setpoint(signal->value);
+    return octets_of(loop_.measured());
+  }
+
+  bool ask(const Signal& signal, kernel::Time now) {
+    if (!operator_.request(kController, octets_of(signal), now)) return false;
+    requests_.send();
+    return true;
+  }
+
+  void report(Delays& delays, Priority priority, const Octets& data, kernel::Time now) {
+    if (const auto number = transmitter_.report(priority, data)) delays.send(*number, now);
+  }
+
+  Loop& loop_;
+  Relationships transmitter_, controller_, operator_;
+  Delays requests_, alarms_, trends_;
+  double setpoint_ = 0;            // that the controller has confirmed
+  std::optional<double> written_;  // for which no response has come yet
+  kernel::Duration next_read_{};
+  bool was_high_ = false;
+};
+
 // A node that sends messages to its neighbour.
 struct Talker {
   std::uint8_t node;
@@ -222,7 +345,7 @@ class LoopOnLink {
         link_(rules(), random_.split("link"), setting.disturb),
         loop_(setting, sender(kTransmitter, kController), sender(kController, kValve)) {
     link_.on_driven([this](const FfDriven& one) {
-      if (one.dlpdu.type == FfType::pt) live_.insert(one.dlpdu.node);
+      if (one.dlpdu.type == FfType::pt) note_token(one.dlpdu.node, one.begin);
       if (one.dlpdu.type == FfType::dt1) ++driven_[one.node];
     });
     link_.add_master(configuration(kScheduler), nobody_);
@@ -231,9 +354,14 @@ class LoopOnLink {
       link_.add_device(configuration(node), nobody_);
       talkers_.push_back({node, {setting.messages_per_s / 1'000, random_.split("messages").split(n)}});
     }
-    link_.add_device(configuration(kTransmitter), nobody_);
-    link_.add_device(configuration(kController), controller_);
+    const bool is_operated = setting_.has_operator;
+    link_.add_device(configuration(kTransmitter), is_operated ? operation_.transmitter() : nobody_as_user());
+    link_.add_device(configuration(kController),
+                     is_operated ? operation_.controller() : controller_as_user());
     link_.add_device(configuration(kValve), valve_);
+    if (!is_operated) return;
+    link_.add_device(configuration(kOperator), operation_.at_operator());
+    loop_.wait_for_setpoints();
   }
 
   ControlLoop run() {
@@ -244,11 +372,17 @@ class LoopOnLink {
     const kernel::Time begin = kernel::kStart + cycles * setting_.sampling_period;
     run_to(begin);
     check_all_live();
+    longest_without_token_ = {};
     for (std::uint64_t step = 0; step < std::uint64_t{setting_.periods} * kSteps; ++step) {
-      run_to(begin + static_cast<std::int64_t>(step) * (setting_.sampling_period / kSteps));
+      const kernel::Duration since = static_cast<std::int64_t>(step) * (setting_.sampling_period / kSteps);
+      run_to(begin + since);
+      if (setting_.has_operator) operation_.run(step / kSteps, since, begin + since);
       loop_.run(step);
     }
-    return loop_.found();
+    ControlLoop found = loop_.found();
+    operation_.tell(found);
+    found.longest_without_token = longest_without_token_;
+    return found;
   }
 
  private:
@@ -287,6 +421,16 @@ class LoopOnLink {
     };
   }
 
+  FfUser& nobody_as_user() { return nobody_; }
+  FfUser& controller_as_user() { return controller_; }
+
+  void note_token(std::uint8_t node, kernel::Time when) {
+    const bool is_new = live_.insert(node).second;
+    if (node != kTransmitter) return;
+    if (!is_new) longest_without_token_ = std::max(longest_without_token_, when - last_token_);
+    last_token_ = when;
+  }
+
   // With what talkers want to say meanwhile.
   void run_to(kernel::Time time) {
     while (true) {
@@ -310,7 +454,8 @@ class LoopOnLink {
   }
 
   void check_all_live() const {
-    for (std::uint8_t node = kFirstTalker; node <= kLastNode; ++node) {
+    const std::uint8_t last = setting_.has_operator ? kOperator : kValve;
+    for (std::uint8_t node = kFirstTalker; node <= last; ++node) {
       const bool is_used = node < kFirstTalker + kTalkers || node >= kTransmitter;
       if (is_used && !live_.contains(node)) {
         throw kernel::Error(
@@ -328,9 +473,14 @@ class LoopOnLink {
   Loop loop_;
   Inbox controller_{loop_.to_controller()};
   Inbox valve_{loop_.to_valve()};
+  Operation operation_{loop_, controller_, nobody_, [this](std::uint8_t node, const FfRequest& request) {
+                         return link_.submit(node, request);
+                       }};
   std::vector<Talker> talkers_;
   std::map<std::uint8_t, std::uint64_t> driven_;  // DT1, by node
   std::set<std::uint8_t> live_;                   // had the token once
+  kernel::Time last_token_{};                     // of the transmitter
+  kernel::Duration longest_without_token_{};
 };
 
 }  // namespace

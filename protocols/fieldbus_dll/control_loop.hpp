@@ -16,6 +16,11 @@
 //   published  into a buffer, which the scheduler compels at 1/8 and at 5/8 of the period
 //   by token   as urgent data, when the token comes
 //
+// With an operator (23) the rest of what applications say goes over the link, too: as a client it writes each
+// new setpoint to the controller and reads its value each second; the transmitter reports an alarm as urgent
+// data whenever the process crosses the middle between the setpoints, and a trend as time-available data each
+// second. The controller knows a setpoint when it has come.
+//
 // The two phenomena are those of S. H. Hong and others, "Distributed control and automation systems and
 // fieldbus", section 5.1 and figures 3 and 4: of several samples that arrive between two executions of a
 // block only the newest is used, the others are lost (data loss); a block that finds nothing new works with
@@ -38,6 +43,7 @@ struct ControlLoopSetting {
   double messages_per_s = 0;
   kernel::Duration target_rotation = 60 * kernel::kSecond;  // V(TTRT)
   FfDisturb disturb{};                                      // of all receivers, from the beginning on
+  bool has_operator = false;
 };
 
 // The link runs for so long before the loop begins, or up to a sampling period longer: by then each node is
@@ -55,6 +61,14 @@ struct HopFigures {
   std::uint64_t vacant = 0;   // executions that found nothing new, since the first that did
 
   friend bool operator==(const HopFigures&, const HopFigures&) = default;
+};
+
+// What a client asked or a station reported. sent == arrived + missing.
+struct RelationshipFigures {
+  std::uint64_t sent = 0;
+  std::uint64_t arrived = 0;    // the response at the client, the report at the operator
+  std::uint64_t missing = 0;    // also what was on its way at the end
+  measure::Distribution delay;  // ps, until it arrived; of a request until its response did
 };
 
 struct LoopPoint {
@@ -75,6 +89,9 @@ struct ControlLoop {
   double overshoot = 0;                       // the largest, per cent of its step
   double valve_travel = 0;                    // sum of all moves of the valve, per cent
   std::vector<LoopPoint> course;              // ten in a sampling period
+  // With an operator.
+  RelationshipFigures requests, alarms, trends;
+  kernel::Duration longest_without_token{};  // of the transmitter, from PT to PT
 };
 
 // Throws kernel::Error(configuration): another rate than the three of the line, a period that is no multiple
@@ -82,7 +99,7 @@ struct ControlLoop {
 // and when not all nodes are live by loop_begin.
 ControlLoop run_control_loop(const ControlLoopSetting& setting);
 
-// The same blocks at the same instants without a bus: what is sent has arrived.
+// The same blocks at the same instants without a bus: what is sent has arrived, and there is no operator.
 ControlLoop run_loop_without_bus(const ControlLoopSetting& setting);
 
 }  // namespace fieldproof::fieldbus_dll

@@ -132,6 +132,85 @@ TEST(ControlLoopTest, WhatIsMissingIsWhatTheLineLoses) {
   EXPECT_EQ(loop.to_controller.vacant, loop.to_controller.missing);
 }
 
+ControlLoopSetting operated(double messages_per_s) {
+  ControlLoopSetting setting = setting_of(DataWay::published, messages_per_s);
+  setting.has_operator = true;
+  setting.target_rotation = 200 * kernel::kMillisecond;
+  return setting;
+}
+
+// How long urgent data waits at most: for one token, and for its DT1, 21 octets with what is around it, and
+// the PT and silences in front of it.
+kernel::Duration one_token(const ControlLoop& loop) {
+  return loop.longest_without_token + 50 * 256 * kernel::kMicrosecond;
+}
+
+void expect_books(const RelationshipFigures& figures) {
+  EXPECT_EQ(figures.sent, figures.arrived + figures.missing);
+  EXPECT_EQ(figures.arrived, figures.delay.count());
+}
+
+TEST(ControlLoopTest, AnOperatorIsAnsweredAndTold) {
+  const ControlLoop loop = run_control_loop(operated(0));
+  for (const RelationshipFigures* const figures : {&loop.requests, &loop.alarms, &loop.trends}) {
+    expect_books(*figures);
+    EXPECT_LE(figures->missing, 1U) << "on its way at the end";
+  }
+  // In each of 60 s a read, or a setpoint in its place.
+  EXPECT_EQ(loop.requests.sent, 60U);
+  EXPECT_EQ(loop.trends.sent, 60U);
+  EXPECT_EQ(loop.alarms.sent, 4U);
+  EXPECT_LE(loop.alarms.delay.max(), one_token(loop).count());
+  // There and back.
+  EXPECT_LE(loop.requests.delay.max(), 2 * one_token(loop).count());
+  EXPECT_NEAR(loop.course[599].process, 60, 0.01);
+  EXPECT_NEAR(loop.course[1199].process, 40, 0.01);
+}
+
+// The controller knows each setpoint later than it is wanted.
+TEST(ControlLoopTest, ASetpointThatIsWrittenComesLate) {
+  const ControlLoop loop = run_control_loop(operated(0));
+  EXPECT_GT(loop.absolute_error, run_loop_without_bus(setting_of(DataWay::published, 0)).absolute_error);
+  EXPECT_EQ(loop.to_controller.missing, 0U);
+}
+
+TEST(ControlLoopTest, AmongMessagesAlarmsGoWithTheNextTokenAndTrendsLater) {
+  const ControlLoop loop = run_control_loop(operated(1.5));
+  EXPECT_EQ(loop.alarms.missing, 0U);
+  EXPECT_LE(loop.alarms.delay.max(), one_token(loop).count());
+  EXPECT_GT(loop.trends.delay.max(), one_token(loop).count());
+}
+
+// A rotation without any data takes longer than V(TTRT): nothing but urgent data ever goes, and the
+// controller never learns a setpoint.
+TEST(ControlLoopTest, ATargetBelowTheRotationLetsNoRequestThrough) {
+  ControlLoopSetting setting = operated(0);
+  setting.target_rotation = 100 * kernel::kMillisecond;
+  const ControlLoop loop = run_control_loop(setting);
+  EXPECT_GT(loop.requests.sent, 0U);
+  EXPECT_EQ(loop.requests.arrived, 0U);
+  EXPECT_EQ(loop.trends.arrived, 0U);
+  EXPECT_EQ(loop.course.back().process, 0);
+}
+
+// What is lost is told; a setpoint is written until it is confirmed.
+TEST(ControlLoopTest, AnOperatorOnALossyLineGetsThere) {
+  ControlLoopSetting setting = operated(0);
+  setting.disturb = losing_frames(0.1, kernel::Random(3));
+  const ControlLoop loop = run_control_loop(setting);
+  for (const RelationshipFigures* const figures : {&loop.requests, &loop.alarms, &loop.trends})
+    expect_books(*figures);
+  EXPECT_GT(loop.requests.missing, 1U);
+  EXPECT_GT(loop.trends.missing, 1U);
+  EXPECT_NEAR(loop.course[599].process, 60, 1);
+  EXPECT_NEAR(loop.course[1199].process, 40, 1);
+}
+
+TEST(ControlLoopTest, WithoutAnOperatorNothingIsAsked) {
+  const ControlLoop loop = run_control_loop(setting_of(DataWay::published, 0));
+  EXPECT_EQ(loop.requests.sent + loop.alarms.sent + loop.trends.sent, 0U);
+}
+
 TEST(ControlLoopTest, IsTheSameFromTheSameSeed) {
   ControlLoopSetting setting = setting_of(DataWay::by_token, 2);
   const ControlLoop first = run_control_loop(setting);

@@ -13,12 +13,18 @@
 //
 //   CD    1010 LFPP  destination                    the publisher shall send its buffer
 //   DT1   1101 LFPP  destination, source, DLSDU
-//   DT3   0101 LFPP  source, writes (1), DLSDU      a published buffer, and how often it was written, modulo
-//   256 SR    0001 0F11  reason (1) PT    0011 0FPP  node (1), duration (2)         F: a circulation begins;
-//   octet durations RT    0011 0100 RI    0010 0000  duration (2)                   the holder asks for so
-//   much more PN    0010 0110  node (1)                       PR  0010 0111  node (1) TD    0001 0001  link
-//   time (6)                  at the end of the frame, in 1/32 ms CT    0001 0100  node (1) CL    0000 0001
-//   node (1)                       TL  0000 0110  node (1), version of the schedule (2) IDLE  0001 0000
+//   DT3   0101 LFPP  source, writes (1), DLSDU      a published buffer; how often it was written, modulo 256
+//   SR    0001 0F11  reason (1)
+//   PT    0011 0FPP  node (1), duration (2)         F: a circulation begins; octet durations
+//   RT    0011 0100
+//   RI    0010 0000  duration (2)                   the holder asks for so much more
+//   PN    0010 0110  node (1)
+//   PR    0010 0111  node (1)
+//   TD    0001 0001  link time (6)                  at the end of the frame, in 1/32 ms
+//   CT    0001 0100  node (1)
+//   CL    0000 0001  node (1)
+//   TL    0000 0110  node (1), version of the schedule (2)
+//   IDLE  0001 0000
 //
 // What follows the first octet of SR, RI, TD, CT, CL, TL, and the count of writes, is this project's choice.
 namespace fieldproof::fieldbus_dll {
