@@ -35,6 +35,16 @@ bool is_exact(const line::Levels& half_bits, std::span<const std::uint8_t> octet
          half_bits == half_bits_of_frame(octets, static_cast<unsigned>(preamble));
 }
 
+// Both ends of what is long: the recording has it whole.
+std::string octets_text(const Octets& octets) {
+  constexpr std::ptrdiff_t kFirst = 16;
+  constexpr std::ptrdiff_t kLast = 4;
+  constexpr std::size_t kMost = 32;
+  if (octets.size() <= kMost) return fmt::format("{:02X}", fmt::join(octets, " "));
+  return fmt::format("{:02X} ... {:02X}, {} octets", fmt::join(octets.begin(), octets.begin() + kFirst, " "),
+                     fmt::join(octets.end() - kLast, octets.end(), " "), octets.size());
+}
+
 }  // namespace
 
 Octets DrivenDlpdu::rest() const {
@@ -43,7 +53,7 @@ Octets DrivenDlpdu::rest() const {
 }
 
 std::string DrivenDlpdu::text() const {
-  std::string text = fmt::format("{:02X}", fmt::join(octets, " "));
+  std::string text = octets_text(octets);
   if (!is_well_formed) return text + " in a frame that is none";
   return has_right_check ? text : text + " with a wrong check";
 }

@@ -26,7 +26,8 @@ struct DrivenDlpdu {
   std::uint8_t octet(std::size_t n) const { return n < octets.size() ? octets[n] : std::uint8_t{0}; }
   // Behind control octet and both addresses.
   Octets rest() const;
-  std::string text() const;  // "64 10 21 00", with what is wrong about it
+  // "64 10 21 00", with what is wrong about it; of more than 32 octets both ends.
+  std::string text() const;
 };
 
 // The octets and the frame check behind them.

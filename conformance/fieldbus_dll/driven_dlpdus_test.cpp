@@ -51,5 +51,15 @@ TEST(DrivenDlpdus, SeesPreamblesThatAreNone) {
   EXPECT_FALSE(heard(half_bits_of_frame(octets).slice(4, 500)).is_well_formed);
 }
 
+TEST(DrivenDlpdu, IsToldWholeOrByBothEnds) {
+  DrivenDlpdu dlpdu{kernel::kStart, kernel::kStart, true, true, Octets(32, 0x41)};
+  EXPECT_EQ(dlpdu.text().size(), 32U * 3 - 1);
+  dlpdu.octets = Octets(260, 0x41);
+  dlpdu.octets.back() = 0x42;
+  EXPECT_EQ(dlpdu.text(), "41 41 41 41 41 41 41 41 41 41 41 41 41 41 41 41 ... 41 41 41 42, 260 octets");
+  dlpdu.has_right_check = false;
+  EXPECT_TRUE(dlpdu.text().ends_with("260 octets with a wrong check"));
+}
+
 }  // namespace
 }  // namespace fieldproof::conformance
