@@ -201,6 +201,7 @@ void a_slow_rotation_admits_less(FfBench& bench, CaseJudge& judge) {
                     "priority_not_raised");
 }
 
+// V(TTRT) leaves a fast rotation room for a second probe.
 void slower_rotations_admit_less_step_by_step(FfBench& bench, CaseJudge& judge) {
   using enum Priority;
   expect_priorities(judge, circulations(bench, 5, {}), {urgent, normal, time_available},
@@ -318,7 +319,7 @@ std::vector<FfCase> ff_circulation_cases() {
         .tags = {"must", "timing"},
         .catches = {{"steps_back_to_the_extreme", "priority_not_raised"}}},
        slower_rotations_admit_less_step_by_step,
-       {.change = four_nodes<kFastRotation + 40>}},
+       {.change = four_nodes<kFastRotation + 60>}},
       {{.id = "fieldbus_dll/ff_las/circulation/who_overstays_is_stopped",
         .purpose = "FF-18",
         .requirement = "A token comes back to the scheduler when its duration is over.",

@@ -250,6 +250,7 @@ std::vector<FfRow> ff_live_list_rows() {
        FfTable::station<ProbeResponseOfAnybodyTaken>()},
       {"told_live_list_ignored", "", "does not keep the live list that it is told",
        FfTable::station<ToldLiveListIgnored>()},
+      {"live_list_cut", "", "tells its live list up to node 1F", FfTable::station<LiveListCut>()},
       {"removed_after_one_miss", "FF-12", "removes who misses one token",
        FfTable::station<RemovesBehind>(1U)},
       {"removed_after_four_misses", "", "removes who misses four tokens",

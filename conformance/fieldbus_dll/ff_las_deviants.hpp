@@ -200,6 +200,15 @@ class LiveListReversed : public FfLas {
   }
 };
 
+class LiveListCut : public FfLas {
+  using FfLas::FfLas;
+  Octets live_list() const override {
+    Octets list = FfLas::live_list();
+    list.resize(6);
+    return list;
+  }
+};
+
 class RemovesBehind : public FfLas {
  public:
   RemovesBehind(const FfConfiguration& configuration, unsigned misses)
