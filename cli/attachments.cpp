@@ -59,7 +59,7 @@ std::string characters_of(const std::string& uri, const line::CharacterFormat& f
                                   uri, text));
 }
 
-iut::Attachment attachment_of(Pools& pools, const conformance::Wanted& wanted) {
+iut::Attachment attachment_of(Pools& pools, const conformance::IutRequest& wanted) {
   const std::string& uri = wanted.uri;
   if (is_in_process(uri)) {
     const std::shared_ptr<iut::Device> device = library_of(uri, pools.role());
@@ -73,7 +73,7 @@ iut::Attachment attachment_of(Pools& pools, const conformance::Wanted& wanted) {
 template <typename Attached, typename Make>
 Make attached(iut::RoleName role) {
   const auto pools = std::make_shared<Pools>(std::move(role));
-  return [pools](const conformance::Wanted& wanted, const auto& configuration) -> Make::result_type {
+  return [pools](const conformance::IutRequest& wanted, const auto& configuration) -> Make::result_type {
     if (!is_attachment(wanted.uri)) return nullptr;
     return std::make_unique<Attached>(attachment_of(*pools, wanted), configuration, wanted.case_id,
                                       wanted.seed);
@@ -146,7 +146,7 @@ conformance::GivenNodes::Make attached_nodes() {
   const iut::RoleName role{"valve_bus", "node"};
   return [in_lock_step = attached<valve_bus::AttachedNode, conformance::GivenNodes::Make>(role),
           lines = std::make_shared<SerialPool>(role)](
-             const conformance::Wanted& wanted,
+             const conformance::IutRequest& wanted,
              const auto& configuration) -> std::unique_ptr<valve_bus::NodeDevice> {
     if (!wanted.uri.starts_with(iut::kSerialUri)) return in_lock_step(wanted, configuration);
     return std::make_unique<valve_bus::SerialNode>(lines->take(wanted.uri, wanted.limits), configuration,

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "cli/probe/deviations_in_c.hpp"
+#include "cli/probe/mutants_in_c.hpp"
 #include "cli/probe/program_fixture.hpp"
 #include "harness/iut/peer.hpp"
 #include "harness/iut/plugin.hpp"
@@ -104,10 +104,10 @@ const std::string kStation = "exec:" + in_quotes(FIELDPROOF_EXE) + " station val
 const std::string kInC = "exec:" + in_quotes(VALVE_NODE_PROCESS) + " ";
 const std::string kPluginInC = "plugin:" VALVE_NODE_PLUGIN;
 
-// A role, and two of its deviations with a case that says what is wrong.
+// A role, and two of its mutants with a case that says what is wrong.
 struct Served {
   struct Wrong {
-    const char* deviation;
+    const char* mutant;
     const char* test_case;
     const char* reason;
   };
@@ -126,10 +126,10 @@ TEST_P(ServedRoles, BuiltInStationInAProcessIsJudgedAsInside) {
   const Cases inside = judged("ref", "**", {}, {}, suite);
   EXPECT_EQ(inside.size(), count_of(suite));
   EXPECT_EQ(judged(station, "**", {}, {}, suite), inside);
-  for (const auto& [deviation, test_case, reason] : GetParam().wrong) {
-    const Cases wrong = judged("deviant:" + std::string(deviation), "**", {}, {}, suite);
-    EXPECT_EQ(wrong.at(test_case).reason, reason) << deviation;
-    EXPECT_EQ(judged(station + "deviant:" + deviation, "**", {}, {}, suite), wrong) << deviation;
+  for (const auto& [mutant, test_case, reason] : GetParam().wrong) {
+    const Cases wrong = judged("mutant:" + std::string(mutant), "**", {}, {}, suite);
+    EXPECT_EQ(wrong.at(test_case).reason, reason) << mutant;
+    EXPECT_EQ(judged(station + "mutant:" + mutant, "**", {}, {}, suite), wrong) << mutant;
   }
 }
 
@@ -272,7 +272,7 @@ TEST_F(Attachments, FfDeviceInPythonPasses) {
 
 // Verdicts and reasons, where levels are not all that is looked at; cases are in conformance's test of it.
 TEST_F(Attachments, BuiltInStationsInTelegramsAreJudgedAsInside) {
-  for (const auto& [role, deviation, test_case] :
+  for (const auto& [role, mutant, test_case] :
        {std::array{"slave", "output_octets_swapped", "data_cycle/process_data_is_exact"},
         std::array{"master", "wrong_segment", "rejection/marked_status_names_the_segment"}}) {
     const std::string suite = std::string("interbus/") + role + "/";
@@ -281,10 +281,10 @@ TEST_F(Attachments, BuiltInStationsInTelegramsAreJudgedAsInside) {
     for (const auto& [id, one] : judged(station, "**", {}, {}, suite)) {
       EXPECT_TRUE(one.verdict == "pass" || one.verdict == "not-applicable") << id << one.findings;
     }
-    const Case wrong = judged(station + "deviant:" + deviation, test_case, {}, {}, suite).at(test_case);
+    const Case wrong = judged(station + "mutant:" + mutant, test_case, {}, {}, suite).at(test_case);
     EXPECT_EQ(wrong.verdict, "fail");
     EXPECT_EQ(wrong.reason,
-              judged(std::string("deviant:") + deviation, test_case, {}, {}, suite).at(test_case).reason);
+              judged(std::string("mutant:") + mutant, test_case, {}, {}, suite).at(test_case).reason);
   }
   for (const char* wrong : {"valve_bus/node --units telegrams", "interbus/slave --units octets"}) {
     std::istringstream words(wrong);
@@ -323,7 +323,7 @@ TEST_F(Attachments, NodeBehindASocketPasses) {
   EXPECT_FALSE(listener.has_ended(milliseconds(0))) << listener.how_it_ended();
 }
 
-TEST_F(Attachments, DeviationOfALibraryIsSeenInBothPlaces) {
+TEST_F(Attachments, MutantOfALibraryIsSeenInBothPlaces) {
   const std::map<std::string, std::string> swapped{{"VALVE_NODE", "data_swapped"}};
   for (const char* place : {"", "?in-process"}) {
     const Cases cases = judged(kPluginInC + place, "write/drives_the_valves", swapped);
@@ -412,9 +412,9 @@ TEST_F(Attachments, CommandThatIsNoneIsAMistakeOfTheCommandLine) {
   }
 }
 
-class AttachedDeviations : public Attachments, public testing::WithParamInterface<DeviationInC> {};
+class AttachedMutants : public Attachments, public testing::WithParamInterface<MutantInC> {};
 
-TEST_P(AttachedDeviations, IsFoundByTheCaseThatNamesIt) {
+TEST_P(AttachedMutants, IsFoundByTheCaseThatNamesIt) {
   const auto [name, test_case, reason] = GetParam();
   const Cases cases = judged(kInC + name, test_case);
   ASSERT_TRUE(cases.contains(test_case));
@@ -422,8 +422,8 @@ TEST_P(AttachedDeviations, IsFoundByTheCaseThatNamesIt) {
   EXPECT_EQ(cases.at(test_case).reason, reason) << cases.at(test_case).findings;
 }
 
-INSTANTIATE_TEST_SUITE_P(InC, AttachedDeviations, testing::ValuesIn(kDeviationsInC),
-                         [](const testing::TestParamInfo<DeviationInC>& one) {
+INSTANTIATE_TEST_SUITE_P(InC, AttachedMutants, testing::ValuesIn(kMutantsInC),
+                         [](const testing::TestParamInfo<MutantInC>& one) {
                            return std::string(one.param.name);
                          });
 

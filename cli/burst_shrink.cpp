@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "cli/exit_code.hpp"
+#include "cli/flipped_bits.hpp"
 #include "cli/interruption.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/stored_sequence.hpp"
-#include "cli/struck_bits.hpp"
 #include "conformance/minimise.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"

@@ -65,7 +65,7 @@ Packet packet_of(const std::vector<std::string>& row) {
 }
 
 // What trace.txt says: transmissions, their telegrams, faults.
-struct Told {
+struct Decoded {
   std::size_t transmissions = 0;
   std::size_t telegrams = 0;
   std::size_t data_telegrams = 0;
@@ -73,7 +73,7 @@ struct Told {
 };
 
 // "data A55A 1234 | check 29CC 0000 | 37 status"
-void add_telegrams(const std::string& text, Told& told) {
+void add_telegrams(const std::string& text, Decoded& told) {
   std::istringstream words(text);
   std::string before;
   for (std::string word; words >> word; before = word) {
@@ -86,8 +86,8 @@ void add_telegrams(const std::string& text, Told& told) {
   }
 }
 
-Told told_in(const std::vector<TraceLine>& lines) {
-  Told told;
+Decoded told_in(const std::vector<TraceLine>& lines) {
+  Decoded told;
   for (const TraceLine& line : lines) {
     if (line.is_fault()) {
       ++told.faults;
@@ -113,7 +113,7 @@ TEST_F(Capture, OfACleanRunShowsEveryTelegramAndNothingIsWrong) {
   const fs::path left = run(kNetworkCase, {});
   const reports::Reading reading = reports::read_with_tshark(kSourceFolder, left / "trace.pcapng", kFields);
   if (!reading.is_available) GTEST_SKIP() << reading.output;
-  const Told told = told_in(lines_in(left / "trace.txt"));
+  const Decoded told = told_in(lines_in(left / "trace.txt"));
   const std::vector<Packet> packets = packets_in(reading.output);
   EXPECT_EQ(packets.size(), told.transmissions);
   ASSERT_GT(told.transmissions, 100U);
@@ -139,7 +139,7 @@ TEST_F(Capture, OfAFaultedRunFlagsExactlyWhatWasCorrupted) {
   const fs::path left = run(kNetworkCase, {"--plan", "plan.json"});
   const reports::Reading reading = reports::read_with_tshark(kSourceFolder, left / "trace.pcapng", kFields);
   if (!reading.is_available) GTEST_SKIP() << reading.output;
-  const Told told = told_in(lines_in(left / "trace.txt"));
+  const Decoded told = told_in(lines_in(left / "trace.txt"));
   const auto timeline = nlohmann::json::parse(read(left / "timeline.json"));
   ASSERT_FALSE(timeline["is_cut"].get<bool>());
   EXPECT_EQ(timeline["transmissions"].size(), told.transmissions);

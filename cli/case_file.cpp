@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/build_info.hpp"
+#include "cli/flipped_bits.hpp"
 #include "cli/implementations.hpp"
 #include "cli/pics_file.hpp"
-#include "cli/struck_bits.hpp"
 #include "harness/config/document.hpp"
 #include "harness/judge/result_json.hpp"
 #include "harness/kernel/error.hpp"
@@ -152,7 +152,7 @@ std::vector<conformance::Assignment> implementations_from(const config::Value& l
       assignment.uri = reader.required("uri").as_string();
       return assignment;
     }));
-    if (const auto why = obstacle(implementations.back(), suite)) config::fail(element, *why);
+    if (const auto why = reason_not_runnable(implementations.back(), suite)) config::fail(element, *why);
   }
   return implementations;
 }

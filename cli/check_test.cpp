@@ -22,18 +22,18 @@ class Check : public ProgramFixture {
   }
 };
 
-TEST_F(Check, PassesTheReferenceAndFindsADeviation) {
+TEST_F(Check, PassesTheReferenceAndFindsAMutant) {
   const Called passed = call({"check", "valve_bus/node", "--cases", "200"});
   EXPECT_EQ(passed.exit_code, kAllAsExpected);
   EXPECT_HOLDS(passed.out, "200 of 200 sequences");
-  const Called found = call({"check", "valve_bus/node", "--iut", "deviant:check_not_reset", "--seed", "1"});
+  const Called found = call({"check", "valve_bus/node", "--iut", "mutant:check_not_reset", "--seed", "1"});
   EXPECT_EQ(found.exit_code, kFailed);
   EXPECT_HOLDS(found.out, "fieldproof replay valve_bus-node-1.case.json");
   EXPECT_HOLDS(found.out, "to 2 commands, 1 fault (1 flipped bit)");
 }
 
 TEST_F(Check, ItsCaseIsReplayedAnywhere) {
-  call({"check", "valve_bus/node", "--iut", "deviant:read_answers_write", "--case", "found.json"});
+  call({"check", "valve_bus/node", "--iut", "mutant:read_answers_write", "--case", "found.json"});
   const Called same = call({"replay", "found.json"});
   EXPECT_EQ(same.exit_code, kFailed);
   EXPECT_HOLDS(same.out, "equal: verdict, reason and fingerprint are those of the stored run");
@@ -55,13 +55,12 @@ TEST_F(Check, SearchesAnAttachedNodeAndAnInterbusSlave) {
 
 TEST_F(Check, SearchesEachRoleOfTheDataLinkHereAndInAProcess) {
   for (const std::string role : {"fieldbus_dll/isa_dle", "fieldbus_dll/ff_device", "fieldbus_dll/ff_las"}) {
-    const std::string deviation = role == "fieldbus_dll/ff_las" ? "misses_of_all_count" : "newest_first";
-    EXPECT_EQ(call({"check", role, "--iut", "deviant:" + deviation}).exit_code, kFailed) << role;
+    const std::string mutant = role == "fieldbus_dll/ff_las" ? "misses_of_all_count" : "newest_first";
+    EXPECT_EQ(call({"check", role, "--iut", "mutant:" + mutant}).exit_code, kFailed) << role;
     const std::string station = "exec:'" FIELDPROOF_EXE "' station " + role + " ";
     const Called passed = call({"check", role, "--iut", station + "ref", "--cases", "20"});
     EXPECT_EQ(passed.exit_code, kAllAsExpected) << role << passed.out << passed.err;
-    const Called found =
-        call({"check", role, "--iut", station + "deviant:" + deviation, "--case", "found.json"});
+    const Called found = call({"check", role, "--iut", station + "mutant:" + mutant, "--case", "found.json"});
     EXPECT_EQ(found.exit_code, kFailed) << role << found.out << found.err;
   }
 }
@@ -70,7 +69,7 @@ TEST_F(Check, RefusesWhatItCannotServe) {
   const Called no_role = call({"check", "valve_bus/host"});
   EXPECT_EQ(no_role.exit_code, kUsage);
   EXPECT_HOLDS(no_role.err, "'valve_bus/node'");
-  EXPECT_EQ(call({"check", "valve_bus/node", "--iut", "deviant:nobody"}).exit_code, kUsage);
+  EXPECT_EQ(call({"check", "valve_bus/node", "--iut", "mutant:nobody"}).exit_code, kUsage);
   EXPECT_EQ(call({"check", "valve_bus/node", "--iut", "exec:./nobody"}).exit_code, 5);
   write("bad.json", R"({"schema": "fieldproof/sequence/1", "role": "valve_bus/node"})");
   const Called bad = call({"replay", "bad.json"});
@@ -80,7 +79,7 @@ TEST_F(Check, RefusesWhatItCannotServe) {
 
 TEST_F(Check, ShrinksAStoredSequence) {
   write("long.json", R"({"schema": "fieldproof/sequence/1", "role": "valve_bus/node", "seed": "1",
-    "implementations": [{"role": "node", "position": 0, "uri": "deviant:read_answers_write"}],
+    "implementations": [{"role": "node", "position": 0, "uri": "mutant:read_answers_write"}],
     "commands": [{"do": "wait", "ms": 10}, {"do": "write", "data0": 77, "data1": 3, "silence": 80},
                  {"do": "response", "data0": 1, "data1": 2, "silence": 45},
                  {"do": "read", "data0": 9, "data1": 9, "silence": 45}],
@@ -97,11 +96,11 @@ TEST_F(Check, ShrinksBurstsToTheBitsThatMattered) {
     const char* uri;
   };
   for (const Campaign& one :
-       {Campaign{"valve_bus/node/immunity/bursts*", "deviant:write_not_checked"},
-        Campaign{"valve_bus/node/immunity/bursts*", "deviant:valves_off_on_wrong_check"},
-        Campaign{"interbus/slave/immunity/bursts*", "slave=deviant:latches_in_spite_of_own_error"},
-        Campaign{"interbus/network/immunity/*", "slave@4=deviant:latches_in_spite_of_own_error"},
-        Campaign{"interbus/network/immunity/*", "master=deviant:own_check_ignored"}}) {
+       {Campaign{"valve_bus/node/immunity/bursts*", "mutant:write_not_checked"},
+        Campaign{"valve_bus/node/immunity/bursts*", "mutant:valves_off_on_wrong_check"},
+        Campaign{"interbus/slave/immunity/bursts*", "slave=mutant:latches_in_spite_of_own_error"},
+        Campaign{"interbus/network/immunity/*", "slave@4=mutant:latches_in_spite_of_own_error"},
+        Campaign{"interbus/network/immunity/*", "master=mutant:own_check_ignored"}}) {
     std::filesystem::remove_all(folder_ / "run");
     const std::string stored = failed_case(one.selector, one.uri);
     const Called shrunk = call({"shrink", stored, "--case", "small.json"});
@@ -122,7 +121,7 @@ TEST_F(Check, ShrinksBurstsToTheBitsThatMattered) {
 
 // Its own bursts are out of it: what is left is all that there is to make smaller.
 TEST_F(Check, ShrinksASmallBurstCaseAgain) {
-  const std::string stored = failed_case("valve_bus/node/immunity/bursts*", "deviant:write_not_checked");
+  const std::string stored = failed_case("valve_bus/node/immunity/bursts*", "mutant:write_not_checked");
   ASSERT_EQ(call({"shrink", stored, "--case", "small.json"}).exit_code, kAllAsExpected);
   const Called again = call({"shrink", "small.json", "--case", "again.json"});
   EXPECT_EQ(again.exit_code, kAllAsExpected) << again.out << again.err;

@@ -19,8 +19,8 @@
 #include "cli/simulated_network.hpp"
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
-#include "conformance/interbus/master_deviations.hpp"
-#include "conformance/interbus/slave_deviations.hpp"
+#include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/ordered_work.hpp"
 #include "emc/random_flips.hpp"
 #include "emc/residual/residual_error.hpp"
@@ -97,7 +97,7 @@ std::vector<EmcTest> tests_from(const Settings& settings, bool has_bursts) {
   return tests;
 }
 
-// Deviations by role; the rest of the network are references.
+// Mutants by role; the rest of the network are references.
 emc::InterbusStations stations_from(const Session& session, std::size_t stations) {
   emc::InterbusStations players;
   const auto entries = session.catalogue.select(std::vector<std::string>{"interbus/**"});
@@ -107,13 +107,13 @@ emc::InterbusStations stations_from(const Session& session, std::size_t stations
     const std::string& text = texts[n];
     const conformance::Assignment& assigned = implementations[n];
     if (assigned.uri == "ref") continue;
-    constexpr std::string_view kDeviant = "deviant:";
-    if (!assigned.uri.starts_with(kDeviant) || (assigned.role != "slave" && assigned.role != "master")) {
+    constexpr std::string_view kMutant = "mutant:";
+    if (!assigned.uri.starts_with(kMutant) || (assigned.role != "slave" && assigned.role != "master")) {
       session.settings.refuse(
           "iut",
-          fmt::format("'{}' cannot take part here; write slave@N=deviant:NAME or master=deviant:NAME", text));
+          fmt::format("'{}' cannot take part here; write slave@N=mutant:NAME or master=mutant:NAME", text));
     }
-    const std::string name = assigned.uri.substr(kDeviant.size());
+    const std::string name = assigned.uri.substr(kMutant.size());
     if (assigned.role == "master") {
       players.make_master = conformance::make_master(assigned.uri);
       continue;
@@ -121,10 +121,10 @@ emc::InterbusStations stations_from(const Session& session, std::size_t stations
     const int at = std::max(assigned.position, 1);
     if (at > static_cast<int>(stations) || players.make_slave) {
       session.settings.refuse(
-          "iut", fmt::format("'{}': one slave deviates, at a position from 1 to {}", text, stations));
+          "iut", fmt::format("'{}': one slave is a mutant, at a position from 1 to {}", text, stations));
     }
     players.make_slave = [at, name](int position, const interbus::SlaveConfiguration& configuration) {
-      return position == at ? conformance::make_slave_deviation(name, configuration) : nullptr;
+      return position == at ? conformance::make_slave_mutant(name, configuration) : nullptr;
     };
   }
   return players;

@@ -53,7 +53,7 @@ TEST_F(EmcVerb, EndsWithOneWhereTheCriterionIsWorseThanAllowed) {
   EXPECT_EQ(call({"--levels", "3", "--worst", "A"}).exit_code, 1);
   EXPECT_EQ(call({"--levels", "3", "--worst", "A", "--profile", "C"}).exit_code, 0);
   const Called caught =
-      call({"--levels", "3", "--iut", "slave@1=deviant:does_not_mark_status", "--duration", "5s"});
+      call({"--levels", "3", "--iut", "slave@1=mutant:does_not_mark_status", "--duration", "5s"});
   EXPECT_EQ(caught.exit_code, 1);
   EXPECT_NE(caught.out.find("reproduce: fieldproof emc interbus"), std::string::npos) << caught.out;
 }
@@ -70,7 +70,7 @@ TEST_F(EmcVerb, RefusesWhatItCannotServe) {
   EXPECT_NE(refusal({"--repetition", "7kHz"}).find("2.5kHz"), std::string::npos);
   EXPECT_NE(refusal({"--polarity", "x"}).find("+, -"), std::string::npos);
   EXPECT_NE(refusal({"--profile", "G"}).find("profile"), std::string::npos);
-  EXPECT_NE(refusal({"--iut", "slave@9=deviant:does_not_mark_status"}).find("1 to 3"), std::string::npos);
+  EXPECT_NE(refusal({"--iut", "slave@9=mutant:does_not_mark_status"}).find("1 to 3"), std::string::npos);
   EXPECT_NE(refusal({"--duration", "2h"}).find("1 h"), std::string::npos);
 }
 
@@ -99,16 +99,16 @@ TEST_F(EmcVerb, HoldsACountOnATextbookChannelAgainstTheTheory) {
 // A master that takes what fails its check accepts more than theory lets pass.
 TEST_F(EmcVerb, EndsWithOneWhereTheTheoryIsRefuted) {
   const Called called =
-      call({"--channel", "bsc:0.001", "--duration", "10s", "--iut", "master=deviant:own_check_ignored"});
+      call({"--channel", "bsc:0.001", "--duration", "10s", "--iut", "master=mutant:own_check_ignored"});
   EXPECT_EQ(called.exit_code, 1) << called.out;
-  EXPECT_HOLDS(called.out, "reproduce: fieldproof emc interbus --iut master=deviant:own_check_ignored");
+  EXPECT_HOLDS(called.out, "reproduce: fieldproof emc interbus --iut master=mutant:own_check_ignored");
   EXPECT_HOLDS(called.out, "--channel bsc:0.001");
 }
 
 TEST_F(EmcVerb, AChannelOnWhichNothingComesThroughShowsNothing) {
   EXPECT_EQ(call({"--channel", "bsc:0.5", "--duration", "2s"}).exit_code, 2);
   const Called dead =
-      call({"--channel", "bsc:0.001", "--duration", "5s", "--iut", "master=deviant:silent_after_error"});
+      call({"--channel", "bsc:0.001", "--duration", "5s", "--iut", "master=mutant:silent_after_error"});
   EXPECT_EQ(dead.exit_code, 1) << dead.out;
 }
 

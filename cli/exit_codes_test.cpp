@@ -24,10 +24,10 @@ TEST_F(ExitCode, ZeroWhenAllPass) {
 }
 
 TEST_F(ExitCode, OneWhenACaseFailsAndTheLastLineReproducesIt) {
-  const Called called = probe({"run", "probe/**", "--iut", "deviant:swapped", "--seed", "77"});
+  const Called called = probe({"run", "probe/**", "--iut", "mutant:swapped", "--seed", "77"});
   EXPECT_EQ(called.exit_code, 1) << called.err;
   const std::string command =
-      "fieldproof run probe/station/data/word_is_latched --iut deviant:swapped --seed 77";
+      "fieldproof run probe/station/data/word_is_latched --iut mutant:swapped --seed 77";
   EXPECT_EQ(last_line(called.out), "reproduce: " + command);
   EXPECT_EQ(code({"run", "odd/end/warns", "--strict"}), 1);
 }
@@ -52,7 +52,7 @@ TEST_F(ExitCode, FourWhenNothingIsJudged) {
 }
 
 TEST_F(ExitCode, FiveWhenTheImplementationIsNotUsable) {
-  const Called called = probe({"run", "gone/**", "--iut", "deviant:unreachable"});
+  const Called called = probe({"run", "gone/**", "--iut", "mutant:unreachable"});
   EXPECT_EQ(called.exit_code, 5);
   EXPECT_HOLDS(called.err, "the station does not answer");
   EXPECT_EQ(code({"matrix", "gone"}), 5);
@@ -69,7 +69,7 @@ TEST_F(ExitCode, SixtyFourForAWrongCommandLine) {
                                              {"run", "--max-time", "soon"},
                                              {"run", "--jobs", "0"},
                                              {"run", "nothing/**"},
-                                             {"run", "--iut", "deviant:unknown"},
+                                             {"run", "--iut", "mutant:unknown"},
                                              {"run", "--iut", "station@0=ref"},
                                              {"run", "--iut", "driver=ref"},
                                              {"run", "--iut", "carrier:pigeon"},

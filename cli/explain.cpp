@@ -17,12 +17,12 @@ std::string source_text(const judge::Reference& reference) {
 
 std::string catches_text(const conformance::Entry& entry) {
   std::string text;
-  for (const conformance::Catch& caught : entry.test_case->catches) {
-    const auto& known = entry.suite->deviations();
-    const auto found = std::find_if(known.begin(), known.end(), [&](const conformance::Deviation& deviation) {
-      return deviation.role == entry.test_case->role() && deviation.name == caught.deviation;
+  for (const conformance::MustCatch& caught : entry.test_case->catches) {
+    const auto& known = entry.suite->mutants();
+    const auto found = std::find_if(known.begin(), known.end(), [&](const conformance::Mutant& mutant) {
+      return mutant.role == entry.test_case->role() && mutant.name == caught.mutant;
     });
-    const std::string label = found->mutant.empty() ? "" : fmt::format(" ({})", found->mutant);
+    const std::string label = found->label.empty() ? "" : fmt::format(" ({})", found->label);
     text += fmt::format("  {}{}: {}\n    with the finding '{}'\n", found->name, label, found->description,
                         caught.reason);
   }
@@ -41,19 +41,19 @@ int explain(Session& session) {
   field("purpose", test_case.purpose);
   field("requirement", test_case.requirement);
   field("source", source_text(test_case.reference));
-  for (const conformance::Detail& detail : test_case.details) {
+  for (const conformance::PartialSource& detail : test_case.details) {
     field("source of a detail", fmt::format("{}\n  with the findings {}", source_text(detail.reference),
                                             fmt::join(detail.reasons, ", ")));
   }
   field("stimulus", test_case.stimulus);
   field("expected", test_case.expected);
   field("tags", fmt::format("{}", fmt::join(test_case.tags, " ")));
-  text += fmt::format("\ndeviations that it catches\n{}", catches_text(entry));
+  text += fmt::format("\nmutants that it catches\n{}", catches_text(entry));
   text +=
       fmt::format("\ncommands\n  fieldproof run {}\n  fieldproof verify {}\n", test_case.id, test_case.id);
-  for (const conformance::Catch& caught : test_case.catches) {
-    text += fmt::format("  fieldproof run {} --iut {}=deviant:{}\n", test_case.id, test_case.role(),
-                        caught.deviation);
+  for (const conformance::MustCatch& caught : test_case.catches) {
+    text += fmt::format("  fieldproof run {} --iut {}=mutant:{}\n", test_case.id, test_case.role(),
+                        caught.mutant);
   }
   session.terminal.print(text);
   return 0;

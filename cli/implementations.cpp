@@ -21,7 +21,7 @@ using conformance::Catalogue;
 using conformance::Entry;
 using conformance::Suite;
 
-constexpr std::string_view kDeviant = "deviant:";
+constexpr std::string_view kMutant = "mutant:";
 
 [[noreturn]] void refuse(const std::string& text, const std::string& sentence) {
   throw kernel::Error(kernel::ErrorKind::usage, fmt::format("--iut '{}': {}", text, sentence));
@@ -104,14 +104,14 @@ Assignment split(const std::string& text) {
   return assignment;
 }
 
-void resolve_deviation(Assignment& assignment, const Catalogue& catalogue, std::span<const Entry> among) {
-  const std::string name = assignment.uri.substr(kDeviant.size());
+void resolve_mutant(Assignment& assignment, const Catalogue& catalogue, std::span<const Entry> among) {
+  const std::string name = assignment.uri.substr(kMutant.size());
   const std::string wanted = assignment.role.empty() ? name : fmt::format("{}/{}", assignment.role, name);
   const bool is_path = name.find('/') != std::string::npos;
-  const conformance::DeviationEntry& found =
-      catalogue.deviation(is_path ? name : wanted, is_path ? std::span<const Entry>{} : among);
-  assignment.role = found.deviation->role;
-  assignment.uri = fmt::format("{}{}", kDeviant, found.deviation->name);
+  const conformance::MutantEntry& found =
+      catalogue.mutant(is_path ? name : wanted, is_path ? std::span<const Entry>{} : among);
+  assignment.role = found.mutant->role;
+  assignment.uri = fmt::format("{}{}", kMutant, found.mutant->name);
 }
 
 // What a program brings along, of any role where none is said.
@@ -130,21 +130,20 @@ Assignment parse_implementation(const std::string& text, const Catalogue& catalo
   Assignment assignment = split(text);
   const std::vector<const Suite*> suites = suites_with(text, assignment.role, catalogue);
   check_position(text, assignment, suites);
-  if (assignment.uri.starts_with(kDeviant)) {
-    resolve_deviation(assignment, catalogue, among);
+  if (assignment.uri.starts_with(kMutant)) {
+    resolve_mutant(assignment, catalogue, among);
   } else if (assignment.uri != "ref" && !is_attachment(assignment.uri) && !is_own(assignment, suites)) {
     refuse(text,
-           "there is no such kind of implementation; write ref, deviant:NAME, plugin:LIBRARY, exec:PROGRAM, "
+           "there is no such kind of implementation; write ref, mutant:NAME, plugin:LIBRARY, exec:PROGRAM, "
            "unix:PATH, tcp:HOST:PORT, or one of them behind ROLE= or ROLE@POSITION=");
   }
   return assignment;
 }
 
-bool has_deviation(const Suite& suite, const std::string& role, std::string_view name) {
-  return std::any_of(suite.deviations().begin(), suite.deviations().end(),
-                     [&](const conformance::Deviation& deviation) {
-                       return deviation.name == name && (role.empty() || deviation.role == role);
-                     });
+bool has_mutant(const Suite& suite, const std::string& role, std::string_view name) {
+  return std::any_of(suite.mutants().begin(), suite.mutants().end(), [&](const conformance::Mutant& mutant) {
+    return mutant.name == name && (role.empty() || mutant.role == role);
+  });
 }
 
 }  // namespace
@@ -159,7 +158,7 @@ std::vector<Assignment> parse_implementations(std::span<const std::string> texts
   return implementations;
 }
 
-std::optional<std::string> obstacle(const Assignment& assignment, const Suite& suite) {
+std::optional<std::string> reason_not_runnable(const Assignment& assignment, const Suite& suite) {
   const std::vector<std::string> roles = suite.roles();
   if (!assignment.role.empty() && std::find(roles.begin(), roles.end(), assignment.role) == roles.end()) {
     return fmt::format("the protocol has no role '{}'; write one of '{}'", assignment.role,
@@ -173,16 +172,16 @@ std::optional<std::string> obstacle(const Assignment& assignment, const Suite& s
   if (assignment.uri == "ref" || is_attachment(assignment.uri) || is_own(assignment, std::span(&only, 1))) {
     return std::nullopt;
   }
-  if (!assignment.uri.starts_with(kDeviant)) {
-    return fmt::format("'{}' is no implementation that can be run again; write ref or deviant:NAME",
+  if (!assignment.uri.starts_with(kMutant)) {
+    return fmt::format("'{}' is no implementation that can be run again; write ref or mutant:NAME",
                        assignment.uri);
   }
-  const std::string name = assignment.uri.substr(kDeviant.size());
-  if (has_deviation(suite, assignment.role, name)) return std::nullopt;
+  const std::string name = assignment.uri.substr(kMutant.size());
+  if (has_mutant(suite, assignment.role, name)) return std::nullopt;
   std::vector<std::string> known;
-  for (const conformance::Deviation& deviation : suite.deviations()) known.push_back(deviation.name);
+  for (const conformance::Mutant& mutant : suite.mutants()) known.push_back(mutant.name);
   const auto near = config::nearest(name, std::span<const std::string>(known), 3);
-  return fmt::format("there is no deviation '{}'; the nearest are '{}'", name, fmt::join(near, "', '"));
+  return fmt::format("there is no mutant '{}'; the nearest are '{}'", name, fmt::join(near, "', '"));
 }
 
 }  // namespace fieldproof::cli

@@ -1,11 +1,11 @@
 // What `--iut` says: who plays which role.
 //
 //   ref                          the reference, in the role of each case
-//   deviant:crc_preset_zero      the reference with one deviation; its role is the only one that has it
+//   mutant:crc_preset_zero      the reference with one mutant; its role is the only one that has it
 //   exec:./node --fast           a process; unix:PATH and tcp:HOST:PORT: who listens there
 //   own                          what a program with suites of its own brings along
-//   slave=deviant:late           the role is said
-//   slave@3=deviant:late         and the position: 1 is next to the master
+//   slave=mutant:late           the role is said
+//   slave@3=mutant:late         and the position: 1 is next to the master
 #pragma once
 
 #include <optional>
@@ -17,15 +17,15 @@
 
 namespace fieldproof::cli {
 
-// Throws kernel::Error(usage) for an unknown kind, role, position or deviation, with the nearest one, and for
-// two that want the same place. `among` are the selected cases: a bare deviation is looked for in their
+// Throws kernel::Error(usage) for an unknown kind, role, position or mutant, with the nearest one, and for
+// two that want the same place. `among` are the selected cases: a bare mutant is looked for in their
 // roles.
 std::vector<conformance::Assignment> parse_implementations(std::span<const std::string> texts,
                                                            const conformance::Catalogue& catalogue,
                                                            std::span<const conformance::Entry> among);
 
 // The same for an assignment that a case file of this suite stores: why it cannot be served, or nothing.
-std::optional<std::string> obstacle(const conformance::Assignment& assignment,
-                                    const conformance::Suite& suite);
+std::optional<std::string> reason_not_runnable(const conformance::Assignment& assignment,
+                                               const conformance::Suite& suite);
 
 }  // namespace fieldproof::cli

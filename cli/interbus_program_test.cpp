@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The real program on one case and on a deviation that the case catches.
+// The real program on one case and on a mutant that the case catches.
 class OfInterbus : public Program {
  protected:
   Called real(std::vector<std::string> arguments) const {
@@ -29,12 +29,12 @@ class OfInterbus : public Program {
   }
 
   const std::string kCase = "interbus/slave/frame_check/flipped_data_bit_is_rejected_marked_and_told";
-  const std::string kDeviant = "deviant:latches_in_spite_of_own_error";
+  const std::string kMutant = "mutant:latches_in_spite_of_own_error";
 };
 
 TEST_F(OfInterbus, PicsItemThatNobodyKnowsIsRefusedWithTheNearest) {
   write("pics.json", "{\n\"items\": {\"ouputs\": true}\n}");
-  const Called misspelled = judged({"--iut", kDeviant, "--pics", "pics.json"});
+  const Called misspelled = judged({"--iut", kMutant, "--pics", "pics.json"});
   EXPECT_EQ(misspelled.exit_code, 65);
   EXPECT_HOLDS(misspelled.err, "pics.json:2: /items/ouputs: ");
   EXPECT_HOLDS(misspelled.err, "\"outputs\"");
@@ -48,7 +48,7 @@ TEST_F(OfInterbus, PicsItemThatNobodyKnowsIsRefusedWithTheNearest) {
 
 TEST_F(OfInterbus, PicsLeavesWhatItDoesNotAnswerAsItIs) {
   write("pics.json", R"({"items": {"reconfiguration_button": true}})");
-  EXPECT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json"}).exit_code, 1);
+  EXPECT_EQ(judged({"--iut", kMutant, "--pics", "pics.json"}).exit_code, 1);
   const Called listed = real({"list", "interbus/slave/**", "--pics", "pics.json"});
   EXPECT_EQ(listed.out.find("not applicable"), std::string::npos) << listed.out;
   write("pics.json", R"({"items": {"outputs": false}})");
@@ -62,12 +62,12 @@ TEST_F(OfInterbus, PicsItemsAreListed) {
 
 TEST_F(OfInterbus, OnePlaceHasOneImplementation) {
   for (const char* other : {"slave=ref", "slave@1=ref", "ref"}) {
-    const Called twice = judged({"--iut", "slave=" + kDeviant, "--iut", other});
+    const Called twice = judged({"--iut", "slave=" + kMutant, "--iut", other});
     EXPECT_EQ(twice.exit_code, 64) << other;
-    EXPECT_HOLDS(twice.err, "slave=" + kDeviant);
+    EXPECT_HOLDS(twice.err, "slave=" + kMutant);
   }
   // Of two slaves at two places a case for a slave would judge one only; a network has room for both.
-  EXPECT_EQ(judged({"--iut", "slave@1=" + kDeviant, "--iut", "slave@2=ref"}).exit_code, 64);
+  EXPECT_EQ(judged({"--iut", "slave@1=" + kMutant, "--iut", "slave@2=ref"}).exit_code, 64);
   EXPECT_EQ(real({"run", "interbus/network/timing/cycles_do_not_jitter", "--volume", "quick", "--iut",
                   "slave@1=ref", "--iut", "slave@2=ref"})
                 .exit_code,
@@ -95,7 +95,7 @@ TEST_F(OfInterbus, WrongFileIsFoundBeforeAnythingIsStored) {
 }
 
 TEST_F(OfInterbus, CaseFileIsHeldAgainstWhatThereIs) {
-  ASSERT_EQ(judged({"--iut", "slave@2=" + kDeviant, "--out", "a"}).exit_code, 1);
+  ASSERT_EQ(judged({"--iut", "slave@2=" + kMutant, "--out", "a"}).exit_code, 1);
   const fs::path file = fs::relative(case_file("a"), folder_);
   const std::string good = read(file);
   const auto refused = [&](const std::string& part, const std::string& instead) {
@@ -107,8 +107,8 @@ TEST_F(OfInterbus, CaseFileIsHeldAgainstWhatThereIs) {
     EXPECT_HOLDS(called.err, "case.json:");
     return called.err;
   };
-  EXPECT_HOLDS(refused(kDeviant, "deviant:latches_in_spite_of_own_eror"), "latches_in_spite_of_own_error");
-  EXPECT_HOLDS(refused(kDeviant, "own"), "/implementations/0: ");
+  EXPECT_HOLDS(refused(kMutant, "mutant:latches_in_spite_of_own_eror"), "latches_in_spite_of_own_error");
+  EXPECT_HOLDS(refused(kMutant, "own"), "/implementations/0: ");
   EXPECT_HOLDS(refused("\"role\": \"slave\"", "\"role\": \"slvae\""), "'slvae'");
   EXPECT_HOLDS(refused("\"position\": 2", "\"position\": 513"), "at most 512 stations");
   EXPECT_HOLDS(refused("rejected_marked_and_told", "rejected_marked_and_tol"), "/case: ");
@@ -116,7 +116,7 @@ TEST_F(OfInterbus, CaseFileIsHeldAgainstWhatThereIs) {
 
 TEST_F(OfInterbus, CaseFileIsAsItsSchemaSays) {
   write("pics.json", R"({"items": {"outputs": true}})");
-  ASSERT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json", "--out", "a"}).exit_code, 1);
+  ASSERT_EQ(judged({"--iut", kMutant, "--pics", "pics.json", "--out", "a"}).exit_code, 1);
   const fs::path file = case_file("a");
   const auto valid = reports::judge_with_ajv(kSourceFolder, kSourceFolder / "cli/case.schema.json", {file});
   if (!valid.is_available) GTEST_SKIP() << valid.output;
@@ -130,7 +130,7 @@ TEST_F(OfInterbus, CaseFileIsAsItsSchemaSays) {
 }
 
 TEST_F(OfInterbus, StoredTextDoesNotSteerTheTerminal) {
-  ASSERT_EQ(judged({"--iut", kDeviant, "--out", "a"}).exit_code, 1);
+  ASSERT_EQ(judged({"--iut", kMutant, "--out", "a"}).exit_code, 1);
   const fs::path file = fs::relative(case_file("a"), folder_);
   std::string text = read(file);
   const std::size_t at = text.find("\"reason\": \"") + 11;
@@ -152,14 +152,14 @@ TEST_F(OfInterbus, StoredTextDoesNotSteerTheTerminal) {
 
 TEST_F(OfInterbus, ReplayNamesThePicsInTheCommandThatReproduces) {
   write("pics.json", R"({"items": {"reconfiguration_button": true}})");
-  ASSERT_EQ(judged({"--iut", kDeviant, "--pics", "pics.json", "--out", "a"}).exit_code, 1);
+  ASSERT_EQ(judged({"--iut", kMutant, "--pics", "pics.json", "--out", "a"}).exit_code, 1);
   const Called called = real({"replay", case_file("a").string()});
   EXPECT_HOLDS(called.out, "--pics ");
   EXPECT_HOLDS(called.out, "a/pics.json");
 }
 
 TEST_F(OfInterbus, RecordingIsHeldAgainstTheRoleThatItPlays) {
-  ASSERT_EQ(judged({"--iut", kDeviant, "--out", "a"}).exit_code, 1);
+  ASSERT_EQ(judged({"--iut", kMutant, "--out", "a"}).exit_code, 1);
   const fs::path file = fs::relative(case_file("a"), folder_).parent_path() / "playback.txt";
   const std::string good = read(file);
   const auto judged_with = [&](const std::string& part, const std::string& instead) {

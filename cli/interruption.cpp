@@ -38,7 +38,7 @@ void install(int signal, struct sigaction& former) {
 }
 
 // For poll: milliseconds, -1 for ever.
-int patience_until(std::chrono::steady_clock::time_point deadline) {
+int observation_timeout_until(std::chrono::steady_clock::time_point deadline) {
   if (deadline == std::chrono::steady_clock::time_point::max()) return -1;
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
   return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, std::numeric_limits<int>::max()));
@@ -80,7 +80,7 @@ std::string Interruption::reason() const {
 void Interruption::watch(Clock::time_point deadline) {
   while (true) {
     pollfd wake{wake_[0], POLLIN, 0};
-    const int ready = poll(&wake, 1, patience_until(deadline));
+    const int ready = poll(&wake, 1, observation_timeout_until(deadline));
     if (ready < 0 && errno == EINTR) continue;
     if (ready > 0) {
       char byte = 0;

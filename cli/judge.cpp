@@ -27,7 +27,7 @@ void play_back(CaseFile& stored, const std::string& role) {
 }
 
 // Why a case of the run cannot be judged again, or nothing.
-std::string obstacle_to_judging(const CaseFile& stored) {
+std::string reason_not_judgeable(const CaseFile& stored) {
   if (stored.playback.empty()) return "no recording of the implementation is stored";
   if (stored.is_truncated) return "its recording reached the bound";
   return {};
@@ -45,7 +45,7 @@ int judge_again(Session& session) {
     const std::filesystem::path file = directory.case_directory(before.id) / "case.json";
     if (!std::filesystem::exists(file)) continue;
     CaseFile stored = load_case(file, session.catalogue);
-    if (const std::string why = obstacle_to_judging(stored); !why.empty()) {
+    if (const std::string why = reason_not_judgeable(stored); !why.empty()) {
       session.terminal.log(fmt::format("{} is not judged again: {}", before.id, why));
       continue;
     }

@@ -10,7 +10,7 @@
 #include "cli/verbs.hpp"
 #include "reports/text_summary.hpp"
 
-// `fieldproof list`: the cases, or the deviations, the protocols, the items of a PICS.
+// `fieldproof list`: the cases, or the mutants, the protocols, the items of a PICS.
 namespace fieldproof::cli {
 namespace {
 
@@ -34,7 +34,7 @@ Row row_of(const conformance::Entry& entry, const conformance::Setup& setup) {
   row.json["verified"] = judge::is_verified(test_case.rests_on().standing);
   row.json["tags"] = test_case.tags;
   row.json["catches"] = ordered_json::array();
-  for (const conformance::Catch& caught : test_case.catches) row.json["catches"].push_back(caught.deviation);
+  for (const conformance::MustCatch& caught : test_case.catches) row.json["catches"].push_back(caught.mutant);
   if (excluded) row.json["not_applicable"] = *excluded;
   row.text = fmt::format("{}  {}", test_case.id, test_case.purpose);
   if (!test_case.tags.empty()) row.text += fmt::format("  +{}", fmt::join(test_case.tags, " +"));
@@ -42,12 +42,12 @@ Row row_of(const conformance::Entry& entry, const conformance::Setup& setup) {
   return row;
 }
 
-Row row_of(const conformance::DeviationEntry& entry) {
+Row row_of(const conformance::MutantEntry& entry) {
   Row row;
   row.json["path"] = entry.path();
-  row.json["mutant"] = entry.deviation->mutant;
-  row.json["description"] = entry.deviation->description;
-  row.text = fmt::format("{}  {}  {}", entry.path(), entry.deviation->mutant, entry.deviation->description);
+  row.json["label"] = entry.mutant->label;
+  row.json["description"] = entry.mutant->description;
+  row.text = fmt::format("{}  {}  {}", entry.path(), entry.mutant->label, entry.mutant->description);
   return row;
 }
 
@@ -68,10 +68,10 @@ Row row_of(const conformance::Suite& suite) {
       static_cast<std::size_t>(std::ranges::count_if(suite.cases(), conformance::is_canary));
   row.json["cases"] = suite.cases().size() - canaries;
   row.json["canaries"] = canaries;
-  row.json["deviations"] = suite.deviations().size();
-  row.text = fmt::format("{}  roles {}, {} cases ({} more must fail), {} deviations", suite.protocol(),
+  row.json["mutants"] = suite.mutants().size();
+  row.text = fmt::format("{}  roles {}, {} cases ({} more must fail), {} mutants", suite.protocol(),
                          fmt::join(suite.roles(), " "), suite.cases().size() - canaries, canaries,
-                         suite.deviations().size());
+                         suite.mutants().size());
   return row;
 }
 
@@ -82,9 +82,8 @@ std::vector<Row> rows_of(Session& session) {
     for (const auto& suite : session.catalogue.suites()) rows.push_back(row_of(*suite));
     return rows;
   }
-  if (is_single && session.operands.front() == "deviations") {
-    for (const conformance::DeviationEntry& entry : session.catalogue.deviations())
-      rows.push_back(row_of(entry));
+  if (is_single && session.operands.front() == "mutants") {
+    for (const conformance::MutantEntry& entry : session.catalogue.mutants()) rows.push_back(row_of(entry));
     return rows;
   }
   const std::vector<judge::PicsItem> items = session.catalogue.pics_items();

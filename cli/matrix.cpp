@@ -12,7 +12,7 @@
 #include "cli/verbs.hpp"
 #include "reports/run_directory.hpp"
 
-// `fieldproof matrix`: every case of a protocol against every deviation of its role.
+// `fieldproof matrix`: every case of a protocol against every mutant of its role.
 namespace fieldproof::cli {
 
 int matrix(Session& session) {

@@ -59,9 +59,9 @@ std::string role_text(const RoleMatrix& role) {
   for (const conformance::TestCase* test_case : role.cases)
     width = std::max(width, test_case->purpose.size());
   std::vector<std::string> labels = {"ref"};
-  for (const conformance::Deviation* deviation : role.deviations) labels.push_back(deviation->mutant);
+  for (const conformance::Mutant* mutant : role.mutants) labels.push_back(mutant->label);
   std::string text =
-      fmt::format("{}: {} cases, {} deviations\n", role.role, role.cases.size(), role.deviations.size());
+      fmt::format("{}: {} cases, {} mutants\n", role.role, role.cases.size(), role.mutants.size());
   text += upright(labels, width);
   for (std::size_t row = 0; row < role.cases.size(); ++row) {
     text += fmt::format("{:<{}} {}", role.cases[row]->purpose, width, reference_sign(role.reference[row]));
@@ -83,10 +83,10 @@ ordered_json cell_json(const Cell& cell) {
 ordered_json role_json(const RoleMatrix& role) {
   ordered_json json;
   json["role"] = role.role;
-  json["deviations"] = ordered_json::array();
-  for (const conformance::Deviation* deviation : role.deviations) {
-    json["deviations"].push_back(
-        {{"name", deviation->name}, {"mutant", deviation->mutant}, {"description", deviation->description}});
+  json["mutants"] = ordered_json::array();
+  for (const conformance::Mutant* mutant : role.mutants) {
+    json["mutants"].push_back(
+        {{"name", mutant->name}, {"label", mutant->label}, {"description", mutant->description}});
   }
   json["cases"] = ordered_json::array();
   for (std::size_t row = 0; row < role.cases.size(); ++row) {
@@ -104,7 +104,7 @@ ordered_json role_json(const RoleMatrix& role) {
 }  // namespace
 
 std::string matrix_text(const Matrix& matrix) {
-  std::string text = fmt::format("{}: cases x deviations, seed {}\n\n", matrix.protocol, matrix.seed);
+  std::string text = fmt::format("{}: cases x mutants, seed {}\n\n", matrix.protocol, matrix.seed);
   for (const RoleMatrix& role : matrix.roles) text += role_text(role);
   text += kLegend;
   for (const conformance::Hole& hole : matrix.holes) {
@@ -126,7 +126,7 @@ std::string matrix_json(const Matrix& matrix) {
   for (const conformance::Hole& hole : matrix.holes) {
     json["holes"].push_back({{"kind", conformance::name(hole.kind)},
                              {"case", hole.case_id},
-                             {"deviation", hole.deviation},
+                             {"mutant", hole.mutant},
                              {"sentence", hole.sentence}});
   }
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";

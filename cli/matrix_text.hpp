@@ -7,7 +7,7 @@
 
 namespace fieldproof::cli {
 
-// One table per role: a row per case, two columns per deviation under its upright label, a legend, the holes.
+// One table per role: a row per case, two columns per mutant under its upright label, a legend, the holes.
 std::string matrix_text(const conformance::Matrix& matrix);
 
 // {"schema": "fieldproof/matrix/1", ...}: every cell with verdict, reason and declared reason, and the holes.

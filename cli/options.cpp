@@ -12,7 +12,7 @@ using enum OptionKind;
 // clang-format off
 constexpr std::array kOptions = {
     Option{"iut", list, "[ROLE[@POSITION]=]URI", "ref", "run verify replay emc check doctor",
-           "implementation under test: ref, deviant:NAME; 'slave@3=deviant:NAME' places it", false, true},
+           "implementation under test: ref, mutant:NAME; 'slave@3=mutant:NAME' places it", false, true},
     Option{"seed", value, "N", "1", "run verify matrix residual measure paper emc check plan", "seed of the run, 0 to 2^64-1", false, true},
     Option{"volume", value, "quick|full", "full", "run verify", "how many repetitions a case makes", false, true},
     Option{"network", value, "FILE", "", "run verify measure emc", "network description instead of the suite's own", false, true},

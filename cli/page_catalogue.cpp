@@ -13,8 +13,8 @@ reports::PageCatalogue page_catalogue(const conformance::Catalogue& catalogue) {
     const conformance::TestCase& test_case = *entry.test_case;
     if (conformance::is_canary(test_case)) continue;
     reports::CaseStory story{test_case.stimulus, test_case.expected, {}};
-    for (const conformance::Catch& caught : test_case.catches) {
-      story.catches.push_back(fmt::format("{}, with the finding {}", caught.deviation, caught.reason));
+    for (const conformance::MustCatch& caught : test_case.catches) {
+      story.catches.push_back(fmt::format("{}, with the finding {}", caught.mutant, caught.reason));
     }
     page.stories.emplace(test_case.id, std::move(story));
   }

@@ -18,7 +18,7 @@ class ReportVerb : public ProgramFixture {
   // A run with failures, stored in `out`.
   Called run(const std::string& out, std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments = {"run",   "interbus/slave/frame_check/**",
-                                          "--iut", "slave@1=deviant:latches_in_spite_of_own_error",
+                                          "--iut", "slave@1=mutant:latches_in_spite_of_own_error",
                                           "--out", out};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return call(std::move(arguments));

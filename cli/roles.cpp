@@ -3,12 +3,12 @@
 #include <array>
 
 #include "conformance/assigned.hpp"
-#include "conformance/fieldbus_dll/ff_deviations.hpp"
-#include "conformance/fieldbus_dll/isa_deviations.hpp"
-#include "conformance/interbus/master_deviations.hpp"
-#include "conformance/interbus/slave_deviations.hpp"
-#include "conformance/valve_bus/host_deviations.hpp"
-#include "conformance/valve_bus/node_deviations.hpp"
+#include "conformance/fieldbus_dll/ff_mutants.hpp"
+#include "conformance/fieldbus_dll/isa_mutants.hpp"
+#include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/slave_mutants.hpp"
+#include "conformance/valve_bus/host_mutants.hpp"
+#include "conformance/valve_bus/node_mutants.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
@@ -25,14 +25,14 @@
 namespace fieldproof::cli {
 namespace {
 
-// `make_deviation` gives the station of a deviation by its name.
-template <typename Served, typename Reference, auto make_deviation>
+// `make_mutant` gives the station of a mutant by its name.
+template <typename Served, typename Reference, auto make_mutant>
 std::unique_ptr<iut::Device> serve(const std::string& uri) {
   const bool is_reference = uri == conformance::kReferenceUri;
-  const std::string name = is_reference ? "" : conformance::deviation_of(uri, "built-in station");
-  if (!is_reference) make_deviation(name, {});  // while it is the caller's mistake
+  const std::string name = is_reference ? "" : conformance::mutant_of(uri, "built-in station");
+  if (!is_reference) make_mutant(name, {});  // while it is the caller's mistake
   return std::make_unique<Served>([is_reference, name](const auto& configuration) {
-    return is_reference ? std::make_unique<Reference>(configuration) : make_deviation(name, configuration);
+    return is_reference ? std::make_unique<Reference>(configuration) : make_mutant(name, configuration);
   });
 }
 
@@ -41,35 +41,35 @@ constexpr const char kIsaLas[] = "isa_las";
 constexpr const char kFfDevice[] = "ff_device";
 constexpr const char kFfLas[] = "ff_las";
 
-// Deviations of the data link stand in one table for both roles of a profile.
+// Mutants of the data link stand in one table for both roles of a profile.
 template <const char* role>
-std::unique_ptr<fieldbus_dll::IsaDevice> isa_deviation_of(const std::string& name,
-                                                          const fieldbus_dll::IsaConfiguration& of) {
-  return conformance::make_isa_deviation(role, name, of);
+std::unique_ptr<fieldbus_dll::IsaDevice> isa_mutant_of(const std::string& name,
+                                                       const fieldbus_dll::IsaConfiguration& of) {
+  return conformance::make_isa_mutant(role, name, of);
 }
 template <const char* role>
-std::unique_ptr<fieldbus_dll::FfDevice> ff_deviation_of(const std::string& name,
-                                                        const fieldbus_dll::FfConfiguration& of) {
-  return conformance::make_ff_deviation(role, name, of);
+std::unique_ptr<fieldbus_dll::FfDevice> ff_mutant_of(const std::string& name,
+                                                     const fieldbus_dll::FfConfiguration& of) {
+  return conformance::make_ff_mutant(role, name, of);
 }
 
 constexpr std::array kRoles{
-    Role{"interbus", "slave", iut::Told::in_its_unit,
-         &serve<interbus::ServedSlave, interbus::Slave, &conformance::make_slave_deviation>, 3},
-    Role{"interbus", "master", iut::Told::in_characters_too,
-         &serve<interbus::ServedMaster, interbus::Master, &conformance::make_master_deviation>, 1},
-    Role{"valve_bus", "node", iut::Told::in_its_unit,
-         &serve<valve_bus::ServedNode, valve_bus::Node, &conformance::make_node_deviation>},
-    Role{"valve_bus", "host", iut::Told::in_characters_too,
-         &serve<valve_bus::ServedHost, valve_bus::Host, &conformance::make_host_deviation>},
-    Role{"fieldbus_dll", kIsaDle, iut::Told::in_characters_too,
-         &serve<fieldbus_dll::ServedIsaDevice, fieldbus_dll::IsaDle, &isa_deviation_of<kIsaDle>>},
-    Role{"fieldbus_dll", kIsaLas, iut::Told::in_characters_too,
-         &serve<fieldbus_dll::ServedIsaDevice, fieldbus_dll::IsaLas, &isa_deviation_of<kIsaLas>>},
-    Role{"fieldbus_dll", kFfDevice, iut::Told::in_characters_too,
-         &serve<fieldbus_dll::ServedFfDevice, fieldbus_dll::FfStation, &ff_deviation_of<kFfDevice>>},
-    Role{"fieldbus_dll", kFfLas, iut::Told::in_characters_too,
-         &serve<fieldbus_dll::ServedFfDevice, fieldbus_dll::FfLas, &ff_deviation_of<kFfLas>>},
+    Role{"interbus", "slave", iut::UnitOffer::in_its_unit,
+         &serve<interbus::ServedSlave, interbus::Slave, &conformance::make_slave_mutant>, 3},
+    Role{"interbus", "master", iut::UnitOffer::in_characters_too,
+         &serve<interbus::ServedMaster, interbus::Master, &conformance::make_master_mutant>, 1},
+    Role{"valve_bus", "node", iut::UnitOffer::in_its_unit,
+         &serve<valve_bus::ServedNode, valve_bus::Node, &conformance::make_node_mutant>},
+    Role{"valve_bus", "host", iut::UnitOffer::in_characters_too,
+         &serve<valve_bus::ServedHost, valve_bus::Host, &conformance::make_host_mutant>},
+    Role{"fieldbus_dll", kIsaDle, iut::UnitOffer::in_characters_too,
+         &serve<fieldbus_dll::ServedIsaDevice, fieldbus_dll::IsaDle, &isa_mutant_of<kIsaDle>>},
+    Role{"fieldbus_dll", kIsaLas, iut::UnitOffer::in_characters_too,
+         &serve<fieldbus_dll::ServedIsaDevice, fieldbus_dll::IsaLas, &isa_mutant_of<kIsaLas>>},
+    Role{"fieldbus_dll", kFfDevice, iut::UnitOffer::in_characters_too,
+         &serve<fieldbus_dll::ServedFfDevice, fieldbus_dll::FfStation, &ff_mutant_of<kFfDevice>>},
+    Role{"fieldbus_dll", kFfLas, iut::UnitOffer::in_characters_too,
+         &serve<fieldbus_dll::ServedFfDevice, fieldbus_dll::FfLas, &ff_mutant_of<kFfLas>>},
 };
 
 }  // namespace

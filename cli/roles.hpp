@@ -15,8 +15,8 @@ namespace fieldproof::cli {
 struct Role {
   std::string_view protocol;
   std::string_view name;
-  iut::Told told;
-  // The station of `ref` or `deviant:NAME` as an implementation. Throws kernel::Error(usage) for a deviation
+  iut::UnitOffer told;
+  // The station of `ref` or `mutant:NAME` as an implementation. Throws kernel::Error(usage) for a mutant
   // that is not there.
   std::unique_ptr<iut::Device> (*serve)(const std::string& uri);
   // How many of its ports are lines on which it may hear and say telegrams.

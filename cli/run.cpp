@@ -57,7 +57,7 @@ std::vector<conformance::Entry> failed_entries(Session& session) {
   session.terminal.log(
       fmt::format("{} of the cases of {} did not pass", failed.size(), directory.path().string()));
   // The part of a whole that the stored run was is what it has failed in.
-  session.settings.forget("shard");
+  session.settings.clear_observations("shard");
   if (failed.empty()) return {};
   std::vector<conformance::Entry> entries = session.catalogue.select(failed);
   if (!session.operands.empty()) {
@@ -73,9 +73,9 @@ std::vector<conformance::Entry> failed_entries(Session& session) {
   return entries;
 }
 
-conformance::Manner manner_from(const Settings& settings) {
+conformance::RunOptions manner_from(const Settings& settings) {
   constexpr unsigned kMostConfirmations = 1000;
-  conformance::Manner manner;
+  conformance::RunOptions manner;
   manner.keeps_recordings = static_cast<conformance::KeptRecordings>(settings.choice("record"));
   manner.confirmations = static_cast<unsigned>(settings.number("confirm", 0, kMostConfirmations));
   if (settings.is_set("reset")) manner.reset = reset_hook(settings.text("reset"));

@@ -103,10 +103,10 @@ std::string suite_version(const conformance::Catalogue& catalogue) {
           &rests_on.source, &rests_on.clause}) {
       hash.add(*text);
     }
-    for (const conformance::Catch& caught : test_case.catches)
-      hash.add(caught.deviation + "=" + caught.reason);
+    for (const conformance::MustCatch& caught : test_case.catches)
+      hash.add(caught.mutant + "=" + caught.reason);
   }
-  for (const conformance::DeviationEntry& deviation : catalogue.deviations()) hash.add(deviation.path());
+  for (const conformance::MutantEntry& mutant : catalogue.mutants()) hash.add(mutant.path());
   return fmt::format("{}+{:08x}", tool_version(),
                      static_cast<std::uint32_t>(hash.value() ^ (hash.value() >> 32)));
 }

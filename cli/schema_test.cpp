@@ -301,10 +301,10 @@ TEST_F(Schemas, OfAMatrix) {
   conformance::Matrix matrix;
   conformance::TestCase test_case;
   test_case.id = "a/b/c";
-  const conformance::Deviation deviation{"late", "M1", "b", "is late"};
+  const conformance::Mutant mutant{"late", "M1", "b", "is late"};
   std::vector<Sample> samples;
   for (int kind = 0; kind <= static_cast<int>(conformance::CellKind::wrong_cause); ++kind) {
-    conformance::RoleMatrix role{"b", {&test_case}, {&deviation}, {{}}, {{{}}}};
+    conformance::RoleMatrix role{"b", {&test_case}, {&mutant}, {{}}, {{{}}}};
     role.cells[0][0].kind = static_cast<conformance::CellKind>(kind);
     matrix.roles.push_back(role);
   }

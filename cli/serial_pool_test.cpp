@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "cli/probe/deviations_in_c.hpp"
+#include "cli/probe/mutants_in_c.hpp"
 #include "cli/probe/program_fixture.hpp"
 #include "harness/iut/process.hpp"
 
@@ -31,8 +31,8 @@ class SerialRuns : public ProgramFixture {
   std::string station(const std::string& node) const {
     return "'" FIELDPROOF_EXE "' station valve_bus/node " + node + " --serial '" + line() + "'";
   }
-  std::string in_c(const std::string& deviation = {}) const {
-    return station("\"exec:'" VALVE_NODE_PROCESS "' " + deviation + "\"");
+  std::string in_c(const std::string& mutant = {}) const {
+    return station("\"exec:'" VALVE_NODE_PROCESS "' " + mutant + "\"");
   }
   std::string uri(const std::string& upper, int baud = 375'000, const std::string& more = {}) const {
     return "serial:" + line() + "?baud=" + std::to_string(baud) + "&format=8m1" + more +
@@ -104,8 +104,8 @@ TEST_F(SerialRuns, ASlowWayToTheLineDoesNotSlowTheCases) {
 
 TEST_F(SerialRuns, NodesATenthTooEarlyAndTooLateAreNeverRight) {
   const std::string id = "timing/turn_round_is_within_its_span";
-  for (const auto& [node, reason] : {std::pair{"deviant:turns_round_a_tenth_early", "answer_too_early"},
-                                     std::pair{"deviant:turns_round_a_tenth_late", "answer_too_late"}}) {
+  for (const auto& [node, reason] : {std::pair{"mutant:turns_round_a_tenth_early", "answer_too_early"},
+                                     std::pair{"mutant:turns_round_a_tenth_late", "answer_too_late"}}) {
     const Case judged_one = judged(uri("exec:" + station(node), 2'400), {id}).at(id);
     EXPECT_TRUE(judged_one.reason == reason || judged_one.reason == "timing_in_doubt")
         << node << judged_one.verdict << judged_one.findings;
@@ -216,16 +216,16 @@ TEST_F(SerialRuns, WhatCannotBeUsedEndsTheRun) {
 }
 
 // What is wrong with the node in C is told by the same case over the line as in lock step.
-class SerialDeviations : public SerialRuns, public testing::WithParamInterface<DeviationInC> {};
+class SerialMutants : public SerialRuns, public testing::WithParamInterface<MutantInC> {};
 
-TEST_P(SerialDeviations, IsFoundByTheCaseThatNamesIt) {
+TEST_P(SerialMutants, IsFoundByTheCaseThatNamesIt) {
   const auto [name, test_case, reason] = GetParam();
   const Case found = judged(uri("exec:" + in_c(name)), {test_case}).at(test_case);
   EXPECT_EQ(found.reason, reason) << found.verdict << found.findings;
 }
 
-INSTANTIATE_TEST_SUITE_P(InC, SerialDeviations, testing::ValuesIn(kDeviationsInC),
-                         [](const testing::TestParamInfo<DeviationInC>& one) {
+INSTANTIATE_TEST_SUITE_P(InC, SerialMutants, testing::ValuesIn(kMutantsInC),
+                         [](const testing::TestParamInfo<MutantInC>& one) {
                            return std::string(one.param.name);
                          });
 

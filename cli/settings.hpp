@@ -60,7 +60,7 @@ class Settings {
   std::size_t choice(std::string_view name) const;
 
   // As if it had never been given.
-  void forget(std::string_view name);
+  void clear_observations(std::string_view name);
 
   Origin origin(std::string_view name) const { return setting(name).origin; }
   [[noreturn]] void refuse(std::string_view name, const std::string& sentence) const;
@@ -69,7 +69,7 @@ class Settings {
   std::string describe() const;
   // The values that are no default, as a configuration file that gives them again; paths are absolute.
   std::string as_file() const;
-  // The options that decide the outcome, quoted for a shell: "--seed 7 --iut slave=deviant:x".
+  // The options that decide the outcome, quoted for a shell: "--seed 7 --iut slave=mutant:x".
   std::string reproduce_options() const;
 
  private:

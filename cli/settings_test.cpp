@@ -83,13 +83,13 @@ TEST(Settings, CommandLineGoesBeforeEnvironmentBeforeFileBeforeStoredRun) {
 TEST(Settings, FileOfACallGivesTheSameSettings) {
   const auto file = std::filesystem::path(testing::TempDir()) / "settings_again.json";
   const Settings before =
-      typed({{"seed", {"7"}}, {"iut", {"slave@3=deviant:x y", "ref"}}, {"strict", {"true"}}});
+      typed({{"seed", {"7"}}, {"iut", {"slave@3=mutant:x y", "ref"}}, {"strict", {"true"}}});
   std::ofstream(file) << before.as_file();
   const Settings after = typed({{"config", {file.string()}}});
   EXPECT_EQ(after.list("iut"), before.list("iut"));
   EXPECT_TRUE(after.is_set("strict"));
   EXPECT_EQ(after.reproduce_options(), before.reproduce_options());
-  EXPECT_EQ(after.reproduce_options(), "--iut 'slave@3=deviant:x y' --iut ref --seed 7");
+  EXPECT_EQ(after.reproduce_options(), "--iut 'slave@3=mutant:x y' --iut ref --seed 7");
 }
 
 }  // namespace

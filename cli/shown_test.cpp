@@ -36,20 +36,20 @@ TEST_F(Shown, MatrixWithAndWithoutAHole) {
   EXPECT_HOLDS(read("matrix.json"), "fieldproof/matrix/1");
   const Called holes = probe({"matrix", "odd"});
   EXPECT_EQ(holes.exit_code, 1);
-  EXPECT_HOLDS(holes.out, "hole (uncaught-deviation): no case catches the end deviation 'unseen'");
+  EXPECT_HOLDS(holes.out, "hole (surviving-mutant): no case catches the end mutant 'unseen'");
   EXPECT_HOLDS(holes.out, "hole (false-alarm): odd/end/fails on the reference ends with fail ('always')");
   EXPECT_FALSE(fs::exists(folder_ / "runs"));
 }
 
-TEST_F(Shown, CasesDeviationsAndProtocols) {
+TEST_F(Shown, CasesMutantsAndProtocols) {
   EXPECT_EQ(probe({"list", "probe/**", "--count"}).out, "4\n");
-  EXPECT_HOLDS(probe({"list", "deviations"}).out, "probe/station/late  M2  answers late");
+  EXPECT_HOLDS(probe({"list", "mutants"}).out, "probe/station/late  M2  answers late");
   EXPECT_HOLDS(probe({"list", "protocols"}).out,
-               "probe  roles station, 4 cases (1 more must fail), 2 deviations");
+               "probe  roles station, 4 cases (1 more must fail), 2 mutants");
   EXPECT_HOLDS(probe({"list", "+canary", "--json"}).out, "\"id\": \"probe/station/canary\"");
   const std::string explained = probe({"explain", "probe/station/data/word_is_held"}).out;
   for (const char* part : {"unverified", "swapped (M1): swaps the octets of a word", "wrong_word",
-                           "fieldproof run probe/station/data/word_is_held --iut station=deviant:swapped"}) {
+                           "fieldproof run probe/station/data/word_is_held --iut station=mutant:swapped"}) {
     EXPECT_HOLDS(explained, part);
   }
 }
@@ -57,7 +57,7 @@ TEST_F(Shown, CasesDeviationsAndProtocols) {
 TEST_F(Shown, EverySettingWithItsOrigin) {
   write("lab.json", "{\"seed\": 3, \"jobs\": 2, \"volume\": \"quick\", \"strict\": true} // of the lab\n");
   Call printed = call({"run", "--config", "lab.json", "--seed", "5", "--print-config"});
-  printed.environment = {{"FIELDPROOF_JOBS", "4"}, {"FIELDPROOF_IUT", "deviant:late;ref"}};
+  printed.environment = {{"FIELDPROOF_JOBS", "4"}, {"FIELDPROOF_IUT", "mutant:late;ref"}};
   const std::string config = printed.run().out;
   const auto expect_setting = [&](const std::string& name, const std::string& value,
                                   const std::string& origin) {
@@ -72,7 +72,7 @@ TEST_F(Shown, EverySettingWithItsOrigin) {
   };
   expect_setting("seed", "5", "command line");
   expect_setting("jobs", "4", "environment, FIELDPROOF_JOBS");
-  expect_setting("iut", "deviant:late ; ref", "environment, FIELDPROOF_IUT");
+  expect_setting("iut", "mutant:late ; ref", "environment, FIELDPROOF_IUT");
   expect_setting("volume", "quick", "file, lab.json:1: /volume");
   expect_setting("strict", "true", "file, lab.json:1: /strict");
   expect_setting("record", "failed", "default");

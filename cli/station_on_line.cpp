@@ -14,7 +14,7 @@
 #include "cli/pics_file.hpp"
 #include "conformance/assigned.hpp"
 #include "conformance/valve_bus/node_bench.hpp"
-#include "conformance/valve_bus/node_deviations.hpp"
+#include "conformance/valve_bus/node_mutants.hpp"
 #include "harness/iut/server.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/valve_bus/node.hpp"
@@ -29,7 +29,7 @@ using valve_bus::NodePlayer;
 std::unique_ptr<valve_bus::NodeDevice> built_in(const std::string& uri,
                                                 const valve_bus::NodeConfiguration& configuration) {
   if (uri == conformance::kReferenceUri) return std::make_unique<valve_bus::Node>(configuration);
-  return conformance::make_node_deviation(conformance::deviation_of(uri, "built-in station"), configuration);
+  return conformance::make_node_mutant(conformance::mutant_of(uri, "built-in station"), configuration);
 }
 
 NodePlayer::MakeNode maker_of(const std::string& uri) {

@@ -39,7 +39,7 @@ TEST_F(Stored, RunsLieBelowRunsWithALinkToTheLatest) {
 }
 
 TEST_F(Stored, FailingCaseReplaysBitForBit) {
-  EXPECT_EQ(code({"run", "probe/station/data/word_is_held", "--iut", "deviant:swapped", "--out", "a"}), 1);
+  EXPECT_EQ(code({"run", "probe/station/data/word_is_held", "--iut", "mutant:swapped", "--out", "a"}), 1);
   const fs::path file = case_file("a");
   const Called called = probe({"replay", file.string(), "--bits"});
   EXPECT_EQ(called.exit_code, 1) << called.err;
@@ -50,7 +50,7 @@ TEST_F(Stored, FailingCaseReplaysBitForBit) {
 }
 
 TEST_F(Stored, ReplayTellsWhatDiffers) {
-  EXPECT_EQ(code({"run", "probe/station/data/word_is_held", "--iut", "deviant:swapped", "--out", "a"}), 1);
+  EXPECT_EQ(code({"run", "probe/station/data/word_is_held", "--iut", "mutant:swapped", "--out", "a"}), 1);
   const fs::path file = fs::relative(case_file("a"), folder_);
   std::string text = read(file);
   text.replace(text.find("wrong_word"), 10, "other_word");
@@ -77,7 +77,7 @@ TEST_F(Stored, PlanAndPicsTravelWithTheCase) {
 }
 
 TEST_F(Stored, RunIsJudgedAgainFromItsRecordings) {
-  EXPECT_EQ(code({"run", "probe/**", "--iut", "deviant:swapped", "--record", "all", "--out", "a"}), 1);
+  EXPECT_EQ(code({"run", "probe/**", "--iut", "mutant:swapped", "--record", "all", "--out", "a"}), 1);
   const Called called = probe({"judge", "a"});
   EXPECT_EQ(called.exit_code, 1) << called.err;
   EXPECT_HOLDS(called.out, "4 of 4 cases were judged again, 0 of them otherwise than before");
@@ -86,8 +86,8 @@ TEST_F(Stored, RunIsJudgedAgainFromItsRecordings) {
 }
 
 TEST_F(Stored, DifferenceNamesNewFailuresAndFixedOnes) {
-  probe({"run", "probe/**", "--iut", "deviant:swapped", "--out", "a"});
-  probe({"run", "probe/**", "--iut", "deviant:late", "--out", "b"});
+  probe({"run", "probe/**", "--iut", "mutant:swapped", "--out", "a"});
+  probe({"run", "probe/**", "--iut", "mutant:late", "--out", "b"});
   const Called called = probe({"diff", "a", "b", "--json", "diff.json"});
   EXPECT_EQ(called.exit_code, 1);
   EXPECT_HOLDS(called.out, "new failures (1)");
@@ -97,7 +97,7 @@ TEST_F(Stored, DifferenceNamesNewFailuresAndFixedOnes) {
 }
 
 TEST_F(Stored, FailedIsNarrowedBySelectorsAndBySettings) {
-  probe({"run", "probe/**", "--iut", "deviant:swapped", "--seed", "9"});
+  probe({"run", "probe/**", "--iut", "mutant:swapped", "--seed", "9"});
   const Called narrowed = probe({"run", "--failed", "probe/station/data/word_is_h*"});
   EXPECT_EQ(narrowed.exit_code, 1) << narrowed.err;
   EXPECT_HOLDS(narrowed.out, "1 of 1 selected cases judged");
@@ -107,7 +107,7 @@ TEST_F(Stored, FailedIsNarrowedBySelectorsAndBySettings) {
 }
 
 TEST_F(Stored, FailFastEndsAfterTheFirstFailure) {
-  const Called called = probe({"run", "probe/**", "--iut", "deviant:swapped", "--fail-fast", "--jobs", "3"});
+  const Called called = probe({"run", "probe/**", "--iut", "mutant:swapped", "--fail-fast", "--jobs", "3"});
   EXPECT_EQ(called.exit_code, 1);
   EXPECT_HOLDS(called.out, "1 of 4 selected cases judged: 0 pass, 1 fail; 3 not run");
 }

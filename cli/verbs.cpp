@@ -9,11 +9,11 @@ constexpr std::size_t kAny = 100'000;
 
 // clang-format off
 constexpr std::array kVerbs = {
-    Verb{"list", "[SELECTOR...|protocols|deviations|pics]", 0, kAny,
-         "cases, deviations, protocols or items of a PICS; why a case does not apply", &list},
+    Verb{"list", "[SELECTOR...|protocols|mutants|pics]", 0, kAny,
+         "cases, mutants, protocols or items of a PICS; why a case does not apply", &list},
     Verb{"run", "[SELECTOR...]", 0, kAny, "judge an implementation by the selected cases", &run},
     Verb{"explain", "CASE-ID", 1, 1, "requirement, source, stimulus, expected and what the case catches", &explain},
-    Verb{"matrix", "PROTOCOL", 1, 1, "cases x deviations; 1 on a hole", &matrix},
+    Verb{"matrix", "PROTOCOL", 1, 1, "cases x mutants; 1 on a hole", &matrix},
     Verb{"replay", "CASEFILE", 1, 1, "run a stored case again and compare it bit for bit", &replay},
     Verb{"check", "PROTOCOL/ROLE", 1, 1, "random sequences of commands and faults against a model of the role; what fails is made as small as it can be", &check},
     Verb{"shrink", "CASEFILE", 1, 1, "make a stored case that fails smaller: the fewest commands, faults and flipped bits", &shrink},
@@ -25,7 +25,7 @@ constexpr std::array kVerbs = {
     Verb{"measure", "PROTOCOL", 1, 1, "cycle time, jitter and skew of a network, theory beside measurement", &measure_protocol},
     Verb{"plan", "NETWORK.json", 1, 1, "the target rotation time of a Foundation Fieldbus that keeps a bound of urgent delays, proven by simulation", &plan},
     Verb{"report", "RUNDIR|FILE...", 1, kAny, "stored runs and documents (emc, measure, paper, residual, matrix) as one HTML page", &report},
-    Verb{"station", "PROTOCOL/ROLE [ref|deviant:NAME|plugin:LIBRARY|exec:PROGRAM]", 1, 2, "play a station on standard input and output, for --iut exec:, or on a serial line", &station},
+    Verb{"station", "PROTOCOL/ROLE [ref|mutant:NAME|plugin:LIBRARY|exec:PROGRAM]", 1, 2, "play a station on standard input and output, for --iut exec:, or on a serial line", &station},
     Verb{"doctor", "", 0, 0, "can the implementation be attached, and how well does this machine know instants", &doctor},
     Verb{"paper", "[NAME]", 0, 1, "what a paper published beside what is reproduced of it: interbus, valve_bus, foundation, fieldbus [interbus]", &paper},
 };

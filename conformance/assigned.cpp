@@ -15,12 +15,12 @@ Assignment assigned_to(const TestCase& test_case, const Setup& setup) {
   return assigned;
 }
 
-std::string deviation_of(const std::string& uri, std::string_view what) {
-  if (!uri.starts_with(kDeviantUri)) {
+std::string mutant_of(const std::string& uri, std::string_view what) {
+  if (!uri.starts_with(kMutantUri)) {
     throw kernel::Error(kernel::ErrorKind::usage,
-                        fmt::format("\"{}\" is no {}; use ref or deviant:NAME", uri, what));
+                        fmt::format("\"{}\" is no {}; use ref or mutant:NAME", uri, what));
   }
-  return uri.substr(kDeviantUri.size());
+  return uri.substr(kMutantUri.size());
 }
 
 }  // namespace fieldproof::conformance

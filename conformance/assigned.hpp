@@ -13,7 +13,7 @@
 namespace fieldproof::conformance {
 
 inline constexpr std::string_view kReferenceUri = "ref";
-inline constexpr std::string_view kDeviantUri = "deviant:";
+inline constexpr std::string_view kMutantUri = "mutant:";
 inline constexpr std::string_view kRecordedUri = "recorded:";
 inline constexpr std::string_view kOwnUri = "own";
 
@@ -21,29 +21,29 @@ inline constexpr std::string_view kOwnUri = "own";
 Assignment assigned_to(const TestCase& test_case, const Setup& setup);
 
 // Who is to play the role of one case.
-struct Wanted {
+struct IutRequest {
   const std::string& uri;
   const std::string& case_id;
   std::uint64_t seed;
   iut::PeerLimits limits{};
 };
 
-// What a suite is given for one role, besides its reference and its deviations.
+// What a suite is given for one role, besides its reference and its mutants.
 template <typename Device, typename Configuration>
-struct GivenStations {
-  using Make = std::function<std::unique_ptr<Device>(const Wanted&, const Configuration&)>;
+struct StationSources {
+  using Make = std::function<std::unique_ptr<Device>(const IutRequest&, const Configuration&)>;
 
   Make own{};       // what the URI `own` means: the station of the program that holds the suite
   Make attached{};  // implementations outside; null for a URI of another kind
 
   // Null: one of the suite's own, or nothing at all.
-  std::unique_ptr<Device> make(const Wanted& wanted, const Configuration& configuration) const {
+  std::unique_ptr<Device> make(const IutRequest& wanted, const Configuration& configuration) const {
     const Make& make = wanted.uri == kOwnUri ? own : attached;
     return make ? make(wanted, configuration) : nullptr;
   }
 };
 
-// The name behind `deviant:`. Throws kernel::Error(usage) for any other URI; `what` is "INTERBUS slave".
-std::string deviation_of(const std::string& uri, std::string_view what);
+// The name behind `mutant:`. Throws kernel::Error(usage) for any other URI; `what` is "INTERBUS slave".
+std::string mutant_of(const std::string& uri, std::string_view what);
 
 }  // namespace fieldproof::conformance

@@ -53,7 +53,7 @@ judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting
 // The cases of the chapters, each resting on these details too.
 template <typename Case>
 std::vector<Case> cases_of(std::span<std::vector<Case> (*const)()> chapters,
-                           const std::vector<Detail>& details) {
+                           const std::vector<PartialSource>& details) {
   std::vector<Case> all;
   for (const auto chapter : chapters) {
     for (Case& one : chapter()) {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "conformance/test_case.hpp"
-#include "harness/trace/notation.hpp"
+#include "harness/trace/dissector.hpp"
 #include "harness/trace/recording.hpp"
 
 // Records one run of a case where its setup wants that, for the outcome: what every suite does alike.
@@ -13,8 +13,8 @@ namespace fieldproof::conformance {
 class CaseRecorder {
  public:
   // The recorder of this trace, for `Trace::set_recorder`. It must outlive the trace's use.
-  trace::Recorder& start(const trace::Trace& trace, std::shared_ptr<const trace::Notation> notation) {
-    notation_ = std::move(notation);
+  trace::Recorder& start(const trace::Trace& trace, std::shared_ptr<const trace::Dissector> dissector) {
+    dissector_ = std::move(dissector);
     return recorder_.emplace(trace);
   }
 
@@ -23,13 +23,13 @@ class CaseRecorder {
     if (!recorder_) return;
     Recording& kept = outcome.recording;
     kept.trace = recorder_->take();
-    kept.notation = std::move(notation_);
+    kept.dissector = std::move(dissector_);
     kept.truncated = kept.trace.is_cut;
   }
 
  private:
   std::optional<trace::BoundedRecorder> recorder_;
-  std::shared_ptr<const trace::Notation> notation_;
+  std::shared_ptr<const trace::Dissector> dissector_;
 };
 
 }  // namespace fieldproof::conformance

@@ -67,7 +67,7 @@ bool is_path_end(std::string_view path, std::string_view name) {
          (path.size() > name.size() && path.ends_with(name) && path[path.size() - name.size() - 1] == '/');
 }
 
-// The protocols and roles of the entries: which deviations a bare name can mean there.
+// The protocols and roles of the entries: which mutants a bare name can mean there.
 std::set<std::pair<const Suite*, std::string>> roles_of(std::span<const Entry> entries) {
   std::set<std::pair<const Suite*, std::string>> roles;
   for (const Entry& entry : entries) {
@@ -79,8 +79,8 @@ std::set<std::pair<const Suite*, std::string>> roles_of(std::span<const Entry> e
 
 }  // namespace
 
-std::string DeviationEntry::path() const {
-  return fmt::format("{}/{}/{}", suite->protocol(), deviation->role, deviation->name);
+std::string MutantEntry::path() const {
+  return fmt::format("{}/{}/{}", suite->protocol(), mutant->role, mutant->name);
 }
 
 Catalogue::Catalogue(std::vector<std::unique_ptr<Suite>> suites) : suites_(std::move(suites)) {
@@ -94,10 +94,10 @@ Catalogue::Catalogue(std::vector<std::unique_ptr<Suite>> suites) : suites_(std::
 
 void Catalogue::add(const Suite& suite) {
   std::set<std::string> paths;
-  for (const Deviation& deviation : suite.deviations()) {
-    deviations_.push_back({&suite, &deviation});
-    const std::string path = deviations_.back().path();
-    FIELDPROOF_CHECK(paths.insert(path).second, fmt::format("the deviation '{}' is declared twice", path));
+  for (const Mutant& mutant : suite.mutants()) {
+    mutants_.push_back({&suite, &mutant});
+    const std::string path = mutants_.back().path();
+    FIELDPROOF_CHECK(paths.insert(path).second, fmt::format("the mutant '{}' is declared twice", path));
   }
   for (const TestCase& test_case : suite.cases()) {
     check_case(suite, test_case);
@@ -112,13 +112,12 @@ void Catalogue::check_case(const Suite& suite, const TestCase& test_case) const 
       test_case.id.starts_with(fmt::format("{}/{}/", suite.protocol(), role)) &&
           std::find(roles.begin(), roles.end(), role) != roles.end(),
       fmt::format("the case id '{}' does not begin with its protocol and one of its roles", test_case.id));
-  for (const Catch& caught : test_case.catches) {
-    const bool exists =
-        std::any_of(suite.deviations().begin(), suite.deviations().end(), [&](const Deviation& deviation) {
-          return deviation.role == role && deviation.name == caught.deviation;
-        });
-    FIELDPROOF_CHECK(exists, fmt::format("case '{}' declares to catch '{}', which is no deviation of a {}",
-                                         test_case.id, caught.deviation, role));
+  for (const MustCatch& caught : test_case.catches) {
+    const bool exists = std::any_of(
+        suite.mutants().begin(), suite.mutants().end(),
+        [&](const Mutant& mutant) { return mutant.role == role && mutant.name == caught.mutant; });
+    FIELDPROOF_CHECK(exists, fmt::format("case '{}' declares to catch '{}', which is no mutant of a {}",
+                                         test_case.id, caught.mutant, role));
   }
 }
 
@@ -181,24 +180,24 @@ const Suite& Catalogue::suite(std::string_view protocol) const {
   refuse(fmt::format("there is no protocol '{}'; there are '{}'", protocol, fmt::join(protocols, "', '")));
 }
 
-const DeviationEntry& Catalogue::deviation(std::string_view name, std::span<const Entry> among) const {
+const MutantEntry& Catalogue::mutant(std::string_view name, std::span<const Entry> among) const {
   const auto roles = roles_of(among);
-  std::vector<const DeviationEntry*> found;
+  std::vector<const MutantEntry*> found;
   std::vector<std::string> candidates;
-  for (const DeviationEntry& entry : deviations_) {
-    if (!among.empty() && !roles.contains({entry.suite, entry.deviation->role})) continue;
+  for (const MutantEntry& entry : mutants_) {
+    if (!among.empty() && !roles.contains({entry.suite, entry.mutant->role})) continue;
     const std::string path = entry.path();
     if (is_path_end(path, name)) found.push_back(&entry);
-    candidates.push_back(name.find('/') == std::string_view::npos ? entry.deviation->name : path);
+    candidates.push_back(name.find('/') == std::string_view::npos ? entry.mutant->name : path);
   }
   if (found.size() == 1) return *found.front();
-  if (found.empty()) refuse(fmt::format("there is no deviation '{}'{}", name, neighbours(name, candidates)));
+  if (found.empty()) refuse(fmt::format("there is no mutant '{}'{}", name, neighbours(name, candidates)));
   std::vector<std::string> paths;
-  for (const DeviationEntry* entry : found) paths.push_back(entry->path());
+  for (const MutantEntry* entry : found) paths.push_back(entry->path());
   refuse(
-      fmt::format("the deviation '{}' is not unique; say which role is meant, as in --iut '{}=deviant:{}'; "
+      fmt::format("the mutant '{}' is not unique; say which role is meant, as in --iut '{}=mutant:{}'; "
                   "it is one of '{}'",
-                  name, found.front()->deviation->role, name, fmt::join(paths, "', '")));
+                  name, found.front()->mutant->role, name, fmt::join(paths, "', '")));
 }
 
 }  // namespace fieldproof::conformance

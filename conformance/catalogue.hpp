@@ -1,7 +1,7 @@
-// Every test case and every deviation of every protocol's suite, in one order: suites as they were given,
+// Every test case and every mutant of every protocol's suite, in one order: suites as they were given,
 // cases as the suite lists them.
 //
-// Contract: ids are unique, begin with protocol and role, and each deviation that a case declares exists in
+// Contract: ids are unique, begin with protocol and role, and each mutant that a case declares exists in
 // the role of the case; a suite that breaks this is a broken invariant, found when the catalogue is made. The
 // catalogue owns the suites; entries point into them and live as long as the catalogue.
 // A selector or a name that matches nothing throws kernel::Error(usage) with the three nearest ones.
@@ -22,9 +22,9 @@ struct Entry {
   const TestCase* test_case = nullptr;
 };
 
-struct DeviationEntry {
+struct MutantEntry {
   const Suite* suite = nullptr;
-  const Deviation* deviation = nullptr;
+  const Mutant* mutant = nullptr;
 
   std::string path() const;  // "interbus/slave/crc_preset_zero"
 };
@@ -35,7 +35,7 @@ class Catalogue {
 
   const std::vector<std::unique_ptr<Suite>>& suites() const { return suites_; }
   const std::vector<Entry>& entries() const { return entries_; }
-  const std::vector<DeviationEntry>& deviations() const { return deviations_; }
+  const std::vector<MutantEntry>& mutants() const { return mutants_; }
 
   // The union of what the selectors match, without what the exclusions match, in catalogue order. Without a
   // selector that includes, everything but the canaries is included.
@@ -49,7 +49,7 @@ class Catalogue {
 
   // By path ("interbus/slave/crc_preset_zero"), or by the part of the path that is unique ("crc_preset_zero"
   // among `among`, or among all when that is empty). Several that fit are an error that names them.
-  const DeviationEntry& deviation(std::string_view name, std::span<const Entry> among = {}) const;
+  const MutantEntry& mutant(std::string_view name, std::span<const Entry> among = {}) const;
 
  private:
   void add(const Suite& suite);
@@ -57,7 +57,7 @@ class Catalogue {
 
   std::vector<std::unique_ptr<Suite>> suites_;
   std::vector<Entry> entries_;
-  std::vector<DeviationEntry> deviations_;
+  std::vector<MutantEntry> mutants_;
 };
 
 }  // namespace fieldproof::conformance

@@ -107,16 +107,16 @@ TEST(Catalogue, UnknownProtocolNamesTheOthers) {
   EXPECT_NE(refusal([&] { catalogue.suite("rung"); }).find("there are 'ring'"), std::string::npos);
 }
 
-TEST(Catalogue, DeviationIsFoundByAnyUniquePartOfItsPath) {
+TEST(Catalogue, MutantIsFoundByAnyUniquePartOfItsPath) {
   const Catalogue catalogue = sample();
-  EXPECT_EQ(catalogue.deviation("swapped").deviation->mutant, "M1");
-  EXPECT_EQ(catalogue.deviation("master/late").deviation->mutant, "M3");
-  EXPECT_EQ(catalogue.deviation("ring/slave/late").deviation->mutant, "M2");
-  const std::string twice = refusal([&] { catalogue.deviation("late"); });
+  EXPECT_EQ(catalogue.mutant("swapped").mutant->label, "M1");
+  EXPECT_EQ(catalogue.mutant("master/late").mutant->label, "M3");
+  EXPECT_EQ(catalogue.mutant("ring/slave/late").mutant->label, "M2");
+  const std::string twice = refusal([&] { catalogue.mutant("late"); });
   EXPECT_NE(twice.find("'ring/slave/late', 'ring/master/late'"), std::string::npos) << twice;
   const std::vector<std::string> masters = {"ring/master/**"};
-  EXPECT_EQ(catalogue.deviation("late", catalogue.select(masters)).deviation->mutant, "M3");
-  const std::string unknown = refusal([&] { catalogue.deviation("swaped"); });
+  EXPECT_EQ(catalogue.mutant("late", catalogue.select(masters)).mutant->label, "M3");
+  const std::string unknown = refusal([&] { catalogue.mutant("swaped"); });
   EXPECT_NE(unknown.find("nearest are 'swapped'"), std::string::npos) << unknown;
 }
 

@@ -23,7 +23,7 @@ const SuiteOfFunctions& registered_suite() {
   static const SuiteOfFunctions& suite = []() -> const SuiteOfFunctions& {
     static SuiteOfFunctions made("registered", {"slave"});
     made.add(invented_case("registered/slave/data/word_is_latched"), [](const TestCase&, const Setup& setup) {
-      EXPECT_EQ(setup.implementations.at(0).uri, "deviant:mine");
+      EXPECT_EQ(setup.implementations.at(0).uri, "mutant:mine");
       return outcome_of(Verdict::pass);
     });
     made.add(invented_case("registered/slave/option/is_missing"), [](const TestCase&, const Setup&) {
@@ -38,7 +38,7 @@ const SuiteOfFunctions& registered_suite() {
 
 const std::size_t kRegistered = register_with_googletest(registered_suite(), [](const TestCase&) {
   Setup setup;
-  setup.implementations = {{"slave", 0, "deviant:mine"}};
+  setup.implementations = {{"slave", 0, "mutant:mine"}};
   return setup;
 });
 

@@ -27,7 +27,7 @@ namespace {
 // Its station outside comes from this pool.
 template <typename Attached, typename Configuration>
 auto attached_from(iut::DevicePool& pool) {
-  return [&pool](const Wanted& wanted, const Configuration& configuration) {
+  return [&pool](const IutRequest& wanted, const Configuration& configuration) {
     const auto lease = std::make_shared<iut::DevicePool::Lease>(pool.take());
     return std::make_unique<Attached>(iut::Attachment{&**lease, lease, [lease] { lease->set_reusable(); }},
                                       configuration, wanted.case_id, wanted.seed);

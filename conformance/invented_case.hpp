@@ -10,7 +10,7 @@
 namespace fieldproof::conformance {
 
 inline TestCase invented_case(std::string id, std::vector<std::string> tags = {},
-                              std::vector<Catch> catches = {}) {
+                              std::vector<MustCatch> catches = {}) {
   TestCase test_case;
   test_case.id = std::move(id);
   test_case.purpose = "P-1";

@@ -8,7 +8,7 @@
 
 namespace fieldproof::conformance {
 
-void CaseJudge::add(judge::Verdict verdict, std::string_view reason, Sighting sighting) {
+void CaseJudge::add(judge::Verdict verdict, std::string_view reason, Mismatch sighting) {
   judge::Finding finding;
   finding.verdict = verdict;
   finding.reason = reason;
@@ -27,17 +27,17 @@ void CaseJudge::add(judge::Verdict verdict, std::string_view reason, Sighting si
   findings_.push_back(std::move(finding));
 }
 
-void CaseJudge::fail(std::string_view reason, Sighting sighting) {
+void CaseJudge::fail(std::string_view reason, Mismatch sighting) {
   add(judge::Verdict::fail, reason, std::move(sighting));
   throw CaseEnded{};
 }
 
-void CaseJudge::inconclusive(std::string_view reason, Sighting sighting) {
+void CaseJudge::inconclusive(std::string_view reason, Mismatch sighting) {
   add(judge::Verdict::inconclusive, reason, std::move(sighting));
   throw CaseEnded{};
 }
 
-void CaseJudge::warn(std::string_view reason, Sighting sighting) {
+void CaseJudge::warn(std::string_view reason, Mismatch sighting) {
   add(judge::Verdict::warn, reason, std::move(sighting));
 }
 
@@ -63,7 +63,7 @@ judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>
   } catch (const iut::CannotBeDone& what) {
     cannot_be_done = what.what();
   } catch (const iut::Misbehaviour& done) {
-    Sighting sighting{{"an implementation that answers, in time and to the point"}, done.what()};
+    Mismatch sighting{{"an implementation that answers, in time and to the point"}, done.what()};
     sighting.decode = done.evidence();
     add(judge::Verdict::fail, done.reason(), std::move(sighting));
   } catch (const kernel::Error& failure) {

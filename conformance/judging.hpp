@@ -30,7 +30,7 @@ namespace fieldproof::conformance {
 struct CaseEnded {};
 
 // What was seen where something else was required.
-struct Sighting {
+struct Mismatch {
   std::vector<std::string> expected;  // every admissible observation
   std::string actual;
   std::optional<kernel::Time> time{};  // of the observation; the judge's clock when absent
@@ -51,7 +51,7 @@ class CaseJudge {
   void use_decode(std::function<std::vector<std::string>()> decode) { decode_ = std::move(decode); }
 
   template <typename Describe>
-    requires std::is_invocable_r_v<Sighting, Describe>
+    requires std::is_invocable_r_v<Mismatch, Describe>
   void expect(bool holds, std::string_view reason, Describe&& describe) {
     if (!holds) fail(reason, std::forward<Describe>(describe)());
   }
@@ -69,10 +69,10 @@ class CaseJudge {
   void expect_between(std::string_view name, std::string_view unit, double value, double low, double high,
                       std::string_view reason);
 
-  [[noreturn]] void fail(std::string_view reason, Sighting sighting);
+  [[noreturn]] void fail(std::string_view reason, Mismatch sighting);
   // The run could not show what was to be judged.
-  [[noreturn]] void inconclusive(std::string_view reason, Sighting sighting);
-  void warn(std::string_view reason, Sighting sighting);
+  [[noreturn]] void inconclusive(std::string_view reason, Mismatch sighting);
+  void warn(std::string_view reason, Mismatch sighting);
   void measure(std::string_view name, std::string_view unit, double value);
 
   // Runs the procedure up to its end or to the finding that ends it. Gives the result with verdict, reason,
@@ -80,7 +80,7 @@ class CaseJudge {
   judge::CaseResult run_procedure(const std::function<void(CaseJudge&)>& procedure);
 
  private:
-  void add(judge::Verdict verdict, std::string_view reason, Sighting sighting);
+  void add(judge::Verdict verdict, std::string_view reason, Mismatch sighting);
 
   const TestCase& test_case_;
   std::function<kernel::Time()> clock_;

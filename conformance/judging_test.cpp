@@ -103,7 +103,7 @@ TEST(CaseJudge, describes_only_what_does_not_hold) {
   int described = 0;
   const auto describe = [&] {
     ++described;
-    return Sighting{{"a", "b"}, "c", kernel::kStart + kernel::kMicrosecond, "octet 3", {"bits"}};
+    return Mismatch{{"a", "b"}, "c", kernel::kStart + kernel::kMicrosecond, "octet 3", {"bits"}};
   };
   const judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
     j.expect(true, "never", describe);

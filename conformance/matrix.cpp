@@ -13,11 +13,11 @@ namespace {
 
 using judge::Verdict;
 
-// One run: a case on the reference (no deviation) or on a deviation.
+// One run: a case on the reference (no mutant) or on a mutant.
 struct PlannedRun {
   std::size_t role = 0;
   std::size_t row = 0;
-  const Deviation* deviation = nullptr;
+  const Mutant* mutant = nullptr;
   Cell* cell = nullptr;
 };
 
@@ -27,11 +27,11 @@ RoleMatrix blank_role(const Suite& suite, const std::string& role) {
   for (const TestCase& test_case : suite.cases()) {
     if (test_case.role() == role && !is_canary(test_case)) matrix.cases.push_back(&test_case);
   }
-  for (const Deviation& deviation : suite.deviations()) {
-    if (deviation.role == role && !deviation.is_for_check) matrix.deviations.push_back(&deviation);
+  for (const Mutant& mutant : suite.mutants()) {
+    if (mutant.role == role && !mutant.is_for_check) matrix.mutants.push_back(&mutant);
   }
   matrix.reference.resize(matrix.cases.size());
-  matrix.cells.assign(matrix.cases.size(), std::vector<Cell>(matrix.deviations.size()));
+  matrix.cells.assign(matrix.cases.size(), std::vector<Cell>(matrix.mutants.size()));
   return matrix;
 }
 
@@ -41,18 +41,18 @@ std::vector<PlannedRun> planned_runs(Matrix& matrix) {
     RoleMatrix& block = matrix.roles[role];
     for (std::size_t row = 0; row < block.cases.size(); ++row) {
       runs.push_back({role, row, nullptr, &block.reference[row]});
-      for (std::size_t column = 0; column < block.deviations.size(); ++column) {
-        runs.push_back({role, row, block.deviations[column], &block.cells[row][column]});
+      for (std::size_t column = 0; column < block.mutants.size(); ++column) {
+        runs.push_back({role, row, block.mutants[column], &block.cells[row][column]});
       }
     }
   }
   return runs;
 }
 
-std::string declared_reason(const TestCase& test_case, const Deviation* deviation) {
-  if (deviation == nullptr) return {};
+std::string declared_reason(const TestCase& test_case, const Mutant* mutant) {
+  if (mutant == nullptr) return {};
   const auto found = std::find_if(test_case.catches.begin(), test_case.catches.end(),
-                                  [&](const Catch& caught) { return caught.deviation == deviation->name; });
+                                  [&](const MustCatch& caught) { return caught.mutant == mutant->name; });
   return found == test_case.catches.end() ? std::string{} : found->reason;
 }
 
@@ -78,16 +78,16 @@ CellKind kind_of(const judge::CaseResult& result, const std::string& declared) {
   }
 }
 
-Cell run_cell(const Suite& suite, const TestCase& test_case, const Deviation* deviation, std::uint64_t seed) {
+Cell run_cell(const Suite& suite, const TestCase& test_case, const Mutant* mutant, std::uint64_t seed) {
   Setup setup;
   setup.seed = seed;
   setup.volume = Volume::quick;
-  const std::string uri = deviation == nullptr ? "ref" : "deviant:" + deviation->name;
+  const std::string uri = mutant == nullptr ? "ref" : "mutant:" + mutant->name;
   setup.implementations.push_back({.role = test_case.role(), .position = 0, .uri = uri});
   const CaseRun done = run_case({&suite, &test_case}, setup);
   const judge::CaseResult& result = done.outcome.result;
   Cell cell;
-  cell.declared = declared_reason(test_case, deviation);
+  cell.declared = declared_reason(test_case, mutant);
   cell.verdict = result.verdict;
   cell.reason = result.reason;
   cell.kind = kind_of(result, cell.declared);
@@ -100,18 +100,18 @@ std::string told(const Cell& cell) {
   return fmt::format("ends with {}{}", judge::name(cell.verdict), reason);
 }
 
-void find_cell_holes(const TestCase& test_case, const Deviation& deviation, const Cell& cell,
+void find_cell_holes(const TestCase& test_case, const Mutant& mutant, const Cell& cell,
                      std::vector<Hole>& holes) {
   if (cell.kind == CellKind::missed) {
-    holes.push_back({HoleKind::missed, test_case.id, deviation.name,
-                     fmt::format("{} declares to catch '{}' with '{}' but {}", test_case.id, deviation.name,
+    holes.push_back({HoleKind::missed, test_case.id, mutant.name,
+                     fmt::format("{} declares to catch '{}' with '{}' but {}", test_case.id, mutant.name,
                                  cell.declared, told(cell))});
   } else if (cell.kind == CellKind::wrong_cause) {
     const std::string declared =
         cell.declared.empty() ? "declares nothing about it" : fmt::format("declares '{}'", cell.declared);
     holes.push_back(
-        {HoleKind::wrong_cause, test_case.id, deviation.name,
-         fmt::format("{} on '{}' {}; the case {}", test_case.id, deviation.name, told(cell), declared)});
+        {HoleKind::wrong_cause, test_case.id, mutant.name,
+         fmt::format("{} on '{}' {}; the case {}", test_case.id, mutant.name, told(cell), declared)});
   }
 }
 
@@ -125,27 +125,27 @@ void find_row_holes(const RoleMatrix& matrix, std::size_t row, std::vector<Hole>
   }
   const std::vector<Cell>& cells = matrix.cells[row];
   for (std::size_t i = 0; i < cells.size(); ++i)
-    find_cell_holes(test_case, *matrix.deviations[i], cells[i], holes);
+    find_cell_holes(test_case, *matrix.mutants[i], cells[i], holes);
   const bool catches =
       std::any_of(cells.begin(), cells.end(), [](const Cell& cell) { return cell.kind == CellKind::caught; });
   if (!catches) {
     holes.push_back({HoleKind::idle_case, test_case.id, "",
-                     fmt::format("{} catches no deviation that it declares", test_case.id)});
+                     fmt::format("{} catches no mutant that it declares", test_case.id)});
   }
 }
 
 std::vector<Hole> find_holes(const Matrix& matrix) {
   std::vector<Hole> holes;
   for (const RoleMatrix& role : matrix.roles) {
-    for (std::size_t column = 0; column < role.deviations.size(); ++column) {
+    for (std::size_t column = 0; column < role.mutants.size(); ++column) {
       const bool is_caught =
           std::any_of(role.cells.begin(), role.cells.end(),
                       [&](const std::vector<Cell>& row) { return row[column].kind == CellKind::caught; });
       if (is_caught) continue;
-      const Deviation& deviation = *role.deviations[column];
-      holes.push_back({HoleKind::uncaught_deviation, "", deviation.name,
-                       fmt::format("no case catches the {} deviation '{}' for a declared reason ({})",
-                                   role.role, deviation.name, deviation.description)});
+      const Mutant& mutant = *role.mutants[column];
+      holes.push_back({HoleKind::surviving_mutant, "", mutant.name,
+                       fmt::format("no case catches the {} mutant '{}' for a declared reason ({})", role.role,
+                                   mutant.name, mutant.description)});
     }
     for (std::size_t row = 0; row < role.cases.size(); ++row) find_row_holes(role, row, holes);
   }
@@ -161,7 +161,7 @@ std::string_view name(CellKind kind) {
 }
 
 std::string_view name(HoleKind kind) {
-  constexpr std::array<std::string_view, 5> kNames = {"uncaught-deviation", "idle-case", "missed",
+  constexpr std::array<std::string_view, 5> kNames = {"surviving-mutant", "idle-case", "missed",
                                                       "wrong-cause", "false-alarm"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
@@ -179,7 +179,7 @@ Matrix make_matrix(const Suite& suite, const MatrixPlan& plan) {
   work.stop = plan.stop;
   work.work = [&](std::size_t i) {
     const PlannedRun& run = runs[i];
-    return run_cell(suite, *matrix.roles[run.role].cases[run.row], run.deviation, plan.seed);
+    return run_cell(suite, *matrix.roles[run.role].cases[run.row], run.mutant, plan.seed);
   };
   work.deliver = [&](std::size_t i, Cell&& cell) {
     *runs[i].cell = std::move(cell);

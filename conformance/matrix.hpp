@@ -1,11 +1,11 @@
-// Cases x deviations: what each test case says about each deviation of its role, and the holes of the suite.
+// Cases x mutants: what each test case says about each mutant of its role, and the holes of the suite.
 //
-// Every case of a role is run on the reference and on each deviation of that role, at Volume::quick. A
-// deviation counts as caught only by a case that declares it and fails with the declared reason: a failure
+// Every case of a role is run on the reference and on each mutant of that role, at Volume::quick. A
+// mutant counts as caught only by a case that declares it and fails with the declared reason: a failure
 // for another reason proves nothing about the case's purpose.
 //
 // Contract: the same matrix for one seed, whatever the number of jobs. Canaries are left out: they fail by
-// design. A deviation column costs one run per case of the role. kernel::Error of the suite passes through.
+// design. A mutant column costs one run per case of the role. kernel::Error of the suite passes through.
 #pragma once
 
 #include <cstddef>
@@ -40,7 +40,7 @@ struct Cell {
 };
 
 enum class HoleKind : std::uint8_t {
-  uncaught_deviation,
+  surviving_mutant,
   idle_case,    // catches nothing
   missed,       // a declared catch does not happen
   wrong_cause,  // a declared catch happens for another reason, or the case ends in an error
@@ -51,16 +51,16 @@ std::string_view name(HoleKind kind);
 
 struct Hole {
   HoleKind kind = HoleKind::missed;
-  std::string case_id;    // empty for an uncaught deviation
-  std::string deviation;  // empty for an idle case and a false alarm
+  std::string case_id;  // empty for an uncaught mutant
+  std::string mutant;   // empty for an idle case and a false alarm
   std::string sentence;
 };
 
-// The cases and deviations of one role. cells[c][d] belongs to cases[c] and deviations[d].
+// The cases and mutants of one role. cells[c][d] belongs to cases[c] and mutants[d].
 struct RoleMatrix {
   std::string role;
   std::vector<const TestCase*> cases;
-  std::vector<const Deviation*> deviations;
+  std::vector<const Mutant*> mutants;
   std::vector<Cell> reference;
   std::vector<std::vector<Cell>> cells;
 };

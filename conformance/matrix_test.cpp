@@ -27,7 +27,7 @@ SuiteOfFunctions::Function answering(Answers answers) {
   };
 }
 
-TestCase declaring(std::string name, std::vector<Catch> catches, std::vector<std::string> tags = {}) {
+TestCase declaring(std::string name, std::vector<MustCatch> catches, std::vector<std::string> tags = {}) {
   TestCase test_case;
   test_case.id = "ring/slave/" + name;
   test_case.catches = std::move(catches);
@@ -47,16 +47,16 @@ class MatrixOfARing : public testing::Test {
     MatrixPlan plan;
     plan.jobs = jobs;
     for (const Hole& hole : make_matrix(suite_, plan).holes) {
-      found.push_back(std::string(name(hole.kind)) + " " + hole.case_id + " " + hole.deviation);
+      found.push_back(std::string(name(hole.kind)) + " " + hole.case_id + " " + hole.mutant);
     }
     return found;
   }
 
   void add_good_cases() {
     suite_.add(declaring("word", {{"swapped", "wrong_word"}}),
-               answering({{"deviant:swapped", {Verdict::fail, "wrong_word"}}}));
+               answering({{"mutant:swapped", {Verdict::fail, "wrong_word"}}}));
     suite_.add(declaring("time", {{"late", "late_answer"}}),
-               answering({{"deviant:late", {Verdict::fail, "late_answer"}}}));
+               answering({{"mutant:late", {Verdict::fail, "late_answer"}}}));
   }
 
   using Strings = std::vector<std::string>;
@@ -79,23 +79,23 @@ TEST_F(MatrixOfARing, CanaryTakesNoPart) {
   EXPECT_EQ(holes(), Strings{});
 }
 
-TEST_F(MatrixOfARing, UncaughtDeviationIsAHole) {
+TEST_F(MatrixOfARing, SurvivingMutantIsAHole) {
   suite_.add(declaring("word", {{"swapped", "wrong_word"}}),
-             answering({{"deviant:swapped", {Verdict::fail, "wrong_word"}}}));
-  EXPECT_EQ(holes(), Strings{"uncaught-deviation  late"});
+             answering({{"mutant:swapped", {Verdict::fail, "wrong_word"}}}));
+  EXPECT_EQ(holes(), Strings{"surviving-mutant  late"});
 }
 
 TEST_F(MatrixOfARing, UndeclaredCatchDoesNotFillAHole) {
   suite_.add(declaring("word", {{"swapped", "wrong_word"}}),
-             answering({{"deviant:swapped", {Verdict::fail, "wrong_word"}},
-                        {"deviant:late", {Verdict::fail, "wrong_word"}}}));
+             answering({{"mutant:swapped", {Verdict::fail, "wrong_word"}},
+                        {"mutant:late", {Verdict::fail, "wrong_word"}}}));
   EXPECT_EQ(make_matrix(suite_, {}).roles[0].cells[0][1].kind, CellKind::caught_undeclared);
-  EXPECT_EQ(holes(), Strings{"uncaught-deviation  late"});
+  EXPECT_EQ(holes(), Strings{"surviving-mutant  late"});
 }
 
 TEST_F(MatrixOfARing, CaseThatCatchesNothingIsAHole) {
   add_good_cases();
-  suite_.add(declaring("idle", {}), answering({{"deviant:late", {Verdict::fail, "late_answer"}}}));
+  suite_.add(declaring("idle", {}), answering({{"mutant:late", {Verdict::fail, "late_answer"}}}));
   EXPECT_EQ(holes(), Strings{"idle-case ring/slave/idle "});
 }
 
@@ -103,14 +103,14 @@ TEST_F(MatrixOfARing, DeclaredCatchThatDoesNotHappenIsAHole) {
   add_good_cases();
   suite_.add(
       declaring("more", {{"swapped", "x"}, {"late", "y"}}),
-      answering({{"deviant:swapped", {Verdict::fail, "x"}}, {"deviant:late", {Verdict::inconclusive, "y"}}}));
+      answering({{"mutant:swapped", {Verdict::fail, "x"}}, {"mutant:late", {Verdict::inconclusive, "y"}}}));
   EXPECT_EQ(holes(), Strings{"missed ring/slave/more late"});
 }
 
 TEST_F(MatrixOfARing, WrongCauseIsAHole) {
   add_good_cases();
   suite_.add(declaring("more", {{"swapped", "x"}, {"late", "y"}}),
-             answering({{"deviant:swapped", {Verdict::fail, "x"}}, {"deviant:late", {Verdict::fail, "z"}}}));
+             answering({{"mutant:swapped", {Verdict::fail, "x"}}, {"mutant:late", {Verdict::fail, "z"}}}));
   EXPECT_EQ(holes(), Strings{"wrong-cause ring/slave/more late"});
 }
 
@@ -118,9 +118,9 @@ TEST_F(MatrixOfARing, ErrorOfTheBenchIsAWrongCauseEvenUndeclared) {
   add_good_cases();
   suite_.add(declaring("more", {{"swapped", "x"}}),
              [](const TestCase&, const conformance::Setup& setup) -> Outcome {
-               if (setup.implementations[0].uri == "deviant:late") throw std::runtime_error("lost");
+               if (setup.implementations[0].uri == "mutant:late") throw std::runtime_error("lost");
                Outcome outcome;
-               const bool is_swapped = setup.implementations[0].uri == "deviant:swapped";
+               const bool is_swapped = setup.implementations[0].uri == "mutant:swapped";
                outcome.result.verdict = is_swapped ? Verdict::fail : Verdict::pass;
                outcome.result.reason = is_swapped ? "x" : "";
                return outcome;
@@ -131,7 +131,7 @@ TEST_F(MatrixOfARing, ErrorOfTheBenchIsAWrongCauseEvenUndeclared) {
 TEST_F(MatrixOfARing, FalseAlarmOnTheReferenceIsAHole) {
   add_good_cases();
   suite_.add(declaring("nervous", {{"late", "y"}}),
-             answering({{"deviant:late", {Verdict::fail, "y"}}, {"ref", {Verdict::warn, "y"}}}));
+             answering({{"mutant:late", {Verdict::fail, "y"}}, {"ref", {Verdict::warn, "y"}}}));
   EXPECT_EQ(holes(), Strings{"false-alarm ring/slave/nervous "});
 }
 
@@ -140,7 +140,7 @@ TEST_F(MatrixOfARing, DeclaredReasonMayBeAnyFailingFinding) {
   suite_.add(declaring("two", {{"late", "second"}}), [](const TestCase&, const conformance::Setup& setup) {
     Outcome outcome;
     outcome.result.verdict = Verdict::pass;
-    if (setup.implementations[0].uri == "deviant:late") {
+    if (setup.implementations[0].uri == "mutant:late") {
       outcome.result.verdict = Verdict::fail;
       outcome.result.reason = "first";
       outcome.result.findings.resize(2);

@@ -72,14 +72,14 @@ Outcome internal_error(const TestCase& test_case, std::string_view what) {
   return of_the_bench(test_case, Verdict::error, kInternalError, "the bench runs a case to its end", what);
 }
 
-Outcome guarded_run(const Entry& entry, const Setup& setup, const Manner& manner) {
+Outcome guarded_run(const Entry& entry, const Setup& setup, const RunOptions& manner) {
   const kernel::CheckContext context(
       [&] { return fmt::format("case {}, seed {}", entry.test_case->id, setup.seed); });
   try {
     if (manner.reset) {
-      if (const auto obstacle = manner.reset(*entry.test_case)) {
+      if (const auto reason_not_runnable = manner.reset(*entry.test_case)) {
         return of_the_bench(*entry.test_case, Verdict::inconclusive, kResetFailed,
-                            "the implementation is reset before a case", *obstacle);
+                            "the implementation is reset before a case", *reason_not_runnable);
       }
     }
     return entry.suite->run(*entry.test_case, setup);
@@ -103,7 +103,7 @@ std::uint64_t microseconds_since(std::chrono::steady_clock::time_point begin) {
 
 // The second run of a case, this time with its trace: keeping the trace of every passing case would cost more
 // than running the few others twice.
-judge::CaseResult record_again(CaseRun& done, const Manner& manner) {
+judge::CaseResult record_again(CaseRun& done, const RunOptions& manner) {
   Setup recording = done.setup;
   recording.record = true;
   Outcome again = guarded_run(done.entry, recording, manner);
@@ -136,7 +136,7 @@ bool is_failure(Verdict verdict) {
 
 // For the recording, which is the first repetition of a failure that is to be confirmed, and then as often as
 // that asks for. A case that was never begun has nothing to repeat.
-void repeat(CaseRun& done, const Manner& manner) {
+void repeat(CaseRun& done, const RunOptions& manner) {
   const judge::CaseResult& first = done.outcome.result;
   const bool is_to_confirm = manner.confirmations > 0 && is_failure(first.verdict);
   unsigned repetition = 0;
@@ -161,7 +161,7 @@ std::uint64_t case_seed(std::uint64_t run_seed, std::string_view id) {
   return kernel::Random(run_seed).split(id).seed();
 }
 
-CaseRun run_case(const Entry& entry, const Setup& run_setup, const Manner& manner) {
+CaseRun run_case(const Entry& entry, const Setup& run_setup, const RunOptions& manner) {
   CaseRun done{entry, run_setup, {}, true};
   done.setup.seed = case_seed(run_setup.seed, entry.test_case->id);
   done.setup.record = manner.keeps_recordings == KeptRecordings::all;

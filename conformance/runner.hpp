@@ -38,7 +38,7 @@ struct CaseRun {
 };
 
 // How a case is run, besides what decides its outcome in virtual time.
-struct Manner {
+struct RunOptions {
   KeptRecordings keeps_recordings = KeptRecordings::none;
   unsigned confirmations = 0;  // how often a failure must come again
   // Called before each run of a case, to bring what is real into its first state. Gives why it could not.
@@ -49,7 +49,7 @@ struct Plan {
   std::vector<Entry> entries;
   Setup setup;  // `seed` is the seed of the run
   unsigned jobs = 1;
-  Manner manner;
+  RunOptions manner;
   std::stop_token stop;
   // Receives each case in its turn; false ends the run after it.
   std::function<bool(CaseRun&&)> on_case;
@@ -59,7 +59,7 @@ struct Plan {
 
 // One case, never throwing anything but kernel::Error. The verdict is not-applicable without running anything
 // when the PICS of the setup exclude the case, or when implementations are assigned to other roles only.
-CaseRun run_case(const Entry& entry, const Setup& run_setup, const Manner& manner = {});
+CaseRun run_case(const Entry& entry, const Setup& run_setup, const RunOptions& manner = {});
 
 // Throws the kernel::Error of a setup that cannot be served, before anything is run or stored. Each role of
 // each protocol is asked once, by its first case that applies.

@@ -1,5 +1,5 @@
 // A suite whose cases are functions: what the tests of the bench itself run, and a protocol's suite before it
-// has a network. Deviations are names only; a function looks at the setup and decides.
+// has a network. Mutants are names only; a function looks at the setup and decides.
 #pragma once
 
 #include <functional>
@@ -25,7 +25,7 @@ class SuiteOfFunctions : public Suite {
     functions_[test_case.id] = std::move(function);
     cases_.push_back(std::move(test_case));
   }
-  void add(Deviation deviation) { deviations_.push_back(std::move(deviation)); }
+  void add(Mutant mutant) { mutants_.push_back(std::move(mutant)); }
   void add(judge::PicsItem item) { pics_items_.push_back(std::move(item)); }
   // The functions know the URI `own` in this role.
   void add_own(std::string role) { own_roles_.insert(std::move(role)); }
@@ -35,7 +35,7 @@ class SuiteOfFunctions : public Suite {
   std::vector<std::string> roles() const override { return roles_; }
   bool has_own(std::string_view role) const override { return own_roles_.contains(role); }
   const std::vector<TestCase>& cases() const override { return cases_; }
-  const std::vector<Deviation>& deviations() const override { return deviations_; }
+  const std::vector<Mutant>& mutants() const override { return mutants_; }
 
   int last_position() const override { return last_position_; }
   std::vector<judge::PicsItem> pics_items() const override { return pics_items_; }
@@ -53,7 +53,7 @@ class SuiteOfFunctions : public Suite {
   std::string protocol_;
   std::vector<std::string> roles_;
   std::vector<TestCase> cases_;
-  std::vector<Deviation> deviations_;
+  std::vector<Mutant> mutants_;
   std::vector<judge::PicsItem> pics_items_;
   std::set<std::string, std::less<>> own_roles_;
   int last_position_ = 1;

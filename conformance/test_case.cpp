@@ -14,7 +14,7 @@ std::string TestCase::role() const {
 }
 
 const judge::Reference& TestCase::reference_of(std::string_view reason) const {
-  for (const Detail& detail : details) {
+  for (const PartialSource& detail : details) {
     if (std::ranges::find(detail.reasons, reason) != detail.reasons.end()) return detail.reference;
   }
   return reference;
@@ -22,16 +22,17 @@ const judge::Reference& TestCase::reference_of(std::string_view reason) const {
 
 judge::Reference TestCase::rests_on() const {
   judge::Reference all = reference;
-  for (const Detail& detail : details) all = judge::resting_on_both(std::move(all), detail.reference);
+  for (const PartialSource& detail : details) all = judge::resting_on_both(std::move(all), detail.reference);
   return all;
 }
 
-void rest_also_on(TestCase& test_case, const std::vector<Detail>& details) {
+void rest_also_on(TestCase& test_case, const std::vector<PartialSource>& details) {
   const auto is_told = [own = test_case.details](const std::string& reason) {
-    return std::ranges::any_of(
-        own, [&](const Detail& one) { return std::ranges::find(one.reasons, reason) != one.reasons.end(); });
+    return std::ranges::any_of(own, [&](const PartialSource& one) {
+      return std::ranges::find(one.reasons, reason) != one.reasons.end();
+    });
   };
-  for (Detail detail : details) {
+  for (PartialSource detail : details) {
     std::erase_if(detail.reasons, is_told);
     if (!detail.reasons.empty()) test_case.details.push_back(std::move(detail));
   }
@@ -53,9 +54,9 @@ std::string_view name(Volume volume) {
   return volume == Volume::quick ? "quick" : "full";
 }
 
-const trace::Notation& Recording::told_in() const {
-  static const trace::PlainNotation unknown;
-  return notation != nullptr ? *notation : unknown;
+const trace::Dissector& Recording::told_in() const {
+  static const trace::PlainDissector unknown;
+  return dissector != nullptr ? *dissector : unknown;
 }
 
 }  // namespace fieldproof::conformance

@@ -14,23 +14,23 @@
 #include "harness/iut/limits.hpp"
 #include "harness/judge/finding.hpp"
 #include "harness/judge/pics.hpp"
-#include "harness/trace/notation.hpp"
+#include "harness/trace/dissector.hpp"
 #include "harness/trace/recording.hpp"
 
-// One test case, one deviation, and the suite of a protocol that runs a case against an implementation.
+// One test case, one mutant, and the suite of a protocol that runs a case against an implementation.
 // There is one definition of a case: the command line, GoogleTest and the matrix all use it.
 namespace fieldproof::conformance {
 
-// A deviation that a case must catch, and the reason code of the finding that proves that it was caught for
+// A mutant that a case must catch, and the reason code of the finding that proves that it was caught for
 // the right cause.
-struct Catch {
-  std::string deviation;
+struct MustCatch {
+  std::string mutant;
   std::string reason;
 };
 
 // A part of what a case requires that has a source of its own, usually a weaker one than the case: findings
 // with one of these reasons rest on it instead.
-struct Detail {
+struct PartialSource {
   judge::Reference reference;
   std::vector<std::string> reasons;
 };
@@ -40,11 +40,11 @@ struct TestCase {
   std::string purpose;  // the label of the test purpose, "IS-14"
   std::string requirement;
   judge::Reference reference;
-  std::vector<Detail> details{};
+  std::vector<PartialSource> details{};
   std::string stimulus;
   std::string expected;
   std::vector<std::string> tags;  // "must", "timing", "long", "canary" ...
-  std::vector<Catch> catches;
+  std::vector<MustCatch> catches;
   // Roles of implementations that the case judges besides its own: those of the parts of a network.
   std::vector<std::string> parts{};
   // Nothing, or the sentence that says why the case does not apply to such an implementation.
@@ -59,7 +59,7 @@ struct TestCase {
 };
 
 // Adds the details to the case, but for reasons that details of its own are about.
-void rest_also_on(TestCase& test_case, const std::vector<Detail>& details);
+void rest_also_on(TestCase& test_case, const std::vector<PartialSource>& details);
 
 bool has_tag(const TestCase& test_case, std::string_view tag);
 
@@ -67,15 +67,15 @@ bool has_tag(const TestCase& test_case, std::string_view tag);
 bool is_canary(const TestCase& test_case);
 
 // The reference station with one decision, or one number, changed.
-struct Deviation {
-  std::string name;    // "crc_preset_zero"
-  std::string mutant;  // the label of the mutant, "MS1"
-  std::string role;    // "slave"
+struct Mutant {
+  std::string name;   // "crc_preset_zero"
+  std::string label;  // of the specification's list, "MS1"; may be empty
+  std::string role;   // "slave"
   std::string description;
   bool is_for_check = false;  // shows in sequences only: `check` must find it, and the matrix leaves it out
 };
 
-// Who plays a role: "slave@3=deviant:crc_preset_zero".
+// Who plays a role: "slave@3=mutant:crc_preset_zero".
 struct Assignment {
   std::string role;  // empty: the role of the case
   int position = 0;  // 1 is next to the master; 0: the protocol's default
@@ -103,12 +103,12 @@ struct Setup {
 // A record of everything on the line and at the upper tester, for replay and for people.
 struct Recording {
   trace::Recording trace;
-  std::shared_ptr<const trace::Notation> notation;  // of the protocol on these lines; null: not known
+  std::shared_ptr<const trace::Dissector> dissector;  // of the protocol on these lines; null: not known
   std::string playback;    // what the implementation drove, for judging again without it
   bool truncated = false;  // a bound was reached
 
-  const trace::Notation& told_in() const;
-  // One line for each record, in one notation for people and programs.
+  const trace::Dissector& told_in() const;
+  // One line for each record, in one dissector for people and programs.
   std::vector<std::string> lines() const { return trace::text_lines(trace, told_in()); }
 };
 
@@ -136,7 +136,7 @@ class Suite {
   virtual std::string_view protocol() const = 0;
   virtual std::vector<std::string> roles() const = 0;
   virtual const std::vector<TestCase>& cases() const = 0;
-  virtual const std::vector<Deviation>& deviations() const = 0;
+  virtual const std::vector<Mutant>& mutants() const = 0;
   virtual Outcome run(const TestCase& test_case, const Setup& setup) const = 0;
 
   // Whether the program brought an implementation of this role along, with the URI `own`.

@@ -30,7 +30,7 @@ using fieldproof::fieldbus_dll::FfEventKind;
 using fieldproof::fieldbus_dll::FfStation;
 using fieldproof::fieldbus_dll::Priority;
 using fieldproof::fuzz::FfDeviceModel;
-using fieldproof::fuzz::FfTold;
+using fieldproof::fuzz::FfIndication;
 using fieldproof::fuzz::LinkEar;
 using fieldproof::fuzz::LinkLine;
 using fieldproof::fuzz::LinkOctets;
@@ -61,18 +61,20 @@ FfConfiguration ff_configuration(std::uint8_t choice) {
 class FfUserLog final : public fieldproof::fieldbus_dll::FfUser {
  public:
   explicit FfUserLog(const FfConfiguration& configuration) : configuration_(configuration) {}
-  void on_data(const FfDlpdu& dlpdu, Time when) override { add(FfTold::Kind::data, dlpdu, when); }
-  void on_published(const FfDlpdu& dlpdu, Time when) override { add(FfTold::Kind::published, dlpdu, when); }
+  void on_data(const FfDlpdu& dlpdu, Time when) override { add(FfIndication::Kind::data, dlpdu, when); }
+  void on_published(const FfDlpdu& dlpdu, Time when) override {
+    add(FfIndication::Kind::published, dlpdu, when);
+  }
   void on_event(const FfEvent& event, Time when) override {
     const bool is_activated = event.kind == FfEventKind::activated && event.node == configuration_.node;
     FIELDPROOF_CHECK(is_activated, "a basic device tells of nothing but its activation");
-    told.push_back({FfTold::Kind::activated, when, {}});
+    told.push_back({FfIndication::Kind::activated, when, {}});
   }
 
-  std::vector<FfTold> told;
+  std::vector<FfIndication> told;
 
  private:
-  void add(FfTold::Kind kind, const FfDlpdu& dlpdu, Time when) {
+  void add(FfIndication::Kind kind, const FfDlpdu& dlpdu, Time when) {
     told.push_back({kind, when, octets_of(dlpdu, configuration_.rules)});
   }
   FfConfiguration configuration_;

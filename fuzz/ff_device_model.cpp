@@ -233,7 +233,7 @@ void FfDeviceModel::hear(const LinkOctets& octets, Time end) {
   } else if (is_kind(control, 0x50)) {
     const auto& wanted = configuration_.subscribed;
     if (std::ranges::count(wanted, address_at(octets, 1)) != 0)
-      told_.push_back({FfTold::Kind::published, end, octets});
+      told_.push_back({FfIndication::Kind::published, end, octets});
   }
 }
 
@@ -262,10 +262,10 @@ void FfDeviceModel::hear_dt1(const LinkOctets& octets, Time end) {
   const std::size_t header = 1 + 2 * address;
   const bool is_among_entities = (to == kToAll || (to & 0xFFU) == 0) && (from & 0xFFU) == 0;
   if (!is_among_entities || octets.size() == header) {
-    told_.push_back({FfTold::Kind::data, end, octets});
+    told_.push_back({FfIndication::Kind::data, end, octets});
   } else if (octets[header] == 1 && to != kToAll && !is_live_) {
     is_live_ = true;
-    told_.push_back({FfTold::Kind::activated, end, {}});
+    told_.push_back({FfIndication::Kind::activated, end, {}});
   }
 }
 

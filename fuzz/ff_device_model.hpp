@@ -23,12 +23,12 @@
 // Octets are read and written here by hand; which octets arrived says link_frames_in.
 namespace fieldproof::fuzz {
 
-struct FfTold {
+struct FfIndication {
   enum class Kind : std::uint8_t { data, published, activated };
   Kind kind;
   kernel::Time when;
   LinkOctets octets{};  // of the DLPDU
-  friend bool operator==(const FfTold&, const FfTold&) = default;
+  friend bool operator==(const FfIndication&, const FfIndication&) = default;
 };
 
 class FfDeviceModel final : public segment::Tap {
@@ -47,7 +47,7 @@ class FfDeviceModel final : public segment::Tap {
   void run_until(kernel::Time now);
 
   const std::vector<LinkSaid>& said() const { return said_; }
-  const std::vector<FfTold>& told() const { return told_; }
+  const std::vector<FfIndication>& told() const { return told_; }
   bool is_live() const { return is_live_; }
   std::uint64_t link_time(kernel::Time now) const;
 
@@ -98,7 +98,7 @@ class FfDeviceModel final : public segment::Tap {
   std::uint64_t told_time_ = 0;
   kernel::Time told_at_ = kernel::kStart;
   std::vector<LinkSaid> said_;
-  std::vector<FfTold> told_;
+  std::vector<FfIndication> told_;
 };
 
 }  // namespace fieldproof::fuzz

@@ -32,7 +32,7 @@ using fieldproof::fieldbus_dll::IsaRequest;
 using fieldproof::fieldbus_dll::IsaService;
 using fieldproof::fieldbus_dll::Priority;
 using fieldproof::fuzz::IsaDleModel;
-using fieldproof::fuzz::IsaTold;
+using fieldproof::fuzz::IsaIndication;
 using fieldproof::fuzz::LinkEar;
 using fieldproof::fuzz::LinkLine;
 using fieldproof::fuzz::LinkOctets;
@@ -59,18 +59,19 @@ IsaConfiguration isa_configuration(std::uint8_t choice) {
 class IsaUserLog final : public fieldproof::fieldbus_dll::IsaUser {
  public:
   void on_data(const IsaDlpdu& dlpdu, Time when) override {
-    told.push_back({IsaTold::Kind::data, when, octets_of(dlpdu, {})});
+    told.push_back({IsaIndication::Kind::data, when, octets_of(dlpdu, {})});
   }
   void on_event(const IsaEvent& event, Time when) override {
     const bool is_missing = event.kind == IsaEventKind::reply_missing;
     FIELDPROOF_CHECK(is_missing || event.kind == IsaEventKind::token_dropped,
                      "an entity tells of its own token and replies only");
-    told.push_back(
-        {is_missing ? IsaTold::Kind::reply_missing : IsaTold::Kind::token_dropped, when, {event.node}});
+    told.push_back({is_missing ? IsaIndication::Kind::reply_missing : IsaIndication::Kind::token_dropped,
+                    when,
+                    {event.node}});
   }
   bool is_reply_coming(Priority, Time) override { return works_on_reply; }
 
-  std::vector<IsaTold> told;
+  std::vector<IsaIndication> told;
   bool works_on_reply = false;
 };
 

@@ -98,7 +98,7 @@ void IsaDleModel::run_until(Time now) {
 
 void IsaDleModel::act(Time now) {
   if (awaited_) {
-    told_.push_back({IsaTold::Kind::reply_missing, now, {awaited_->node}});
+    told_.push_back({IsaIndication::Kind::reply_missing, now, {awaited_->node}});
     awaited_.reset();
   } else if (token_) {
     use_token(now);
@@ -218,9 +218,9 @@ void IsaDleModel::hear_while_waiting(const LinkOctets& octets, Time end) {
   const bool is_reply =
       octets[0] >> 4 == kDt && octets[1] == configuration_.address && octets[2] == awaited_->node;
   awaited_.reset();
-  if (is_reply) return told_.push_back({IsaTold::Kind::data, end, octets});
+  if (is_reply) return told_.push_back({IsaIndication::Kind::data, end, octets});
   token_.reset();
-  told_.push_back({IsaTold::Kind::token_dropped, end, {octets[2]}});
+  told_.push_back({IsaIndication::Kind::token_dropped, end, {octets[2]}});
 }
 
 void IsaDleModel::hear(const LinkOctets& octets, Time end) {
@@ -237,7 +237,7 @@ void IsaDleModel::hear(const LinkOctets& octets, Time end) {
   } else if (is_mine && type == kCd && !token_) {
     compelled_ = Compelled{octets[2], priority, end + times(configuration_.rules.reply_forming_octets)};
   } else if ((type == kDt || type == kDu) && (is_mine || octets[1] == kAllNodes)) {
-    told_.push_back({IsaTold::Kind::data, end, octets});
+    told_.push_back({IsaIndication::Kind::data, end, octets});
   }
 }
 

@@ -21,12 +21,12 @@
 // Octets are read and written here by hand; which octets arrived says link_frames_in.
 namespace fieldproof::fuzz {
 
-struct IsaTold {
+struct IsaIndication {
   enum class Kind : std::uint8_t { data, reply_missing, token_dropped };
   Kind kind;
   kernel::Time when;
   LinkOctets octets{};  // of the DLPDU; else the node
-  friend bool operator==(const IsaTold&, const IsaTold&) = default;
+  friend bool operator==(const IsaIndication&, const IsaIndication&) = default;
 };
 
 class IsaDleModel final : public segment::Tap {
@@ -46,7 +46,7 @@ class IsaDleModel final : public segment::Tap {
   void run_until(kernel::Time now);
 
   const std::vector<LinkSaid>& said() const { return said_; }
-  const std::vector<IsaTold>& told() const { return told_; }
+  const std::vector<IsaIndication>& told() const { return told_; }
 
  private:
   struct Request {
@@ -102,7 +102,7 @@ class IsaDleModel final : public segment::Tap {
   std::optional<Awaited> awaited_;
   std::optional<Compelled> compelled_;
   std::vector<LinkSaid> said_;
-  std::vector<IsaTold> told_;
+  std::vector<IsaIndication> told_;
 };
 
 }  // namespace fieldproof::fuzz

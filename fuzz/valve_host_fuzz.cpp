@@ -38,7 +38,7 @@ HostConfiguration host_configuration(std::uint8_t choice) {
   HostConfiguration made;
   made.rules.characters = fieldproof::fuzz::character_profile(choice);
   made.dip = choice >> 2U & 1U;
-  made.hears_itself = (choice & 8U) != 0;
+  made.receives_own_echo = (choice & 8U) != 0;
   made.rules.bit_rate = fieldproof::valve_bus::dip_bit_rates()[made.dip];
   return made;
 }
@@ -53,7 +53,7 @@ class World final : private ValveLine {
         model_(rules()),
         driven_(model_) {
     seat_ = segment().attach(host_, "host");
-    auto& place = medium().attach("host/in", seat_, 0, {}, configuration_.hears_itself);
+    auto& place = medium().attach("host/in", seat_, 0, {}, configuration_.receives_own_echo);
     place.tap_arrived(model_);
     place.tap_driven(driven_);
     host_.wire(place, model_);

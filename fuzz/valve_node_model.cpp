@@ -112,7 +112,7 @@ void ValveNodeModel::on_command(Time now) {
   const Time least = busy_until_ + delimiter(configuration_.rules);
   // One that was told late, in one piece with what followed, may be answered as late.
   const Time most =
-      std::max(least + turn_round_span(configuration_.rules), now + bits(configuration_.rules, 2));
+      std::max(least + turnaround_time_span(configuration_.rules), now + bits(configuration_.rules, 2));
   due_ = Due{octets, least - kRounded, most + kRounded};
 }
 

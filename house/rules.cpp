@@ -137,7 +137,7 @@ Complaints check_umbrella_headers(const std::vector<File>& files) {
   return complaints;
 }
 
-// A folder of suites, conformance/P, may keep the deviations of its roles apart one level below
+// A folder of suites, conformance/P, may keep the mutants of its roles apart one level below
 // fieldproof::conformance, and have emulated stations of the protocol in fieldproof::P.
 bool is_suite_namespace(const std::string& folder, const std::string& name) {
   const std::string suites = "conformance/";

@@ -84,8 +84,8 @@ TEST(Namespaces, FollowTheFolder) {
             1U);
   EXPECT_EQ(check_namespaces(one("harness/line/x.hpp", "#pragma once\nint x;\n")).size(), 1U);
   EXPECT_TRUE(check_namespaces(one("harness/line/x.hpp", "namespace fieldproof::line {\n}\n")).empty());
-  EXPECT_TRUE(check_namespaces(
-                  one("conformance/interbus/x.cpp", "namespace fieldproof::conformance::deviants {\n}\n"))
+  EXPECT_TRUE(check_namespaces(one("conformance/interbus/x.cpp",
+                                   "namespace fieldproof::conformance::seeded_faults {\n}\n"))
                   .empty());
   EXPECT_TRUE(
       check_namespaces(one("conformance/interbus/x.cpp", "namespace fieldproof::interbus {\n}\n")).empty());

@@ -51,7 +51,7 @@ TEST(HtmlWriter, HoldsEveryResultAsData) {
   const Json& run = data["runs"][0];
   EXPECT_EQ(run["results"]["cases"].size(), 100U);
   EXPECT_EQ(run["results"]["counts"]["not_run"], 2);
-  EXPECT_EQ(run["command"], "fieldproof run 'interbus/**' --seed 7 --iut slave@3=deviant:accepts_bad_check");
+  EXPECT_EQ(run["command"], "fieldproof run 'interbus/**' --seed 7 --iut slave@3=mutant:accepts_bad_check");
   const Json& failed = run["cases"]["interbus/slave/sample/case_3"];
   EXPECT_EQ(failed["timeline"]["transmissions"].size(), 40U);
   EXPECT_EQ(failed["folder"], "cases/interbus+slave+sample+case_3");

@@ -250,7 +250,7 @@ TEST(JunitWriter, TellsTheProperties) {
   EXPECT_EQ(properties.at("seed"), "11");
   EXPECT_EQ(properties.at("repro"),
             "fieldproof run interbus/slave/data_cycle/outputs_are_kept --seed 7 --iut "
-            "slave@3=deviant:accepts_bad_check");
+            "slave@3=mutant:accepts_bad_check");
   EXPECT_EQ(properties.at("virtual_time"), "814.800 us");
   EXPECT_EQ(properties.at("wall_time"), "1250 us");
   EXPECT_EQ(properties.at("fingerprint"), "0123456789abcdef");

@@ -21,7 +21,7 @@ namespace fieldproof::reports {
 struct CaseStory {
   std::string stimulus;
   std::string expected;
-  std::vector<std::string> catches;  // deviations, with the finding that shows each
+  std::vector<std::string> catches;  // mutants, with the finding that shows each
 
   friend bool operator==(const CaseStory&, const CaseStory&) = default;
 };

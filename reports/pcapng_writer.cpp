@@ -133,7 +133,7 @@ std::vector<Packet> packets_of(const trace::Recording& recording) {
   return packets;
 }
 
-std::string payload(const Packet& packet, const trace::Notation& notation) {
+std::string payload(const Packet& packet, const trace::Dissector& dissector) {
   std::string octets;
   const auto put = [&octets](auto number) {
     for (std::size_t n = sizeof number; n > 0; --n)
@@ -146,12 +146,12 @@ std::string payload(const Packet& packet, const trace::Notation& notation) {
   if (packet.change != nullptr && packet.change->arrivals.empty()) flags |= kLost;
   if (packet.sent != nullptr) flags |= kHasMask;
   put(std::uint8_t{2});
-  put(notation.capture_number());
+  put(dissector.capture_number());
   put(static_cast<std::uint8_t>(flags));
-  put(notation.capture_variant());
+  put(dissector.capture_variant());
   put(wave.start.time_since_epoch().count());
   put(wave.rate);
-  put(notation.bit_rate());
+  put(dissector.bit_rate());
   put(static_cast<std::uint32_t>(wave.levels.size()));
   put(packet.channel);
   const std::size_t count = std::min(wave.levels.size(), kMostLevels);
@@ -168,8 +168,8 @@ std::size_t whole_size(const Packet& packet, std::size_t kept) {
 
 class CaptureWriter {
  public:
-  CaptureWriter(const trace::Recording& recording, const trace::Notation& notation)
-      : recording_(recording), notation_(notation), faults_of_(recording) {}
+  CaptureWriter(const trace::Recording& recording, const trace::Dissector& dissector)
+      : recording_(recording), dissector_(dissector), faults_of_(recording) {}
 
   void write(std::string& to) {
     for (const Packet& packet : packets_of(recording_)) to += block(packet);
@@ -177,7 +177,7 @@ class CaptureWriter {
 
  private:
   std::string block(const Packet& packet) {
-    const std::string octets = payload(packet, notation_);
+    const std::string octets = payload(packet, dissector_);
     const std::int64_t ns = std::max<std::int64_t>(packet.wave->start.time_since_epoch().count(), 0) / 1000;
     Block block(6);
     block.put(packet.channel);
@@ -204,7 +204,7 @@ class CaptureWriter {
   bool is_check_wrong(const Packet& packet) {
     const auto tells = [&](bool heard) {
       std::unique_ptr<trace::Teller>& teller = tellers_[{packet.channel, heard}];
-      if (teller == nullptr) teller = notation_.teller();
+      if (teller == nullptr) teller = dissector_.teller();
       return teller->tell(*packet.wave).is_check_wrong;
     };
     if (packet.has_arrived) return tells(true);
@@ -213,18 +213,18 @@ class CaptureWriter {
   }
 
   const trace::Recording& recording_;
-  const trace::Notation& notation_;
+  const trace::Dissector& dissector_;
   trace::FaultIndex faults_of_;
   std::map<std::pair<trace::Channel, bool>, std::unique_ptr<trace::Teller>> tellers_;
 };
 
 }  // namespace
 
-std::string pcapng(const trace::Recording& recording, const trace::Notation& notation,
+std::string pcapng(const trace::Recording& recording, const trace::Dissector& dissector,
                    std::string_view application, std::string_view title) {
   std::string capture = section(application, title);
   for (const std::string& name : recording.channels) capture += interface(name);
-  CaptureWriter(recording, notation).write(capture);
+  CaptureWriter(recording, dissector).write(capture);
   return capture;
 }
 

@@ -4,7 +4,7 @@
 // Contract: a transmission is a packet of direction "outbound" as it was driven. Where a fault changed it on
 // the way, a packet of direction "inbound" follows for each waveform that its receiver got instead; what was
 // not changed arrived as it was driven. Both carry a comment that says what happened. The flag "CRC error" is
-// set where the notation finds a frame check wrong. Packets stand in order of time. Equal recordings give
+// set where the dissector finds a frame check wrong. Packets stand in order of time. Equal recordings give
 // equal octets.
 //
 // Limits: stamps have nanoseconds, because readers overflow on picoseconds (the payload has these); instants
@@ -13,9 +13,9 @@
 // A packet's payload (link type 147, USER0), numbers with the most significant octet first:
 //
 //   octet  0     2: version of this layout
-//   octet  1     protocol, trace::Notation::capture_number
+//   octet  1     protocol, trace::Dissector::capture_number
 //   octet  2     flags: 1 arrived (else driven), 2 changed by a fault, 4 lost, 8 a mask follows the levels
-//   octet  3     variant of the protocol, trace::Notation::capture_variant
+//   octet  3     variant of the protocol, trace::Dissector::capture_variant
 //   octets 4     start in picoseconds since the start of the run, signed, 64 bit
 //   octets 12    levels per second, 64 bit
 //   octets 20    bits per second, 0 when unknown, 64 bit
@@ -28,14 +28,14 @@
 #include <string>
 #include <string_view>
 
-#include "harness/trace/notation.hpp"
+#include "harness/trace/dissector.hpp"
 #include "harness/trace/recording.hpp"
 
 namespace fieldproof::reports {
 
 // `application` is the program's name and version, `title` what the capture is of; both become text of the
 // section.
-std::string pcapng(const trace::Recording& recording, const trace::Notation& notation,
+std::string pcapng(const trace::Recording& recording, const trace::Dissector& dissector,
                    std::string_view application, std::string_view title);
 
 }  // namespace fieldproof::reports

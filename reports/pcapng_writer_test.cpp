@@ -14,7 +14,7 @@ namespace {
 using Table = std::vector<std::vector<std::string>>;
 
 std::string capture_of(const trace::Recording& recording) {
-  return pcapng(recording, SampleNotation(), "fieldproof 0.1.0", "a/b/c");
+  return pcapng(recording, SampleDissector(), "fieldproof 0.1.0", "a/b/c");
 }
 
 // What tshark reads: the named fields of each packet.
@@ -130,7 +130,7 @@ RC_GTEST_PROP(PcapngWriterProperty, AnyTextGivesWholeBlocks, ()) {
   recording.channels[0] = *kernel::arbitrary_text();
   std::get<trace::Fault>(recording.records[2]).text = *kernel::arbitrary_text();
   const std::string capture =
-      pcapng(recording, SampleNotation(), *kernel::arbitrary_text(), *kernel::arbitrary_text());
+      pcapng(recording, SampleDissector(), *kernel::arbitrary_text(), *kernel::arbitrary_text());
   RC_ASSERT(blocks_of(capture).size() == 9U);
 }
 

@@ -43,7 +43,7 @@ struct RunIdentity {
   std::vector<std::string> selectors;
   std::vector<Implementation> implementations;
   // Every option of the command line that decides the outcome, quoted for a shell, without the selector:
-  // "--seed 7 --iut slave=deviant:crc_preset_zero".
+  // "--seed 7 --iut slave=mutant:crc_preset_zero".
   std::string reproduce_options;
   std::size_t selected = 0;        // cases selected, also those that an interrupted run never judged
   std::string incomplete_because;  // empty: complete; "interrupted by SIGINT"

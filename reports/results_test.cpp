@@ -32,7 +32,7 @@ TEST(Results, ReproduceCommandIsForAShell) {
   identity.reproduce_options = "--seed 7";
   EXPECT_EQ(reproduce_command(identity, "a b'c"), "fieldproof run 'a b'\\''c' --seed 7");
   EXPECT_EQ(shell_quoted(""), "''");
-  EXPECT_EQ(shell_quoted("slave@3=deviant:x"), "slave@3=deviant:x");
+  EXPECT_EQ(shell_quoted("slave@3=mutant:x"), "slave@3=mutant:x");
   EXPECT_EQ(shell_quoted("interbus/**"), "'interbus/**'");
 }
 

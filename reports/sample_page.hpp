@@ -196,9 +196,9 @@ inline nlohmann::ordered_json sample_matrix() {
   const Json caught = {{"kind", "caught"}, {"verdict", "fail"}, {"reason", "late"}, {"declared", "late"}};
   const Json missed = {{"kind", "missed"}, {"verdict", "pass"}, {"declared", "late"}};
   Json role = {{"role", "slave"},
-               {"deviations",
-                {{{"name", "answers_late"}, {"mutant", "MS1"}, {"description", kHostileName}},
-                 {{"name", "never_answers"}, {"mutant", ""}, {"description", "says nothing"}}}},
+               {"mutants",
+                {{{"name", "answers_late"}, {"label", "MS1"}, {"description", kHostileName}},
+                 {{"name", "never_answers"}, {"label", ""}, {"description", "says nothing"}}}},
                {"cases", Json::array()}};
   role["cases"].push_back({{"id", "interbus/slave/sample/case_0"},
                            {"purpose", "IS-1"},
@@ -212,7 +212,7 @@ inline nlohmann::ordered_json sample_matrix() {
           {"holes",
            {{{"kind", "missed"},
              {"case", "interbus/slave/sample/case_0"},
-             {"deviation", "never_answers"},
+             {"mutant", "never_answers"},
              {"sentence", "nothing catches it"}}}}};
 }
 

@@ -1,4 +1,4 @@
-// For tests: a small recording of a case that fails, with transmissions that a fault changed, and a notation
+// For tests: a small recording of a case that fails, with transmissions that a fault changed, and a dissector
 // of its own.
 #pragma once
 
@@ -7,13 +7,13 @@
 #include <memory>
 #include <string>
 
-#include "harness/trace/notation.hpp"
+#include "harness/trace/dissector.hpp"
 #include "harness/trace/recording.hpp"
 
 namespace fieldproof::reports {
 
 // Of a protocol in which a transmission whose first levels are 00 carries a wrong check.
-class SampleNotation final : public trace::Notation {
+class SampleDissector final : public trace::Dissector {
  public:
   std::int64_t bit_rate() const override { return 1'000'000; }
   std::uint8_t capture_number() const override { return 200; }
@@ -24,7 +24,7 @@ class SampleNotation final : public trace::Notation {
  private:
   class SampleTeller final : public trace::Teller {
    public:
-    trace::Told tell(const line::Waveform& wave) override {
+    trace::Decoded tell(const line::Waveform& wave) override {
       return {fmt::format("frame {}: {}", ++count_, wave.levels.text()), !wave.levels[0] && !wave.levels[1]};
     }
 

@@ -54,8 +54,8 @@ inline Run sample_run() {
   run.identity.plan = {{"/rules/0", "a loose plug"}, {"/disturbances/0", "</script><b>welder"}};
   run.identity.pics_hash = "00112233445566ff";
   run.identity.selectors = {"interbus/**"};
-  run.identity.implementations = {{"slave", 3, "deviant:accepts_bad_check"}};
-  run.identity.reproduce_options = "--seed 7 --iut slave@3=deviant:accepts_bad_check";
+  run.identity.implementations = {{"slave", 3, "mutant:accepts_bad_check"}};
+  run.identity.reproduce_options = "--seed 7 --iut slave@3=mutant:accepts_bad_check";
   run.identity.selected = 8;
   run.identity.incomplete_because = "interrupted by SIGINT";
   run.identity.exit_code = 130;

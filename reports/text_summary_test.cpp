@@ -23,7 +23,7 @@ TEST(TextSummary, EndsAFailureWithTheCommandThatReproducesTheHeaviestCase) {
   const std::string text = summary_text(sample_run());
   EXPECT_TRUE(
       text.ends_with("reproduce: fieldproof run interbus/master/stop/bus_is_left --seed 7 --iut "
-                     "slave@3=deviant:accepts_bad_check\n"));
+                     "slave@3=mutant:accepts_bad_check\n"));
 }
 
 TEST(TextSummary, SaysNothingMoreWhenAllPass) {

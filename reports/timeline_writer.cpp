@@ -69,8 +69,8 @@ struct ToldFault {
 
 class TimelineWriter {
  public:
-  TimelineWriter(const trace::Recording& recording, const trace::Notation& notation)
-      : recording_(recording), notation_(notation), faults_of_(recording) {}
+  TimelineWriter(const trace::Recording& recording, const trace::Dissector& dissector)
+      : recording_(recording), dissector_(dissector), faults_of_(recording) {}
 
   Json write(const judge::CaseResult& result) {
     const Part part = around(first_finding(result), recording_.records);
@@ -104,7 +104,7 @@ class TimelineWriter {
   void add(const trace::Transmission& transmission) {
     const line::Waveform& wave = transmission.wave;
     std::unique_ptr<trace::Teller>& teller = tellers_[transmission.channel];
-    if (teller == nullptr) teller = notation_.teller();
+    if (teller == nullptr) teller = dissector_.teller();
     transmissions_.emplace_back(wave.start, Json{{"channel", transmission.channel},
                                                  {"start_ps", ps(wave.start)},
                                                  {"end_ps", ps(wave.end())},
@@ -165,7 +165,7 @@ class TimelineWriter {
   }
 
   const trace::Recording& recording_;
-  const trace::Notation& notation_;
+  const trace::Dissector& dissector_;
   trace::FaultIndex faults_of_;
   std::map<trace::Channel, std::unique_ptr<trace::Teller>> tellers_;
   std::vector<Timed> transmissions_;
@@ -176,8 +176,8 @@ class TimelineWriter {
 }  // namespace
 
 std::string timeline_json(const judge::CaseResult& result, const trace::Recording& recording,
-                          const trace::Notation& notation) {
-  return TimelineWriter(recording, notation).write(result).dump() + "\n";
+                          const trace::Dissector& dissector) {
+  return TimelineWriter(recording, dissector).write(result).dump() + "\n";
 }
 
 }  // namespace fieldproof::reports

@@ -23,7 +23,7 @@ using kernel::kMicrosecond;
 using kernel::kStart;
 
 Json timeline_of(const judge::CaseResult& result, const trace::Recording& recording) {
-  return Json::parse(timeline_json(result, recording, SampleNotation()));
+  return Json::parse(timeline_json(result, recording, SampleDissector()));
 }
 
 AjvJudgement judged(const std::vector<std::string>& documents) {
@@ -38,7 +38,7 @@ AjvJudgement judged(const std::vector<std::string>& documents) {
 }
 
 TEST(TimelineWriter, WritesTheApprovedDocument) {
-  expect_approved("timeline.json", timeline_json(sample_failure(), sample_recording(), SampleNotation()));
+  expect_approved("timeline.json", timeline_json(sample_failure(), sample_recording(), SampleDissector()));
 }
 
 TEST(TimelineWriter, IsValidForASchemaValidator) {
@@ -46,9 +46,9 @@ TEST(TimelineWriter, IsValidForASchemaValidator) {
   hostile.channels[0] = "\x1b[31m\xff";
   hostile.records.emplace_back(trace::Fault{0, kernel::kNever, "\xc0\x80"});
   const AjvJudgement judgement =
-      judged({timeline_json(sample_failure(), sample_recording(), SampleNotation()),
-              timeline_json(sample_failure(), hostile, SampleNotation()),
-              timeline_json(sample_case("a/b/c", judge::Verdict::pass), {}, trace::PlainNotation())});
+      judged({timeline_json(sample_failure(), sample_recording(), SampleDissector()),
+              timeline_json(sample_failure(), hostile, SampleDissector()),
+              timeline_json(sample_case("a/b/c", judge::Verdict::pass), {}, trace::PlainDissector())});
   if (!judgement.is_available) GTEST_SKIP() << judgement.output;
   EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
 }

@@ -82,19 +82,19 @@ Outcome judged_from_recording(const Setup& setup, const std::string& uri) {
   return judged(setup, *known, reason);
 }
 
-// Passes, but fails for `reason` on the deviation.
-SuiteOfFunctions::Function failing_on(const std::string& deviation, std::string reason) {
-  return [uri = "deviant:" + deviation, reason = std::move(reason)](const TestCase& test_case,
-                                                                    const Setup& setup) {
-    read_plan(setup.plan_file);
-    const std::string implementation = implementation_of(test_case, setup);
-    if (implementation.starts_with("recorded:")) return judged_from_recording(setup, implementation);
-    if (implementation == "deviant:unreachable") {
-      throw kernel::Error(kernel::ErrorKind::implementation,
-                          "the station does not answer; connect it and start again");
-    }
-    return implementation == uri ? judged(setup, Verdict::fail, reason) : judged(setup, Verdict::pass);
-  };
+// Passes, but fails for `reason` on the mutant.
+SuiteOfFunctions::Function failing_on(const std::string& mutant, std::string reason) {
+  return
+      [uri = "mutant:" + mutant, reason = std::move(reason)](const TestCase& test_case, const Setup& setup) {
+        read_plan(setup.plan_file);
+        const std::string implementation = implementation_of(test_case, setup);
+        if (implementation.starts_with("recorded:")) return judged_from_recording(setup, implementation);
+        if (implementation == "mutant:unreachable") {
+          throw kernel::Error(kernel::ErrorKind::implementation,
+                              "the station does not answer; connect it and start again");
+        }
+        return implementation == uri ? judged(setup, Verdict::fail, reason) : judged(setup, Verdict::pass);
+      };
 }
 
 SuiteOfFunctions::Function answering(Verdict verdict, std::string reason) {
@@ -106,7 +106,7 @@ SuiteOfFunctions::Function answering(Verdict verdict, std::string reason) {
 }
 
 TestCase named(const std::string& id, std::vector<std::string> tags = {},
-               std::vector<conformance::Catch> catches = {}) {
+               std::vector<conformance::MustCatch> catches = {}) {
   TestCase test_case;
   test_case.id = id;
   test_case.purpose = fmt::format("P-{}", id.substr(id.rfind('/') + 1));

@@ -47,9 +47,9 @@ FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
   if (setting.is_link_master || !needs.is_live) return;
   wait(octets(20));
   send({rules().codes.pn, node()});
-  wait(patience());
+  wait(observation_timeout());
   send(activation(node()));
-  wait(patience());
+  wait(observation_timeout());
   const kernel::Time begin = now();
   while (next(begin)) {
   }

@@ -29,7 +29,7 @@ void judge_addresses(const FfBench& bench, CaseJudge& judge) {
     const bool is_right =
         fieldbus_dll::node_of(from) == bench.node() && (is_of_entity || bench.destinations().contains(to));
     judge.expect(is_right, "dlpdu_wrong", [&] {
-      return Sighting{{fmt::format("a DT1 from node {:02X}, to where its user submitted", bench.node())},
+      return Mismatch{{fmt::format("a DT1 from node {:02X}, to where its user submitted", bench.node())},
                       one.text(),
                       one.begin};
     });

@@ -38,9 +38,9 @@ void tokens_go_round(FfBench& bench, CaseJudge& judge) {
   for (const DrivenDlpdu& one : all) {
     if (!is_pt(bench, one)) continue;
     judge.expect(one.octet(1) == next, "order_wrong",
-                 [&] { return Sighting{{fmt::format("PT for node {:02X}", next)}, one.text(), one.begin}; });
+                 [&] { return Mismatch{{fmt::format("PT for node {:02X}", next)}, one.text(), one.begin}; });
     judge.expect(has_final_use(one) == (next == 0x11), "begin_not_marked", [&] {
-      return Sighting{{"the first token of a circulation marked, and no other"}, one.text(), one.begin};
+      return Mismatch{{"the first token of a circulation marked, and no other"}, one.text(), one.begin};
     });
     next = next == 0x14 ? 0x11 : static_cast<std::uint8_t>(next + 1);
     ++tokens;
@@ -64,7 +64,7 @@ void each_circulation_probes(FfBench& bench, CaseJudge& judge) {
        bench.serve(kernel::kStart + bench.octets(bench.volume(40'000, 100'000)), busy)) {
     if (begins_circulation(bench, one)) {
       judge.expect(has_probed, "no_probe",
-                   [&] { return Sighting{{"a PN between two circulations"}, one.text(), one.begin}; });
+                   [&] { return Mismatch{{"a PN between two circulations"}, one.text(), one.begin}; });
       has_probed = false;
     }
     if (!is_of(one, rules.codes.pn)) continue;
@@ -73,18 +73,18 @@ void each_circulation_probes(FfBench& bench, CaseJudge& judge) {
     const std::uint8_t node = one.octet(1);
     const bool is_unpolled = node >= rules.first_unpolled && node < rules.first_unpolled + rules.unpolled;
     judge.expect(!is_unpolled, "probes_unpolled", [&] {
-      return Sighting{{fmt::format("no PN for {:02X} to {:02X}", rules.first_unpolled,
+      return Mismatch{{fmt::format("no PN for {:02X} to {:02X}", rules.first_unpolled,
                                    rules.first_unpolled + rules.unpolled - 1)},
                       one.text(),
                       one.begin};
     });
     const bool is_live = node >= 0x10 && node <= 0x14;
     judge.expect(!is_live, "probes_live_node",
-                 [&] { return Sighting{{"no PN for a live node"}, one.text(), one.begin}; });
+                 [&] { return Mismatch{{"no PN for a live node"}, one.text(), one.begin}; });
     const bool is_ascending = node > last;
     if (!is_ascending) ++wraps;
     judge.expect(is_ascending || node == 0x15, "probes_out_of_order", [&] {
-      return Sighting{{fmt::format("the next address behind {:02X}", last)}, one.text(), one.begin};
+      return Mismatch{{fmt::format("the next address behind {:02X}", last)}, one.text(), one.begin};
     });
     last = node;
   }
@@ -135,7 +135,7 @@ void who_overstays_is_stopped(FfBench& bench, CaseJudge& judge) {
       next = bench.next(end + 2 * bench.least_gap() - kLinkRounding);
     }
     judge.expect(next.has_value(), "holder_not_stopped", [&] {
-      return Sighting{
+      return Mismatch{
           {fmt::format("the token of 12 taken back in a silence behind {}", kernel::describe(over))},
           "the station was silent",
           latest};
@@ -183,7 +183,7 @@ void expect_priorities(CaseJudge& judge, const std::vector<Circulation>& found,
                        const std::vector<Priority>& wanted, std::string_view reason) {
   for (std::size_t n = 0; n < wanted.size(); ++n) {
     judge.expect(n < found.size() && found[n].priority == wanted[n], reason, [&] {
-      return Sighting{{fmt::format("circulation {} with priority {}", n + 1, priority_text(wanted[n]))},
+      return Mismatch{{fmt::format("circulation {} with priority {}", n + 1, priority_text(wanted[n]))},
                       n < found.size() ? std::string(priority_text(found[n].priority)) : "no circulation"};
     });
   }
@@ -226,7 +226,7 @@ void an_equal_rotation_is_slow(FfBench& bench, CaseJudge& judge) {
   const std::vector<Circulation> equal = circulations(bench, 6 + kUntilSettled, later);
   for (std::size_t n = kUntilSettled; n < equal.size(); ++n) {
     judge.expect(equal[n].priority == Priority::urgent, "equal_rotation_is_fast", [&] {
-      return Sighting{{"a token for urgent data: the rotation before took V(TTRT)"},
+      return Mismatch{{"a token for urgent data: the rotation before took V(TTRT)"},
                       std::string(priority_text(equal[n].priority)),
                       equal[n].begin};
     });
@@ -244,8 +244,8 @@ std::vector<FfCase> ff_circulation_cases() {
   using link_sources::memory;
   using link_sources::own;
   using link_sources::vendors;
-  const Detail step{own("one step for each circulation; the first one is urgent"),
-                    {"priority_not_lowered", "priority_not_raised"}};
+  const PartialSource step{own("one step for each circulation; the first one is urgent"),
+                           {"priority_not_lowered", "priority_not_raised"}};
   return {
       {{.id = "fieldbus_dll/ff_las/circulation/tokens_go_round",
         .purpose = "FF-18",

@@ -46,7 +46,7 @@ DrivenDlpdu expect_claim(FfBench& bench, CaseJudge& judge, kernel::Time silent_s
   const kernel::Duration delay = bench.octets(bench.rules().claim_delay_octets + 1);
   const DrivenDlpdu cl = expect_next(bench, judge, claim + 20 * bench.slot(), "no_claim", "a CL");
   judge.expect(cl.octets == Octets{bench.rules().codes.cl, bench.node()}, "no_claim",
-               [&] { return Sighting{{"a CL with the node of the station"}, cl.text(), cl.begin}; });
+               [&] { return Mismatch{{"a CL with the node of the station"}, cl.text(), cl.begin}; });
   expect_begins(judge, cl, claim, "claim_early", claim + delay, "claim_late");
   return cl;
 }
@@ -86,7 +86,7 @@ void the_macrocycle_goes_on(FfBench& bench, CaseJudge& judge) {
     const kernel::Duration late = (one.begin + kLinkRounding - end + into + macrocycle - at) % macrocycle;
     judge.expect(late <= bench.octets(bench.rules().scheduling_overhead_octets) + 2 * kLinkRounding,
                  "macrocycle_lost", [&] {
-                   return Sighting{{"the CD at its place in the macrocycle, as link time tells it"},
+                   return Mismatch{{"the CD at its place in the macrocycle, as link time tells it"},
                                    fmt::format("{} behind it", kernel::describe(late)),
                                    one.begin};
                  });
@@ -110,7 +110,7 @@ void who_was_told_to_be_live_gets_the_token(FfBench& bench, CaseJudge& judge) {
     if (is_pt(bench, one)) passed.insert(one.octet(1));
   }
   judge.expect(passed == std::set<unsigned>{0x12, 0x15}, "live_list_not_kept", [&] {
-    return Sighting{{"PTs for 12 and 15, as the live list says"},
+    return Mismatch{{"PTs for 12 and 15, as the live list says"},
                     fmt::format("for {:02X}", fmt::join(passed, " "))};
   });
 }
@@ -195,7 +195,7 @@ void expect_silent_in_standby(FfBench& bench, CaseJudge& judge) {
   for (int i = 0; i < 6; ++i) {
     const auto one = bench.next(bench.now() + bench.octets(60));
     judge.expect(!one.has_value(), "two_schedulers",
-                 [&] { return Sighting{{"silence: another is the scheduler"}, one->text(), one->begin}; });
+                 [&] { return Mismatch{{"silence: another is the scheduler"}, one->text(), one->begin}; });
     speak(bench);
   }
 }
@@ -239,7 +239,7 @@ void a_link_master_in_standby_is_a_device(FfBench& bench, CaseJudge& judge) {
   bench.send({bench.rules().codes.pn, bench.node()});
   const DrivenDlpdu pr = expect_next(bench, judge, "not_a_device", "a PR");
   judge.expect(pr.octets == Octets{bench.rules().codes.pr, bench.node()}, "not_a_device",
-               [&] { return Sighting{{"a PR"}, pr.text(), pr.begin}; });
+               [&] { return Mismatch{{"a PR"}, pr.text(), pr.begin}; });
   bench.wait(bench.least_gap());
   bench.send(bench.activation(bench.node()));
   bench.wait(bench.octets(20));

@@ -95,12 +95,12 @@ std::vector<DrivenDlpdu> expect_token_used(FfBench& bench, CaseJudge& judge, ker
   kernel::Time since = from;
   for (const DrivenDlpdu& one : bench.listen()) {
     judge.expect(!is_returned, "token_returned_twice",
-                 [&] { return Sighting{{"silence: the token has been returned"}, one.text(), one.begin}; });
+                 [&] { return Mismatch{{"silence: the token has been returned"}, one.text(), one.begin}; });
     expect_begins(judge, one, since, "answers_too_early", since + bench.response_delay(), "answers_too_late");
     since = one.end;
     const bool is_data = is_dt1(bench, one);
     judge.expect(is_data || is_of(one, codes.rt) || is_of(one, codes.ri), "unexpected_dlpdu",
-                 [&] { return Sighting{{"DT1, RI or RT"}, one.text(), one.begin}; });
+                 [&] { return Mismatch{{"DT1, RI or RT"}, one.text(), one.begin}; });
     if (is_data) data.push_back(one);
     is_returned = is_of(one, codes.rt) || (is_data && has_final_use(one));
   }
@@ -112,17 +112,17 @@ void expect_dlsdus(CaseJudge& judge, const std::vector<DrivenDlpdu>& data, const
                    std::string_view reason_for_missing, std::string_view reason_for_more,
                    std::string_view reason_for_others) {
   judge.expect(data.size() >= wanted.size(), reason_for_missing, [&] {
-    return Sighting{{fmt::format("{} DT1", wanted.size())}, fmt::format("{}", data.size())};
+    return Mismatch{{fmt::format("{} DT1", wanted.size())}, fmt::format("{}", data.size())};
   });
   judge.expect(data.size() <= wanted.size(), reason_for_more, [&] {
     const DrivenDlpdu& first = data[wanted.size()];
-    return Sighting{{fmt::format("{} DT1", wanted.size())},
+    return Mismatch{{fmt::format("{} DT1", wanted.size())},
                     fmt::format("{}, the first one too many: {}", data.size(), first.text()),
                     first.begin};
   });
   for (std::size_t n = 0; n < wanted.size(); ++n) {
     judge.expect(dlsdu_of(data[n]) == wanted[n], reason_for_others, [&] {
-      return Sighting{{fmt::format("DLSDU {:02X}", fmt::join(wanted[n], " "))},
+      return Mismatch{{fmt::format("DLSDU {:02X}", fmt::join(wanted[n], " "))},
                       data[n].text(),
                       data[n].begin,
                       fmt::format("DT1 {}", n + 1)};
@@ -140,7 +140,7 @@ void expect_serves(FfBench& bench, CaseJudge& judge) {
   const bool is_served = std::ranges::any_of(
       all, [&](const DrivenDlpdu& one) { return is_dt1(bench, one) && dlsdu_of(one) == data; });
   judge.expect(is_served, "does_not_recover", [&] {
-    return Sighting{{"under a long PT, all that was submitted"},
+    return Mismatch{{"under a long PT, all that was submitted"},
                     all.empty() ? std::string("silence") : all.front().text()};
   });
 }

@@ -137,11 +137,11 @@ void what_comes_is_told_as_it_is(FfBench& bench, CaseJudge& judge) {
   }
   const auto rounds = static_cast<std::size_t>(bench.volume(2, 20));
   judge.expect(bench.user().data.size() >= 6 * rounds, "not_told", [&] {
-    return Sighting{{fmt::format("{} DT1 are told", 6 * rounds)},
+    return Mismatch{{fmt::format("{} DT1 are told", 6 * rounds)},
                     fmt::format("{}", bench.user().data.size())};
   });
   judge.expect(bench.user().published.size() >= rounds, "not_told", [&] {
-    return Sighting{{fmt::format("{} DT3 are told", rounds)},
+    return Mismatch{{fmt::format("{} DT3 are told", rounds)},
                     fmt::format("{}", bench.user().published.size())};
   });
 }
@@ -162,7 +162,7 @@ void frames_are_as_long_as_the_paper_says(FfBench& bench, CaseJudge& judge) {
     const kernel::Duration wanted = bench.octets(static_cast<std::int64_t>(size) + 11 + 3);
     judge.expect(
         length + kLinkRounding >= wanted && length <= wanted + kLinkRounding, "frame_length_wrong",
-        [&] { return Sighting{{kernel::describe(wanted)}, kernel::describe(length), sent[0].begin}; });
+        [&] { return Mismatch{{kernel::describe(wanted)}, kernel::describe(length), sent[0].begin}; });
     judge.measure(fmt::format("a DT1 of {} octets of data", size), "us",
                   static_cast<double>(length / kernel::kMicrosecond));
   }

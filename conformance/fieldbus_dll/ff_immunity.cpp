@@ -52,7 +52,7 @@ void ask_under_stress(FfBench& bench, CaseJudge& judge, std::set<Octets>& submit
   const bool is_asked = asks(bench, bench.sent().back());
   for (const DrivenDlpdu& one : listen_under_stress(bench, judge, is_asked, ledger)) {
     judge.expect(!is_dt1(bench, one) || submitted.erase(dlsdu_of(one)) == 1, "data_wrong",
-                 [&] { return Sighting{{"what was submitted, once"}, one.text(), one.begin}; });
+                 [&] { return Mismatch{{"what was submitted, once"}, one.text(), one.begin}; });
   }
 }
 
@@ -124,7 +124,7 @@ void a_scheduler_goes_on_under_bursts(FfBench& bench, CaseJudge& judge) {
                                static_cast<std::int64_t>(compelled / items.size()) * macrocycle +
                                std::int64_t{item.at} * fieldbus_dll::kTick;
       judge.expect(one.octet(1) == item.address >> 8, "compelled_wrong", [&] {
-        return Sighting{{fmt::format("CD for {:04X}", item.address)}, one.text(), one.begin};
+        return Mismatch{{fmt::format("CD for {:04X}", item.address)}, one.text(), one.begin};
       });
       expect_begins(judge, one, due, "compelled_early", due + most, "compelled_late");
       ++compelled;
@@ -136,7 +136,7 @@ void a_scheduler_goes_on_under_bursts(FfBench& bench, CaseJudge& judge) {
     const bool is_told_to_all = is_dt1(bench, one) && addresses_in(one).to == fieldbus_dll::kEverybody;
     judge.expect(!is_told_to_all || hits.in_a_row(kFirstNode) >= 3 || hits.in_a_row(kSecondNode) >= 3,
                  "removed_too_early", [&] {
-                   return Sighting{{"the live list as it is: no three answers of a node in a row were hit"},
+                   return Mismatch{{"the live list as it is: no three answers of a node in a row were hit"},
                                    one.text(),
                                    one.begin};
                  });
@@ -155,7 +155,7 @@ void a_scheduler_goes_on_under_bursts(FfBench& bench, CaseJudge& judge) {
   }
   const auto rounds = static_cast<std::size_t>((end - kernel::kStart) / macrocycle);
   judge.expect(compelled + items.size() >= rounds * items.size(), "not_compelled", [&] {
-    return Sighting{{fmt::format("some {} CDs", rounds * items.size())}, fmt::format("{}", compelled)};
+    return Mismatch{{fmt::format("some {} CDs", rounds * items.size())}, fmt::format("{}", compelled)};
   });
   judge.measure("macrocycles", "", static_cast<double>(rounds));
   judge.measure("tokens", "", static_cast<double>(tokens[kFirstNode] + tokens[kSecondNode]));

@@ -317,7 +317,7 @@ FfLasModel::Found FfLasModel::say_probe(const DrivenDlpdu& pn) {
 FfLasModel::Found FfLasModel::say_time(const DrivenDlpdu& td) {
   std::uint64_t ticks = 0;
   for (std::size_t n = 1; n <= 6; ++n) ticks = ticks << 8 | td.octet(n);
-  const auto last = std::exchange(told_, Told{ticks, td.end});
+  const auto last = std::exchange(told_, Reported{ticks, td.end});
   time_told_ = td.begin;
   if (!last) return std::nullopt;
   const auto said = static_cast<std::int64_t>(ticks - last->ticks);

@@ -75,7 +75,7 @@ class FfLasModel {
     bool is_heard = false;     // something of its holder
     bool is_noisy = false;
   };
-  struct Told {
+  struct Reported {
     std::uint64_t ticks;
     kernel::Time end;
   };
@@ -116,7 +116,7 @@ class FfLasModel {
   std::optional<Question> question_;
   bool is_asked_for_time_ = false;
   kernel::Time time_told_ = kernel::kStart;
-  std::optional<Told> told_;
+  std::optional<Reported> told_;
   std::size_t items_done_ = 0;
 
   std::optional<std::uint8_t> last_token_;         // of this circulation

@@ -300,7 +300,7 @@ class FfLasSequenceRun {
     const bool is_taken = bench_.submit(priority, data);
     const bool is_right = model_.submit(priority, data);
     judge_.expect(is_taken == is_right, is_right ? "data_refused" : "data_too_long_taken", [&] {
-      return Sighting{{fmt::format("data of {} octets is {}", size, is_right ? "taken" : "refused")},
+      return Mismatch{{fmt::format("data of {} octets is {}", size, is_right ? "taken" : "refused")},
                       is_taken ? "taken" : "refused"};
     });
   }
@@ -313,11 +313,11 @@ class FfLasSequenceRun {
   std::vector<Octets> data_;
 };
 
-std::vector<Detail> ff_las_sequence_details() {
+std::vector<PartialSource> ff_las_sequence_details() {
   using link_sources::memory;
   using link_sources::own;
   using link_sources::vendors;
-  std::vector<Detail> details = ff_details();
+  std::vector<PartialSource> details = ff_details();
   details.push_back({own("what a scheduler says when"),
                      {"does_not_wait", "order_wrong", "begin_not_marked", "token_for_removed",
                       "token_shorter_than_the_time", "priority_wrong", "time_request_ignored",

@@ -49,7 +49,7 @@ void a_node_that_answers_is_activated(FfBench& bench, CaseJudge& judge) {
       judge.expect(list->size() == kOctetsOfALiveList && is_live_in(*list, kNew) &&
                        is_live_in(*list, kKnown) && !is_live_in(*list, 0x12) && !is_live_in(*list, 0xC8),
                    "live_list_wrong",
-                   [&] { return Sighting{{"a live list with 10, 11 and 13"}, one.text(), one.begin}; });
+                   [&] { return Mismatch{{"a live list with 10, 11 and 13"}, one.text(), one.begin}; });
       listed = circulations;
     }
     if (const auto spdu = told(bench, one, fieldbus_dll::address_of(kNew)); spdu && has_answered)
@@ -64,7 +64,7 @@ void a_node_that_answers_is_activated(FfBench& bench, CaseJudge& judge) {
   judge.expect(has_answered, "no_probe", "a PN for 13", "none");
   judge.expect(activated.has_value(), "not_activated", "an activation for 13", "none");
   judge.expect(passed.has_value() && *passed <= 1, "no_token_for_new_node", [&] {
-    return Sighting{{"a PT for 13 in the next circulation"},
+    return Mismatch{{"a PT for 13 in the next circulation"},
                     passed ? fmt::format("in circulation {} behind its PR", *passed) : "none"};
   });
   judge.expect(listed.has_value(), "live_list_not_told", "the live list for everybody", "none");
@@ -76,7 +76,7 @@ void a_probe_response_of_another_is_none(FfBench& bench, CaseJudge& judge) {
   const auto answers = [&](const DrivenDlpdu& one) -> std::optional<FfBench::Reply> {
     const bool is_told = is_dt1(bench, one) && fieldbus_dll::node_of(addresses_in(one).to) != kKnown;
     judge.expect(!is_told, "takes_probe_response_of_another", [&] {
-      return Sighting{
+      return Mismatch{
           {"no activation and no live list: nobody has answered its own probe"}, one.text(), one.begin};
     });
     if (!is_of(one, bench.rules().codes.pn) || one.octet(1) == kElsewhere) return bench.returned(one);
@@ -124,7 +124,7 @@ void who_misses_three_tokens_is_removed(FfBench& bench, CaseJudge& judge) {
   const Misses found = miss(bench, [](std::size_t token) { return token >= 4; }, 6'000);
   judge.expect(found.is_removed, "not_removed", "no PT for 11 behind the third that it missed", "PTs go on");
   judge.expect(found.tokens_until_removal == 3, "removed_at_other_time", [&] {
-    return Sighting{{"removed behind the third token that it missed"},
+    return Mismatch{{"removed behind the third token that it missed"},
                     fmt::format("behind {}", found.tokens_until_removal)};
   });
   judge.expect(found.is_told, "live_list_not_told", "a live list without 11 for everybody", "none");

@@ -23,7 +23,7 @@ void a_probe_is_answered(FfBench& bench, CaseJudge& judge) {
     const DrivenDlpdu pr = expect_next(bench, judge, "no_probe_response", "a PR");
     const Octets wanted{bench.rules().codes.pr, bench.node()};
     judge.expect(pr.octets == wanted, "dlpdu_wrong",
-                 [&] { return Sighting{{"PR with the station's node"}, pr.text(), pr.begin}; });
+                 [&] { return Mismatch{{"PR with the station's node"}, pr.text(), pr.begin}; });
     expect_begins(judge, pr, end + bench.least_gap(), "answers_too_early", end + bench.response_delay(),
                   "answers_too_late");
     expect_silence(bench, judge, "talks_behind_answer", "one PR is sent");

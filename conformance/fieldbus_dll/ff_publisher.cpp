@@ -13,25 +13,25 @@ DrivenDlpdu expect_published(FfBench& bench, CaseJudge& judge) {
   const kernel::Time end = bench.send(bench.cd(FfBench::kPublished));
   const std::vector<DrivenDlpdu> all = bench.listen();
   judge.expect(!all.empty() && is_dt3(bench, all.front()), "not_published", [&] {
-    return Sighting{{"a DT3"}, all.empty() ? std::string("silence") : all.front().text()};
+    return Mismatch{{"a DT3"}, all.empty() ? std::string("silence") : all.front().text()};
   });
   const DrivenDlpdu& dt3 = all.front();
   expect_begins(judge, dt3, end + bench.least_gap(), "answers_too_early", end + bench.response_delay(),
                 "answers_too_late");
   judge.expect(buffer_in(dt3).from == FfBench::kPublished, "dlpdu_wrong",
-               [&] { return Sighting{{"the address of the buffer as the source"}, dt3.text(), dt3.begin}; });
+               [&] { return Mismatch{{"the address of the buffer as the source"}, dt3.text(), dt3.begin}; });
   const bool is_returned_by_rt = all.size() == 2 && is_of(all[1], bench.rules().codes.rt);
   judge.expect(all.size() == 1 || is_returned_by_rt, "unexpected_dlpdu", [&] {
-    return Sighting{{"the DT3, and a RT where it has no F"}, all[1].text(), all[1].begin};
+    return Mismatch{{"the DT3, and a RT where it has no F"}, all[1].text(), all[1].begin};
   });
   judge.expect(has_final_use(dt3) != is_returned_by_rt, "token_not_returned_once",
-               [&] { return Sighting{{"the token returned by F or by RT, once"}, dt3.text(), dt3.begin}; });
+               [&] { return Mismatch{{"the token returned by F or by RT, once"}, dt3.text(), dt3.begin}; });
   return dt3;
 }
 
 void expect_buffer(CaseJudge& judge, const DrivenDlpdu& dt3, const Octets& wanted, std::string_view reason) {
   judge.expect(buffer_in(dt3).data == wanted, reason, [&] {
-    return Sighting{{fmt::format("buffer {:02X}", fmt::join(wanted, " "))}, dt3.text(), dt3.begin};
+    return Mismatch{{fmt::format("buffer {:02X}", fmt::join(wanted, " "))}, dt3.text(), dt3.begin};
   });
 }
 
@@ -63,7 +63,7 @@ void a_buffer_is_published_whole(FfBench& bench, CaseJudge& judge) {
     const DrivenDlpdu dt3 = expect_next(bench, judge, "not_published", "a DT3");
     const Octets found = buffer_in(dt3).data;
     judge.expect(found == before || found == after, "buffer_torn", [&] {
-      return Sighting{{fmt::format("the old buffer {:02X}", fmt::join(before, " ")),
+      return Mismatch{{fmt::format("the old buffer {:02X}", fmt::join(before, " ")),
                        fmt::format("the new one {:02X}", fmt::join(after, " "))},
                       dt3.text(),
                       dt3.begin};
@@ -82,17 +82,17 @@ void what_is_not_fresh_shows(FfBench& bench, CaseJudge& judge) {
     expect_buffer(judge, first, data, "buffer_wrong");
     expect_buffer(judge, again, data, "buffer_wrong");
     judge.expect(writes_in(again) == writes_in(first), "freshness_wrong",
-                 [&] { return Sighting{{"the number of writes as before"}, again.text(), again.begin}; });
+                 [&] { return Mismatch{{"the number of writes as before"}, again.text(), again.begin}; });
     write_some(bench, judge, 8);
     const DrivenDlpdu fresh = expect_published(bench, judge);
     judge.expect(writes_in(fresh) == static_cast<std::uint8_t>(writes_in(first) + 1), "freshness_wrong",
-                 [&] { return Sighting{{"one write more"}, fresh.text(), fresh.begin}; });
+                 [&] { return Mismatch{{"one write more"}, fresh.text(), fresh.begin}; });
   }
   const DrivenDlpdu before = expect_published(bench, judge);
   for (int n = 0; n < 256; ++n) write_some(bench, judge, 8);
   const DrivenDlpdu behind = expect_published(bench, judge);
   judge.expect(writes_in(behind) == writes_in(before), "freshness_wrong", [&] {
-    return Sighting{{"the number of writes as before: its octet went round"}, behind.text(), behind.begin};
+    return Mismatch{{"the number of writes as before: its octet went round"}, behind.text(), behind.begin};
   });
 }
 
@@ -105,7 +105,7 @@ void an_unknown_address_is_not_published(FfBench& bench, CaseJudge& judge) {
     for (const DrivenDlpdu& one : bench.listen()) {
       const bool is_status = (one.octet(0) & ~fieldbus_dll::kFinalBit) == bench.rules().codes.sr;
       judge.expect(is_status || is_of(one, bench.rules().codes.rt), "unknown_address_published", [&] {
-        return Sighting{
+        return Mismatch{
             {"SR, RT or silence: there is no such buffer, or nothing in it"}, one.text(), one.begin};
       });
     }
@@ -135,7 +135,7 @@ std::vector<FfCase> ff_publisher_cases() {
   using link_sources::ff_paper;
   using link_sources::memory;
   using link_sources::own;
-  const Detail returned{memory("final use, RT"), {"token_not_returned_once"}};
+  const PartialSource returned{memory("final use, RT"), {"token_not_returned_once"}};
   return {
       {{.id = "fieldbus_dll/ff_device/publisher/the_latest_write_is_published",
         .purpose = "FF-11",

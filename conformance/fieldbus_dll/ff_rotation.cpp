@@ -149,7 +149,7 @@ void rotations_are_as_computed(FfBench& bench, CaseJudge& judge) {
                        share - tolerance, share + tolerance, "share_of_priority_wrong");
 }
 
-FfCase at_target(const std::string& name, void (*change)(FfConfiguration&), std::vector<Catch> catches) {
+FfCase at_target(const std::string& name, void (*change)(FfConfiguration&), std::vector<MustCatch> catches) {
   return {
       {.id = "fieldbus_dll/ff_las/rotation/sixteen_nodes_at_" + name,
        .purpose = "FF-22",

@@ -58,7 +58,7 @@ void ff_each_item_has_its_time(FfBench& bench, CaseJudge& judge) {
     const bool is_right = one.octet(1) == item.address >> 8 && one.octet(2) == (item.address & 0xFF) &&
                           priority_in(one) == item.priority;
     judge.expect(is_right, "compelled_wrong", [&] {
-      return Sighting{{fmt::format("CD for {:04X}", item.address)}, one.text(), one.begin};
+      return Mismatch{{fmt::format("CD for {:04X}", item.address)}, one.text(), one.begin};
     });
     expect_begins(judge, one, due, "compelled_early", due + most, "compelled_late");
     farthest = std::max(farthest, one.begin - due);
@@ -66,7 +66,7 @@ void ff_each_item_has_its_time(FfBench& bench, CaseJudge& judge) {
   }
   const auto wanted = static_cast<std::size_t>(cycles) * items.size();
   judge.expect(n + items.size() >= wanted, "not_compelled",
-               [&] { return Sighting{{fmt::format("some {} CDs", wanted)}, fmt::format("{}", n)}; });
+               [&] { return Mismatch{{fmt::format("some {} CDs", wanted)}, fmt::format("{}", n)}; });
   judge.measure("farthest from its time", "us", static_cast<double>(farthest / kernel::kMicrosecond));
 }
 
@@ -81,13 +81,13 @@ void a_token_ends_before_what_is_due(FfBench& bench, CaseJudge& judge) {
     ++tokens;
     const unsigned grant = duration_in(pt);
     judge.expect(grant >= bench.rules().least_token_octets, "token_too_short", [&] {
-      return Sighting{
+      return Mismatch{
           {fmt::format("tokens for V(DMDT), {} octets, at least", bench.rules().least_token_octets)},
           pt.text(),
           pt.begin};
     });
     judge.expect(grant <= bench.rules().token_holding_octets, "token_too_long", [&] {
-      return Sighting{
+      return Mismatch{
           {fmt::format("tokens for V(DTHT), {} octets, at most", bench.rules().token_holding_octets)},
           pt.text(),
           pt.begin};
@@ -97,7 +97,7 @@ void a_token_ends_before_what_is_due(FfBench& bench, CaseJudge& judge) {
       const kernel::Duration phase = (pt.end - kernel::kStart) % macrocycle;
       const kernel::Duration left = phase <= at ? at - phase : at + macrocycle - phase;
       judge.expect(bench.octets(grant) <= left, "token_over_due", [&] {
-        return Sighting{{fmt::format("a token that ends before the CD in {}", kernel::describe(left))},
+        return Mismatch{{fmt::format("a token that ends before the CD in {}", kernel::describe(left))},
                         pt.text(),
                         pt.begin};
       });
@@ -125,7 +125,7 @@ void a_token_in_front_of_a_cd_uses_the_time(FfBench& bench, CaseJudge& judge) {
       left = std::min(left, phase <= at ? at - phase : at + macrocycle - phase);
     }
     const auto sighting = [&] {
-      return Sighting{{fmt::format("a token that ends V(MSO) and V(MID) before the CD in {}, to two octets",
+      return Mismatch{{fmt::format("a token that ends V(MSO) and V(MID) before the CD in {}, to two octets",
                                    kernel::describe(left))},
                       pt.text(),
                       pt.begin};
@@ -178,7 +178,7 @@ void its_own_buffer_is_published(FfBench& bench, CaseJudge& judge) {
       if (!is_dt3(bench, one)) continue;
       const BufferOfDt3 buffer = buffer_in(one);
       judge.expect(buffer.from == kOwn && buffer.data == data, "buffer_wrong", [&] {
-        return Sighting{{fmt::format("{:04X} as it was written last", kOwn)}, one.text(), one.begin};
+        return Mismatch{{fmt::format("{:04X} as it was written last", kOwn)}, one.text(), one.begin};
       });
       expect_begins(judge, one, due, "compelled_early", due + most, "compelled_late");
       is_published = true;
@@ -205,7 +205,7 @@ void the_line_is_kept_active(FfBench& bench, CaseJudge& judge) {
     for (; heard < bench.heard().size() && bench.heard()[heard].end <= one.begin; ++heard)
       silent_since = std::max(silent_since, bench.heard()[heard].end);
     judge.expect(one.begin - silent_since < claim, "line_left_silent", [&] {
-      return Sighting{{fmt::format("silence for less than {}", kernel::describe(claim))},
+      return Mismatch{{fmt::format("silence for less than {}", kernel::describe(claim))},
                       kernel::describe(one.begin - silent_since),
                       one.begin};
     });

@@ -105,7 +105,7 @@ class FfSequenceRun {
 
   void run(const Sequence& sequence) {
     for (const SequenceCommand& command : sequence) execute(command);
-    settle();
+    await_response_window();
     judge_user();
   }
 
@@ -113,7 +113,7 @@ class FfSequenceRun {
   void execute(const SequenceCommand& command) {
     const auto word = static_cast<FfWord>(command.word);
     if (word == FfWord::wait) {
-      settle();
+      await_response_window();
       return bench_.wait(bench_.octets(command.numbers[0]));
     }
     if (word == FfWord::submit) return submit(command);
@@ -124,7 +124,7 @@ class FfSequenceRun {
       model_.hear_noise(bench_.now());
     }
     const std::int64_t silence = command.numbers.back();
-    if (silence >= bench_.link().inter_pdu_delay_octets) return settle();
+    if (silence >= bench_.link().inter_pdu_delay_octets) return await_response_window();
     bench_.wait(bench_.octets(silence));
     judge_said();
   }
@@ -203,7 +203,7 @@ class FfSequenceRun {
 
   void judge_taken(bool is_taken, bool is_right, const Octets& data) {
     judge_.expect(is_taken == is_right, is_right ? "data_refused" : "data_too_long_taken", [&] {
-      return Sighting{{fmt::format("data of {} octets is {}", data.size(), is_right ? "taken" : "refused")},
+      return Mismatch{{fmt::format("data of {} octets is {}", data.size(), is_right ? "taken" : "refused")},
                       is_taken ? "taken" : "refused"};
     });
   }
@@ -215,7 +215,7 @@ class FfSequenceRun {
     }
   }
 
-  void settle() {
+  void await_response_window() {
     for (const DrivenDlpdu& one : bench_.listen()) object(model_.say(one), one.text(), one.begin);
     object(model_.be_silent(), "silence", bench_.now());
   }
@@ -244,8 +244,8 @@ class FfSequenceRun {
   std::vector<Octets> published_;
 };
 
-std::vector<Detail> ff_sequence_details() {
-  std::vector<Detail> details = ff_details();
+std::vector<PartialSource> ff_sequence_details() {
+  std::vector<PartialSource> details = ff_details();
   details.push_back({link_sources::own("a token is returned by F or by RT as soon as nothing fits"),
                      {"token_not_returned", "data_held_back", "speaks_unasked"}});
   details.push_back(

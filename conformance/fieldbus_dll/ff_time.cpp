@@ -28,7 +28,7 @@ void expect_time_goes_on(CaseJudge& judge, const DrivenDlpdu& before, const Driv
   const kernel::Duration told = ticks * fieldbus_dll::kTick;
   judge.expect(
       told <= passed + fieldbus_dll::kTick && told >= passed - fieldbus_dll::kTick, "time_wrong", [&] {
-        return Sighting{
+        return Mismatch{
             {fmt::format("{} more, to a tick", kernel::describe(passed))}, kernel::describe(told), td.begin};
       });
 }
@@ -44,7 +44,7 @@ void time_is_distributed(FfBench& bench, CaseJudge& judge) {
     if (last) {
       longest = std::max(longest, one.begin - last->begin);
       judge.expect(one.begin - last->begin <= most + kLinkRounding, "time_told_late", [&] {
-        return Sighting{{fmt::format("a TD within {}: 95 % of V(TDP)", kernel::describe(most))},
+        return Mismatch{{fmt::format("a TD within {}: 95 % of V(TDP)", kernel::describe(most))},
                         kernel::describe(one.begin - last->begin),
                         one.begin};
       });
@@ -91,7 +91,7 @@ std::vector<FfCase> ff_time_cases() {
   using link_sources::memory;
   using link_sources::own;
   using link_sources::vendors;
-  const Detail time{own("link time in 1/32 ms at the end of a TD"), {"time_wrong"}};
+  const PartialSource time{own("link time in 1/32 ms at the end of a TD"), {"time_wrong"}};
   return {
       {{.id = "fieldbus_dll/ff_las/time/is_distributed",
         .purpose = "FF-27",

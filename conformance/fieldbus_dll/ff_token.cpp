@@ -63,7 +63,7 @@ bool fit_is_judged(FfBench& bench, CaseJudge& judge, unsigned duration, std::siz
   const std::vector<DrivenDlpdu> sent = expect_token_used(bench, judge, end);
   const DrivenDlpdu& last = bench.driven().back();
   const auto sighting = [&] {
-    return Sighting{{fmt::format("a DT1 that ends until {}, and is sent then", kernel::describe(over))},
+    return Mismatch{{fmt::format("a DT1 that ends until {}, and is sent then", kernel::describe(over))},
                     fmt::format("{} from {} to {}", last.text(), kernel::describe(last.begin),
                                 kernel::describe(last.end)),
                     last.begin};
@@ -106,7 +106,7 @@ void ff_nothing_is_sent_behind_the_duration(FfBench& bench, CaseJudge& judge) {
         bench.send(bench.pt(Priority::time_available, duration)) + bench.octets(duration);
     for (const DrivenDlpdu& one : bench.listen()) {
       judge.expect(one.end <= over + kLinkRounding, "talks_behind_duration", [&] {
-        return Sighting{
+        return Mismatch{
             {fmt::format("silence behind {}, {} octets behind the PT", kernel::describe(over), duration)},
             fmt::format("{} until {}", one.text(), kernel::describe(one.end)),
             one.begin};

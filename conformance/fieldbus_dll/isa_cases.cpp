@@ -38,7 +38,7 @@ void judge_end(IsaBench& bench, CaseJudge& judge) {
   judge_what_its_user_was_told(bench, judge);
   for (const DrivenDlpdu& one : bench.driven()) {
     judge.expect(one.octet(2) == bench.address(), "source_wrong", [&] {
-      return Sighting{{"the station's own address as the source"}, one.text(), one.begin};
+      return Mismatch{{"the station's own address as the source"}, one.text(), one.begin};
     });
   }
   bench.finish();

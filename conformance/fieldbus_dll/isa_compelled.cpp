@@ -22,7 +22,7 @@ DrivenDlpdu expect_reply(IsaBench& bench, CaseJudge& judge, kernel::Time cd_end,
   expect_begins(judge, dt, cd_end + bench.least_gap(), "answers_too_early", cd_end + bench.reply_forming(),
                 "reply_too_late");
   const auto sighting = [&](std::string expected) {
-    return [&, expected] { return Sighting{{expected}, dt.text(), dt.begin}; };
+    return [&, expected] { return Mismatch{{expected}, dt.text(), dt.begin}; };
   };
   judge.expect(is_type(dt, bench.rules().codes.dt) && dt.octet(1) == IsaBench::kPeer, "dlpdu_wrong",
                sighting("DT to the station that compelled"));
@@ -95,7 +95,7 @@ void lower_priorities_are_kept(IsaBench& bench, CaseJudge& judge) {
 std::vector<IsaCase> isa_compelled_cases() {
   using link_sources::isa_paper;
   using link_sources::own;
-  const Detail forming{own("V(FD) is 24 octets, from the end of the CD"), {"reply_too_late"}};
+  const PartialSource forming{own("V(FD) is 24 octets, from the end of the CD"), {"reply_too_late"}};
   return {
       {{.id = "fieldbus_dll/isa_dle/compelled/data_is_sent",
         .purpose = "ISA-22",

@@ -27,7 +27,7 @@ Compelled compel(IsaBench& bench, CaseJudge& judge) {
   const Octets wanted{bench.control(bench.rules().codes.cd, Priority::normal), IsaBench::kPeer,
                       bench.address()};
   judge.expect(cd.octets == wanted, "dlpdu_wrong", [&] {
-    return Sighting{{fmt::format("CD: {:02X}", fmt::join(wanted, " "))}, cd.text(), cd.begin};
+    return Mismatch{{fmt::format("CD: {:02X}", fmt::join(wanted, " "))}, cd.text(), cd.begin};
   });
   bench.user().deliveries.clear();
   return {cd, behind};
@@ -36,7 +36,7 @@ Compelled compel(IsaBench& bench, CaseJudge& judge) {
 void expect_goes_on(IsaBench& bench, CaseJudge& judge, const Octets& behind) {
   const DrivenDlpdu next = expect_next(bench, judge, "does_not_go_on", "the DLSDU behind the CD");
   judge.expect(next.rest() == behind, "does_not_go_on",
-               [&] { return Sighting{{"the DLSDU behind the CD"}, next.text(), next.begin}; });
+               [&] { return Mismatch{{"the DLSDU behind the CD"}, next.text(), next.begin}; });
 }
 
 void a_late_reply_is_waited_for(IsaBench& bench, CaseJudge& judge) {
@@ -62,7 +62,7 @@ void a_missing_reply_costs_rr(IsaBench& bench, CaseJudge& judge) {
     const DrivenDlpdu next = expect_next(bench, judge, "does_not_go_on", "the DLSDU behind the CD");
     expect_begins(judge, next, over, "resumes_early", over + bench.octets(1), "resumes_late");
     judge.expect(next.rest() == compelled.behind, "does_not_go_on",
-                 [&] { return Sighting{{"the DLSDU behind the CD"}, next.text(), next.begin}; });
+                 [&] { return Mismatch{{"the DLSDU behind the CD"}, next.text(), next.begin}; });
     bench.listen();
   }
 }
@@ -75,7 +75,7 @@ void a_reply_behind_rr_is_none(IsaBench& bench, CaseJudge& judge) {
     const kernel::Time end = bench.send_at(begin, bench.dt(Priority::normal, reply));
     const auto next = bench.next(end);
     judge.expect(!next || next->begin <= begin, "talks_into_reply", [&] {
-      return Sighting{
+      return Mismatch{
           {fmt::format("the station begins before {}, or when the reply is over", kernel::describe(begin))},
           next->text(),
           next->begin};
@@ -97,7 +97,7 @@ void a_cd_in_place_of_a_reply_is_not_answered(IsaBench& bench, CaseJudge& judge)
     bench.run_until(bench.send_at(compelled.cd.end + bench.least_gap(), cd));
     for (const DrivenDlpdu& one : bench.listen()) {
       judge.expect(!is_type(one, bench.rules().codes.dt), "answers_while_waiting", [&] {
-        return Sighting{{"no DT: the station waits for a reply itself"}, one.text(), one.begin};
+        return Mismatch{{"no DT: the station waits for a reply itself"}, one.text(), one.begin};
       });
     }
     // Whatever was left of the token and of the data is gone by then.

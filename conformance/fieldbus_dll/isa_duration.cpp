@@ -61,7 +61,7 @@ void an_exact_fit_is_sent(IsaBench& bench, CaseJudge& judge) {
     }
     expect_data(judge, use, {data}, "exact_fit_not_sent", "sent_twice");
     judge.expect(use.end.end <= over + kLinkRounding, "talks_behind_duration", [&] {
-      return Sighting{{fmt::format("the EE ends until {}", kernel::describe(over))},
+      return Mismatch{{fmt::format("the EE ends until {}", kernel::describe(over))},
                       kernel::describe(use.end.end),
                       use.end.begin};
     });
@@ -93,7 +93,7 @@ void nothing_is_sent_behind_the_duration(IsaBench& bench, CaseJudge& judge) {
     kernel::Duration left = bench.octets(duration);
     for (const DrivenDlpdu& one : bench.listen()) {
       judge.expect(one.end <= over + kLinkRounding, "talks_behind_duration", [&] {
-        return Sighting{
+        return Mismatch{
             {fmt::format("silence behind {}, {} octets behind the ES", kernel::describe(over), duration)},
             fmt::format("{} until {}", one.text(), kernel::describe(one.end)),
             one.begin};

@@ -20,7 +20,7 @@ void expect_ends_right(const IsaBench& bench, CaseJudge& judge, const DrivenDlpd
   const bool is_right = end.octets.size() == kEeOctets && end.octet(0) == bench.ee(0)[0] &&
                         end.octet(1) == IsaBench::kScheduler && end.octet(2) == bench.address();
   judge.expect(is_right, "dlpdu_wrong", [&] {
-    return Sighting{{fmt::format("EE: {:02X} {:02X} {:02X} and a reason", bench.ee(0)[0],
+    return Mismatch{{fmt::format("EE: {:02X} {:02X} {:02X} and a reason", bench.ee(0)[0],
                                  IsaBench::kScheduler, bench.address())},
                     end.text(),
                     end.begin};
@@ -55,7 +55,7 @@ TokenUse expect_token_use(IsaBench& bench, CaseJudge& judge, kernel::Time from) 
   kernel::Time since = from;
   for (const DrivenDlpdu& one : bench.listen()) {
     judge.expect(!has_ended, "talks_behind_end",
-                 [&] { return Sighting{{"silence behind the EE"}, one.text(), one.begin}; });
+                 [&] { return Mismatch{{"silence behind the EE"}, one.text(), one.begin}; });
     expect_begins(judge, one, since, "answers_too_early", since + bench.reply_wait(), "answers_too_late");
     since = one.end;
     if (is_type(one, codes.ee)) {
@@ -65,7 +65,7 @@ TokenUse expect_token_use(IsaBench& bench, CaseJudge& judge, kernel::Time from) 
       continue;
     }
     judge.expect(is_type(one, codes.du), "unexpected_dlpdu",
-                 [&] { return Sighting{{"DU or EE"}, one.text(), one.begin}; });
+                 [&] { return Mismatch{{"DU or EE"}, one.text(), one.begin}; });
     use.data.push_back(one);
   }
   judge.expect(has_ended, "token_not_returned", "the token is returned by an EE", "no EE came");
@@ -75,17 +75,17 @@ TokenUse expect_token_use(IsaBench& bench, CaseJudge& judge, kernel::Time from) 
 void expect_data(CaseJudge& judge, const TokenUse& use, const std::vector<Octets>& data,
                  std::string_view reason_for_missing, std::string_view reason_for_more) {
   judge.expect(use.data.size() >= data.size(), reason_for_missing, [&] {
-    return Sighting{{fmt::format("{} data DLPDUs", data.size())}, fmt::format("{}", use.data.size())};
+    return Mismatch{{fmt::format("{} data DLPDUs", data.size())}, fmt::format("{}", use.data.size())};
   });
   judge.expect(use.data.size() <= data.size(), reason_for_more, [&] {
     const DrivenDlpdu& first = use.data[data.size()];
-    return Sighting{{fmt::format("{} data DLPDUs", data.size())},
+    return Mismatch{{fmt::format("{} data DLPDUs", data.size())},
                     fmt::format("{}, the first one too many: {}", use.data.size(), first.text()),
                     first.begin};
   });
   for (std::size_t n = 0; n < data.size(); ++n) {
     judge.expect(use.data[n].rest() == data[n], "data_wrong", [&] {
-      return Sighting{{fmt::format("DLSDU {:02X}", fmt::join(data[n], " "))},
+      return Mismatch{{fmt::format("DLSDU {:02X}", fmt::join(data[n], " "))},
                       use.data[n].text(),
                       use.data[n].begin,
                       fmt::format("data DLPDU {}", n + 1)};
@@ -95,7 +95,7 @@ void expect_data(CaseJudge& judge, const TokenUse& use, const std::vector<Octets
 
 void expect_end_reason(CaseJudge& judge, const TokenUse& use, EndReason reason) {
   judge.expect(use.end.octet(3) == static_cast<std::uint8_t>(reason), "end_reason_wrong", [&] {
-    return Sighting{
+    return Mismatch{
         {fmt::format("EE with reason {}", static_cast<unsigned>(reason))}, use.end.text(), use.end.begin};
   });
 }
@@ -111,7 +111,7 @@ void expect_serves(IsaBench& bench, CaseJudge& judge) {
     return is_type(one, bench.rules().codes.du) && one.rest() == data;
   });
   judge.expect(is_served, "does_not_recover", [&] {
-    return Sighting{{"under a long ES, all that was submitted"},
+    return Mismatch{{"under a long ES, all that was submitted"},
                     all.empty() ? std::string("silence") : all.front().text()};
   });
 }

@@ -54,7 +54,7 @@ void ask_dle_under_stress(IsaBench& bench, CaseJudge& judge, std::set<Octets>& s
   for (const DrivenDlpdu& one : listen_under_stress(bench, judge, is_asked, ledger)) {
     const bool is_data = is_type(one, bench.rules().codes.du);
     judge.expect(!is_data || submitted.erase(one.rest()) == 1, "data_wrong",
-                 [&] { return Sighting{{"what was submitted, once"}, one.text(), one.begin}; });
+                 [&] { return Mismatch{{"what was submitted, once"}, one.text(), one.begin}; });
   }
 }
 
@@ -96,7 +96,7 @@ void the_schedule_goes_on_under_bursts(IsaBench& bench, CaseJudge& judge) {
           const bool is_sequence = item.type == IsaType::es;
           const auto code = is_sequence ? bench.rules().codes.es : bench.rules().codes.et;
           judge.expect(is_type(one, code) && one.octet(1) == item.node, "delegation_wrong", [&] {
-            return Sighting{{fmt::format("an {} for {:02X}", is_sequence ? "ES" : "ET", item.node)},
+            return Mismatch{{fmt::format("an {} for {:02X}", is_sequence ? "ES" : "ET", item.node)},
                             one.text(),
                             one.begin};
           });

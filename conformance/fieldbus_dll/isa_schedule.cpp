@@ -48,7 +48,7 @@ void each_item_has_its_time(IsaBench& bench, CaseJudge& judge) {
                                         "the next item of the schedule");
     const Octets wanted = octets_of_item(bench, item);
     judge.expect(one.octets == wanted, "delegation_wrong", [&] {
-      return Sighting{{fmt::format("{:02X}", fmt::join(wanted, " "))}, one.text(), one.begin};
+      return Mismatch{{fmt::format("{:02X}", fmt::join(wanted, " "))}, one.text(), one.begin};
     });
     expect_begins(judge, one, due - bench.slot(), "delegation_early", due + bench.slot(), "delegation_late");
     farthest = std::max(farthest, one.begin < due ? due - one.begin : one.begin - due);
@@ -92,7 +92,7 @@ kernel::Time expect_token_of_period(IsaBench& bench, CaseJudge& judge, int perio
   const DrivenDlpdu et =
       expect_next(bench, judge, due + 2 * bench.slot(), "delegation_missing", "the token of this period");
   judge.expect(is_type(et, bench.rules().codes.et), "delegation_wrong",
-               [&] { return Sighting{{"an ET"}, et.text(), et.begin}; });
+               [&] { return Mismatch{{"an ET"}, et.text(), et.begin}; });
   expect_begins(judge, et, due - bench.slot(), "delegation_early", due + bench.slot(), "delegation_late");
   const kernel::Time back = bench.send_at(et.end + bench.least_gap(), bench.ee(kHolderInSchedule));
   bench.run_until(back);
@@ -112,7 +112,7 @@ void its_own_data_goes_between(IsaBench& bench, CaseJudge& judge) {
     const DrivenDlpdu du =
         expect_next(bench, judge, latest, "own_data_not_sent", "a DU of the scheduler's user");
     judge.expect(is_type(du, bench.rules().codes.du) && du.rest() == data, "own_data_not_sent",
-                 [&] { return Sighting{{"a DU with the data of its user"}, du.text(), du.begin}; });
+                 [&] { return Mismatch{{"a DU with the data of its user"}, du.text(), du.begin}; });
   };
   int period = 0;
   for (int n = 0; n < bench.volume(2, 20); ++n) {

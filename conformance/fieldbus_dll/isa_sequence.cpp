@@ -35,10 +35,10 @@ void all_is_sent_by_priority(IsaBench& bench, CaseJudge& judge) {
     in_order.insert(in_order.end(), available.begin(), available.end());
     const TokenUse use = use_es(bench, judge, Priority::time_available);
     judge.expect(use.data.size() == in_order.size(), "frames_missing",
-                 [&] { return Sighting{{"all six DLSDUs"}, fmt::format("{}", use.data.size())}; });
+                 [&] { return Mismatch{{"all six DLSDUs"}, fmt::format("{}", use.data.size())}; });
     for (std::size_t i = 0; i < in_order.size(); ++i) {
       judge.expect(use.data[i].rest() == in_order[i], "wrong_order", [&] {
-        return Sighting{{"two urgent, two normal, two time-available, each pair as submitted"},
+        return Mismatch{{"two urgent, two normal, two time-available, each pair as submitted"},
                         use.data[i].text(),
                         use.data[i].begin,
                         fmt::format("data DLPDU {}", i + 1)};
@@ -71,7 +71,7 @@ void what_is_urgent_goes_next(IsaBench& bench, CaseJudge& judge) {
     const Octets first = queue_sized(bench, judge, Priority::time_available, 40);
     const Octets second = queue_sized(bench, judge, Priority::time_available, 40);
     bench.send(bench.es(Priority::time_available, kAmpleDuration));
-    const bool has_begun = bench.next_begins(bench.now() + bench.patience());
+    const bool has_begun = bench.next_begins(bench.now() + bench.observation_timeout());
     judge.expect(has_begun, "frames_missing", "the first DLSDU", "silence");
     bench.wait(bench.octets(5 + static_cast<std::int64_t>(bench.random().below(30))));
     const Octets urgent = queue_sized(bench, judge, Priority::urgent, 10);
@@ -79,7 +79,7 @@ void what_is_urgent_goes_next(IsaBench& bench, CaseJudge& judge) {
     for (const Octets& data : in_order) {
       const DrivenDlpdu one = expect_next(bench, judge, "frames_missing", "the next DLSDU");
       judge.expect(one.rest() == data, "not_most_urgent", [&] {
-        return Sighting{{"behind the frame that is being sent, the urgent one"}, one.text(), one.begin};
+        return Mismatch{{"behind the frame that is being sent, the urgent one"}, one.text(), one.begin};
       });
     }
     bench.listen();

@@ -105,7 +105,7 @@ class IsaSequenceRun {
 
   void run(const Sequence& sequence) {
     for (const SequenceCommand& command : sequence) execute(command);
-    settle();
+    await_response_window();
     std::vector<Octets> delivered;
     for (const auto& one : bench_.user().deliveries) delivered.push_back(one.dlpdu.data);
     judge_.expect(delivered == data_, "data_not_delivered",
@@ -118,10 +118,10 @@ class IsaSequenceRun {
     const auto priority = static_cast<Priority>(command.numbers[0]);
     switch (word) {
       case IsaWord::wait:
-        settle();
+        await_response_window();
         return bench_.wait(bench_.octets(command.numbers[0]));
       case IsaWord::peer:
-        settle();
+        await_response_window();
         peer_ = static_cast<Peer>(command.numbers[0]);
         return;
       case IsaWord::submit:
@@ -142,7 +142,7 @@ class IsaSequenceRun {
       model_.hear_noise(bench_.now());
     }
     const std::int64_t silence = command.numbers.back();
-    if (silence >= bench_.link().inter_pdu_delay_octets) return settle();
+    if (silence >= bench_.link().inter_pdu_delay_octets) return await_response_window();
     bench_.wait(bench_.octets(silence));
     while (bench_.next_begins(bench_.now())) judge_next(*bench_.next());
   }
@@ -200,12 +200,12 @@ class IsaSequenceRun {
     const bool is_taken = bench_.submit(service, priority, data);
     const bool is_right = model_.submit(service, priority, IsaBench::kPeer, data);
     judge_.expect(is_taken == is_right, is_right ? "data_refused" : "data_too_long_taken", [&] {
-      return Sighting{{fmt::format("data of {} octets is {}", data.size(), is_right ? "taken" : "refused")},
+      return Mismatch{{fmt::format("data of {} octets is {}", data.size(), is_right ? "taken" : "refused")},
                       is_taken ? "taken" : "refused"};
     });
   }
 
-  void settle() {
+  void await_response_window() {
     while (const auto one = bench_.next()) judge_next(*one);
     object(model_.be_silent(), "silence", bench_.now());
   }
@@ -240,8 +240,8 @@ class IsaSequenceRun {
   std::vector<Octets> data_;
 };
 
-std::vector<Detail> isa_check_details() {
-  std::vector<Detail> details = isa_details();
+std::vector<PartialSource> isa_check_details() {
+  std::vector<PartialSource> details = isa_details();
   details.push_back({link_sources::own("encoding of the profile ISA-D, and what is returned when"),
                      {"end_wrong", "reply_wrong", "data_held_back", "speaks_unasked", "sends_other_data"}});
   return details;

@@ -68,7 +68,7 @@ void the_most_urgent_is_sent(IsaBench& bench, CaseJudge& judge) {
   const Octets urgent = queue_some(bench, judge, Priority::urgent);
   const TokenUse use = use_et(bench, judge, Priority::normal);
   judge.expect(use.data.size() == 1 && use.data[0].rest() == urgent, "not_most_urgent", [&] {
-    return Sighting{{"the urgent DLSDU"}, use.data.empty() ? "nothing" : use.data[0].text()};
+    return Mismatch{{"the urgent DLSDU"}, use.data.empty() ? "nothing" : use.data[0].text()};
   });
   judge.expect(priority_of(use.data[0]) == Priority::urgent, "dlpdu_wrong", "priority urgent",
                use.data[0].text());

@@ -48,7 +48,7 @@ void who_says_nothing_loses_the_token(IsaBench& bench, CaseJudge& judge) {
 void who_talks_too_long_is_not_talked_into(IsaBench& bench, CaseJudge& judge) {
   const DrivenDlpdu first = expect_first(bench, judge);
   const kernel::Time end = bench.send_at(first.end + bench.least_gap(), du_of_holder(bench, 100));
-  const auto next = bench.next(end + bench.patience());
+  const auto next = bench.next(end + bench.observation_timeout());
   judge.expect(next.has_value(), "not_reclaimed", "the token is reclaimed", "the scheduler was silent");
   expect_begins(judge, *next, end, "talks_into_holder", kernel::kNever - kLinkRounding, "");
   expect_begins(judge, *next, end + bench.least_gap(), "gap_too_short",
@@ -71,7 +71,7 @@ void the_end_of_another_is_none(IsaBench& bench, CaseJudge& judge) {
   const kernel::Time back = first.end + bench.octets(70);
   const auto next = bench.next(back);
   judge.expect(!next.has_value(), "end_of_other_taken", [&] {
-    return Sighting{{"silence: the holder has not returned its token"}, next->text(), next->begin};
+    return Mismatch{{"silence: the holder has not returned its token"}, next->text(), next->begin};
   });
   at = bench.send_at(back, bench.ee(kHolder));
   bench.run_until(at);
@@ -86,7 +86,7 @@ void a_holder_may_wait_for_a_reply(IsaBench& bench, CaseJudge& judge) {
   const kernel::Time resumed = compelled + bench.reply_wait() + bench.octets(1);
   const auto next = bench.next(resumed);
   judge.expect(!next.has_value(), "talks_into_token", [&] {
-    return Sighting{{"silence: the holder waits for a reply"}, next->text(), next->begin};
+    return Mismatch{{"silence: the holder waits for a reply"}, next->text(), next->begin};
   });
   const kernel::Time back = bench.send_at(resumed, bench.ee(kHolder));
   bench.run_until(back);
@@ -98,8 +98,8 @@ void a_holder_may_wait_for_a_reply(IsaBench& bench, CaseJudge& judge) {
 std::vector<IsaCase> isa_supervision_cases() {
   using link_sources::isa_paper;
   using link_sources::own;
-  const Detail times{own("V(RR) is 32 octets, VC(UC) the duration and V(ST)"),
-                     {"reclaimed_early", "reclaimed_late"}};
+  const PartialSource times{own("V(RR) is 32 octets, VC(UC) the duration and V(ST)"),
+                            {"reclaimed_early", "reclaimed_late"}};
   return {
       {{.id = "fieldbus_dll/isa_las/supervision/who_says_nothing_loses_the_token",
         .purpose = "ISA-31",

@@ -47,7 +47,7 @@ void expect_no_scheduler(IsaBench& bench, CaseJudge& judge, std::string_view why
   const kernel::Time end = bench.now() + 3 * kPeriod * kOctetAt31250;
   while (const auto one = bench.next(end)) {
     judge.expect(!is_scheduling(bench, *one), "two_schedulers", [&] {
-      return Sighting{{fmt::format("no ET, ES or TL: {}", why)}, one->text(), one->begin};
+      return Mismatch{{fmt::format("no ET, ES or TL: {}", why)}, one->text(), one->begin};
     });
   }
 }
@@ -66,7 +66,7 @@ void a_link_master_takes_over(IsaBench& bench, CaseJudge& judge) {
   judge.expect(tokens.size() == 2 && is_type(tokens[0], bench.rules().codes.et) &&
                    is_type(tokens[1], bench.rules().codes.es),
                "schedule_not_run", [&] {
-                 return Sighting{{"the ET and the ES of its schedule"},
+                 return Mismatch{{"the ET and the ES of its schedule"},
                                  fmt::format("{} tokens", tokens.size())};
                });
 }
@@ -92,7 +92,7 @@ void a_dle_in_standby_uses_tokens(IsaBench& bench, CaseJudge& judge) {
     expect_begins(judge, du, end + bench.least_gap(), "answers_too_early", end + bench.reply_wait(),
                   "answers_too_late");
     judge.expect(is_type(du, bench.rules().codes.du) && du.rest() == data, "token_not_used",
-                 [&] { return Sighting{{"a DU with the data of its user"}, du.text(), du.begin}; });
+                 [&] { return Mismatch{{"a DU with the data of its user"}, du.text(), du.begin}; });
     bench.listen();
   }
 }
@@ -105,7 +105,7 @@ DrivenDlpdu expect_transfer(IsaBench& bench, CaseJudge& judge) {
   const DrivenDlpdu tl = expect_next(bench, judge, "no_transfer", "a TL");
   const Octets wanted{bench.rules().codes.tl, kHeir, bench.address(), kVersion >> 8, kVersion & 0xFF};
   judge.expect(tl.octets == wanted, "transfer_wrong", [&] {
-    return Sighting{{fmt::format("{:02X}", fmt::join(wanted, " "))}, tl.text(), tl.begin};
+    return Mismatch{{fmt::format("{:02X}", fmt::join(wanted, " "))}, tl.text(), tl.begin};
   });
   return tl;
 }

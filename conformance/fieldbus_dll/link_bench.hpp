@@ -85,11 +85,11 @@ class LinkBench : private segment::Station {
   bool next_begins(kernel::Time limit);
   // The next DLPDU that the IUT begins before `limit`, when it is over; none: it was silent.
   std::optional<DrivenDlpdu> next(kernel::Time limit);
-  std::optional<DrivenDlpdu> next() { return next(now() + patience()); }
+  std::optional<DrivenDlpdu> next() { return next(now() + observation_timeout()); }
   // All that it drives until it has been silent for `patience()`; at most a thousand DLPDUs.
   std::vector<DrivenDlpdu> listen();
   // Twice V(MRD) x V(ST): a station that has something to do does it sooner.
-  kernel::Duration patience() const { return 2 * response_delay(); }
+  kernel::Duration observation_timeout() const { return 2 * response_delay(); }
   // Data that no other has, so that what is on the line tells whose it is.
   Octets numbered_data(std::size_t size);
 

@@ -61,7 +61,7 @@ class IsaBabbler final : public Babbler<fieldbus_dll::IsaDevice> {
 template <typename Station, typename Given, typename Configuration>
 Given babbling(const Babble& babble) {
   Given given;
-  given.own = [babble](const Wanted&, const Configuration& configuration) {
+  given.own = [babble](const IutRequest&, const Configuration& configuration) {
     return std::make_unique<Station>(configuration.rules.link, babble);
   };
   return given;

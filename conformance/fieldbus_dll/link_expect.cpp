@@ -9,7 +9,7 @@ namespace fieldproof::conformance {
 void expect_silence(LinkBench& bench, CaseJudge& judge, std::string_view reason, std::string_view why) {
   const auto heard = bench.next();
   judge.expect(!heard.has_value(), reason,
-               [&] { return Sighting{{fmt::format("silence: {}", why)}, heard->text(), heard->begin}; });
+               [&] { return Mismatch{{fmt::format("silence: {}", why)}, heard->text(), heard->begin}; });
 }
 
 DrivenDlpdu expect_next(LinkBench& bench, CaseJudge& judge, kernel::Time limit, std::string_view reason,
@@ -20,13 +20,13 @@ DrivenDlpdu expect_next(LinkBench& bench, CaseJudge& judge, kernel::Time limit, 
 }
 
 DrivenDlpdu expect_next(LinkBench& bench, CaseJudge& judge, std::string_view reason, std::string_view what) {
-  return expect_next(bench, judge, bench.now() + bench.patience(), reason, what);
+  return expect_next(bench, judge, bench.now() + bench.observation_timeout(), reason, what);
 }
 
 void expect_begins(CaseJudge& judge, const DrivenDlpdu& dlpdu, kernel::Time earliest,
                    std::string_view reason_early, kernel::Time latest, std::string_view reason_late) {
   const auto sighting = [&] {
-    return Sighting{{fmt::format("begins {} to {}", kernel::describe(earliest), kernel::describe(latest))},
+    return Mismatch{{fmt::format("begins {} to {}", kernel::describe(earliest), kernel::describe(latest))},
                     fmt::format("{} at {}", dlpdu.text(), kernel::describe(dlpdu.begin)),
                     dlpdu.begin};
   };
@@ -42,7 +42,7 @@ void judge_driven(const LinkBench& bench, CaseJudge& judge) {
   kernel::Time own_end = kernel::kStart;
   for (const DrivenDlpdu& one : bench.driven()) {
     const auto sighting = [&](std::string expected) {
-      return Sighting{{std::move(expected)}, one.text(), one.begin};
+      return Mismatch{{std::move(expected)}, one.text(), one.begin};
     };
     judge.expect(one.is_well_formed, "frame_malformed", [&] {
       return sighting("preamble, start delimiter, whole octets, end delimiter, exact to the half bit");
@@ -58,7 +58,7 @@ void judge_driven(const LinkBench& bench, CaseJudge& judge) {
     const bool is_first = silent_since == kernel::kStart;
     judge.expect(is_first || one.begin - silent_since + kLinkRounding >= bench.least_gap(), "gap_too_short",
                  [&] {
-                   return Sighting{{fmt::format("silence of V(MID), {}, in front of each DLPDU",
+                   return Mismatch{{fmt::format("silence of V(MID), {}, in front of each DLPDU",
                                                 kernel::describe(bench.least_gap()))},
                                    kernel::describe(one.begin - silent_since),
                                    one.begin};

@@ -24,16 +24,17 @@ void expect_begins(CaseJudge& judge, const DrivenDlpdu& dlpdu, kernel::Time earl
 // What the user of the IUT was told was sent by the tester as it was told: in that order, and no more often:
 // `told_otherwise`. `is_told(sent, told)`: this was sent, for the user, and says the same. For the end of a
 // procedure.
-template <typename Told, typename IsTold>
-void judge_told(const LinkBench& bench, CaseJudge& judge, const std::vector<Told>& all_told, IsTold is_told) {
+template <typename Reported, typename IsTold>
+void judge_told(const LinkBench& bench, CaseJudge& judge, const std::vector<Reported>& all_told,
+                IsTold is_told) {
   const auto sent = bench.sent();
   auto next = sent.begin();
-  for (const Told& told : all_told) {
+  for (const Reported& told : all_told) {
     const auto is_same = [&](const DrivenDlpdu& one) { return one.has_right_check && is_told(one, told); };
     const auto found = std::find_if(next, sent.end(), is_same);
     if (found == sent.end() && std::ranges::any_of(bench.arrived_unsent(), is_same)) continue;
     judge.expect(found != sent.end(), "told_otherwise", [&] {
-      return Sighting{{"its user is told what was sent to it, once and as it was"}, describe(told)};
+      return Mismatch{{"its user is told what was sent to it, once and as it was"}, describe(told)};
     });
     next = found + 1;
   }

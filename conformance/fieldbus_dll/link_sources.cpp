@@ -31,11 +31,11 @@ judge::Reference own(std::string place) {
 }
 }  // namespace link_sources
 
-const std::vector<Detail>& isa_details() {
+const std::vector<PartialSource>& isa_details() {
   using link_sources::line;
   using link_sources::own;
   using link_sources::vendors;
-  static const std::vector<Detail> details{
+  static const std::vector<PartialSource> details{
       {line("preamble and delimiters"), {"frame_malformed", "check_wrong"}},
       {vendors("V(MID): silence behind every DLPDU"), {"gap_too_short", "answers_too_early"}},
       {own("who is silent for V(RR) says nothing any more"), {"answers_too_late", "next_too_late"}},
@@ -46,12 +46,12 @@ const std::vector<Detail>& isa_details() {
   return details;
 }
 
-const std::vector<Detail>& ff_details() {
+const std::vector<PartialSource>& ff_details() {
   using link_sources::line;
   using link_sources::memory;
   using link_sources::own;
   using link_sources::vendors;
-  static const std::vector<Detail> details{
+  static const std::vector<PartialSource> details{
       {line("preamble and delimiters"), {"frame_malformed", "check_wrong"}},
       {vendors("V(MID): silence behind every DLPDU"), {"gap_too_short", "answers_too_early"}},
       {memory("V(MRD) x V(ST): until then an answer has begun"), {"answers_too_late"}},

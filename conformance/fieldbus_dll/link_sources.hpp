@@ -22,7 +22,7 @@ judge::Reference own(std::string place);         // where all of these are silen
 }  // namespace link_sources
 
 // The reasons that rest on less than the case that finds them.
-const std::vector<Detail>& isa_details();
-const std::vector<Detail>& ff_details();
+const std::vector<PartialSource>& isa_details();
+const std::vector<PartialSource>& ff_details();
 
 }  // namespace fieldproof::conformance

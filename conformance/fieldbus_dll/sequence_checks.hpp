@@ -33,11 +33,11 @@ class SequenceChecks {
     }
   }
 
-  // Each deviating station that is for `check`, confirmed, and with at most so many commands.
+  // Each mutant station that is for `check`, confirmed, and with at most so many commands.
   void expect_finds_each(std::size_t count, std::uint64_t cases, std::size_t most_commands) const {
     ASSERT_EQ(for_check().size(), count);
     for (const std::string& name : for_check()) {
-      const SequenceSearchResult result = search(search_of("deviant:" + name, cases));
+      const SequenceSearchResult result = search(search_of("mutant:" + name, cases));
       ASSERT_TRUE(result.found) << name;
       EXPECT_TRUE(result.found->is_confirmed) << name;
       EXPECT_LE(result.found->smallest.size(), most_commands) << name << "\n" << told(result);
@@ -48,11 +48,11 @@ class SequenceChecks {
   // What cases of the catalogue name is found, too, but for what lies outside of the sequences.
   void expect_finds_all_but(const std::set<std::string>& outside, std::uint64_t cases) const {
     std::set<std::string> passed;
-    for (const Deviation& one : suite().deviations()) {
+    for (const Mutant& one : suite().mutants()) {
       if (one.role != role_ || one.is_for_check) continue;
       // Who is outside passes whatever their number.
       const bool is_outside = outside.contains(one.name);
-      if (!search(search_of("deviant:" + one.name, is_outside ? cases / 10 : cases)).found)
+      if (!search(search_of("mutant:" + one.name, is_outside ? cases / 10 : cases)).found)
         passed.insert(one.name);
     }
     EXPECT_EQ(passed, outside);
@@ -65,7 +65,7 @@ class SequenceChecks {
       for (const SequenceCommand& command : source.draw(n)) single.push_back({command});
     }
     for (const std::string& name : for_check()) {
-      const Setup setup = search_of("deviant:" + name, 1).setup;
+      const Setup setup = search_of("mutant:" + name, 1).setup;
       for (const Sequence& sequence : single) {
         const Outcome outcome = run_sequence(suite(), sequences_, sequence, setup);
         EXPECT_EQ(outcome.result.verdict, judge::Verdict::pass) << name << "\n" << lines(sequence);
@@ -95,8 +95,8 @@ class SequenceChecks {
 
   std::vector<std::string> for_check() const {
     std::vector<std::string> names;
-    for (const Deviation& deviation : suite().deviations()) {
-      if (deviation.is_for_check && deviation.role == role_) names.push_back(deviation.name);
+    for (const Mutant& mutant : suite().mutants()) {
+      if (mutant.is_for_check && mutant.role == role_) names.push_back(mutant.name);
     }
     return names;
   }

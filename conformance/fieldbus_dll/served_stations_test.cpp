@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "conformance/fieldbus_dll/ff_deviations.hpp"
-#include "conformance/fieldbus_dll/isa_deviations.hpp"
+#include "conformance/fieldbus_dll/ff_mutants.hpp"
+#include "conformance/fieldbus_dll/isa_mutants.hpp"
 #include "conformance/fieldbus_dll/suite.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
@@ -34,40 +34,40 @@ const Suite& suite_inside() {
 }
 
 // An empty name is the reference.
-std::unique_ptr<FfDevice> station_named(const std::string& role, const std::string& deviation,
+std::unique_ptr<FfDevice> station_named(const std::string& role, const std::string& mutant,
                                         const FfConfiguration& configuration) {
-  if (!deviation.empty()) return make_ff_deviation(role, deviation, configuration);
+  if (!mutant.empty()) return make_ff_mutant(role, mutant, configuration);
   if (role == "ff_las") return std::make_unique<fieldbus_dll::FfLas>(configuration);
   return std::make_unique<fieldbus_dll::FfStation>(configuration);
 }
-std::unique_ptr<IsaDevice> station_named(const std::string& role, const std::string& deviation,
+std::unique_ptr<IsaDevice> station_named(const std::string& role, const std::string& mutant,
                                          const IsaConfiguration& configuration) {
-  if (!deviation.empty()) return make_isa_deviation(role, deviation, configuration);
+  if (!mutant.empty()) return make_isa_mutant(role, mutant, configuration);
   if (role == "isa_las") return std::make_unique<fieldbus_dll::IsaLas>(configuration);
   return std::make_unique<fieldbus_dll::IsaDle>(configuration);
 }
 
 // Plays the station as one outside.
 template <typename Given, typename Attached, typename Served, typename Configuration>
-Given given_as_outside(const std::string& role, const std::string& deviation) {
+Given given_as_outside(const std::string& role, const std::string& mutant) {
   Given given;
-  given.attached = [role, deviation](const Wanted& wanted, const Configuration& configuration) {
+  given.attached = [role, mutant](const IutRequest& wanted, const Configuration& configuration) {
     const auto served = std::make_shared<Served>(
-        [role, deviation](const Configuration& told) { return station_named(role, deviation, told); });
+        [role, mutant](const Configuration& told) { return station_named(role, mutant, told); });
     return std::make_unique<Attached>(iut::Attachment{served.get(), served, {}}, configuration,
                                       wanted.case_id, wanted.seed);
   };
   return given;
 }
 
-std::unique_ptr<Suite> suite_outside(const std::string& role, const std::string& deviation) {
+std::unique_ptr<Suite> suite_outside(const std::string& role, const std::string& mutant) {
   const auto isa = given_as_outside<GivenIsaStations, AttachedIsaDevice, ServedIsaDevice, IsaConfiguration>;
   const auto ff = given_as_outside<GivenFfStations, AttachedFfDevice, ServedFfDevice, FfConfiguration>;
   FieldbusDllGiven given;
-  if (role == "isa_dle") given.isa_dle = isa(role, deviation);
-  if (role == "isa_las") given.isa_las = isa(role, deviation);
-  if (role == "ff_device") given.ff_device = ff(role, deviation);
-  if (role == "ff_las") given.ff_las = ff(role, deviation);
+  if (role == "isa_dle") given.isa_dle = isa(role, mutant);
+  if (role == "isa_las") given.isa_las = isa(role, mutant);
+  if (role == "ff_device") given.ff_device = ff(role, mutant);
+  if (role == "ff_las") given.ff_las = ff(role, mutant);
   return fieldbus_dll_suite(given);
 }
 
@@ -100,23 +100,22 @@ TEST_P(ServedLinkRoles, ReferenceIsJudgedInEveryCaseAsInside) {
 }
 
 // In the cases that name them.
-TEST_P(ServedLinkRoles, DeviationsAreJudgedAsInside) {
-  for (const Deviation& deviation : suite_inside().deviations()) {
+TEST_P(ServedLinkRoles, MutantsAreJudgedAsInside) {
+  for (const Mutant& mutant : suite_inside().mutants()) {
     // What shows in sequences only no case names.
-    if (deviation.role != GetParam() || deviation.is_for_check) continue;
-    const auto suite = suite_outside(GetParam(), deviation.name);
+    if (mutant.role != GetParam() || mutant.is_for_check) continue;
+    const auto suite = suite_outside(GetParam(), mutant.name);
     int judged = 0;
     for (const TestCase& test_case : suite->cases()) {
       if (test_case.role() != GetParam() ||
-          std::ranges::count(test_case.catches, deviation.name, &Catch::deviation) == 0)
+          std::ranges::count(test_case.catches, mutant.name, &MustCatch::mutant) == 0)
         continue;
       ++judged;
       const Outcome outcome = outcome_of(*suite, test_case, "outside");
-      EXPECT_EQ(outcome.result.verdict, judge::Verdict::fail) << test_case.id << " " << deviation.name;
-      expect_judged_alike(test_case, outcome,
-                          outcome_of(suite_inside(), test_case, "deviant:" + deviation.name));
+      EXPECT_EQ(outcome.result.verdict, judge::Verdict::fail) << test_case.id << " " << mutant.name;
+      expect_judged_alike(test_case, outcome, outcome_of(suite_inside(), test_case, "mutant:" + mutant.name));
     }
-    EXPECT_GT(judged, 0) << deviation.name;
+    EXPECT_GT(judged, 0) << mutant.name;
   }
 }
 

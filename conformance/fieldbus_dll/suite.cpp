@@ -6,17 +6,17 @@
 
 #include "conformance/case_recorder.hpp"
 #include "conformance/fieldbus_dll/ff_cases.hpp"
-#include "conformance/fieldbus_dll/ff_deviations.hpp"
 #include "conformance/fieldbus_dll/ff_las_sequence.hpp"
+#include "conformance/fieldbus_dll/ff_mutants.hpp"
 #include "conformance/fieldbus_dll/ff_sequence.hpp"
 #include "conformance/fieldbus_dll/isa_cases.hpp"
-#include "conformance/fieldbus_dll/isa_deviations.hpp"
+#include "conformance/fieldbus_dll/isa_mutants.hpp"
 #include "conformance/fieldbus_dll/isa_sequence_check.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
 #include "protocols/fieldbus_dll/isa_las.hpp"
-#include "protocols/fieldbus_dll/link_notation.hpp"
+#include "protocols/fieldbus_dll/link_dissector.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -34,9 +34,8 @@ bool is_of_isa(std::string_view role) {
 
 class FieldbusDllSuite final : public Suite {
  public:
-  explicit FieldbusDllSuite(FieldbusDllGiven given)
-      : given_(std::move(given)), deviations_(isa_deviations()) {
-    for (Deviation& one : ff_deviations()) deviations_.push_back(std::move(one));
+  explicit FieldbusDllSuite(FieldbusDllGiven given) : given_(std::move(given)), mutants_(isa_mutants()) {
+    for (Mutant& one : ff_mutants()) mutants_.push_back(std::move(one));
     const auto is_left_out = [this](const TestCase& one) {
       return given_.stresses.empty() && has_tag(one, kStressTag);
     };
@@ -61,7 +60,7 @@ class FieldbusDllSuite final : public Suite {
     return (role == kFfDevice || role == kFfLas) && bool(given_ff(role).own);
   }
   const std::vector<TestCase>& cases() const override { return cases_; }
-  const std::vector<Deviation>& deviations() const override { return deviations_; }
+  const std::vector<Mutant>& mutants() const override { return mutants_; }
 
   std::vector<std::string> caveats(const Setup& setup) const override {
     return setup.plan_file.empty() ? std::vector<std::string>{} : load(setup).caveats();
@@ -116,7 +115,7 @@ class FieldbusDllSuite final : public Suite {
     CaseRecorder recorder;
     if (is_recorded) {
       setting.make_recorder = [&recorder](const trace::Trace& trace, const Rules& rules) {
-        return &recorder.start(trace, std::make_shared<fieldbus_dll::LinkNotation>(rules));
+        return &recorder.start(trace, std::make_shared<fieldbus_dll::LinkDissector>(rules));
       };
     }
     Outcome outcome;
@@ -167,30 +166,30 @@ class FieldbusDllSuite final : public Suite {
   }
 
   std::unique_ptr<fieldbus_dll::IsaDevice> make_isa_station(
-      const std::string& role, const Wanted& wanted,
+      const std::string& role, const IutRequest& wanted,
       const fieldbus_dll::IsaConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) {
       if (role == kIsaLas) return std::make_unique<fieldbus_dll::IsaLas>(configuration);
       return std::make_unique<fieldbus_dll::IsaDle>(configuration);
     }
     if (auto station = given_isa(role).make(wanted, configuration)) return station;
-    return make_isa_deviation(role, deviation_of(wanted.uri, "station of the profile ISA-D"), configuration);
+    return make_isa_mutant(role, mutant_of(wanted.uri, "station of the profile ISA-D"), configuration);
   }
 
   std::unique_ptr<fieldbus_dll::FfDevice> make_ff_station(
-      const std::string& role, const Wanted& wanted,
+      const std::string& role, const IutRequest& wanted,
       const fieldbus_dll::FfConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) {
       if (role == kFfLas) return std::make_unique<fieldbus_dll::FfLas>(configuration);
       return std::make_unique<fieldbus_dll::FfStation>(configuration);
     }
     if (auto station = given_ff(role).make(wanted, configuration)) return station;
-    return make_ff_deviation(role, deviation_of(wanted.uri, "station of the profile FF-P"), configuration);
+    return make_ff_mutant(role, mutant_of(wanted.uri, "station of the profile FF-P"), configuration);
   }
 
   FieldbusDllGiven given_;
   std::vector<TestCase> cases_;
-  std::vector<Deviation> deviations_;
+  std::vector<Mutant> mutants_;
   std::map<std::string, const IsaCase*, std::less<>> isa_cases_;
   std::map<std::string, const FfCase*, std::less<>> ff_cases_;
 };

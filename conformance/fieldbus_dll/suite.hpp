@@ -11,13 +11,13 @@
 #include "protocols/fieldbus_dll/isa_device.hpp"
 
 // The suite of the data link of IEC 61158 type 1 and of its drafts: data link entities and link masters of
-// the profile ISA-D, basic devices and link masters of the profile FF-P, and their deviations.
+// the profile ISA-D, basic devices and link masters of the profile FF-P, and their mutants.
 //
-// Implementations of a role: `ref`, `deviant:NAME`, and what the suite was given.
+// Implementations of a role: `ref`, `mutant:NAME`, and what the suite was given.
 namespace fieldproof::conformance {
 
-using GivenIsaStations = GivenStations<fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration>;
-using GivenFfStations = GivenStations<fieldbus_dll::FfDevice, fieldbus_dll::FfConfiguration>;
+using GivenIsaStations = StationSources<fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration>;
+using GivenFfStations = StationSources<fieldbus_dll::FfDevice, fieldbus_dll::FfConfiguration>;
 
 struct FieldbusDllGiven {
   GivenIsaStations isa_dle{};

@@ -40,7 +40,7 @@ void rejected_inputs(MasterBench& bench, CaseJudge& judge) {
     const auto offered = static_cast<std::uint16_t>(~good);
     const std::uint16_t seen = seen_behind_bad_cycle(bench, judge, offered);
     judge.expect(seen == good, seen == 0 ? "inputs_not_held" : "rejected_inputs_seen", [&] {
-      return Sighting{{fmt::format("the inputs before the bad cycle, {:04X}h", good)},
+      return Mismatch{{fmt::format("the inputs before the bad cycle, {:04X}h", good)},
                       fmt::format("{:04X}h", seen)};
     });
     bench.run_data_cycles(judge, 1);
@@ -56,7 +56,7 @@ void inputs_hold(MasterBench& bench, CaseJudge& judge) {
   for (int n = 0; n < 5; ++n) {
     const std::uint16_t seen = seen_behind_bad_cycle(bench, judge, kNew);
     judge.expect(seen == kHeld, "inputs_not_held", [&] {
-      return Sighting{{fmt::format("{:04X}h through bad cycle {}", kHeld, n + 1)},
+      return Mismatch{{fmt::format("{:04X}h through bad cycle {}", kHeld, n + 1)},
                       fmt::format("{:04X}h", seen)};
     });
   }
@@ -133,7 +133,7 @@ std::vector<MasterCase> master_application_cases() {
   std::vector<MasterCase> cases;
   const auto add = [&cases](std::string_view words, std::string_view purpose, std::string_view requirement,
                             judge::Reference reference, std::string_view stimulus, std::string_view expected,
-                            std::vector<std::string> tags, std::vector<Catch> catches, auto procedure) {
+                            std::vector<std::string> tags, std::vector<MustCatch> catches, auto procedure) {
     TestCase test_case;
     test_case.id = fmt::format("interbus/master/application/{}", words);
     test_case.purpose = purpose;

@@ -112,7 +112,7 @@ void MasterBench::bring_up(CaseJudge& judge, std::vector<VirtualStation> ring) {
   judge.use_clock([this] { return now(); });
   judge.use_decode([this] { return ring_->describe_last(6); });
   judge.expect(wait_for_run(), "not_in_run", [this] {
-    return Sighting{{"the master recognises the ring and runs"},
+    return Mismatch{{"the master recognises the ring and runs"},
                     fmt::format("state {}, {} stations found, error \"{}\"", static_cast<int>(status().state),
                                 status().stations.size(), status().configuration_error)};
   });
@@ -224,7 +224,7 @@ void MasterBench::run_to_accepted_data_cycle(CaseJudge& judge) {
 void MasterBench::expect_inputs(CaseJudge& judge, const std::vector<std::uint16_t>& expected) {
   const std::vector<std::uint16_t> seen = inputs();
   judge.expect(seen == expected, "new_inputs_missed", [&] {
-    return Sighting{{fmt::format("the inputs of the last good cycle, {:04X}h", fmt::join(expected, "h "))},
+    return Mismatch{{fmt::format("the inputs of the last good cycle, {:04X}h", fmt::join(expected, "h "))},
                     fmt::format("{:04X}h", fmt::join(seen, "h "))};
   });
 }

@@ -1,4 +1,4 @@
-// What is the master suite's own; that references pass and deviations are caught is tested with all suites.
+// What is the master suite's own; that references pass and mutants are caught is tested with all suites.
 #include "conformance/interbus/master_cases.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "conformance/interbus/master_deviations.hpp"
+#include "conformance/interbus/master_mutants.hpp"
 #include "protocols/interbus/master.hpp"
 
 namespace fieldproof::conformance {
@@ -33,7 +33,7 @@ TEST(MasterSuite, names_every_purpose_and_every_mutant) {
     EXPECT_TRUE(purposes.contains(n < 10 ? "IM-0" + std::to_string(n) : "IM-" + std::to_string(n))) << n;
   }
   std::set<std::string> mutants;
-  for (const Deviation& deviation : master_deviations()) mutants.insert(deviation.mutant);
+  for (const Mutant& mutant : master_mutants()) mutants.insert(mutant.label);
   for (int n = 1; n <= 22; ++n) EXPECT_TRUE(mutants.contains("MM" + std::to_string(n))) << n;
 }
 

@@ -30,7 +30,7 @@ void expect_frame(MasterBench& bench, CaseJudge& judge, const std::vector<Virtua
   for (auto station = ring.rbegin(); station != ring.rend(); ++station) {
     for (unsigned word = end - station->words; word < end; ++word, octet += 2) {
       judge.expect(seen.word(octet) == 0x4000 + word, "data_order", [&] {
-        return Sighting{{fmt::format("word {} of the image at octet {}", word, octet)},
+        return Mismatch{{fmt::format("word {} of the image at octet {}", word, octet)},
                         seen.describe_word(octet),
                         seen.start,
                         fmt::format("octet {} of the frame", octet)};
@@ -67,7 +67,7 @@ void check_of_what_was_sent(MasterBench& bench, CaseJudge& judge) {
     judge.expect(seen.status_clean, "status_word_not_clean", "status word 0000h", "another status word");
     const std::uint16_t own = interbus::RingEmulator::check_of({seen.octets.data(), seen.transfer_octets});
     judge.expect(seen.word(seen.transfer_octets) == own, "check_not_of_sent_bits", [&] {
-      return Sighting{{fmt::format("check word {:04X}h", own)}, seen.describe_word(seen.transfer_octets)};
+      return Mismatch{{fmt::format("check word {:04X}h", own)}, seen.describe_word(seen.transfer_octets)};
     });
   }
   expect_good();

@@ -57,7 +57,7 @@ void expect_found(MasterBench& bench, CaseJudge& judge, const std::vector<Virtua
   std::vector<FoundStation> expected;
   for (const VirtualStation& s : ring) expected.push_back({s.id_code, s.words, s.before, s.on_branch});
   judge.expect(is_running && status.stations == expected, "configuration_differs", [&] {
-    return Sighting{
+    return Mismatch{
         {fmt::format("{} stations as emulated", ring.size())},
         fmt::format("{} stations, error \"{}\"", status.stations.size(), status.configuration_error)};
   });
@@ -80,7 +80,7 @@ void expect_refused(MasterBench& bench, CaseJudge& judge, std::vector<VirtualSta
   const bool is_running = bench.wait_for_run();
   const auto status = bench.status();
   judge.expect(!is_running && !status.configuration_error.empty(), "limit_not_refused", [&] {
-    return Sighting{{fmt::format("{} are refused with a configuration error", what)},
+    return Mismatch{{fmt::format("{} are refused with a configuration error", what)},
                     is_running ? "the master runs" : "no configuration error"};
   });
 }
@@ -118,7 +118,7 @@ void length_codes(MasterBench& bench, CaseJudge& judge) {
     judge.expect(
         bench.wait_for_run() && bench.status().stations.at(0).words == words && bench.finished().is_accepted,
         code == kLengthCodeFromMemory ? kCodeFromMemoryMisread : "length_code_misread", [&] {
-          return Sighting{{fmt::format("code {:02X}h is {} words", code, words)},
+          return Mismatch{{fmt::format("code {:02X}h is {} words", code, words)},
                           "the ring has another length"};
         });
   }
@@ -126,7 +126,7 @@ void length_codes(MasterBench& bench, CaseJudge& judge) {
     bench.power_up(interbus::line_of(1, id_code_with(code), 1));
     const bool is_running = bench.wait_for_run();
     judge.expect(!is_running && !bench.status().configuration_error.empty(), "length_code_misread", [&] {
-      return Sighting{{fmt::format("the undefined code {:02X}h is refused", code)}, "it is taken"};
+      return Mismatch{{fmt::format("the undefined code {:02X}h is refused", code)}, "it is taken"};
     });
   }
 }

@@ -197,7 +197,7 @@ class Returned {
     find_last_cycle(view_.data_telegrams(), cycle_);
     return cycle_.is_found && !cycle_.is_id_cycle && cycle_.check == model_.check().of(cycle_.octets);
   }
-  void forget() { view_.clear(); }
+  void clear_observations() { view_.clear(); }
 
  private:
   line::TelegramCode code_;
@@ -262,7 +262,7 @@ class StressedRun {
       is_wrong_ = is_wrong_ || !is_unseen;
       inputs_->begin();
     }
-    returned_.forget();
+    returned_.clear_observations();
     bad_in_a_row_ = bench_.finished().is_accepted ? 0 : bad_in_a_row_ + 1;
     ledger_.add(bench_.finished(), is_faulted);
   }

@@ -26,9 +26,9 @@ Suffered expect_cycle_rejected(MasterBench& bench, CaseJudge& judge, CycleFaults
                                std::string_view reason, const std::string& what) {
   const Suffered suffered = bench.suffer(judge, std::move(faults));
   judge.expect(!suffered.is_told_accepted, reason,
-               [&] { return Sighting{{what + ": rejected"}, "the cycle is accepted"}; });
+               [&] { return Mismatch{{what + ": rejected"}, "the cycle is accepted"}; });
   judge.expect(suffered.seen == suffered.held, "rejected_inputs_seen", [&] {
-    return Sighting{{fmt::format("{}: the inputs before, {:04X}h", what, fmt::join(suffered.held, "h "))},
+    return Mismatch{{fmt::format("{}: the inputs before, {:04X}h", what, fmt::join(suffered.held, "h "))},
                     fmt::format("{:04X}h", fmt::join(suffered.seen, "h "))};
   });
   return suffered;
@@ -109,7 +109,7 @@ void marked_status(MasterBench& bench, CaseJudge& judge) {
                        "ID cycles that follow on the line");
     judge.expect(status.has_fault_location && status.fault_location == FaultLocation{station - 1, station},
                  "wrong_segment", [&] {
-                   return Sighting{
+                   return Mismatch{
                        {fmt::format("segment {} -> {}", station - 1, station)},
                        fmt::format("segment {} -> {}", status.fault_location.from, status.fault_location.to)};
                  });
@@ -150,7 +150,7 @@ void weight_four(MasterBench& bench, CaseJudge& judge) {
                  "an error pattern that is a code word is accepted", "it is rejected");
     const std::uint16_t brought = suffered.offered.front() ^ changed_input(flips);
     judge.expect(suffered.seen.front() == brought, "new_inputs_missed", [&] {
-      return Sighting{{fmt::format("the inputs of the accepted cycle, {:04X}h", brought)},
+      return Mismatch{{fmt::format("the inputs of the accepted cycle, {:04X}h", brought)},
                       fmt::format("{:04X}h", suffered.seen.front())};
     });
   }
@@ -237,8 +237,9 @@ const judge::Reference kHeader{"literature from memory; Park 2004, section 2.2",
 std::vector<MasterCase> master_rejection_cases() {
   std::vector<MasterCase> cases;
   const auto add = [&cases](std::string_view words, std::string_view purpose, std::string_view requirement,
-                            judge::Reference reference, std::string_view stimulus, std::vector<Catch> catches,
-                            auto procedure, std::string_view expected = "each such cycle is rejected") {
+                            judge::Reference reference, std::string_view stimulus,
+                            std::vector<MustCatch> catches, auto procedure,
+                            std::string_view expected = "each such cycle is rejected") {
     TestCase test_case;
     test_case.id = fmt::format("interbus/master/rejection/{}", words);
     test_case.purpose = purpose;

@@ -21,7 +21,7 @@ constexpr std::uint16_t kInOut = 0x0103;
 void expect_stop(MasterBench& bench, CaseJudge& judge, std::string_view reason) {
   for (unsigned n = 0; n < bench.rules().stop_after_bad_cycles && bench.is_in_run(); ++n) bench.run_cycle();
   judge.expect(!bench.is_in_run(), reason, [&] {
-    return Sighting{
+    return Mismatch{
         {fmt::format("the master leaves run within {} cycles", bench.rules().stop_after_bad_cycles)},
         "it is in run"};
   });
@@ -35,7 +35,7 @@ void wait_for_search(MasterBench& bench) {
 void expect_location(MasterBench& bench, CaseJudge& judge, FaultLocation expected, std::string_view reason) {
   const auto status = bench.status();
   judge.expect(status.has_fault_location && status.fault_location == expected, reason, [&] {
-    return Sighting{{fmt::format("fault between {} and {}", expected.from, expected.to)},
+    return Mismatch{{fmt::format("fault between {} and {}", expected.from, expected.to)},
                     status.has_fault_location ? fmt::format("between {} and {}", status.fault_location.from,
                                                             status.fault_location.to)
                                               : "no location"};
@@ -107,7 +107,7 @@ void replaced_station(MasterBench& bench, CaseJudge& judge) {
     const auto status = bench.status();
     judge.expect(status.state != MasterState::run && !status.configuration_error.empty(),
                  "replaced_station_not_detected", [&] {
-                   return Sighting{
+                   return Mismatch{
                        {fmt::format("another ID code at station {} is a configuration error", station)},
                        "the master goes on"};
                  });
@@ -126,7 +126,7 @@ void expect_message(MasterBench& bench, CaseJudge& judge, std::uint16_t message,
     bench.run_data_cycles(judge, 2);
     judge.expect(bench.is_in_run(), "message_stops_bus", "the bus stays in run", "it does not");
     judge.expect((bench.status().*list) == std::vector<int>{static_cast<int>(station)}, reason, [&] {
-      return Sighting{{fmt::format("station {} is reported", station)}, "it is not, or others are"};
+      return Mismatch{{fmt::format("station {} is reported", station)}, "it is not, or others are"};
     });
     bench.ring().set_messages(station, 0);
     bench.request_id_cycle();
@@ -150,7 +150,7 @@ std::vector<MasterCase> master_ring_change_cases() {
   std::vector<MasterCase> cases;
   const auto add = [&cases](std::string_view words, std::string_view purpose, std::string_view requirement,
                             judge::Reference reference, std::string_view stimulus, std::string_view expected,
-                            std::vector<Catch> catches, auto procedure) {
+                            std::vector<MustCatch> catches, auto procedure) {
     TestCase test_case;
     test_case.id = fmt::format("interbus/master/ring_change/{}", words);
     test_case.purpose = purpose;

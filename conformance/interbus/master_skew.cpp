@@ -131,7 +131,7 @@ void expect_widths(MasterBench& bench, CaseJudge& judge, std::int64_t hertz, std
   bench.run_data_cycles(judge, static_cast<std::uint64_t>(2 * units * static_cast<double>(pulses)) + 8);
   bench.ring().on_outputs(nullptr);  // this ring stays in the segment when the next one takes over
   judge.expect(strange == 0, "width_outside_set", [&] {
-    return Sighting{{fmt::format("pulses of {} or {} T_c at {} Hz", least, least + 1, hertz)},
+    return Mismatch{{fmt::format("pulses of {} or {} T_c at {} Hz", least, least + 1, hertz)},
                     fmt::format("a pulse of {:.3f} T_c", strange)};
   });
   judge.expect(count >= static_cast<double>(pulses) - 2, "pulses_lost", "every pulse", "fewer pulses");
@@ -182,8 +182,8 @@ void lost_pulses(MasterBench& bench, CaseJudge& judge) {
 std::vector<MasterCase> master_skew_cases() {
   std::vector<MasterCase> cases;
   const auto add = [&cases](std::string_view words, std::string_view purpose, std::string_view requirement,
-                            std::string_view stimulus, std::string_view expected, std::vector<Catch> catches,
-                            auto procedure) {
+                            std::string_view stimulus, std::string_view expected,
+                            std::vector<MustCatch> catches, auto procedure) {
     TestCase test_case;
     test_case.id = fmt::format("interbus/master/skew/{}", words);
     test_case.purpose = purpose;

@@ -25,7 +25,7 @@ void expect_no_silence(MasterBench& bench, CaseJudge& judge, std::string_view st
   const kernel::Duration longest =
       std::max(bench.ring().statistics().longest_silence, bench.ring().silence_until(bench.now()));
   judge.expect(longest <= bench.rules().silence_limit, "silence_too_long", [&] {
-    return Sighting{{fmt::format("never more than {} without a telegram in {}",
+    return Mismatch{{fmt::format("never more than {} without a telegram in {}",
                                  kernel::describe(bench.rules().silence_limit), state)},
                     kernel::describe(longest)};
   });
@@ -152,7 +152,7 @@ void alternating(MasterBench& bench, CaseJudge& judge) {
                "bad and good data cycles in turn never stop the bus", "it has stopped");
   const std::uint64_t counted = status.rejected_data_cycles - before;
   judge.expect(counted == rounds || counted + 1 == rounds, "counter_wrong", [&] {
-    return Sighting{{fmt::format("{} rejected data cycles", rounds)}, fmt::format("{}", counted)};
+    return Mismatch{{fmt::format("{} rejected data cycles", rounds)}, fmt::format("{}", counted)};
   });
 }
 
@@ -200,7 +200,7 @@ std::vector<MasterCase> master_supervision_cases() {
   std::vector<MasterCase> cases;
   const auto add = [&cases](std::string_view words, std::string_view purpose, std::string_view requirement,
                             judge::Reference reference, std::string_view stimulus, std::string_view expected,
-                            std::vector<std::string> tags, std::vector<Catch> catches, auto procedure) {
+                            std::vector<std::string> tags, std::vector<MustCatch> catches, auto procedure) {
     TestCase test_case;
     test_case.id = fmt::format("interbus/master/supervision/{}", words);
     test_case.purpose = purpose;

@@ -114,7 +114,7 @@ void clock_tolerance(MasterBench& bench, CaseJudge& judge) {
       judge.expect(bench.run_cycle(), "no_data_cycle", "cycles go on", "no cycle ends");
     }
     judge.expect(bench.status().rejected_cycles == before, "clock_tolerance", [&] {
-      return Sighting{{fmt::format("a return line at {:+} per mille is received", per_mille)},
+      return Mismatch{{fmt::format("a return line at {:+} per mille is received", per_mille)},
                       "cycles are rejected"};
     });
   }
@@ -148,7 +148,7 @@ std::vector<MasterCase> master_timing_cases() {
   std::vector<MasterCase> cases;
   const auto add = [&cases](std::string_view words, std::string_view purpose, std::string_view requirement,
                             judge::Reference reference, std::string_view stimulus, std::string_view expected,
-                            std::vector<std::string> tags, std::vector<Catch> catches, auto procedure) {
+                            std::vector<std::string> tags, std::vector<MustCatch> catches, auto procedure) {
     TestCase test_case;
     test_case.id = fmt::format("interbus/master/timing/{}", words);
     test_case.purpose = purpose;

@@ -27,7 +27,7 @@
 // tester is at the terminals of all slaves and at the master's application interface.
 namespace fieldproof::conformance {
 
-// What a deviation changes of a network of references.
+// What a mutant changes of a network of references.
 struct NetworkParts {
   MasterBench::MakeMaster make_master;   // null: the reference
   interbus::Ring::MakeSlave make_slave;  // null: references
@@ -42,7 +42,7 @@ class NetworkBench {
   NetworkBench(const NetworkBench&) = delete;
   NetworkBench& operator=(const NetworkBench&) = delete;
 
-  // As the description says, whatever a deviation built.
+  // As the description says, whatever a mutant built.
   const interbus::NetworkDescription& network() const { return network_; }
   const std::vector<interbus::RingPlace>& places() const { return places_; }
   template <typename Count>
@@ -135,8 +135,8 @@ struct NetworkCase {
 const std::vector<NetworkCase>& network_cases();
 std::vector<NetworkCase> network_immunity_cases();  // a part of them
 
-const std::vector<Deviation>& network_deviations();
-// The parts of a deviation by name; throws kernel::Error(usage) with the nearest names for an unknown one.
-NetworkParts deviating_network(std::string_view name, std::size_t stations);
+const std::vector<Mutant>& network_mutants();
+// The parts of a mutant by name; throws kernel::Error(usage) with the nearest names for an unknown one.
+NetworkParts mutant_network(std::string_view name, std::size_t stations);
 
 }  // namespace fieldproof::conformance

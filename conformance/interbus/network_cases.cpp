@@ -19,7 +19,7 @@ double microseconds(kernel::Duration duration) {
 void bring_up(NetworkBench& bench, CaseJudge& judge) {
   judge.expect(bench.bring_up(), "network_does_not_run", [&] {
     const interbus::MasterStatus status = bench.status();
-    return Sighting{{"data cycles within ten seconds"},
+    return Mismatch{{"data cycles within ten seconds"},
                     fmt::format("{} stations found; {}", status.stations.size(),
                                 status.configuration_error.empty() ? "no configuration error"
                                                                    : status.configuration_error)};
@@ -36,7 +36,7 @@ void recognises_the_described_topology(NetworkBench& bench, CaseJudge& judge) {
     judge.expect(
         found == interbus::FoundStation{place.station->id_code, place.words, place.before, place.on_branch},
         "other_stations_found", [&] {
-          return Sighting{{fmt::format("station {}: {} with ID code {:04X}h and {} words", n + 1,
+          return Mismatch{{fmt::format("station {}: {} with ID code {:04X}h and {} words", n + 1,
                                        place.station->name, place.station->id_code, place.words)},
                           fmt::format("ID code {:04X}h, {} words", found.id_code, found.words)};
         });
@@ -114,12 +114,12 @@ void every_word_is_exchanged(NetworkBench& bench, CaseJudge& judge) {
       });
       const std::uint16_t seen = bench.ring().terminals(position).output_at(k, bench.segment().now());
       judge.expect(is_copied || seen == outputs[word], "wrong_output", [&] {
-        return Sighting{{fmt::format("station {} output word {}: {:04X}h", position, k, outputs[word])},
+        return Mismatch{{fmt::format("station {} output word {}: {:04X}h", position, k, outputs[word])},
                         fmt::format("{:04X}h", seen)};
       });
       const std::uint16_t read = bench.master().input(word);
       judge.expect(read == inputs[word], "wrong_input", [&] {
-        return Sighting{
+        return Mismatch{
             {fmt::format("input word {} of station {} in the master: {:04X}h", k, position, inputs[word])},
             fmt::format("{:04X}h", read)};
       });
@@ -161,7 +161,7 @@ void inputs_reach_their_outputs(NetworkBench& bench, CaseJudge& judge) {
       const std::uint16_t seen =
           bench.ring().terminals(word.to).output_at(word.rule->output_word, bench.segment().now());
       judge.expect(seen == value, "input_not_at_output", [&] {
-        return Sighting{{fmt::format("{} word {} at {} word {} within three cycles: {:04X}h", word.rule->from,
+        return Mismatch{{fmt::format("{} word {} at {} word {} within three cycles: {:04X}h", word.rule->from,
                                      word.rule->input_word, word.rule->to, word.rule->output_word, value)},
                         fmt::format("{:04X}h", seen)};
       });
@@ -194,7 +194,7 @@ void canary(NetworkBench& bench, CaseJudge& judge) {
 
 TestCase network_case(std::string chapter_and_words, std::string requirement, judge::Reference reference,
                       std::string stimulus, std::string expected, std::vector<std::string> tags,
-                      std::vector<Catch> catches) {
+                      std::vector<MustCatch> catches) {
   TestCase test_case;
   test_case.id = "interbus/network/" + std::move(chapter_and_words);
   test_case.requirement = std::move(requirement);

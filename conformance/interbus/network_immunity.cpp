@@ -108,7 +108,7 @@ class BurstExchange {
     const double chance = expected > 0 ? boost::math::gamma_p(static_cast<double>(wrong), expected) : 0.0;
     if (chance >= kImpossible) return;
     const ExchangeOracle::WrongWord& first = *oracle_.first_wrong();
-    const Sighting sighting{
+    const Mismatch sighting{
         {fmt::format("{}: {:04X}h, which was sent; or the words before", place_of(first), first.sent),
          fmt::format("by chance at most {:.2g} cycles with wrong words, of {} struck transmissions", expected,
                      struck())},

@@ -80,7 +80,7 @@ class Rejections {
       const std::optional<CycleOnLine> out = bench_.cycle_on(bench_.out(), n);
       const bool is_marked = out && (out->status() & marked) == marked;
       judge_.expect(is_marked, reason_, [&] {
-        return Sighting{
+        return Mismatch{
             .expected = {"the cycle is rejected: its status word leaves marked"},
             .actual = "the cycle was accepted: its status word left unmarked",
             .time = out ? bench_.out().start_of(out->telegrams[out->octets + 2]) : bench_.now(),

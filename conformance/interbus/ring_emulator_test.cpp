@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "conformance/interbus/master_bench.hpp"
-#include "conformance/interbus/master_deviations.hpp"
+#include "conformance/interbus/master_mutants.hpp"
 #include "harness/line/frame_check_16.hpp"
 
 namespace fieldproof::interbus {
@@ -203,10 +203,10 @@ TEST(RingEmulator, is_silent_when_the_ring_is_open_and_marks_a_bad_check) {
   EXPECT_TRUE(line.ring.last_cycle().check_good);
 }
 
-TEST(MasterDeviations, an_unknown_name_is_told_with_the_nearest) {
+TEST(MasterMutants, an_unknown_name_is_told_with_the_nearest) {
   EXPECT_NO_THROW(conformance::make_master("ref"));
   try {
-    conformance::make_master("deviant:outputs_tron");
+    conformance::make_master("mutant:outputs_tron");
     FAIL();
   } catch (const std::exception& error) {
     EXPECT_NE(std::string(error.what()).find("outputs_torn"), std::string::npos) << error.what();

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "conformance/interbus/master_cases.hpp"
-#include "conformance/interbus/master_deviations.hpp"
+#include "conformance/interbus/master_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/runner.hpp"
 #include "protocols/interbus/attached_master.hpp"
@@ -26,11 +26,10 @@ const Suite& inside() {
 }
 
 // Plays a master by name as one outside; an empty name is the reference.
-std::unique_ptr<Suite> outside(const std::string& deviation) {
-  const auto attach = [deviation](const Wanted& wanted, const MasterConfiguration& configuration) {
-    const auto served = std::make_shared<ServedMaster>([deviation](const MasterConfiguration& told) {
-      return deviation.empty() ? std::make_unique<interbus::Master>(told)
-                               : make_master_deviation(deviation, told);
+std::unique_ptr<Suite> outside(const std::string& mutant) {
+  const auto attach = [mutant](const IutRequest& wanted, const MasterConfiguration& configuration) {
+    const auto served = std::make_shared<ServedMaster>([mutant](const MasterConfiguration& told) {
+      return mutant.empty() ? std::make_unique<interbus::Master>(told) : make_master_mutant(mutant, told);
     });
     return std::make_unique<AttachedMaster>(iut::Attachment{served.get(), served, {}}, configuration,
                                             wanted.case_id, wanted.seed);
@@ -65,30 +64,30 @@ TEST(ServedMasters, ReferenceIsJudgedInEveryCaseAsInside) {
 }
 
 // In the cases that name it.
-class ServedDeviations : public testing::TestWithParam<std::string> {};
+class ServedMutants : public testing::TestWithParam<std::string> {};
 
-TEST_P(ServedDeviations, AreJudgedAsInside) {
+TEST_P(ServedMutants, AreJudgedAsInside) {
   const auto suite = outside(GetParam());
   int judged = 0;
   for (const TestCase& test_case : suite->cases()) {
     if (test_case.role() != "master" ||
-        std::ranges::count(test_case.catches, GetParam(), &Catch::deviation) == 0)
+        std::ranges::count(test_case.catches, GetParam(), &MustCatch::mutant) == 0)
       continue;
     ++judged;
     const Outcome outcome = suite->run(test_case, setup_of("outside"));
     EXPECT_EQ(outcome.result.verdict, judge::Verdict::fail) << test_case.id;
-    expect_equal(test_case, outcome, inside().run(test_case, setup_of("deviant:" + GetParam())));
+    expect_equal(test_case, outcome, inside().run(test_case, setup_of("mutant:" + GetParam())));
   }
   EXPECT_GT(judged, 0);
 }
 
-std::vector<std::string> deviation_names() {
+std::vector<std::string> mutant_names() {
   std::vector<std::string> names;
-  for (const Deviation& one : master_deviations()) names.push_back(one.name);
+  for (const Mutant& one : master_mutants()) names.push_back(one.name);
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ServedDeviations, testing::ValuesIn(deviation_names()),
+INSTANTIATE_TEST_SUITE_P(All, ServedMutants, testing::ValuesIn(mutant_names()),
                          [](const testing::TestParamInfo<std::string>& one) { return one.param; });
 
 }  // namespace

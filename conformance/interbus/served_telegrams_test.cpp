@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "conformance/interbus/master_deviations.hpp"
-#include "conformance/interbus/slave_deviations.hpp"
+#include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/runner.hpp"
 #include "protocols/interbus/attached_master.hpp"
@@ -34,19 +34,17 @@ iut::Attachment speaker_of(std::unique_ptr<iut::Device> served, unsigned line_po
 }
 
 // Plays a station by name as one outside; an empty name is the reference.
-std::unique_ptr<Suite> in_telegrams(const std::string& deviation) {
-  const auto slave = [deviation](const Wanted& wanted, const SlaveConfiguration& configuration) {
-    auto served = std::make_unique<interbus::ServedSlave>([deviation](const SlaveConfiguration& told) {
-      return deviation.empty() ? std::make_unique<interbus::Slave>(told)
-                               : make_slave_deviation(deviation, told);
+std::unique_ptr<Suite> in_telegrams(const std::string& mutant) {
+  const auto slave = [mutant](const IutRequest& wanted, const SlaveConfiguration& configuration) {
+    auto served = std::make_unique<interbus::ServedSlave>([mutant](const SlaveConfiguration& told) {
+      return mutant.empty() ? std::make_unique<interbus::Slave>(told) : make_slave_mutant(mutant, told);
     });
     return std::make_unique<interbus::AttachedSlave>(speaker_of(std::move(served), 3), configuration,
                                                      wanted.case_id, wanted.seed);
   };
-  const auto master = [deviation](const Wanted& wanted, const MasterConfiguration& configuration) {
-    auto served = std::make_unique<interbus::ServedMaster>([deviation](const MasterConfiguration& told) {
-      return deviation.empty() ? std::make_unique<interbus::Master>(told)
-                               : make_master_deviation(deviation, told);
+  const auto master = [mutant](const IutRequest& wanted, const MasterConfiguration& configuration) {
+    auto served = std::make_unique<interbus::ServedMaster>([mutant](const MasterConfiguration& told) {
+      return mutant.empty() ? std::make_unique<interbus::Master>(told) : make_master_mutant(mutant, told);
     });
     return std::make_unique<interbus::AttachedMaster>(speaker_of(std::move(served), 1), configuration,
                                                       wanted.case_id, wanted.seed);
@@ -71,7 +69,7 @@ const std::set<std::string>& of_levels() {
   return ids;
 }
 
-// Deviations that cannot be said in telegrams: of a receiver or a driver of levels.
+// Mutants that cannot be said in telegrams: of a receiver or a driver of levels.
 const std::set<std::string>& unsayable() {
   static const std::set<std::string> names{"start_bit_not_validated", "follows_any_rate",
                                            "clock_too_fast",          "does_not_retime",
@@ -112,19 +110,19 @@ struct Deviating {
   friend void PrintTo(const Deviating& one, std::ostream* out) { *out << one.role << " " << one.name; }
 };
 
-class TelegramDeviations : public testing::TestWithParam<Deviating> {};
+class TelegramMutants : public testing::TestWithParam<Deviating> {};
 
 // In the cases that name it and are not about levels alone.
-TEST_P(TelegramDeviations, AreJudgedAsInside) {
+TEST_P(TelegramMutants, AreJudgedAsInside) {
   const auto& [role, name] = GetParam();
   const auto suite = in_telegrams(name);
   int judged = 0;
   for (const TestCase& test_case : suite->cases()) {
-    const bool is_named = std::ranges::count(test_case.catches, name, &Catch::deviation) > 0;
+    const bool is_named = std::ranges::count(test_case.catches, name, &MustCatch::mutant) > 0;
     if (test_case.role() != role || !is_named || of_levels().contains(test_case.id)) continue;
     ++judged;
     const Outcome told = suite->run(test_case, telegram_setup(role, "outside"));
-    const Outcome known = judged_inside().run(test_case, telegram_setup(role, "deviant:" + name));
+    const Outcome known = judged_inside().run(test_case, telegram_setup(role, "mutant:" + name));
     EXPECT_EQ(told.result.verdict, known.result.verdict) << test_case.id << told.result.reason;
     // A cycle that comes in telegrams is known at its end: that the outputs are old is seen as their absence.
     const bool is_seen_later = name == "outputs_one_cycle_late";
@@ -133,17 +131,17 @@ TEST_P(TelegramDeviations, AreJudgedAsInside) {
   EXPECT_GT(judged, 0);
 }
 
-std::vector<Deviating> all_deviations() {
+std::vector<Deviating> all_mutants() {
   std::vector<Deviating> all;
   const auto add = [&](const std::string& role, const std::string& name) {
     if (!unsayable().contains(name) && !unsayable().contains(role + "_" + name)) all.push_back({role, name});
   };
-  for (const Deviation& one : slave_deviations()) add("slave", one.name);
-  for (const Deviation& one : master_deviations()) add("master", one.name);
+  for (const Mutant& one : slave_mutants()) add("slave", one.name);
+  for (const Mutant& one : master_mutants()) add("master", one.name);
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TelegramDeviations, testing::ValuesIn(all_deviations()),
+INSTANTIATE_TEST_SUITE_P(All, TelegramMutants, testing::ValuesIn(all_mutants()),
                          [](const testing::TestParamInfo<Deviating>& one) {
                            return one.param.role + "_" + one.param.name;
                          });

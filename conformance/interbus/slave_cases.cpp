@@ -82,18 +82,18 @@ judge::CaseResult run_slave_case(const SlaveCase& slave_case, const SlaveSetting
   }
   // Made within the procedure: what an implementation does when it is powered is its verdict, too.
   std::optional<SlaveBench> bench;
-  std::optional<std::string> obstacle;
+  std::optional<std::string> reason_not_runnable;
   CaseJudge judge(test_case);
   judge.use_clock([&] { return bench ? bench->now() : kernel::kStart; });
   judge.use_decode([&] { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
   judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
     bench.emplace(slave_case.needs, setting);
-    if (test_case.not_applicable) obstacle = test_case.not_applicable(bench->pics());
-    if (!obstacle) slave_case.procedure(*bench, j);
+    if (test_case.not_applicable) reason_not_runnable = test_case.not_applicable(bench->pics());
+    if (!reason_not_runnable) slave_case.procedure(*bench, j);
     bench->line_watch().judge(j);
     bench->finish();
   });
-  if (obstacle) return not_applicable(test_case, *obstacle);
+  if (reason_not_runnable) return not_applicable(test_case, *reason_not_runnable);
   result.seed = setting.seed;
   if (!bench) return result;
   result.fingerprint = bench->segment().trace().fingerprint();
@@ -150,21 +150,21 @@ judge::Reference own(std::string place) {
 }  // namespace sources
 
 namespace details {
-Detail check_coding() {
+PartialSource check_coding() {
   return {sources::own("bit order and final XOR of the frame check"), {"check_wrong"}};
 }
-Detail status_coding() {
+PartialSource status_coding() {
   return {sources::own("a clean status word is 0000h and passes as it came"), {"status_word_wrong"}};
 }
-Detail mark(std::vector<std::string> reasons) {
+PartialSource mark(std::vector<std::string> reasons) {
   return {sources::own("coding of the mark in the status word; that there is one is from memory"),
           std::move(reasons)};
 }
-Detail message(std::vector<std::string> reasons) {
+PartialSource message(std::vector<std::string> reasons) {
   return {sources::own("place of the message bit of a check error; that there is one is from memory"),
           std::move(reasons)};
 }
-std::vector<Detail> answer() {
+std::vector<PartialSource> answer() {
   return {{sources::own("coding of SL and CR in the check phase and in ID cycles"), {"header_wrong"}},
           check_coding(),
           status_coding()};

@@ -60,13 +60,13 @@ judge::Reference own(std::string place);
 // What cases judge besides and could not verify: the coding of what a slave adds to a cycle. Each with the
 // reasons of its findings; see TestCase::details.
 namespace details {
-Detail check_coding();   // check_wrong
-Detail status_coding();  // status_word_wrong
+PartialSource check_coding();   // check_wrong
+PartialSource status_coding();  // status_word_wrong
 // The status word of a wrong cycle leaves marked. The message bit of a check error is set.
-Detail mark(std::vector<std::string> reasons = {"error_not_marked"});
-Detail message(std::vector<std::string> reasons = {"message_missing"});
+PartialSource mark(std::vector<std::string> reasons = {"error_not_marked"});
+PartialSource message(std::vector<std::string> reasons = {"message_missing"});
 // Of expect_answer: header levels, check and status word.
-std::vector<Detail> answer();
+std::vector<PartialSource> answer();
 }  // namespace details
 
 }  // namespace fieldproof::conformance

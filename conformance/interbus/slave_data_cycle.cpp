@@ -53,7 +53,7 @@ void check_snapshots(SlaveBench& bench, CaseJudge& judge) {
       for (unsigned word = 0; word < bench.words(); ++word) {
         const std::uint16_t seen = out.word(2 * word);
         judge.expect(seen == 0x0000 || seen == 0xFFFF, "input_word_torn", [&] {
-          return Sighting{.expected = {"0000h", "FFFFh"},
+          return Mismatch{.expected = {"0000h", "FFFFh"},
                           .actual = fmt::format("{:04X}h", seen),
                           .time = bench.out().start_of(out.telegrams[2 * word]),
                           .first_difference = fmt::format("input word {}", word)};
@@ -93,7 +93,7 @@ void check_sample_instant(SlaveBench& bench, CaseJudge& judge) {
     const SampleInstants words = sample_instants(bench, judge);
     // The clock may tick between two words.
     judge.expect(words.most - words.least <= 1, "input_words_not_of_one_instant", [&] {
-      return Sighting{.expected = {"all words of a cycle are sampled at one instant"},
+      return Mismatch{.expected = {"all words of a cycle are sampled at one instant"},
                       .actual = fmt::format("they are {} us apart", words.most - words.least),
                       .first_difference = fmt::format("data cycle {}", n)};
     });

@@ -54,7 +54,7 @@ void expect_all_telegrams(SlaveBench& bench, CaseJudge& judge) {
   const std::size_t arrived = bench.in().data_telegrams().size();
   const std::size_t left = bench.out().data_telegrams().size();
   judge.expect(left == arrived, left < arrived ? "telegram_lost" : "telegram_added", [&] {
-    return Sighting{.expected = {fmt::format("{} data telegrams leave, as many as arrived", arrived)},
+    return Mismatch{.expected = {fmt::format("{} data telegrams leave, as many as arrived", arrived)},
                     .actual = fmt::format("{} data telegrams left", left)};
   });
 }
@@ -74,7 +74,7 @@ void expect_status_telegrams(SlaveBench& bench, CaseJudge& judge) {
   for (const SeenTelegram& out : bench.out().telegrams()) {
     if (!is_status(out)) continue;
     judge.expect(out.header == in->header, "status_telegram_changed", [&] {
-      return Sighting{.expected = {describe(bench.in(), *in, bench.in().start_of(*in))},
+      return Mismatch{.expected = {describe(bench.in(), *in, bench.in().start_of(*in))},
                       .actual = describe(bench.out(), out, bench.out().start_of(out)),
                       .time = bench.out().start_of(out)};
     });
@@ -106,7 +106,7 @@ void expect_outputs(SlaveBench& bench, CaseJudge& judge, std::span<const std::ui
                     std::string_view reason) {
   if (!has_outputs(bench)) return;
   judge.expect(std::ranges::equal(bench.outputs(), words), reason, [&] {
-    return Sighting{.expected = {fmt::format("outputs {}", text_of(words))},
+    return Mismatch{.expected = {fmt::format("outputs {}", text_of(words))},
                     .actual = fmt::format("outputs {}", text_of(bench.outputs()))};
   });
 }
@@ -115,7 +115,7 @@ void expect_no_change(SlaveBench& bench, CaseJudge& judge, std::string_view reas
                       std::string_view why_not) {
   judge.expect(bench.changes().empty(), reason, [&] {
     const auto& change = bench.changes().front();
-    return Sighting{.expected = {fmt::format("no output changes: {}", why_not)},
+    return Mismatch{.expected = {fmt::format("no output changes: {}", why_not)},
                     .actual = change_text(change),
                     .time = change.when};
   });
@@ -125,7 +125,7 @@ void expect_marked(SlaveBench& bench, CaseJudge& judge, std::size_t n) {
   const CycleOnLine out = cycle_that_left(bench, judge, n);
   const std::uint16_t marked = bench.rules().status_marked;
   judge.expect((out.status() & marked) == marked, "error_not_marked", [&] {
-    return Sighting{.expected = {fmt::format("status word {:04X}h, marked", marked)},
+    return Mismatch{.expected = {fmt::format("status word {:04X}h, marked", marked)},
                     .actual = fmt::format("status word {:04X}h", out.status()),
                     .time = bench.out().start_of(out.telegrams[out.octets + 2]),
                     .first_difference = fmt::format("status word of cycle {}", n)};
@@ -150,7 +150,7 @@ void expect_good_cycle(SlaveBench& bench, CaseJudge& judge, std::string_view rea
 
 void expect_clean_status(SlaveBench& bench, CaseJudge& judge, const CycleOnLine& out) {
   judge.expect(out.status() == bench.rules().status_clean, "status_word_wrong", [&] {
-    return Sighting{.expected = {"an accepted cycle leaves with a clean status word"},
+    return Mismatch{.expected = {"an accepted cycle leaves with a clean status word"},
                     .actual = fmt::format("status word {:04X}h", out.status()),
                     .time = bench.out().start_of(out.telegrams[out.octets + 2])};
   });
@@ -173,7 +173,7 @@ void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<cons
     for (; next < changes.size() && changes[next].when <= window.last; ++next) {
       const auto& change = changes[next];
       judge.expect(change.when >= window.first, "outputs_changed_before_check", [&] {
-        return Sighting{.expected = {fmt::format("outputs change at or after {}, the end of the check phase",
+        return Mismatch{.expected = {fmt::format("outputs change at or after {}, the end of the check phase",
                                                  kernel::describe(window.first))},
                         .actual = change_text(change),
                         .time = change.when};
@@ -197,7 +197,7 @@ void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<cons
          .first_difference = fmt::format("data cycle {} of the train", n)});
   }
   judge.expect(next == changes.size(), "outputs_changed_without_cycle", [&] {
-    return Sighting{.expected = {"no output changes behind the last cycle"},
+    return Mismatch{.expected = {"no output changes behind the last cycle"},
                     .actual = change_text(changes[next]),
                     .time = changes[next].when};
   });

@@ -30,7 +30,7 @@ void check_leaves_for_what_was_sent(SlaveBench& bench, CaseJudge& judge) {
     std::uint16_t state = check.start();
     for (std::size_t k = 0; k < out.octets; ++k) state = check.next(state, out.telegrams[k].data);
     judge.expect(out.check() == check.word(state), "check_wrong", [&] {
-      return Sighting{
+      return Mismatch{
           .expected = {fmt::format("{:04X}h, the check of the octets that left", check.word(state))},
           .actual = fmt::format("{:04X}h", out.check()),
           .time = bench.out().start_of(out.telegrams[out.octets]),
@@ -49,7 +49,7 @@ void reject_single_bit(SlaveBench& bench, CaseJudge& judge, std::size_t bit) {
   bench.id_cycle(bench.interfaces_off());
   const std::uint16_t message = bench.rules().message_check_error;
   judge.expect((id_register(bench, judge) & message) != 0, "message_missing", [&] {
-    return Sighting{.expected = {fmt::format("message bit {:04X}h in the ID cycle behind it", message)},
+    return Mismatch{.expected = {fmt::format("message bit {:04X}h in the ID cycle behind it", message)},
                     .actual = fmt::format("ID register {:04X}h", id_register(bench, judge)),
                     .first_difference = fmt::format("bit {} of the code word was flipped", bit)};
   });
@@ -190,7 +190,7 @@ void zeros_do_not_hide_a_lost_octet(SlaveBench& bench, CaseJudge& judge) {
   const auto expect_zeros = [&](std::size_t sent, std::size_t checked, std::string_view reason) {
     drive_zeros(bench, sent, checked == 0 ? 0 : check_of_zeros(bench, checked));
     judge.expect(!left_clean(bench), reason, [&] {
-      return Sighting{
+      return Mismatch{
           .expected = {fmt::format("{} octets of zeros are rejected: their check is that of {} octets", sent,
                                    checked)},
           .actual = "the status word left unmarked"};
@@ -225,7 +225,7 @@ void mark_of_others_is_kept(SlaveBench& bench, CaseJudge& judge) {
     expect_all_telegrams(bench, judge);
     const CycleOnLine out = cycle_that_left(bench, judge, 0);
     judge.expect((out.status() & marked) == marked, "mark_of_others_cleared", [&] {
-      return Sighting{.expected = {fmt::format("status word {:04X}h, as it came", marked)},
+      return Mismatch{.expected = {fmt::format("status word {:04X}h, as it came", marked)},
                       .actual = fmt::format("status word {:04X}h", out.status()),
                       .time = bench.out().start_of(out.telegrams[out.octets + 2])};
     });

@@ -16,7 +16,7 @@ void returns_its_id_code(SlaveBench& bench, CaseJudge& judge) {
     bench.id_cycle(bench.interfaces_off());
     const std::uint16_t found = id_register(bench, judge);
     judge.expect((found & ~unsigned{kMessages}) == declared, "id_code_wrong", [&] {
-      return Sighting{.expected = {fmt::format("ID code {:04X}h in bits 0 to 12", declared)},
+      return Mismatch{.expected = {fmt::format("ID code {:04X}h in bits 0 to 12", declared)},
                       .actual = fmt::format("{:04X}h", found & ~unsigned{kMessages}),
                       .time = bench.out().start_of(bench.out().data_telegrams()[0])};
     });

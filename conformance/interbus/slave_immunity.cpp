@@ -22,7 +22,7 @@ void expect_outputs_held(SlaveBench& bench, CaseJudge& judge, std::span<const st
     const bool is_short = back != changes.end() && back->when - changes[n].when <= 1 * kernel::kMicrosecond;
     if (is_short || changes[n].before != words[changes[n].word]) continue;
     judge.fail("output_glitch",
-               {.expected = {"outputs hold their value; a deviation of up to 1 us is not counted"},
+               {.expected = {"outputs hold their value; a mutant of up to 1 us is not counted"},
                 .actual = back == changes.end()
                               ? fmt::format("word {} went to {:04X}h", changes[n].word, changes[n].after)
                               : fmt::format("word {} was {:04X}h for {}", changes[n].word, changes[n].after,
@@ -80,7 +80,7 @@ void check_outputs_under_faults(SlaveBench& bench, CaseJudge& judge, SlaveArriva
   const std::vector<std::uint16_t> allowed =
       may_change ? arrivals.words() : std::vector<std::uint16_t>(before.begin(), before.end());
   judge.expect(std::ranges::equal(bench.outputs(), allowed), "wrong_value_latched", [&] {
-    return Sighting{.expected = {fmt::format("outputs {}: {}", text_of(allowed),
+    return Mismatch{.expected = {fmt::format("outputs {}: {}", text_of(allowed),
                                              may_change ? "the words that arrived with a right check"
                                                         : "what arrived has no right check")},
                     .actual = fmt::format("outputs {}", text_of(bench.outputs()))};
@@ -97,7 +97,7 @@ unsigned recover(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arrivals) {
     if (std::ranges::equal(bench.outputs(), words)) break;
   }
   judge.expect(lost < bench.rules().published_recovery_cycles, "no_recovery", [&] {
-    return Sighting{.expected = {fmt::format("one of {} clean cycles behind the faults is taken over",
+    return Mismatch{.expected = {fmt::format("one of {} clean cycles behind the faults is taken over",
                                              bench.rules().published_recovery_cycles)},
                     .actual = "none was"};
   });
@@ -160,7 +160,7 @@ void stressed_cycle(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arrivals
   const bool is_right = std::ranges::equal(after, before) || std::ranges::equal(after, sent) ||
                         (has_arrived && std::ranges::equal(after, arrivals.words()));
   judge.expect(is_right, "wrong_value_latched", [&] {
-    return Sighting{.expected = {fmt::format("outputs {}: those before the cycle", text_of(before)),
+    return Mismatch{.expected = {fmt::format("outputs {}: those before the cycle", text_of(before)),
                                  fmt::format("outputs {}: those of the cycle", text_of(sent))},
                     .actual = fmt::format("outputs {}", text_of(after))};
   });

@@ -41,7 +41,7 @@ void expect_neighbour_in_ring(SlaveBench& bench, CaseJudge& judge, const Interfa
   const std::size_t went = interface.line.data_telegrams().size();
   const std::size_t returned = bench.out().data_telegrams().size();
   judge.expect(went == arrived && returned == arrived, reason, [&] {
-    return Sighting{
+    return Mismatch{
         .expected = {fmt::format("{} telegrams go out on {} and come back", arrived, interface.name)},
         .actual = fmt::format("{} went out on {}, {} came back", went, interface.name, returned)};
   });
@@ -51,7 +51,7 @@ void expect_neighbour_in_ring(SlaveBench& bench, CaseJudge& judge, const Interfa
 void expect_closed_here(SlaveBench& bench, CaseJudge& judge, const Interface& interface,
                         std::string_view reason) {
   judge.expect(interface.line.waves().empty(), reason, [&] {
-    return Sighting{
+    return Mismatch{
         .expected = {fmt::format("nothing leaves on {}", interface.name)},
         .actual = fmt::format("{} telegrams left on {}", interface.line.telegrams().size(), interface.name),
         .time = interface.line.waves().front().start};
@@ -59,7 +59,7 @@ void expect_closed_here(SlaveBench& bench, CaseJudge& judge, const Interface& in
   const std::size_t arrived = bench.in().data_telegrams().size();
   const std::size_t returned = bench.out().data_telegrams().size();
   judge.expect(arrived == returned, reason, [&] {
-    return Sighting{.expected = {fmt::format("all {} telegrams return from the slave itself", arrived)},
+    return Mismatch{.expected = {fmt::format("all {} telegrams return from the slave itself", arrived)},
                     .actual = fmt::format("{} returned", returned)};
   });
 }
@@ -77,7 +77,7 @@ void expect_register_of_neighbour(SlaveBench& bench, CaseJudge& judge, const Int
   const CycleOnLine out = cycle_that_left(bench, judge, 0);
   for (std::size_t n = 0; n < load.size(); ++n) {
     judge.expect(out.telegrams[2 * behind.size() + n].data == load[n], "register_content_wrong", [&] {
-      return Sighting{.expected = {fmt::format("{:02X}h, input octet {} of the slave", load[n], n)},
+      return Mismatch{.expected = {fmt::format("{:02X}h, input octet {} of the slave", load[n], n)},
                       .actual = fmt::format("{:02X}h", out.telegrams[2 * behind.size() + n].data)};
     });
   }
@@ -152,7 +152,7 @@ void outgoing_bus_is_reset(SlaveBench& bench, CaseJudge& judge) {
   while (bench.now() + bench.bits(600) < silent_from + bench.rules().silence_limit) {
     bench.status_telegrams(40);
     judge.expect(interface.line.waves().empty(), "downstream_not_silent", [&] {
-      return Sighting{.expected = {fmt::format("nothing leaves on OUT1 for {}",
+      return Mismatch{.expected = {fmt::format("nothing leaves on OUT1 for {}",
                                                kernel::describe(bench.rules().silence_limit))},
                       .actual = "status telegrams left",
                       .time = interface.line.waves().front().start};

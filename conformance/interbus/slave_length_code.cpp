@@ -35,7 +35,7 @@ void has_register_of(SlaveBench& bench, CaseJudge& judge, unsigned words) {
     if (!in || !out) judge.fail("telegram_lost", {{"the cycle passes"}, "it did not arrive whole"});
     const std::optional<std::size_t> shift = shift_of(*in, *out);
     judge.expect(shift == 2 * words, "register_length_wrong", [&] {
-      return Sighting{.expected = {fmt::format("what comes in leaves after {} octets", 2 * words)},
+      return Mismatch{.expected = {fmt::format("what comes in leaves after {} octets", 2 * words)},
                       .actual = shift ? fmt::format("after {} octets", *shift)
                                       : std::string("it does not leave within the cycle"),
                       .time = bench.out().start_of(out->telegrams[0])};
@@ -49,7 +49,7 @@ void has_register_of(SlaveBench& bench, CaseJudge& judge, unsigned words) {
 SlaveCase length_case(const interbus::LengthCode& length) {
   const auto id_code = static_cast<std::uint16_t>(length.code << 8 | 0x03);
   const bool is_binary = length.code == length.words;
-  std::vector<Catch> catches{{"id_register_in_data_cycle", "register_length_wrong"}};
+  std::vector<MustCatch> catches{{"id_register_in_data_cycle", "register_length_wrong"}};
   if (!is_binary) catches.push_back({"length_code_binary", "register_length_wrong"});
   SlaveCase result{
       {.id = fmt::format("interbus/slave/length_code/code_{:02x}h_is_{}_words", length.code, length.words),

@@ -18,7 +18,7 @@ void expect_messages(SlaveBench& bench, CaseJudge& judge, std::uint16_t expected
                      std::string_view why) {
   const std::uint16_t found = read_messages(bench, judge);
   judge.expect(found == expected, reason, [&] {
-    return Sighting{.expected = {fmt::format("message bits {:04X}h: {}", expected, why)},
+    return Mismatch{.expected = {fmt::format("message bits {:04X}h: {}", expected, why)},
                     .actual = fmt::format("message bits {:04X}h", found),
                     .time = bench.out().start_of(bench.out().data_telegrams()[0]),
                     .first_difference = "bits 13 to 15 of the ID register"};

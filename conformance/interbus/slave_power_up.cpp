@@ -11,7 +11,7 @@ void is_silent_and_safe(SlaveBench& bench, CaseJudge& judge) {
   bench.silence(100 * kernel::kMillisecond);
   for (LineView* view : {&bench.out(), &bench.remote(), &bench.branch()}) {
     judge.expect(view->data_telegrams().empty(), "data_telegram_without_cause", [&] {
-      return Sighting{.expected = {"no data telegram as long as none arrives"},
+      return Mismatch{.expected = {"no data telegram as long as none arrives"},
                       .actual = describe(*view, view->data_telegrams().front(), kernel::kStart),
                       .time = view->start_of(view->data_telegrams().front())};
     });

@@ -102,7 +102,7 @@ class SlaveSequenceRun {
     if (std::ranges::equal(bench_.outputs(), before)) return;
     const bool has_arrived = may_change && std::ranges::equal(bench_.outputs(), arrivals_.words());
     judge_.expect(has_arrived, "wrong_value_latched", [&] {
-      Sighting sighting{{"outputs " + text_of(before) + ": those before the cycle"},
+      Mismatch sighting{{"outputs " + text_of(before) + ": those before the cycle"},
                         "outputs " + text_of(bench_.outputs())};
       if (may_change) sighting.expected.push_back("outputs " + text_of(arrivals_.words()) + ": what arrived");
       return sighting;

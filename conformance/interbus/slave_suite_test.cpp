@@ -1,5 +1,5 @@
 // Subject: the slave suite at other positions of the ring and on other stations than its own network has.
-// What it says about the reference and about each deviation at the first position is the subject of
+// What it says about the reference and about each mutant at the first position is the subject of
 // suite_test.cpp.
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "conformance/interbus/slave_cases.hpp"
-#include "conformance/interbus/slave_deviations.hpp"
+#include "conformance/interbus/slave_mutants.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::conformance {
@@ -30,10 +30,10 @@ SlaveSetting setting_for(const conformance::Setup& setup) {
   setting.seed = setup.seed;
   setting.volume = setup.volume;
   for (const Assignment& assignment : setup.implementations) {
-    if (!assignment.uri.starts_with("deviant:")) continue;
+    if (!assignment.uri.starts_with("mutant:")) continue;
     setting.make_slave = [name =
                               assignment.uri.substr(8)](const interbus::SlaveConfiguration& configuration) {
-      return make_slave_deviation(name, configuration);
+      return make_slave_mutant(name, configuration);
     };
   }
   return setting;
@@ -73,21 +73,21 @@ TEST(SlaveSuite, NoFalseAlarmAtOtherPositions) {
   }
 }
 
-TEST(SlaveSuite, EachDeviationIsCaughtAtAnotherPosition) {
+TEST(SlaveSuite, EachMutantIsCaughtAtAnotherPosition) {
   for (const SlaveCase& slave_case : cases_without_stress()) {
     if (has_tag(slave_case.test_case, kStressTag))
       continue;  // the program has stresses, and a test of its own
-    for (const Catch& declared : slave_case.test_case.catches) {
+    for (const MustCatch& declared : slave_case.test_case.catches) {
       SlaveSetting setting = setting_for({});
       setting.volume = Volume::quick;
       setting.position = 2;
       setting.stations = 3;
       setting.make_slave = [&](const interbus::SlaveConfiguration& configuration) {
-        return make_slave_deviation(declared.deviation, configuration);
+        return make_slave_mutant(declared.mutant, configuration);
       };
       const judge::CaseResult result = run_slave_case(slave_case, setting);
-      EXPECT_EQ(result.verdict, judge::Verdict::fail) << slave_case.test_case.id << " " << declared.deviation;
-      EXPECT_EQ(result.reason, declared.reason) << slave_case.test_case.id << " " << declared.deviation;
+      EXPECT_EQ(result.verdict, judge::Verdict::fail) << slave_case.test_case.id << " " << declared.mutant;
+      EXPECT_EQ(result.reason, declared.reason) << slave_case.test_case.id << " " << declared.mutant;
     }
   }
 }
@@ -99,7 +99,7 @@ TEST(SlaveSuite, FindingsAboutUnverifiedCodingsSaySo) {
   std::set<std::string> met;
   for (const SlaveCase& slave_case : cases_without_stress()) {
     const TestCase& test_case = slave_case.test_case;
-    for (const Catch& declared : test_case.catches) {
+    for (const MustCatch& declared : test_case.catches) {
       if (!unverified.contains(declared.reason)) continue;
       met.insert(declared.reason);
       EXPECT_FALSE(judge::is_verified(test_case.reference_of(declared.reason).standing))
@@ -111,14 +111,14 @@ TEST(SlaveSuite, FindingsAboutUnverifiedCodingsSaySo) {
 }
 
 TEST(SlaveSuite, EachDetailIsOneThatACaseCanFailFor) {
-  // Reasons of expectations that many cases share, which no deviation has to prove in each of them.
+  // Reasons of expectations that many cases share, which no mutant has to prove in each of them.
   const std::set<std::string> shared = {"check_wrong", "status_word_wrong", "header_wrong"};
   for (const SlaveCase& slave_case : cases_without_stress()) {
     const TestCase& test_case = slave_case.test_case;
-    for (const Detail& detail : test_case.details) {
+    for (const PartialSource& detail : test_case.details) {
       const bool is_proven = std::ranges::any_of(detail.reasons, [&](const std::string& reason) {
         return shared.contains(reason) ||
-               std::ranges::any_of(test_case.catches, [&](const Catch& c) { return c.reason == reason; });
+               std::ranges::any_of(test_case.catches, [&](const MustCatch& c) { return c.reason == reason; });
       });
       EXPECT_TRUE(is_proven) << test_case.id << " " << detail.reasons.front();
     }
@@ -131,9 +131,9 @@ TEST(SlaveSuite, ACaseOfAVerifiedSourceMayFailForAnUnverifiedOne) {
     EXPECT_TRUE(judge::is_verified(slave_case.test_case.reference.standing));
     SlaveSetting setting = setting_for({});
     setting.volume = Volume::quick;
-    const auto result_with = [&](const char* deviation) {
-      setting.make_slave = [deviation](const interbus::SlaveConfiguration& configuration) {
-        return make_slave_deviation(deviation, configuration);
+    const auto result_with = [&](const char* mutant) {
+      setting.make_slave = [mutant](const interbus::SlaveConfiguration& configuration) {
+        return make_slave_mutant(mutant, configuration);
       };
       return run_slave_case(slave_case, setting);
     };
@@ -177,7 +177,7 @@ TEST(SlaveSuite, TheRegisterOfAnOutputStationIsNotJudged) {
     if (is_canary(slave_case.test_case)) continue;
     SlaveSetting setting = setting_with_id_code(0x0201);
     setting.make_slave = [](const interbus::SlaveConfiguration& configuration) {
-      return make_slave_deviation("input_bit_stuck", configuration);
+      return make_slave_mutant("input_bit_stuck", configuration);
     };
     const judge::CaseResult result = run_slave_case(slave_case, setting);
     if (result.verdict == judge::Verdict::not_applicable) continue;
@@ -194,7 +194,7 @@ TEST(SlaveSuite, TheCanaryFails) {
   }
 }
 
-TEST(SlaveSuite, EveryTestPurposeHasACaseAndEveryMutantADeviation) {
+TEST(SlaveSuite, EveryTestPurposeHasACaseAndEveryMutantAMutant) {
   std::set<std::string> purposes;
   std::set<std::string> ids;
   for (const SlaveCase& slave_case : cases_without_stress()) {
@@ -210,13 +210,13 @@ TEST(SlaveSuite, EveryTestPurposeHasACaseAndEveryMutantADeviation) {
     EXPECT_TRUE(purposes.contains("IS-" + number)) << "IS-" << number;
   }
   std::set<std::string> mutants;
-  for (const Deviation& deviation : slave_deviations()) mutants.insert(deviation.mutant);
+  for (const Mutant& mutant : slave_mutants()) mutants.insert(mutant.label);
   for (unsigned n = 1; n <= 22; ++n) EXPECT_TRUE(mutants.contains("MS" + std::to_string(n))) << "MS" << n;
 }
 
-TEST(SlaveSuite, UnknownDeviationNamesItsNeighbours) {
+TEST(SlaveSuite, UnknownMutantNamesItsNeighbours) {
   try {
-    make_slave_deviation("crc_preset_zer", {});
+    make_slave_mutant("crc_preset_zer", {});
     FAIL();
   } catch (const kernel::Error& error) {
     EXPECT_NE(std::string(error.what()).find("crc_preset_zero"), std::string::npos);

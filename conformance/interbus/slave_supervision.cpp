@@ -37,7 +37,7 @@ void long_silence_clears_outputs(SlaveBench& bench, CaseJudge& judge) {
   for (const auto& change : bench.changes()) {
     const kernel::Duration after = change.when - last;
     const auto sighting = [&] {
-      return Sighting{.expected = {fmt::format("outputs change {} to {} after the last telegram",
+      return Mismatch{.expected = {fmt::format("outputs change {} to {} after the last telegram",
                                                kernel::describe(limit), kernel::describe(latest))},
                       .actual = fmt::format("after {}", kernel::describe(after)),
                       .time = change.when};

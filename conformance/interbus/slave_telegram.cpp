@@ -131,7 +131,7 @@ void expect_cycle_behind_glitch(SlaveBench& bench, CaseJudge& judge, std::span<c
   const kernel::Time check_phase = bench.in().start_of(bench.in().data_telegrams().back());
   for (const auto& change : bench.changes()) {
     judge.expect(change.when >= check_phase, "output_changed_by_glitch", [&] {
-      return Sighting{.expected = {"outputs change behind the check phase of the cycle"},
+      return Mismatch{.expected = {"outputs change behind the check phase of the cycle"},
                       .actual = fmt::format("they changed at {}", kernel::describe(change.when)),
                       .time = change.when,
                       .first_difference = glitch};
@@ -149,7 +149,7 @@ void expect_nothing_before_the_cycle(SlaveBench& bench, CaseJudge& judge, const 
   const bool is_first = out.empty() || bench.in().telegrams().empty() ||
                         bench.out().start_of(out[0]) >= bench.in().start_of(bench.in().telegrams()[0]);
   judge.expect(is_first && out.size() <= bench.in().telegrams().size(), "glitch_taken_for_telegram", [&] {
-    return Sighting{.expected = {"nothing leaves but the cycle"},
+    return Mismatch{.expected = {"nothing leaves but the cycle"},
                     .actual = describe(bench.out(), out[0], bench.in().start_of(bench.in().telegrams()[0])) +
                               ", reckoned from the cycle",
                     .time = bench.out().start_of(out[0]),

@@ -56,7 +56,7 @@ void expect_rate_rejected(SlaveBench& bench, CaseJudge& judge, double percent) {
     line::Waveform wave = cycle_at_rate(bench, percent, words);
     bench.drive_at_receiver(wave);
     judge.expect(!left_clean(bench), "rate_beyond_limit_accepted", [&] {
-      return Sighting{.expected = {fmt::format("cycles at {:+.1f} % of the bit rate are rejected", percent)},
+      return Mismatch{.expected = {fmt::format("cycles at {:+.1f} % of the bit rate are rejected", percent)},
                       .actual = "one left with a clean status word"};
     });
     expect_no_change(bench, judge, "output_changed_by_rejected_cycle",
@@ -70,7 +70,7 @@ void bit_rate_tolerance(SlaveBench& bench, CaseJudge& judge) {
   expect_good_cycle(bench, judge, "valid_cycle_rejected");
   for (const double percent : {0.1, -0.1, 1.0, -1.0}) {
     judge.expect(accepts_rate(bench, percent), "rate_within_limit_rejected", [&] {
-      return Sighting{.expected = {fmt::format("cycles at {:+.1f} % of the bit rate are accepted", percent)},
+      return Mismatch{.expected = {fmt::format("cycles at {:+.1f} % of the bit rate are accepted", percent)},
                       .actual = "one was rejected"};
     });
   }
@@ -118,7 +118,7 @@ void edge_jitter(SlaveBench& bench, CaseJudge& judge) {
     });
     judge.expect(is_accepted(bench, {bench.now(), bench.rules().bit_rate * kPerBit, levels}, words),
                  "jitter_rejected", [&] {
-                   return Sighting{.expected = {"a cycle whose edges lie within 15 % of a bit is accepted"},
+                   return Mismatch{.expected = {"a cycle whose edges lie within 15 % of a bit is accepted"},
                                    .actual = "it was rejected",
                                    .first_difference = fmt::format("jittered cycle {}", n)};
                  });
@@ -135,7 +135,7 @@ void gaps_between_telegrams(SlaveBench& bench, CaseJudge& judge) {
       bench.data_cycle(words);
       judge.expect(
           bench.out().data_telegrams().size() == bench.in().data_telegrams().size(), "gap_rejected", [&] {
-            return Sighting{.expected = {fmt::format("all telegrams pass, {} bits apart", gap)},
+            return Mismatch{.expected = {fmt::format("all telegrams pass, {} bits apart", gap)},
                             .actual = fmt::format("{} of {} passed", bench.out().data_telegrams().size(),
                                                   bench.in().data_telegrams().size())};
           });

@@ -12,14 +12,14 @@
 #include "conformance/assigned.hpp"
 #include "conformance/case_recorder.hpp"
 #include "conformance/interbus/master_cases.hpp"
-#include "conformance/interbus/master_deviations.hpp"
+#include "conformance/interbus/master_mutants.hpp"
 #include "conformance/interbus/network_bench.hpp"
 #include "conformance/interbus/playback.hpp"
 #include "conformance/interbus/slave_cases.hpp"
-#include "conformance/interbus/slave_deviations.hpp"
+#include "conformance/interbus/slave_mutants.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
-#include "protocols/interbus/cycle_notation.hpp"
+#include "protocols/interbus/cycle_dissector.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"
 
@@ -68,7 +68,7 @@ class Run {
       std::function<std::unique_ptr<interbus::SlaveDevice>(const interbus::SlaveConfiguration&)>;
   using MakeMaster =
       std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)>;
-  Wanted wanted(const std::string& uri) const { return {uri, test_case_.id, setup_.seed, setup_.limits}; }
+  IutRequest wanted(const std::string& uri) const { return {uri, test_case_.id, setup_.seed, setup_.limits}; }
   MakeSlave slave_maker(const std::string& uri) const;
   MakeMaster master_maker(const std::string& uri) const;
   std::unique_ptr<interbus::SlaveDevice> make_slave(const interbus::SlaveConfiguration& configuration);
@@ -97,7 +97,7 @@ Run::MakeSlave Run::slave_maker(const std::string& uri) const {
   if (uri == kReferenceUri) return std::make_unique<interbus::Slave, const interbus::SlaveConfiguration&>;
   return [this, uri](const interbus::SlaveConfiguration& configuration) {
     if (auto slave = given_.slave.make(wanted(uri), configuration)) return slave;
-    return make_slave_deviation(deviation_of(uri, "INTERBUS slave"), configuration);
+    return make_slave_mutant(mutant_of(uri, "INTERBUS slave"), configuration);
   };
 }
 
@@ -128,7 +128,7 @@ void Run::finish(Outcome& outcome, const trace::Trace& trace, kernel::Time now) 
 }
 
 trace::Recorder& Run::recorder_of(const trace::Trace& trace, const interbus::Rules& rules) {
-  return recorder_.start(trace, std::make_shared<interbus::CycleNotation>(rules));
+  return recorder_.start(trace, std::make_shared<interbus::CycleDissector>(rules));
 }
 
 void Run::keep(Outcome& outcome) {
@@ -229,7 +229,7 @@ NetworkParts Run::network_parts(std::size_t stations) {
     } else if (assignment.role == "master") {
       parts.make_master = master_maker(assignment.uri);
     } else {
-      parts = deviating_network(deviation_of(assignment.uri, "INTERBUS network"), stations);
+      parts = mutant_network(mutant_of(assignment.uri, "INTERBUS network"), stations);
     }
   }
   if (slaves.empty()) return parts;
@@ -313,9 +313,9 @@ class InterbusSuite final : public Suite {
     add(master_cases());
     add(network_cases());
     checks_[blank_sequence_case().test_case.id] = [](Run& run) { run.check(blank_sequence_case()); };
-    for (const auto* list : {&slave_deviations(), &master_deviations(), &network_deviations()}) {
-      std::ranges::copy_if(*list, std::back_inserter(deviations_),
-                           [&](const Deviation& one) { return !only_left_out_cases_name(one); });
+    for (const auto* list : {&slave_mutants(), &master_mutants(), &network_mutants()}) {
+      std::ranges::copy_if(*list, std::back_inserter(mutants_),
+                           [&](const Mutant& one) { return !only_left_out_cases_name(one); });
     }
   }
 
@@ -325,7 +325,7 @@ class InterbusSuite final : public Suite {
     return role == "slave" ? bool(given_.slave.own) : role == "master" && bool(given_.master.own);
   }
   const std::vector<TestCase>& cases() const override { return cases_; }
-  const std::vector<Deviation>& deviations() const override { return deviations_; }
+  const std::vector<Mutant>& mutants() const override { return mutants_; }
 
   int last_position() const override { return static_cast<int>(interbus::Rules{}.max_stations); }
   std::vector<judge::PicsItem> pics_items() const override {
@@ -374,10 +374,10 @@ class InterbusSuite final : public Suite {
 
  private:
   // Networks that only bursts tell are no hole of a suite that was given none.
-  bool only_left_out_cases_name(const Deviation& deviation) const {
+  bool only_left_out_cases_name(const Mutant& mutant) const {
     const auto names = [&](const TestCase& one) {
-      return one.role() == deviation.role && std::ranges::any_of(one.catches, [&](const Catch& caught) {
-               return caught.deviation == deviation.name;
+      return one.role() == mutant.role && std::ranges::any_of(one.catches, [&](const MustCatch& caught) {
+               return caught.mutant == mutant.name;
              });
     };
     return std::ranges::none_of(cases_, names) &&
@@ -392,7 +392,7 @@ class InterbusSuite final : public Suite {
 
   InterbusGiven given_;
   std::vector<TestCase> cases_;
-  std::vector<Deviation> deviations_;
+  std::vector<Mutant> mutants_;
   std::map<std::string, std::function<Outcome(Run&)>, std::less<>> runs_;
   std::map<std::string, std::function<void(Run&)>, std::less<>> checks_;
   std::map<std::string, const SlaveCase*, std::less<>> slave_cases_;

@@ -108,16 +108,16 @@ TEST(InterbusSuite, EveryCasesOwnRecordingIsJudgedLikeTheRun) {
 TEST(InterbusSuite, ARecordingIsJudgedLikeTheImplementationItself) {
   const std::string slave = "interbus/slave/frame_check/flipped_data_bit_is_rejected_marked_and_told";
   expect_same_verdict_from_recording(slave, "slave", "ref");
-  expect_same_verdict_from_recording(slave, "slave", "deviant:does_not_mark_status");
+  expect_same_verdict_from_recording(slave, "slave", "mutant:does_not_mark_status");
   const std::string master = "interbus/master/rejection/marked_status_names_the_segment";
   expect_same_verdict_from_recording(master, "master", "ref");
-  expect_same_verdict_from_recording(master, "master", "deviant:wrong_segment");
+  expect_same_verdict_from_recording(master, "master", "mutant:wrong_segment");
 }
 
 TEST(InterbusSuite, AStationOfTheCallersIsJudged) {
   int made = 0;
   const auto own = interbus_suite(
-      {.slave = {.own = [&made](const Wanted&, const interbus::SlaveConfiguration& configuration) {
+      {.slave = {.own = [&made](const IutRequest&, const interbus::SlaveConfiguration& configuration) {
          ++made;
          return std::make_unique<interbus::Slave>(configuration);
        }}});
@@ -144,8 +144,7 @@ TEST(InterbusSuite, CasesOfStressesAreThereWithStresses) {
               judge::Verdict::pass)
         << test_case.id;
   }
-  EXPECT_EQ(stressed->deviations().size(), suite().deviations().size() + 4)
-      << "networks that only bursts tell";
+  EXPECT_EQ(stressed->mutants().size(), suite().mutants().size() + 4) << "networks that only bursts tell";
 }
 
 // A file that lives as long as the test needs it.
@@ -165,10 +164,10 @@ class TemporaryFile {
 };
 
 TEST(InterbusSuite, AStationOfTheCallersTakesPartInEveryCaseThatHasItsRole) {
-  const auto own =
-      interbus_suite({.slave = {.own = [](const Wanted&, const interbus::SlaveConfiguration& configuration) {
-                        return std::make_unique<interbus::Slave>(configuration);
-                      }}});
+  const auto own = interbus_suite(
+      {.slave = {.own = [](const IutRequest&, const interbus::SlaveConfiguration& configuration) {
+         return std::make_unique<interbus::Slave>(configuration);
+       }}});
   for (const TestCase& test_case : own->cases()) {
     const bool has_role = test_case.role() == "slave" || std::ranges::count(test_case.parts, "slave") > 0;
     if (!has_role || is_canary(test_case)) continue;
@@ -233,13 +232,13 @@ TEST(InterbusSuite, TheFingerprintKnowsTheOutputs) {
   const auto fingerprint = [&](const std::string& uri) {
     return suite().run(test_case, setup_of("slave", uri)).result.fingerprint;
   };
-  EXPECT_NE(fingerprint("deviant:output_octets_swapped"), fingerprint("ref"));
+  EXPECT_NE(fingerprint("mutant:output_octets_swapped"), fingerprint("ref"));
 }
 
 TEST(InterbusSuite, WhatCannotBeServedIsRefusedWithNearNames) {
   try {
-    suite().run(suite().cases().front(), setup_of("slave", "deviant:crc_preset_zer"));
-    FAIL() << "an unknown deviation was taken";
+    suite().run(suite().cases().front(), setup_of("slave", "mutant:crc_preset_zer"));
+    FAIL() << "an unknown mutant was taken";
   } catch (const kernel::Error& error) {
     EXPECT_NE(std::string(error.what()).find("crc_preset_zero"), std::string::npos) << error.what();
   }

@@ -46,7 +46,7 @@ std::vector<judge::PicsItem> host_pics_items() {
   return {
       {"dip", number, "position of the host's DIP switches, which is its bit rate", 7},
       {"dip_can_be_set", truth, "the bench can turn the DIP switches of the host"},
-      {"hears_itself", truth, "the host's receiver stays on while it drives"},
+      {"receives_own_echo", truth, "the host's receiver stays on while it drives"},
       {"verifies_writes", truth, "the host reads behind each write and compares"},
       {"takes_early_responses", truth, "a response within 10 bits of its request is taken"},
   };
@@ -57,7 +57,7 @@ judge::Pics declared_host() {
   pics.declare("dip", std::int64_t{0});
   pics.declare("dip_can_be_set", true);
   pics.declare("characters", std::string(text_of(valve_bus::Rules{}.characters)));
-  pics.declare("hears_itself", false);
+  pics.declare("receives_own_echo", false);
   pics.declare("acknowledges_writes", false);
   pics.declare("verifies_writes", false);
   pics.declare("takes_early_responses", false);
@@ -68,7 +68,7 @@ judge::Pics declared_host() {
 HostConfiguration host_configuration(const HostNeeds& needs, const judge::Pics& pics) {
   HostConfiguration configuration;
   configuration.dip = needs.dip.value_or(static_cast<unsigned>(pics.number("dip", 0)));
-  configuration.hears_itself = needs.hears_itself.value_or(pics.supports("hears_itself"));
+  configuration.receives_own_echo = needs.receives_own_echo.value_or(pics.supports("receives_own_echo"));
   configuration.verifies_writes = needs.verifies_writes.value_or(pics.supports("verifies_writes"));
   valve_bus::Rules& rules = configuration.rules;
   rules.characters = needs.characters.value_or(characters_named(pics.text("characters", "P0")));
@@ -81,7 +81,7 @@ valve_bus::Command HostFrame::command() const {
   return valve_bus::command_of(octets);
 }
 
-std::string text_of(const Told& told) {
+std::string text_of(const HostEvent& told) {
   const std::string when = kernel::describe(told.when);
   if (const auto* error = std::get_if<valve_bus::HostError>(&told.what)) {
     return fmt::format("error of {:02X}: {}, at {}", error->id, describe(error->kind), when);
@@ -108,7 +108,7 @@ HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting)
       stressed_(setting.stresses),
       writes_(256) {
   tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
-  place_ = &line_.attach("host/in", host_seat_, 0, {}, configuration_.hears_itself);
+  place_ = &line_.attach("host/in", host_seat_, 0, {}, configuration_.receives_own_echo);
   adopt_rate(configuration_.dip);
   if (setting.make_recorder) segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules()));
   place_->tap_driven(driven_);
@@ -121,7 +121,7 @@ HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting)
   host_->wire(*place_, *this);
   set_power(true);
   wait(kHostWarmUp);
-  forget();
+  clear_observations();
 }
 
 void HostBench::adopt_rate(unsigned dip) {
@@ -130,7 +130,7 @@ void HostBench::adopt_rate(unsigned dip) {
   codec_ = valve_bus::CharacterCodec(rules());
   driven_.listen(character_format(rules()), rules().bit_rate);
   arrived_ = ArrivedFrames(rules());
-  patience_ = 4 * (time_out() + characters(16)) + 10 * kernel::kMillisecond;
+  observation_timeout_ = 4 * (time_out() + characters(16)) + 10 * kernel::kMillisecond;
 }
 
 std::uint8_t HostBench::random_id() {
@@ -151,13 +151,13 @@ void HostBench::set_power(bool is_on) {
 
 void HostBench::restart(unsigned dip) {
   set_power(false);
-  wait(patience_);
+  wait(observation_timeout_);
   host_->set_dip(dip);
   set_power(true);
   adopt_rate(dip);
   wait(kHostWarmUp);
   writes_.assign(writes_.size(), std::nullopt);
-  forget();
+  clear_observations();
 }
 
 void HostBench::write(std::span<const std::uint8_t> octets) {
@@ -169,14 +169,14 @@ void HostBench::order(const valve_bus::Command& command) {
   write({command.id, command.command, command.data0, command.data1});
 }
 
-std::optional<Told> HostBench::next_told(kernel::Duration within) {
+std::optional<HostEvent> HostBench::next_told(kernel::Duration within) {
   const kernel::Time limit = now() + within;
   while (told_.empty() && segment_.scheduler().next() <= limit) segment_.step();
   if (told_.empty()) {
     segment_.run_until(limit);
     return std::nullopt;
   }
-  const Told first = told_.front();
+  const HostEvent first = told_.front();
   told_.pop_front();
   return first;
 }
@@ -253,16 +253,16 @@ HostFrame HostBench::frame_of(Transmission sent) {
   return frame;
 }
 
-kernel::Time HostBench::answer(std::span<const std::uint8_t> octets, kernel::Duration turn_round) {
-  const kernel::Time start = std::max(now(), last_end_ + turn_round);
+kernel::Time HostBench::answer(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time) {
+  const kernel::Time start = std::max(now(), last_end_ + turnaround_time);
   const kernel::Time end = codec_.drive(*tester_, octets, start, {});
   said_.push_back({start, end});
   return end;
 }
 
-void HostBench::answer_levels(const line::Levels& levels, kernel::Duration turn_round) {
+void HostBench::answer_levels(const line::Levels& levels, kernel::Duration turnaround_time) {
   line::Waveform wave;
-  wave.start = std::max(now(), last_end_ + turn_round);
+  wave.start = std::max(now(), last_end_ + turnaround_time);
   wave.rate = rules().bit_rate;
   wave.levels = levels;
   said_.push_back({wave.start, wave.end()});
@@ -292,14 +292,14 @@ bool HostBench::is_refresh(const valve_bus::Command& command) const {
   return writes_.at(command.id) == command;
 }
 
-void HostBench::forget() {
+void HostBench::clear_observations() {
   frames_.clear();
   told_.clear();
   driven_.clear();
   arrived_.clear();
 }
 
-void HostBench::note(std::variant<HostFrame, Told> seen) {
+void HostBench::note(std::variant<HostFrame, HostEvent> seen) {
   if (history_.size() == kHistoryLines) history_.pop_front();
   history_.push_back(std::move(seen));
 }
@@ -308,7 +308,7 @@ std::vector<std::string> HostBench::decode_lines() const {
   std::vector<std::string> lines;
   for (const auto& seen : history_) {
     const auto* frame = std::get_if<HostFrame>(&seen);
-    lines.push_back(frame != nullptr ? frame_text(*frame) : text_of(std::get<Told>(seen)));
+    lines.push_back(frame != nullptr ? frame_text(*frame) : text_of(std::get<HostEvent>(seen)));
   }
   return lines;
 }

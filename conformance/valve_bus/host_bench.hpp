@@ -35,7 +35,7 @@ namespace fieldproof::conformance {
 struct HostNeeds {
   std::optional<unsigned> dip{};
   std::optional<valve_bus::CharacterProfile> characters{};
-  std::optional<bool> hears_itself{};
+  std::optional<bool> receives_own_echo{};
   std::optional<bool> acknowledged_writes{};
   std::optional<bool> verifies_writes{};
 };
@@ -73,12 +73,12 @@ struct HostFrame {
 };
 
 // What the PC was told.
-struct Told {
+struct HostEvent {
   kernel::Time when;
   std::variant<valve_bus::HostResponse, valve_bus::HostError> what;
 };
 
-std::string text_of(const Told& told);
+std::string text_of(const HostEvent& told);
 
 class HostBench final : private segment::Station, private valve_bus::HostApplication {
  public:
@@ -101,9 +101,9 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   kernel::Duration delimiter() const { return valve_bus::delimiter(rules()); }
   kernel::Duration time_out() const { return valve_bus::response_time_out(rules()); }
   // Of a node that is neither quick nor slow.
-  kernel::Duration turn_round() const { return delimiter() + 150 * kernel::kMicrosecond; }
+  kernel::Duration turnaround_time() const { return delimiter() + 150 * kernel::kMicrosecond; }
   // In which a host that has been asked for something says it, or tells the PC that it cannot.
-  kernel::Duration patience() const { return patience_; }
+  kernel::Duration observation_timeout() const { return observation_timeout_; }
 
   // ---- upper tester: the PC ----
   void write(std::span<const std::uint8_t> octets);
@@ -113,7 +113,7 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   bool has_overflowed() const { return host_->has_overflowed(); }
   valve_bus::HostCounters counters(std::uint8_t id) const { return host_->counters(id); }
   // The next thing that the PC is told, waiting at most so long.
-  std::optional<Told> next_told(kernel::Duration within);
+  std::optional<HostEvent> next_told(kernel::Duration within);
   bool was_told() const { return !told_.empty(); }
   // Runs until the PC has been told something or the IUT has begun to send, at most so long.
   void await(kernel::Duration within);
@@ -129,13 +129,13 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   const std::vector<line::Waveform>& last_waves() const { return last_waves_; }
   // Gives the line the octets, the first start bit so long behind the last frame's last stop bit. Does not
   // run. Gives their end.
-  kernel::Time answer(std::span<const std::uint8_t> octets, kernel::Duration turn_round);
-  kernel::Time answer(const valve_bus::Response& response) { return answer(response, turn_round()); }
-  kernel::Time answer(const valve_bus::Response& response, kernel::Duration turn_round) {
-    return answer(octets_of(response), turn_round);
+  kernel::Time answer(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time);
+  kernel::Time answer(const valve_bus::Response& response) { return answer(response, turnaround_time()); }
+  kernel::Time answer(const valve_bus::Response& response, kernel::Duration turnaround_time) {
+    return answer(octets_of(response), turnaround_time);
   }
   // Levels as they are, one a bit, at the same place.
-  void answer_levels(const line::Levels& levels, kernel::Duration turn_round);
+  void answer_levels(const line::Levels& levels, kernel::Duration turnaround_time);
   // The octets without a gap, from now on; runs to their end.
   kernel::Time say(std::span<const std::uint8_t> octets);
   // The character as levels, one a bit, in a format that may be another.
@@ -157,7 +157,7 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
 
   // Frames and what was told, up to now; what the nodes were told to do is kept.
-  void forget();
+  void clear_observations();
 
   std::vector<std::uint64_t> planned_hits() const {
     return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
@@ -186,7 +186,7 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   bool has_driven_by(kernel::Time limit);
   void collect();
   HostFrame frame_of(Transmission sent);
-  void note(std::variant<HostFrame, Told> seen);
+  void note(std::variant<HostFrame, HostEvent> seen);
 
   judge::Pics pics_;
   valve_bus::HostConfiguration configuration_;
@@ -206,15 +206,15 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   std::unique_ptr<fault::InstalledPlan> plan_;
   StressedReceiver stressed_;
   std::uint64_t stress_number_ = 0;
-  kernel::Duration patience_{};
+  kernel::Duration observation_timeout_{};
 
   std::deque<Transmission> frames_;  // that the case has not got yet
   std::vector<line::Waveform> last_waves_;
   std::vector<Span> said_;
   kernel::Time last_end_{};  // of the last stop bit of the frame that was got last
-  std::deque<Told> told_;
+  std::deque<HostEvent> told_;
   std::vector<std::optional<valve_bus::Command>> writes_;
-  std::deque<std::variant<HostFrame, Told>> history_;  // the last of both
+  std::deque<std::variant<HostFrame, HostEvent>> history_;  // the last of both
 };
 
 }  // namespace fieldproof::conformance

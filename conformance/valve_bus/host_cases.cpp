@@ -12,7 +12,7 @@ HostCase host_canary() {
                     "the case asks for a frame that no host sends."),
           [](HostBench& bench, CaseJudge& judge) {
             bench.order({5, 1, 0, 0});
-            const auto frame = bench.next_frame(bench.patience());
+            const auto frame = bench.next_frame(bench.observation_timeout());
             judge.expect(frame && frame->sent.characters.size() == 300, "canary", "a frame of 300 octets",
                          "it was shorter");
           }};

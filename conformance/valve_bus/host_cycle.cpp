@@ -48,9 +48,9 @@ void expect_refresh(HostBench& bench, CaseJudge& judge, RefreshedNodes& nodes, c
   const Command seen = frame.command();
   const auto node = nodes.find(seen.id);
   judge.expect(node != nodes.end() && seen.command == bench.rules().write_command, "refresh_unasked",
-               [&] { return Sighting{{"only what was written is refreshed"}, text_of_command(seen)}; });
+               [&] { return Mismatch{{"only what was written is refreshed"}, text_of_command(seen)}; });
   judge.expect(seen == node->second.command, "old_data_refreshed", [&] {
-    return Sighting{{text_of_command(node->second.command)}, text_of_command(seen), frame.start};
+    return Mismatch{{text_of_command(node->second.command)}, text_of_command(seen), frame.start};
   });
   judge.expect_between("time between two writes to a node", "us",
                        in_microseconds(frame.start - node->second.start), 0.9 * wanted, 1.1 * wanted,
@@ -174,7 +174,7 @@ HostFrame expect_written(HostBench& bench, CaseJudge& judge, std::uint8_t id) {
 
 // The next frame that is no refresh.
 HostFrame behind_refreshes(HostBench& bench, CaseJudge& judge, std::string_view missing_reason) {
-  const kernel::Time limit = bench.now() + bench.patience();
+  const kernel::Time limit = bench.now() + bench.observation_timeout();
   for (;;) {
     auto frame = bench.next_frame(std::max(kernel::Duration{}, limit - bench.now()));
     judge.expect(frame.has_value(), missing_reason, "it sends what is due", "nothing was sent");

@@ -37,7 +37,7 @@ double measured_bit_rate(const HostBench& bench) {
 void expect_bit_rate(HostBench& bench, CaseJudge& judge, unsigned dip, std::string_view reason) {
   const auto wanted = static_cast<double>(valve_bus::dip_bit_rates()[dip]);
   bench.order(changing_write(bench));
-  const auto frame = bench.next_frame(bench.patience());
+  const auto frame = bench.next_frame(bench.observation_timeout());
   judge.expect(frame.has_value(), "no_request", "the write is sent", "nothing was sent");
   judge.expect_between(fmt::format("bit rate at position {}", dip), "bit/s", measured_bit_rate(bench),
                        wanted * 0.995, wanted * 1.005, reason);

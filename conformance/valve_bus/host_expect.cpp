@@ -15,17 +15,17 @@ using valve_bus::HostError;
 using valve_bus::HostResponse;
 using valve_bus::Response;
 
-std::string told_text(const std::optional<Told>& told) {
+std::string told_text(const std::optional<HostEvent>& told) {
   return told ? text_of(*told) : std::string("nothing");
 }
 
-const HostResponse* response_told(const std::optional<Told>& told) {
+const HostResponse* response_told(const std::optional<HostEvent>& told) {
   return told ? std::get_if<HostResponse>(&told->what) : nullptr;
 }
 
 auto duration_sighting(std::string_view expected, kernel::Duration actual, kernel::Time when) {
   return
-      [expected, actual, when] { return Sighting{{std::string(expected)}, kernel::describe(actual), when}; };
+      [expected, actual, when] { return Mismatch{{std::string(expected)}, kernel::describe(actual), when}; };
 }
 
 void expect_driver_around(HostBench& bench, CaseJudge& judge, const HostFrame& frame) {
@@ -58,7 +58,7 @@ void expect_form(HostBench& bench, CaseJudge& judge, const HostFrame& frame) {
   const auto octets = frame.sent.octets();
   const auto sighting = [&](std::string_view expected) {
     return [&, expected] {
-      return Sighting{{std::string(expected)}, fmt::format("{:02X}", fmt::join(octets, " ")), frame.start};
+      return Mismatch{{std::string(expected)}, fmt::format("{:02X}", fmt::join(octets, " ")), frame.start};
     };
   };
   judge.expect(octets.size() == valve_bus::kCommandOctets, "frame_length_wrong", sighting("five octets"));
@@ -82,17 +82,17 @@ HostFrame expect_request(HostBench& bench, CaseJudge& judge, const Command& comm
 
 HostFrame expect_request(HostBench& bench, CaseJudge& judge, const Command& command,
                          std::string_view missing_reason) {
-  const kernel::Time limit = bench.now() + bench.patience();
+  const kernel::Time limit = bench.now() + bench.observation_timeout();
   for (;;) {
     auto frame = bench.next_frame(std::max(kernel::Duration{}, limit - bench.now()));
     judge.expect(frame.has_value(), missing_reason, [&] {
-      return Sighting{{fmt::format("it sends {}", text_of_command(command))}, "it sent nothing"};
+      return Mismatch{{fmt::format("it sends {}", text_of_command(command))}, "it sent nothing"};
     });
     expect_form(bench, judge, *frame);
     const Command seen = frame->command();
     if (seen != command && bench.is_refresh(seen)) continue;
     judge.expect(seen == command, "request_wrong",
-                 [&] { return Sighting{{text_of_command(command)}, text_of_command(seen), frame->start}; });
+                 [&] { return Mismatch{{text_of_command(command)}, text_of_command(seen), frame->start}; });
     bench.note_write(seen);
     return *frame;
   }
@@ -118,10 +118,10 @@ void expect_no_request(HostBench& bench, CaseJudge& judge, kernel::Duration dura
 }
 
 void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id, const Response& response) {
-  const auto told = bench.next_told(bench.patience());
+  const auto told = bench.next_told(bench.observation_timeout());
   const HostResponse* seen = response_told(told);
   const auto sighting = [&] {
-    return Sighting{
+    return Mismatch{
         {fmt::format("the PC is told of {:02X}: {:02X} {:02X}", id, response.data0, response.data1)},
         told_text(told)};
   };
@@ -131,9 +131,9 @@ void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id, const 
 }
 
 void expect_error(HostBench& bench, CaseJudge& judge, const HostError& error, std::string_view told_data) {
-  const auto told = bench.next_told(bench.patience());
+  const auto told = bench.next_told(bench.observation_timeout());
   const auto sighting = [&] {
-    return Sighting{{fmt::format("an error of {:02X}: {}", error.id, describe(error.kind))}, told_text(told)};
+    return Mismatch{{fmt::format("an error of {:02X}: {}", error.id, describe(error.kind))}, told_text(told)};
   };
   judge.expect(response_told(told) == nullptr, told_data, sighting);
   judge.expect(told.has_value(), "error_not_told", sighting);
@@ -141,10 +141,10 @@ void expect_error(HostBench& bench, CaseJudge& judge, const HostError& error, st
 }
 
 void expect_old(HostBench& bench, CaseJudge& judge, std::uint8_t id, const Response& response) {
-  const auto told = bench.next_told(bench.patience());
+  const auto told = bench.next_told(bench.observation_timeout());
   const HostResponse* seen = response_told(told);
   const auto sighting = [&] {
-    return Sighting{
+    return Mismatch{
         {fmt::format("the PC is told of {:02X}, as old: {:02X} {:02X}", id, response.data0, response.data1)},
         told_text(told)};
   };
@@ -158,7 +158,7 @@ void expect_old_if_known(HostBench& bench, CaseJudge& judge, std::uint8_t id) {
   if (!told) return;
   const HostResponse* seen = response_told(told);
   judge.expect(seen != nullptr && seen->id == id && seen->is_old, "old_data_told_as_new", [&] {
-    return Sighting{{fmt::format("what is known of {:02X}, as old", id)}, told_text(told), told->when};
+    return Mismatch{{fmt::format("what is known of {:02X}, as old", id)}, told_text(told), told->when};
   });
 }
 
@@ -166,7 +166,7 @@ void expect_nothing_told(HostBench& bench, CaseJudge& judge, kernel::Duration wi
                          std::string_view why_not) {
   const auto told = bench.next_told(within);
   judge.expect(!told, reason, [&] {
-    return Sighting{{fmt::format("the PC is told nothing: {}", why_not)}, told_text(told), told->when};
+    return Mismatch{{fmt::format("the PC is told nothing: {}", why_not)}, told_text(told), told->when};
   });
 }
 
@@ -184,18 +184,18 @@ Response expect_read_served(HostBench& bench, CaseJudge& judge, std::uint8_t id)
 
 void expect_host_recovers(HostBench& bench, CaseJudge& judge) {
   constexpr std::string_view kReason = "does_not_recover";
-  bench.wait(bench.patience());
-  bench.forget();
+  bench.wait(bench.observation_timeout());
+  bench.clear_observations();
   const Command read{bench.random_id(), static_cast<std::uint8_t>(bench.rules().read_command), 0, 0};
   bench.order(read);
   expect_request(bench, judge, read, kReason);
   const Response response{bench.random_octet(), bench.random_octet()};
   bench.answer(response);
-  const auto told = bench.next_told(bench.patience());
+  const auto told = bench.next_told(bench.observation_timeout());
   const HostResponse wanted{read.id, response.data0, response.data1};
   judge.expect(response_told(told) != nullptr && *response_told(told) == wanted, kReason,
-               [&] { return Sighting{{"a read and its response are served"}, told_text(told)}; });
-  bench.forget();
+               [&] { return Mismatch{{"a read and its response are served"}, told_text(told)}; });
+  bench.clear_observations();
 }
 
 }  // namespace fieldproof::conformance

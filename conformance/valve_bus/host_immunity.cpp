@@ -37,7 +37,7 @@ void expect_told_follows(HostBench& bench, CaseJudge& judge, const valve_bus::Ho
            frame.end <= when;
   });
   judge.expect(follows, "told_without_response", [&] {
-    return Sighting{{fmt::format("the PC is told what arrived only: {}", arrived_text(bench))},
+    return Mismatch{{fmt::format("the PC is told what arrived only: {}", arrived_text(bench))},
                     fmt::format("{:02X} {:02X} of node {:02X}", told.data0, told.data1, told.id),
                     when};
   });
@@ -48,7 +48,7 @@ unsigned answer_until_told(HostBench& bench, CaseJudge& judge, HostFrame frame,
                            const valve_bus::Response& response) {
   for (unsigned poll = 1;; ++poll) {
     bench.answer(response);
-    bench.await(bench.patience());
+    bench.await(bench.observation_timeout());
     if (bench.was_told()) return poll;
     judge.expect(poll < bench.rules().read_attempts, "polled_too_often", "three attempts in all",
                  "a fourth one, or nothing at all");
@@ -57,12 +57,12 @@ unsigned answer_until_told(HostBench& bench, CaseJudge& judge, HostFrame frame,
 }
 
 void read_under_stress(HostBench& bench, CaseJudge& judge, ReadLedger& ledger) {
-  bench.forget();
+  bench.clear_observations();
   const valve_bus::Response response{bench.random_octet(), bench.random_octet()};
   const unsigned polls =
       answer_until_told(bench, judge, order_read(bench, judge, bench.random_id()), response);
   ++ledger.reads;
-  const std::optional<Told> told = bench.next_told({});
+  const std::optional<HostEvent> told = bench.next_told({});
   const auto* seen = std::get_if<valve_bus::HostResponse>(&told->what);
   if (seen == nullptr) {
     ++ledger.failed;

@@ -22,9 +22,9 @@ void an_echo_is_no_response(HostBench& bench, CaseJudge& judge) {
     const Command read{id, number, static_cast<std::uint8_t>(id ^ number), bench.random_octet()};
     bench.order(read);
     expect_request(bench, judge, read);
-    expect_nothing_told(bench, judge, bench.turn_round(), "echo_told", "no node has answered yet");
+    expect_nothing_told(bench, judge, bench.turnaround_time(), "echo_told", "no node has answered yet");
     const Response response{bench.random_octet(), bench.random_octet()};
-    bench.answer(response, bench.turn_round() + bench.bits(1));
+    bench.answer(response, bench.turnaround_time() + bench.bits(1));
     expect_response(bench, judge, id, response);
   }
 }
@@ -32,7 +32,7 @@ void an_echo_is_no_response(HostBench& bench, CaseJudge& judge) {
 // The read ends in an error, and no data are told.
 void expect_read_fails(HostBench& bench, CaseJudge& judge, std::uint8_t id, std::string_view data_reason,
                        std::string_view hanging_reason) {
-  const auto told = bench.next_told(2 * bench.patience());
+  const auto told = bench.next_told(2 * bench.observation_timeout());
   judge.expect(told.has_value(), hanging_reason, "the PC is told an error", "nothing was told");
   judge.expect(std::holds_alternative<HostError>(told->what), data_reason,
                fmt::format("an error of {:02X}", id), text_of(*told));
@@ -46,7 +46,7 @@ void three_low_characters_are_no_response(HostBench& bench, CaseJudge& judge) {
     line::Levels low;
     low.append_fill(false, is_one_break ? 3 * length : length);
     for (int n = 0; n < (is_one_break ? 1 : 3); ++n) {
-      bench.answer_levels(low, bench.turn_round() + bench.characters(n));
+      bench.answer_levels(low, bench.turnaround_time() + bench.characters(n));
     }
     expect_nothing_told(bench, judge, bench.characters(14) + kernel::kMillisecond, "low_line_told",
                         "a low line has no stop bits");
@@ -60,21 +60,22 @@ void three_low_characters_are_no_response(HostBench& bench, CaseJudge& judge) {
 void a_low_line_is_an_error(HostBench& bench, CaseJudge& judge) {
   const std::size_t length = bench.levels_of(0).size();
   const HostFrame request = order_read(bench, judge, bench.random_id());
-  const auto count = static_cast<int>(3 * bench.patience() / bench.characters(1));
+  const auto count = static_cast<int>(3 * bench.observation_timeout() / bench.characters(1));
   line::Levels low;
   low.append_fill(false, length);
-  for (int n = 0; n < count; ++n) bench.answer_levels(low, bench.turn_round() + bench.characters(n));
+  for (int n = 0; n < count; ++n) bench.answer_levels(low, bench.turnaround_time() + bench.characters(n));
   expect_read_fails(bench, judge, request.command().id, "low_line_told", "waits_for_ever");
-  bench.wait(2 * bench.patience());
+  bench.wait(2 * bench.observation_timeout());
   expect_host_recovers(bench, judge);
 }
 
 void a_high_line_is_a_time_out(HostBench& bench, CaseJudge& judge) {
   const HostFrame request = order_read(bench, judge, bench.random_id());
   line::Levels high;
-  high.append_idle(static_cast<std::size_t>(kernel::levels_within(bench.patience(), bench.rules().bit_rate)));
+  high.append_idle(
+      static_cast<std::size_t>(kernel::levels_within(bench.observation_timeout(), bench.rules().bit_rate)));
   bench.answer_levels(high, bench.bits(4));
-  const auto told = bench.next_told(2 * bench.patience());
+  const auto told = bench.next_told(2 * bench.observation_timeout());
   const HostError wanted{request.command().id, HostErrorKind::no_response};
   judge.expect(told.has_value(), "waits_for_ever", "the PC is told an error", "nothing was told");
   const auto* error = std::get_if<HostError>(&told->what);
@@ -114,7 +115,7 @@ std::vector<HostCase> host_line_cases() {
                     .tags = {"must", "hazard"},
                     .catches = {{"echo_taken_as_response", "echo_told"}}},
                    an_echo_is_no_response,
-                   {.hears_itself = true}});
+                   {.receives_own_echo = true}});
   cases.push_back({{.id = "valve_bus/host/line/low_characters_are_no_response",
                     .purpose = "RH-14",
                     .requirement = "A line that is low as long as a response is none, although three octets "

@@ -44,13 +44,13 @@ void expect_taken(HostBench& bench, CaseJudge& judge, std::uint8_t id, const Res
                   std::string_view refused_reason) {
   const auto told = bench.next_told(telling_time(bench));
   judge.expect(told.has_value(), refused_reason, [&] {
-    return Sighting{{fmt::format("the PC is told of {:02X}: {:02X} {:02X}", id, octets[0], octets[1])},
+    return Mismatch{{fmt::format("the PC is told of {:02X}: {:02X} {:02X}", id, octets[0], octets[1])},
                     "nothing"};
   });
   const auto* response = std::get_if<valve_bus::HostResponse>(&told->what);
   judge.expect(response != nullptr && *response == valve_bus::HostResponse{id, octets[0], octets[1]},
                "response_wrong", [&] {
-                 return Sighting{
+                 return Mismatch{
                      {fmt::format("the PC is told of {:02X}: {:02X} {:02X}", id, octets[0], octets[1])},
                      text_of(*told)};
                });
@@ -68,7 +68,7 @@ void each_wrong_bit_is_refused(HostBench& bench, CaseJudge& judge) {
     const HostFrame request = order_read(bench, judge, bench.random_id());
     ResponseOctets octets = random_response(bench);
     invert(octets, bit);
-    bench.answer(octets, bench.turn_round());
+    bench.answer(octets, bench.turnaround_time());
     expect_refused_response(bench, judge, request, "wrong_response_told",
                             fmt::format("bit {} of the response is wrong", bit));
   }
@@ -81,7 +81,7 @@ void answer_with_two_wrong_bits(HostBench& bench, CaseJudge& judge, unsigned fir
   ResponseOctets octets = random_response(bench);
   invert(octets, first);
   invert(octets, second);
-  bench.answer(octets, bench.turn_round());
+  bench.answer(octets, bench.turnaround_time());
   if (first % 8 == second % 8) {
     expect_taken(bench, judge, request.command().id, octets, "right_check_refused");
   } else {
@@ -96,7 +96,7 @@ void two_wrong_bits_of_a_column_are_taken(HostBench& bench, CaseJudge& judge) {
     const HostFrame request = order_read(bench, judge, bench.random_id());
     const auto data = static_cast<std::uint8_t>(octet);
     const ResponseOctets octets = octets_of(Response{data, data});
-    bench.answer(octets, bench.turn_round());
+    bench.answer(octets, bench.turnaround_time());
     expect_taken(bench, judge, request.command().id, octets, "right_check_refused");
   }
   for (unsigned first = 0; first < kResponseBits; ++first) {
@@ -134,7 +134,7 @@ void other_lengths_are_refused(HostBench& bench, CaseJudge& judge) {
       // Without more: the first two octets, or the first one.
       if (more == 0) octets.resize(is_in_front ? 1 : 2);
       octets.insert(is_in_front ? octets.begin() : octets.end(), more, std::uint8_t{0});
-      bench.answer(octets, bench.turn_round());
+      bench.answer(octets, bench.turnaround_time());
       bench.wait(bench.characters(static_cast<double>(octets.size())));
       expect_refused_response(bench, judge, request, "wrong_length_told",
                               fmt::format("{} octets are no response", octets.size()));
@@ -148,8 +148,9 @@ void gaps_inside_a_response(HostBench& bench, CaseJudge& judge) {
       const HostFrame request = order_read(bench, judge, bench.random_id());
       const ResponseOctets octets = random_response(bench);
       const std::span<const std::uint8_t> all(octets);
-      bench.answer(all.first(at), bench.turn_round());
-      bench.answer(all.subspan(at), bench.turn_round() + bench.characters(static_cast<double>(at) + gap));
+      bench.answer(all.first(at), bench.turnaround_time());
+      bench.answer(all.subspan(at),
+                   bench.turnaround_time() + bench.characters(static_cast<double>(at) + gap));
       if (gap < 1.5) {
         expect_taken(bench, judge, request.command().id, octets, "short_gap_refused");
       } else {
@@ -178,10 +179,10 @@ void two_nodes_at_once_are_refused(HostBench& bench, CaseJudge& judge) {
     const auto data0 = static_cast<std::uint8_t>(one[0] ^ (1 + bench.random().below(255)));
     const ResponseOctets other = octets_of(Response{data0, bench.random_octet()});
     const HostFrame request = order_read(bench, judge, bench.random_id());
-    bench.answer(mixed(bench, one, other), bench.turn_round());
+    bench.answer(mixed(bench, one, other), bench.turnaround_time());
     expect_refused_response(bench, judge, request, "mixture_told", "two nodes answered at once");
     const HostFrame again = order_read(bench, judge, request.command().id);
-    bench.answer(one, bench.turn_round());
+    bench.answer(one, bench.turnaround_time());
     expect_taken(bench, judge, again.command().id, one, "equal_responses_refused");
   }
 }
@@ -191,7 +192,7 @@ void a_response_of_another_node_is_taken(HostBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(5, 100); ++n) {
     const HostFrame request = order_read(bench, judge, bench.random_id());
     const ResponseOctets of_another = random_response(bench);
-    bench.answer(of_another, bench.turn_round());
+    bench.answer(of_another, bench.turnaround_time());
     expect_taken(bench, judge, request.command().id, of_another, "right_check_refused");
   }
 }
@@ -206,7 +207,7 @@ void characters_of_other_formats_are_refused(HostBench& bench, CaseJudge& judge)
   for (int n = 0; n < bench.volume(5, 100); ++n) {
     for (const auto profile : {CharacterProfile::ninth_bit_one, CharacterProfile::eight_bits}) {
       const HostFrame request = order_read(bench, judge, bench.random_id());
-      bench.answer_levels(levels_of_all(bench, random_response(bench), profile), bench.turn_round());
+      bench.answer_levels(levels_of_all(bench, random_response(bench), profile), bench.turnaround_time());
       expect_refused_response(bench, judge, request, "foreign_format_told",
                               fmt::format("a response in characters {}", text_of(profile)));
     }
@@ -223,7 +224,7 @@ void the_ninth_bit_of_a_response_is_not_looked_at(HostBench& bench, CaseJudge& j
       if (n == at) character.flip(9);
       levels.append(character);
     }
-    bench.answer_levels(levels, bench.turn_round());
+    bench.answer_levels(levels, bench.turnaround_time());
     expect_taken(bench, judge, request.command().id, octets, "ninth_bit_looked_at");
   }
 }

@@ -50,9 +50,9 @@ void a_silent_node_is_polled_three_times(HostBench& bench, CaseJudge& judge) {
     expect_no_request(bench, judge, 2 * bench.time_out(), "polled_too_often",
                       fmt::format("{} attempts in all", polls));
     const kernel::Time limit = last.end + latest_retry(bench);
-    const auto told = bench.next_told(bench.patience());
+    const auto told = bench.next_told(bench.observation_timeout());
     judge.expect(told && told->when <= limit, "error_late", [&] {
-      return Sighting{{fmt::format("an error at {} at the latest", kernel::describe(limit))},
+      return Mismatch{{fmt::format("an error at {} at the latest", kernel::describe(limit))},
                       told ? text_of(*told) : std::string("nothing was told")};
     });
     const auto* error = std::get_if<HostError>(&told->what);
@@ -86,10 +86,11 @@ void a_late_response_is_drained(HostBench& bench, CaseJudge& judge) {
     expect_error(bench, judge, {id, HostErrorKind::no_response}, "late_response_told");
     expect_old_if_known(bench, judge, id);
     expect_request(bench, judge, next);
-    expect_nothing_told(bench, judge, bench.turn_round(), "late_response_told", "nothing was answered yet");
+    expect_nothing_told(bench, judge, bench.turnaround_time(), "late_response_told",
+                        "nothing was answered yet");
     judge.expect_equal(bench.counters(id).late - before.late, 1U, "late_not_counted", "late responses");
     const Response response{bench.random_octet(), bench.random_octet()};
-    bench.answer(response, bench.turn_round() + bench.bits(1));
+    bench.answer(response, bench.turnaround_time() + bench.bits(1));
     expect_response(bench, judge, other, response);
   }
 }
@@ -99,14 +100,14 @@ void answer_wrongly(HostBench& bench, unsigned way) {
   auto octets = octets_of(Response{bench.random_octet(), bench.random_octet()});
   if (way % 3 == 0) {
     octets.back() = static_cast<std::uint8_t>(octets.back() + 1);
-    bench.answer(octets, bench.turn_round());
+    bench.answer(octets, bench.turnaround_time());
   } else if (way % 3 == 1) {
-    bench.answer(std::span(octets).first(2), bench.turn_round());
+    bench.answer(std::span(octets).first(2), bench.turnaround_time());
   } else {
     line::Levels levels;
     for (const std::uint8_t octet : octets) levels.append(bench.levels_of(octet));
     levels.flip(bench.levels_of(0).size() - 1);  // the stop bit of the first
-    bench.answer_levels(levels, bench.turn_round());
+    bench.answer_levels(levels, bench.turnaround_time());
   }
 }
 
@@ -149,7 +150,7 @@ void three_wrong_responses_are_an_error(HostBench& bench, CaseJudge& judge) {
   }
 }
 
-HostCase silent_node_case(unsigned dip, std::string_view rate, std::vector<Catch> catches) {
+HostCase silent_node_case(unsigned dip, std::string_view rate, std::vector<MustCatch> catches) {
   return {
       {.id = fmt::format("valve_bus/host/retry/silent_node_is_polled_three_times_at_{}", rate),
        .purpose = "RH-08",

@@ -28,7 +28,7 @@ void a_write_is_left_alone(HostBench& bench, CaseJudge& judge) {
     const HostFrame two = expect_request(bench, judge, second);
     const kernel::Duration distance = two.start - one.end;
     judge.expect(distance + kernel::kNanosecond >= least, "write_distance_too_short", [&] {
-      return Sighting{{fmt::format("{} or more behind a write", kernel::describe(least))},
+      return Mismatch{{fmt::format("{} or more behind a write", kernel::describe(least))},
                       kernel::describe(distance),
                       two.start};
     });
@@ -37,14 +37,14 @@ void a_write_is_left_alone(HostBench& bench, CaseJudge& judge) {
 
 void a_write_is_not_answered(HostBench& bench, CaseJudge& judge) {
   bench.order(some_write(bench, 7));
-  const auto write = bench.next_frame(bench.patience());
+  const auto write = bench.next_frame(bench.observation_timeout());
   judge.expect(write.has_value(), "no_request", "the write is sent", "nothing was sent");
   expect_form(bench, judge, *write);
   // Up to the first refresh nothing more is to be sent.
   const kernel::Duration quiet = bench.rules().refresh * 8 / 10 - (bench.now() - write->start);
   const auto again = bench.next_frame(quiet);
   judge.expect(!again, "write_repeated", [&] {
-    return Sighting{
+    return Mismatch{
         {"a write is not answered and not repeated before its refresh"}, "it was sent again", again->start};
   });
   expect_nothing_told(bench, judge, kernel::Duration{}, "write_told", "a write has no response");
@@ -76,7 +76,7 @@ void a_delimiter_is_in_front_of_each_request(HostBench& bench, CaseJudge& judge)
       if (poll == 2) expect_request(bench, judge, write);
       expect_request(bench, judge, read);
       const Response response{bench.random_octet(), bench.random_octet()};
-      const kernel::Duration span = turn_round_span(bench.rules());
+      const kernel::Duration span = turnaround_time_span(bench.rules());
       bench.answer(response, bench.delimiter() + kernel::Duration{bench.random().between(0, span.count())});
       expect_response(bench, judge, read.id, response);
     }
@@ -105,7 +105,8 @@ void the_latest_response_is_taken_at_all_rates(HostBench& bench, CaseJudge& judg
       const HostFrame request = order_read(bench, judge, bench.random_id());
       const Response response{bench.random_octet(), bench.random_octet()};
       // Behind a repeater of 10 us each way.
-      bench.answer(response, bench.delimiter() + turn_round_span(bench.rules()) + 20 * kernel::kMicrosecond);
+      bench.answer(response,
+                   bench.delimiter() + turnaround_time_span(bench.rules()) + 20 * kernel::kMicrosecond);
       expect_response(bench, judge, request.command().id, response);
     }
   }

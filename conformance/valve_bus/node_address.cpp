@@ -14,10 +14,10 @@ void only_its_own_id_acts(NodeBench& bench, CaseJudge& judge) {
   for (unsigned id = 0; id < 256; ++id) {
     if (id == bench.address()) continue;
     for (const unsigned command : {bench.rules().write_command, bench.rules().read_command}) {
-      bench.forget();
+      bench.clear_observations();
       bench.send(
           valve_bus::Command{static_cast<std::uint8_t>(id), static_cast<std::uint8_t>(command), 0xFF, 0xFF});
-      bench.settle();
+      bench.await_response_window();
       const std::string why = fmt::format("ID {} is not its own", id);
       expect_ignored(bench, judge, "acts_on_foreign_id", why);
     }
@@ -29,9 +29,9 @@ void only_its_own_id_acts(NodeBench& bench, CaseJudge& judge) {
 void switches_are_decimal(NodeBench& bench, CaseJudge& judge) {
   const unsigned own = bench.address();
   const auto is_own = [&](unsigned id) {
-    bench.forget();
+    bench.clear_observations();
     bench.send(valve_bus::Command{static_cast<std::uint8_t>(id), 1, 0, 0});
-    bench.settle();
+    bench.await_response_window();
     return bench.has_driven();
   };
   judge.expect(is_own(own), "address_wrong", fmt::format("it answers to {}", own), "it did not answer");
@@ -44,25 +44,25 @@ void switches_are_decimal(NodeBench& bench, CaseJudge& judge) {
 
 void address_zero_never_answers(NodeBench& bench, CaseJudge& judge) {
   for (unsigned id = 0; id < 256; ++id) {
-    bench.forget();
+    bench.clear_observations();
     bench.send(
         valve_bus::Command{static_cast<std::uint8_t>(id), static_cast<std::uint8_t>(id & 1U), 0xFF, 0});
-    bench.settle();
+    bench.await_response_window();
     expect_ignored(bench, judge, "answers_without_address", "its switches are set to 00");
   }
 }
 
 void undefined_commands_are_ignored(NodeBench& bench, CaseJudge& judge) {
   for (unsigned command = 2; command < 256; ++command) {
-    bench.forget();
+    bench.clear_observations();
     bench.send(valve_bus::Command{bench.address(), static_cast<std::uint8_t>(command), 0xFF, 0xFF});
-    bench.settle();
+    bench.await_response_window();
     expect_ignored(bench, judge, "acts_on_undefined_command", fmt::format("command {} is none", command));
   }
   expect_serves(bench, judge);
 }
 
-NodeCase switch_case(unsigned tens, unsigned units, std::vector<Catch> catches) {
+NodeCase switch_case(unsigned tens, unsigned units, std::vector<MustCatch> catches) {
   return {{.id = fmt::format("valve_bus/node/address/switches_{}{}_are_decimal", tens, units),
            .purpose = "RN-07",
            .requirement = "The two address switches are decimal digits.",

@@ -119,29 +119,29 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting)
     place_->set_channel(plan_->channel_for({"node/in", place_->trace_channel(), rules().bit_rate}));
   }
   // A response begins within the span and takes three characters; a bit of slack shows one that is late.
-  settling_ = delimiter() + std::max(turn_round_span(rules()), actuation_limit(rules())) + characters(8) +
-              2 * distance_ + 500 * kernel::kMicrosecond;
+  settling_ = delimiter() + std::max(turnaround_time_span(rules()), actuation_limit(rules())) +
+              characters(8) + 2 * distance_ + 500 * kernel::kMicrosecond;
   node_->wire(*place_, boards_);
-  if (distance_ > kernel::Duration{}) require(&valve_bus::NodeReach::distance);
+  if (distance_ > kernel::Duration{}) require(&valve_bus::NodeCapabilities::distance);
   if (!needs.is_powered) return;
   set_power(true);
   wait(kWarmUp);
-  forget();
+  clear_observations();
 }
 
-void NodeBench::require(bool valve_bus::NodeReach::* what) const {
-  using valve_bus::NodeReach;
+void NodeBench::require(bool valve_bus::NodeCapabilities::* what) const {
+  using valve_bus::NodeCapabilities;
   if (reach().*what) return;
-  if (what == &NodeReach::boards)
+  if (what == &NodeCapabilities::boards)
     throw iut::CannotBeDone("the valves of the node cannot be seen without an upper channel");
-  if (what == &NodeReach::moving_switches)
+  if (what == &NodeCapabilities::moving_switches)
     throw iut::CannotBeDone("the limit switches cannot be moved while the node works");
-  if (what == &NodeReach::driver)
+  if (what == &NodeCapabilities::driver)
     throw iut::CannotBeDone("the driver of the node cannot be seen without an upper channel");
   throw iut::CannotBeDone("the node cannot be put farther away");
 }
 
-void NodeBench::note_instant(bool is_sure, const valve_bus::Doubt& doubt) {
+void NodeBench::note_instant(bool is_sure, const valve_bus::TimingUncertainty& doubt) {
   const kernel::Duration all = doubt.earlier + doubt.later;
   instants_.greatest_doubt = std::max(instants_.greatest_doubt, all);
   if (is_sure) {
@@ -216,7 +216,7 @@ void NodeBench::interject(std::span<const std::uint8_t> octets, kernel::Time sta
   codec_.drive(*tester_, octets, start, {});
 }
 
-void NodeBench::forget() {
+void NodeBench::clear_observations() {
   driven_.clear();
   arrived_.clear();
   boards_.forget_changes();

@@ -96,8 +96,8 @@ class NodeBench final : private segment::Station {
   kernel::Duration distance() const { return distance_; }
 
   // What the bench can do with this IUT; the case does not apply where it cannot do what is required.
-  valve_bus::NodeReach reach() const { return node_->reach(); }
-  void require(bool valve_bus::NodeReach::* what) const;
+  valve_bus::NodeCapabilities reach() const { return node_->reach(); }
+  void require(bool valve_bus::NodeCapabilities::* what) const;
 
   // ---- upper tester ----
   valve_bus::ValveBlock& boards() { return boards_; }
@@ -121,7 +121,7 @@ class NodeBench final : private segment::Station {
   // Silence. What has been sent is over by then.
   void wait(kernel::Duration duration);
   // As long as the IUT may take to act on what it has heard, and to have said it.
-  void settle() { wait(settling_); }
+  void await_response_window() { wait(settling_); }
   // Levels as they are, from now on, at any rate; runs until they are over.
   void drive(line::Waveform& wave);
   // The character as levels, one a bit.
@@ -135,17 +135,17 @@ class NodeBench final : private segment::Station {
   std::vector<Transmission> answers() { return driven_.transmissions(); }
   bool has_driven() const { return !driven_.empty(); }
   // How uncertain the instants of an answer and of the last moves of the valves are.
-  valve_bus::Doubt doubt_of(const Transmission& answer) const {
+  valve_bus::TimingUncertainty doubt_of(const Transmission& answer) const {
     return node_->doubt_of_answer(answer.driver_on);
   }
-  valve_bus::Doubt doubt_of_valves() const { return node_->doubt_of_valves(); }
+  valve_bus::TimingUncertainty doubt_of_valves() const { return node_->doubt_of_valves(); }
   // An instant that a case looked at could be judged, or lay closer to its limit than it is known.
-  void note_instant(bool is_sure, const valve_bus::Doubt& doubt);
+  void note_instant(bool is_sure, const valve_bus::TimingUncertainty& doubt);
   const InstantLedger& instants() const { return instants_; }
   void keep_instants(const InstantLedger& ledger) { instants_ = ledger; }
   // What has arrived at the IUT since then.
   std::span<const ArrivedFrame> arrived() const { return arrived_.frames(); }
-  void forget();
+  void clear_observations();
 
   // ---- stress ----
   std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }

@@ -12,7 +12,7 @@ NodeCase canary() {
                     "the case asks for an answer that no node gives."),
           [](NodeBench& bench, CaseJudge& judge) {
             bench.read();
-            bench.settle();
+            bench.await_response_window();
             const auto answers = bench.answers();
             judge.expect(answers.size() == 1 && answers.front().characters.size() == 300, "canary",
                          "an answer of 300 octets", "it was shorter");

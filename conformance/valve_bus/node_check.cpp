@@ -26,8 +26,8 @@ Frame command(NodeBench& bench, unsigned number) {
 // Valves that are on show what switches them off, too.
 void switch_some_on(NodeBench& bench) {
   bench.write(0x5A, 0xA5);
-  bench.settle();
-  bench.forget();
+  bench.await_response_window();
+  bench.clear_observations();
 }
 
 void single_bit_errors_are_refused(NodeBench& bench, CaseJudge& judge) {
@@ -37,7 +37,7 @@ void single_bit_errors_are_refused(NodeBench& bench, CaseJudge& judge) {
       Frame frame = command(bench, number);
       flip(frame, bit);
       bench.send(frame);
-      bench.settle();
+      bench.await_response_window();
       expect_ignored(bench, judge, "acts_on_wrong_check",
                      fmt::format("bit {} of octet {} is wrong", bit % 8, bit / 8));
     }
@@ -57,7 +57,7 @@ WhatItIs outcome_of(const NodeBench& bench, const Frame& frame) {
 // The exclusive or cannot see two wrong bits in one column. A node that refuses such a frame has another
 // check; one that takes any other double error has none.
 void double_errors_show_the_exclusive_or(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeReach::boards);
+  bench.require(&valve_bus::NodeCapabilities::boards);
   std::array<unsigned, 4> counts{};
   const unsigned step = bench.volume(7U, 1U);
   unsigned pair = 0;
@@ -66,14 +66,14 @@ void double_errors_show_the_exclusive_or(NodeBench& bench, CaseJudge& judge) {
       const bool is_one_column = first % 8 == second % 8;
       if (!is_one_column && ++pair % step != 0) continue;
       bench.write(0x5A, 0xA5);
-      bench.settle();
-      bench.forget();
+      bench.await_response_window();
+      bench.clear_observations();
       // A wrong DATA octet must move a valve: both differ from what stands in every bit.
       Frame frame = octets_of(valve_bus::Command{bench.address(), 0, 0xA5, 0x5A});
       flip(frame, first);
       flip(frame, second);
       const kernel::Time end = bench.send(frame);
-      bench.settle();
+      bench.await_response_window();
       const std::string place = fmt::format("bits {} and {} of the frame are wrong", first, second);
       if (!is_one_column) {
         expect_ignored(bench, judge, "acts_on_wrong_check", place);
@@ -115,7 +115,7 @@ void other_checks_are_refused(NodeBench& bench, CaseJudge& judge) {
         if (check == right) continue;
         frame.back() = check;
         bench.send(frame);
-        bench.settle();
+        bench.await_response_window();
         expect_ignored(bench, judge, "acts_on_wrong_check",
                        fmt::format("the check is {:02X} and should be {:02X}", check, right));
       }

@@ -21,7 +21,7 @@ std::string octets_text(const std::vector<std::uint8_t>& octets) {
 }
 
 // "2.1 ms", and how far it may be off.
-std::string instant_text(kernel::Duration measured, const valve_bus::Doubt& doubt) {
+std::string instant_text(kernel::Duration measured, const valve_bus::TimingUncertainty& doubt) {
   if (doubt.earlier + doubt.later == kernel::Duration{}) return kernel::describe(measured);
   return fmt::format("{} to {}", kernel::describe(measured - doubt.earlier),
                      kernel::describe(measured + doubt.later));
@@ -34,13 +34,13 @@ void expect_driver(NodeBench& bench, CaseJudge& judge, const Transmission& answe
   const kernel::Duration before = answer.characters.front().start - answer.driver_on;
   const kernel::Duration behind = answer.driver_off - answer.characters.back().busy_until;
   judge.expect(before + kRounding >= bench.bits(rules.driver_on_bits), "driver_on_late", [&] {
-    return Sighting{
+    return Mismatch{
         {fmt::format("the driver is on at least {} bit before the start bit", rules.driver_on_bits)},
         fmt::format("{} before it", kernel::describe(before)),
         answer.driver_on};
   });
   judge.expect(behind <= bench.bits(rules.driver_off_bits) + kRounding, "driver_not_released", [&] {
-    return Sighting{
+    return Mismatch{
         {fmt::format("the driver is off at most {} bits behind the last stop bit", rules.driver_off_bits)},
         fmt::format("{} behind it", kernel::describe(behind)),
         answer.driver_off};
@@ -50,7 +50,7 @@ void expect_driver(NodeBench& bench, CaseJudge& judge, const Transmission& answe
 void expect_no_gap(NodeBench& bench, CaseJudge& judge, const Transmission& answer) {
   judge.expect(answer.longest_gap() <= valve_bus::longest_gap(bench.rules()) + kRounding, "gap_in_answer",
                [&] {
-                 return Sighting{{fmt::format("at most {} between two characters of an answer",
+                 return Mismatch{{fmt::format("at most {} between two characters of an answer",
                                               kernel::describe(valve_bus::longest_gap(bench.rules())))},
                                  kernel::describe(answer.longest_gap()),
                                  answer.characters.front().start};
@@ -63,7 +63,7 @@ void expect_octets(NodeBench& bench, CaseJudge& judge, const Transmission& answe
   const std::array<std::uint8_t, 3> wanted{data0, data1, static_cast<std::uint8_t>(data0 ^ data1)};
   const auto sighting = [&](const char* difference) {
     return [&, difference] {
-      return Sighting{.expected = {fmt::format("{:02X}", fmt::join(wanted, " "))},
+      return Mismatch{.expected = {fmt::format("{:02X}", fmt::join(wanted, " "))},
                       .actual = octets_text(octets),
                       .time = answer.driver_on,
                       .first_difference = difference};
@@ -96,32 +96,33 @@ Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t 
                "one answer of three octets", "the node did not say anything");
   const Transmission& answer = answers.front();
   judge.expect(answers.size() == 1, "answered_twice", [&] {
-    return Sighting{{"one answer"}, fmt::format("{} transmissions", answers.size()), answers[1].driver_on};
+    return Mismatch{{"one answer"}, fmt::format("{} transmissions", answers.size()), answers[1].driver_on};
   });
   expect_octets(bench, judge, answer, data0, data1);
-  const kernel::Duration turn_round = answer.characters.front().start - (end + bench.distance());
-  const valve_bus::Doubt doubt = bench.doubt_of(answer);
+  const kernel::Duration turnaround_time = answer.characters.front().start - (end + bench.distance());
+  const valve_bus::TimingUncertainty doubt = bench.doubt_of(answer);
   const kernel::Duration least = bench.delimiter();
-  const kernel::Duration most = least + turn_round_span(bench.rules());
+  const kernel::Duration most = least + turnaround_time_span(bench.rules());
   const auto sighting = [&] {
-    return Sighting{{fmt::format("the first start bit {} to {} behind the last stop bit of the command",
+    return Mismatch{{fmt::format("the first start bit {} to {} behind the last stop bit of the command",
                                  kernel::describe(least), kernel::describe(most))},
-                    instant_text(turn_round, doubt),
+                    instant_text(turnaround_time, doubt),
                     answer.characters.front().start};
   };
-  judge.expect(turn_round + doubt.later + kRounding >= least, "answer_too_early", sighting);
-  judge.expect(turn_round - doubt.earlier <= most + kRounding, "answer_too_late", sighting);
-  bench.note_instant(
-      turn_round - doubt.earlier + kRounding >= least && turn_round + doubt.later <= most + kRounding, doubt);
+  judge.expect(turnaround_time + doubt.later + kRounding >= least, "answer_too_early", sighting);
+  judge.expect(turnaround_time - doubt.earlier <= most + kRounding, "answer_too_late", sighting);
+  bench.note_instant(turnaround_time - doubt.earlier + kRounding >= least &&
+                         turnaround_time + doubt.later <= most + kRounding,
+                     doubt);
   expect_driver(bench, judge, answer);
   expect_no_gap(bench, judge, answer);
   return answer;
 }
 
 void expect_valves(NodeBench& bench, CaseJudge& judge, std::uint16_t valves, std::string_view reason) {
-  bench.require(&valve_bus::NodeReach::boards);
+  bench.require(&valve_bus::NodeCapabilities::boards);
   judge.expect(bench.valves() == valves, reason,
-               [&] { return Sighting{{valves_text(valves)}, valves_text(bench.valves())}; });
+               [&] { return Mismatch{{valves_text(valves)}, valves_text(bench.valves())}; });
 }
 
 void expect_no_valve_moved(NodeBench& bench, CaseJudge& judge, std::string_view reason,
@@ -129,14 +130,14 @@ void expect_no_valve_moved(NodeBench& bench, CaseJudge& judge, std::string_view 
   if (!bench.reach().boards) return;  // what cannot be seen is not judged
   judge.expect(bench.boards().changes().empty(), reason, [&] {
     const Change& change = bench.boards().changes().front();
-    return Sighting{{fmt::format("no valve moves: {}", why_not)}, change_text(change), change.when};
+    return Mismatch{{fmt::format("no valve moves: {}", why_not)}, change_text(change), change.when};
   });
 }
 
 void expect_silence(NodeBench& bench, CaseJudge& judge, std::string_view reason, std::string_view why_not) {
   judge.expect(!bench.has_driven(), reason, [&] {
     const Transmission first = bench.answers().front();
-    return Sighting{{fmt::format("the node does not drive the line: {}", why_not)},
+    return Mismatch{{fmt::format("the node does not drive the line: {}", why_not)},
                     fmt::format("it said {}", octets_text(first.octets())),
                     first.driver_on};
   });
@@ -149,7 +150,7 @@ void expect_ignored(NodeBench& bench, CaseJudge& judge, std::string_view reason,
 
 void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, std::uint8_t data1,
                         kernel::Time end) {
-  bench.require(&valve_bus::NodeReach::boards);
+  bench.require(&valve_bus::NodeCapabilities::boards);
   const kernel::Duration doubt = bench.doubt_of_valves().later;
   const std::uint16_t wanted = bench.valves_of(data0, data1);
   const kernel::Time arrived = end + bench.distance();
@@ -162,11 +163,11 @@ void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, 
     const Change& first = changes.front();
     const Change& last = changes.back();
     judge.expect(first.when + doubt + kRounding >= arrived, "valves_too_early", [&] {
-      return Sighting{{"no valve moves before the check has come"}, change_text(first), first.when};
+      return Mismatch{{"no valve moves before the check has come"}, change_text(first), first.when};
     });
     const kernel::Duration limit = bench.delimiter() + actuation_limit(bench.rules());
     judge.expect(last.when - arrived <= limit + kRounding, "valves_too_late", [&] {
-      return Sighting{
+      return Mismatch{
           {fmt::format("the valves move at most {} behind the last stop bit", kernel::describe(limit))},
           change_text(last),
           last.when};
@@ -174,7 +175,7 @@ void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, 
     bench.note_instant(first.when + kRounding >= arrived && last.when + doubt - arrived <= limit + kRounding,
                        bench.doubt_of_valves());
     judge.expect(last.when - first.when <= bench.rules().output_skew, "valves_one_by_one", [&] {
-      return Sighting{{fmt::format("all valves move within {}", kernel::describe(bench.rules().output_skew))},
+      return Mismatch{{fmt::format("all valves move within {}", kernel::describe(bench.rules().output_skew))},
                       fmt::format("within {}", kernel::describe(last.when - first.when)),
                       last.when};
     });
@@ -194,22 +195,22 @@ Transmission expect_answer(NodeBench& bench, CaseJudge& judge, std::uint16_t swi
 
 void expect_serves(NodeBench& bench, CaseJudge& judge) {
   constexpr std::string_view kReason = "does_not_recover";
-  bench.settle();
+  bench.await_response_window();
   const auto frame = bench.telling_write();
   bench.send(frame);
-  bench.settle();
+  bench.await_response_window();
   if (bench.reach().boards) expect_valves(bench, judge, bench.valves_of(frame[2], frame[3]), kReason);
-  bench.forget();
+  bench.clear_observations();
   const auto switches = static_cast<std::uint16_t>(bench.random().below(0x10000));
   bench.boards().set_input(0, switches);
   const kernel::Time end = bench.read();
-  bench.settle();
+  bench.await_response_window();
   judge.expect(bench.has_driven(), kReason, "a read is answered", "the node did not say anything");
   // That it serves is shown here; how fast it does so, by the case itself.
   const InstantLedger before = bench.instants();
   expect_answer(bench, judge, switches, end);
   bench.keep_instants(before);
-  bench.forget();
+  bench.clear_observations();
 }
 
 }  // namespace fieldproof::conformance

@@ -18,7 +18,7 @@ void short_frames_are_discarded(NodeBench& bench, CaseJudge& judge) {
   for (std::size_t count = 1; count < valve_bus::kCommandOctets; ++count) {
     const auto whole = bench.telling_write();
     bench.send(std::span(whole).first(count));
-    bench.settle();
+    bench.await_response_window();
     expect_ignored(bench, judge, "acts_on_short_frame", fmt::format("a frame of {} octets is none", count));
     expect_serves(bench, judge);
   }
@@ -30,13 +30,13 @@ void long_frames_are_discarded(NodeBench& bench, CaseJudge& judge) {
     NodeBench::Octets frame(whole.begin(), whole.end());
     frame.resize(frame.size() + more, 0);
     bench.send(frame);
-    bench.settle();
+    bench.await_response_window();
     expect_ignored(bench, judge, "acts_on_long_frame", fmt::format("{} octets behind it", more));
     NodeBench::Octets in_front(more, 0);
     const auto behind = bench.telling_write();
     in_front.insert(in_front.end(), behind.begin(), behind.end());
     bench.send(in_front);
-    bench.settle();
+    bench.await_response_window();
     expect_ignored(bench, judge, "acts_on_long_frame", fmt::format("{} octets in front of it", more));
     expect_serves(bench, judge);
   }
@@ -48,7 +48,7 @@ void frames_are_told_apart_by_silence(NodeBench& bench, CaseJudge& judge) {
     bench.send(first);
     bench.wait(bench.characters(gap));
     bench.send(written({bench.address(), 0, 0x0F, 0xF0}));
-    bench.settle();
+    bench.await_response_window();
     expect_ignored(bench, judge, "takes_frames_without_delimiter",
                    fmt::format("{} characters of silence are no delimiter", gap));
     expect_serves(bench, judge);
@@ -57,7 +57,7 @@ void frames_are_told_apart_by_silence(NodeBench& bench, CaseJudge& judge) {
   const std::uint16_t moved = static_cast<std::uint16_t>(~bench.valves());
   bench.wait(bench.delimiter() + kernel::kMicrosecond);
   bench.send(written({bench.address(), 0, 0x0F, 0xF0}));
-  bench.settle();
+  bench.await_response_window();
   const auto& changes = bench.boards().changes();
   judge.expect(
       changes.size() == 2 && changes[0].after == bench.valves_of(static_cast<std::uint8_t>(moved),
@@ -72,20 +72,20 @@ void send_with_gap(NodeBench& bench, std::span<const std::uint8_t> frame, std::s
   bench.send(frame.first(at));
   bench.wait(bench.characters(gap));
   bench.send(frame.subspan(at));
-  bench.settle();
+  bench.await_response_window();
 }
 
 void gaps_inside_a_frame(NodeBench& bench, CaseJudge& judge) {
   for (std::size_t at = 1; at < valve_bus::kCommandOctets; ++at) {
     for (const double gap : {0.5, 1.0, 1.4}) {
-      bench.forget();
+      bench.clear_observations();
       const std::uint16_t wanted = bench.valves_of(static_cast<std::uint8_t>(~bench.valves()),
                                                    static_cast<std::uint8_t>(~bench.valves() >> 8));
       send_with_gap(bench, bench.telling_write(), at, gap);
       expect_valves(bench, judge, wanted, "refuses_short_gap");
     }
     for (const double gap : {1.6, 2.0, 3.0, 3.4, 3.6, 10.0}) {
-      bench.forget();
+      bench.clear_observations();
       send_with_gap(bench, bench.telling_write(), at, gap);
       expect_ignored(bench, judge, "takes_long_gap",
                      fmt::format("{} characters of silence in front of octet {}", gap, at));
@@ -104,12 +104,12 @@ void joined_frames_are_no_write(NodeBench& bench, CaseJudge& judge) {
     bench.send(response);
     if (has_delimiter) bench.wait(bench.delimiter() + kernel::kMicrosecond);
     bench.send(poll);
-    bench.settle();
+    bench.await_response_window();
     expect_no_valve_moved(bench, judge, "joins_frames",
                           has_delimiter ? "a response, a delimiter, and a poll of node 1"
                                         : "a response and a poll of node 1 without a delimiter");
     if (id != 1) expect_silence(bench, judge, "joins_frames", "nobody asked it");
-    bench.forget();
+    bench.clear_observations();
   }
   expect_serves(bench, judge);
 }
@@ -119,10 +119,10 @@ void own_frame_behind_a_response_is_taken(NodeBench& bench, CaseJudge& judge) {
     const auto data = bench.random_octet();
     bench.send(octets_of(valve_bus::Response{data, bench.random_octet()}));
     bench.wait(bench.delimiter() + kernel::kMicrosecond);
-    bench.forget();
+    bench.clear_observations();
     const auto frame = bench.telling_write();
     const kernel::Time end = bench.send(frame);
-    bench.settle();
+    bench.await_response_window();
     expect_write_taken(bench, judge, frame[2], frame[3], end);
   }
 }

@@ -32,7 +32,7 @@ void expect_moves_follow(NodeBench& bench, CaseJudge& judge) {
     judge.expect(follows, "moves_without_command", [&] {
       std::vector<std::string> arrived;
       for (const ArrivedFrame& frame : bench.arrived()) arrived.push_back(frame_text(frame));
-      return Sighting{{fmt::format("valves move by what arrived only: {}", fmt::join(arrived, "; "))},
+      return Mismatch{{fmt::format("valves move by what arrived only: {}", fmt::join(arrived, "; "))},
                       fmt::format("valves {:04X}h became {:04X}h", change.before, change.after),
                       change.when};
     });
@@ -48,13 +48,13 @@ void expect_answers_follow(NodeBench& bench, CaseJudge& judge) {
 }
 
 void send_under_stress(NodeBench& bench, CaseJudge& judge, BurstLedger& ledger) {
-  bench.forget();
+  bench.clear_observations();
   const std::uint16_t before = bench.valves();
   const bool is_write = bench.random().chance(0.7);
   const auto data0 = bench.random_octet();
   const auto data1 = bench.random_octet();
   is_write ? bench.write(data0, data1) : bench.read();
-  bench.settle();
+  bench.await_response_window();
   expect_moves_follow(bench, judge);
   expect_answers_follow(bench, judge);
   ++ledger.sent;
@@ -71,7 +71,7 @@ void bursts_move_nothing_by_themselves(NodeBench& bench, CaseJudge& judge) {
       const kernel::Time until = bench.now() + stress.duration;
       while (bench.now() < until) send_under_stress(bench, judge, ledger);
       bench.end_stress();
-      bench.forget();
+      bench.clear_observations();
       expect_serves(bench, judge);
     }
   }

@@ -23,7 +23,7 @@ void send_with_wrong_level(NodeBench& bench, std::span<const std::uint8_t> frame
     if (n == at) wave.levels.flip(level);
     bench.drive(wave);
   }
-  bench.settle();
+  bench.await_response_window();
 }
 
 std::size_t stop_level(const NodeBench& bench) {
@@ -49,7 +49,7 @@ void a_wrong_parity_spoils_the_frame(NodeBench& bench, CaseJudge& judge) {
 
 void the_ninth_bit_is_not_looked_at(NodeBench& bench, CaseJudge& judge) {
   for (std::size_t at = 0; at < valve_bus::kCommandOctets; ++at) {
-    bench.forget();
+    bench.clear_observations();
     const auto frame = bench.telling_write();
     send_with_wrong_level(bench, frame, at, stop_level(bench) - 1);
     expect_valves(bench, judge, bench.valves_of(frame[2], frame[3]), "ninth_bit_looked_at");
@@ -68,9 +68,9 @@ void a_break_is_no_frame(NodeBench& bench, CaseJudge& judge) {
     expect_ignored(bench, judge, "acts_on_break", "a low line says nothing");
     const auto frame = bench.telling_write();
     bench.send(frame);
-    bench.settle();
+    bench.await_response_window();
     expect_valves(bench, judge, bench.valves_of(frame[2], frame[3]), "does_not_recover");
-    bench.forget();
+    bench.clear_observations();
     expect_serves(bench, judge);
   }
 }
@@ -86,18 +86,18 @@ void glitch(NodeBench& bench, unsigned tenths) {
 
 void glitches_are_no_start_bits(NodeBench& bench, CaseJudge& judge) {
   for (const unsigned tenths : {1U, 2U, 3U, 4U}) {
-    bench.forget();
+    bench.clear_observations();
     glitch(bench, tenths);
     const auto frame = bench.telling_write();
     bench.send(frame);
-    bench.settle();
+    bench.await_response_window();
     expect_valves(bench, judge, bench.valves_of(frame[2], frame[3]), "takes_glitch_for_start_bit");
   }
   for (const unsigned tenths : {6U, 7U, 9U}) {
-    bench.forget();
+    bench.clear_observations();
     glitch(bench, tenths);
     bench.send(bench.telling_write());
-    bench.settle();
+    bench.await_response_window();
     // It may be a character or none; what follows is a frame of its own in no case.
     expect_serves(bench, judge);
   }
@@ -107,8 +107,8 @@ void glitches_are_no_start_bits(NodeBench& bench, CaseJudge& judge) {
 // characters: the case sends some thousands.
 void noise_is_no_frame(NodeBench& bench, CaseJudge& judge) {
   bench.write(0x5A, 0xA5);
-  bench.settle();
-  bench.forget();
+  bench.await_response_window();
+  bench.clear_observations();
   for (int n = 0; n < bench.volume(10, 200); ++n) {
     line::Waveform wave;
     wave.rate = bench.rules().bit_rate * (bench.random().chance(0.5) ? 1 : 7);
@@ -122,16 +122,16 @@ void noise_is_no_frame(NodeBench& bench, CaseJudge& judge) {
 
 void a_command_into_an_answer_is_not_taken(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(8, 100); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const kernel::Time end = bench.read();
     // Up to where an answer has begun.
-    kernel::Time latest = end + bench.delimiter() + turn_round_span(bench.rules());
+    kernel::Time latest = end + bench.delimiter() + turnaround_time_span(bench.rules());
     while (bench.now() < latest && !bench.has_driven()) bench.wait(5 * kernel::kMicrosecond);
     judge.expect(bench.has_driven(), "no_answer", "one answer", "the node did not say anything");
     bench.wait(bench.bits(1) + kernel::Duration{bench.random().between(0, bench.characters(1).count())});
     bench.interject(bench.telling_write(), bench.now());
     bench.wait(bench.characters(6));
-    bench.settle();
+    bench.await_response_window();
     expect_no_valve_moved(bench, judge, "acts_on_garbled_command", "it was sent into the node's own answer");
     judge.expect(bench.answers().front().driver_off < bench.now() - bench.characters(2),
                  "driver_not_released", "the driver goes off behind the answer", "it is on");
@@ -141,14 +141,14 @@ void a_command_into_an_answer_is_not_taken(NodeBench& bench, CaseJudge& judge) {
 
 void a_collision_does_not_change_the_node(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(8, 100); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const auto switches = static_cast<std::uint16_t>(bench.random().below(0x10000));
     bench.boards().set_input(0, switches);
     const kernel::Time end = bench.read();
-    const kernel::Time latest = end + bench.delimiter() + turn_round_span(bench.rules());
+    const kernel::Time latest = end + bench.delimiter() + turnaround_time_span(bench.rules());
     while (bench.now() < latest && !bench.has_driven()) bench.wait(5 * kernel::kMicrosecond);
     bench.interject(octets_of(valve_bus::Response{bench.random_octet(), bench.random_octet()}), bench.now());
-    bench.settle();
+    bench.await_response_window();
     expect_answer(bench, judge, switches, end);
     expect_no_valve_moved(bench, judge, "acts_on_garbled_command", "two nodes answered at once");
     expect_serves(bench, judge);

@@ -8,10 +8,10 @@ namespace fieldproof::conformance {
 namespace {
 
 void without_a_host_the_valves_hold(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeReach::boards);
+  bench.require(&valve_bus::NodeCapabilities::boards);
   bench.write(0x5A, 0xA5);
-  bench.settle();
-  bench.forget();
+  bench.await_response_window();
+  bench.clear_observations();
   const bool goes_off = bench.pics().supports("valves_off_without_host");
   if (goes_off) {
     bench.wait(bench.rules().loss_limit - 50 * kernel::kMillisecond);
@@ -23,7 +23,7 @@ void without_a_host_the_valves_hold(NodeBench& bench, CaseJudge& judge) {
     expect_no_valve_moved(bench, judge, "valves_let_go", "they hold while the host is silent");
   }
   expect_silence(bench, judge, "drives_without_being_asked", "nobody asked it");
-  bench.forget();
+  bench.clear_observations();
   expect_serves(bench, judge);
 }
 
@@ -38,21 +38,21 @@ void power_up_is_safe(NodeBench& bench, CaseJudge& judge) {
 void power_lost_in_a_frame(NodeBench& bench, CaseJudge& judge) {
   for (std::size_t at = 0; at <= valve_bus::kCommandOctets; ++at) {
     bench.write(0xFF, 0xFF);
-    bench.settle();
-    bench.forget();
+    bench.await_response_window();
+    bench.clear_observations();
     const auto frame = octets_of(valve_bus::Command{bench.address(), 0, 0x0F, 0xF0});
     bench.send(std::span(frame).first(at));
     bench.set_power(false);
     bench.wait(bench.delimiter() / 2);
     expect_silence(bench, judge, "speaks_without_power", "it has no supply");
-    bench.forget();
+    bench.clear_observations();
     bench.set_power(true);
     bench.send(std::span(frame).subspan(at));
-    bench.settle();
+    bench.await_response_window();
     expect_valves(bench, judge, at == 0 ? bench.valves_of(0x0F, 0xF0) : 0, "remembers_over_power_loss");
     const bool is_acknowledged = at == 0 && bench.rules().answers_writes;
     if (!is_acknowledged) expect_silence(bench, judge, "speaks_at_power_up", "nobody asked it");
-    bench.forget();
+    bench.clear_observations();
     expect_serves(bench, judge);
   }
 }

@@ -13,11 +13,11 @@ std::uint16_t random_switches(NodeBench& bench) {
 
 void a_read_is_answered(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 50); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const std::uint16_t switches = random_switches(bench);
     bench.boards().set_input(0, switches);
     const kernel::Time end = bench.read();
-    bench.settle();
+    bench.await_response_window();
     expect_answer(bench, judge, switches, end);
     expect_no_valve_moved(bench, judge, "valves_moved_by_read", "a read drives nothing");
   }
@@ -25,27 +25,27 @@ void a_read_is_answered(NodeBench& bench, CaseJudge& judge) {
 
 void data_of_a_read_is_not_looked_at(NodeBench& bench, CaseJudge& judge) {
   bench.write(0x5A, 0xA5);
-  bench.settle();
+  bench.await_response_window();
   const std::uint16_t switches = random_switches(bench);
   bench.boards().set_input(0, switches);
   for (unsigned pair = 0; pair < 0x10000; pair += bench.volume(4'099U, 257U)) {
-    bench.forget();
+    bench.clear_observations();
     const kernel::Time end =
         bench.send(valve_bus::Command{bench.address(), static_cast<std::uint8_t>(bench.rules().read_command),
                                       static_cast<std::uint8_t>(pair), static_cast<std::uint8_t>(pair >> 8)});
-    bench.settle();
+    bench.await_response_window();
     expect_answer(bench, judge, switches, end);
     expect_no_valve_moved(bench, judge, "valves_moved_by_read", "the data of a read mean nothing");
   }
 }
 
 void switches_are_told_exactly(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeReach::boards);
+  bench.require(&valve_bus::NodeCapabilities::boards);
   const auto ask = [&](std::uint16_t switches) {
-    bench.forget();
+    bench.clear_observations();
     bench.boards().set_input(0, switches);
     const kernel::Time end = bench.read();
-    bench.settle();
+    bench.await_response_window();
     expect_answer(bench, judge, switches, end);
   };
   for (unsigned n = 0; n < 16; ++n) {
@@ -56,38 +56,38 @@ void switches_are_told_exactly(NodeBench& bench, CaseJudge& judge) {
 
 // All switches change together, again and again: an answer has them all before or all behind a change.
 void a_snapshot_is_not_torn(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeReach::moving_switches);
+  bench.require(&valve_bus::NodeCapabilities::moving_switches);
   const auto half_period = 7 * kernel::kMicrosecond;
   bench.boards().set_signal(0, [half_period](kernel::Time when) {
     return (when - kernel::kStart) / half_period % 2 == 0 ? std::uint16_t{0x0000} : std::uint16_t{0xFFFF};
   });
   const bool has_one_board = bench.configuration().boards == 1;
   for (int n = 0; n < bench.volume(20, 400); ++n) {
-    bench.forget();
+    bench.clear_observations();
     bench.wait(kernel::Duration{bench.random().between(0, half_period.count())});
     bench.read();
-    bench.settle();
+    bench.await_response_window();
     const auto answers = bench.answers();
     judge.expect(answers.size() == 1 && answers[0].characters.size() == 3, "no_answer", "one answer",
                  "none, or of another length");
     const auto octets = answers[0].octets();
     judge.expect(has_one_board || octets[0] == octets[1], "snapshot_torn", [&] {
-      return Sighting{
+      return Mismatch{
           {"00 00 or FF FF"}, fmt::format("{:02X} {:02X}", octets[0], octets[1]), answers[0].driver_on};
     });
     judge.expect(octets[0] == 0x00 || octets[0] == 0xFF, "snapshot_torn", [&] {
-      return Sighting{{"00 or FF in DATA0"}, fmt::format("{:02X}", octets[0]), answers[0].driver_on};
+      return Mismatch{{"00 or FF in DATA0"}, fmt::format("{:02X}", octets[0]), answers[0].driver_on};
     });
   }
 }
 
 void an_answer_has_no_gaps(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 200); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const std::uint16_t switches = random_switches(bench);
     bench.boards().set_input(0, switches);
     const kernel::Time end = bench.read();
-    bench.settle();
+    bench.await_response_window();
     const Transmission answer = expect_answer(bench, judge, switches, end);
     judge.measure("longest gap in an answer", "us", static_cast<double>(answer.longest_gap().count()) * 1e-6);
   }

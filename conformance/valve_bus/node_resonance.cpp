@@ -65,7 +65,7 @@ void force_low(line::Levels& levels, const Pulses& pulses) {
 // where they come a character apart; other data would be hidden at half of that pitch, too.
 std::uint16_t valves_under(NodeBench& bench, const Pulses& pulses) {
   bench.write(0, 0);
-  bench.settle();
+  bench.await_response_window();
   const auto frame = octets_of(valve_bus::Command{
       bench.address(), static_cast<std::uint8_t>(bench.rules().write_command), kAllOn, kAllOn});
   line::Waveform wave;
@@ -73,7 +73,7 @@ std::uint16_t valves_under(NodeBench& bench, const Pulses& pulses) {
   for (const std::uint8_t octet : frame) wave.levels.append_stretched(bench.levels_of(octet), kLevelsPerBit);
   force_low(wave.levels, pulses);
   bench.drive(wave);
-  bench.settle();
+  bench.await_response_window();
   return bench.valves();
 }
 
@@ -121,7 +121,7 @@ void expect_columns_lost(NodeBench& bench, CaseJudge& judge) {
     const auto left = static_cast<std::uint8_t>(~(1U << bit));
     const std::uint16_t wanted = bench.valves_of(left, left);
     judge.expect(valves == wanted, valves == 0 ? "in_step_refused" : "hit_elsewhere", [&] {
-      return Sighting{
+      return Mismatch{
           {fmt::format("{}: bit {} of each octet is 0, and the check fits", valves_text(wanted), bit)},
           valves_text(valves)};
     });
@@ -167,7 +167,7 @@ void judge_scan(const PitchCounts& peak, const PitchCounts& other, double in_ste
   judge.measure("of writes that were hit there", "", peak.hit);
   judge.measure("most writes taken with wrong data elsewhere", "", other.taken);
   judge.expect(peak.taken >= other.taken, "maximum_elsewhere", [&] {
-    return Sighting{
+    return Mismatch{
         {fmt::format("most writes are taken with wrong data at {:.1f} kHz, where three pulses last "
                      "a character",
                      in_step)},
@@ -197,7 +197,7 @@ void scan_pitches(NodeBench& bench, CaseJudge& judge) {
 }
 
 void pulses_in_step_pass_the_check(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeReach::boards);
+  bench.require(&valve_bus::NodeCapabilities::boards);
   expect_serves(bench, judge);
   expect_columns_lost(bench, judge);
   if (can_be_scanned(bench.address())) {

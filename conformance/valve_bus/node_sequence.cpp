@@ -120,7 +120,7 @@ class NodeSequenceRun {
       execute(command);
       if (is_over_) return;
     }
-    bench_.settle();
+    bench_.await_response_window();
     judge_silence();
   }
 
@@ -174,7 +174,7 @@ class NodeSequenceRun {
     }
     // A host waits for what is due before it says anything else.
     const auto frames = bench_.arrived();
-    if (!frames.empty() && model_.is_answered(frames.back())) bench_.settle();
+    if (!frames.empty() && model_.is_answered(frames.back())) bench_.await_response_window();
   }
 
   // In pieces as long as a character: a line tells a transmission when it is over, and a receiver knows of a
@@ -191,17 +191,17 @@ class NodeSequenceRun {
 
   void set_switches(std::uint16_t switches) {
     switches_ = switches;
-    bench_.require(&valve_bus::NodeReach::boards);
+    bench_.require(&valve_bus::NodeCapabilities::boards);
     bench_.boards().set_input(0, switches);
   }
 
   void cycle_power(kernel::Duration off) {
-    bench_.forget();
+    bench_.clear_observations();
     bench_.set_power(false);
     bench_.boards().forget_changes();
     bench_.wait(off);
     expect_ignored(bench_, judge_, "acts_without_power", "it has no supply");
-    bench_.forget();
+    bench_.clear_observations();
     bench_.set_power(true);
     powered_at_ = bench_.now();
     model_.power_up(bench_.now());
@@ -242,7 +242,7 @@ class NodeSequenceRun {
     } else {
       expect_silence(bench_, judge_, "answers_without_command", "nothing that arrived asks for it");
     }
-    bench_.forget();
+    bench_.clear_observations();
   }
 
   void judge_valves() {
@@ -272,8 +272,8 @@ class NodeSequenceRun {
 };
 
 // Any silence may stand between two characters of a sequence: what is a frame rests on the delimiter always.
-std::vector<Detail> sequence_details() {
-  std::vector<Detail> details = node_details();
+std::vector<PartialSource> sequence_details() {
+  std::vector<PartialSource> details = node_details();
   details.push_back({valve_sources::own("silence of 3.5 characters ends a frame, whatever came before it"),
                      {"moves_without_command", "write_not_taken", "answers_without_command", "no_answer"}});
   return details;

@@ -31,8 +31,8 @@ SequenceSearch search_of(const std::string& uri, std::uint64_t cases) {
 
 std::vector<std::string> nodes_for_check() {
   std::vector<std::string> names;
-  for (const Deviation& deviation : valve_suite().deviations()) {
-    if (deviation.is_for_check) names.push_back(deviation.name);
+  for (const Mutant& mutant : valve_suite().mutants()) {
+    if (mutant.is_for_check) names.push_back(mutant.name);
   }
   return names;
 }
@@ -57,7 +57,7 @@ TEST(NodeSequence, TheReferenceFollowsTheModel) {
 TEST(NodeSequence, FindsEachNodeForCheckWithAtMostFourCommands) {
   ASSERT_EQ(nodes_for_check().size(), 15U);
   for (const std::string& name : nodes_for_check()) {
-    const SequenceSearchResult result = search(search_of("deviant:" + name, 5'000));
+    const SequenceSearchResult result = search(search_of("mutant:" + name, 5'000));
     ASSERT_TRUE(result.found) << name;
     EXPECT_TRUE(result.found->is_confirmed) << name;
     EXPECT_LE(result.found->smallest.size(), 4U) << name << "\n" << told(result.found->smallest);
@@ -81,7 +81,7 @@ TEST(NodeSequence, NoSingleCommandTellsThem) {
     for (const SequenceCommand& command : source.draw(n)) single.push_back({command});
   }
   for (const std::string& name : nodes_for_check()) {
-    const conformance::Setup setup = search_of("deviant:" + name, 1).setup;
+    const conformance::Setup setup = search_of("mutant:" + name, 1).setup;
     for (const Sequence& sequence : single) {
       const Outcome outcome = run_sequence(valve_suite(), node_sequence_role(), sequence, setup);
       EXPECT_EQ(outcome.result.verdict, judge::Verdict::pass) << name << "\n" << told(sequence);
@@ -90,7 +90,7 @@ TEST(NodeSequence, NoSingleCommandTellsThem) {
 }
 
 TEST(NodeSequence, WhatIsFoundIsTheSameAgain) {
-  const SequenceSearch one = search_of("deviant:buffer_not_cleared", 1'000);
+  const SequenceSearch one = search_of("mutant:buffer_not_cleared", 1'000);
   const SequenceSearchResult result = search(one);
   const SequenceSearchResult again = search(one);
   ASSERT_TRUE(result.found && again.found);
@@ -116,7 +116,7 @@ TEST(NodeSequence, ASilenceAtALimitIsNotJudged) {
   const auto write = static_cast<std::size_t>(words.find("write") - words.words.data());
   for (std::int64_t silence = 0; silence < 60; ++silence) {
     const Sequence sequence{{write, {1, 0, silence}}, {write, {2, 0, 100}}};
-    for (const char* uri : {"ref", "deviant:buffer_not_cleared"}) {
+    for (const char* uri : {"ref", "mutant:buffer_not_cleared"}) {
       const Outcome outcome =
           run_sequence(valve_suite(), node_sequence_role(), sequence, search_of(uri, 1).setup);
       EXPECT_EQ(outcome.result.verdict, judge::Verdict::pass) << uri << " " << silence;

@@ -24,43 +24,43 @@ void turn_round_is_within_its_span(NodeBench& bench, CaseJudge& judge) {
   kernel::Duration shortest = kernel::Duration::max();
   kernel::Duration longest{};
   for (int n = 0; n < bench.volume(20, 10'000); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const std::uint16_t switches = set_random_switches(bench);
     const kernel::Time end = bench.read();
-    bench.settle();
+    bench.await_response_window();
     const Transmission answer = expect_answer(bench, judge, switches, end);
-    const kernel::Duration turn_round = answer.characters.front().start - end;
+    const kernel::Duration turnaround_time = answer.characters.front().start - end;
     // Where an instant is not known exactly, what is certain of it.
-    const valve_bus::Doubt doubt = bench.doubt_of(answer);
-    shortest = std::min(shortest, turn_round + doubt.later);
-    longest = std::max(longest, turn_round - doubt.earlier);
+    const valve_bus::TimingUncertainty doubt = bench.doubt_of(answer);
+    shortest = std::min(shortest, turnaround_time + doubt.later);
+    longest = std::max(longest, turnaround_time - doubt.earlier);
   }
   judge.measure("shortest turn-round", "us", microseconds(shortest));
   judge.measure("longest turn-round", "us", microseconds(longest));
 }
 
 void driver_is_on_for_the_answer_only(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeReach::driver);
+  bench.require(&valve_bus::NodeCapabilities::driver);
   for (int n = 0; n < bench.volume(5, 100); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const std::uint16_t switches = set_random_switches(bench);
     const kernel::Time end = bench.read();
-    bench.settle();
+    bench.await_response_window();
     const Transmission answer = expect_answer(bench, judge, switches, end);
     judge.measure("driver on before the start bit", "us",
                   microseconds(answer.characters.front().start - answer.driver_on));
     judge.measure("driver on behind the stop bit", "us",
                   microseconds(answer.driver_off - answer.characters.back().busy_until));
-    bench.forget();
+    bench.clear_observations();
     const auto data0 = bench.random_octet();
     const auto data1 = bench.random_octet();
     const kernel::Time written = bench.write(data0, data1);
     if (bench.rules().answers_writes) {
-      bench.settle();
+      bench.await_response_window();
       expect_write_taken(bench, judge, data0, data1, written);
-      bench.forget();
+      bench.clear_observations();
     }
-    bench.settle();
+    bench.await_response_window();
     bench.wait(20 * kernel::kMillisecond);
     expect_silence(bench, judge, "drives_without_being_asked", "nobody asked it");
   }
@@ -70,13 +70,13 @@ void other_clocks_are_understood(NodeBench& bench, CaseJudge& judge) {
   for (const double clock : {1.0, 1.01, 0.99, 1.02, 0.98}) {
     bench.set_clock(clock);
     for (int n = 0; n < bench.volume(4, 50); ++n) {
-      bench.forget();
+      bench.clear_observations();
       const auto data0 = static_cast<std::uint8_t>(~bench.valves());
       const auto data1 = bench.random_octet();
       bench.write(data0, data1);
-      bench.settle();
+      bench.await_response_window();
       judge.expect(bench.valves() == bench.valves_of(data0, data1), "clock_not_understood", [&] {
-        return Sighting{{fmt::format("a write at {:.2f} times the bit rate is taken", clock)},
+        return Mismatch{{fmt::format("a write at {:.2f} times the bit rate is taken", clock)},
                         fmt::format("valves {:04X}h", bench.valves())};
       });
     }
@@ -86,15 +86,15 @@ void other_clocks_are_understood(NodeBench& bench, CaseJudge& judge) {
   for (const double clock : {1.05, 0.95}) {
     for (int n = 0; n < bench.volume(8, 200); ++n) {
       bench.set_clock(clock);
-      bench.forget();
+      bench.clear_observations();
       const std::uint16_t before = bench.valves();
       const auto data0 = bench.random_octet();
       const auto data1 = bench.random_octet();
       bench.write(data0, data1);
-      bench.settle();
+      bench.await_response_window();
       const std::uint16_t wanted = bench.valves_of(data0, data1);
       judge.expect(bench.valves() == wanted || bench.valves() == before, "wrong_data_of_wrong_clock", [&] {
-        return Sighting{
+        return Mismatch{
             {fmt::format("at {:.2f} times the bit rate: the valves of the write, or none", clock)},
             fmt::format("valves {:04X}h instead of {:04X}h", bench.valves(), wanted)};
       });
@@ -108,7 +108,7 @@ void wrong_bit_rates_are_not_understood(NodeBench& bench, CaseJudge& judge) {
   for (const double clock : {2.0, 0.5, 6.0}) {
     for (int n = 0; n < bench.volume(30, 3'334); ++n) {
       bench.set_clock(clock);
-      bench.forget();
+      bench.clear_observations();
       const std::uint16_t valves = bench.valves();
       bench.write(static_cast<std::uint8_t>(~valves), bench.random_octet());
       bench.wait(bench.characters(12) + bench.delimiter() + kernel::kMillisecond);
@@ -122,14 +122,14 @@ void wrong_bit_rates_are_not_understood(NodeBench& bench, CaseJudge& judge) {
 
 void a_read_right_behind_a_write_is_served(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(5, 200); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const auto data0 = static_cast<std::uint8_t>(~bench.valves());
     const auto data1 = bench.random_octet();
     const std::uint16_t switches = set_random_switches(bench);
     bench.write(data0, data1);
     bench.wait(bench.delimiter() + kernel::kMicrosecond);
     const kernel::Time end = bench.read();
-    bench.settle();
+    bench.await_response_window();
     expect_valves(bench, judge, bench.valves_of(data0, data1), "write_lost");
     expect_answer(bench, judge, switches, end);
   }
@@ -138,11 +138,11 @@ void a_read_right_behind_a_write_is_served(NodeBench& bench, CaseJudge& judge) {
 void reads_back_to_back_are_all_answered(NodeBench& bench, CaseJudge& judge) {
   const std::uint16_t switches = set_random_switches(bench);
   for (int n = 0; n < bench.volume(450, 100'000); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const kernel::Time end = bench.read();
     // Until the answer is over: no longer than a node may take, checked often.
     const kernel::Time latest =
-        end + bench.delimiter() + turn_round_span(bench.rules()) + bench.characters(6);
+        end + bench.delimiter() + turnaround_time_span(bench.rules()) + bench.characters(6);
     while (bench.now() < latest) {
       bench.wait(bench.characters(3));
       const auto answers = bench.answers();
@@ -157,10 +157,10 @@ void reads_back_to_back_are_all_answered(NodeBench& bench, CaseJudge& judge) {
 
 void far_nodes_answer_in_time(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(5, 200); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const std::uint16_t switches = set_random_switches(bench);
     const kernel::Time end = bench.read();
-    bench.settle();
+    bench.await_response_window();
     const Transmission answer = expect_answer(bench, judge, switches, end);
     // The host waits 1 ms longer than a node may take; that is for the way.
     const kernel::Duration heard = answer.characters.front().start + bench.distance() - end;

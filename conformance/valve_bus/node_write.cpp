@@ -9,11 +9,11 @@ namespace {
 
 void write_drives_the_valves(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 50); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const auto data0 = bench.random_octet();
     const auto data1 = bench.random_octet();
     const kernel::Time end = bench.write(data0, data1);
-    bench.settle();
+    bench.await_response_window();
     expect_write_taken(bench, judge, data0, data1, end);
   }
 }
@@ -21,45 +21,45 @@ void write_drives_the_valves(NodeBench& bench, CaseJudge& judge) {
 void every_value_is_driven_at_once(NodeBench& bench, CaseJudge& judge) {
   const unsigned step = bench.volume(5U, 1U);
   for (unsigned value = 0; value < 256; value += step) {
-    bench.forget();
+    bench.clear_observations();
     const auto data0 = static_cast<std::uint8_t>(value);
     const auto data1 = bench.random_octet();
     const kernel::Time end = bench.write(data0, data1);
-    bench.settle();
+    bench.await_response_window();
     expect_write_taken(bench, judge, data0, data1, end);
   }
 }
 
 void a_repeated_write_does_not_move_the_valves(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeReach::boards);
+  bench.require(&valve_bus::NodeCapabilities::boards);
   const auto data0 = static_cast<std::uint8_t>(bench.random_octet() | 1U);
   const auto data1 = bench.random_octet();
   bench.write(data0, data1);
-  bench.settle();
-  bench.forget();
+  bench.await_response_window();
+  bench.clear_observations();
   for (int n = 0; n < bench.volume(20, 10'000); ++n) {
     bench.write(data0, data1);
     bench.wait(bench.delimiter() + kernel::kMillisecond);
     expect_no_valve_moved(bench, judge, "valves_glitch", "they stand as the write says");
   }
-  bench.settle();
+  bench.await_response_window();
   expect_valves(bench, judge, bench.valves_of(data0, data1), "valves_wrong");
 }
 
 void one_board_takes_the_first_octet(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 50); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const auto data0 = bench.random_octet();
     // The check covers an octet that moves nothing.
     const auto data1 = static_cast<std::uint8_t>(bench.random_octet() | 1U);
     const kernel::Time end = bench.write(data0, data1);
-    bench.settle();
+    bench.await_response_window();
     expect_write_taken(bench, judge, data0, data1, end);
-    bench.forget();
+    bench.clear_observations();
     const auto switches = static_cast<std::uint16_t>(bench.random_octet() | 0xFF00U);
     bench.boards().set_input(0, switches);
     const kernel::Time asked = bench.read();
-    bench.settle();
+    bench.await_response_window();
     expect_answer(bench, judge, switches, asked);
   }
 }

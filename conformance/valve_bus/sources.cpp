@@ -19,9 +19,9 @@ judge::Reference derived(std::string place) {
 }
 }  // namespace valve_sources
 
-const std::vector<Detail>& node_details() {
+const std::vector<PartialSource>& node_details() {
   using valve_sources::own;
-  static const std::vector<Detail> details{
+  static const std::vector<PartialSource> details{
       {own("turn-round from 3.5 characters to 2 ms more"), {"answer_too_early", "answer_too_late"}},
       {own("driver times"), {"driver_on_late", "driver_not_released"}},
       {own("silence inside a frame"), {"gap_in_answer"}},
@@ -36,9 +36,9 @@ const std::vector<Detail>& node_details() {
   return details;
 }
 
-const std::vector<Detail>& host_details() {
+const std::vector<PartialSource>& host_details() {
   using valve_sources::own;
-  static const std::vector<Detail> details{
+  static const std::vector<PartialSource> details{
       {own("silence inside a frame and in front of it"), {"gap_in_frame", "no_delimiter"}},
       {own("driver times"), {"driver_on_late", "driver_released_early", "driver_not_released"}},
       {own("character formats"), {"frame_garbled"}},

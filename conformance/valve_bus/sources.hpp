@@ -18,7 +18,7 @@ judge::Reference derived(std::string place);     // follows from the paper
 }  // namespace valve_sources
 
 // The reasons of node_expect and host_expect that rest on less than the paper, whatever a case is about.
-const std::vector<Detail>& node_details();
-const std::vector<Detail>& host_details();
+const std::vector<PartialSource>& node_details();
+const std::vector<PartialSource>& host_details();
 
 }  // namespace fieldproof::conformance

@@ -32,11 +32,11 @@ TEST(ValveSources, FindingsAboutTimesRestOnOurChoiceInEveryCase) {
   std::set<std::string> seen;
   for (const TestCase& test_case : suite->cases()) {
     if (test_case.role() != "node") continue;
-    for (const char* deviation :
+    for (const char* mutant :
          {"valves_late", "driver_on_late", "driver_not_released", "gap_between_octets"}) {
       conformance::Setup setup;
       setup.volume = Volume::quick;
-      setup.implementations = {{"node", 0, std::string("deviant:") + deviation}};
+      setup.implementations = {{"node", 0, std::string("mutant:") + mutant}};
       const judge::CaseResult result = suite->run(test_case, setup).result;
       for (const judge::Finding& finding : result.findings) {
         if (!of_times.contains(finding.reason)) continue;
@@ -45,7 +45,7 @@ TEST(ValveSources, FindingsAboutTimesRestOnOurChoiceInEveryCase) {
       }
     }
   }
-  EXPECT_EQ(seen.size(), 4U) << "one reason of each deviation";
+  EXPECT_EQ(seen.size(), 4U) << "one reason of each mutant";
 }
 
 }  // namespace

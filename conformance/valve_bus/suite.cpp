@@ -5,15 +5,15 @@
 #include "conformance/assigned.hpp"
 #include "conformance/case_recorder.hpp"
 #include "conformance/valve_bus/host_cases.hpp"
-#include "conformance/valve_bus/host_deviations.hpp"
+#include "conformance/valve_bus/host_mutants.hpp"
 #include "conformance/valve_bus/node_cases.hpp"
-#include "conformance/valve_bus/node_deviations.hpp"
+#include "conformance/valve_bus/node_mutants.hpp"
 #include "conformance/valve_bus/node_sequence.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
+#include "protocols/valve_bus/dissector.hpp"
 #include "protocols/valve_bus/host.hpp"
 #include "protocols/valve_bus/node.hpp"
-#include "protocols/valve_bus/notation.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -31,8 +31,8 @@ class ValveBusSuite final : public Suite {
       cases_.push_back(one.test_case);
       host_cases_[one.test_case.id] = &one;
     }
-    deviations_ = node_deviations();
-    deviations_.insert(deviations_.end(), host_deviations().begin(), host_deviations().end());
+    mutants_ = node_mutants();
+    mutants_.insert(mutants_.end(), host_mutants().begin(), host_mutants().end());
   }
 
   std::string_view protocol() const override { return "valve_bus"; }
@@ -41,7 +41,7 @@ class ValveBusSuite final : public Suite {
     return role == "node" ? bool(given_.node.own) : role == "host" && bool(given_.host.own);
   }
   const std::vector<TestCase>& cases() const override { return cases_; }
-  const std::vector<Deviation>& deviations() const override { return deviations_; }
+  const std::vector<Mutant>& mutants() const override { return mutants_; }
   std::vector<judge::PicsItem> pics_items() const override {
     std::vector<judge::PicsItem> all = node_pics_items();
     for (judge::PicsItem& item : host_pics_items()) all.push_back(std::move(item));
@@ -107,7 +107,7 @@ class ValveBusSuite final : public Suite {
     CaseRecorder recorder;
     if (is_recorded) {
       setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
-        return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
+        return &recorder.start(trace, std::make_shared<valve_bus::FrameDissector>(rules));
       };
     }
     Outcome outcome;
@@ -157,23 +157,23 @@ class ValveBusSuite final : public Suite {
     return setting;
   }
 
-  std::unique_ptr<valve_bus::NodeDevice> make_node(const Wanted& wanted,
+  std::unique_ptr<valve_bus::NodeDevice> make_node(const IutRequest& wanted,
                                                    const valve_bus::NodeConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Node>(configuration);
     if (auto node = given_.node.make(wanted, configuration)) return node;
-    return make_node_deviation(deviation_of(wanted.uri, "node of the valve bus"), configuration);
+    return make_node_mutant(mutant_of(wanted.uri, "node of the valve bus"), configuration);
   }
 
-  std::unique_ptr<valve_bus::HostDevice> make_host(const Wanted& wanted,
+  std::unique_ptr<valve_bus::HostDevice> make_host(const IutRequest& wanted,
                                                    const valve_bus::HostConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Host>(configuration);
     if (auto host = given_.host.make(wanted, configuration)) return host;
-    return make_host_deviation(deviation_of(wanted.uri, "host of the valve bus"), configuration);
+    return make_host_mutant(mutant_of(wanted.uri, "host of the valve bus"), configuration);
   }
 
   ValveBusGiven given_;
   std::vector<TestCase> cases_;
-  std::vector<Deviation> deviations_;
+  std::vector<Mutant> mutants_;
   std::map<std::string, const NodeCase*, std::less<>> node_cases_;
   std::map<std::string, const HostCase*, std::less<>> host_cases_;
 };

@@ -14,13 +14,13 @@
 #include "protocols/valve_bus/device.hpp"
 
 // The suite of the RS-485 bus for pneumatic valves: the cases for local nodes and for
-// host modules, and their deviations.
+// host modules, and their mutants.
 //
-// Implementations of a role: `ref`, `deviant:NAME`, and what the suite was given.
+// Implementations of a role: `ref`, `mutant:NAME`, and what the suite was given.
 namespace fieldproof::conformance {
 
-using GivenNodes = GivenStations<valve_bus::NodeDevice, valve_bus::NodeConfiguration>;
-using GivenHosts = GivenStations<valve_bus::HostDevice, valve_bus::HostConfiguration>;
+using GivenNodes = StationSources<valve_bus::NodeDevice, valve_bus::NodeConfiguration>;
+using GivenHosts = StationSources<valve_bus::HostDevice, valve_bus::HostConfiguration>;
 
 struct ValveBusGiven {
   GivenNodes node{};

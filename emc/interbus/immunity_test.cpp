@@ -207,11 +207,11 @@ struct ClearsOnRejected final : Slave {
   }
 };
 
-template <typename Deviant>
+template <typename Mutant>
 interbus::Ring::MakeSlave at_position(int wanted) {
   return [wanted](int position, const interbus::SlaveConfiguration& configuration) -> std::unique_ptr<Slave> {
     if (position != wanted) return nullptr;
-    return std::make_unique<Deviant>(configuration);
+    return std::make_unique<Mutant>(configuration);
   };
 }
 

@@ -7,8 +7,8 @@
 #include <conformance/valve_bus/node_expect.hpp>
 #include <harness/iut/plugin.hpp>
 #include <protocols/valve_bus/attached_node.hpp>
+#include <protocols/valve_bus/dissector.hpp>
 #include <protocols/valve_bus/node.hpp>
-#include <protocols/valve_bus/notation.hpp>
 
 namespace island {
 namespace {
@@ -18,20 +18,20 @@ using namespace fieldproof::conformance;
 using kernel::kMicrosecond;
 using kernel::kMillisecond;
 
-// ---- the station and its deviations ----
+// ---- the station and its mutants ----
 
 class Island : public valve_bus::Node {
  public:
   using Node::Node;
 
  protected:
-  kernel::Duration turn_round() const override { return delimiter(rules()) + 120 * kMicrosecond; }
+  kernel::Duration turnaround_time() const override { return delimiter(rules()) + 120 * kMicrosecond; }
 };
 
 // The bus allows 2 ms for both.
 class AnswersSlowly final : public Island {
   using Island::Island;
-  kernel::Duration turn_round() const override { return Island::turn_round() + kMillisecond; }
+  kernel::Duration turnaround_time() const override { return Island::turnaround_time() + kMillisecond; }
 };
 
 class MovesSlowly final : public Island {
@@ -41,11 +41,11 @@ class MovesSlowly final : public Island {
   }
 };
 
-std::unique_ptr<NodeDevice> node_of(const Wanted& wanted, const NodeConfiguration& configuration) {
+std::unique_ptr<NodeDevice> node_of(const IutRequest& wanted, const NodeConfiguration& configuration) {
   if (wanted.uri == kOwnUri) return firmware(configuration, wanted.case_id, wanted.seed);
   if (wanted.uri == kReferenceUri) return std::make_unique<Island>(configuration);
-  const std::string deviation = deviation_of(wanted.uri, "valve island");
-  if (deviation == "answers_slowly") return std::make_unique<AnswersSlowly>(configuration);
+  const std::string mutant = mutant_of(wanted.uri, "valve island");
+  if (mutant == "answers_slowly") return std::make_unique<AnswersSlowly>(configuration);
   return std::make_unique<MovesSlowly>(configuration);
 }
 
@@ -60,11 +60,11 @@ void expect_at_once(CaseJudge& judge, std::string_view what, kernel::Duration to
 
 void answers_within_300_us(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 50); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const auto switches = static_cast<std::uint16_t>(bench.random().below(0x10000));
     bench.boards().set_input(0, switches);
     const kernel::Time asked = bench.read();
-    bench.settle();
+    bench.await_response_window();
     const Transmission answer = expect_answer(bench, judge, switches, asked);
     const kernel::Duration took = answer.characters.front().start - asked - bench.delimiter();
     expect_at_once(judge, "answer behind the silence", took, "answers_too_slowly");
@@ -73,10 +73,10 @@ void answers_within_300_us(NodeBench& bench, CaseJudge& judge) {
 
 void moves_within_300_us(NodeBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 50); ++n) {
-    bench.forget();
+    bench.clear_observations();
     const auto data0 = static_cast<std::uint8_t>(~bench.valves());
     const kernel::Time written = bench.write(data0, 0);
-    bench.settle();
+    bench.await_response_window();
     expect_write_taken(bench, judge, data0, 0, written);
     const kernel::Duration took = bench.boards().changes().front().when - written - bench.delimiter();
     expect_at_once(judge, "valves behind the silence", took, "moves_too_slowly");
@@ -116,7 +116,7 @@ Outcome run(const NodeCase& one, const Setup& setup) {
   };
   if (setup.record) {
     setting.make_recorder = [&](const trace::Trace& trace, const valve_bus::Rules& rules) {
-      return &recorder.start(trace, std::make_shared<valve_bus::FrameNotation>(rules));
+      return &recorder.start(trace, std::make_shared<valve_bus::FrameDissector>(rules));
     };
   }
   Outcome outcome{run_on_bench(one, setting), {}};
@@ -136,8 +136,8 @@ std::unique_ptr<NodeDevice> firmware(const NodeConfiguration& configuration, con
 
 std::unique_ptr<Suite> island_suite() {
   auto suite = std::make_unique<SuiteOfFunctions>("island", std::vector<std::string>{"node"});
-  suite->add(Deviation{"answers_slowly", "MV1", "node", "answers a read 1 ms later"});
-  suite->add(Deviation{"moves_slowly", "MV2", "node", "moves its valves 1 ms later"});
+  suite->add(Mutant{"answers_slowly", "MV1", "node", "answers a read 1 ms later"});
+  suite->add(Mutant{"moves_slowly", "MV2", "node", "moves its valves 1 ms later"});
   suite->add_own("node");
   for (const NodeCase& one : cases()) {
     suite->add(one.test_case, [&one](const TestCase&, const Setup& setup) { return run(one, setup); });

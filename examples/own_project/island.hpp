@@ -1,5 +1,5 @@
 // The product: what its data sheet promises beyond what the valve bus demands of any node, as a suite of its
-// own. The station of the suite (`ref`) is a model of the product, its deviations are the model with one
+// own. The station of the suite (`ref`) is a model of the product, its mutants are the model with one
 // decision changed.
 #pragma once
 

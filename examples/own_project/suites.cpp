@@ -7,7 +7,7 @@ namespace island {
 using namespace fieldproof::conformance;
 
 std::vector<std::unique_ptr<Suite>> suites(ValveBusGiven given) {
-  given.node.own = [](const Wanted& wanted, const NodeConfiguration& configuration) {
+  given.node.own = [](const IutRequest& wanted, const NodeConfiguration& configuration) {
     return firmware(configuration, wanted.case_id, wanted.seed);
   };
   std::vector<std::unique_ptr<Suite>> all;

@@ -4,18 +4,18 @@
  *   cc -O2 -flto -shared -fPIC -fvisibility=hidden -I. -o libvalve_node.so examples/valve_node/plugin.c \
  *     examples/valve_node/valve_node.c
  *
- * The environment variable VALVE_NODE names a deviation.
+ * The environment variable VALVE_NODE names a mutant.
  */
 #include <stdlib.h>
 #include <string.h>
 
 #include "examples/valve_node/valve_node.h"
 
-static valve_deviation wanted_deviation(void) {
+static valve_mutant wanted_mutant(void) {
   const char* name = getenv("VALVE_NODE");
   int n;
-  for (n = 0; name != 0 && n < DEVIATIONS; ++n)
-    if (strcmp(valve_deviation_name((valve_deviation)n), name) == 0) return (valve_deviation)n;
+  for (n = 0; name != 0 && n < MUTANTS; ++n)
+    if (strcmp(valve_mutant_name((valve_mutant)n), name) == 0) return (valve_mutant)n;
   return RIGHT;
 }
 
@@ -25,7 +25,7 @@ static void* create(const char* protocol, const char* role, const fieldproof_ben
   node = (valve_node*)calloc(1, sizeof(valve_node));
   if (node == 0) return 0;
   node->bench = bench;
-  node->deviation = wanted_deviation();
+  node->mutant = wanted_mutant();
   return node;
 }
 

@@ -1,5 +1,5 @@
 /*
- * The node as a process; harness/iut/README.md describes the messages. An argument names a deviation.
+ * The node as a process; harness/iut/README.md describes the messages. An argument names a mutant.
  *
  *   cc -I. -o valve_node examples/valve_node/process.c examples/valve_node/valve_node.c
  *   fieldproof run valve_bus/node/read/is_answered --iut 'exec:./valve_node'
@@ -143,7 +143,7 @@ int main(int argc, char** argv) {
   int n;
   bench.transmit = transmit, bench.write = write_item, bench.read = read_item;
   node.bench = &bench;
-  for (n = 0; argc > 1 && n < DEVIATIONS; ++n)
-    if (strcmp(valve_deviation_name((valve_deviation)n), argv[1]) == 0) node.deviation = (valve_deviation)n;
+  for (n = 0; argc > 1 && n < MUTANTS; ++n)
+    if (strcmp(valve_mutant_name((valve_mutant)n), argv[1]) == 0) node.mutant = (valve_mutant)n;
   for (;;) answer(&node, next_message());
 }

@@ -4,8 +4,8 @@
 
 static const fieldproof_time SECOND = (fieldproof_time)1000000 * 1000000;
 
-const char* valve_deviation_name(valve_deviation deviation) {
-  static const char* const names[DEVIATIONS] = {"right",
+const char* valve_mutant_name(valve_mutant mutant) {
+  static const char* const names[MUTANTS] = {"right",
                                                 "check_without_command",
                                                 "answers_writes",
                                                 "address_low_nibble",
@@ -16,7 +16,7 @@ const char* valve_deviation_name(valve_deviation deviation) {
                                                 "turns_round_late",
                                                 "driver_not_released",
                                                 "takes_long_frames"};
-  return names[deviation];
+  return names[mutant];
 }
 
 static fieldproof_time setting(const fieldproof_case* test_case, const char* name) {
@@ -34,7 +34,7 @@ fieldproof_time valve_node_begin(valve_node* node, const fieldproof_case* test_c
   node->ninth_bit = format == 0 ? 0x100 : 0;
   node->address = (unsigned)(10 * setting(test_case, "address_tens") + setting(test_case, "address_units"));
   node->boards = setting(test_case, "boards") == 1 ? 0x00FF : 0xFFFF;
-  node->answers_writes = setting(test_case, "answers_writes") != 0 || node->deviation == ANSWERS_WRITES;
+  node->answers_writes = setting(test_case, "answers_writes") != 0 || node->mutant == ANSWERS_WRITES;
   node->loss_limit = setting(test_case, "loss_limit_ms") * (SECOND / 1000);
   return valve_node_power(node, 0, 0);
 }
@@ -66,37 +66,37 @@ fieldproof_time valve_node_power(valve_node* node, int is_on, fieldproof_time no
 }
 
 static void drive_valves(valve_node* node, unsigned data0, unsigned data1, fieldproof_time now) {
-  const unsigned both = node->deviation == DATA_SWAPPED ? data1 | data0 << 8 : data0 | data1 << 8;
+  const unsigned both = node->mutant == DATA_SWAPPED ? data1 | data0 << 8 : data0 | data1 << 8;
   node->bench->write(node->bench->context, VALVES, both & node->boards, now);
 }
 
 static void answer_with(valve_node* node, unsigned data0, unsigned data1) {
-  const fieldproof_time late = node->deviation == TURNS_ROUND_LATE ? SECOND / 1000 * 21 / 10 : SECOND / 10000;
+  const fieldproof_time late = node->mutant == TURNS_ROUND_LATE ? SECOND / 1000 * 21 / 10 : SECOND / 10000;
   node->has_answer = 1;
   node->answer_start = node->busy_until + 7 * node->half + late;
   node->answer[0] = (unsigned char)data0;
   node->answer[1] = (unsigned char)data1;
   node->answer[2] =
-      (unsigned char)(data0 ^ data1 ^ (node->deviation == RESPONSE_CHECK_WITH_ID ? node->address : 0));
+      (unsigned char)(data0 ^ data1 ^ (node->mutant == RESPONSE_CHECK_WITH_ID ? node->address : 0));
 }
 
 static int is_meant(const valve_node* node, unsigned id) {
   if (node->address == 0) return 0;
-  return node->deviation == ADDRESS_LOW_NIBBLE ? (id & 15) == (node->address & 15) : id == node->address;
+  return node->mutant == ADDRESS_LOW_NIBBLE ? (id & 15) == (node->address & 15) : id == node->address;
 }
 
 static void end_frame(valve_node* node, fieldproof_time now) {
   const unsigned char* f = node->frame;
-  const int has_length = node->count == 5 || (node->count == 6 && node->deviation == TAKES_LONG_FRAMES);
+  const int has_length = node->count == 5 || (node->count == 6 && node->mutant == TAKES_LONG_FRAMES);
   const int is_whole = has_length && !node->is_spoilt;
   unsigned check = f[0] ^ f[1] ^ f[2] ^ f[3], command = f[1];
   node->count = 0;
   node->is_spoilt = 0;
-  if (node->deviation == CHECK_WITHOUT_COMMAND) check ^= f[1];
+  if (node->mutant == CHECK_WITHOUT_COMMAND) check ^= f[1];
   if (!is_whole || check != f[4] || !is_meant(node, f[0])) return;
   node->last_command = now;
-  if (node->deviation == ANY_COMMAND_READS && command != 0) command = 1;
-  if (command == 0 || (command == 1 && node->deviation == READ_DRIVES_VALVES))
+  if (node->mutant == ANY_COMMAND_READS && command != 0) command = 1;
+  if (command == 0 || (command == 1 && node->mutant == READ_DRIVES_VALVES))
     drive_valves(node, f[2], f[3], now);
   if (command == 0 && node->answers_writes) answer_with(node, f[2], f[3]);
   if (command == 1) {
@@ -131,7 +131,7 @@ static void transmit_answer(valve_node* node, fieldproof_time now) {
   for (n = 0; n < 3; ++n) characters[n] = (unsigned short)(node->ninth_bit | node->answer[n]);
   node->has_answer = 0;
   node->driving_until =
-      start + 6 * node->half + node->bit * (node->deviation == DRIVER_NOT_RELEASED ? 20 : 2);
+      start + 6 * node->half + node->bit * (node->mutant == DRIVER_NOT_RELEASED ? 20 : 2);
   node->bench->transmit(node->bench->context, 0, start - node->bit, start, node->driving_until, characters,
                         3);
 }

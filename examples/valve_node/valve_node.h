@@ -20,12 +20,12 @@ typedef enum {
   TURNS_ROUND_LATE,
   DRIVER_NOT_RELEASED,
   TAKES_LONG_FRAMES,
-  DEVIATIONS
-} valve_deviation;
+  MUTANTS
+} valve_mutant;
 
 typedef struct {
   const fieldproof_bench* bench; /* where it acts */
-  valve_deviation deviation;
+  valve_mutant mutant;
   fieldproof_time bit, half; /* half a character */
   fieldproof_time loss_limit;
   unsigned address, boards, ninth_bit, answers_writes;
@@ -36,7 +36,7 @@ typedef struct {
   unsigned char answer[3];
 } valve_node;
 
-const char* valve_deviation_name(valve_deviation deviation);
+const char* valve_mutant_name(valve_mutant mutant);
 
 /* Each returns when valve_node_on_time is wanted next. */
 fieldproof_time valve_node_begin(valve_node* node, const fieldproof_case* test_case);

@@ -70,10 +70,10 @@ Plugin loaded(const std::string& path) {
 
 class PluginDevice final : public Device {
  public:
-  PluginDevice(Plugin plugin, const std::string& protocol, const std::string& role, Told told)
+  PluginDevice(Plugin plugin, const std::string& protocol, const std::string& role, UnitOffer told)
       : plugin_(std::move(plugin)), functions_(checked(plugin_)) {
     if (functions_.receive == nullptr) {
-      if (told == Told::in_characters_too) refuse_library(plugin_.name, kNoCharacters);
+      if (told == UnitOffer::in_characters_too) refuse_library(plugin_.name, kNoCharacters);
       functions_.receive = &refuse_characters;
     }
     bench_.version = FIELDPROOF_PLUGIN_VERSION;
@@ -249,12 +249,12 @@ class PluginDevice final : public Device {
 }  // namespace
 
 std::unique_ptr<Device> load_plugin(const std::string& path, const std::string& protocol,
-                                    const std::string& role, Told told) {
+                                    const std::string& role, UnitOffer told) {
   return std::make_unique<PluginDevice>(loaded(path), protocol, role, told);
 }
 
 std::unique_ptr<Device> make_plugin(const fieldproof_implementation& implementation,
-                                    const std::string& protocol, const std::string& role, Told told) {
+                                    const std::string& protocol, const std::string& role, UnitOffer told) {
   const char* name = implementation.name != nullptr ? implementation.name : "without a name";
   return std::make_unique<PluginDevice>(
       Plugin{.name = "plugin " + kernel::escaped_line(name), .implementation = &implementation}, protocol,

@@ -14,17 +14,17 @@ namespace fieldproof::iut {
 
 // In what a role tells its implementation things: what is on its line in the unit that the implementation has
 // chosen, and the words of a PC or an application, where the role has one, in characters whatever that is.
-enum class Told : std::uint8_t { in_its_unit, in_characters_too };
+enum class UnitOffer : std::uint8_t { in_its_unit, in_characters_too };
 
 // Loads the library and creates an instance for the role. Throws kernel::Error(implementation) for a file
 // that is no such library, one of another version, one without a function that the role needs, and a role
 // that it does not serve.
 std::unique_ptr<Device> load_plugin(const std::string& path, const std::string& protocol,
-                                    const std::string& role, Told told = Told::in_its_unit);
+                                    const std::string& role, UnitOffer told = UnitOffer::in_its_unit);
 
 // The same for an implementation that the program holds itself, as firmware that is compiled into its tests.
 std::unique_ptr<Device> make_plugin(const fieldproof_implementation& implementation,
                                     const std::string& protocol, const std::string& role,
-                                    Told told = Told::in_its_unit);
+                                    UnitOffer told = UnitOffer::in_its_unit);
 
 }  // namespace fieldproof::iut

@@ -182,7 +182,7 @@ TEST(PluginTest, ImplementationThatTheProgramHoldsIsCalledLikeALibrary) {
 TEST(PluginTest, RoleThatIsToldCharactersTooNeedsWhoTakesThem) {
   fieldproof_implementation echo = echo_of_levels();
   try {
-    make_plugin(echo, "odd", "echo", Told::in_characters_too);
+    make_plugin(echo, "odd", "echo", UnitOffer::in_characters_too);
     FAIL() << "it was made";
   } catch (const kernel::Error& error) {
     EXPECT_EQ(error.kind(), kernel::ErrorKind::implementation);
@@ -194,7 +194,7 @@ TEST(PluginTest, RoleThatIsToldCharactersTooNeedsWhoTakesThem) {
   echo.receive = [](void*, unsigned, const fieldproof_character*, unsigned, fieldproof_time) {
     return FIELDPROOF_NEVER;
   };
-  EXPECT_NE(make_plugin(echo, "odd", "echo", Told::in_characters_too), nullptr);
+  EXPECT_NE(make_plugin(echo, "odd", "echo", UnitOffer::in_characters_too), nullptr);
 }
 
 // A role that tells characters in spite of what it promised is refused when it does.

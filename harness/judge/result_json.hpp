@@ -1,5 +1,5 @@
-// The result of a case as JSON, the one notation of the journal, of results.json and of everything that reads
-// them.
+// The result of a case as JSON, the one dissector of the journal, of results.json and of everything that
+// reads them.
 //
 // Contract: every member of CaseResult is written and read back. 64-bit integers are strings, because most
 // readers of JSON keep 53 bits: decimal ("1000000"), the fingerprint as 16 hexadecimal digits. Doubles are

@@ -68,7 +68,7 @@ TEST(Character, IsWrittenLowestBitFirst) {
   EXPECT_EQ(halves.text(), "001100110011111");
 }
 
-TEST(Character, HasTheNotationOfItsFormat) {
+TEST(Character, HasTheDissectorOfItsFormat) {
   EXPECT_EQ(kPlain.text(), "8n1");
   EXPECT_EQ((CharacterFormat{5, Parity::mark, StopBits::one_and_a_half}).text(), "5m1.5");
 }

@@ -19,13 +19,13 @@ kernel::Duration between(kernel::Duration a, kernel::Duration b) {
 }  // namespace
 
 MediumPort::MediumPort(Medium& medium, std::string_view name, std::size_t station, PortIndex port,
-                       kernel::Duration position, bool hears_itself)
+                       kernel::Duration position, bool receives_own_echo)
     : medium_(medium),
       trace_channel_(medium.segment_.trace().add_channel(std::string(name))),
       station_(station),
       port_(port),
       position_(position),
-      hears_itself_(hears_itself),
+      receives_own_echo_(receives_own_echo),
       random_(medium.random_.split(name)) {}
 
 const std::string& MediumPort::name() const {
@@ -148,8 +148,8 @@ Medium::~Medium() {
 }
 
 MediumPort& Medium::attach(std::string_view name, std::size_t station, PortIndex port,
-                           kernel::Duration position, bool hears_itself) {
-  return ports_.emplace_back(*this, name, station, port, position, hears_itself);
+                           kernel::Duration position, bool receives_own_echo) {
+  return ports_.emplace_back(*this, name, station, port, position, receives_own_echo);
 }
 
 MediumPort& Medium::listen(std::string_view name, kernel::Duration position) {
@@ -173,7 +173,7 @@ void Medium::drive(MediumPort& from, line::Waveform& wave) {
   for (MediumPort& port : ports_) {
     const kernel::Duration delay = between(port.position_, from.position_);
     const MediumPort::Flight flight{&transmission, start + delay, end + delay};
-    if (&port != &from || from.hears_itself_) {
+    if (&port != &from || from.receives_own_echo_) {
       port.expect(flight);
       continue;
     }

@@ -59,7 +59,7 @@ class MediumPort final : public Port, public Receiver {
  public:
   // Made by Medium::attach.
   MediumPort(Medium& medium, std::string_view name, std::size_t station, PortIndex port,
-             kernel::Duration position, bool hears_itself);
+             kernel::Duration position, bool receives_own_echo);
 
   void drive(line::Waveform& wave) override;
 
@@ -108,7 +108,7 @@ class MediumPort final : public Port, public Receiver {
   std::size_t station_;
   PortIndex port_;
   kernel::Duration position_;
-  bool hears_itself_;
+  bool receives_own_echo_;
   bool senses_activity_ = false;
   bool is_active_ = false;  // as its station knows
   kernel::Random random_;
@@ -132,7 +132,7 @@ class Medium final : private kernel::Timer {
   // A place for station number `station`, heard there as `port`. The receiver of a station that does not hear
   // itself gets what the others drive, also while it drives.
   MediumPort& attach(std::string_view name, std::size_t station, PortIndex port, kernel::Duration position,
-                     bool hears_itself = false);
+                     bool receives_own_echo = false);
   // A place without a station: who listens taps it.
   MediumPort& listen(std::string_view name, kernel::Duration position);
 

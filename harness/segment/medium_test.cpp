@@ -56,14 +56,14 @@ class Ear final : public Station {
 // Three stations at 0, 1 and 3 microseconds of cable.
 class Bus {
  public:
-  explicit Bus(ContentionRule rule = ContentionRule::zero_wins, bool hears_itself = false,
+  explicit Bus(ContentionRule rule = ContentionRule::zero_wins, bool receives_own_echo = false,
                std::uint64_t seed = 1)
       : medium(segment, "bus", rule, kernel::Random(seed)) {
     for (const int position : {0, 1, 3}) {
       const std::string name = "at " + std::to_string(position);
       Ear& ear = ears.emplace_back(segment);
       ports.push_back(
-          &medium.attach(name, segment.attach(ear, name), 0, position * kMicrosecond, hears_itself));
+          &medium.attach(name, segment.attach(ear, name), 0, position * kMicrosecond, receives_own_echo));
     }
   }
   void drive(std::size_t station, line::Waveform wave) { ports[station]->drive(wave); }

@@ -3,7 +3,7 @@
 #include "harness/kernel/time.hpp"
 #include "harness/line/waveform.hpp"
 
-// The contract between a segment and whoever takes part in it: reference stations, deviating ones, the lower
+// The contract between a segment and whoever takes part in it: reference stations, mutant ones, the lower
 // tester, an implementation outside the process.
 //
 // A station is passive. It is told what it receives and that a time has come, it says when it wants to be

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/trace/notation.hpp"
+#include "harness/trace/dissector.hpp"
 
 namespace fieldproof::trace {
 namespace {
@@ -39,7 +39,7 @@ TEST_F(RecordingTest, KeepsRecordsAsTheyWereTold) {
   const Recording recording = recorder.take();
   EXPECT_EQ(recording.channels, (std::vector<std::string>{"line", "station"}));
   EXPECT_FALSE(recording.is_cut);
-  EXPECT_EQ(text_lines(recording, PlainNotation()),
+  EXPECT_EQ(text_lines(recording, PlainDissector()),
             (std::vector<std::string>{"0 s  line  4 levels  at 1000000 levels/s  [0110]",
                                       "4.000 us  station  output = 7", "1.000 us  line  fault: flip"}));
 }

@@ -159,9 +159,10 @@ void AttachedFfDevice::transmit(const iut::Transmission& transmission) {
   const Octets octets = AttachedLink::told_octets(transmission);
   const std::uint8_t what = octets.empty() ? std::uint8_t{0} : octets.front();
   const auto dlpdu = octets.empty() ? std::nullopt : ff_dlpdu_of(std::span(octets).subspan(1), rules_);
-  if (what == static_cast<std::uint8_t>(FfTold::data) && dlpdu && dlpdu->type == FfType::dt1) {
+  if (what == static_cast<std::uint8_t>(FfIndication::data) && dlpdu && dlpdu->type == FfType::dt1) {
     user_->on_data(*dlpdu, transmission.start);
-  } else if (what == static_cast<std::uint8_t>(FfTold::published) && dlpdu && dlpdu->type == FfType::dt3) {
+  } else if (what == static_cast<std::uint8_t>(FfIndication::published) && dlpdu &&
+             dlpdu->type == FfType::dt3) {
     user_->on_published(*dlpdu, transmission.start);
   } else {
     iut::refuse_impossible("tells its user what is neither 01 and a DT1 nor 02 and a DT3");
@@ -227,7 +228,7 @@ bool ServedFfDevice::asked(const Octets& wanted, kernel::Time now) {
   return false;
 }
 
-void ServedFfDevice::tell(FfTold what, const FfDlpdu& dlpdu, kernel::Time when) {
+void ServedFfDevice::tell(FfIndication what, const FfDlpdu& dlpdu, kernel::Time when) {
   Octets octets{static_cast<std::uint8_t>(what)};
   const Octets of_dlpdu = octets_of(dlpdu, rules_);
   octets.insert(octets.end(), of_dlpdu.begin(), of_dlpdu.end());

@@ -22,7 +22,7 @@
 namespace fieldproof::fieldbus_dll {
 
 enum class FfAsk : std::uint8_t { submit = 1, write = 2, order_transfer = 3 };
-enum class FfTold : std::uint8_t { data = 1, published = 2 };
+enum class FfIndication : std::uint8_t { data = 1, published = 2 };
 
 // Every number of rules and configuration by its name; lists as "published_0" and so on, with "published" for
 // how many there are; codes as "code_pt"; times in ps.
@@ -71,14 +71,14 @@ class ServedFfDevice final : public ServedLink<FfDevice>, private FfUser {
 
  private:
   bool asked(const Octets& request, kernel::Time now) override;
-  void on_data(const FfDlpdu& dlpdu, kernel::Time when) override { tell(FfTold::data, dlpdu, when); }
+  void on_data(const FfDlpdu& dlpdu, kernel::Time when) override { tell(FfIndication::data, dlpdu, when); }
   void on_published(const FfDlpdu& dlpdu, kernel::Time when) override {
-    tell(FfTold::published, dlpdu, when);
+    tell(FfIndication::published, dlpdu, when);
   }
   void on_event(const FfEvent& event, kernel::Time when) override {
     tell_event(static_cast<std::uint64_t>(event.kind), event.node, when);
   }
-  void tell(FfTold what, const FfDlpdu& dlpdu, kernel::Time when);
+  void tell(FfIndication what, const FfDlpdu& dlpdu, kernel::Time when);
 
   Make make_;
   FfRules rules_;

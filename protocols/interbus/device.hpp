@@ -9,7 +9,7 @@
 #include "protocols/interbus/rules.hpp"
 
 // What the bench wires to and asks of an INTERBUS slave and of a master, whoever implements them: the
-// built-in reference, a deviation of it, or an implementation outside. The line side is segment::Station;
+// built-in reference, a mutant of it, or an implementation outside. The line side is segment::Station;
 // here is the other side of the device: its terminals and, for a master, its application interface (the upper
 // tester).
 namespace fieldproof::interbus {

@@ -33,7 +33,7 @@
 // bits where the error lies. Cycles start at multiples of the cycle time; an ID cycle that does not fit takes
 // a whole number of them.
 //
-// Each decision that a standard leaves no choice about is a virtual function, so that a deviation is the
+// Each decision that a standard leaves no choice about is a virtual function, so that a mutant is the
 // override of exactly one. Nothing is allocated in data cycles once the first ones have passed.
 namespace fieldproof::interbus {
 

@@ -12,29 +12,29 @@ namespace {
 
 // Of a rule that is told: its name and where it stands.
 template <typename Number>
-struct Told {
+struct SettingField {
   const char* name;
   Number Rules::* member;
 };
 
 constexpr std::array kWords{
-    Told<std::uint16_t>{"status_clean", &Rules::status_clean},
-    Told<std::uint16_t>{"status_marked", &Rules::status_marked},
-    Told<std::uint16_t>{"control_remote_off", &Rules::control_remote_off},
-    Told<std::uint16_t>{"control_local_off", &Rules::control_local_off},
-    Told<std::uint16_t>{"control_reset", &Rules::control_reset},
-    Told<std::uint16_t>{"control_acknowledge", &Rules::control_acknowledge},
-    Told<std::uint16_t>{"message_reconfiguration", &Rules::message_reconfiguration},
-    Told<std::uint16_t>{"message_check_error", &Rules::message_check_error},
-    Told<std::uint16_t>{"message_peripheral_fault", &Rules::message_peripheral_fault},
+    SettingField<std::uint16_t>{"status_clean", &Rules::status_clean},
+    SettingField<std::uint16_t>{"status_marked", &Rules::status_marked},
+    SettingField<std::uint16_t>{"control_remote_off", &Rules::control_remote_off},
+    SettingField<std::uint16_t>{"control_local_off", &Rules::control_local_off},
+    SettingField<std::uint16_t>{"control_reset", &Rules::control_reset},
+    SettingField<std::uint16_t>{"control_acknowledge", &Rules::control_acknowledge},
+    SettingField<std::uint16_t>{"message_reconfiguration", &Rules::message_reconfiguration},
+    SettingField<std::uint16_t>{"message_check_error", &Rules::message_check_error},
+    SettingField<std::uint16_t>{"message_peripheral_fault", &Rules::message_peripheral_fault},
 };
 constexpr std::array kDelays{
-    Told<unsigned>{"forward_delay_half_bits", &Rules::forward_delay_half_bits},
-    Told<unsigned>{"return_delay_half_bits", &Rules::return_delay_half_bits},
+    SettingField<unsigned>{"forward_delay_half_bits", &Rules::forward_delay_half_bits},
+    SettingField<unsigned>{"return_delay_half_bits", &Rules::return_delay_half_bits},
 };
 constexpr std::array kTimes{
-    Told<kernel::Duration>{"silence_limit_ns", &Rules::silence_limit},
-    Told<kernel::Duration>{"silence_tolerance_ns", &Rules::silence_tolerance},
+    SettingField<kernel::Duration>{"silence_limit_ns", &Rules::silence_limit},
+    SettingField<kernel::Duration>{"silence_tolerance_ns", &Rules::silence_tolerance},
 };
 
 // "check_polynomial" ...: a name would be of use to nobody who has no catalogue.

@@ -35,7 +35,7 @@ constexpr std::array<LengthCode, 17> kPublishedLengthCodes{{
 constexpr std::uint8_t kLengthCodeFromMemory = 0x14;
 
 constexpr std::string_view kOwn = "this project's choice; the standard was not at hand";
-constexpr std::string_view kChanged = "set for this network or deviation; not from a source";
+constexpr std::string_view kChanged = "set for this network or mutant; not from a source";
 
 std::string bits(std::uint16_t word) {
   return fmt::format("{:04X}h", word);

@@ -12,7 +12,7 @@
 #include "harness/line/telegram.hpp"
 
 // Every number and every genuine option of INTERBUS that this project uses, one member each, with source and
-// standing in `facts`. A station takes its numbers from here and from nowhere else, so a deviation may be the
+// standing in `facts`. A station takes its numbers from here and from nowhere else, so a mutant may be the
 // reference with one number changed.
 //
 // What could not be verified without IEC 61158-3-8/-4-8 at hand (order and polarity of the header levels, the
@@ -100,7 +100,7 @@ struct Fact {
 };
 
 // Every member of Rules in the order above. A value that no source names (set by a network file or by a
-// deviation) has the standing `own`, whatever stands behind the reference's value.
+// mutant) has the standing `own`, whatever stands behind the reference's value.
 std::vector<Fact> facts(const Rules& rules);
 
 }  // namespace fieldproof::interbus

@@ -26,7 +26,7 @@
 //
 // Outputs change only in mode active, at the end of a check phase that `accepts_cycle`. The interfaces switch
 // only at the end of a good ID cycle. Each decision that a standard leaves no choice about is a virtual
-// function, so that a deviation is the override of exactly one.
+// function, so that a mutant is the override of exactly one.
 //
 // Limits: the analogue side is not modelled; a telegram is regenerated whole, also one whose stop bit is
 // missing.

@@ -33,7 +33,7 @@ inline constexpr iut::Item kRejected = 0x200;
 inline constexpr iut::Item kLate = 0x300;
 inline constexpr iut::Item kRetries = 0x400;
 
-// "characters", "dip", "hears_itself", "verifies_writes", "answers_writes".
+// "characters", "dip", "receives_own_echo", "verifies_writes", "answers_writes".
 std::vector<std::pair<std::string, std::int64_t>> host_settings(const HostConfiguration& configuration);
 HostConfiguration host_configuration_of(const iut::CaseBegin& begin);
 

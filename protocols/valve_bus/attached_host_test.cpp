@@ -43,7 +43,7 @@ class AttachedHostTest : public testing::Test, private HostApplication {
     return {};
   }
 
-  HostConfiguration configuration_{.rules = {}, .dip = 3, .hears_itself = true};
+  HostConfiguration configuration_{.rules = {}, .dip = 3, .receives_own_echo = true};
   segment::Segment segment_;
   segment::Medium line_{segment_, "line", segment::ContentionRule::noise, kernel::Random(1)};
   ActingDevice device_{iut::UnitKind::levels};
@@ -62,7 +62,7 @@ class AttachedHostTest : public testing::Test, private HostApplication {
 };
 
 TEST_F(AttachedHostTest, SettingsComeBack) {
-  HostConfiguration configuration{.rules = {}, .dip = 2, .hears_itself = true, .verifies_writes = true};
+  HostConfiguration configuration{.rules = {}, .dip = 2, .receives_own_echo = true, .verifies_writes = true};
   configuration.rules.characters = CharacterProfile::even_parity;
   configuration.rules.answers_writes = true;
   const HostConfiguration back = host_configuration_of({"x", 1, host_settings(configuration)});

@@ -67,7 +67,7 @@ TEST(ValveBusRules, NameTheSourceOfEachNumber) {
     }
     if (fact.rule == "read_attempts") {
       EXPECT_EQ(fact.value, "4");
-      EXPECT_EQ(fact.source, "set for this bus or deviation; not from a source");
+      EXPECT_EQ(fact.source, "set for this bus or mutant; not from a source");
     }
   }
 }

@@ -9,7 +9,7 @@
 #include "protocols/valve_bus/rules.hpp"
 
 // What the bench wires to and asks of a local node or of a host module, whoever implements it: the built-in
-// reference, a deviation of it, or an implementation outside. The line side is segment::Station (it hears the
+// reference, a mutant of it, or an implementation outside. The line side is segment::Station (it hears the
 // line as port 0, a node not what it drives itself); here is the other side of the device.
 namespace fieldproof::valve_bus {
 
@@ -34,7 +34,7 @@ struct NodeConfiguration {
 
 // What a bench can see of a node and do to it. In virtual time that is everything; of one behind a real line
 // it may be less.
-struct NodeReach {
+struct NodeCapabilities {
   bool boards = true;           // its valves can be seen, its limit switches set
   bool moving_switches = true;  // and moved while it works
   bool driver = true;           // when its driver comes on and goes off can be seen
@@ -43,7 +43,7 @@ struct NodeReach {
 
 // How far what was seen may lie from what was: its instant is at least `earlier` before and at most `later`
 // behind the one that was told.
-struct Doubt {
+struct TimingUncertainty {
   kernel::Duration earlier{};
   kernel::Duration later{};
 };
@@ -55,10 +55,10 @@ class NodeDevice : public segment::Station {
   // the valves are told off by who switches it.
   virtual void set_power(bool is_on, kernel::Time now) = 0;
 
-  virtual NodeReach reach() const { return {}; }
+  virtual NodeCapabilities reach() const { return {}; }
   // Of what it drove when its driver came on at this instant, and of the last moves of its valves.
-  virtual Doubt doubt_of_answer(kernel::Time) const { return {}; }
-  virtual Doubt doubt_of_valves() const { return {}; }
+  virtual TimingUncertainty doubt_of_answer(kernel::Time) const { return {}; }
+  virtual TimingUncertainty doubt_of_valves() const { return {}; }
 };
 
 // ---- the host module and its PC ----
@@ -67,7 +67,7 @@ struct HostConfiguration {
   Rules rules;       // their bit rate is not looked at: the DIP switches say it
   unsigned dip = 0;  // position of the switches, an index of dip_bit_rates()
   // How it is wired: the receiver stays on while the driver is.
-  bool hears_itself = false;
+  bool receives_own_echo = false;
   // For nodes whose switches follow their valves: a read behind each write of the PC must give what was
   // written.
   bool verifies_writes = false;

@@ -247,7 +247,7 @@ void Host::note_write(const Command& command, kernel::Time start) {
 // ---- responses ----
 
 void Host::on_window_frame(const CollectedFrame& frame, kernel::Time now) {
-  const bool is_early = frame.start - request_end_ < shortest_turn_round();
+  const bool is_early = frame.start - request_end_ < shortest_turnaround_time();
   const auto response = is_early ? std::nullopt : response_in(frame);
   if (response) {
     accept(*response, now);

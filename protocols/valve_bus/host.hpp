@@ -105,7 +105,7 @@ class Host : public HostDevice {
   virtual HeardCharacter judged(const HeardCharacter& character) const { return character; }
   virtual bool is_own(const HeardCharacter& character) const { return character.start < driving_until_; }
   virtual void on_character(const HeardCharacter& character) { collector_.add(character); }
-  virtual kernel::Duration shortest_turn_round() const { return longest_gap(rules_); }
+  virtual kernel::Duration shortest_turnaround_time() const { return longest_gap(rules_); }
   virtual std::optional<Response> response_in(const CollectedFrame& frame) const;
   virtual bool fits(std::span<const std::uint8_t> octets) const;
   virtual void on_stray(const CollectedFrame& frame, kernel::Time now);

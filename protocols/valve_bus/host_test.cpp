@@ -23,7 +23,7 @@ class HostTest : public testing::Test, private segment::Station, private HostApp
     nodes_seat_ = segment_.attach(*this, "nodes");
     host_seat_ = segment_.attach(*host_, "host");
     nodes_ = &line_.attach("nodes/in", nodes_seat_, 0, {});
-    host_->wire(line_.attach("host/in", host_seat_, 0, {}, configuration_.hears_itself), *this);
+    host_->wire(line_.attach("host/in", host_seat_, 0, {}, configuration_.receives_own_echo), *this);
     host_->set_power(true, now());
     segment_.refresh(host_seat_);
     wait(kMillisecond);
@@ -42,8 +42,8 @@ class HostTest : public testing::Test, private segment::Station, private HostApp
     return octets_;
   }
   // The octets, so long behind the last stop bit of the request.
-  void answer(const Octets& octets, kernel::Duration turn_round = 400 * kMicrosecond) {
-    codec_.drive(*nodes_, octets, heard_until_ + turn_round, {});
+  void answer(const Octets& octets, kernel::Duration turnaround_time = 400 * kMicrosecond) {
+    codec_.drive(*nodes_, octets, heard_until_ + turnaround_time, {});
   }
   std::string told() { return std::exchange(told_, {}); }
 
@@ -221,7 +221,7 @@ TEST_F(HostTest, TellsItsPcThatTheLineDoesNotFallSilent) {
 
 class HostThatHearsItself : public HostTest {
  protected:
-  HostThatHearsItself() : HostTest({.rules = {}, .hears_itself = true}) {}
+  HostThatHearsItself() : HostTest({.rules = {}, .receives_own_echo = true}) {}
 };
 
 TEST_F(HostThatHearsItself, TakesItsEchoForNoResponse) {

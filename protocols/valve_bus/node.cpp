@@ -110,7 +110,7 @@ void Node::on_frame(const CollectedFrame& frame, kernel::Time now) {
   if (!is_meant(command.id)) return;
   last_command_ = now;
   on_command(command, now);
-  if (answer_) answer_->start = std::max(answer_->start, frame.busy_until + turn_round());
+  if (answer_) answer_->start = std::max(answer_->start, frame.busy_until + turnaround_time());
 }
 
 bool Node::is_meant(std::uint8_t id) const {
@@ -141,7 +141,7 @@ Response Node::response(kernel::Time now) {
   return {static_cast<std::uint8_t>(switches & 0xFF), static_cast<std::uint8_t>(switches >> 8)};
 }
 
-kernel::Duration Node::turn_round() const {
+kernel::Duration Node::turnaround_time() const {
   return delimiter(rules()) + kNodeProcessing;
 }
 

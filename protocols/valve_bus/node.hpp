@@ -57,7 +57,7 @@ class Node : public NodeDevice {
   virtual void on_command(const Command& command, kernel::Time now);
   virtual std::uint16_t valves_of(const Command& command) const;
   virtual Response response(kernel::Time now);
-  virtual kernel::Duration turn_round() const;
+  virtual kernel::Duration turnaround_time() const;
   virtual std::uint8_t response_check(const Response& response) const;
   virtual void on_power_up(kernel::Time) {}
 

@@ -15,7 +15,7 @@ constexpr std::string_view kOwn = "this project's choice; the paper is silent";
 constexpr std::string_view kReadsAs = "this project's reading of a contradiction in the paper";
 constexpr std::string_view kController = "the bit rate follows from serial mode 2 of the 8051 family";
 constexpr std::string_view kLoads = "TIA-485-A: 32 unit loads, repeaters and masters count";
-constexpr std::string_view kChanged = "set for this bus or deviation; not from a source";
+constexpr std::string_view kChanged = "set for this bus or mutant; not from a source";
 
 struct Row {
   std::string_view rule;
@@ -49,7 +49,7 @@ const std::array kRows = {
         Standing::seed},
     Row{"read_command", [](const Rules& r) { return fmt::format("{}", r.read_command); }, kPaper,
         Standing::seed},
-    Row{"turn_round_span", [](const Rules& r) { return kernel::describe(r.turn_round_span); }, kOwn,
+    Row{"turnaround_time_span", [](const Rules& r) { return kernel::describe(r.turnaround_time_span); }, kOwn,
         Standing::own},
     Row{"actuation_limit", [](const Rules& r) { return kernel::describe(r.actuation_limit); }, kOwn,
         Standing::own},
@@ -121,8 +121,8 @@ kernel::Duration character_notice(const Rules& rules) {
   return character_time(rules) + bits(rules, 1);
 }
 
-kernel::Duration turn_round_span(const Rules& rules) {
-  return std::max(rules.turn_round_span, 2 * character_notice(rules));
+kernel::Duration turnaround_time_span(const Rules& rules) {
+  return std::max(rules.turnaround_time_span, 2 * character_notice(rules));
 }
 
 kernel::Duration actuation_limit(const Rules& rules) {
@@ -130,7 +130,8 @@ kernel::Duration actuation_limit(const Rules& rules) {
 }
 
 kernel::Duration response_time_out(const Rules& rules) {
-  return delimiter(rules) + std::max(rules.response_wait, turn_round_span(rules) + character_notice(rules));
+  return delimiter(rules) +
+         std::max(rules.response_wait, turnaround_time_span(rules) + character_notice(rules));
 }
 
 std::span<const std::int64_t> dip_bit_rates() {

@@ -11,7 +11,7 @@
 #include "harness/line/character.hpp"
 
 // Every number and every genuine option of the RS-485 bus for pneumatic valves, one member each, with source
-// and standing in `facts`. A station takes its numbers from here and from nowhere else, so a deviation may be
+// and standing in `facts`. A station takes its numbers from here and from nowhere else, so a mutant may be
 // the reference with one number changed.
 //
 // The paper gives the frames, the addresses, the block check and the bit rate; it gives no character format,
@@ -41,7 +41,7 @@ struct Rules {
   unsigned read_command = 1;
 
   // Node. Times begin with the delimiter behind the command.
-  kernel::Duration turn_round_span = 2 * kernel::kMillisecond;  // within which a response begins
+  kernel::Duration turnaround_time_span = 2 * kernel::kMillisecond;  // within which a response begins
   kernel::Duration actuation_limit = 2 * kernel::kMillisecond;
   kernel::Duration output_skew = 1 * kernel::kMicrosecond;  // of the outputs that one command changes
   bool answers_writes = false;    // the option ACK: a node answers a write with what it has taken
@@ -91,7 +91,7 @@ inline kernel::Duration delimiter(const Rules& rules) {
 kernel::Duration character_notice(const Rules& rules);
 // What a node may take behind the delimiter, to begin its response and to move its valves: the span and the
 // limit of the rules, or twice the notice at bit rates at which that is longer.
-kernel::Duration turn_round_span(const Rules& rules);
+kernel::Duration turnaround_time_span(const Rules& rules);
 kernel::Duration actuation_limit(const Rules& rules);
 
 // How long a host waits behind its last stop bit for the first start bit of the response: a delimiter and the

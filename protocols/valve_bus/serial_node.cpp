@@ -88,14 +88,14 @@ void SerialNode::end() {
   if (attachment_.on_well_ended) attachment_.on_well_ended();
 }
 
-NodeReach SerialNode::reach() const {
+NodeCapabilities SerialNode::reach() const {
   const bool has_upper = attachment_.upper != nullptr;
   return {.boards = has_upper, .moving_switches = false, .driver = has_upper, .distance = false};
 }
 
-Doubt SerialNode::doubt_of_answer(kernel::Time driver_on) const {
+TimingUncertainty SerialNode::doubt_of_answer(kernel::Time driver_on) const {
   const auto found = std::ranges::find(known_, driver_on, &Known::driver_on);
-  return found == known_.end() ? Doubt{} : found->doubt;
+  return found == known_.end() ? TimingUncertainty{} : found->doubt;
 }
 
 void SerialNode::wire(segment::Port& line, NodeBoards& boards) {

@@ -47,9 +47,11 @@ class SerialNode final : public NodeDevice, private iut::Bench {
   kernel::Time next_time() const override;
   void end() override;
 
-  NodeReach reach() const override;
-  Doubt doubt_of_answer(kernel::Time driver_on) const override;
-  Doubt doubt_of_valves() const override { return {{}, anchor_.wall.latest - anchor_.wall.earliest}; }
+  NodeCapabilities reach() const override;
+  TimingUncertainty doubt_of_answer(kernel::Time driver_on) const override;
+  TimingUncertainty doubt_of_valves() const override {
+    return {{}, anchor_.wall.latest - anchor_.wall.earliest};
+  }
 
  private:
   // An instant of the case and when it was.
@@ -67,7 +69,7 @@ class SerialNode final : public NodeDevice, private iut::Bench {
   };
   struct Known {
     kernel::Time driver_on{};
-    Doubt doubt;
+    TimingUncertainty doubt;
   };
 
   template <typename Act>

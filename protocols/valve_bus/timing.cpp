@@ -13,9 +13,9 @@ constexpr unsigned kDriverOnBits = 1;  // of a reference station that begins as 
 
 }  // namespace
 
-PollTime least_poll_time(const Rules& rules, kernel::Duration turn_round, kernel::Duration distance) {
+PollTime least_poll_time(const Rules& rules, kernel::Duration turnaround_time, kernel::Duration distance) {
   return {.command = half_characters(rules, 2 * kCommandOctets),
-          .turn_round = turn_round,
+          .turnaround_time = turnaround_time,
           .response = half_characters(rules, 2 * kResponseOctets),
           .silence = delimiter(rules),
           .way = 2 * distance};

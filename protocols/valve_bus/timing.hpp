@@ -9,17 +9,18 @@ namespace fieldproof::valve_bus {
 
 // What a poll of one node is made of.
 struct PollTime {
-  kernel::Duration command{};     // five characters
-  kernel::Duration turn_round{};  // of the node, to its first start bit
-  kernel::Duration response{};    // three characters
-  kernel::Duration silence{};     // in front of the next command
-  kernel::Duration way{};         // to the node and back
+  kernel::Duration command{};          // five characters
+  kernel::Duration turnaround_time{};  // of the node, to its first start bit
+  kernel::Duration response{};         // three characters
+  kernel::Duration silence{};          // in front of the next command
+  kernel::Duration way{};              // to the node and back
 
-  kernel::Duration total() const { return command + turn_round + response + silence + way; }
+  kernel::Duration total() const { return command + turnaround_time + response + silence + way; }
 };
 
 // The least: the next command follows the response by a delimiter.
-PollTime least_poll_time(const Rules& rules, kernel::Duration turn_round, kernel::Duration distance = {});
+PollTime least_poll_time(const Rules& rules, kernel::Duration turnaround_time,
+                         kernel::Duration distance = {});
 // As the reference stations do it: a host that learns of characters at their end is sure of a whole response
 // one character later, and its driver comes on in front of the start bit.
 PollTime reference_poll_time(const Rules& rules, kernel::Duration distance = {});

@@ -82,7 +82,7 @@ function timeLinePart(more) {
 function storyPart(story) {
   if (!story) return null;
   return definitions([["Stimulus", story.stimulus], ["Expected", story.expected],
-    ["Deviations that it catches", story.catches.length ? lines(story.catches, "") : ""]]);
+    ["Mutants that it catches", story.catches.length ? lines(story.catches, "") : ""]]);
 }
 
 // Which parts of the run's plan of faults hit in this case.

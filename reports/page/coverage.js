@@ -2,7 +2,7 @@
 import { standingText } from "./case_detail.js";
 import { element, section } from "./dom.js";
 import { part } from "./format.js";
-import { deviationsCaught } from "./matrix.js";
+import { mutantsCaught } from "./matrix.js";
 import { documentsOf } from "./summary.js";
 import { table } from "./table.js";
 
@@ -68,9 +68,9 @@ function standings(run) {
 }
 
 function caughtPart({ name, content }) {
-  return table(`Deviations caught, ${name}`, [
+  return table(`Mutants caught, ${name}`, [
     {title: "role", cell: (role) => `${content.protocol}/${role.role}`},
-    {title: "deviations caught", kind: "number", cell: (role) => part(deviationsCaught(role), role.deviations.length)},
+    {title: "mutants caught", kind: "number", cell: (role) => part(mutantsCaught(role), role.mutants.length)},
     {title: "cases", kind: "number", cell: (role) => String(role.cases.length)},
   ], content.roles);
 }
@@ -78,7 +78,7 @@ function caughtPart({ name, content }) {
 export function coverageSection(data) {
   const matrices = documentsOf(data, "fieldproof/matrix/1");
   if (data.runs.length + matrices.length === 0) return null;
-  const hint = matrices.length ? null : element("p", {class: "quiet"}, "How many deviations the cases catch is told by ",
+  const hint = matrices.length ? null : element("p", {class: "quiet"}, "How many mutants the cases catch is told by ",
       element("code", {}, "fieldproof matrix PROTOCOL --json F"), ", given to the same report.");
   return section("coverage", "Coverage", data.runs.map((run) => coverageOf(run, data.catalogue)), matrices.map(caughtPart), hint);
 }

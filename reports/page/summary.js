@@ -117,7 +117,7 @@ const kDocuments = {
   "fieldproof/measurement/1": ["#timing", "a measurement beside the theory"],
   "fieldproof/publication/1": ["#publication", "a paper beside its reproduction"],
   "fieldproof/residual/1": ["#residual", "undetected errors of a frame check"],
-  "fieldproof/matrix/1": ["#matrix", "cases and deviations"],
+  "fieldproof/matrix/1": ["#matrix", "cases and mutants"],
 };
 
 function documentList(documents) {

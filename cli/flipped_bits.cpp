@@ -1,0 +1,129 @@
+#include "cli/flipped_bits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/line/sampling.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+// The line as one receiver has it, from a few waveforms; idle outside.
+bool level_at(const line::Waveforms& waves, std::size_t first, kernel::Time time) {
+  for (std::size_t n = first; n < waves.size(); ++n) {
+    if (!waves[n].at(time)) return false;
+  }
+  return true;
+}
+
+// Writes down what another channel does.
+class WatchedChannel final : public fault::Channel {
+ public:
+  WatchedChannel(std::unique_ptr<fault::Channel> channel, const fault::StressPlace& place,
+                 std::shared_ptr<StruckBits> struck)
+      : channel_(std::move(channel)),
+        receiver_(place.trace.channel_name(place.channel)),
+        from_(place.from),
+        bit_rate_(place.bit_rate),
+        struck_(std::move(struck)) {}
+
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
+    const std::size_t first = arrivals.size();
+    const bool is_changed = channel_->pass(sent, arrivals);
+    if (is_changed) note(sent, arrivals, first);
+    ++passed_;
+    return is_changed;
+  }
+
+ private:
+  void note(const line::Waveform& sent, const line::Waveforms& arrivals, std::size_t first) {
+    for (unsigned bit = 0; middle_of(sent, bit, 8) < sent.end(); ++bit) {
+      int others = 0;
+      for (const unsigned sixteenth : {7U, 8U, 9U}) {
+        const kernel::Time time = middle_of(sent, bit, sixteenth);
+        others += level_at(arrivals, first, time) == sent.at(time) ? -1 : 1;
+      }
+      if (others > 0) struck_->push_back({receiver_, from_, passed_, bit});
+    }
+  }
+  kernel::Time middle_of(const line::Waveform& sent, unsigned bit, unsigned sixteenth) const {
+    return line::Sampling::instant(sent.start, bit, sixteenth, bit_rate_);
+  }
+
+  std::unique_ptr<fault::Channel> channel_;
+  std::string receiver_;
+  kernel::Time from_;
+  std::int64_t bit_rate_;
+  std::shared_ptr<StruckBits> struck_;
+  std::uint64_t passed_ = 0;
+};
+
+// One disturbance for each that struck, with the bits of each transmission together.
+ordered_json disturbances_of(std::span<const StruckBit> struck) {
+  using Bits = std::map<std::uint64_t, std::vector<std::uint64_t>>;
+  std::map<std::pair<kernel::Time, std::string>, Bits> all;
+  for (const StruckBit& one : struck) all[{one.from, one.receiver}][one.transmission].push_back(one.bit);
+  ordered_json disturbances = ordered_json::array();
+  for (const auto& [place, transmissions] : all) {
+    ordered_json list = ordered_json::array();
+    for (const auto& [transmission, bits] : transmissions) {
+      list.push_back({{"transmission", transmission}, {"bits", bits}});
+    }
+    disturbances.push_back({{"receiver", place.second},
+                            {"from", kernel::describe(place.first - kernel::kStart)},
+                            {"flipped_bits", std::move(list)}});
+  }
+  return disturbances;
+}
+
+using MakeChannel = decltype(fault::Stress::make_channel);
+
+// `change` makes another MakeChannel of each.
+template <typename Change>
+void change_stresses(Disturbances& all, Change change) {
+  for (fault::Stress& stress : all.stresses) stress.make_channel = change(stress.make_channel);
+  for (auto& [bit_rate, stresses] : all.link_stresses) {
+    for (fault::Stress& stress : stresses) stress.make_channel = change(stress.make_channel);
+  }
+}
+
+}  // namespace
+
+Disturbances watched(Disturbances all, const std::shared_ptr<StruckBits>& struck) {
+  change_stresses(all, [&struck](const MakeChannel& make) {
+    return [make, struck](const fault::StressPlace& place) {
+      return std::make_unique<WatchedChannel>(make(place), place, struck);
+    };
+  });
+  for (fault::DisturbanceKind& kind : all.of_plans) {
+    kind.read = [read = kind.read, struck](const config::Value& value) {
+      fault::DisturbanceModel model = read(value);
+      model.make_channel = [make = model.make_channel, struck](const fault::StressPlace& place) {
+        return std::make_unique<WatchedChannel>(make(place), place, struck);
+      };
+      return model;
+    };
+  }
+  return all;
+}
+
+Disturbances without_stresses(Disturbances all) {
+  change_stresses(all, [](const MakeChannel&) { return [](const fault::StressPlace&) { return nullptr; }; });
+  return all;
+}
+
+std::string plan_of(std::span<const StruckBit> struck, const std::string& plan) {
+  ordered_json json = ordered_json::object();
+  // Whoever ran the plan has read it: comments are all that it may have beyond JSON.
+  if (!plan.empty()) json = ordered_json::parse(plan, nullptr, true, true);
+  json["disturbances"] = disturbances_of(struck);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,196 @@
+#pragma once
+
+#include "conformance/fieldbus_dll/isa_seeded_faults.hpp"
+
+// Link masters that schedule, supervise or hand over otherwise.
+namespace fieldproof::conformance::isa_seeded_faults {
+
+class ScheduleShifted : public IsaLas {
+ public:
+  ScheduleShifted(const IsaConfiguration& configuration, int slots) : IsaLas(configuration), slots_(slots) {}
+
+ private:
+  Time due(const IsaScheduleItem& item) const override {
+    return IsaLas::due(item) + slots_ * octet_times(rules().link.slot_time_octets);
+  }
+  int slots_;
+};
+
+class ItemsSkipped : public IsaLas {
+  using IsaLas::IsaLas;
+  void advance() override {
+    IsaLas::advance();
+    if (++passed_ == 3) IsaLas::advance();
+  }
+  int passed_ = 0;
+};
+
+// Each round of the schedule begins two periods behind the last one.
+class PeriodDoubled : public IsaLas {
+  using IsaLas::IsaLas;
+  void advance() override {
+    IsaLas::advance();
+    ++passed_;
+  }
+  Time due(const IsaScheduleItem& item) const override {
+    const auto& schedule = configuration().schedule;
+    return IsaLas::due(item) + (passed_ / static_cast<int>(schedule.items.size())) * schedule.period;
+  }
+  int passed_ = 0;
+};
+
+class OwnDataKept : public IsaLas {
+  using IsaLas::IsaLas;
+  bool submit(const IsaRequest& request, Time now) override {
+    return las_state() == LasState::scheduling || IsaLas::submit(request, now);
+  }
+};
+
+class OwnDataOverDue : public IsaLas {
+  using IsaLas::IsaLas;
+  Duration needed_for(const IsaRequest& request) const override {
+    return las_state() == LasState::scheduling ? Duration{} : IsaLas::needed_for(request);
+  }
+};
+
+class DelegatesUrgentOnly : public IsaLas {
+  using IsaLas::IsaLas;
+  Octets written(const IsaDlpdu& dlpdu) const override {
+    IsaDlpdu other = dlpdu;
+    other.priority = Priority::urgent;
+    return IsaLas::written(other);
+  }
+};
+
+class DurationSentLittleEndian : public IsaLas {
+  using IsaLas::IsaLas;
+  Octets written(const IsaDlpdu& dlpdu) const override {
+    IsaDlpdu other = dlpdu;
+    other.duration = static_cast<std::uint16_t>(other.duration << 8 | other.duration >> 8);
+    return IsaLas::written(other);
+  }
+};
+
+class TransferWithoutVersion : public IsaLas {
+  using IsaLas::IsaLas;
+  Octets written(const IsaDlpdu& dlpdu) const override {
+    IsaDlpdu other = dlpdu;
+    other.schedule_version = 0;
+    return IsaLas::written(other);
+  }
+};
+
+class WaitsOutDuration : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    IsaDlpdu other = dlpdu;
+    if (las_state() == LasState::awaiting_sequence && other.type == IsaType::ee) other.type = IsaType::du;
+    IsaLas::on_dlpdu(other, place);
+  }
+};
+
+class ReclaimsByUcOnly : public IsaLas {
+  using IsaLas::IsaLas;
+  Time response_end(Time from) const override {
+    return las_state() == LasState::awaiting_sequence ? kernel::kNever : IsaLas::response_end(from);
+  }
+};
+
+class SingleTokenForEver : public IsaLas {
+  using IsaLas::IsaLas;
+  Time response_end(Time from) const override {
+    return las_state() == LasState::awaiting_single ? kernel::kNever : IsaLas::response_end(from);
+  }
+};
+
+// V(RR) is V(MRD) octets, not slot times.
+class ReclaimsEarly : public IsaLas {
+  using IsaLas::IsaLas;
+  Time response_end(Time from) const override {
+    return from + octet_times(rules().link.response_delay_slots);
+  }
+};
+
+class ReclaimsIntoHolder : public IsaLas {
+  using IsaLas::IsaLas;
+  bool reclaims_while_busy() const override { return true; }
+  Time may_begin() const override { return line().driven_until() + silence_before_sending(); }
+};
+
+class SupervisesOtherwise : public IsaLas {
+ public:
+  SupervisesOtherwise(const IsaConfiguration& configuration, bool at_all)
+      : IsaLas(configuration), at_all_(at_all) {}
+
+ private:
+  Time supervision_end(const IsaScheduleItem& item, Time es_end) const override {
+    return at_all_ ? IsaLas::supervision_end(item, es_end) + octet_times(16) : kernel::kNever;
+  }
+  bool at_all_;
+};
+
+class EndOfAnybodyTaken : public IsaLas {
+  using IsaLas::IsaLas;
+  bool is_from_holder(const IsaDlpdu& dlpdu) const override {
+    return dlpdu.type == IsaType::ee || IsaLas::is_from_holder(dlpdu);
+  }
+};
+
+class ForgetsReplyWait : public IsaLas {
+  using IsaLas::IsaLas;
+  Time response_end_behind_cd(Time from) const override { return response_end(from); }
+};
+
+class IgnoresTransfer : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    if (dlpdu.type != IsaType::tl) IsaLas::on_dlpdu(dlpdu, place);
+  }
+};
+
+class TakesTransferOfOthers : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    IsaDlpdu other = dlpdu;
+    if (other.type == IsaType::tl) other.destination = address();
+    IsaLas::on_dlpdu(other, place);
+  }
+};
+
+class DeafInStandby : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    if (las_state() != LasState::standby || dlpdu.type == IsaType::tl) IsaLas::on_dlpdu(dlpdu, place);
+  }
+};
+
+class ShowsItselfLate : public IsaLas {
+  using IsaLas::IsaLas;
+  bool shows_itself() const override { return false; }
+};
+
+class ScheduleNotBegun : public IsaLas {
+  using IsaLas::IsaLas;
+  Time due(const IsaScheduleItem&) const override { return kernel::kNever; }
+};
+
+class NeverRetakes : public IsaLas {
+  using IsaLas::IsaLas;
+  bool retakes() const override { return false; }
+};
+
+class KeepsScheduleBehindTransfer : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_transferred(Time) override { enter_las(LasState::scheduling); }
+};
+
+class Yields : public IsaLas {
+ public:
+  Yields(const IsaConfiguration& configuration, bool always) : IsaLas(configuration), always_(always) {}
+
+ private:
+  bool yields_to(const IsaDlpdu&) const override { return always_; }
+  bool always_;
+};
+
+}  // namespace fieldproof::conformance::isa_seeded_faults

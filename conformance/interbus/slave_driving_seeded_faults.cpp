@@ -1,0 +1,101 @@
+#include "conformance/interbus/slave_driving_seeded_faults.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace fieldproof::conformance::slave_seeded_faults {
+
+void ChangesWhatItDrives::wire(const SlavePorts& ports, Terminals& terminals) {
+  const auto changing = [this](line::Waveform& wave) { change(wave); };
+  changing_[0].attach(ports.upstream, changing);
+  changing_[1].attach(ports.branch, changing);
+  changing_[2].attach(ports.remote, changing);
+  Slave::wire({.upstream = changing_[0].port(), .branch = changing_[1].port(), .remote = changing_[2].port()},
+              terminals);
+}
+
+void SwallowsStatusTelegrams::change(line::Waveform& wave) {
+  const line::Levels before = wave.levels;
+  code().decode(before, 0, [&](const line::Telegram& telegram) {
+    if (telegram.is_data()) return;
+    for (std::size_t n = telegram.level; n < telegram.level + telegram.levels(); ++n)
+      wave.levels.set(n, true);
+  });
+}
+
+void SelectBitInStatusTelegrams::change(line::Waveform& wave) {
+  const line::Levels before = wave.levels;
+  const std::uint64_t select = code().levels_of(0, 0) ^ code().levels_of(line::kSelect, 0);
+  code().decode(before, 0, [&](const line::Telegram& telegram) {
+    if (!telegram.is_data())
+      wave.levels.flip(telegram.level + static_cast<std::size_t>(std::countr_zero(select)));
+  });
+}
+
+void FallsSilent::change(line::Waveform& wave) {
+  const line::Levels before = wave.levels;
+  code().decode(before, 0, [&](const line::Telegram& telegram) {
+    const bool is_silent = check_telegrams_left_ == 0;
+    if (telegram.is_data() && (telegram.header & line::kControl) != 0 && !is_silent) --check_telegrams_left_;
+    if (!is_silent) return;
+    for (std::size_t n = telegram.level; n < telegram.level + telegram.levels(); ++n)
+      wave.levels.set(n, true);
+  });
+}
+
+void ChangesAnOctet::change(line::Waveform& wave) {
+  const line::Levels before = wave.levels;
+  // The level of the least significant bit, found by encoding it.
+  const std::uint64_t bit =
+      code().levels_of(line::kDataTelegram, 0) ^ code().levels_of(line::kDataTelegram, 1);
+  code().decode(before, 0, [&](const line::Telegram& telegram) {
+    if (!telegram.is_data()) return;
+    if ((telegram.header & line::kControl) != 0) {
+      transfer_ = 0;
+      return;
+    }
+    if (is_meant((telegram.header & line::kSelect) != 0, transfer_, before_, telegram.data))
+      wave.levels.flip(telegram.level + static_cast<std::size_t>(std::countr_zero(bit)));
+    before_ = telegram.data;
+    ++transfer_;
+  });
+}
+
+void DoesNotRetime::change(line::Waveform& wave) {
+  constexpr std::size_t kPerBit = 20;
+  constexpr std::size_t kLonger = 2;  // each low pulse
+  line::Levels distorted;
+  std::size_t idle_owed = 0;
+  for (std::size_t n = 0; n < wave.levels.size(); ++n) {
+    const bool level = wave.levels[n];
+    const bool rises_next = !level && (n + 1 == wave.levels.size() || wave.levels[n + 1]);
+    distorted.append_fill(level, kPerBit + (rises_next ? kLonger : 0) - idle_owed);
+    idle_owed = rises_next ? kLonger : 0;
+  }
+  wave.levels = distorted;
+  wave.rate *= static_cast<std::int64_t>(kPerBit);
+}
+
+void SendsDataAtPowerUp::on_time(kernel::Time now) {
+  if (greeting_ <= now) {
+    greeting_ = kernel::kNever;
+    line::Waveform wave{now, rules().bit_rate, {}};
+    line::TelegramCode(rules().telegram).append(wave.levels, line::kDataTelegram, 0x00);
+    upstream_->drive(wave);
+  }
+  Slave::on_time(now);
+}
+
+void DrivesOverItself::receive(segment::PortIndex port, const line::Waveform& reception) {
+  Slave::receive(port, reception);
+  if (port != interbus::kFromUpstream) return;
+  line::Waveform wave{reception.end(), rules().bit_rate, {}};
+  line::shared_telegram_code(rules().telegram).append(wave.levels, 0, 0x00);
+  upstream_->drive(wave);
+}
+
+kernel::Time SendsDataAtPowerUp::next_time() const {
+  return std::min(greeting_, Slave::next_time());
+}
+
+}  // namespace fieldproof::conformance::slave_seeded_faults

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "conformance/interbus/slave_seeded_faults.hpp"
+
+// Slaves that differ in their supervision, their interfaces and their messages.
+namespace fieldproof::conformance::slave_seeded_faults {
+
+class SafeStateLate : public Slave {
+  using Slave::Slave;
+  void on_reset(kernel::Time now) override { clear_outputs(now + 500 * kernel::kMillisecond); }
+};
+
+class SilenceCountsDataOnly : public Slave {
+  using Slave::Slave;
+  kernel::Time sign_of_life(kernel::Time, kernel::Time last_data_telegram) const override {
+    return last_data_telegram;
+  }
+};
+
+// Deaf to one order of the control word.
+class IgnoresControlBit : public Slave {
+ public:
+  IgnoresControlBit(const SlaveConfiguration& configuration, std::uint16_t bit)
+      : Slave(configuration), bit_(bit) {}
+
+ private:
+  std::uint16_t heeded_control_bits() const override {
+    return static_cast<std::uint16_t>(Slave::heeded_control_bits() & ~unsigned{bit_});
+  }
+  std::uint16_t bit_;
+};
+
+class InterfaceSwitchesInsideCycle : public Slave {
+  using Slave::Slave;
+  void on_control_octet(kernel::Time when) override;
+  bool goes_new_way(const line::Telegram&) const override { return true; }
+};
+
+class OutgoingResetClearsOutputs : public Slave {
+  using Slave::Slave;
+  void on_control_octet(kernel::Time when) override { last_octet_ = when; }
+  void on_id_read(std::uint16_t messages_read) override;
+  kernel::Time last_octet_{};
+};
+
+class SwitchesWithTheBridge : public Slave {
+ public:
+  using Slave::Slave;
+  void set_next_present(bool on_branch, bool present) override;
+};
+
+class IgnoresTheBridge : public Slave {
+ public:
+  using Slave::Slave;
+  void set_next_present(bool, bool) override {}
+};
+
+class PeripheralFaultNotTold : public Slave {
+  using Slave::Slave;
+  std::uint16_t id_register(kernel::Time when) override {
+    return static_cast<std::uint16_t>(Slave::id_register(when) & ~unsigned{rules().message_peripheral_fault});
+  }
+};
+
+class PeripheralFaultMarksDataCycles : public Slave {
+  using Slave::Slave;
+  void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) override {
+    Slave::sample_inputs(when, octets);
+    has_fault_ = terminals().has_peripheral_fault(when);
+  }
+  std::uint8_t status_octet_to_send(std::uint8_t received, std::uint8_t mark, bool own_error) const override {
+    return Slave::status_octet_to_send(received, mark, own_error || has_fault_);
+  }
+  bool has_fault_ = false;
+};
+
+class MessageNeverCleared : public Slave {
+  using Slave::Slave;
+  void on_id_read(std::uint16_t) override {}
+};
+
+class MessageWithoutError : public Slave {
+  using Slave::Slave;
+  void on_transfer_end(kernel::Time) override { set_messages(rules().message_check_error); }
+};
+
+class TellsNoCheckError : public Slave {
+  using Slave::Slave;
+  void on_cycle_rejected(kernel::Time, bool) override {}
+};
+
+}  // namespace fieldproof::conformance::slave_seeded_faults
