@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "cli/paper_sections.hpp"
+#include "papers/sections.hpp"
 #include "protocols/fieldbus_dll/milliseconds.hpp"
 #include "protocols/fieldbus_dll/token_rotation.hpp"
 #include "protocols/fieldbus_dll/urgent_delay.hpp"
 #include "protocols/fieldbus_dll/urgent_experiment.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 namespace {
 
 using fieldbus_dll::UrgentTraffic;
@@ -110,7 +110,7 @@ class DelayCurves {
 };
 
 // Stations and frames beside the simulation that has neither.
-PublishedRow station_row(std::string what, const UrgentTraffic& traffic, const PaperSettings& settings) {
+PublishedRow station_row(std::string what, const UrgentTraffic& traffic, const Settings& settings) {
   const auto found = fieldbus_dll::run_urgent_experiment(traffic, settings.duration, settings.seed);
   const Studied studied(traffic, settings.seed);
   const fieldbus_dll::TokenFigures& wanted = studied.simulated();
@@ -138,7 +138,7 @@ kernel::Duration microseconds(int count) {
 
 }  // namespace
 
-PublishedSection foundation_rotations(const PaperSettings& settings) {
+PublishedSection foundation_rotations(const Settings& settings) {
   PublishedSection section;
   section.heading = "Figures 5 and 6: how long the token takes for a rotation, U = 0.35";
   section.note =
@@ -162,7 +162,7 @@ PublishedSection foundation_rotations(const PaperSettings& settings) {
   return section;
 }
 
-PublishedSection foundation_targets(const PaperSettings& settings) {
+PublishedSection foundation_targets(const Settings& settings) {
   PublishedSection section;
   section.heading = "Figures 7 and 9: delay of urgent data over TTRT and load, lambda0:lambda1 = 1:1";
   section.note =
@@ -180,7 +180,7 @@ PublishedSection foundation_targets(const PaperSettings& settings) {
   return section;
 }
 
-PublishedSection foundation_shares(const PaperSettings& settings) {
+PublishedSection foundation_shares(const Settings& settings) {
   PublishedSection section;
   section.heading = "Figure 8: delay of urgent data over the share of time-available data, TTRT 48.68 ms";
   section.note =
@@ -198,7 +198,7 @@ PublishedSection foundation_shares(const PaperSettings& settings) {
   return section;
 }
 
-PublishedSection foundation_stations(const PaperSettings& settings) {
+PublishedSection foundation_stations(const Settings& settings) {
   PublishedSection section;
   section.heading = "Section V: the experiment with 16 boards, as stations on a simulated line";
   section.note = fmt::format(
@@ -216,7 +216,7 @@ PublishedSection foundation_stations(const PaperSettings& settings) {
   return section;
 }
 
-PublishedSection foundation_lengths(const PaperSettings& settings) {
+PublishedSection foundation_lengths(const Settings& settings) {
   PublishedSection section;
   section.heading = "Figures 10 and 11: delay of urgent data over the length of packets, TTRT 48.68 ms";
   section.note =
@@ -250,4 +250,4 @@ PublishedSection foundation_lengths(const PaperSettings& settings) {
   return section;
 }
 
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers

@@ -1,6 +1,6 @@
 // Subject: a link of Foundation Fieldbus under bursts. Schedulers that die at random instants, and a control
 // loop.
-#include "cli/link_bursts.hpp"
+#include "papers/link_bursts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "protocols/fieldbus_dll/take_over_instants.hpp"
 #include "protocols/fieldbus_dll/take_over_run.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 namespace {
 
 using fieldbus_dll::ControlLoop;
@@ -94,4 +94,4 @@ TEST(ControlLoopUnderBursts, MissesSamplesWhereTheLineIsHit) {
 }
 
 }  // namespace
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers

@@ -2,14 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
-#include "cli/paper_sections.hpp"
+#include "papers/sections.hpp"
 #include "protocols/interbus/network_measurement.hpp"
 #include "protocols/interbus/paper.hpp"
 #include "protocols/interbus/timing.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 namespace {
 
 using interbus::Formula;
@@ -18,6 +20,12 @@ using interbus::SignalRecord;
 using kernel::Duration;
 using reports::PublishedRow;
 using reports::PublishedSection;
+
+// What the paper publishes in numbers. Its traces of input and output are pictures without a number.
+constexpr Duration kCalculatedCycle = 755 * kernel::kMicrosecond;  // "about 0.755 ms"
+constexpr Duration kSetCycle = 860 * kernel::kMicrosecond;         // set first
+constexpr double kHighestFrequencyHz = 614;
+constexpr std::array<std::int64_t, 3> kSignalsHz = {50, 150, 200};
 
 constexpr double kHalfOfLastDigitMs = 0.0005;  // the paper prints three decimals of a millisecond
 
@@ -37,7 +45,7 @@ NetworkDescription at_cycle(NetworkDescription network, Duration cycle) {
   return network;
 }
 
-SignalRecord record_at(const NetworkDescription& network, const PaperSettings& settings,
+SignalRecord record_at(const NetworkDescription& network, const Settings& settings,
                        measure::Frequency frequency, Duration duration) {
   interbus::SignalSettings signal;
   signal.wave.frequency = frequency;
@@ -47,7 +55,7 @@ SignalRecord record_at(const NetworkDescription& network, const PaperSettings& s
 }
 
 // The cycle time that a network runs at, from a second of it.
-Duration measured_cycle(const NetworkDescription& network, const PaperSettings& settings) {
+Duration measured_cycle(const NetworkDescription& network, const Settings& settings) {
   const SignalRecord record =
       record_at(network, settings, measure::Frequency::from_hertz(50), kernel::kSecond);
   return Duration{std::llround(record.cycle_times.total().mean())};
@@ -67,7 +75,7 @@ Duration by_formula(Formula formula, unsigned user_octets) {
 
 }  // namespace
 
-PublishedSection interbus_cycle_times(const PaperSettings& settings) {
+PublishedSection interbus_cycle_times(const Settings& settings) {
   const NetworkDescription network = interbus::paper_network();
   const NetworkDescription as_printed = interbus::paper_network_as_printed();
   const Duration shortest = measured_cycle(network, settings);
@@ -78,12 +86,11 @@ PublishedSection interbus_cycle_times(const PaperSettings& settings) {
   section.note =
       "The paper calls 0.755 and 0.814 ms nearly equal; they are 7.8 % apart and it gives no reason.";
   section.rows = {
-      cycle_row("calculated, as printed: 8 + n telegrams, n = 2", interbus::kPaperCalculatedCycle,
+      cycle_row("calculated, as printed: 8 + n telegrams, n = 2", kCalculatedCycle,
                 by_formula(Formula::f1, 2), "f1 = [1.15 * 13 * (8 + n) + 3 m] t_bit + 450 us; m = 1"),
-      cycle_row("calculated, the network itself: 6 + n, n = 4", interbus::kPaperCalculatedCycle,
-                by_formula(Formula::f4, 4),
+      cycle_row("calculated, the network itself: 6 + n, n = 4", kCalculatedCycle, by_formula(Formula::f4, 4),
                 "f4; the two modules have 4 octets and the text counts 6 octets of frame information"),
-      cycle_row("shortest cycle of that network", interbus::kPaperCalculatedCycle, shortest,
+      cycle_row("shortest cycle of that network", kCalculatedCycle, shortest,
                 "simulated, telegram by telegram"),
       {"printed formula with the 4 octets of the network", "", told(printed),
        "f1 with n = 4: the paper does not calculate it", std::nullopt},
@@ -97,20 +104,20 @@ PublishedSection interbus_cycle_times(const PaperSettings& settings) {
        std::nullopt},
       cycle_row("set to the best time", interbus::kPaperBestCycle,
                 measured_cycle(at_cycle(network, interbus::kPaperBestCycle), settings), "simulated"),
-      cycle_row("set to the first time", interbus::kPaperSetCycle,
-                measured_cycle(at_cycle(network, interbus::kPaperSetCycle), settings), "simulated")};
+      cycle_row("set to the first time", kSetCycle, measured_cycle(at_cycle(network, kSetCycle), settings),
+                "simulated")};
   return section;
 }
 
-PublishedSection interbus_highest_frequency(const PaperSettings& settings) {
+PublishedSection interbus_highest_frequency(const Settings& settings) {
   const NetworkDescription network = at_cycle(interbus::paper_network(), interbus::kPaperBestCycle);
   const double highest = interbus::highest_frequency_hz(interbus::kPaperBestCycle);
   PublishedSection section;
   section.heading = "Highest frequency: 614 Hz at 0.814 ms";
   section.note = "f_max = 1 / (2 T): half a period lasts one cycle. The paper calls it theoretical only.";
-  section.rows.push_back({"f_max", fmt::format("{} Hz", interbus::kPaperHighestFrequencyHz),
+  section.rows.push_back({"f_max", fmt::format("{} Hz", kHighestFrequencyHz),
                           fmt::format("{:.2f} Hz", highest), "by the closed form",
-                          std::abs(highest - interbus::kPaperHighestFrequencyHz) < 0.5});
+                          std::abs(highest - kHighestFrequencyHz) < 0.5});
   for (const std::int64_t hertz : {614, 620, 700}) {
     const SignalRecord record =
         record_at(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
@@ -126,14 +133,14 @@ PublishedSection interbus_highest_frequency(const PaperSettings& settings) {
   return section;
 }
 
-PublishedSection interbus_square_waves(const PaperSettings& settings) {
+PublishedSection interbus_square_waves(const Settings& settings) {
   const NetworkDescription network = at_cycle(interbus::paper_network(), interbus::kPaperBestCycle);
   PublishedSection section;
   section.heading = "Input and output at 50, 150 and 200 Hz";
   section.note =
       "The paper shows pictures of an oscilloscope without a number, and says that the distortion grows "
       "towards the highest frequency. Latch model M2.";
-  for (const std::int64_t hertz : interbus::kPaperSignalsHz) {
+  for (const std::int64_t hertz : kSignalsHz) {
     const SignalRecord record =
         record_at(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
     const interbus::PathRecord& path = record.paths.front();
@@ -164,4 +171,4 @@ PublishedSection interbus_square_waves(const PaperSettings& settings) {
   return section;
 }
 
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "cli/link_bursts.hpp"
-#include "cli/paper_sections.hpp"
+#include "papers/link_bursts.hpp"
+#include "papers/sections.hpp"
 #include "protocols/fieldbus_dll/control_loop.hpp"
 #include "protocols/fieldbus_dll/milliseconds.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 namespace {
 
 using fieldbus_dll::ControlLoop;
@@ -28,7 +28,7 @@ constexpr double kMessages = 1.5;  // of each other node in a second, where the 
 constexpr unsigned kMostPeriods = 20'000;
 constexpr double kShownSeconds = 60;
 
-ControlLoopSetting loop_setting(const PaperSettings& settings, DataWay way, double messages_per_s) {
+ControlLoopSetting loop_setting(const Settings& settings, DataWay way, double messages_per_s) {
   ControlLoopSetting loop;
   loop.seed = settings.seed;
   loop.way = way;
@@ -126,7 +126,7 @@ PublishedRow operator_row(std::string what, const ControlLoop& loop) {
 
 }  // namespace
 
-PublishedSection control_loop_with_operator(const PaperSettings& settings) {
+PublishedSection control_loop_with_operator(const Settings& settings) {
   PublishedSection section;
   section.heading = "What else applications say: requests and their responses, alarms, trends";
   section.note =
@@ -155,7 +155,7 @@ PublishedSection control_loop_with_operator(const PaperSettings& settings) {
   return section;
 }
 
-PublishedSection control_loop_quiet(const PaperSettings& settings) {
+PublishedSection control_loop_quiet(const Settings& settings) {
   PublishedSection section;
   section.heading = "Figures 3 and 4: data loss and vacant sampling in a control loop, 250 ms, 31.25 kbit/s";
   section.note =
@@ -194,7 +194,7 @@ PublishedSection control_loop_quiet(const PaperSettings& settings) {
   return section;
 }
 
-PublishedSection control_loop_under_bursts(const PaperSettings& settings) {
+PublishedSection control_loop_under_bursts(const Settings& settings) {
   PublishedSection section;
   section.heading = "The same loop under bursts of IEC 61000-4-4, 2000 V, and with frames lost";
   section.note =
@@ -231,4 +231,4 @@ PublishedSection control_loop_under_bursts(const PaperSettings& settings) {
   return section;
 }
 
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers

@@ -1,8 +1,8 @@
-#include "cli/link_bursts.hpp"
+#include "papers/link_bursts.hpp"
 
 #include "emc/burst_stress.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 
 fieldbus_dll::FfDisturb bursts_on_link(const emc::Profile& profile, const emc::BurstSettings& settings,
                                        std::int64_t bit_rate, kernel::Time on, std::uint64_t seed) {
@@ -13,4 +13,4 @@ fieldbus_dll::FfDisturb bursts_on_link(const emc::Profile& profile, const emc::B
   };
 }
 
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers

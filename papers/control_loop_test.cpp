@@ -3,15 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/paper_sections.hpp"
 #include "harness/kernel/sanitized.hpp"
+#include "papers/sections.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 namespace {
 
 using testing::HasSubstr;
 
-PaperSettings short_run() {
+Settings short_run() {
   return {.seed = 1, .duration = 15 * kernel::kSecond};
 }
 
@@ -50,4 +50,4 @@ TEST(ControlLoopPaper, AnOperatorSeesWhatTheTargetRotationCosts) {
 }
 
 }  // namespace
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers

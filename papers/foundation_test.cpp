@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/paper_sections.hpp"
+#include "papers/sections.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 namespace {
 
 using testing::HasSubstr;
@@ -43,4 +43,4 @@ TEST(FoundationPaper, DrawsDelayOverTtrtForEachLoad) {
 }
 
 }  // namespace
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers

@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <array>
 
-#include "cli/paper_sections.hpp"
 #include "emc/residual/block_check.hpp"
 #include "emc/residual/block_check_count.hpp"
 #include "emc/residual/residual_error.hpp"
 #include "emc/resonance.hpp"
+#include "papers/sections.hpp"
 #include "protocols/valve_bus/frame.hpp"
 #include "protocols/valve_bus/poll_run.hpp"
 #include "protocols/valve_bus/timing.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 namespace {
 
 using reports::PublishedRow;
@@ -131,7 +131,7 @@ void add_resonances(const ScannedFormat& format, std::uint64_t seed, PublishedSe
 
 }  // namespace
 
-PublishedSection valve_bus_cycle_times(const PaperSettings& settings) {
+PublishedSection valve_bus_cycle_times(const Settings& settings) {
   PublishedSection section;
   section.heading = "Cycle time over the number of nodes";
   section.note =
@@ -148,7 +148,7 @@ PublishedSection valve_bus_cycle_times(const PaperSettings& settings) {
   return section;
 }
 
-PublishedSection valve_bus_block_check(const PaperSettings&) {
+PublishedSection valve_bus_block_check(const Settings&) {
   PublishedSection section;
   section.heading = "What the block check does not see";
   section.note = "The paper gives no error figures. The formulas are those of the binary symmetric channel.";
@@ -159,7 +159,7 @@ PublishedSection valve_bus_block_check(const PaperSettings&) {
   return section;
 }
 
-PublishedSection valve_bus_resonance(const PaperSettings& settings) {
+PublishedSection valve_bus_resonance(const Settings& settings) {
   PublishedSection section;
   section.heading = "Burst pulses in step with the characters: 80 to 120 kHz, 375 kbit/s";
   section.note =
@@ -172,4 +172,4 @@ PublishedSection valve_bus_resonance(const PaperSettings& settings) {
   return section;
 }
 
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <span>
 
-#include "cli/paper_sections.hpp"
 #include "emc/interbus/immunity.hpp"
 #include "emc/profile.hpp"
 #include "harness/kernel/random.hpp"
+#include "papers/sections.hpp"
 #include "protocols/interbus/paper.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 namespace {
 
 using emc::Polarity;
@@ -45,7 +45,7 @@ struct AtVoltage {
 
 class BurstTest {
  public:
-  BurstTest(const PaperSettings& settings, const emc::Profile& profile)
+  BurstTest(const Settings& settings, const emc::Profile& profile)
       : network_(interbus::paper_network()), response_(profile.coupling) {
     network_.cycle_time = interbus::kPaperBestCycle;
     immunity_.duration = settings.duration / kShareOfTime;
@@ -87,7 +87,7 @@ std::string told(const AtVoltage& sum) {
 
 }  // namespace
 
-PublishedSection interbus_bursts(const PaperSettings& settings) {
+PublishedSection interbus_bursts(const Settings& settings) {
   PublishedSection section;
   section.heading = "Bursts of IEC 61000-4-4 on the remote-bus cable: 1000 to 4500 V";
   section.note =
@@ -118,4 +118,4 @@ PublishedSection interbus_bursts(const PaperSettings& settings) {
   return section;
 }
 
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers

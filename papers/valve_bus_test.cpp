@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "cli/paper_sections.hpp"
+#include "papers/sections.hpp"
 
-namespace fieldproof::cli {
+namespace fieldproof::papers {
 namespace {
 
 TEST(ValveBusPaper, CyclesOfTheStationsAreTheClosedForm) {
@@ -37,4 +37,4 @@ TEST(ValveBusPaper, FindsTheRatesThatAreInStep) {
 }
 
 }  // namespace
-}  // namespace fieldproof::cli
+}  // namespace fieldproof::papers
