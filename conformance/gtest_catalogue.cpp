@@ -35,7 +35,7 @@ class RegisteredCase : public testing::Test {
     RecordProperty("verdict", std::string(judge::name(result.verdict)));
     RecordProperty("seed", std::to_string(result.seed));
     RecordProperty("fingerprint", fmt::format("{:016x}", result.fingerprint));
-    if (result.verdict == Verdict::not_applicable) GTEST_SKIP() << result.reason;
+    if (result.verdict == Verdict::not_applicable) GTEST_SKIP() << "not applicable: " << result.reason;
     if (result.verdict == Verdict::pass || result.verdict == Verdict::warn) return;
     FAIL() << failure_message(test_case_, result);
   }
