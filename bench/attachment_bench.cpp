@@ -134,7 +134,7 @@ Batch bare_socket() {
 Batch calls_over_a_socket() {
   const auto socket = served_socket([](int end) {
     iut::serve(
-        end, end,
+        end, end, {"valve_bus", "node"},
         [](const iut::RoleName&) {
           return std::make_unique<valve_bus::ServedNode>(
               [](const auto& configuration) { return std::make_unique<valve_bus::Node>(configuration); });

@@ -1,26 +1,22 @@
 #include "cli/attachments.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "cli/roles.hpp"
+#include "cli/protocol_entry.hpp"
 #include "cli/serial_pool.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/pool.hpp"
-#include "harness/kernel/check.hpp"
-#include "protocols/fieldbus_dll/attached_ff_device.hpp"
-#include "protocols/fieldbus_dll/attached_isa_device.hpp"
-#include "protocols/interbus/attached_master.hpp"
-#include "protocols/interbus/attached_slave.hpp"
-#include "protocols/valve_bus/attached_host.hpp"
-#include "protocols/valve_bus/attached_node.hpp"
-#include "protocols/valve_bus/serial_node.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -33,18 +29,42 @@ class Pools {
  public:
   explicit Pools(iut::RoleName role) : role_(std::move(role)) {}
 
+  iut::Attachment attach(const conformance::IutRequest& request) {
+    const std::string& uri = request.uri;
+    if (uri.starts_with(iut::kSerialUri)) return at_line(uri, request.limits);
+    if (is_in_process(uri)) {
+      const std::shared_ptr<iut::Device> device = library_of(uri, role_);
+      return {device.get(), device, {}};
+    }
+    const auto lease = std::make_shared<iut::DevicePool::Lease>(of(uri, request.limits).take());
+    return {&**lease, lease, [lease] { lease->set_reusable(); }};
+  }
+
+ private:
   iut::DevicePool& of(const std::string& uri, const iut::PeerLimits& limits) {
     const std::scoped_lock lock(mutex_);
     auto& pool = pools_[uri];
     if (pool == nullptr) pool = pool_of(uri, role_, limits);
     return *pool;
   }
-  const iut::RoleName& role() const { return role_; }
+  iut::Attachment at_line(const std::string& uri, const iut::PeerLimits& limits) {
+    const Role& role = role_named(role_.protocol + "/" + role_.role);
+    if (role.uart == nullptr) {
+      throw kernel::Error(kernel::ErrorKind::usage, fmt::format("'{}': {}", uri, no_serial_line_for(role)));
+    }
+    SerialPool* lines = nullptr;
+    {
+      const std::scoped_lock lock(mutex_);
+      if (lines_ == nullptr) lines_ = std::make_unique<SerialPool>(role_, role.uart);
+      lines = lines_.get();
+    }
+    return lines->take(uri, limits);
+  }
 
- private:
   iut::RoleName role_;
   std::mutex mutex_;
   std::map<std::string, std::unique_ptr<iut::DevicePool>> pools_;
+  std::unique_ptr<SerialPool> lines_;
 };
 
 // The words of a PICS for the format of a UART.
@@ -57,27 +77,6 @@ std::string characters_of(const std::string& uri, const line::CharacterFormat& f
                       fmt::format("'{}': no node of the valve bus talks in characters {}; there are 8m1 (a "
                                   "ninth bit of 1), 8e1 and 8n1",
                                   uri, text));
-}
-
-iut::Attachment attachment_of(Pools& pools, const conformance::IutRequest& wanted) {
-  const std::string& uri = wanted.uri;
-  if (is_in_process(uri)) {
-    const std::shared_ptr<iut::Device> device = library_of(uri, pools.role());
-    return {device.get(), device, {}};
-  }
-  const auto lease = std::make_shared<iut::DevicePool::Lease>(pools.of(uri, wanted.limits).take());
-  return {&**lease, lease, [lease] { lease->set_reusable(); }};
-}
-
-// Makes what takes the place of a station of the bench in this role.
-template <typename Attached, typename Make>
-Make attached(iut::RoleName role) {
-  const auto pools = std::make_shared<Pools>(std::move(role));
-  return [pools](const conformance::IutRequest& wanted, const auto& configuration) -> Make::result_type {
-    if (!is_attachment(wanted.uri)) return nullptr;
-    return std::make_unique<Attached>(attachment_of(*pools, wanted), configuration, wanted.case_id,
-                                      wanted.seed);
-  };
 }
 
 }  // namespace
@@ -107,9 +106,8 @@ std::string plugin_path(std::string_view uri) {
 }
 
 std::unique_ptr<iut::Device> library_of(const std::string& uri, const iut::RoleName& role) {
-  const auto row = std::ranges::find(roles(), role.protocol + "/" + role.role, &Role::path);
-  FIELDPROOF_CHECK(row != roles().end(), "who attaches a library has a role for it");
-  return iut::load_plugin(plugin_path(uri), role.protocol, role.role, row->told);
+  const iut::UnitOffer told = role_named(role.path()).told;
+  return iut::load_plugin(plugin_path(uri), role.protocol, role.role, told);
 }
 
 std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role,
@@ -122,7 +120,7 @@ std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::Role
       uri, role, std::vector<std::string>{self, "station", role.protocol + "/" + role.role, uri}, limits);
 }
 
-std::optional<judge::Pics> node_on_real_line(const std::string& uri) {
+std::optional<judge::Pics> station_on_real_line(const std::string& uri) {
   if (!uri.starts_with(iut::kSerialUri)) return std::nullopt;
   const iut::SerialSettings settings = iut::serial_settings(uri);
   judge::Pics pics;
@@ -134,37 +132,61 @@ std::optional<judge::Pics> node_on_real_line(const std::string& uri) {
   return pics;
 }
 
-conformance::GivenSlaves::Make attached_slaves() {
-  return attached<interbus::AttachedSlave, conformance::GivenSlaves::Make>({"interbus", "slave"});
+std::vector<iut::RoleName> served_among(const std::string& uri, std::span<const iut::RoleName> roles) {
+  std::vector<iut::RoleName> served;
+  std::vector<iut::RoleName> own;  // what it says of itself; a library is asked role by role
+  std::exception_ptr refusal;
+  const bool is_peer = iut::DevicePool::is_meant(uri);
+  if (is_peer) own = iut::DevicePool(uri, {}).served_roles();
+  for (const iut::RoleName& role : roles) {
+    const Role* row = find_role(role.path());
+    bool is_served = false;
+    if (is_peer) {
+      is_served = std::ranges::find(own, role) != own.end();
+    } else if (row == nullptr) {
+      continue;  // a whole network is no implementation
+    } else if (uri.starts_with(iut::kSerialUri)) {
+      is_served = row->uart != nullptr;
+    } else {
+      // A library that does not serve a role says so, and the process that loads it ends.
+      try {
+        is_served = !pool_of(uri, role)->served_roles(role).empty();
+      } catch (const kernel::Error&) {
+        refusal = std::current_exception();
+      }
+    }
+    if (is_served) served.push_back(role);
+  }
+  if (served.empty() && refusal) std::rethrow_exception(refusal);
+  return served;
 }
 
-conformance::GivenMasters::Make attached_masters() {
-  return attached<interbus::AttachedMaster, conformance::GivenMasters::Make>({"interbus", "master"});
+std::string no_serial_line_for(const Role& role) {
+  std::vector<std::string> known;
+  for (const Role* one : roles())
+    if (one->uart != nullptr) known.push_back(one->path());
+  return fmt::format("'{}' cannot be judged at a serial line: {}; serial lines serve '{}'", role.path(),
+                     role.why_not_serial, fmt::join(known, "' and '"));
 }
 
-conformance::GivenNodes::Make attached_nodes() {
-  const iut::RoleName role{"valve_bus", "node"};
-  return [in_lock_step = attached<valve_bus::AttachedNode, conformance::GivenNodes::Make>(role),
-          lines = std::make_shared<SerialPool>(role)](
-             const conformance::IutRequest& wanted,
-             const auto& configuration) -> std::unique_ptr<valve_bus::NodeDevice> {
-    if (!wanted.uri.starts_with(iut::kSerialUri)) return in_lock_step(wanted, configuration);
-    return std::make_unique<valve_bus::SerialNode>(lines->take(wanted.uri, wanted.limits), configuration,
-                                                   wanted.case_id, wanted.seed);
+conformance::Attach attachments() {
+  struct All {
+    std::mutex mutex;
+    std::map<std::pair<std::string, std::string>, std::unique_ptr<Pools>> of_roles;
   };
-}
-
-conformance::GivenHosts::Make attached_hosts() {
-  return attached<valve_bus::AttachedHost, conformance::GivenHosts::Make>({"valve_bus", "host"});
-}
-
-conformance::GivenIsaStations::Make attached_isa_stations(const std::string& role) {
-  return attached<fieldbus_dll::AttachedIsaDevice, conformance::GivenIsaStations::Make>(
-      {"fieldbus_dll", role});
-}
-
-conformance::GivenFfStations::Make attached_ff_stations(const std::string& role) {
-  return attached<fieldbus_dll::AttachedFfDevice, conformance::GivenFfStations::Make>({"fieldbus_dll", role});
+  return [all = std::make_shared<All>()](
+             const iut::RoleName& role,
+             const conformance::IutRequest& request) -> std::optional<iut::Attachment> {
+    if (!is_attachment(request.uri)) return std::nullopt;
+    Pools* pools = nullptr;
+    {
+      const std::scoped_lock lock(all->mutex);
+      auto& found = all->of_roles[{role.protocol, role.role}];
+      if (found == nullptr) found = std::make_unique<Pools>(role);
+      pools = found.get();
+    }
+    return pools->attach(request);
+  };
 }
 
 }  // namespace fieldproof::cli

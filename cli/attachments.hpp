@@ -2,12 +2,13 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "conformance/fieldbus_dll/suite.hpp"
-#include "conformance/interbus/suite.hpp"
-#include "conformance/valve_bus/suite.hpp"
+#include "cli/protocol_entry.hpp"
+#include "conformance/case_devices.hpp"
 #include "harness/iut/pool.hpp"
 #include "harness/judge/pics.hpp"
 
@@ -26,23 +27,24 @@ bool is_plugin_uri(std::string_view uri);
 bool is_in_process(std::string_view uri);
 std::string plugin_path(std::string_view uri);
 
-// The library, in this process, in a role of `roles()`.
+// The library, in this process, in a role.
 std::unique_ptr<iut::Device> library_of(const std::string& uri, const iut::RoleName& role);
 
 // Who is called by messages: exec:, unix:, tcp:, and a library in a process of its own.
 std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role,
                                          const iut::PeerLimits& limits = {});
 
-// What the URI of a serial line says of the node at it, as answers of a PICS; nothing for other URIs.
-std::optional<judge::Pics> node_on_real_line(const std::string& uri);
+// What the URI of a serial line says of the station at it, as answers of a PICS; nothing for other URIs.
+std::optional<judge::Pics> station_on_real_line(const std::string& uri);
 
-// Implementations of one URI are kept from case to case, and as many are opened as cases run side by side.
-conformance::GivenSlaves::Make attached_slaves();
-conformance::GivenMasters::Make attached_masters();
-conformance::GivenNodes::Make attached_nodes();
-conformance::GivenHosts::Make attached_hosts();
-// Of the data link, by role.
-conformance::GivenIsaStations::Make attached_isa_stations(const std::string& role);
-conformance::GivenFfStations::Make attached_ff_stations(const std::string& role);
+// Which of these roles the implementation outside serves, as it says itself. It is started for that.
+std::vector<iut::RoleName> served_among(const std::string& uri, std::span<const iut::RoleName> roles);
+
+// Why a role is not played on a serial line, as a sentence.
+std::string no_serial_line_for(const Role& role);
+
+// For all roles. Implementations of one URI are kept from case to case, and as many are opened as cases run
+// side by side.
+conformance::Attach attachments();
 
 }  // namespace fieldproof::cli

@@ -186,7 +186,7 @@ TEST_F(Attachments, NodeInCPassesAsAProcess) {
 
 // Its driver comes and goes in transmissions of their own: at a low bit rate they are as many as characters.
 TEST_F(Attachments, NodeInCPassesAtTheLowestBitRateWithAcknowledge) {
-  const std::string pics = R"({ "items": { "bit_rate": 2404, "acknowledges_writes": true } })";
+  const std::string pics = R"({ "items": { "bit_rate": 2404, "answers_writes": true } })";
   for (const auto& [id, one] : judged(kInC, "**", {}, pics)) {
     EXPECT_EQ(one.verdict, "pass") << id << ": " << one.reason << one.findings;
   }

@@ -1,7 +1,7 @@
 // Subject: the cases of the joined catalogue that need bursts, which no suite alone has.
 #include <gtest/gtest.h>
 
-#include "cli/suites.hpp"
+#include "cli/protocols.hpp"
 #include "conformance/catalogue.hpp"
 #include "conformance/runner.hpp"
 #include "conformance/stressed_receiver.hpp"
@@ -13,7 +13,7 @@ using conformance::Catalogue;
 using conformance::Entry;
 
 std::vector<Entry> burst_cases() {
-  static const Catalogue catalogue(suites(all_disturbances()));
+  static const Catalogue catalogue(built_in_suites());
   return catalogue.select(std::vector<std::string>{"+" + std::string(conformance::kStressTag)});
 }
 

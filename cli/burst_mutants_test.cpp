@@ -8,10 +8,12 @@
 
 #include "conformance/interbus/master_mutants.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
-#include "emc/interbus/immunity.hpp"
+#include "emc/immunity.hpp"
 #include "emc/profile.hpp"
 #include "emc/random_flips.hpp"
+#include "harness/kernel/sanitized.hpp"
 #include "protocols/interbus/paper.hpp"
+#include "protocols/interbus/running_network.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -81,70 +83,96 @@ constexpr std::array kOfSlaves = {
 };
 
 double rejected_share(const ImmunityResult& result) {
-  return static_cast<double>(result.ledger.detected) / static_cast<double>(result.ledger.corrupted);
+  return static_cast<double>(result.counts.detected) / static_cast<double>(result.counts.corrupted);
 }
 
 bool shows(Sign sign, const ImmunityResult& result, const ImmunityResult& reference) {
   switch (sign) {
     case Sign::wrong_data:
-      return result.criterion == Criterion::d && result.ledger.accepted_wrong() > 0;
+      return result.criterion == Criterion::d && result.counts.accepted_wrong() > 0;
     case Sign::dead:
       return result.criterion == Criterion::d && !result.recovered_after_start;
     case Sign::cleared:
-      return result.ledger.cleared_outputs > reference.ledger.cleared_outputs;
+      return result.counts.cleared_outputs > reference.counts.cleared_outputs;
     case Sign::missed:
-      return result.ledger.missed_outputs > reference.ledger.missed_outputs;
+      return result.counts.missed_outputs > reference.counts.missed_outputs;
     case Sign::not_repeated:
-      return result.ledger.repeated == 0 && reference.ledger.repeated > 0;
+      return result.counts.repeated == 0 && reference.counts.repeated > 0;
     case Sign::stops:
-      return result.bus_stops > 2 * reference.bus_stops;
+      return result.stops > 2 * reference.stops;
     case Sign::stops_less:
-      return 20 * result.bus_stops < 19 * reference.bus_stops;
+      return 20 * result.stops < 19 * reference.stops;
     case Sign::fewer_rejected:
       return rejected_share(result) < rejected_share(reference);
   }
   return false;
 }
 
-emc::ImmunityResult run_immunity(Line line, const emc::InterbusStations& stations = {}) {
+emc::ImmunityResult run_immunity(Line line, const interbus::RunningStations& stations, std::uint64_t seed) {
   static const emc::LineResponse response(emc::Profile::named("A").coupling);
   emc::ImmunitySettings settings;
   settings.bursts.level = emc::Level::standard(emc::PortKind::signal, 4);
   settings.duration = 30 * kernel::kSecond;
+  settings.seed = seed;
   if (line == Line::flips) {
     settings.make_channel = [](kernel::Random random) {
       return std::make_unique<emc::BernoulliChannel>(0.001, random);
     };
   }
-  return run_immunity(two_remote_stations(), stations, response, settings);
+  interbus::RunningNetwork network(two_remote_stations(), stations);
+  return emc::run_immunity(network, response, settings);
+}
+
+// Of flips many runs together: what a mutant rejects less is a hundredth of the corrupted cycles, several
+// times what chance makes of so many.
+constexpr std::uint64_t kRunsOfFlips = 12;
+
+emc::ImmunityResult run_immunity(Line line, const interbus::RunningStations& stations = {}) {
+  emc::ImmunityResult sum = run_immunity(line, stations, 1);
+  for (std::uint64_t seed = 2; line == Line::flips && seed <= kRunsOfFlips; ++seed) {
+    const emc::ImmunityResult one = run_immunity(line, stations, seed);
+    sum.counts.detected += one.counts.detected;
+    sum.counts.corrupted += one.counts.corrupted;
+    sum.stops += one.stops;
+  }
+  return sum;
+}
+
+// Under a sanitizer the many runs of flips take minutes, and look at no other code.
+bool is_left_out(const Row& row) {
+  return kernel::kIsSanitized && row.line == Line::flips;
 }
 
 const ImmunityResult& reference(Line line) {
-  static const std::array references = {run_immunity(Line::bursts), run_immunity(Line::flips)};
-  return references.at(static_cast<std::size_t>(line));
+  static const ImmunityResult of_bursts = run_immunity(Line::bursts);
+  if (line == Line::bursts) return of_bursts;
+  static const ImmunityResult of_flips = run_immunity(Line::flips);
+  return of_flips;
 }
 
-emc::InterbusStations with_master(std::string_view name) {
-  return {conformance::mutant_master(name), nullptr};
+interbus::RunningStations with_master(std::string_view name) {
+  return {.make_master = conformance::mutant_master(name)};
 }
 
-emc::InterbusStations with_slave(int at, std::string_view name) {
-  return {nullptr, [=](int position, const interbus::SlaveConfiguration& configuration) {
-            return position == at ? conformance::make_slave_mutant(name, configuration) : nullptr;
-          }};
+interbus::RunningStations with_slave(int at, std::string_view name) {
+  return {.make_slave = [=](int position, const interbus::SlaveConfiguration& configuration) {
+    return position == at ? conformance::make_slave_mutant(name, configuration) : nullptr;
+  }};
 }
 
 TEST(BurstMutants, ReferencesHaveNoneOfTheSigns) {
   EXPECT_EQ(reference(Line::bursts).criterion, Criterion::b);
   for (const Line line : {Line::bursts, Line::flips}) {
-    EXPECT_EQ(reference(line).ledger.accepted_wrong(), 0U);
-    EXPECT_EQ(reference(line).ledger.missed_outputs, 0U);
-    EXPECT_GT(reference(line).ledger.repeated, 0U);
+    if (kernel::kIsSanitized && line == Line::flips) continue;
+    EXPECT_EQ(reference(line).counts.accepted_wrong(), 0U);
+    EXPECT_EQ(reference(line).counts.missed_outputs, 0U);
+    EXPECT_GT(reference(line).counts.repeated, 0U);
   }
 }
 
 TEST(BurstMutants, MastersAreSeen) {
   for (const Row& row : kOfMasters) {
+    if (is_left_out(row)) continue;
     EXPECT_TRUE(shows(row.sign, run_immunity(row.line, with_master(row.mutant)), reference(row.line)))
         << row.mutant;
   }
@@ -152,6 +180,7 @@ TEST(BurstMutants, MastersAreSeen) {
 
 TEST(BurstMutants, SlavesAreSeenAtOneOfTheTwoPlaces) {
   for (const Row& row : kOfSlaves) {
+    if (is_left_out(row)) continue;
     const auto is_seen = [&](int at) {
       return shows(row.sign, run_immunity(row.line, with_slave(at, row.mutant)), reference(row.line));
     };

@@ -52,7 +52,7 @@ class TriedPlan {
 };
 
 // The last bits, at most so many of them and no more than a plan can list.
-StruckBits last_bits(const StruckBits& struck, std::size_t most) {
+FlippedBits last_bits(const FlippedBits& struck, std::size_t most) {
   std::set<std::pair<kernel::Time, std::string>> disturbances;
   std::size_t count = 0;
   while (count < std::min({most, struck.size(), kMostBits})) {
@@ -66,14 +66,14 @@ StruckBits last_bits(const StruckBits& struck, std::size_t most) {
 
 // The case with all its disturbances, and a note of what they struck until it failed.
 struct DisturbedRun {
-  StruckBits struck;
+  FlippedBits struck;
   judge::CaseResult result;
 };
 
-DisturbedRun run_disturbed(const CaseFile& stored, const Session& session) {
-  const auto struck = std::make_shared<StruckBits>();
+DisturbedRun run_disturbed(const CaseFile& stored) {
+  const auto struck = std::make_shared<FlippedBits>();
   const Disturbances all = watched(all_disturbances(), struck);
-  const conformance::Catalogue catalogue(session.make_suites(stored.is_quiet ? without_stresses(all) : all));
+  const conformance::Catalogue catalogue(make_suites(stored.is_quiet ? without_stresses(all) : all));
   const conformance::CaseRun done = conformance::run_case(catalogue.at(stored.id), stored.setup);
   return {std::move(*struck), done.outcome.result};
 }
@@ -89,10 +89,10 @@ class BurstShrink {
   }
 
   // The smallest; nothing when bits alone do not make it fail.
-  std::optional<StruckBits> run(const StruckBits& struck) {
+  std::optional<FlippedBits> run(const FlippedBits& struck) {
     // The run ended where it failed, so what mattered lies near the end.
     for (std::size_t last = 1;; last *= 2) {
-      StruckBits bits = last_bits(struck, last);
+      FlippedBits bits = last_bits(struck, last);
       const std::size_t count = bits.size();
       if (still_fails(bits)) {
         return simplest_of(bits, struck);
@@ -102,7 +102,7 @@ class BurstShrink {
   }
 
   // With these bits, in a plan that is left there.
-  conformance::CaseRun run_with(const StruckBits& bits, const std::string& plan_file) {
+  conformance::CaseRun run_with(const FlippedBits& bits, const std::string& plan_file) {
     ++runs_;
     reports::write_text_file(plan_file, plan_of(bits, plan_));
     setup_.plan_file = plan_file;
@@ -113,13 +113,13 @@ class BurstShrink {
  private:
   // Bits that only bring another one to its place are left when each is taken away alone: so one alone of all
   // that were struck is tried, too, from the last one on.
-  StruckBits simplest_of(const StruckBits& bits, const StruckBits& struck) {
+  FlippedBits simplest_of(const FlippedBits& bits, const FlippedBits& struck) {
     constexpr std::size_t kMostTried = 256;
-    StruckBits fewest =
-        conformance::fewest(bits, [this](const StruckBits& some) { return still_fails(some); });
+    FlippedBits fewest =
+        conformance::fewest(bits, [this](const FlippedBits& some) { return still_fails(some); });
     if (fewest.size() == 1) return fewest;
     for (std::size_t n = 0; n < std::min(struck.size(), kMostTried); ++n) {
-      StruckBits alone{struck[struck.size() - 1 - n]};
+      FlippedBits alone{struck[struck.size() - 1 - n]};
       if (still_fails(alone)) return alone;
     }
     return fewest;
@@ -129,7 +129,7 @@ class BurstShrink {
     stored.is_quiet = true;
     return stored;
   }
-  bool still_fails(const StruckBits& bits) {
+  bool still_fails(const FlippedBits& bits) {
     if (stop_.stop_requested()) return false;
     const judge::CaseResult& result = run_with(bits, tried_.path()).outcome.result;
     return result.verdict == judge::Verdict::fail && result.reason == reason_;
@@ -144,7 +144,7 @@ class BurstShrink {
   std::size_t runs_ = 0;
 };
 
-std::string bit_lines(const StruckBits& bits) {
+std::string bit_lines(const FlippedBits& bits) {
   std::string text;
   for (const StruckBit& one : bits) {
     text += fmt::format("  bit {} of transmission {} from {} on, as {} hears it\n", one.bit, one.transmission,
@@ -160,7 +160,7 @@ int shrink_bursts(Session& session, const CaseFile& stored, const std::filesyste
   plan_file.replace_extension(".plan.json");
   reports::check_writable(plan_file);
   session.terminal.print(reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
-  const DisturbedRun disturbed = run_disturbed(stored, session);
+  const DisturbedRun disturbed = run_disturbed(stored);
   if (disturbed.result.verdict != judge::Verdict::fail) {
     session.terminal.print(
         fmt::format("the stored case does not fail, its verdict is {}: nothing to shrink\n",

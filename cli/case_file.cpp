@@ -22,7 +22,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::string_view kSchema = "fieldproof/case/1";
-constexpr const char* kPlayback = "playback.txt";
+constexpr const char* kPlayback = "playback.json";
 
 std::string place_of_copy(std::string_view name) {
   return fmt::format("../../{}", name);
@@ -68,7 +68,7 @@ ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed,
   if (!kept.pics.empty()) json["pics"] = kept.pics;
   if (is_quiet) json["quiet"] = true;
   add_end(json, end_of(result));
-  if (!done.outcome.recording.playback.empty()) json["playback"] = kPlayback;
+  if (done.outcome.recording.devices) json["playback"] = kPlayback;
   json["truncated"] = done.outcome.recording.truncated;
   return json;
 }
@@ -163,7 +163,7 @@ void store_case(const reports::RunDirectory& directory, const conformance::CaseR
   const conformance::Recording& recording = done.outcome.recording;
   const KeptFiles kept = keep_files(directory, done.setup);
   if (!recording.trace.records.empty()) store_recording(directory, done);
-  if (!recording.playback.empty()) directory.write_case(id, kPlayback, recording.playback);
+  if (recording.devices) directory.write_case(id, kPlayback, recording.devices->text());
   if (!done.outcome.result.log.empty()) directory.write_case(id, "log.txt", done.outcome.result.log);
   // Last, so that a case file never names a file that is not there.
   directory.write_case(id, "case.json", text_of(case_json(done, run_seed, kept, false)));
@@ -190,8 +190,7 @@ std::string wave_dump_of(const conformance::CaseRun& done) {
 
 StoredEntry::StoredEntry(const CaseFile& stored, const Session& session) {
   if (stored.is_quiet) {
-    quiet_ =
-        std::make_unique<conformance::Catalogue>(session.make_suites(without_stresses(all_disturbances())));
+    quiet_ = std::make_unique<conformance::Catalogue>(make_suites(without_stresses(all_disturbances())));
   }
   entry_ = &(quiet_ ? *quiet_ : session.catalogue).at(stored.id);
 }

@@ -1,7 +1,7 @@
 // case.json: everything that is needed to run one case again as it ran, and what came out of it.
 //
 // Beside it lie the files of the case: trace.txt (the recording, one line each), timeline.json (what lies
-// around the first finding, as data), trace.pcapng (the recording for Wireshark), playback.txt (what the
+// around the first finding, as data), trace.pcapng (the recording for Wireshark), playback.json (what the
 // implementation drove), log.txt. Paths of a
 // network, plan or PICS are those of copies inside the run's directory, so that a directory that is moved or
 // sent still replays. Reading is strict: kernel::Error(configuration) names line and pointer. 64-bit numbers

@@ -9,11 +9,13 @@
 #include "cli/run_setup.hpp"
 #include "cli/stored_sequence.hpp"
 #include "cli/verbs.hpp"
+#include "fuzz/search/sequence_search.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
-// `fieldproof check`: random sequences of commands and faults against a model of the role. What fails is made
-// as small as it can be and stored as a case file.
+// `fieldproof check`: random sequences of commands and faults against the reference of the role; `fieldproof
+// fuzz`: the same, mutated towards what the implementation has not passed yet. What fails is made as small as
+// it can be and stored as a case file.
 namespace fieldproof::cli {
 namespace {
 
@@ -42,7 +44,7 @@ std::string case_path(const Session& session, const SequenceFile& target) {
 std::string passed_text(const conformance::SequenceSearchResult& result, std::uint64_t cases,
                         const Interruption& interruption) {
   const std::string why = interruption.reason();
-  std::string text = fmt::format("{} of {} sequences, and the model agrees with {}", result.run, cases,
+  std::string text = fmt::format("{} of {} sequences, and the reference agrees with {}", result.run, cases,
                                  result.passed == result.run ? "each" : std::to_string(result.passed));
   if (result.not_applicable > 0)
     text += fmt::format("; {} ask for what cannot be done to it", result.not_applicable);
@@ -50,9 +52,37 @@ std::string passed_text(const conformance::SequenceSearchResult& result, std::ui
   return text + (why.empty() ? "" : "; " + why) + "\n";
 }
 
-int code_of(const conformance::SequenceSearchResult& result) {
-  if (result.passed == 0) return kNothingJudged;
-  return result.inconclusive > 0 ? kInconclusive : kAllAsExpected;
+int code_of(std::uint64_t passed, std::uint64_t inconclusive) {
+  if (passed == 0) return kNothingJudged;
+  return inconclusive > 0 ? kInconclusive : kAllAsExpected;
+}
+
+// Stores and prints what was found behind so many sequences.
+int keep_found(Session& session, SequenceFile& target, const std::string& path,
+               const conformance::SequenceFound& found, std::uint64_t run, const Interruption& interruption) {
+  // Of one that does not do the same again the file keeps what was seen.
+  target.commands = found.is_confirmed ? found.smallest : found.drawn;
+  keep_sequence(session, target, found.is_confirmed ? found.outcome.result : found.first, path);
+  session.terminal.print(fmt::format("sequence {} failed; {}", run + 1,
+                                     shrunk_text(found.drawn, found.smallest, found.shrinking_runs)));
+  if (interruption.signal() != 0) return kSignalBase + interruption.signal();
+  if (found.is_confirmed) return kFailed;
+  session.terminal.print("not confirmed: the implementation did not do the same again\n");
+  return kDiffers;
+}
+
+std::string fuzzed_text(const fuzz::SequenceFuzzResult& result, const Interruption& interruption) {
+  const std::string why = interruption.reason();
+  std::string text =
+      fmt::format("{} sequences without a finding; {} of them passed new edges", result.run, result.kept);
+  if (!result.has_coverage) {
+    text = fmt::format(
+        "{} sequences without a finding; the implementation reports no coverage (compile its plug-in with "
+        "-fsanitize-coverage=trace-pc), so they were drawn as check draws them",
+        result.run);
+  }
+  if (result.inconclusive > 0) text += fmt::format("; {} are inconclusive", result.inconclusive);
+  return text + (why.empty() ? "" : "; " + why) + "\n";
 }
 
 }  // namespace
@@ -75,20 +105,35 @@ int check(Session& session) {
   session.terminal.end_progress();
   if (!result.found) {
     session.terminal.print(passed_text(result, search.cases, interruption));
-    return interruption.signal() != 0 ? kSignalBase + interruption.signal() : code_of(result);
+    return interruption.signal() != 0 ? kSignalBase + interruption.signal()
+                                      : code_of(result.passed, result.inconclusive);
   }
-  const conformance::SequenceFound& found = *result.found;
-  // Of one that does not do the same again the file keeps what was seen.
-  target.commands = found.is_confirmed ? found.smallest : found.drawn;
-  keep_sequence(session, target, found.is_confirmed ? found.outcome.result : found.first, path);
-  session.terminal.print(fmt::format("sequence {} failed; {}", result.run + 1,
-                                     shrunk_text(found.drawn, found.smallest, found.shrinking_runs)));
-  if (interruption.signal() != 0) return kSignalBase + interruption.signal();
-  if (!found.is_confirmed) {
-    session.terminal.print("not confirmed: the implementation did not do the same again\n");
-    return kDiffers;
-  }
-  return kFailed;
+  return keep_found(session, target, path, *result.found, result.run, interruption);
+}
+
+int fuzz_role(Session& session) {
+  SequenceFile target = target_of(session);
+  const std::string path = case_path(session, target);
+  reports::check_writable(path);
+  const Settings& settings = session.settings;
+  // With a limit in time there is none in number, unless it is given.
+  const bool is_endless = settings.is_set("max-time") && settings.origin("cases") == Origin::fallback;
+  fuzz::SequenceFuzz search;
+  search.suite = target.suite;
+  search.role = target.role;
+  search.setup = target.setup;
+  search.runs = is_endless ? kMostCases : settings.number("cases", 1, kMostCases);
+  session.terminal.print(reports::run_header(identity_of(session, target.setup, 1), manifest_of(session, 1)));
+  const Interruption interruption(settings.duration("max-time"));
+  search.stop = interruption.token();
+  search.on_progress = [&](std::uint64_t done) { session.terminal.progress(static_cast<std::size_t>(done)); };
+  session.terminal.begin_progress(static_cast<std::size_t>(search.runs), "sequences");
+  const fuzz::SequenceFuzzResult result = fuzz::search(search);
+  session.terminal.end_progress();
+  if (result.found) return keep_found(session, target, path, *result.found, result.run, interruption);
+  session.terminal.print(fuzzed_text(result, interruption));
+  return interruption.signal() != 0 ? kSignalBase + interruption.signal()
+                                    : code_of(result.passed, result.inconclusive);
 }
 
 }  // namespace fieldproof::cli

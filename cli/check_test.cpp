@@ -66,7 +66,7 @@ TEST_F(Check, SearchesEachRoleOfTheDataLinkHereAndInAProcess) {
 }
 
 TEST_F(Check, RefusesWhatItCannotServe) {
-  const Called no_role = call({"check", "valve_bus/host"});
+  const Called no_role = call({"check", "interbus/network"});
   EXPECT_EQ(no_role.exit_code, kUsage);
   EXPECT_HOLDS(no_role.err, "'valve_bus/node'");
   EXPECT_EQ(call({"check", "valve_bus/node", "--iut", "mutant:nobody"}).exit_code, kUsage);

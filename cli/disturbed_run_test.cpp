@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "cli/probe/source_folder.hpp"
-#include "cli/suites.hpp"
+#include "cli/protocols.hpp"
 #include "conformance/catalogue.hpp"
 #include "conformance/runner.hpp"
 #include "harness/kernel/error.hpp"
@@ -17,7 +17,7 @@ namespace fieldproof::cli {
 namespace {
 
 conformance::CaseRun run_under(const std::string& plan, std::uint64_t seed = 1) {
-  static const conformance::Catalogue catalogue(suites(all_disturbances()));
+  static const conformance::Catalogue catalogue(built_in_suites());
   const auto entries = catalogue.select(std::vector<std::string>{"interbus/network/exchange/**"});
   conformance::Setup setup;
   setup.seed = seed;
@@ -50,7 +50,7 @@ std::vector<std::string> places_of(const std::string& plan) {
   conformance::Setup setup;
   setup.plan_file = plan;
   std::vector<std::string> places;
-  for (const fault::PlanPart& part : suites(all_disturbances()).front()->plan_parts(setup))
+  for (const fault::PlanPart& part : built_in_suites().front()->plan_parts(setup))
     places.push_back(part.place);
   return places;
 }
@@ -92,7 +92,7 @@ TEST(DisturbedRun, IsAFunctionOfItsSeed) {
 
 TEST(DisturbedRun, IsToldToRestOnAModelThatIsNotCalibrated) {
   conformance::Setup setup;
-  const auto suite = std::move(suites(all_disturbances()).front());
+  const auto suite = std::move(built_in_suites().front());
   EXPECT_TRUE(suite->caveats(setup).empty());
   setup.plan_file = kExample;
   const std::vector<std::string> caveats = suite->caveats(setup);

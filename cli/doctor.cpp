@@ -8,9 +8,10 @@
 #include "cli/attachments.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/implementations.hpp"
-#include "cli/roles.hpp"
+#include "cli/protocol_entry.hpp"
 #include "cli/serial_pool.hpp"
 #include "cli/verbs.hpp"
+#include "harness/kernel/error.hpp"
 #include "harness/kernel/untrusted_text.hpp"
 
 // `fieldproof doctor`: can an implementation be attached, and how well does this machine know instants? What
@@ -115,7 +116,6 @@ void Doctor::examine_channel(iut::DevicePool& pool, std::string_view what) {
 
 void Doctor::examine_line(const std::string& uri) {
   const iut::SerialSettings settings = iut::serial_settings(uri);
-  const judge::Pics pics = *node_on_real_line(uri);
   std::optional<iut::DevicePool> upper;
   if (settings.upper.empty()) {
     say("upper channel", "none: valves and switches are not seen, settings and supply stay as they are");
@@ -126,8 +126,12 @@ void Doctor::examine_line(const std::string& uri) {
   iut::SerialLine line(settings.path, clock);
   say("line", line.is_terminal() ? "open; a pseudo terminal: no bit rate, parity, framing, break, ninth bit"
                                  : "open");
-  const std::int64_t rate = settings.bit_rate.value_or(valve_bus::Rules{}.bit_rate);
-  const line::CharacterFormat format = settings.format.value_or(*iut::character_format_of("8m1"));
+  const Role& role = role_named(role_.protocol + "/" + role_.role);
+  if (role.uart == nullptr)
+    throw kernel::Error(kernel::ErrorKind::usage, fmt::format("'{}': {}", uri, no_serial_line_for(role)));
+  const iut::UartLine uart = role.uart({}, nullptr);  // where a case says nothing
+  const std::int64_t rate = settings.bit_rate.value_or(uart.bit_rate);
+  const line::CharacterFormat format = settings.format.value_or(uart.of_uart);
   line.set(rate, format);
   say("settings", line.is_terminal() ? "a pseudo terminal has none"
                                      : fmt::format("{} bit/s {} accepted", rate, format.text()));
@@ -157,9 +161,14 @@ void Doctor::examine(const std::string& uri) {
 
 // Whose case it is that a real one would be asked for.
 iut::RoleName role_of(const conformance::Assignment& assignment) {
-  const auto named = std::ranges::find(roles(), assignment.role, &Role::name);
-  if (assignment.role.empty() || named == roles().end()) return {"valve_bus", "node"};
-  return {std::string(named->protocol), std::string(named->name)};
+  const bool is_at_line = assignment.uri.starts_with(iut::kSerialUri);
+  for (const Role* role : roles()) {
+    const bool is_meant =
+        assignment.role.empty() ? !is_at_line || role->uart != nullptr : role->name == assignment.role;
+    if (is_meant) return {std::string(role->protocol), std::string(role->name)};
+  }
+  throw kernel::Error(kernel::ErrorKind::usage,
+                      fmt::format("'{}': no role '{}' can be attached", assignment.uri, assignment.role));
 }
 
 }  // namespace

@@ -8,22 +8,21 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/burst_options.hpp"
 #include "cli/emc_text.hpp"
 #include "cli/exit_code.hpp"
-#include "cli/implementations.hpp"
 #include "cli/interruption.hpp"
+#include "cli/networks.hpp"
 #include "cli/run_setup.hpp"
-#include "cli/simulated_network.hpp"
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
-#include "conformance/interbus/master_mutants.hpp"
-#include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/ordered_work.hpp"
 #include "emc/random_flips.hpp"
 #include "emc/residual/residual_error.hpp"
+#include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/error.hpp"
 #include "reports/run_directory.hpp"
 
@@ -97,57 +96,29 @@ std::vector<EmcTest> tests_from(const Settings& settings, bool has_bursts) {
   return tests;
 }
 
-// Mutants by role; the rest of the network are references.
-emc::InterbusStations stations_from(const Session& session, std::size_t stations) {
-  emc::InterbusStations players;
-  const auto entries = session.catalogue.select(std::vector<std::string>{"interbus/**"});
-  const std::vector<std::string>& texts = session.settings.list("iut");
-  const auto implementations = parse_implementations(texts, session.catalogue, entries);
-  for (std::size_t n = 0; n < texts.size(); ++n) {
-    const std::string& text = texts[n];
-    const conformance::Assignment& assigned = implementations[n];
-    if (assigned.uri == "ref") continue;
-    constexpr std::string_view kMutant = "mutant:";
-    if (!assigned.uri.starts_with(kMutant) || (assigned.role != "slave" && assigned.role != "master")) {
-      session.settings.refuse(
-          "iut",
-          fmt::format("'{}' cannot take part here; write slave@N=mutant:NAME or master=mutant:NAME", text));
-    }
-    const std::string name = assigned.uri.substr(kMutant.size());
-    if (assigned.role == "master") {
-      players.make_master = conformance::make_master(assigned.uri);
-      continue;
-    }
-    const int at = std::max(assigned.position, 1);
-    if (at > static_cast<int>(stations) || players.make_slave) {
-      session.settings.refuse(
-          "iut", fmt::format("'{}': one slave is a mutant, at a position from 1 to {}", text, stations));
-    }
-    players.make_slave = [at, name](int position, const interbus::SlaveConfiguration& configuration) {
-      return position == at ? conformance::make_slave_mutant(name, configuration) : nullptr;
-    };
-  }
-  return players;
-}
-
 // Runs the tests over the threads; a test is told when all before it are done.
 class Campaign {
  public:
   explicit Campaign(Session& session)
       : session_(session),
         interruption_(session.settings.duration("max-time")),
-        network_(simulated_network_from(session.settings)),
-        stations_(stations_from(session, interbus::ring_order(network_).size())) {
+        row_(network_row_of(session, "emc")),
+        network_(row_.plan(session)) {
     const Settings& settings = session.settings;
-    done_.network = network_.name;
+    done_.protocol = row_.protocol;
+    done_.network = network_->name();
+    done_.exchange = network_->exchange();
     done_.implementations = fmt::format("{}", fmt::join(settings.list("iut"), " "));
-    done_.profile = profile_from(settings);
+    done_.profile = settings.origin("profile") == Origin::fallback
+                        ? emc::Profile::named(network_->default_profile())
+                        : profile_from(settings);
     done_.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
     done_.duration = virtual_time_from(settings);
     done_.has_bursts = wants_bursts(settings);
+    done_.channel_caveats = network_->undetected_caveats();
     planned_ = tests_from(settings, done_.has_bursts);
     for (EmcTest& test : planned_) {
-      if (!test.has_bursts()) test.undetected = emc::undetected_cycle(network_, test.flip_probability);
+      if (!test.has_bursts()) test.undetected = network_->undetected(test.flip_probability);
     }
   }
 
@@ -156,18 +127,18 @@ class Campaign {
     const emc::LineResponse response(done_.profile.coupling);
     done_.threshold_volts = response.threshold_volts();
     session_.terminal.print(
-        simulation_header(session_, done_.seed, session_.settings.text("network"), kCycleTimePaper));
+        simulation_header(session_, done_.seed, session_.settings.text("network"), row_.own_network));
     session_.terminal.print(emc_table_head(done_.has_bursts));
-    conformance::OrderedWork<emc::ImmunityResult> work;
+    conformance::OrderedWork<Ran> work;
     work.count = planned_.size();
     work.threads = jobs_from(session_.settings);
     work.stop = interruption_.token();
-    work.work = [&](std::size_t n) {
-      return emc::run_immunity(network_, stations_, response, settings_of(n));
-    };
-    work.deliver = [&](std::size_t n, emc::ImmunityResult&& result) {
-      planned_[n].result = result;
+    work.work = [&](std::size_t n) { return run_one(response, settings_of(n)); };
+    work.deliver = [&](std::size_t n, Ran&& ran) {
+      if (!ran.result.is_complete) return false;
+      planned_[n].result = std::move(ran.result);
       done_.tests.push_back(planned_[n]);
+      if (done_.places.empty()) describe(ran);
       session_.terminal.print(emc_line(done_.tests.back()));
       return true;
     };
@@ -175,16 +146,51 @@ class Campaign {
     session_.terminal.begin_progress(planned_.size(), "tests");
     const std::size_t delivered = work.run();
     session_.terminal.end_progress();
-    if (!done_.tests.empty()) {
-      done_.residual = emc::frame_residual(network_, done_.tests.front().result.cycle_time);
-    }
-    return delivered == planned_.size();
+    return delivered == planned_.size() && done_.tests.size() == planned_.size();
   }
 
   const EmcCampaign& result() const { return done_; }
   const Interruption& interruption() const { return interruption_; }
 
  private:
+  // A test, and what its network is like.
+  struct Ran {
+    emc::ImmunityResult result;
+    std::vector<EmcPlace> places;
+    network::RecoveryLimit recovery;
+    std::vector<network::ProtectedFrame> frames;
+  };
+
+  Ran run_one(const emc::LineResponse& response, const emc::ImmunitySettings& settings) const {
+    Ran ran;
+    try {
+      const std::unique_ptr<network::Network> network = network_->make(settings.seed);
+      for (const network::Place& place : network->places()) {
+        ran.places.push_back({place.name, place.is_exposed, std::string(place.why_not)});
+      }
+      ran.recovery = network->recovery_limit();
+      ran.frames = network->protected_frames();
+      ran.result = emc::run_immunity(*network, response, settings);
+    } catch (const iut::Misbehaviour& misbehaviour) {
+      // It takes part no more: the installation does not work again.
+      ran.result.came_up = true;
+      ran.result.criterion = emc::Criterion::d;
+      ran.result.complaint = fmt::format("{}: {}", misbehaviour.reason(), misbehaviour.what());
+    }
+    return ran;
+  }
+
+  void describe(const Ran& ran) {
+    done_.places = ran.places;
+    done_.recovery = ran.recovery;
+    for (network::ProtectedFrame frame : ran.frames) {
+      if (!ran.result.cycles.empty() && frame.distance == kernel::Duration{}) {
+        frame.distance = ran.result.cycles.front().kind.theory;
+      }
+      done_.residuals.push_back(emc::frame_residual(frame));
+    }
+  }
+
   emc::ImmunitySettings settings_of(std::size_t n) const {
     emc::ImmunitySettings settings;
     settings.bursts.level = planned_[n].level;
@@ -197,13 +203,14 @@ class Campaign {
     }
     settings.duration = done_.duration;
     settings.seed = kernel::Random(done_.seed).split(n).seed();
+    settings.stop = interruption_.token();
     return settings;
   }
 
   Session& session_;
   Interruption interruption_;
-  interbus::NetworkDescription network_;
-  emc::InterbusStations stations_;
+  const NetworkRow& row_;
+  std::unique_ptr<PlannedNetwork> network_;
   std::vector<EmcTest> planned_;
   EmcCampaign done_;
 };
@@ -214,13 +221,13 @@ bool is_failure(const EmcTest& test, std::size_t worst_allowed) {
   constexpr double kRefuted = 1e-3;
   if (test.has_bursts()) return static_cast<std::size_t>(test.result.criterion) > worst_allowed;
   const bool works_again = test.result.recovered_by_itself || test.result.recovered_after_start;
-  return test.chance_of_count() < kRefuted || !works_again;
+  return (!test.undetected.empty() && test.chance_of_count() < kRefuted) || !works_again;
 }
 
 // A network that hardly exchanged data shows nothing of what a check lets pass.
 bool says_nothing(const EmcTest& test) {
   constexpr std::uint64_t kFewCycles = 100;
-  return !test.result.came_up || (!test.has_bursts() && test.result.ledger.sent < kFewCycles);
+  return !test.result.came_up || (!test.has_bursts() && test.result.counts.sent < kFewCycles);
 }
 
 int code_of(const EmcCampaign& campaign, std::size_t worst_allowed) {
@@ -235,11 +242,6 @@ int code_of(const EmcCampaign& campaign, std::size_t worst_allowed) {
 }  // namespace
 
 int emc_protocol(Session& session) {
-  if (session.operands.front() != "interbus") {
-    throw kernel::Error(
-        kernel::ErrorKind::usage,
-        fmt::format("no bursts are prepared for '{}'; there is 'interbus'", session.operands.front()));
-  }
   const std::size_t worst_allowed = session.settings.choice("worst");
   Campaign campaign(session);
   const bool is_complete = campaign.run();
@@ -252,8 +254,8 @@ int emc_protocol(Session& session) {
   }
   const int code = code_of(campaign.result(), worst_allowed);
   if (code != kAllAsExpected) {
-    session.terminal.print(
-        fmt::format("reproduce: fieldproof emc interbus {}\n", session.settings.reproduce_options()));
+    session.terminal.print(fmt::format("reproduce: fieldproof emc {} {}\n", session.operands.front(),
+                                       session.settings.reproduce_options()));
   }
   return code;
 }

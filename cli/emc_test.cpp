@@ -70,7 +70,8 @@ TEST_F(EmcVerb, RefusesWhatItCannotServe) {
   EXPECT_NE(refusal({"--repetition", "7kHz"}).find("2.5kHz"), std::string::npos);
   EXPECT_NE(refusal({"--polarity", "x"}).find("+, -"), std::string::npos);
   EXPECT_NE(refusal({"--profile", "G"}).find("profile"), std::string::npos);
-  EXPECT_NE(refusal({"--iut", "slave@9=mutant:does_not_mark_status"}).find("1 to 3"), std::string::npos);
+  EXPECT_NE(refusal({"--iut", "slave@9=mutant:does_not_mark_status"}).find("slave@1 to slave@3"),
+            std::string::npos);
   EXPECT_NE(refusal({"--duration", "2h"}).find("1 h"), std::string::npos);
 }
 

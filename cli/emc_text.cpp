@@ -17,18 +17,20 @@ using nlohmann::ordered_json;
 constexpr std::array kCriteria = {emc::Criterion::a, emc::Criterion::b, emc::Criterion::c, emc::Criterion::d};
 
 std::string recovery_text(const emc::ImmunityResult& result) {
-  if (result.recovered_by_itself) return fmt::format("{}", result.recovery_cycles);
+  if (result.recovered_by_itself) return fmt::format("{}", result.recovery_exchanges);
   return result.recovered_after_start ? "after a start" : "never";
 }
 
-ordered_json ledger_json(const interbus::ErrorLedger& ledger) {
+ordered_json ledger_json(const network::ErrorStatistics& ledger) {
   return {{"sent", ledger.sent},
           {"corrupted", ledger.corrupted},
           {"detected", ledger.detected},
+          {"missing", ledger.missing},
+          {"retried", ledger.retried},
           {"repeated", ledger.repeated},
           {"accepted_wrong_inputs", ledger.accepted_wrong_inputs},
           {"accepted_wrong_outputs", ledger.accepted_wrong_outputs},
-          {"wrong_cycles", ledger.wrong_cycles},
+          {"wrong_cycles", ledger.wrong_exchanges},
           {"missed_outputs", ledger.missed_outputs},
           {"cleared_outputs", ledger.cleared_outputs},
           {"partly_latched", ledger.partly_latched}};
@@ -42,17 +44,57 @@ ordered_json line_json(const emc::BurstStatistics& line) {
           {"wrong_levels", line.wrong_levels}};
 }
 
+constexpr double kPerMicrosecond = 1e6;  // picoseconds
+
+double us(double picoseconds) {
+  return picoseconds / kPerMicrosecond;
+}
+
+ordered_json distribution_json(const measure::Distribution& times) {
+  if (times.is_empty()) return {{"count", 0}};
+  return {{"count", times.count()},
+          {"min_us", us(static_cast<double>(times.min()))},
+          {"mean_us", us(times.mean())},
+          {"p99_us", us(static_cast<double>(times.quantile(0.99)))},
+          {"max_us", us(static_cast<double>(times.max()))}};
+}
+
+ordered_json cycles_json(const std::vector<emc::CycleTimes>& cycles) {
+  ordered_json all = ordered_json::array();
+  for (const emc::CycleTimes& cycle : cycles) {
+    ordered_json one = {{"cycle", cycle.kind.name},
+                        {"theory_us", us(static_cast<double>(cycle.kind.theory.count()))},
+                        {"theory_is_bound", cycle.kind.is_bound},
+                        {"form", cycle.kind.form}};
+    for (const measure::Phase phase : measure::kPhases) {
+      one[std::string(measure::name(phase))] = distribution_json(cycle.times.in(phase));
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+// On the quiet line; by the closed form where there was none.
+double cycle_time_us(const emc::ImmunityResult& result) {
+  if (result.cycles.empty()) return 0;
+  const measure::Distribution& quiet = result.cycles.front().times.in(measure::Phase::quiet);
+  return us(quiet.is_empty() ? static_cast<double>(result.cycles.front().kind.theory.count())
+                             : static_cast<double>(quiet.quantile(0.5)));
+}
+
 ordered_json result_json(const emc::ImmunityResult& result) {
   return {{"came_up", result.came_up},
+          {"complaint", result.complaint},
           {"criterion", emc::name(result.criterion)},
           {"longest_bad_run", result.longest_bad_run},
           {"recovered_by_itself", result.recovered_by_itself},
           {"recovered_after_start", result.recovered_after_start},
-          {"recovery_cycles", result.recovery_cycles},
-          {"bus_stops", result.bus_stops},
-          {"quality_bit", result.quality_bit},
-          {"cycle_time_us", static_cast<double>(result.cycle_time.count()) / 1e6},
-          {"ledger", ledger_json(result.ledger)},
+          {"recovery_cycles", result.recovery_exchanges},
+          {"bus_stops", result.stops},
+          {"quality_bit", result.poor_quality},
+          {"cycle_time_us", cycle_time_us(result)},
+          {"cycles", cycles_json(result.cycles)},
+          {"ledger", ledger_json(result.counts)},
           {"line", line_json(result.line)}};
 }
 
@@ -69,31 +111,37 @@ ordered_json channel_json(const EmcTest& test) {
   ordered_json json = {{"channel", "bsc"},
                        {"flip_probability", test.flip_probability},
                        {"receivers", test.result.receivers},
-                       {"undetected_by_code_word", test.undetected.by_code_word},
-                       {"undetected_by_shift", test.undetected.by_shift},
-                       {"undetected_by_misframing", test.undetected.by_misframing},
-                       {"expected_wrong_cycles_at_most", test.expected_wrong_cycles()},
+                       {"expected_wrong_cycles_at_most", test.expected_wrong()},
                        {"chance_of_count", test.chance_of_count()}};
+  for (const UndetectedPart& part : test.undetected) json["undetected_by_" + part.name] = part.probability;
   json.update(result_json(test.result));
   return json;
 }
 
-std::string channel_line(const EmcTest& test) {
-  const std::string where = fmt::format("bsc {:<12g}", test.flip_probability);
-  if (!test.result.came_up) return where + "  the network does not come up on a quiet line\n";
-  const interbus::ErrorLedger& ledger = test.result.ledger;
-  return fmt::format("{} {:>9} {:>10} {:>10} {:>8} {:>6} {:>6} {:>12.3g} {:>8.3g}\n", where, ledger.sent,
-                     ledger.corrupted, ledger.detected, test.result.longest_bad_run, test.result.bus_stops,
-                     ledger.wrong_cycles, test.expected_wrong_cycles(), test.chance_of_count());
+std::string does_not_come_up(const emc::ImmunityResult& result) {
+  if (result.complaint.empty()) return "  the network does not come up on a quiet line\n";
+  return fmt::format("  the network does not come up on a quiet line: {}\n",
+                     reports::escaped_line(result.complaint));
 }
 
-std::string frame_residual_text(const emc::FrameResidual& residual, const EmcTotal& total) {
+std::string channel_line(const EmcTest& test) {
+  const std::string where = fmt::format("bsc {:<12g}", test.flip_probability);
+  if (!test.result.came_up) return where + does_not_come_up(test.result);
+  const network::ErrorStatistics& counts = test.result.counts;
+  const std::string line =
+      fmt::format("{} {:>9} {:>10} {:>10} {:>8} {:>6} {:>6}", where, counts.sent, counts.corrupted,
+                  counts.detected, test.result.longest_bad_run, test.result.stops, counts.wrong_exchanges);
+  if (test.undetected.empty()) return line + fmt::format(" {:>12} {:>8}\n", "-", "-");
+  return line + fmt::format(" {:>12.3g} {:>8.3g}\n", test.expected_wrong(), test.chance_of_count());
+}
+
+std::string frame_residual_text(const emc::FrameResidual& residual, std::uint64_t corrupted) {
   return fmt::format(
-      "{} over {} bits lets at most {:.3g} of the corrupted cycles pass (exact, at the worst bit-error rate, "
+      "{} over {} bits lets at most {:.3g} of the corrupted frames pass (exact, at the worst bit-error rate, "
       "{:.2g}): of these {:.3g}\n"
-      "per hour {:.3g} cycles pass wrong at a bit-error rate of 1e-2 (formula of IEC 61784-3, unverified)\n",
-      residual.frame_check, residual.bits, residual.worst_share, residual.worst_ber, total.expected_at_most,
-      residual.rate_per_hour);
+      "per hour {:.3g} frames pass wrong at a bit-error rate of 1e-2 (formula of IEC 61784-3, unverified)\n",
+      residual.frame_check, residual.bits, residual.worst_share, residual.worst_ber,
+      static_cast<double>(corrupted) * residual.worst_share, residual.rate_per_hour);
 }
 
 ordered_json frame_residual_json(const emc::FrameResidual& residual, const EmcTotal& total) {
@@ -106,40 +154,60 @@ ordered_json frame_residual_json(const emc::FrameResidual& residual, const EmcTo
           {"rate_per_hour_at_ber_0.01", residual.rate_per_hour}};
 }
 
+emc::FrameResidual residual_of(const EmcCampaign& campaign) {
+  return campaign.residuals.empty() ? emc::FrameResidual{} : campaign.residuals.front();
+}
+
+ordered_json places_json(const EmcCampaign& campaign) {
+  ordered_json places = ordered_json::array();
+  for (const EmcPlace& place : campaign.places) {
+    ordered_json one = {{"receiver", place.name}, {"exposed", place.is_exposed}};
+    if (!place.is_exposed) one["why_not"] = place.why_not;
+    places.push_back(std::move(one));
+  }
+  return places;
+}
+
 // What a reader of the results has to know of their standing.
 std::vector<std::string> unverified_of(const EmcCampaign& campaign) {
   if (campaign.has_bursts) return emc::caveats_of(campaign.profile);
-  return {
-      "That a flipped header level moves the end of the data, and how often a check fits then, follows from "
-      "this "
-      "project's reading of the header: the simulated stations and the theory share it."};
+  return campaign.channel_caveats;
 }
 
 }  // namespace
 
+double EmcTest::expected_wrong() const {
+  double any = 0;
+  for (const UndetectedPart& part : undetected) any += part.probability;
+  return static_cast<double>(result.counts.sent * result.receivers) * any;
+}
+
 EmcTotal total_of(const EmcCampaign& campaign) {
   EmcTotal total;
   for (const EmcTest& test : campaign.tests) {
-    total.corrupted += test.result.ledger.corrupted;
-    total.detected += test.result.ledger.detected;
-    total.accepted_wrong += test.result.ledger.accepted_wrong();
+    total.corrupted += test.result.counts.corrupted;
+    total.detected += test.result.counts.detected;
+    total.accepted_wrong += test.result.counts.accepted_wrong();
   }
   if (total.corrupted > 0) {
     total.upper_bound_of_share =
         emc::upper_bound_of_share(std::min(total.accepted_wrong, total.corrupted), total.corrupted);
   }
-  total.expected_at_most = static_cast<double>(total.corrupted) * campaign.residual.worst_share;
+  if (!campaign.residuals.empty()) {
+    total.expected_at_most = static_cast<double>(total.corrupted) * campaign.residuals.front().worst_share;
+  }
   return total;
 }
 
 std::string emc_table_head(bool has_bursts) {
   if (!has_bursts) {
-    return fmt::format("{:<16} {:>9} {:>10} {:>10} {:>8} {:>6} {:>6} {:>12} {:>8}\n", "channel", "cycles",
+    return fmt::format("{:<16} {:>9} {:>10} {:>10} {:>8} {:>6} {:>6} {:>12} {:>8}\n", "channel", "exchanges",
                        "corrupted", "rejected", "longest", "stops", "wrong", "at most", "chance");
   }
-  return fmt::format("{:<14} {:>8} {:>3}  {:>9} {:>8} {:>10} {:>9} {:>9} {:>8} {:>14} {:>6} {:>8} {:>6}\n",
-                     "level", "pulses", "pol", "criterion", "cycles", "corrupted", "rejected", "held",
-                     "longest", "recovery", "stops", "cleared", "wrong");
+  return fmt::format(
+      "{:<14} {:>8} {:>3}  {:>9} {:>9} {:>10} {:>9} {:>8} {:>9} {:>7} {:>8} {:>14} {:>6} {:>8} {:>6}\n",
+      "level", "pulses", "pol", "criterion", "exchanges", "corrupted", "rejected", "retries", "held",
+      "missed", "longest", "recovery", "stops", "cleared", "wrong");
 }
 
 std::string emc_line(const EmcTest& test) {
@@ -147,37 +215,88 @@ std::string emc_line(const EmcTest& test) {
   const emc::ImmunityResult& result = test.result;
   const std::string where = fmt::format("{:<14} {:>8} {:>3}", test.level.text(),
                                         emc::text_of(test.repetition), emc::text_of(test.polarity));
-  if (!result.came_up) return where + "  the network does not come up on a quiet line\n";
-  const interbus::ErrorLedger& ledger = result.ledger;
-  return fmt::format("{}  {:>9} {:>8} {:>10} {:>9} {:>9} {:>8} {:>14} {:>6} {:>8} {:>6}\n", where,
-                     emc::name(result.criterion), ledger.sent, ledger.corrupted, ledger.detected,
-                     ledger.detected - std::min(ledger.detected, ledger.partly_latched),
-                     result.longest_bad_run, recovery_text(result), result.bus_stops, ledger.cleared_outputs,
-                     ledger.accepted_wrong());
+  if (!result.came_up) return where + does_not_come_up(result);
+  const network::ErrorStatistics& counts = result.counts;
+  std::string line =
+      fmt::format("{}  {:>9} {:>9} {:>10} {:>9} {:>8} {:>9} {:>7} {:>8} {:>14} {:>6} {:>8} {:>6}\n", where,
+                  emc::name(result.criterion), counts.sent, counts.corrupted, counts.detected, counts.retried,
+                  counts.detected - std::min(counts.detected, counts.partly_latched), counts.missed_outputs,
+                  result.longest_bad_run, recovery_text(result), result.stops, counts.cleared_outputs,
+                  counts.accepted_wrong());
+  if (!result.complaint.empty()) line += fmt::format("    {}\n", reports::escaped_line(result.complaint));
+  return line;
 }
+
+namespace {
+
+// Times of all tests together, by the phase in which they lay, beside the closed form.
+std::string cycles_text(const EmcCampaign& campaign) {
+  if (campaign.tests.empty()) return "";
+  std::vector<emc::CycleTimes> sums = campaign.tests.front().result.cycles;
+  for (std::size_t n = 1; n < campaign.tests.size(); ++n) {
+    const auto& more = campaign.tests[n].result.cycles;
+    for (std::size_t k = 0; k < std::min(sums.size(), more.size()); ++k) sums[k].times.add(more[k].times);
+  }
+  std::string text = fmt::format("\n{:<20} {:>12}  {:>10} {:>10} {:>12} {:>12} {:>12} {:>12}\n", "cycle",
+                                 "theory, us", "phase", "count", "min, us", "mean, us", "p99, us", "max, us");
+  for (const emc::CycleTimes& cycle : sums) {
+    for (const measure::Phase phase : measure::kPhases) {
+      const measure::Distribution& times = cycle.times.in(phase);
+      if (times.is_empty()) continue;
+      text += fmt::format(
+          "{:<20} {:>12.2f}{} {:>10} {:>10} {:>12.2f} {:>12.2f} {:>12.2f} {:>12.2f}\n", cycle.kind.name,
+          us(static_cast<double>(cycle.kind.theory.count())), cycle.kind.is_bound ? "<" : " ",
+          measure::name(phase), times.count(), us(static_cast<double>(times.min())), us(times.mean()),
+          us(static_cast<double>(times.quantile(0.99))), us(static_cast<double>(times.max())));
+    }
+    text += fmt::format("  theory: {}\n", cycle.kind.form);
+  }
+  return text;
+}
+
+std::string places_text(const EmcCampaign& campaign) {
+  std::string text;
+  std::size_t exposed = 0;
+  for (const EmcPlace& place : campaign.places) exposed += place.is_exposed ? 1 : 0;
+  text += fmt::format("{} of {} receivers are exposed to the bursts\n", exposed, campaign.places.size());
+  constexpr std::size_t kMostNamed = 8;
+  std::size_t named = 0;
+  for (const EmcPlace& place : campaign.places) {
+    if (place.is_exposed || ++named > kMostNamed) continue;
+    text += fmt::format("  - not {}: {}\n", reports::escaped_line(place.name), place.why_not);
+  }
+  if (named > kMostNamed) text += fmt::format("  - and {} more\n", named - kMostNamed);
+  return text;
+}
+
+}  // namespace
 
 std::string emc_summary(const EmcCampaign& campaign) {
   const EmcTotal total = total_of(campaign);
   std::string text;
   if (campaign.has_bursts) {
-    text = "\ncriterion  what it means (a choice of this project)\n";
+    text = fmt::format("\nan exchange is one {}; recovery is counted in them, and may take {} ({})\n",
+                       campaign.exchange, campaign.recovery.exchanges, campaign.recovery.source);
+    text += "criterion  what it means (a choice of this project)\n";
     for (const auto criterion : kCriteria) {
       text += fmt::format("{:>9}  {}\n", emc::name(criterion), emc::text_of(criterion));
     }
   } else {
     text =
-        "\nwrong: cycles in which a wrong word was accepted; chance: of so many or more, where as many come "
-        "on "
-        "average as theory allows at most:\nflips that are a code word of the frame check (exact), a flipped "
-        "control level that moves the end of the data by an octet,\nand an octet lost or inserted where the "
-        "check fits by chance (both from this project's reading of the header, unverified)\n";
+        "\nwrong: exchanges in which a wrong word was accepted; chance: of so many or more, where as many "
+        "come "
+        "on average as theory allows at most\n";
+    for (const std::string& caveat : unverified_of(campaign)) text += fmt::format("  - {}\n", caveat);
   }
+  text += cycles_text(campaign);
   text += fmt::format(
-      "\nledger: {} cycles corrupted, {} rejected, {} words accepted wrong; of corrupted cycles at most "
-      "{:.3g} pass "
-      "unseen (one-sided 95 %)\n",
+      "\nerror statistics: {} exchanges corrupted, {} rejected, {} words accepted wrong; of corrupted ones "
+      "at "
+      "most {:.3g} pass unseen (one-sided 95 %)\n",
       total.corrupted, total.detected, total.accepted_wrong, total.upper_bound_of_share);
-  text += frame_residual_text(campaign.residual, total);
+  for (const emc::FrameResidual& residual : campaign.residuals)
+    text += frame_residual_text(residual, total.corrupted);
+  text += places_text(campaign);
   if (!campaign.has_bursts) return text;
   text += fmt::format("profile {} ({}): a receiver can be wrong from {:.0f} V on\n", campaign.profile.name,
                       reports::escaped_line(campaign.profile.title), campaign.threshold_volts);
@@ -204,7 +323,7 @@ std::string emc_json(const EmcCampaign& campaign) {
   const EmcTotal total = total_of(campaign);
   const bool has_bursts = campaign.has_bursts;
   const ordered_json document = {{"schema", "fieldproof/emc/1"},
-                                 {"protocol", "interbus"},
+                                 {"protocol", campaign.protocol},
                                  {"network", campaign.network},
                                  {"implementations", campaign.implementations},
                                  {"profile", has_bursts ? campaign.profile.name : ""},
@@ -215,7 +334,12 @@ std::string emc_json(const EmcCampaign& campaign) {
                                  {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
                                  {"tests", std::move(tests)},
                                  {"channels", std::move(channels)},
-                                 {"residual", frame_residual_json(campaign.residual, total)},
+                                 {"places", places_json(campaign)},
+                                 {"recovery_limit",
+                                  {{"exchanges", campaign.recovery.exchanges},
+                                   {"exchange", campaign.exchange},
+                                   {"source", campaign.recovery.source}}},
+                                 {"residual", frame_residual_json(residual_of(campaign), total)},
                                  {"total",
                                   {{"corrupted", total.corrupted},
                                    {"detected", total.detected},

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "cli/explained_numbers.hpp"
 #include "cli/verbs.hpp"
 
-// `fieldproof explain`: what a case requires, where that stands, what it does and what it catches.
+// `fieldproof explain`: what a case requires, where that stands, what it does and what it catches; or the
+// settings of a role, or one number.
 namespace fieldproof::cli {
 namespace {
 
@@ -32,6 +34,10 @@ std::string catches_text(const conformance::Entry& entry) {
 }  // namespace
 
 int explain(Session& session) {
+  if (const auto text = explained_numbers(session.catalogue, session.operands.front())) {
+    session.terminal.print(*text);
+    return 0;
+  }
   const conformance::Entry& entry = session.catalogue.at(session.operands.front());
   const conformance::TestCase& test_case = *entry.test_case;
   std::string text = fmt::format("{}\n", test_case.id);

@@ -26,7 +26,7 @@ bool level_at(const line::Waveforms& waves, std::size_t first, kernel::Time time
 class WatchedChannel final : public fault::Channel {
  public:
   WatchedChannel(std::unique_ptr<fault::Channel> channel, const fault::StressPlace& place,
-                 std::shared_ptr<StruckBits> struck)
+                 std::shared_ptr<FlippedBits> struck)
       : channel_(std::move(channel)),
         receiver_(place.trace.channel_name(place.channel)),
         from_(place.from),
@@ -60,7 +60,7 @@ class WatchedChannel final : public fault::Channel {
   std::string receiver_;
   kernel::Time from_;
   std::int64_t bit_rate_;
-  std::shared_ptr<StruckBits> struck_;
+  std::shared_ptr<FlippedBits> struck_;
   std::uint64_t passed_ = 0;
 };
 
@@ -95,7 +95,7 @@ void change_stresses(Disturbances& all, Change change) {
 
 }  // namespace
 
-Disturbances watched(Disturbances all, const std::shared_ptr<StruckBits>& struck) {
+Disturbances watched(Disturbances all, const std::shared_ptr<FlippedBits>& struck) {
   change_stresses(all, [&struck](const MakeChannel& make) {
     return [make, struck](const fault::StressPlace& place) {
       return std::make_unique<WatchedChannel>(make(place), place, struck);

@@ -27,10 +27,10 @@ struct StruckBit {
 };
 
 // In the order in which they were struck.
-using StruckBits = std::vector<StruckBit>;
+using FlippedBits = std::vector<StruckBit>;
 
 // The same disturbances, with a note in `struck` of all that they do.
-Disturbances watched(Disturbances all, const std::shared_ptr<StruckBits>& struck);
+Disturbances watched(Disturbances all, const std::shared_ptr<FlippedBits>& struck);
 
 // The same for plans; stresses disturb nothing, for as long as those do.
 Disturbances without_stresses(Disturbances all);

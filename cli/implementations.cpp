@@ -57,12 +57,20 @@ std::vector<const Suite*> suites_with(const std::string& text, const std::string
 }
 
 void check_position(const std::string& text, const Assignment& assignment,
-                    const std::vector<const Suite*>& suites) {
-  int last = 0;
-  for (const Suite* suite : suites) last = std::max(last, suite->last_position());
+                    const std::vector<const Suite*>& suites, std::size_t last_position) {
+  int last = static_cast<int>(last_position);
+  if (last == 0) {
+    for (const Suite* suite : suites) last = std::max(last, suite->last_position());
+  }
   if (assignment.position <= last) return;
   refuse(text, fmt::format("the position {} is out of range; a network has at most {} stations",
                            assignment.position, last));
+}
+
+// As it is written: "slave@3=mutant:NAME".
+std::string text_of(const Assignment& one) {
+  const std::string position = one.position > 0 ? fmt::format("@{}", one.position) : "";
+  return one.role.empty() ? one.uri : fmt::format("{}{}={}", one.role, position, one.uri);
 }
 
 std::string place_of(const Assignment& assignment) {
@@ -70,20 +78,20 @@ std::string place_of(const Assignment& assignment) {
 }
 
 // Nobody could say which of two is judged.
-void check_places(const std::vector<Assignment>& implementations, std::span<const std::string> texts) {
+void check_places(const std::vector<Assignment>& implementations) {
   for (std::size_t later = 1; later < implementations.size(); ++later) {
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
       const Assignment& one = implementations[earlier];
       const Assignment& other = implementations[later];
       if (one.role.empty() || other.role.empty()) {
-        refuse(texts[later],
+        refuse(text_of(other),
                fmt::format("stands beside '{}', and one of the two is for every role; say both roles, or "
                            "leave one of them",
-                           texts[earlier]));
+                           text_of(one)));
       }
       if (place_of(one) != place_of(other)) continue;
-      refuse(texts[later],
-             fmt::format("the {} is taken by '{}'; leave one of the two", place_of(one), texts[earlier]));
+      refuse(text_of(other),
+             fmt::format("the {} is taken by '{}'; leave one of the two", place_of(one), text_of(one)));
     }
   }
 }
@@ -126,10 +134,10 @@ bool is_own(const Assignment& assignment, std::span<const Suite* const> suites) 
 }
 
 Assignment parse_implementation(const std::string& text, const Catalogue& catalogue,
-                                std::span<const Entry> among) {
+                                std::span<const Entry> among, std::size_t last_position) {
   Assignment assignment = split(text);
   const std::vector<const Suite*> suites = suites_with(text, assignment.role, catalogue);
-  check_position(text, assignment, suites);
+  check_position(text, assignment, suites, last_position);
   if (assignment.uri.starts_with(kMutant)) {
     resolve_mutant(assignment, catalogue, among);
   } else if (assignment.uri != "ref" && !is_attachment(assignment.uri) && !is_own(assignment, suites)) {
@@ -138,6 +146,26 @@ Assignment parse_implementation(const std::string& text, const Catalogue& catalo
            "unix:PATH, tcp:HOST:PORT, or one of them behind ROLE= or ROLE@POSITION=");
   }
   return assignment;
+}
+
+// An implementation outside without a place plays the roles that it serves.
+std::vector<Assignment> in_served_roles(const std::string& text, const Assignment& assignment,
+                                        std::span<const Entry> among) {
+  std::vector<iut::RoleName> judged;
+  for (const Entry& entry : among) {
+    const iut::RoleName role{std::string(entry.suite->protocol()), entry.test_case->role()};
+    if (std::ranges::find(judged, role) == judged.end()) judged.push_back(role);
+  }
+  std::vector<Assignment> implementations;
+  for (const iut::RoleName& role : served_among(assignment.uri, judged))
+    implementations.push_back({role.role, assignment.position, assignment.uri});
+  if (implementations.empty()) {
+    std::vector<std::string> paths;
+    for (const iut::RoleName& role : judged) paths.push_back(role.path());
+    refuse(text, fmt::format("it serves none of the roles that the selected cases judge: {}",
+                             fmt::join(paths, ", ")));
+  }
+  return implementations;
 }
 
 bool has_mutant(const Suite& suite, const std::string& role, std::string_view name) {
@@ -149,12 +177,18 @@ bool has_mutant(const Suite& suite, const std::string& role, std::string_view na
 }  // namespace
 
 std::vector<Assignment> parse_implementations(std::span<const std::string> texts, const Catalogue& catalogue,
-                                              std::span<const Entry> among) {
+                                              std::span<const Entry> among, std::size_t last_position) {
   std::vector<Assignment> implementations;
   for (const std::string& text : texts) {
-    implementations.push_back(parse_implementation(text, catalogue, among));
+    const Assignment assignment = parse_implementation(text, catalogue, among, last_position);
+    if (assignment.role.empty() && is_attachment(assignment.uri)) {
+      for (Assignment& one : in_served_roles(text, assignment, among))
+        implementations.push_back(std::move(one));
+    } else {
+      implementations.push_back(assignment);
+    }
   }
-  check_places(implementations, texts);
+  check_places(implementations);
   return implementations;
 }
 

@@ -19,10 +19,13 @@ namespace fieldproof::cli {
 
 // Throws kernel::Error(usage) for an unknown kind, role, position or mutant, with the nearest one, and for
 // two that want the same place. `among` are the selected cases: a bare mutant is looked for in their
-// roles.
+// roles. `last_position` where it is not 0 takes the place of what the suites say.
 std::vector<conformance::Assignment> parse_implementations(std::span<const std::string> texts,
                                                            const conformance::Catalogue& catalogue,
-                                                           std::span<const conformance::Entry> among);
+                                                           std::span<const conformance::Entry> among,
+                                                           std::size_t last_position = 0);
+// For verbs that look at positions themselves.
+inline constexpr std::size_t kAnyPosition = 1'000'000;
 
 // The same for an assignment that a case file of this suite stores: why it cannot be served, or nothing.
 std::optional<std::string> reason_not_runnable(const conformance::Assignment& assignment,

@@ -13,19 +13,6 @@
 namespace fieldproof::cli {
 namespace {
 
-// The recording plays the part of the implementation: in its place when that was said, else in the role of
-// the case.
-void play_back(CaseFile& stored, const std::string& role) {
-  const std::string uri = fmt::format("recorded:{}", stored.playback.string());
-  bool is_placed = false;
-  for (conformance::Assignment& assignment : stored.setup.implementations) {
-    if (!assignment.role.empty() && assignment.role != role) continue;
-    assignment.uri = uri;
-    is_placed = true;
-  }
-  if (!is_placed) stored.setup.implementations.push_back({role, 0, uri});
-}
-
 // Why a case of the run cannot be judged again, or nothing.
 std::string reason_not_judgeable(const CaseFile& stored) {
   if (stored.playback.empty()) return "no recording of the implementation is stored";
@@ -50,17 +37,23 @@ int judge_again(Session& session) {
       continue;
     }
     const conformance::Entry& entry = session.catalogue.at(before.id);
-    play_back(stored, entry.test_case->role());
+    stored.setup.playback_file = stored.playback.string();
     const judge::CaseResult result = conformance::run_case(entry, stored.setup).outcome.result;
     if (!session.terminal.is_quiet()) {
       session.terminal.print(reports::case_line(result, {.colour = session.terminal.has_colour()}));
     }
-    if (result.verdict != before.verdict || result.reason != before.reason) {
+    if (result.verdict != before.verdict || result.reason != before.reason ||
+        result.fingerprint != before.fingerprint) {
       ++changed;
-      session.terminal.print(fmt::format("changed: {} was {} '{}', is {} '{}'\n",
-                                         reports::escaped_line(before.id), judge::name(before.verdict),
-                                         reports::escaped_line(before.reason), judge::name(result.verdict),
-                                         reports::escaped_line(result.reason)));
+      const bool is_same = result.verdict == before.verdict && result.reason == before.reason;
+      if (is_same) {
+        session.terminal.print(
+            fmt::format("changed: {} has another fingerprint\n", reports::escaped_line(before.id)));
+      } else
+        session.terminal.print(fmt::format("changed: {} was {} '{}', is {} '{}'\n",
+                                           reports::escaped_line(before.id), judge::name(before.verdict),
+                                           reports::escaped_line(before.reason), judge::name(result.verdict),
+                                           reports::escaped_line(result.reason)));
     }
     again.cases.push_back(result);
   }

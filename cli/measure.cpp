@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -10,15 +8,13 @@
 
 #include "cli/burst_options.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/networks.hpp"
 #include "cli/run_setup.hpp"
-#include "cli/simulated_network.hpp"
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
-#include "emc/framing.hpp"
-#include "emc/interbus/burst_clamp.hpp"
-#include "harness/kernel/error.hpp"
+#include "emc/burst_clamp.hpp"
 #include "harness/measure/frequency.hpp"
-#include "protocols/interbus/network_measurement.hpp"
+#include "harness/network/network_measurement.hpp"
 #include "reports/measurement_writer.hpp"
 
 // `fieldproof measure`: cycle time, jitter and skew of a network, theory beside measurement.
@@ -39,14 +35,12 @@ std::vector<measure::SquareWave> signals_from(const Settings& settings) {
   return signals;
 }
 
-interbus::MeasurementSettings measurement_from(const Settings& settings) {
-  constexpr std::array kModels = {interbus::LatchModel::same_instant, interbus::LatchModel::frame_edges,
-                                  interbus::LatchModel::previous_frame};
-  interbus::MeasurementSettings measurement;
-  measurement.signals = signals_from(settings);
-  measurement.duration = virtual_time_from(settings);
-  measurement.latch = kModels.at(settings.choice("latch"));
-  measurement.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
+network::MeasurementSettings measurement_from(const Session& session) {
+  network::MeasurementSettings measurement;
+  measurement.protocol = session.operands.front();
+  measurement.signals = signals_from(session.settings);
+  measurement.duration = virtual_time_from(session.settings);
+  measurement.seed = session.settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
   return measurement;
 }
 
@@ -65,24 +59,22 @@ int code_of(measure::Agreement agreement) {
 // Bursts that begin with the signal and go on until its end.
 class BurstsWhileMeasuring {
  public:
-  BurstsWhileMeasuring(const Settings& settings, const interbus::NetworkDescription& network,
-                       std::uint64_t seed)
-      : profile_(profile_from(settings)), bursts_(bursts_from(settings)) {
-    const interbus::Rules& rules = network.rules;
-    const emc::LineResponse response(profile_.coupling);
-    clamp_.emplace(bursts_, response.wrong_output(bursts_.level.open_circuit_volts(), bursts_.polarity),
-                   emc::BurstReceiver{rules.bit_rate, std::make_shared<emc::TelegramFraming>(rules.telegram),
-                                      line::Sampling{}, true, true},
-                   kernel::Random(seed).split("bursts"),
-                   rules.published_recovery_cycles * interbus::cycle_time_in_force(network));
-  }
+  BurstsWhileMeasuring(const Settings& settings, const PlannedNetwork& planned, std::uint64_t seed)
+      : profile_(settings.origin("profile") == Origin::fallback
+                     ? emc::Profile::named(planned.default_profile())
+                     : profile_from(settings)),
+        bursts_(bursts_from(settings)),
+        clamp_(bursts_,
+               emc::LineResponse(profile_.coupling)
+                   .wrong_output(bursts_.level.open_circuit_volts(), bursts_.polarity),
+               kernel::Random(seed).split("bursts"), planned.make(seed)->recovery_limit().time) {}
 
-  void disturb(interbus::MeasurementSettings& measurement) {
-    measurement.disturb = [this](interbus::Ring& ring, segment::Segment& segment) {
-      clamp_->couple(ring, segment, segment.now());
+  void disturb(network::MeasurementSettings& measurement) {
+    measurement.disturb = [this](network::Network& network) {
+      clamp_.couple(network, network.segment().now());
     };
     measurement.phase_during = [this](kernel::Time from, kernel::Time to) {
-      return clamp_->phase_during(from, to);
+      return clamp_.phase_during(from, to);
     };
     measurement.conditions.push_back(
         {"bursts",
@@ -96,43 +88,33 @@ class BurstsWhileMeasuring {
  private:
   emc::Profile profile_;
   emc::BurstSettings bursts_;
-  std::optional<emc::BurstClamp> clamp_;
+  emc::BurstClamp clamp_;
 };
 
-measure::Measurement measure_interbus(Session& session) {
-  interbus::MeasurementSettings settings = measurement_from(session.settings);
-  const interbus::NetworkDescription network = simulated_network_from(session.settings);
+measure::Measurement measured_by(Session& session) {
+  const NetworkRow& row = network_row_of(session, "measure");
+  const std::unique_ptr<PlannedNetwork> planned = row.plan(session);
+  network::MeasurementSettings settings = measurement_from(session);
   std::optional<BurstsWhileMeasuring> bursts;
   if (session.settings.is_set("bursts")) {
-    bursts.emplace(session.settings, network, settings.seed).disturb(settings);
+    bursts.emplace(session.settings, *planned, settings.seed).disturb(settings);
   } else if (session.settings.origin("profile") == Origin::command_line) {
     session.settings.refuse("profile", "a profile is one of bursts; say which with --bursts");
   }
   settings.on_progress = [&](std::size_t done) { session.terminal.progress(done); };
   session.terminal.print(
-      simulation_header(session, settings.seed, session.settings.text("network"), kCycleTimePaper));
+      simulation_header(session, settings.seed, session.settings.text("network"), row.own_network));
   session.terminal.begin_progress(settings.signals.size(), "signals");
-  measure::Measurement measured = interbus::measure_network(network, settings);
+  measure::Measurement measured =
+      network::measure_network([&](std::uint64_t seed) { return planned->make(seed); }, settings);
   session.terminal.end_progress();
   return measured;
 }
 
-struct Measured {
-  std::string_view protocol;
-  measure::Measurement (*serve)(Session&);
-};
-constexpr std::array kMeasured = {Measured{"interbus", &measure_interbus}};
-
 }  // namespace
 
 int measure_protocol(Session& session) {
-  const std::string& protocol = session.operands.front();
-  const auto row = std::ranges::find(kMeasured, protocol, &Measured::protocol);
-  if (row == kMeasured.end()) {
-    throw kernel::Error(kernel::ErrorKind::usage,
-                        fmt::format("there is nothing to measure of '{}'; there is 'interbus'", protocol));
-  }
-  const measure::Measurement measured = row->serve(session);
+  const measure::Measurement measured = measured_by(session);
   session.terminal.print(reports::measurement_text(measured));
   write_document(session, "measure", reports::measurement_json(measured));
   const int code = code_of(measure::agreement(measured));

@@ -33,6 +33,8 @@ judge::Pics::Answer answer_from(const config::Value& value, const judge::PicsIte
       return value.as_bool();
     case judge::PicsKind::number:
       return value.as_integer<std::int64_t>(item.least, item.most);
+    case judge::PicsKind::duration:
+      return value.as_duration(kernel::Duration{item.least}, kernel::Duration{item.most});
     case judge::PicsKind::text:
       break;
   }
@@ -59,9 +61,16 @@ judge::Pics load_pics(const std::filesystem::path& file, std::span<const judge::
 }
 
 std::string pics_text(const judge::Pics& pics) {
+  const auto json_of = [](const auto& value) -> nlohmann::ordered_json {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, kernel::Duration>) {
+      return fmt::format("{} ps", value.count());
+    } else {
+      return value;
+    }
+  };
   nlohmann::ordered_json items = nlohmann::ordered_json::object();
   for (const auto& [name, answer] : pics.items()) {
-    std::visit([&items, key = name](const auto& value) { items[key] = value; }, answer);
+    items[name] = std::visit(json_of, answer);
   }
   return nlohmann::ordered_json{{kItems, std::move(items)}}.dump(2) + "\n";
 }

@@ -15,8 +15,7 @@
 namespace fieldproof::cli {
 namespace {
 
-int serve(const Command& command, const std::vector<std::string>& arguments, MakeSuites make_suites,
-          Terminal& terminal) {
+int serve(const Command& command, const std::vector<std::string>& arguments, Terminal& terminal) {
   const auto verb =
       std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == command.verb; });
   FIELDPROOF_CHECK(verb != verbs().end(), "the command line gives a verb that the table does not have");
@@ -27,7 +26,7 @@ int serve(const Command& command, const std::vector<std::string>& arguments, Mak
   }
   if (find_option("quiet", verb->name) != nullptr) terminal.set_quiet(settings.is_set("quiet"));
   const conformance::Catalogue catalogue(make_suites(all_disturbances()));
-  Session session{catalogue, make_suites, settings, terminal, command.operands, arguments};
+  Session session{catalogue, settings, terminal, command.operands, arguments};
   return verb->serve(session);
 }
 
@@ -38,7 +37,8 @@ int code_after_output(int code, const Terminal& terminal) {
 
 }  // namespace
 
-int run_program(int argc, const char* const* argv, MakeSuites make_suites) {
+int run_program(int argc, const char* const* argv, std::span<const ProtocolEntry> protocols) {
+  use_protocols(protocols);
   secure_standard_streams();
   try {
     Terminal terminal;
@@ -46,7 +46,7 @@ int run_program(int argc, const char* const* argv, MakeSuites make_suites) {
     const Parsed parsed = parse_command_line(arguments);
     int code = kAllAsExpected;
     if (parsed.command) {
-      code = serve(*parsed.command, arguments, make_suites, terminal);
+      code = serve(*parsed.command, arguments, terminal);
     } else {
       terminal.print(parsed.text);
     }

@@ -54,7 +54,7 @@ std::vector<conformance::Entry> RunBook::open_cases() const {
 void RunBook::add(const conformance::CaseRun& done) {
   const judge::CaseResult& result = done.outcome.result;
   const bool has_recording =
-      !done.outcome.recording.trace.records.empty() || !done.outcome.recording.playback.empty();
+      !done.outcome.recording.trace.records.empty() || done.outcome.recording.devices != nullptr;
   if (needs_case_file(result.verdict) || has_recording) store_case(directory_, done, run_.identity.seed);
   journal_->append(result);
   run_.cases.push_back(result);

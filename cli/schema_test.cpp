@@ -15,12 +15,13 @@
 
 #include "cli/baseline.hpp"
 #include "cli/matrix_text.hpp"
+#include "cli/named_schemas.hpp"
 #include "cli/options.hpp"
 #include "cli/pics_file.hpp"
 #include "cli/probe/source_folder.hpp"
+#include "cli/protocols.hpp"
 #include "cli/sequence_file.hpp"
 #include "cli/settings.hpp"
-#include "cli/suites.hpp"
 #include "conformance/catalogue.hpp"
 #include "emc/plan_disturbances.hpp"
 #include "harness/fault/plan_file.hpp"
@@ -87,7 +88,7 @@ class Schemas : public testing::Test {
 };
 
 const conformance::Catalogue& catalogue() {
-  static const conformance::Catalogue catalogue(suites(all_disturbances()));
+  static const conformance::Catalogue catalogue(built_in_suites());
   return catalogue;
 }
 
@@ -179,9 +180,11 @@ TEST_F(Schemas, OfAPics) {
   expect_alike("cli/pics.schema.json",
                {good(R"({"items": {}})"), bad("{}"), good(R"({"items": {"outputs": true, "words": 2}})"),
                 bad(R"({"items": {"ouputs": true}})"), bad(R"({"items": {"outputs": "yes"}})"),
-                bad(R"({"items": {"words": -1}})"), good(R"({"items": {"words": 64}})"),
-                bad(R"({"items": {"words": 65}})"), good(R"({"items": {"id_code": 8191}})"),
-                bad(R"({"items": {"id_code": 8192}})"),
+                bad(R"({"items": {"words": -1}})"), good(R"({"items": {"words": 256}})"),
+                bad(R"({"items": {"words": 257}})"), good(R"({"items": {"loss_limit": "500 ms"}})"),
+                bad(R"({"items": {"loss_limit": 500}})"),
+                bad_to_the_reader_only(R"({"items": {"loss_limit": "3601 s"}})"),
+                good(R"({"items": {"id_code": 8191}})"), bad(R"({"items": {"id_code": 8192}})"),
                 good(R"({"items": {"outputs_while_outgoing_bus_is_reset": "cleared"}})"),
                 bad(R"({"items": {"outputs_while_outgoing_bus_is_reset": "clear"}})"),
                 bad(R"({"items": {}, "more": 1})")},
@@ -222,10 +225,32 @@ std::set<std::string> keys_of(const nlohmann::json& properties) {
   return keys;
 }
 
-TEST(PicsSchema, NamesTheItemsThatTheSuitesPublish) {
-  std::set<std::string> published;
-  for (const judge::PicsItem& item : catalogue().pics_items()) published.insert(item.name);
-  EXPECT_EQ(keys_of(schema_of("pics.schema.json")["properties"]["items"]["properties"]), published);
+std::string shipped(const fs::path& file) {
+  std::ifstream stream(kSourceFolder / file);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+TEST(PicsSchema, IsMadeOfTheRowsOfTheSuites) {
+  EXPECT_EQ(shipped("cli/pics.schema.json"), pics_schema_text(catalogue()))
+      << "'fieldproof schema pics' prints what the file must have";
+}
+
+TEST(NamedSchemas, AreJsonOfFilesAndOfEachRole) {
+  std::set<std::string> names;
+  for (const NamedText& one : named_schemas(catalogue())) {
+    EXPECT_TRUE(names.insert(one.name).second) << one.name;
+    EXPECT_EQ(nlohmann::json::parse(one.text)["$schema"], "http://json-schema.org/draft-07/schema#")
+        << one.name;
+  }
+  for (const char* name : {"baseline", "network", "pics", "plan", "token_network"})
+    EXPECT_TRUE(names.contains(name));
+  for (const auto& suite : catalogue().suites()) {
+    for (const std::string& role : suite->roles()) {
+      // The cases of a whole network are nobody's settings.
+      if (role == "network") continue;
+      EXPECT_TRUE(names.contains(std::string(suite->protocol()) + "/" + role)) << role;
+    }
+  }
 }
 
 TEST(ConfigurationSchema, NamesTheOptionsThatAFileMayGive) {
@@ -248,15 +273,15 @@ TEST_F(Schemas, OfASequence) {
   const std::string id = R"({"do": "id", "faults": [{"fault": "drop", "unit": 3}]})";
   const std::string octets = R"({"do": "octets", "silence": 45, "octets": [1, 255],
                                 "faults": [{"fault": "flip", "unit": 1, "level": 3}]})";
-  expect_alike(
-      "cli/sequence.schema.json",
-      {good(sequence(node, wait + "," + octets)), good(sequence("interbus/slave", id)),
-       bad(sequence("interbus/slave", wait)), bad(sequence("valve_bus/host", wait)), good(sequence(node, "")),
-       bad(sequence(node, id)), bad(sequence(node, R"({"do": "wait", "ms": 0})")),
-       bad(sequence(node, R"({"do": "wait", "ms": 1, "faults": []})")),
-       bad(sequence(node, R"({"do": "octets", "silence": 45, "octets": [256]})")),
-       bad(sequence("interbus/slave", R"({"do": "id", "faults": [{"fault": "drop"}]})"))},
-      [](const fs::path& file) { load_sequence_file(file, catalogue()); });
+  expect_alike("cli/sequence.schema.json",
+               {good(sequence(node, wait + "," + octets)), good(sequence("interbus/slave", id)),
+                bad(sequence("interbus/slave", wait)), good(sequence("valve_bus/host", wait)),
+                bad(sequence("interbus/master", wait)), good(sequence(node, "")), bad(sequence(node, id)),
+                bad(sequence(node, R"({"do": "wait", "ms": 0})")),
+                bad(sequence(node, R"({"do": "wait", "ms": 1, "faults": []})")),
+                bad(sequence(node, R"({"do": "octets", "silence": 45, "octets": [256]})")),
+                bad(sequence("interbus/slave", R"({"do": "id", "faults": [{"fault": "drop"}]})"))},
+               [](const fs::path& file) { load_sequence_file(file, catalogue()); });
 }
 
 // A vocabulary that grows without its schema would be refused by editors.

@@ -20,6 +20,7 @@ struct SerialPool::Use {
   Box& box;
   std::unique_lock<std::mutex> lock;
   std::optional<iut::DevicePool::Lease> upper;
+  std::unique_ptr<iut::WallClockDevice> device;
   bool is_well = false;
 };
 
@@ -37,23 +38,23 @@ SerialPool::Box& SerialPool::box(const std::string& uri, const iut::PeerLimits& 
   return *found;
 }
 
-valve_bus::SerialAttachment SerialPool::take(const std::string& uri, const iut::PeerLimits& limits) {
+iut::Attachment SerialPool::take(const std::string& uri, const iut::PeerLimits& limits) {
   const auto use = std::make_shared<Use>(box(uri, limits));
   Box& box = use->box;
-  valve_bus::SerialAttachment attachment;
+  iut::SerialAttachment at;
   if (box.upper != nullptr) {
     use->upper.emplace(box.upper->take());
-    attachment.upper = &**use->upper;
+    at.upper = &**use->upper;
   }
   if (box.line == nullptr) box.line = std::make_unique<iut::SerialLine>(box.settings.path, iut::WallClock());
-  attachment.line = box.line.get();
-  attachment.latency = box.latency;
-  attachment.lease = use;
-  attachment.on_well_ended = [use] {
-    use->is_well = true;
-    if (use->upper) use->upper->set_reusable();
-  };
-  return attachment;
+  box.line->set_echo(box.settings.receives_own_echo);
+  at.line = box.line.get();
+  at.latency = box.latency;
+  use->device = std::make_unique<iut::WallClockDevice>(at, make_uart_);
+  return {use->device.get(), use, [use] {
+            use->is_well = true;
+            if (use->upper) use->upper->set_reusable();
+          }};
 }
 
 }  // namespace fieldproof::cli

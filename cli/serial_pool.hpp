@@ -7,7 +7,7 @@
 
 #include "harness/iut/pool.hpp"
 #include "harness/iut/serial_line.hpp"
-#include "protocols/valve_bus/serial_node.hpp"
+#include "harness/iut/wall_clock_device.hpp"
 
 // The serial lines of a run, by URI, with the channels of their upper testers. A line serves one case at a
 // time: others wait for it, however many run side by side.
@@ -15,11 +15,12 @@ namespace fieldproof::cli {
 
 class SerialPool {
  public:
-  explicit SerialPool(iut::RoleName role) : role_(std::move(role)) {}
+  SerialPool(iut::RoleName role, iut::MakeUartLine make_uart)
+      : role_(std::move(role)), make_uart_(std::move(make_uart)) {}
 
   // Opens what is not open yet: first the upper channel, which may be what makes the line. Throws
   // kernel::Error(implementation) for one that cannot be used.
-  valve_bus::SerialAttachment take(const std::string& uri, const iut::PeerLimits& limits);
+  iut::Attachment take(const std::string& uri, const iut::PeerLimits& limits);
 
  private:
   struct Box {
@@ -34,6 +35,7 @@ class SerialPool {
   Box& box(const std::string& uri, const iut::PeerLimits& limits);
 
   iut::RoleName role_;
+  iut::MakeUartLine make_uart_;
   std::mutex mutex_;
   std::map<std::string, std::unique_ptr<Box>> boxes_;
 };

@@ -141,7 +141,7 @@ TEST_F(SerialRuns, UpperChannelAtASocket) {
 
 // A box of which nothing but the line is there.
 TEST_F(SerialRuns, WithoutAnUpperChannelTheLineAloneIsJudged) {
-  write("node.pics.json", R"({ "items": { "bit_rate": 9600, "address": 5 } })");
+  write("node.pics.json", R"({ "items": { "bit_rate": 9600, "address_tens": 0, "address_units": 5 } })");
   const iut::Process player({FIELDPROOF_EXE, "station", "valve_bus/node", "ref", "--serial", line(),
                              "--upper", "none", "--pics", (folder_ / "node.pics.json").string()});
   wait_for(line());

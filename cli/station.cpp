@@ -1,20 +1,17 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "cli/attachments.hpp"
 #include "cli/exit_code.hpp"
-#include "cli/roles.hpp"
+#include "cli/protocol_entry.hpp"
 #include "cli/station_on_line.hpp"
 #include "cli/verbs.hpp"
 #include "harness/iut/server.hpp"
 #include "harness/kernel/error.hpp"
-#include "protocols/interbus/telegram_speaker.hpp"
 
 // `fieldproof station`: a built-in station, or one in a shared library, as an implementation in a process of
 // its own. A built-in one shows that the bench judges it there as it does inside, and stands in for an
@@ -22,20 +19,11 @@
 namespace fieldproof::cli {
 namespace {
 
-const Role& role_named(const std::string& path) {
-  const auto found = std::ranges::find(roles(), path, &Role::path);
-  if (found != roles().end()) return *found;
-  std::vector<std::string> known;
-  for (const Role& role : roles()) known.push_back(role.path());
-  throw kernel::Error(kernel::ErrorKind::usage, fmt::format("no station '{}' can be played; there are '{}'",
-                                                            path, fmt::join(known, "', '")));
-}
-
 bool wants_telegrams(const Session& session, const Role& role, const std::string& uri) {
   const std::string units = session.settings.text("units");
   if (units == "levels") return false;
   if (units != "telegrams") session.settings.refuse("units", "there are 'levels' and 'telegrams'");
-  if (role.telegram_ports == 0) {
+  if (role.in_telegrams == nullptr) {
     session.settings.refuse("units", fmt::format("there are no telegrams for '{}'", role.path()));
   }
   if (is_plugin_uri(uri)) session.settings.refuse("units", "a library says itself what it hears");
@@ -47,12 +35,12 @@ void play_in_lock_step(const Role& role, const std::string& uri, bool in_telegra
   const bool is_plugin = is_plugin_uri(uri);
   if (!is_plugin) role.serve(uri);
   iut::serve(
-      STDIN_FILENO, STDOUT_FILENO,
+      STDIN_FILENO, STDOUT_FILENO, {std::string(role.protocol), std::string(role.name)},
       [&](const iut::RoleName& wanted) -> std::unique_ptr<iut::Device> {
         if (wanted.protocol != role.protocol || wanted.role != role.name) return nullptr;
         if (is_plugin) return library_of(uri, wanted);
         if (!in_telegrams) return role.serve(uri);
-        return std::make_unique<interbus::TelegramSpeaker>(role.serve(uri), role.telegram_ports);
+        return role.in_telegrams(role.serve(uri));
       },
       fmt::format("fieldproof {}", uri));
 }
@@ -65,11 +53,10 @@ int station(Session& session) {
   const bool in_telegrams = wants_telegrams(session, role, uri);
   if (!session.settings.is_set("serial")) {
     play_in_lock_step(role, uri, in_telegrams);
-  } else if (role.path() == kRoleOnLines) {
-    play_on_line(session, uri);
+  } else if (role.uart != nullptr) {
+    play_on_line(session, role, uri);
   } else {
-    session.settings.refuse("serial", fmt::format("there is no line for '{}'; '{}' can be played on one",
-                                                  role.path(), kRoleOnLines));
+    session.settings.refuse("serial", no_serial_line_for(role));
   }
   return kAllAsExpected;
 }

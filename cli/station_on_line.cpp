@@ -12,48 +12,37 @@
 
 #include "cli/attachments.hpp"
 #include "cli/pics_file.hpp"
-#include "conformance/assigned.hpp"
-#include "conformance/valve_bus/node_bench.hpp"
-#include "conformance/valve_bus/node_mutants.hpp"
+#include "harness/iut/line_player.hpp"
 #include "harness/iut/server.hpp"
 #include "harness/kernel/error.hpp"
-#include "protocols/valve_bus/node.hpp"
-#include "protocols/valve_bus/node_player.hpp"
 
 namespace fieldproof::cli {
 namespace {
 
-using valve_bus::NodePlayer;
+using iut::LinePlayer;
 
-// A URI that is no attachment is that of a built-in node.
-std::unique_ptr<valve_bus::NodeDevice> built_in(const std::string& uri,
-                                                const valve_bus::NodeConfiguration& configuration) {
-  if (uri == conformance::kReferenceUri) return std::make_unique<valve_bus::Node>(configuration);
-  return conformance::make_node_mutant(conformance::mutant_of(uri, "built-in station"), configuration);
-}
-
-NodePlayer::MakeNode maker_of(const std::string& uri) {
+// A built-in station, or one outside as a station of levels.
+LinePlayer::MakeStation maker_of(const Role& role, const std::string& uri) {
   if (!is_attachment(uri)) {
-    built_in(uri, {});  // refuses before anything is opened
-    return [uri](const valve_bus::NodeConfiguration& configuration, const iut::CaseBegin&) {
-      return built_in(uri, configuration);
-    };
+    role.serve(uri);  // refuses before anything is opened
+    return [&role, uri](const iut::CaseBegin&) { return role.serve(uri); };
   }
-  return [uri, attached = attached_nodes()](const valve_bus::NodeConfiguration& configuration,
-                                            const iut::CaseBegin& begin) {
-    return attached({uri, begin.id, begin.seed}, configuration);
+  return [&role, uri, attach = attachments()](const iut::CaseBegin& begin) {
+    const iut::RoleName name{std::string(role.protocol), std::string(role.name)};
+    return role.in_levels(*attach(name, {uri, begin.id, begin.seed, {}}), begin);
   };
 }
 
 // One connection of a bench, or its whole life at the standard streams.
-void serve_bench(int input, int output, iut::SerialLine& line, const NodePlayer::MakeNode& make_node,
-                 const std::string& name) {
-  NodePlayer* player = nullptr;
+void serve_bench(int input, int output, iut::SerialLine& line, const Role& role,
+                 const LinePlayer::MakeStation& make_station, const std::string& name) {
+  LinePlayer* player = nullptr;
   iut::serve(
-      input, output,
-      [&](const iut::RoleName& role) -> std::unique_ptr<iut::Device> {
-        if (role.protocol != "valve_bus" || role.role != "node") return nullptr;
-        auto made = std::make_unique<NodePlayer>(line, make_node);
+      input, output, {std::string(role.protocol), std::string(role.name)},
+      [&](const iut::RoleName& wanted) -> std::unique_ptr<iut::Device> {
+        if (wanted.protocol != role.protocol || wanted.role != role.name) return nullptr;
+        auto made = std::make_unique<LinePlayer>(
+            line, role.uart, std::vector<iut::Item>(role.inputs.begin(), role.inputs.end()), make_station);
         player = made.get();
         return made;
       },
@@ -82,14 +71,14 @@ iut::Descriptor listen_at(const std::string& path) {
   return socket;
 }
 
-void serve_socket(const std::string& path, iut::SerialLine& line, const NodePlayer::MakeNode& make_node,
-                  const std::string& name) {
+void serve_socket(const std::string& path, iut::SerialLine& line, const Role& role,
+                  const LinePlayer::MakeStation& make_station, const std::string& name) {
   const iut::Descriptor listener = listen_at(path);
   while (true) {
     const iut::Descriptor bench(::accept4(listener.number(), nullptr, nullptr, SOCK_CLOEXEC));
     if (!bench) continue;
     try {
-      serve_bench(bench.number(), bench.number(), line, make_node, name);
+      serve_bench(bench.number(), bench.number(), line, role, make_station, name);
     } catch (const kernel::Error& error) {
       fmt::print(stderr, "{}\n", error.what());  // of this bench; the next one is served
     }
@@ -117,18 +106,18 @@ iut::SerialLine line_at(const std::string& path) {
 
 }  // namespace
 
-void play_on_line(Session& session, const std::string& uri) {
-  const NodePlayer::MakeNode make_node = maker_of(uri);
+void play_on_line(Session& session, const Role& role, const std::string& uri) {
+  const LinePlayer::MakeStation make_station = maker_of(role, uri);
   iut::SerialLine line = line_at(session.settings.text("serial"));
   const std::string upper = session.settings.text("upper");
   const std::string name = fmt::format("fieldproof {} on a line", uri);
-  if (upper == "-") return serve_bench(STDIN_FILENO, STDOUT_FILENO, line, make_node, name);
-  if (upper != "none") return serve_socket(upper, line, make_node, name);
+  if (upper == "-") return serve_bench(STDIN_FILENO, STDOUT_FILENO, line, role, make_station, name);
+  if (upper != "none") return serve_socket(upper, line, role, make_station, name);
   judge::Pics pics;
   if (session.settings.is_set("pics"))
-    pics = load_pics(session.settings.text("pics"), conformance::node_pics_items());
-  NodePlayer player(line, make_node);
-  player.begin_alone(conformance::node_configuration({}, pics.completed_by(conformance::declared_node())));
+    pics = load_pics(session.settings.text("pics"), session.catalogue.pics_items());
+  LinePlayer player(line, role.uart, {}, make_station);
+  player.begin_alone(role.alone(pics));
   player.play(-1);
 }
 

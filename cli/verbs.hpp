@@ -15,7 +15,6 @@ namespace fieldproof::cli {
 
 struct Session {
   const conformance::Catalogue& catalogue;  // under all disturbances
-  MakeSuites make_suites;
   Settings& settings;
   Terminal& terminal;
   std::vector<std::string> operands;   // selectors, case id, run directories
@@ -26,9 +25,11 @@ struct Session {
 int list(Session& session);
 int run(Session& session);
 int explain(Session& session);
+int schema(Session& session);
 int matrix(Session& session);
 int replay(Session& session);
 int check(Session& session);
+int fuzz_role(Session& session);
 int shrink(Session& session);
 int verify(Session& session);
 int judge_again(Session& session);

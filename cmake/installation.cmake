@@ -47,10 +47,10 @@ function(fieldproof_install export)
   install(EXPORT ${export} NAMESPACE fieldproof:: DESTINATION "${package_folder}" COMPONENT development)
 endfunction()
 
-set(harness_libraries kernel frame_check line config trace fault segment judge measure iut harness)
+set(harness_libraries kernel frame_check line config trace fault segment judge field measure network iut harness)
 list(TRANSFORM harness_libraries PREPEND fieldproof_)
 fieldproof_install(fieldproofTargets ${harness_libraries} ${protocol_libraries}
-  fieldproof_conformance fieldproof_emc fieldproof_reports fieldproof_papers fieldproof_cli fieldproof_plugin)
+  fieldproof_conformance fieldproof_fuzz fieldproof_emc fieldproof_reports fieldproof_papers fieldproof_cli fieldproof_plugin)
 if(TARGET fieldproof_gtest)
   fieldproof_install(fieldproofGTestTargets fieldproof_gtest)
 endif()

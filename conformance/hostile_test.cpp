@@ -18,19 +18,16 @@
 #include "conformance/runner.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "harness/iut/pool.hpp"
-#include "protocols/fieldbus_dll/attached_ff_device.hpp"
-#include "protocols/valve_bus/attached_node.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
 // Its station outside comes from this pool.
-template <typename Attached, typename Configuration>
-auto attached_from(iut::DevicePool& pool) {
-  return [&pool](const IutRequest& wanted, const Configuration& configuration) {
+Attach attached_from(iut::DevicePool& pool) {
+  return [&pool](const iut::RoleName&, const IutRequest& request) -> std::optional<iut::Attachment> {
+    if (!request.uri.starts_with("exec:")) return std::nullopt;
     const auto lease = std::make_shared<iut::DevicePool::Lease>(pool.take());
-    return std::make_unique<Attached>(iut::Attachment{&**lease, lease, [lease] { lease->set_reusable(); }},
-                                      configuration, wanted.case_id, wanted.seed);
+    return iut::Attachment{&**lease, lease, [lease] { lease->set_reusable(); }};
   };
 }
 
@@ -50,21 +47,13 @@ const AttackedRole kNodeRole{
     "write/drives_the_valves",
     "read/is_answered",
     "command/undefined_commands_are_ignored",
-    [](iut::DevicePool& pool) {
-      return valve_bus_suite(
-          {.node = {.attached = attached_from<valve_bus::AttachedNode, valve_bus::NodeConfiguration>(pool)}});
-    }};
+    [](iut::DevicePool& pool) { return valve_bus_suite({.attach = attached_from(pool)}); }};
 const AttackedRole kDeviceRole{
     {"fieldbus_dll", "ff_device"},
     "probe/is_answered",
     "token/is_returned_once",
     "publisher/the_latest_write_is_published",
-    [](iut::DevicePool& pool) {
-      FieldbusDllGiven given;
-      given.ff_device.attached =
-          attached_from<fieldbus_dll::AttachedFfDevice, fieldbus_dll::FfConfiguration>(pool);
-      return fieldbus_dll_suite(std::move(given));
-    }};
+    [](iut::DevicePool& pool) { return fieldbus_dll_suite({.attach = attached_from(pool)}); }};
 
 struct Worst {
   std::string act;

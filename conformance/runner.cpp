@@ -13,6 +13,7 @@
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/random.hpp"
+#include "harness/segment/stop.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -85,6 +86,10 @@ Outcome guarded_run(const Entry& entry, const Setup& setup, const RunOptions& ma
     return entry.suite->run(*entry.test_case, setup);
   } catch (const kernel::Error&) {
     throw;
+  } catch (const segment::Interrupted&) {
+    Outcome given_up;
+    given_up.result = blank_result(*entry.test_case, Verdict::none, "");
+    return given_up;
   } catch (const std::exception& failure) {
     return internal_error(*entry.test_case, failure.what());
   } catch (...) {
@@ -99,16 +104,6 @@ bool needs_recording(Verdict verdict) {
 std::uint64_t microseconds_since(std::chrono::steady_clock::time_point begin) {
   const auto passed = std::chrono::steady_clock::now() - begin;
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(passed).count());
-}
-
-// The second run of a case, this time with its trace: keeping the trace of every passing case would cost more
-// than running the few others twice.
-judge::CaseResult record_again(CaseRun& done, const RunOptions& manner) {
-  Setup recording = done.setup;
-  recording.record = true;
-  Outcome again = guarded_run(done.entry, recording, manner);
-  done.outcome.recording = std::move(again.recording);
-  return std::move(again.result);
 }
 
 bool is_same_verdict(const judge::CaseResult& one, const judge::CaseResult& other) {
@@ -130,28 +125,26 @@ void doubt(CaseRun& done, unsigned repetition, const judge::CaseResult& again) {
   first.reason = kNotConfirmed;
 }
 
+// A repetition was interrupted: what it would have said nobody knows.
+void give_up(CaseRun& done) {
+  done.outcome.result.verdict = Verdict::none;
+}
+
 bool is_failure(Verdict verdict) {
   return verdict == Verdict::fail || verdict == Verdict::error;
 }
 
-// For the recording, which is the first repetition of a failure that is to be confirmed, and then as often as
-// that asks for. A case that was never begun has nothing to repeat.
-void repeat(CaseRun& done, const RunOptions& manner) {
+// A case that was never begun has nothing to repeat.
+void confirm(CaseRun& done, const RunOptions& manner) {
   const judge::CaseResult& first = done.outcome.result;
-  const bool is_to_confirm = manner.confirmations > 0 && is_failure(first.verdict);
-  unsigned repetition = 0;
-  if (manner.keeps_recordings == KeptRecordings::failed && needs_recording(first.verdict) &&
-      !done.outcome.happens_once && first.reason != kResetFailed) {
-    ++repetition;
-    const judge::CaseResult again = record_again(done, manner);
-    const bool is_same = is_same_verdict(first, again);
-    if (is_to_confirm && !is_same) return doubt(done, repetition, again);
-    done.is_repeatable = is_same && again.fingerprint == first.fingerprint;
-  }
-  while (is_to_confirm && repetition < manner.confirmations) {
-    ++repetition;
-    const judge::CaseResult again = guarded_run(done.entry, done.setup, manner).result;
+  if (!is_failure(first.verdict) || first.reason == kResetFailed) return;
+  Setup unrecorded = done.setup;
+  unrecorded.record = false;
+  for (unsigned repetition = 1; repetition <= manner.confirmations; ++repetition) {
+    const judge::CaseResult again = guarded_run(done.entry, unrecorded, manner).result;
+    if (again.verdict == Verdict::none) return give_up(done);
     if (!is_same_verdict(first, again)) return doubt(done, repetition, again);
+    done.is_repeatable = done.is_repeatable && again.fingerprint == first.fingerprint;
   }
 }
 
@@ -164,13 +157,16 @@ std::uint64_t case_seed(std::uint64_t run_seed, std::string_view id) {
 CaseRun run_case(const Entry& entry, const Setup& run_setup, const RunOptions& manner) {
   CaseRun done{entry, run_setup, {}, true};
   done.setup.seed = case_seed(run_setup.seed, entry.test_case->id);
-  done.setup.record = manner.keeps_recordings == KeptRecordings::all;
+  done.setup.as_device = true;
+  done.setup.record = manner.keeps_recordings != KeptRecordings::none;
   const auto begin = std::chrono::steady_clock::now();
   if (auto reason = not_applicable(entry, done.setup)) {
     done.outcome.result = blank_result(*entry.test_case, Verdict::not_applicable, std::move(*reason));
   } else {
     done.outcome = guarded_run(entry, done.setup, manner);
-    repeat(done, manner);
+    if (manner.keeps_recordings == KeptRecordings::failed && !needs_recording(done.outcome.result.verdict))
+      done.outcome.recording = {};
+    confirm(done, manner);
   }
   done.outcome.result.seed = done.setup.seed;
   done.outcome.result.wall_time_us = microseconds_since(begin);
@@ -192,10 +188,20 @@ std::size_t run(const Plan& plan) {
   work.count = plan.entries.size();
   work.threads = plan.jobs;
   work.stop = plan.stop;
-  work.work = [&](std::size_t i) { return run_case(plan.entries[i], plan.setup, plan.manner); };
-  work.deliver = [&](std::size_t, CaseRun&& done) { return plan.on_case(std::move(done)); };
+  work.work = [&](std::size_t i) {
+    const segment::StopScope scope(plan.stop);
+    return run_case(plan.entries[i], plan.setup, plan.manner);
+  };
+  std::size_t handed_over = 0;
+  work.deliver = [&](std::size_t, CaseRun&& done) {
+    // A case that was given up has no verdict.
+    if (done.outcome.result.verdict == Verdict::none) return false;
+    ++handed_over;
+    return plan.on_case(std::move(done));
+  };
   work.idle = plan.on_progress;
-  return work.run();
+  work.run();
+  return handed_over;
 }
 
 }  // namespace fieldproof::conformance

@@ -2,12 +2,13 @@
 // of threads.
 //
 // Contract: the seed of a case depends on the run's seed and the id only, so a case repeats alone as it ran
-// in the whole. A case that does not pass is run a second time with its trace kept when `keeps_recordings` is
-// `failed`; the two fingerprints must agree, and `is_repeatable` says whether they did. With `confirmations`
-// a failure that does not come again each time is inconclusive, `not_confirmed`. kernel::Error of a suite (a
-// setup that cannot be served) ends the run; any other exception, a broken invariant too, is the verdict
-// `error` with the reason `internal_error` of that case and the run goes on: one defect of the bench must not
-// cost the results of a night.
+// in the whole. What a case drove is recorded (bounded) while it runs, and kept of those that do
+// not pass when `keeps_recordings` is `failed`. With `confirmations` a failure that does not come again each
+// time is inconclusive, `not_confirmed`, and `is_repeatable` says whether its fingerprints agreed.
+// kernel::Error of a suite (a setup that cannot be served) ends the run; any other exception, a broken
+// invariant too, is the verdict `error` with the reason `internal_error` of that case and the run goes on:
+// one defect of the bench must not cost the results of a night. A stop gives up the cases that are at work:
+// they are not handed over.
 #pragma once
 
 #include <cstdint>

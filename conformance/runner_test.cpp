@@ -187,7 +187,7 @@ TEST(Runner, CaseOfARoleThatNobodyWasAssignedToIsNotApplicable) {
   EXPECT_EQ(run_case(catalogue.entries().front(), setup).outcome.result.verdict, Verdict::pass);
 }
 
-TEST(Runner, FailedCaseIsRecordedByASecondRun) {
+TEST(Runner, FailedCaseKeepsTheRecordingOfItsOneRun) {
   const Catalogue catalogue = twelve_cases();
   const CaseRun passed = run_case(catalogue.entries()[0], {}, {KeptRecordings::failed});
   EXPECT_TRUE(passed.outcome.recording.lines().empty());
@@ -204,7 +204,7 @@ TEST(Runner, CaseThatDoesNotRepeatIsTold) {
     outcome.result.fingerprint = ++*calls;
     return outcome;
   });
-  EXPECT_FALSE(run_case(catalogue.entries().front(), {}, {KeptRecordings::failed}).is_repeatable);
+  EXPECT_FALSE(run_case(catalogue.entries().front(), {}, {KeptRecordings::failed, 1}).is_repeatable);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ bool chance(unsigned per_cent) {
 
 std::int64_t draw_number(const SequenceNumber& number) {
   if (!number.likely.empty() && (number.is_likely_only || chance(kLikelyPerCent))) {
-    return chosen(number.likely);
+    return std::clamp(chosen(number.likely), number.least, number.most);
   }
   return *rc::gen::inRange(number.least, number.most + 1);
 }

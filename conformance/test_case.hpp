@@ -11,6 +11,7 @@
 
 #include "conformance/sequence.hpp"
 #include "harness/fault/plan_part.hpp"
+#include "harness/field/named_table.hpp"
 #include "harness/iut/limits.hpp"
 #include "harness/judge/finding.hpp"
 #include "harness/judge/pics.hpp"
@@ -19,6 +20,10 @@
 
 // One test case, one mutant, and the suite of a protocol that runs a case against an implementation.
 // There is one definition of a case: the command line, GoogleTest and the matrix all use it.
+namespace fieldproof::iut {
+class DeviceRecording;
+}
+
 namespace fieldproof::conformance {
 
 // A mutant that a case must catch, and the reason code of the finding that proves that it was caught for
@@ -97,15 +102,20 @@ struct Setup {
   std::optional<judge::Pics> pics;
   Volume volume = Volume::full;
   iut::PeerLimits limits{};  // of implementations in other processes
-  bool record = false;       // keep the trace (bounded) in the outcome
+  bool record = false;       // keep the trace and what the implementations did (bounded) in the outcome
+  // The implementations of this program are called as those outside are, too: what can be recorded of them,
+  // and played back, is the same to the bit.
+  bool as_device = false;
+  std::string
+      playback_file{};  // what a run recorded of them plays the implementations; empty: they are there
 };
 
 // A record of everything on the line and at the upper tester, for replay and for people.
 struct Recording {
   trace::Recording trace;
-  std::shared_ptr<const trace::Dissector> dissector;  // of the protocol on these lines; null: not known
-  std::string playback;    // what the implementation drove, for judging again without it
-  bool truncated = false;  // a bound was reached
+  std::shared_ptr<const trace::Dissector> dissector;    // of the protocol on these lines; null: not known
+  std::shared_ptr<const iut::DeviceRecording> devices;  // what the implementations did; null: not kept
+  bool truncated = false;                               // a bound was reached
 
   const trace::Dissector& told_in() const;
   // One line for each record, in one dissector for people and programs.
@@ -145,6 +155,10 @@ class Suite {
   virtual int last_position() const { return 1; }
   // What a PICS of this protocol may answer.
   virtual std::vector<judge::PicsItem> pics_items() const { return {}; }
+  // The settings of each role, by its name, and the numbers of the protocol as "rules".
+  virtual std::vector<field::NamedTable> tables() const { return {}; }
+  // Of the files that describe an installation of this protocol.
+  virtual std::vector<field::NamedSchema> schemas() const { return {}; }
   // The answers of the setup, completed by what the suite takes for granted; nothing when the setup has none.
   virtual std::optional<judge::Pics> declared_pics(const TestCase&, const Setup& setup) const {
     return setup.pics;

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdint>
 
+#include "harness/measure/cyclic_copy.hpp"
+#include "harness/network/signal_run.hpp"
 #include "papers/sections.hpp"
-#include "protocols/interbus/network_measurement.hpp"
 #include "protocols/interbus/paper.hpp"
+#include "protocols/interbus/running_network.hpp"
 #include "protocols/interbus/timing.hpp"
 
 namespace fieldproof::papers {
@@ -16,8 +18,8 @@ namespace {
 
 using interbus::Formula;
 using interbus::NetworkDescription;
-using interbus::SignalRecord;
 using kernel::Duration;
+using network::SignalRecord;
 using reports::PublishedRow;
 using reports::PublishedSection;
 
@@ -45,20 +47,21 @@ NetworkDescription at_cycle(NetworkDescription network, Duration cycle) {
   return network;
 }
 
-SignalRecord record_at(const NetworkDescription& network, const Settings& settings,
+SignalRecord record_at(const NetworkDescription& description, const Settings& settings,
                        measure::Frequency frequency, Duration duration) {
-  interbus::SignalSettings signal;
+  network::SignalSettings signal;
   signal.wave.frequency = frequency;
   signal.duration = duration;
   signal.seed = settings.seed;
-  return interbus::record_signal(network, signal);
+  interbus::RunningNetwork network(description);
+  return network::record_signal(network, signal);
 }
 
 // The cycle time that a network runs at, from a second of it.
 Duration measured_cycle(const NetworkDescription& network, const Settings& settings) {
   const SignalRecord record =
       record_at(network, settings, measure::Frequency::from_hertz(50), kernel::kSecond);
-  return Duration{std::llround(record.cycle_times.total().mean())};
+  return Duration{std::llround(record.cycles.front().times.total().mean())};
 }
 
 PublishedRow cycle_row(std::string what, Duration published, Duration reproduced, std::string remark) {
@@ -111,7 +114,7 @@ PublishedSection interbus_cycle_times(const Settings& settings) {
 
 PublishedSection interbus_highest_frequency(const Settings& settings) {
   const NetworkDescription network = at_cycle(interbus::paper_network(), interbus::kPaperBestCycle);
-  const double highest = interbus::highest_frequency_hz(interbus::kPaperBestCycle);
+  const double highest = measure::highest_frequency_hz(interbus::kPaperBestCycle);
   PublishedSection section;
   section.heading = "Highest frequency: 614 Hz at 0.814 ms";
   section.note = "f_max = 1 / (2 T): half a period lasts one cycle. The paper calls it theoretical only.";
@@ -123,7 +126,7 @@ PublishedSection interbus_highest_frequency(const Settings& settings) {
         record_at(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
     const measure::EdgeSkew& skew = record.paths.front().skew;
     const double expected =
-        interbus::pulse_width(record.settings.wave.high(), interbus::kPaperBestCycle).lost_probability;
+        measure::pulse_width(record.settings.wave.high(), interbus::kPaperBestCycle).lost_probability;
     section.rows.push_back(
         {fmt::format("pulses lost at {} Hz", hertz), "",
          fmt::format("{} of {} ({:.2f} %)", skew.lost_pulses, skew.pulses,
@@ -143,10 +146,11 @@ PublishedSection interbus_square_waves(const Settings& settings) {
   for (const std::int64_t hertz : kSignalsHz) {
     const SignalRecord record =
         record_at(network, settings, measure::Frequency::from_hertz(hertz), settings.duration);
-    const interbus::PathRecord& path = record.paths.front();
+    const network::PathRecord& path = record.paths.front();
     const auto delays = path.skew.rise_delays.total();
     const auto widths = path.skew.widths.total();
-    const auto theory = interbus::path_delay(network, path.path, interbus::LatchModel::frame_edges);
+    const auto theory =
+        interbus::path_delay(network, path.path.from, path.path.to, interbus::LatchModel::frame_edges);
     const auto duty = [&](std::int64_t picoseconds) {
       return 100 * milliseconds(static_cast<double>(picoseconds)) * 1e-3 * static_cast<double>(hertz);
     };
@@ -162,7 +166,7 @@ PublishedSection interbus_square_waves(const Settings& settings) {
         {fmt::format("{} Hz: duty cycle of a period at the output", hertz), "",
          fmt::format("{:.1f} to {:.1f} %", duty(widths.min()), duty(widths.max())),
          fmt::format("50 % at the input; by theory at most {:.2f} % off: T f",
-                     100 * interbus::max_duty_error(static_cast<double>(hertz), interbus::kPaperBestCycle)),
+                     100 * measure::max_duty_error(static_cast<double>(hertz), interbus::kPaperBestCycle)),
          std::nullopt});
     measure::Trace trace = path.trace;
     trace.length = std::min(trace.length, 60 * kernel::kMillisecond);

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <span>
 
-#include "emc/interbus/immunity.hpp"
+#include "emc/immunity.hpp"
 #include "emc/profile.hpp"
 #include "harness/kernel/random.hpp"
 #include "papers/sections.hpp"
 #include "protocols/interbus/paper.hpp"
+#include "protocols/interbus/running_network.hpp"
 
 namespace fieldproof::papers {
 namespace {
@@ -36,9 +37,9 @@ struct AtVoltage {
 
   void add(const emc::ImmunityResult& result) {
     worst = std::max(worst, result.criterion);
-    sent += result.ledger.sent;
-    rejected += result.ledger.detected;
-    accepted_wrong += result.ledger.accepted_wrong();
+    sent += result.counts.sent;
+    rejected += result.counts.detected;
+    accepted_wrong += result.counts.accepted_wrong();
     longest_bad_run = std::max(longest_bad_run, result.longest_bad_run);
   }
 };
@@ -62,7 +63,8 @@ class BurstTest {
         immunity_.bursts.repetition = repetition;
         immunity_.bursts.polarity = polarity;
         immunity_.seed = kernel::Random(immunity_.seed).split("run").seed();
-        sum.add(emc::run_immunity(network_, {}, response_, immunity_));
+        interbus::RunningNetwork network(network_);
+        sum.add(emc::run_immunity(network, response_, immunity_));
       }
     }
     return sum;

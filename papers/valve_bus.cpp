@@ -9,9 +9,10 @@
 #include "emc/residual/block_check_count.hpp"
 #include "emc/residual/residual_error.hpp"
 #include "emc/resonance.hpp"
+#include "harness/network/quiet_run.hpp"
 #include "papers/sections.hpp"
 #include "protocols/valve_bus/frame.hpp"
-#include "protocols/valve_bus/poll_run.hpp"
+#include "protocols/valve_bus/running_network.hpp"
 #include "protocols/valve_bus/timing.hpp"
 
 namespace fieldproof::papers {
@@ -21,9 +22,10 @@ using reports::PublishedRow;
 using reports::PublishedSection;
 
 constexpr double kLengthMetres = 1000;  // as published, without a repeater
+constexpr std::size_t kCycles = 20;
 constexpr kernel::Duration kQuickTurnRound = 200 * kernel::kMicrosecond;
 
-double milliseconds(kernel::Duration duration) {
+double in_ms(kernel::Duration duration) {
   return static_cast<double>(duration.count()) / 1e9;
 }
 
@@ -37,20 +39,22 @@ PublishedRow cycle_row(unsigned nodes, std::uint64_t seed) {
     least += valve_bus::least_poll_time(rules, kQuickTurnRound, distance).total();
     reference += valve_bus::reference_poll_time(rules, distance).total();
   }
-  const valve_bus::PollRun run = valve_bus::run_polls(
-      rules, {.dip = 0, .nodes = nodes, .length_m = kLengthMetres, .cycles = 20, .seed = seed});
+  valve_bus::NetworkDescription description = valve_bus::NetworkDescription::even(0, nodes, kLengthMetres);
+  description.writes = false;
+  valve_bus::RunningNetwork network(description, seed);
+  const network::QuietRun run = network::run_quietly(network, kCycles, seed);
+  const std::uint64_t errors = run.counts.detected + run.counts.retried + run.counts.accepted_wrong();
   const auto [shortest, longest] = std::ranges::minmax(run.cycles);
   const bool is_equal = std::chrono::abs(shortest - reference) <= nodes * kernel::kNanosecond &&
                         std::chrono::abs(longest - reference) <= nodes * kernel::kNanosecond;
   return {
       fmt::format("cycle over {} node{}, 375 kbit/s, {:g} m", nodes, nodes == 1 ? "" : "s", kLengthMetres),
       "",
-      fmt::format("{:.4f} ms simulated, {} responses, {} errors", milliseconds(longest), run.responses,
-                  run.errors + run.wrong_responses),
+      fmt::format("{:.4f} ms simulated, {} responses, {} errors", in_ms(longest), run.counts.sent, errors),
       fmt::format("closed form of these stations {:.4f} ms; {:.4f} ms if nodes turn round in 200 us and the "
                   "host is sure of silence at once",
-                  milliseconds(reference), milliseconds(least)),
-      is_equal && run.errors + run.wrong_responses == 0};
+                  in_ms(reference), in_ms(least)),
+      is_equal && errors == 0};
 }
 
 struct CheckedFrameKind {

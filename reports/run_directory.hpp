@@ -1,7 +1,7 @@
 // The directory of a run:
 //
 //   manifest.json  results.json  timings.json  junit.xml  journal.jsonl
-//   cases/<id>/{case.json,trace.txt,timeline.json,trace.pcapng,playback.txt,log.txt}
+//   cases/<id>/{case.json,trace.txt,timeline.json,trace.pcapng,playback.json,log.txt}
 //
 // Contract: a file appears under its name only when it is whole (written beside and renamed). manifest.json
 // and results.json are there from the beginning, marked incomplete, so that also a killed run is a run:

@@ -2,5 +2,5 @@
 #include "cli/program.hpp"
 
 int main(int argc, char** argv) {
-  return fieldproof::cli::run_program(argc, argv, &fieldproof::cli::probe_suites);
+  return fieldproof::cli::run_program(argc, argv, fieldproof::cli::probe_protocols());
 }

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
-#include <fstream>
 #include <iterator>
 #include <thread>
 
 #include "conformance/suite_of_functions.hpp"
 #include "harness/config/document.hpp"
+#include "harness/iut/device_recording.hpp"
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/random.hpp"
@@ -66,20 +67,21 @@ Outcome judged(const Setup& setup, Verdict verdict, const std::string& reason = 
         trace::Observation{0, kernel::kStart, "begins", 0},
         trace::Transmission{0, std::move(wave), std::nullopt},
     };
-    outcome.recording.playback = fmt::format("{} {}", judge::name(verdict), reason);
+    // What the probe did is what is judged.
+    auto devices = std::make_shared<iut::DeviceRecording>();
+    devices->add({.failure = iut::Misbehaved{reason, std::string(judge::name(verdict)), {}}});
+    outcome.recording.devices = std::move(devices);
   }
   return outcome;
 }
 
 // The recording says the verdict that it was made with.
-Outcome judged_from_recording(const Setup& setup, const std::string& uri) {
-  std::ifstream file(uri.substr(std::string_view("recorded:").size()));
-  std::string verdict;
-  std::string reason;
-  file >> verdict >> reason;
-  const auto known = judge::verdict_from(verdict);
-  FIELDPROOF_CHECK(known.has_value(), "the probe plays back what is no recording of its own");
-  return judged(setup, *known, reason);
+Outcome judged_from_recording(const Setup& setup) {
+  const auto recording = iut::DeviceRecording::load(setup.playback_file);
+  FIELDPROOF_CHECK(recording.devices().size() == 1 && recording.devices().front().failure,
+                   "the probe plays back what is no recording of its own");
+  const iut::Misbehaved& done = *recording.devices().front().failure;
+  return judged(setup, judge::verdict_from(done.sentence).value(), done.reason);
 }
 
 // Passes, but fails for `reason` on the mutant.
@@ -88,7 +90,7 @@ SuiteOfFunctions::Function failing_on(const std::string& mutant, std::string rea
       [uri = "mutant:" + mutant, reason = std::move(reason)](const TestCase& test_case, const Setup& setup) {
         read_plan(setup.plan_file);
         const std::string implementation = implementation_of(test_case, setup);
-        if (implementation.starts_with("recorded:")) return judged_from_recording(setup, implementation);
+        if (!setup.playback_file.empty()) return judged_from_recording(setup);
         if (implementation == "mutant:unreachable") {
           throw kernel::Error(kernel::ErrorKind::implementation,
                               "the station does not answer; connect it and start again");
@@ -98,9 +100,8 @@ SuiteOfFunctions::Function failing_on(const std::string& mutant, std::string rea
 }
 
 SuiteOfFunctions::Function answering(Verdict verdict, std::string reason) {
-  return [verdict, reason = std::move(reason)](const TestCase& test_case, const Setup& setup) {
-    const std::string implementation = implementation_of(test_case, setup);
-    if (implementation.starts_with("recorded:")) return judged_from_recording(setup, implementation);
+  return [verdict, reason = std::move(reason)](const TestCase&, const Setup& setup) {
+    if (!setup.playback_file.empty()) return judged_from_recording(setup);
     return judged(setup, verdict, reason);
   };
 }
@@ -189,14 +190,19 @@ std::unique_ptr<SuiteOfFunctions> gone_suite() {
   return suite;
 }
 
+// There is no line to disturb.
+template <auto make>
+std::unique_ptr<conformance::Suite> undisturbed(const conformance::Attach&, const Disturbances&) {
+  return make();
+}
+
 }  // namespace
 
-Suites probe_suites(const Disturbances&) {
-  Suites suites;
-  suites.push_back(good_suite());
-  suites.push_back(odd_suite());
-  suites.push_back(gone_suite());
-  return suites;
+std::span<const ProtocolEntry> probe_protocols() {
+  static constexpr std::array kProtocols{ProtocolEntry{"probe", {}, undisturbed<good_suite>},
+                                         ProtocolEntry{"odd", {}, undisturbed<odd_suite>},
+                                         ProtocolEntry{"gone", {}, undisturbed<gone_suite>}};
+  return kProtocols;
 }
 
 }  // namespace fieldproof::cli

@@ -7,7 +7,6 @@
 // ids say, the implementations of `gone` cannot be reached.
 namespace fieldproof::cli {
 
-// There is no line to disturb.
-Suites probe_suites(const Disturbances&);
+std::span<const ProtocolEntry> probe_protocols();
 
 }  // namespace fieldproof::cli

@@ -58,22 +58,20 @@ class IsaBabbler final : public Babbler<fieldbus_dll::IsaDevice> {
   bool submit(const fieldbus_dll::IsaRequest&, kernel::Time) override { return true; }
 };
 
-template <typename Station, typename Given, typename Configuration>
-Given babbling(const Babble& babble) {
-  Given given;
-  given.own = [babble](const IutRequest&, const Configuration& configuration) {
+template <typename Station, typename Device, typename Configuration>
+MakeOwn<Device, Configuration> babbling(const Babble& babble) {
+  return [babble](const IutRequest&, const Configuration& configuration) {
     return std::make_unique<Station>(configuration.rules.link, babble);
   };
-  return given;
 }
 
 class StationsThatNeverStop : public testing::TestWithParam<Babble> {};
 
 TEST_P(StationsThatNeverStop, FailEveryCase) {
-  const auto ff = babbling<FfBabbler, GivenFfStations, fieldbus_dll::FfConfiguration>(GetParam());
-  const auto isa = babbling<IsaBabbler, GivenIsaStations, fieldbus_dll::IsaConfiguration>(GetParam());
+  const auto ff = babbling<FfBabbler, fieldbus_dll::FfDevice, fieldbus_dll::FfConfiguration>(GetParam());
+  const auto isa = babbling<IsaBabbler, fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration>(GetParam());
   const auto suite =
-      fieldbus_dll_suite({.isa_dle = isa, .isa_las = isa, .ff_device = ff, .ff_las = ff, .disturbances = {}});
+      fieldbus_dll_suite({.own_isa_dle = isa, .own_isa_las = isa, .own_ff_device = ff, .own_ff_las = ff});
   conformance::Setup setup;
   setup.volume = Volume::quick;
   const std::vector<TestCase>& cases = suite->cases();

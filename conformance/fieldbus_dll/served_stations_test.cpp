@@ -48,26 +48,21 @@ std::unique_ptr<IsaDevice> station_named(const std::string& role, const std::str
 }
 
 // Plays the station as one outside.
-template <typename Given, typename Attached, typename Served, typename Configuration>
-Given given_as_outside(const std::string& role, const std::string& mutant) {
-  Given given;
-  given.attached = [role, mutant](const IutRequest& wanted, const Configuration& configuration) {
-    const auto served = std::make_shared<Served>(
-        [role, mutant](const Configuration& told) { return station_named(role, mutant, told); });
-    return std::make_unique<Attached>(iut::Attachment{served.get(), served, {}}, configuration,
-                                      wanted.case_id, wanted.seed);
-  };
-  return given;
+template <typename Served, typename Configuration>
+iut::Attachment served(const std::string& role, const std::string& mutant) {
+  const auto device = std::make_shared<Served>(
+      [role, mutant](const Configuration& told) { return station_named(role, mutant, told); });
+  return {device.get(), device, {}};
 }
 
 std::unique_ptr<Suite> suite_outside(const std::string& role, const std::string& mutant) {
-  const auto isa = given_as_outside<GivenIsaStations, AttachedIsaDevice, ServedIsaDevice, IsaConfiguration>;
-  const auto ff = given_as_outside<GivenFfStations, AttachedFfDevice, ServedFfDevice, FfConfiguration>;
   FieldbusDllGiven given;
-  if (role == "isa_dle") given.isa_dle = isa(role, mutant);
-  if (role == "isa_las") given.isa_las = isa(role, mutant);
-  if (role == "ff_device") given.ff_device = ff(role, mutant);
-  if (role == "ff_las") given.ff_las = ff(role, mutant);
+  given.attach = [role, mutant](const iut::RoleName&,
+                                const IutRequest& request) -> std::optional<iut::Attachment> {
+    if (request.uri != "outside") return std::nullopt;
+    if (role.starts_with("isa")) return served<ServedIsaDevice, IsaConfiguration>(role, mutant);
+    return served<ServedFfDevice, FfConfiguration>(role, mutant);
+  };
   return fieldbus_dll_suite(given);
 }
 

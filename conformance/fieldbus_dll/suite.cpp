@@ -14,9 +14,15 @@
 #include "conformance/fieldbus_dll/isa_sequence_check.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
+#include "protocols/fieldbus_dll/attached_ff_device.hpp"
+#include "protocols/fieldbus_dll/attached_isa_device.hpp"
+#include "protocols/fieldbus_dll/embedded_schemas.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
+#include "protocols/fieldbus_dll/ff_settings.hpp"
 #include "protocols/fieldbus_dll/isa_las.hpp"
+#include "protocols/fieldbus_dll/isa_settings.hpp"
 #include "protocols/fieldbus_dll/link_dissector.hpp"
+#include "protocols/fieldbus_dll/rule_tables.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -56,8 +62,16 @@ class FieldbusDllSuite final : public Suite {
     return {std::string(kIsaDle), std::string(kIsaLas), std::string(kFfDevice), std::string(kFfLas)};
   }
   bool has_own(std::string_view role) const override {
-    if (is_of_isa(role)) return bool(given_isa(role).own);
-    return (role == kFfDevice || role == kFfLas) && bool(given_ff(role).own);
+    if (is_of_isa(role)) return bool(own_isa(role));
+    return (role == kFfDevice || role == kFfLas) && bool(own_ff(role));
+  }
+  std::vector<field::NamedTable> tables() const override {
+    using namespace fieldbus_dll;
+    return {{"ff_device", &kFfTable}, {"ff_las", &kFfTable},        {"isa_dle", &kIsaTable},
+            {"isa_las", &kIsaTable},  {"ff_rules", &kFfRulesTable}, {"isa_rules", &kIsaRulesTable}};
+  }
+  std::vector<field::NamedSchema> schemas() const override {
+    return {{"token_network", fieldbus_dll::token_network_schema}};
   }
   const std::vector<TestCase>& cases() const override { return cases_; }
   const std::vector<Mutant>& mutants() const override { return mutants_; }
@@ -74,18 +88,19 @@ class FieldbusDllSuite final : public Suite {
       throw kernel::Error(kernel::ErrorKind::usage,
                           "cases of the data link make the link that they need; leave out the network");
     }
+    if (!setup.playback_file.empty()) return;
+    CaseDevices devices(test_case, setup, given_.attach);
     if (is_of_isa(test_case.role())) {
-      isa_setting(test_case, setup).make_station({});
+      isa_setting(test_case, setup, devices).make_station({});
     } else {
-      ff_setting(test_case, setup).make_station({});
+      ff_setting(test_case, setup, devices).make_station({});
     }
   }
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
     if (const auto isa = isa_cases_.find(test_case.id); isa != isa_cases_.end())
-      return run_recorded<fieldbus_dll::IsaRules>(*isa->second, isa_setting(test_case, setup), setup.record);
-    return run_recorded<fieldbus_dll::FfRules>(*ff_cases_.at(test_case.id), ff_setting(test_case, setup),
-                                               setup.record);
+      return run_isa(*isa->second, setup);
+    return run_ff(*ff_cases_.at(test_case.id), setup);
   }
 
   std::span<const SequenceRole> sequence_roles() const override {
@@ -98,7 +113,7 @@ class FieldbusDllSuite final : public Suite {
       const IsaCase one{role.test_case, [&sequence](IsaBench& bench, CaseJudge& judge) {
                           run_isa_dle_sequence(sequence, bench, judge);
                         }};
-      return run_recorded<fieldbus_dll::IsaRules>(one, isa_setting(role.test_case, setup), setup.record);
+      return run_isa(one, setup);
     }
     const bool is_las = role.test_case.role() == kFfLas;
     const FfCase one{role.test_case,
@@ -106,12 +121,12 @@ class FieldbusDllSuite final : public Suite {
                        (is_las ? run_ff_las_sequence : run_ff_device_sequence)(sequence, bench, judge);
                      },
                      is_las ? ff_las_sequence_needs() : FfNeeds{}};
-    return run_recorded<fieldbus_dll::FfRules>(one, ff_setting(role.test_case, setup), setup.record);
+    return run_ff(one, setup);
   }
 
  private:
   template <typename Rules, typename Case, typename Setting>
-  static Outcome run_recorded(const Case& one, Setting setting, bool is_recorded) {
+  static Outcome run_recorded(const Case& one, Setting setting, CaseDevices& devices, bool is_recorded) {
     CaseRecorder recorder;
     if (is_recorded) {
       setting.make_recorder = [&recorder](const trace::Trace& trace, const Rules& rules) {
@@ -121,7 +136,19 @@ class FieldbusDllSuite final : public Suite {
     Outcome outcome;
     outcome.result = run_on_bench(one, setting);
     recorder.keep(outcome);
+    devices.keep(outcome);
     return outcome;
+  }
+
+  Outcome run_isa(const IsaCase& one, const Setup& setup) const {
+    CaseDevices devices(one.test_case, setup, given_.attach);
+    return run_recorded<fieldbus_dll::IsaRules>(one, isa_setting(one.test_case, setup, devices), devices,
+                                                setup.record);
+  }
+  Outcome run_ff(const FfCase& one, const Setup& setup) const {
+    CaseDevices devices(one.test_case, setup, given_.attach);
+    return run_recorded<fieldbus_dll::FfRules>(one, ff_setting(one.test_case, setup, devices), devices,
+                                               setup.record);
   }
 
   fault::Plan load(const Setup& setup) const {
@@ -129,62 +156,71 @@ class FieldbusDllSuite final : public Suite {
   }
 
   // What the setup says, of either profile.
-  template <typename Setting, typename Configuration, typename Make>
-  Setting setting_of(const TestCase& test_case, const Setup& setup, Make make) const {
+  template <typename Setting>
+  Setting setting_of(const Setup& setup) const {
     Setting setting;
     setting.seed = setup.seed;
     setting.volume = setup.volume;
     if (!setup.plan_file.empty()) setting.plan = load(setup);
     setting.stresses = &given_.stresses;
-    setting.make_station = [this, make, role = test_case.role(), uri = assigned_to(test_case, setup).uri,
-                            id = test_case.id, seed = setup.seed,
-                            limits = setup.limits](const Configuration& configuration) {
-      return (this->*make)(role, {uri, id, seed, limits}, configuration);
+    return setting;
+  }
+
+  IsaSetting isa_setting(const TestCase& test_case, const Setup& setup, CaseDevices& devices) const {
+    auto setting = setting_of<IsaSetting>(setup);
+    const bool is_las = test_case.role() == kIsaLas;
+    setting.address = is_las ? kLasAddress : kDleAddress;
+    setting.make_station = [this, &devices, is_las, uri = assigned_to(test_case, setup).uri](
+                               const fieldbus_dll::IsaConfiguration& configuration) {
+      const auto local = [this, &devices, is_las, uri](const fieldbus_dll::IsaConfiguration& of) {
+        return local_isa(is_las ? kIsaLas : kIsaDle, devices.request(uri), of);
+      };
+      return is_las ? devices.make<fieldbus_dll::IsaLasRole>(uri, configuration, local)
+                    : devices.make<fieldbus_dll::IsaDleRole>(uri, configuration, local);
     };
     return setting;
   }
 
-  IsaSetting isa_setting(const TestCase& test_case, const Setup& setup) const {
-    auto setting = setting_of<IsaSetting, fieldbus_dll::IsaConfiguration>(
-        test_case, setup, &FieldbusDllSuite::make_isa_station);
-    setting.address = test_case.role() == kIsaLas ? kLasAddress : kDleAddress;
+  FfSetting ff_setting(const TestCase& test_case, const Setup& setup, CaseDevices& devices) const {
+    auto setting = setting_of<FfSetting>(setup);
+    const bool is_las = test_case.role() == kFfLas;
+    setting.is_link_master = is_las;
+    setting.make_station = [this, &devices, is_las, uri = assigned_to(test_case, setup).uri](
+                               const fieldbus_dll::FfConfiguration& configuration) {
+      const auto local = [this, &devices, is_las, uri](const fieldbus_dll::FfConfiguration& of) {
+        return local_ff(is_las ? kFfLas : kFfDevice, devices.request(uri), of);
+      };
+      return is_las ? devices.make<fieldbus_dll::FfLasRole>(uri, configuration, local)
+                    : devices.make<fieldbus_dll::FfDeviceRole>(uri, configuration, local);
+    };
     return setting;
   }
 
-  FfSetting ff_setting(const TestCase& test_case, const Setup& setup) const {
-    auto setting = setting_of<FfSetting, fieldbus_dll::FfConfiguration>(test_case, setup,
-                                                                        &FieldbusDllSuite::make_ff_station);
-    setting.is_link_master = test_case.role() == kFfLas;
-    return setting;
+  const MakeOwnIsa& own_isa(std::string_view role) const {
+    return role == kIsaLas ? given_.own_isa_las : given_.own_isa_dle;
+  }
+  const MakeOwnFf& own_ff(std::string_view role) const {
+    return role == kFfLas ? given_.own_ff_las : given_.own_ff_device;
   }
 
-  const GivenIsaStations& given_isa(std::string_view role) const {
-    return role == kIsaLas ? given_.isa_las : given_.isa_dle;
-  }
-  const GivenFfStations& given_ff(std::string_view role) const {
-    return role == kFfLas ? given_.ff_las : given_.ff_device;
-  }
-
-  std::unique_ptr<fieldbus_dll::IsaDevice> make_isa_station(
-      const std::string& role, const IutRequest& wanted,
-      const fieldbus_dll::IsaConfiguration& configuration) const {
+  std::unique_ptr<fieldbus_dll::IsaDevice> local_isa(std::string_view role, const IutRequest& wanted,
+                                                     const fieldbus_dll::IsaConfiguration& of) const {
     if (wanted.uri == kReferenceUri) {
-      if (role == kIsaLas) return std::make_unique<fieldbus_dll::IsaLas>(configuration);
-      return std::make_unique<fieldbus_dll::IsaDle>(configuration);
+      if (role == kIsaLas) return std::make_unique<fieldbus_dll::IsaLas>(of);
+      return std::make_unique<fieldbus_dll::IsaDle>(of);
     }
-    if (auto station = given_isa(role).make(wanted, configuration)) return station;
-    return make_isa_mutant(role, mutant_of(wanted.uri, "station of the profile ISA-D"), configuration);
+    if (wanted.uri == kOwnUri && own_isa(role)) return own_isa(role)(wanted, of);
+    return make_isa_mutant(std::string(role), mutant_of(wanted.uri, "station of the profile ISA-D"), of);
   }
 
-  std::unique_ptr<fieldbus_dll::FfDevice> make_ff_station(
-      const std::string& role, const IutRequest& wanted,
-      const fieldbus_dll::FfConfiguration& configuration) const {
+  std::unique_ptr<fieldbus_dll::FfDevice> local_ff(std::string_view role, const IutRequest& wanted,
+                                                   const fieldbus_dll::FfConfiguration& of) const {
     if (wanted.uri == kReferenceUri) {
-      if (role == kFfLas) return std::make_unique<fieldbus_dll::FfLas>(configuration);
-      return std::make_unique<fieldbus_dll::FfStation>(configuration);
+      if (role == kFfLas) return std::make_unique<fieldbus_dll::FfLas>(of);
+      return std::make_unique<fieldbus_dll::FfStation>(of);
     }
-    if (auto station = given_ff(role).make(wanted, configuration)) return station;
-    return make_ff_mutant(role, mutant_of(wanted.uri, "station of the profile FF-P"), configuration);
+    if (wanted.uri == kOwnUri && own_ff(role)) return own_ff(role)(wanted, of);
+    return make_ff_mutant(std::string(role), mutant_of(wanted.uri, "station of the profile FF-P"), of);
   }
 
   FieldbusDllGiven given_;

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "conformance/assigned.hpp"
+#include "conformance/case_devices.hpp"
 #include "conformance/fieldbus_dll/link_bench.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
@@ -16,14 +16,15 @@
 // Implementations of a role: `ref`, `mutant:NAME`, and what the suite was given.
 namespace fieldproof::conformance {
 
-using GivenIsaStations = StationSources<fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration>;
-using GivenFfStations = StationSources<fieldbus_dll::FfDevice, fieldbus_dll::FfConfiguration>;
+using MakeOwnIsa = MakeOwn<fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration>;
+using MakeOwnFf = MakeOwn<fieldbus_dll::FfDevice, fieldbus_dll::FfConfiguration>;
 
 struct FieldbusDllGiven {
-  GivenIsaStations isa_dle{};
-  GivenIsaStations isa_las{};
-  GivenFfStations ff_device{};
-  GivenFfStations ff_las{};
+  Attach attach{};  // implementations outside; null: there are none
+  MakeOwnIsa own_isa_dle{};
+  MakeOwnIsa own_isa_las{};
+  MakeOwnFf own_ff_device{};
+  MakeOwnFf own_ff_las{};
   std::vector<fault::DisturbanceKind> disturbances{};  // what a plan can name
   LinkStresses stresses{};  // for cases with the tag `bursts`; without any they are left out
 };

@@ -235,7 +235,7 @@ int main(int argc, char** argv) {
   if (argc < 4) return 64;
   try {
     iut::serve(
-        STDIN_FILENO, STDOUT_FILENO,
+        STDIN_FILENO, STDOUT_FILENO, {"valve_bus", "node"},
         [&](const iut::RoleName& role) {
           return std::make_unique<Hostile>(argv[1], argv[2], argv[3], conformance::right_station(role));
         },

@@ -21,23 +21,6 @@ std::vector<VirtualStation> paper_ring() {
   return {{0x0008, 0, -1, false}, {0x01BE, 1, 0, true}, {0x01BD, 1, 1, false}};
 }
 
-std::vector<judge::PicsItem> master_pics_items() {
-  using enum judge::PicsKind;
-  return {
-      {"request_below_minimum",
-       text,
-       "what a master makes of a requested cycle time below the minimum",
-       0,
-       {"clipped", "refused"}},
-      {"outputs_after_bus_stop", text, "what its outputs do when its ring is cut", 0, {"zero", "held"}},
-      {"line_after_stop",
-       text,
-       "what a master drives after it was stopped by command",
-       0,
-       {"silent", "status_telegrams"}},
-  };
-}
-
 MasterBench::MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume, judge::Pics pics,
                          std::span<const fault::Stress> stresses)
     : make_master_(std::move(make_master)),

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/ring_emulator.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/line_watch.hpp"
@@ -29,9 +30,6 @@
 //   line_after_stop         by the command:        silent | status_telegrams
 // Of an item that it does not declare, each answer is admissible.
 namespace fieldproof::conformance {
-
-// The rows of these items.
-std::vector<judge::PicsItem> master_pics_items();
 
 class MasterBench {
  public:

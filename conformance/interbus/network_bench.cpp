@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "harness/kernel/check.hpp"
-#include "protocols/interbus/master.hpp"
 #include "protocols/interbus/observation.hpp"
 #include "protocols/interbus/timing.hpp"
 
@@ -21,15 +20,6 @@ interbus::NetworkDescription built_from(const interbus::NetworkDescription& netw
 
 }  // namespace
 
-void NetworkBench::Listener::on_wave(const line::Waveform& wave) {
-  code.decode(wave.levels, 0, [&](const line::Telegram& telegram) {
-    if (!telegram.is_data()) return;
-    const bool is_transfer = (telegram.header & (line::kSelect | line::kControl)) == 0;
-    if (is_transfer && !is_in_transfer) starts.push_back(wave.time_of(telegram.level));
-    is_in_transfer = is_transfer;
-  });
-}
-
 NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkParts& parts,
                            const fault::Plan& plan, std::uint64_t seed, Volume volume,
                            std::span<const fault::Stress> stresses)
@@ -38,49 +28,43 @@ NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkPa
       places_(interbus::ring_order(network_)),
       volume_(volume),
       random_(seed),
-      listener_(network_.rules),
+      running_(built_, {.make_master = parts.make_master, .make_slave = parts.make_slave}, &network_),
       line_watch_(interbus::shortest_telegram(network_.rules)),
       stresses_(stresses) {
-  interbus::MasterConfiguration configuration = interbus::master_configuration(network_);
-  configuration.rules = built_.rules;
-  if (parts.make_master) {
-    master_ = parts.make_master(configuration);
-  } else {
-    master_ = std::make_unique<interbus::Master>(configuration);
-  }
-  master_seat_ = segment_.attach(*master_, "master");
-  ring_ = std::make_unique<interbus::Ring>(segment_, built_, master_seat_, parts.make_slave);
-  master_->wire(ring_->out());
-  master_->on_cycle_end([this, place = segment_.trace().add_channel("master")](
+  running_.on_cycle_end([this, place = segment().trace().add_channel("master")](
                             kernel::Time now, bool data_cycle, bool accepted) {
-    segment_.trace().observe(place, now, interbus::observed_cycle_end(data_cycle, accepted), 0);
-    on_cycle_end(now, data_cycle, accepted);
+    segment().trace().observe(place, now, interbus::observed_cycle_end(data_cycle, accepted), 0);
   });
-  ring_->link_to(1).tap_driven(listener_);
-  for (segment::Link* link : ring_->links()) line_watch_.watch(*link, segment_.trace());
-  for (std::size_t n = 0; n < ring_->remote_links().size(); ++n) stressed_.emplace_back(stresses_);
+  running_.watch(*this);
+  running_.keep_starts();
+  for (segment::Link* link : ring().links()) line_watch_.watch(*link, segment().trace());
+  for (std::size_t n = 0; n < ring().remote_links().size(); ++n) stressed_.emplace_back(stresses_);
   install(plan);
 }
 
-interbus::ExchangeOracle& NetworkBench::begin_exchange() {
+network::ExchangeStatistics& NetworkBench::begin_exchange() {
   FIELDPROOF_CHECK(!exchange_, "a network exchanges words once");
-  return exchange_.emplace(*master_, *ring_, random_.split("process data"));
+  return exchange_.emplace(running_, random_.split("process data"));
 }
 
-void NetworkBench::on_cycle_end(kernel::Time now, bool is_data, bool accepted) {
+void NetworkBench::on_exchange(const network::Exchange& exchange) {
   if (!exchange_) return;
   const std::uint64_t changed = stressed_transmissions();
-  exchange_->on_cycle_end(now, is_data, accepted, changed != changed_before_);
+  exchange_->on_exchange(exchange, changed != changed_before_);
   changed_before_ = changed;
+}
+
+void NetworkBench::on_shown(std::size_t signal, std::uint16_t word, kernel::Time when) {
+  if (exchange_) exchange_->on_shown(signal, word, when);
 }
 
 void NetworkBench::begin_stress(const fault::Stress& stress) {
   const kernel::Random random = random_.split("stress").split(stress_number_++);
   auto stressed = stressed_.begin();
-  for (segment::Link* link : ring_->remote_links()) {
+  for (segment::Link* link : ring().remote_links()) {
     (stressed++)
         ->begin(stress, *link,
-                {network_.rules.bit_rate, segment_.now(), random, segment_.trace(), link->trace_channel()});
+                {network_.rules.bit_rate, segment().now(), random, segment().trace(), link->trace_channel()});
   }
 }
 
@@ -96,36 +80,25 @@ std::uint64_t NetworkBench::stressed_transmissions() const {
 
 void NetworkBench::install(const fault::Plan& plan) {
   if (plan.empty()) return;
-  plan_ = std::make_unique<fault::InstalledPlan>(plan, segment_.trace(), random_.split("plan"));
-  ring_->install(*plan_);
+  plan_ = std::make_unique<fault::InstalledPlan>(plan, segment().trace(), random_.split("plan"));
+  ring().install(*plan_);
 }
 
 void NetworkBench::run_behind_sampling() {
-  forget_starts();
+  keep_starts();
   run_cycles(2);
-  if (listener_.starts.empty()) return;
-  segment_.run_until(listener_.starts.back() + status().cycle_time + 200 * kernel::kMicrosecond);
+  if (data_cycle_starts().empty()) return;
+  segment().run_until(data_cycle_starts().back() + status().cycle_time + 200 * kernel::kMicrosecond);
 }
 
 bool NetworkBench::bring_up() {
-  master_->start(segment_.now());
-  segment_.refresh(master_seat_);
-  const kernel::Time end = segment_.now() + longest_recognition();
-  while (segment_.now() < end) {
+  running_.start();
+  const kernel::Time end = segment().now() + running_.bring_up_limit();
+  while (segment().now() < end) {
     if (status().state == interbus::MasterState::run) return true;
-    segment_.run_for(10 * kMillisecond);
+    segment().run_for(10 * kMillisecond);
   }
   return false;
-}
-
-// Recognition adds the stations one by one, each with a few ID cycles through all that are known.
-kernel::Duration NetworkBench::longest_recognition() const {
-  constexpr std::int64_t kCyclesPerStation = 8;
-  const auto stations = static_cast<std::int64_t>(places_.size());
-  const kernel::Duration longest_cycle =
-      interbus::structural_cycle_time(built_) +
-      interbus::frame_time(built_.rules, static_cast<unsigned>(2 * stations)) + kMillisecond;
-  return 10 * kernel::kSecond + kCyclesPerStation * stations * longest_cycle;
 }
 
 }  // namespace fieldproof::conformance

@@ -17,10 +17,11 @@
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
+#include "harness/network/exchange_statistics.hpp"
 #include "harness/segment/segment.hpp"
-#include "protocols/interbus/exchange_oracle.hpp"
 #include "protocols/interbus/network.hpp"
 #include "protocols/interbus/ring.hpp"
+#include "protocols/interbus/running_network.hpp"
 
 // A whole network under test: the master and the slaves of a network description on their cables, with the
 // declared faults of a plan on every receiver. The lower tester listens to the master's output; the upper
@@ -35,12 +36,10 @@ struct NetworkParts {
   std::function<void(interbus::NetworkDescription&)> change_network;
 };
 
-class NetworkBench {
+class NetworkBench final : private network::ExchangeWatcher {
  public:
   NetworkBench(interbus::NetworkDescription network, const NetworkParts& parts, const fault::Plan& plan,
                std::uint64_t seed, Volume volume, std::span<const fault::Stress> stresses = {});
-  NetworkBench(const NetworkBench&) = delete;
-  NetworkBench& operator=(const NetworkBench&) = delete;
 
   // As the description says, whatever a mutant built.
   const interbus::NetworkDescription& network() const { return network_; }
@@ -56,22 +55,20 @@ class NetworkBench {
     return std::min(volume(quick, full), std::max<std::int64_t>(in_a_minute, 5));
   }
   kernel::Random& random() { return random_; }
-  segment::Segment& segment() { return segment_; }
-  interbus::MasterDevice& master() { return *master_; }
-  interbus::Ring& ring() { return *ring_; }
+  segment::Segment& segment() { return running_.segment(); }
+  interbus::RunningNetwork& running() { return running_; }
+  interbus::MasterDevice& master() { return running_.master(); }
+  interbus::Ring& ring() { return running_.ring(); }
   // The case is over. What the stations do then is still their verdict.
-  void finish() {
-    master_->end();
-    ring_->end();
-  }
+  void finish() { running_.end(); }
   // What every station drives.
   const LineWatch& line_watch() const { return line_watch_; }
-  interbus::MasterStatus status() const { return master_->status(); }
+  interbus::MasterStatus status() const { return running_.status(); }
 
   // Powers up and waits until data cycles run; false when the network does not get there in the time that its
   // size allows.
   bool bring_up();
-  void run_cycles(std::int64_t count) { segment_.run_for(status().cycle_time * count); }
+  void run_cycles(std::int64_t count) { segment().run_for(status().cycle_time * count); }
 
   // To 200 us behind the start of a data cycle, when every station has sampled its inputs: what changes then
   // has just missed the cycle.
@@ -84,46 +81,34 @@ class NetworkBench {
   void end_stress();
   std::uint64_t stressed_transmissions() const;
   // From now on random words go through the network at each cycle, and what comes out of it is judged.
-  interbus::ExchangeOracle& begin_exchange();
+  network::ExchangeStatistics& begin_exchange();
 
-  // Starts of the data cycles on the master's output since `forget_starts`, as the lower tester decoded them.
-  const std::vector<kernel::Time>& data_cycle_starts() const { return listener_.starts; }
-  void forget_starts() { listener_.starts.clear(); }
+  // Starts of the data cycles on the master's output since `keep_starts`, as the lower tester decoded them.
+  const std::vector<kernel::Time>& data_cycle_starts() const { return running_.data_cycle_starts(); }
+  void keep_starts() { running_.keep_starts(); }
 
   std::vector<std::uint64_t> planned_hits() const {
     return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
   }
 
  private:
-  struct Listener final : segment::Tap {
-    explicit Listener(const interbus::Rules& rules) : code(line::shared_telegram_code(rules.telegram)) {}
-    void on_wave(const line::Waveform& wave) override;
-
-    const line::TelegramCode& code;
-    bool is_in_transfer = false;
-    std::vector<kernel::Time> starts;
-  };
-
   void install(const fault::Plan& plan);
-  void on_cycle_end(kernel::Time now, bool is_data, bool accepted);
-  kernel::Duration longest_recognition() const;
+  void on_exchange(const network::Exchange& exchange) override;
+  void on_shown(std::size_t signal, std::uint16_t word, kernel::Time when) override;
+  void on_cycle_begin(std::size_t, kernel::Time) override {}
 
   interbus::NetworkDescription network_;
   interbus::NetworkDescription built_;
   std::vector<interbus::RingPlace> places_;
   Volume volume_;
   kernel::Random random_;
-  segment::Segment segment_;
-  std::unique_ptr<interbus::MasterDevice> master_;
-  std::size_t master_seat_ = 0;
-  std::unique_ptr<interbus::Ring> ring_;
+  interbus::RunningNetwork running_;
   std::unique_ptr<fault::InstalledPlan> plan_;
-  Listener listener_;
   LineWatch line_watch_;
   std::span<const fault::Stress> stresses_;
   std::deque<StressedReceiver> stressed_;  // of each remote link
   std::uint64_t stress_number_ = 0;
-  std::optional<interbus::ExchangeOracle> exchange_;
+  std::optional<network::ExchangeStatistics> exchange_;
   std::uint64_t changed_before_ = 0;  // at the end of the cycle before
 };
 

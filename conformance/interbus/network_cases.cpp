@@ -45,7 +45,7 @@ void recognises_the_described_topology(NetworkBench& bench, CaseJudge& judge) {
 
 // Cycle times between consecutive data cycles on the master's output.
 std::vector<kernel::Duration> measured_cycles(NetworkBench& bench, std::int64_t count) {
-  bench.forget_starts();
+  bench.keep_starts();
   bench.run_cycles(count);
   std::vector<kernel::Duration> cycles;
   const auto& starts = bench.data_cycle_starts();

@@ -14,8 +14,9 @@
 namespace fieldproof::conformance {
 namespace {
 
-using interbus::ExchangeOracle;
 using interbus::MasterState;
+using network::ErrorStatistics;
+using network::ExchangeStatistics;
 
 constexpr std::int64_t kQuickRounds = 10;  // most of a second of bursts
 constexpr kernel::Duration kFullBursts = 60 * kernel::kSecond;
@@ -33,13 +34,13 @@ class BurstExchange {
   BurstExchange(NetworkBench& bench, CaseJudge& judge)
       : bench_(bench),
         judge_(judge),
-        oracle_(bench.begin_exchange()),
+        statistics_(bench.begin_exchange()),
         cycle_(std::max(interbus::structural_cycle_time(bench.network()),
                         bench.network().cycle_time.value_or(kernel::Duration{}))) {}
 
   void run() {
     bench_.segment().run_for(3 * cycle_);
-    oracle_.begin();
+    statistics_.begin();
     for (std::int64_t round = 0; round < rounds(); ++round) {
       for (const fault::Stress& stress : bench_.stresses()) {
         suffer(stress);
@@ -64,7 +65,22 @@ class BurstExchange {
   std::int64_t rounds() const {
     kernel::Duration one{};
     for (const fault::Stress& stress : bench_.stresses()) one += stress.duration;
-    return bench_.volume<std::int64_t>(kQuickRounds, kFullBursts / one + 1);
+    return std::min(bench_.volume<std::int64_t>(kQuickRounds, kFullBursts / one + 1), affordable_rounds());
+  }
+
+  // Fewer on a large ring: each octet of a cycle is received at each station, and a cycle that bursts hit is
+  // received at the fine rate.
+  std::int64_t affordable_rounds() const {
+    constexpr std::int64_t kReceptions = 1'000'000'000;
+    constexpr std::int64_t kReceptionsOfAStruckCycle = 64;
+    constexpr std::int64_t kCyclesOfRecovery = 3;
+    const auto stations = static_cast<std::int64_t>(bench_.ring().size());
+    const std::int64_t octets = 2 * std::int64_t{bench_.ring().word_count()} + 8;
+    std::int64_t cycles = 0;
+    for (const fault::Stress& stress : bench_.stresses()) {
+      cycles += (stress.duration / cycle_ + 1) * kReceptionsOfAStruckCycle + kCyclesOfRecovery;
+    }
+    return std::max<std::int64_t>(1, kReceptions / (cycles * stations * octets));
   }
 
   void suffer(const fault::Stress& stress) {
@@ -90,59 +106,56 @@ class BurstExchange {
   }
 
   bool goes_on() {
-    const std::uint64_t before = oracle_.good_cycles();
+    const std::uint64_t before = statistics_.good_exchanges();
     for (std::int64_t cycle = 0; cycle < kMostRecoveryCycles; ++cycle) {
       bench_.segment().run_for(cycle_);
-      if (oracle_.good_cycles() > before) return true;
+      if (statistics_.good_exchanges() > before) return true;
       if (bench_.status().state == MasterState::bus_stop) return false;
     }
     return false;
   }
 
   void judge_words() {
-    const std::uint64_t wrong = oracle_.ledger().wrong_cycles;
+    const std::uint64_t wrong = statistics_.counts().wrong_exchanges;
     if (wrong == 0) return;
     // Where the bursts of the case are left out, what a plan flips was chosen: there nothing is by chance.
     const double expected =
         bench_.stressed_transmissions() > 0 ? kAllowedShare * static_cast<double>(struck()) : 0.0;
     const double chance = expected > 0 ? boost::math::gamma_p(static_cast<double>(wrong), expected) : 0.0;
     if (chance >= kImpossible) return;
-    const ExchangeOracle::WrongWord& first = *oracle_.first_wrong();
+    const network::WrongWord& first = *statistics_.first_wrong();
     const Mismatch sighting{
         {fmt::format("{}: {:04X}h, which was sent; or the words before", place_of(first), first.sent),
          fmt::format("by chance at most {:.2g} cycles with wrong words, of {} struck transmissions", expected,
                      struck())},
         fmt::format("{:04X}h; {} cycles with wrong words", first.got, wrong),
         first.when};
-    judge_.fail(first.is_output ? "wrong_output_accepted" : "wrong_input_accepted", sighting);
+    judge_.fail(is_output(first) ? "wrong_output_accepted" : "wrong_input_accepted", sighting);
   }
 
-  std::string place_of(const ExchangeOracle::WrongWord& wrong) const {
-    int position = 1;
-    while (position < static_cast<int>(bench_.ring().size()) &&
-           bench_.ring().first_word(position + 1) <= wrong.word) {
-      ++position;
-    }
-    return fmt::format("{} word {} of station {}", wrong.is_output ? "output" : "input",
-                       wrong.word - bench_.ring().first_word(position), position);
+  bool is_output(const network::WrongWord& wrong) const {
+    return bench_.running().signals()[wrong.signal].is_output;
+  }
+  std::string place_of(const network::WrongWord& wrong) const {
+    return bench_.running().signals()[wrong.signal].name;
   }
 
   void measure() {
-    const interbus::ErrorLedger& ledger = oracle_.ledger();
+    const ErrorStatistics& counts = statistics_.counts();
     const auto tell = [this](const char* what, const char* unit, double value) {
       judge_.measure(what, unit, value);
     };
     tell("bursts", "s", static_cast<double>(struck_time_.count()) * 1e-12);
-    tell("data cycles", "", static_cast<double>(ledger.sent));
+    tell("data cycles", "", static_cast<double>(counts.sent));
     tell("transmissions struck by a pulse", "", static_cast<double>(struck()));
-    tell("cycles rejected by the master", "", static_cast<double>(ledger.detected));
-    tell("cycles with wrong words", "", static_cast<double>(ledger.wrong_cycles));
+    tell("cycles rejected by the master", "", static_cast<double>(counts.detected));
+    tell("cycles with wrong words", "", static_cast<double>(counts.wrong_exchanges));
     tell("starts behind a stop of the bus", "", static_cast<double>(starts_));
   }
 
   NetworkBench& bench_;
   CaseJudge& judge_;
-  ExchangeOracle& oracle_;
+  ExchangeStatistics& statistics_;
   kernel::Duration cycle_;
   kernel::Duration struck_time_{};
   std::uint64_t starts_ = 0;

@@ -27,14 +27,15 @@ const Suite& inside() {
 
 // Plays a master by name as one outside; an empty name is the reference.
 std::unique_ptr<Suite> outside(const std::string& mutant) {
-  const auto attach = [mutant](const IutRequest& wanted, const MasterConfiguration& configuration) {
+  const Attach attach = [mutant](const iut::RoleName&,
+                                 const IutRequest& request) -> std::optional<iut::Attachment> {
+    if (request.uri != "outside") return std::nullopt;
     const auto served = std::make_shared<ServedMaster>([mutant](const MasterConfiguration& told) {
       return mutant.empty() ? std::make_unique<interbus::Master>(told) : make_master_mutant(mutant, told);
     });
-    return std::make_unique<AttachedMaster>(iut::Attachment{served.get(), served, {}}, configuration,
-                                            wanted.case_id, wanted.seed);
+    return iut::Attachment{served.get(), served, {}};
   };
-  return interbus_suite({.master = {.attached = attach}});
+  return interbus_suite({.attach = attach});
 }
 
 Setup setup_of(const std::string& uri) {

@@ -35,21 +35,22 @@ iut::Attachment speaker_of(std::unique_ptr<iut::Device> served, unsigned line_po
 
 // Plays a station by name as one outside; an empty name is the reference.
 std::unique_ptr<Suite> in_telegrams(const std::string& mutant) {
-  const auto slave = [mutant](const IutRequest& wanted, const SlaveConfiguration& configuration) {
-    auto served = std::make_unique<interbus::ServedSlave>([mutant](const SlaveConfiguration& told) {
+  const auto slave = [mutant]() {
+    return std::make_unique<interbus::ServedSlave>([mutant](const SlaveConfiguration& told) {
       return mutant.empty() ? std::make_unique<interbus::Slave>(told) : make_slave_mutant(mutant, told);
     });
-    return std::make_unique<interbus::AttachedSlave>(speaker_of(std::move(served), 3), configuration,
-                                                     wanted.case_id, wanted.seed);
   };
-  const auto master = [mutant](const IutRequest& wanted, const MasterConfiguration& configuration) {
-    auto served = std::make_unique<interbus::ServedMaster>([mutant](const MasterConfiguration& told) {
+  const auto master = [mutant]() {
+    return std::make_unique<interbus::ServedMaster>([mutant](const MasterConfiguration& told) {
       return mutant.empty() ? std::make_unique<interbus::Master>(told) : make_master_mutant(mutant, told);
     });
-    return std::make_unique<interbus::AttachedMaster>(speaker_of(std::move(served), 1), configuration,
-                                                      wanted.case_id, wanted.seed);
   };
-  return interbus_suite({.slave = {.attached = slave}, .master = {.attached = master}});
+  return interbus_suite(
+      {.attach = [slave, master](const iut::RoleName& role,
+                                 const IutRequest& request) -> std::optional<iut::Attachment> {
+        if (request.uri != "outside") return std::nullopt;
+        return role.role == "slave" ? speaker_of(slave(), 3) : speaker_of(master(), 1);
+      }});
 }
 
 Setup telegram_setup(const std::string& role, const std::string& uri) {

@@ -55,43 +55,6 @@ interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveS
   return network;
 }
 
-std::vector<judge::PicsItem> slave_pics_items() {
-  using enum judge::PicsKind;
-  constexpr std::int64_t kMostWords = 64;
-  return {
-      {"words", number, "length of the register in words of 16 bits", kMostWords},
-      {"inputs", truth, "the slave has process data inputs"},
-      {"outputs", truth, "the slave has process data outputs"},
-      {"id_code", number, "the ID code: bits 0 to 12 of the ID register", 0x1FFF},
-      {"remote_interface", truth, "there is an outgoing remote bus interface (OUT1)"},
-      {"branch_interface", truth, "there is an outgoing interface to a local bus or branch (OUT2)"},
-      {"reconfiguration_button", truth, "a reconfiguration can be asked for at the station"},
-      {"peripheral_fault_input", truth, "a peripheral fault can be told to the station"},
-      {"any_length_code", truth, "the station can be built with any register length"},
-      {"outputs_while_outgoing_bus_is_reset",
-       text,
-       "what the outputs do while an outgoing bus is reset",
-       0,
-       {"held", "cleared"}},
-  };
-}
-
-judge::Pics declared_slave(const interbus::SlaveConfiguration& configuration) {
-  judge::Pics pics;
-  const bool has_words = configuration.words > 0;
-  pics.declare("words", std::int64_t{configuration.words});
-  pics.declare("inputs", has_words && interbus::has_inputs(configuration.id_code));
-  pics.declare("outputs", has_words && interbus::has_outputs(configuration.id_code));
-  pics.declare("id_code", std::int64_t{configuration.id_code});
-  pics.declare("remote_interface", !configuration.is_local);
-  pics.declare("branch_interface", configuration.has_branch);
-  pics.declare("reconfiguration_button", true);
-  pics.declare("peripheral_fault_input", true);
-  pics.declare("any_length_code", true);
-  pics.declare("outputs_while_outgoing_bus_is_reset", "held");
-  return pics;
-}
-
 SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
     : network_(slave_network(needs, setting)),
       position_(setting.position),

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/slave_line.hpp"
 #include "conformance/interbus/slave_model.hpp"
 #include "conformance/line_watch.hpp"
@@ -65,11 +66,6 @@ struct SlaveSetting {
 
 // The network of a case. Throws kernel::Error for a position that the network does not have.
 interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveSetting& setting);
-// What a PICS of a slave may answer.
-std::vector<judge::PicsItem> slave_pics_items();
-// What a station of the bench declares about itself: an answer to each of these items.
-judge::Pics declared_slave(const interbus::SlaveConfiguration& configuration);
-
 class SlaveBench final : private segment::Station {
  public:
   SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting);

@@ -241,7 +241,7 @@ std::vector<SlaveCase> slave_interface_cases() {
         .tags = {"must"},
         .catches = {{"branch_interface_stays_open", "interface_not_closed"},
                     {"interface_switches_inside_cycle", "interface_switched_inside_cycle"}},
-        .not_applicable = for_item("branch_interface", "the slave has no second outgoing interface (OUT2)")},
+        .not_applicable = for_item("has_branch", "the slave has no second outgoing interface (OUT2)")},
        branch_interface,
        branch});
   cases.push_back(

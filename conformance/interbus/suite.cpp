@@ -9,19 +9,22 @@
 #include <optional>
 #include <string_view>
 
-#include "conformance/assigned.hpp"
 #include "conformance/case_recorder.hpp"
 #include "conformance/interbus/master_cases.hpp"
 #include "conformance/interbus/master_mutants.hpp"
 #include "conformance/interbus/network_bench.hpp"
-#include "conformance/interbus/playback.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
+#include "protocols/interbus/attached_master.hpp"
+#include "protocols/interbus/attached_slave.hpp"
 #include "protocols/interbus/cycle_dissector.hpp"
+#include "protocols/interbus/embedded_schemas.hpp"
 #include "protocols/interbus/master.hpp"
+#include "protocols/interbus/master_settings.hpp"
 #include "protocols/interbus/slave.hpp"
+#include "protocols/interbus/slave_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -40,15 +43,12 @@ fault::Plan load_plan(const Setup& setup, const interbus::Rules& rules, const In
 class Run {
  public:
   Run(const TestCase& test_case, const Setup& setup, const InterbusGiven& given)
-      : test_case_(test_case), setup_(setup), given_(given) {
+      : test_case_(test_case), setup_(setup), given_(given), devices_(test_case, setup, given.attach) {
     if (!setup.network_file.empty()) network_ = interbus::NetworkDescription::load(setup.network_file);
     if (!setup.plan_file.empty()) {
       plan_ = load_plan(setup, network_ ? network_->rules : interbus::Rules{}, given);
     }
     assigned_ = assigned_to(test_case, setup);
-    if (assigned_.uri.starts_with(kRecordedUri)) {
-      played_back_ = DeviceRecording::load(assigned_.uri.substr(kRecordedUri.size()));
-    }
   }
 
   // Throw for a setup that the cases of the role cannot be run with.
@@ -57,7 +57,7 @@ class Run {
   void check(const NetworkCase& network_case);
   judge::Pics pics(const SlaveCase& slave_case);
   // Makes each implementation once, before anything is judged.
-  void try_out() const;
+  void try_out();
 
   Outcome run(const SlaveCase& slave_case);
   Outcome run(const MasterCase& master_case);
@@ -68,11 +68,8 @@ class Run {
       std::function<std::unique_ptr<interbus::SlaveDevice>(const interbus::SlaveConfiguration&)>;
   using MakeMaster =
       std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)>;
-  IutRequest wanted(const std::string& uri) const { return {uri, test_case_.id, setup_.seed, setup_.limits}; }
-  MakeSlave slave_maker(const std::string& uri) const;
-  MakeMaster master_maker(const std::string& uri) const;
-  std::unique_ptr<interbus::SlaveDevice> make_slave(const interbus::SlaveConfiguration& configuration);
-  std::unique_ptr<interbus::MasterDevice> make_master(const interbus::MasterConfiguration& configuration);
+  MakeSlave slave_maker(const std::string& uri);
+  MakeMaster master_maker(const std::string& uri);
   SlaveSetting slave_setting();
   interbus::NetworkDescription network() const;
   NetworkParts network_parts(std::size_t stations);
@@ -86,38 +83,30 @@ class Run {
   Assignment assigned_;
   std::optional<interbus::NetworkDescription> network_;
   fault::Plan plan_;
-  std::optional<DeviceRecording> played_back_;
-  std::size_t played_back_devices_ = 0;
-  DeviceRecording recording_;
+  CaseDevices devices_;
   CaseRecorder recorder_;
 };
 
-// The given ones are asked each time: each slave is one of its own, also of an implementation outside.
-Run::MakeSlave Run::slave_maker(const std::string& uri) const {
-  if (uri == kReferenceUri) return std::make_unique<interbus::Slave, const interbus::SlaveConfiguration&>;
+// Each slave is one of its own, also of an implementation outside.
+Run::MakeSlave Run::slave_maker(const std::string& uri) {
   return [this, uri](const interbus::SlaveConfiguration& configuration) {
-    if (auto slave = given_.slave.make(wanted(uri), configuration)) return slave;
-    return make_slave_mutant(mutant_of(uri, "INTERBUS slave"), configuration);
+    return devices_.make<interbus::SlaveRole>(
+        uri, configuration,
+        [this, uri](const interbus::SlaveConfiguration& of) -> std::unique_ptr<interbus::SlaveDevice> {
+          if (uri == kReferenceUri) return std::make_unique<interbus::Slave>(of);
+          if (uri == kOwnUri && given_.own_slave) return given_.own_slave(devices_.request(uri), of);
+          return make_slave_mutant(mutant_of(uri, "INTERBUS slave"), of);
+        });
   };
 }
 
-Run::MakeMaster Run::master_maker(const std::string& uri) const {
+Run::MakeMaster Run::master_maker(const std::string& uri) {
   return [this, uri](const interbus::MasterConfiguration& configuration) {
-    if (auto master = given_.master.make(wanted(uri), configuration)) return master;
-    return conformance::make_master(uri)(configuration);
+    return devices_.make<interbus::MasterRole>(uri, configuration, [this, uri](const auto& of) {
+      if (uri == kOwnUri && given_.own_master) return given_.own_master(devices_.request(uri), of);
+      return conformance::make_master(uri)(of);
+    });
   };
-}
-
-std::unique_ptr<interbus::SlaveDevice> Run::make_slave(const interbus::SlaveConfiguration& configuration) {
-  if (played_back_) return played_back_slave(*played_back_, played_back_devices_++, configuration.words);
-  std::unique_ptr<interbus::SlaveDevice> device = slave_maker(assigned_.uri)(configuration);
-  return setup_.record ? recorded(std::move(device), recording_) : std::move(device);
-}
-
-std::unique_ptr<interbus::MasterDevice> Run::make_master(const interbus::MasterConfiguration& configuration) {
-  if (played_back_) return played_back_master(*played_back_, played_back_devices_++);
-  std::unique_ptr<interbus::MasterDevice> device = master_maker(assigned_.uri)(configuration);
-  return setup_.record ? recorded(std::move(device), recording_) : std::move(device);
 }
 
 void Run::finish(Outcome& outcome, const trace::Trace& trace, kernel::Time now) const {
@@ -133,14 +122,12 @@ trace::Recorder& Run::recorder_of(const trace::Trace& trace, const interbus::Rul
 
 void Run::keep(Outcome& outcome) {
   recorder_.keep(outcome);
-  Recording& kept = outcome.recording;
-  kept.truncated = kept.truncated || recording_.is_truncated();
-  if (recording_.device_count() > 0) kept.playback = recording_.text();
+  devices_.keep(outcome);
 }
 
-void Run::try_out() const {
+void Run::try_out() {
+  if (devices_.is_played_back()) return;
   for (const Assignment& assignment : setup_.implementations) {
-    if (assignment.uri.starts_with(kRecordedUri)) continue;
     const std::string role = assignment.role.empty() ? test_case_.role() : assignment.role;
     if (role == "slave") slave_maker(assignment.uri)({});
     if (role == "master") master_maker(assignment.uri)({});
@@ -149,7 +136,7 @@ void Run::try_out() const {
 
 SlaveSetting Run::slave_setting() {
   SlaveSetting setting;
-  setting.make_slave = [this](const interbus::SlaveConfiguration& c) { return make_slave(c); };
+  setting.make_slave = slave_maker(assigned_.uri);
   setting.position = assigned_.position == 0 ? 1 : assigned_.position;
   setting.stations = setting.position;
   setting.network = network_;
@@ -201,8 +188,8 @@ void Run::check(const MasterCase&) {
 
 Outcome Run::run(const MasterCase& master_case) {
   check(master_case);
-  MasterBench bench([this](const auto& configuration) { return make_master(configuration); }, setup_.seed,
-                    setup_.volume, setup_.pics.value_or(judge::Pics{}), given_.stresses);
+  MasterBench bench(master_maker(assigned_.uri), setup_.seed, setup_.volume,
+                    setup_.pics.value_or(judge::Pics{}), given_.stresses);
   if (setup_.record) {
     bench.segment().trace().set_recorder(&recorder_of(bench.segment().trace(), bench.rules()));
   }
@@ -268,7 +255,6 @@ interbus::NetworkDescription Run::network() const {
 }
 
 void Run::check(const NetworkCase&) {
-  if (played_back_) refuse("a network is not judged again from a recording; run it again");
   network_parts(interbus::ring_order(network()).size());
 }
 
@@ -322,7 +308,7 @@ class InterbusSuite final : public Suite {
   std::string_view protocol() const override { return "interbus"; }
   std::vector<std::string> roles() const override { return {"slave", "master", "network"}; }
   bool has_own(std::string_view role) const override {
-    return role == "slave" ? bool(given_.slave.own) : role == "master" && bool(given_.master.own);
+    return role == "slave" ? bool(given_.own_slave) : role == "master" && bool(given_.own_master);
   }
   const std::vector<TestCase>& cases() const override { return cases_; }
   const std::vector<Mutant>& mutants() const override { return mutants_; }
@@ -333,6 +319,12 @@ class InterbusSuite final : public Suite {
     for (judge::PicsItem& item : master_pics_items()) items.push_back(std::move(item));
     return items;
   }
+  std::vector<field::NamedTable> tables() const override {
+    return {{"slave", &interbus::kSlaveTable},
+            {"master", &interbus::kMasterTable},
+            {"rules", &interbus::kRulesTable}};
+  }
+  std::vector<field::NamedSchema> schemas() const override { return {{"network", interbus::network_schema}}; }
   std::optional<judge::Pics> declared_pics(const TestCase& test_case, const Setup& setup) const override {
     const auto slave_case = slave_cases_.find(test_case.id);
     if (!setup.pics || slave_case == slave_cases_.end()) return setup.pics;

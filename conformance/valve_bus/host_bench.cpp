@@ -16,14 +16,6 @@ using valve_bus::HostConfiguration;
 constexpr kernel::Duration kHostWarmUp = 20 * kernel::kMillisecond;
 constexpr std::size_t kHistoryLines = 24;
 
-valve_bus::CharacterProfile characters_named(const std::string& name) {
-  using enum valve_bus::CharacterProfile;
-  for (const auto profile : {ninth_bit_one, even_parity}) {
-    if (name == text_of(profile)) return profile;
-  }
-  return eight_bits;
-}
-
 std::unique_ptr<valve_bus::HostDevice> host_made(const HostSetting& setting,
                                                  const HostConfiguration& configuration) {
   if (setting.make_host) return setting.make_host(configuration);
@@ -41,38 +33,14 @@ std::string frame_text(const HostFrame& frame) {
 
 }  // namespace
 
-std::vector<judge::PicsItem> host_pics_items() {
-  using enum judge::PicsKind;
-  return {
-      {"dip", number, "position of the host's DIP switches, which is its bit rate", 7},
-      {"dip_can_be_set", truth, "the bench can turn the DIP switches of the host"},
-      {"receives_own_echo", truth, "the host's receiver stays on while it drives"},
-      {"verifies_writes", truth, "the host reads behind each write and compares"},
-      {"takes_early_responses", truth, "a response within 10 bits of its request is taken"},
-  };
-}
-
-judge::Pics declared_host() {
-  judge::Pics pics;
-  pics.declare("dip", std::int64_t{0});
-  pics.declare("dip_can_be_set", true);
-  pics.declare("characters", std::string(text_of(valve_bus::Rules{}.characters)));
-  pics.declare("receives_own_echo", false);
-  pics.declare("acknowledges_writes", false);
-  pics.declare("verifies_writes", false);
-  pics.declare("takes_early_responses", false);
-  pics.declare("power_can_be_switched", true);
-  return pics;
-}
-
 HostConfiguration host_configuration(const HostNeeds& needs, const judge::Pics& pics) {
-  HostConfiguration configuration;
-  configuration.dip = needs.dip.value_or(static_cast<unsigned>(pics.number("dip", 0)));
-  configuration.receives_own_echo = needs.receives_own_echo.value_or(pics.supports("receives_own_echo"));
-  configuration.verifies_writes = needs.verifies_writes.value_or(pics.supports("verifies_writes"));
+  HostConfiguration configuration = host_declared_in(pics).configuration;
+  configuration.dip = needs.dip.value_or(configuration.dip);
+  configuration.receives_own_echo = needs.receives_own_echo.value_or(configuration.receives_own_echo);
+  configuration.verifies_writes = needs.verifies_writes.value_or(configuration.verifies_writes);
   valve_bus::Rules& rules = configuration.rules;
-  rules.characters = needs.characters.value_or(characters_named(pics.text("characters", "P0")));
-  rules.answers_writes = needs.acknowledged_writes.value_or(pics.supports("acknowledges_writes"));
+  rules.characters = needs.characters.value_or(rules.characters);
+  rules.answers_writes = needs.acknowledged_writes.value_or(rules.answers_writes);
   return configuration;
 }
 

@@ -14,6 +14,7 @@
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "conformance/valve_bus/arrived_frames.hpp"
+#include "conformance/valve_bus/declarations.hpp"
 #include "conformance/valve_bus/driven_line.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/judge/pics.hpp"
@@ -54,10 +55,6 @@ struct HostSetting {
   std::function<trace::Recorder*(const trace::Trace&, const valve_bus::Rules&)> make_recorder;
 };
 
-// What a PICS of a host may answer besides what that of a node may.
-std::vector<judge::PicsItem> host_pics_items();
-// What the host of the bench declares: an answer to each item that is looked at.
-judge::Pics declared_host();
 // The configuration of the IUT under these needs; `pics` has an answer to each item.
 valve_bus::HostConfiguration host_configuration(const HostNeeds& needs, const judge::Pics& pics);
 

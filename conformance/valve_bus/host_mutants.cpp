@@ -11,6 +11,7 @@
 #include "conformance/valve_bus/host_application_seeded_faults.hpp"
 #include "conformance/valve_bus/host_request_seeded_faults.hpp"
 #include "conformance/valve_bus/host_response_seeded_faults.hpp"
+#include "conformance/valve_bus/host_sequence_seeded_faults.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -44,6 +45,7 @@ struct HostRow {
   std::string_view label;
   std::string_view description;
   MakeHost make_host;
+  bool is_for_check = false;
 };
 
 std::vector<HostRow> host_command_rows() {
@@ -191,11 +193,32 @@ std::vector<HostRow> host_telling_rows() {
   };
 }
 
+std::vector<HostRow> host_sequence_rows() {
+  using namespace host_seeded_faults;
+  std::vector<HostRow> rows{
+      {"repeated_read_not_sent", "", "answers a read of the node that was read last by itself",
+       host<RepeatedReadNotSent>()},
+      {"one_retry_less_behind_error", "", "sends a read twice only when the one before it failed",
+       host<OneRetryLessBehindError>()},
+      {"old_data_survive_power", "", "reports what it knew before its supply was off",
+       host<OldDataSurvivePower>()},
+      {"rejected_response_kept", "", "takes DATA0 of a response that it rejected for that of the next",
+       host<RejectedResponseKept>()},
+      {"refused_command_costs_next", "", "loses the command behind one that it refused",
+       host<RefusedCommandCostsNext>()},
+      {"write_behind_error_exchanged", "",
+       "sends the data of a write behind a failed read in the wrong order",
+       host<WriteBehindErrorExchanged>()},
+  };
+  for (HostRow& row : rows) row.is_for_check = true;
+  return rows;
+}
+
 const std::vector<HostRow>& host_rows() {
   static const std::vector<HostRow> table = [] {
     std::vector<HostRow> all;
     for (auto group : {host_command_rows, host_request_rows, host_write_rows, host_wait_rows,
-                       host_response_rows, host_telling_rows}) {
+                       host_response_rows, host_telling_rows, host_sequence_rows}) {
       for (HostRow& row : group()) all.push_back(std::move(row));
     }
     return all;
@@ -209,7 +232,8 @@ const std::vector<Mutant>& host_mutants() {
   static const std::vector<Mutant> mutants = [] {
     std::vector<Mutant> all;
     for (const HostRow& row : host_rows()) {
-      all.push_back({std::string(row.name), std::string(row.label), "host", std::string(row.description)});
+      all.push_back({std::string(row.name), std::string(row.label), "host", std::string(row.description),
+                     row.is_for_check});
     }
     return all;
   }();

@@ -11,22 +11,10 @@
 namespace fieldproof::conformance {
 namespace {
 
-using valve_bus::CharacterProfile;
 using valve_bus::NodeConfiguration;
-using valve_bus::Rules;
 
-constexpr unsigned kAddress = 5;
-constexpr std::int64_t kLeastBitRate = 1'200;
-constexpr std::int64_t kMostBitRate = 1'000'000;
 constexpr std::size_t kSentWaves = 30;  // five or six frames
 constexpr kernel::Duration kWarmUp = 20 * kernel::kMillisecond;
-
-CharacterProfile profile_named(const std::string& name) {
-  for (const auto profile : {CharacterProfile::ninth_bit_one, CharacterProfile::even_parity}) {
-    if (name == text_of(profile)) return profile;
-  }
-  return CharacterProfile::eight_bits;
-}
 
 std::string characters_text(const Transmission& transmission) {
   std::string text;
@@ -44,45 +32,12 @@ std::unique_ptr<valve_bus::NodeDevice> made(const NodeSetting& setting,
 
 }  // namespace
 
-std::vector<judge::PicsItem> node_pics_items() {
-  using enum judge::PicsKind;
-  return {
-      {"address", number, "what the address switches are set to, 1 to 99", 99, {}, 1},
-      {"address_switches_can_be_set", truth, "the bench can give the node another address"},
-      {"boards", number, "drive boards, 1 or 2", 2, {}, 1},
-      {"bit_rate", number, "bit/s on the line", kMostBitRate, {}, kLeastBitRate},
-      {"characters", text, "character format", 0, {"P0", "P1", "P2"}},
-      {"acknowledges_writes", truth, "a write is answered with what was taken"},
-      {"valves_off_without_host", truth, "valves go off when no command has come for 500 ms"},
-      {"power_can_be_switched", truth, "the bench can switch the supply of the node"},
-  };
-}
-
-judge::Pics declared_node() {
-  const Rules rules;
-  judge::Pics pics;
-  pics.declare("address", std::int64_t{kAddress});
-  pics.declare("address_switches_can_be_set", true);
-  pics.declare("boards", std::int64_t{2});
-  pics.declare("bit_rate", rules.bit_rate);
-  pics.declare("characters", std::string(text_of(rules.characters)));
-  pics.declare("acknowledges_writes", false);
-  pics.declare("valves_off_without_host", false);
-  pics.declare("power_can_be_switched", true);
-  return pics;
-}
-
 NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& pics) {
-  NodeConfiguration configuration;
-  const auto address = static_cast<unsigned>(pics.number("address", kAddress));
-  configuration.tens = needs.tens.value_or(address / 10);
-  configuration.units = needs.units.value_or(address % 10);
-  configuration.boards = needs.boards.value_or(static_cast<unsigned>(pics.number("boards", 2)));
-  Rules& rules = configuration.rules;
-  rules.bit_rate = pics.number("bit_rate", rules.bit_rate);
-  rules.characters = needs.characters.value_or(profile_named(pics.text("characters", "P0")));
-  rules.answers_writes = pics.supports("acknowledges_writes");
-  if (pics.supports("valves_off_without_host")) rules.loss_limit = 500 * kernel::kMillisecond;
+  NodeConfiguration configuration = node_declared_in(pics).configuration;
+  configuration.address_tens = needs.tens.value_or(configuration.address_tens);
+  configuration.address_units = needs.units.value_or(configuration.address_units);
+  configuration.boards = needs.boards.value_or(configuration.boards);
+  configuration.rules.characters = needs.characters.value_or(configuration.rules.characters);
   return configuration;
 }
 
@@ -107,6 +62,7 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting)
   if (setting.make_recorder) segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules()));
   place_->tap_driven(driven_);
   place_->tap_arrived(arrived_);
+  place_->tap_arrived(arrivals_);
   tester_->tap_driven(sent_);
   sent_.keep_last(kSentWaves);
   line_watch_.watch(*place_, segment_.trace());
@@ -122,26 +78,25 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting)
   settling_ = delimiter() + std::max(turnaround_time_span(rules()), actuation_limit(rules())) +
               characters(8) + 2 * distance_ + 500 * kernel::kMicrosecond;
   node_->wire(*place_, boards_);
-  if (distance_ > kernel::Duration{}) require(&valve_bus::NodeCapabilities::distance);
+  if (distance_ > kernel::Duration{}) require(&iut::Capabilities::distance);
   if (!needs.is_powered) return;
   set_power(true);
   wait(kWarmUp);
   clear_observations();
 }
 
-void NodeBench::require(bool valve_bus::NodeCapabilities::* what) const {
-  using valve_bus::NodeCapabilities;
-  if (reach().*what) return;
-  if (what == &NodeCapabilities::boards)
+void NodeBench::require(bool iut::Capabilities::* what) const {
+  if (capabilities().*what) return;
+  if (what == &iut::Capabilities::process_side)
     throw iut::CannotBeDone("the valves of the node cannot be seen without an upper channel");
-  if (what == &NodeCapabilities::moving_switches)
+  if (what == &iut::Capabilities::moving_inputs)
     throw iut::CannotBeDone("the limit switches cannot be moved while the node works");
-  if (what == &NodeCapabilities::driver)
+  if (what == &iut::Capabilities::driver_control)
     throw iut::CannotBeDone("the driver of the node cannot be seen without an upper channel");
   throw iut::CannotBeDone("the node cannot be put farther away");
 }
 
-void NodeBench::note_instant(bool is_sure, const valve_bus::TimingUncertainty& doubt) {
+void NodeBench::note_instant(bool is_sure, const iut::TimingUncertainty& doubt) {
   const kernel::Duration all = doubt.earlier + doubt.later;
   instants_.greatest_doubt = std::max(instants_.greatest_doubt, all);
   if (is_sure) {
@@ -152,7 +107,7 @@ void NodeBench::note_instant(bool is_sure, const valve_bus::TimingUncertainty& d
 }
 
 std::uint8_t NodeBench::address() const {
-  return static_cast<std::uint8_t>(10 * configuration_.tens + configuration_.units);
+  return static_cast<std::uint8_t>(10 * configuration_.address_tens + configuration_.address_units);
 }
 
 kernel::Duration NodeBench::characters(double count) const {

@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "conformance/comparison/twin_line.hpp"
 #include "conformance/line_watch.hpp"
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "conformance/valve_bus/arrived_frames.hpp"
+#include "conformance/valve_bus/declarations.hpp"
 #include "conformance/valve_bus/driven_line.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/judge/pics.hpp"
@@ -56,10 +58,6 @@ struct NodeSetting {
   std::function<trace::Recorder*(const trace::Trace&, const valve_bus::Rules&)> make_recorder;
 };
 
-// What a PICS of a node may answer.
-std::vector<judge::PicsItem> node_pics_items();
-// What the node of the bench declares: an answer to each of these items.
-judge::Pics declared_node();
 // The configuration of the IUT under these needs; `pics` has an answer to each item.
 valve_bus::NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& pics);
 
@@ -96,8 +94,8 @@ class NodeBench final : private segment::Station {
   kernel::Duration distance() const { return distance_; }
 
   // What the bench can do with this IUT; the case does not apply where it cannot do what is required.
-  valve_bus::NodeCapabilities reach() const { return node_->reach(); }
-  void require(bool valve_bus::NodeCapabilities::* what) const;
+  iut::Capabilities capabilities() const { return node_->capabilities(); }
+  void require(bool iut::Capabilities::* what) const;
 
   // ---- upper tester ----
   valve_bus::ValveBlock& boards() { return boards_; }
@@ -135,17 +133,19 @@ class NodeBench final : private segment::Station {
   std::vector<Transmission> answers() { return driven_.transmissions(); }
   bool has_driven() const { return !driven_.empty(); }
   // How uncertain the instants of an answer and of the last moves of the valves are.
-  valve_bus::TimingUncertainty doubt_of(const Transmission& answer) const {
-    return node_->doubt_of_answer(answer.driver_on);
+  iut::TimingUncertainty doubt_of(const Transmission& answer) const {
+    return node_->uncertainty_of_answer(answer.driver_on);
   }
-  valve_bus::TimingUncertainty doubt_of_valves() const { return node_->doubt_of_valves(); }
+  iut::TimingUncertainty uncertainty_of_valves() const { return node_->uncertainty_of_valves(); }
   // An instant that a case looked at could be judged, or lay closer to its limit than it is known.
-  void note_instant(bool is_sure, const valve_bus::TimingUncertainty& doubt);
+  void note_instant(bool is_sure, const iut::TimingUncertainty& doubt);
   const InstantLedger& instants() const { return instants_; }
   void keep_instants(const InstantLedger& ledger) { instants_ = ledger; }
   // What has arrived at the IUT since then.
   std::span<const ArrivedFrame> arrived() const { return arrived_.frames(); }
   void clear_observations();
+  // Passes on each reception of the IUT when it is over.
+  PassingTap& arrivals() { return arrivals_; }
 
   // ---- stress ----
   std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
@@ -184,6 +184,7 @@ class NodeBench final : private segment::Station {
   DrivenLine driven_;
   DrivenLine sent_;  // by the tester; the last of it
   ArrivedFrames arrived_;
+  PassingTap arrivals_;
   LineWatch line_watch_;
   std::unique_ptr<fault::InstalledPlan> plan_;
   StressedReceiver stressed_;

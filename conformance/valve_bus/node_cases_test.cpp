@@ -23,14 +23,14 @@ judge::Pics declaring(std::initializer_list<std::pair<std::string, judge::Pics::
 
 std::vector<DeclaredNode> declared_nodes() {
   std::vector<DeclaredNode> all{
-      {"address_99", declaring({{"address", std::int64_t{99}}})},
-      {"address_1", declaring({{"address", std::int64_t{1}}})},
+      {"address_99", declaring({{"address_tens", std::int64_t{9}}, {"address_units", std::int64_t{9}}})},
+      {"address_1", declaring({{"address_tens", std::int64_t{0}}, {"address_units", std::int64_t{1}}})},
       {"one_board", declaring({{"boards", std::int64_t{1}}})},
       {"P1", declaring({{"characters", std::string("P1")}})},
       {"P2", declaring({{"characters", std::string("P2")}})},
-      {"acknowledges", declaring({{"acknowledges_writes", true}})},
-      {"acknowledges_P2", declaring({{"acknowledges_writes", true}, {"characters", std::string("P2")}})},
-      {"lets_go", declaring({{"valves_off_without_host", true}})},
+      {"acknowledges", declaring({{"answers_writes", true}})},
+      {"acknowledges_P2", declaring({{"answers_writes", true}, {"characters", std::string("P2")}})},
+      {"lets_go", declaring({{"loss_limit", 500 * kernel::kMillisecond}})},
   };
   constexpr std::int64_t kSlowest = 1'200;
   constexpr std::int64_t kFastest = 1'000'000;

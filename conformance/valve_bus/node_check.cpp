@@ -57,7 +57,7 @@ WhatItIs outcome_of(const NodeBench& bench, const Frame& frame) {
 // The exclusive or cannot see two wrong bits in one column. A node that refuses such a frame has another
 // check; one that takes any other double error has none.
 void double_errors_show_the_exclusive_or(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeCapabilities::boards);
+  bench.require(&iut::Capabilities::process_side);
   std::array<unsigned, 4> counts{};
   const unsigned step = bench.volume(7U, 1U);
   unsigned pair = 0;

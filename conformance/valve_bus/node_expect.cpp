@@ -21,7 +21,7 @@ std::string octets_text(const std::vector<std::uint8_t>& octets) {
 }
 
 // "2.1 ms", and how far it may be off.
-std::string instant_text(kernel::Duration measured, const valve_bus::TimingUncertainty& doubt) {
+std::string instant_text(kernel::Duration measured, const iut::TimingUncertainty& doubt) {
   if (doubt.earlier + doubt.later == kernel::Duration{}) return kernel::describe(measured);
   return fmt::format("{} to {}", kernel::describe(measured - doubt.earlier),
                      kernel::describe(measured + doubt.later));
@@ -29,7 +29,7 @@ std::string instant_text(kernel::Duration measured, const valve_bus::TimingUncer
 
 // What a right node says about itself while it drives.
 void expect_driver(NodeBench& bench, CaseJudge& judge, const Transmission& answer) {
-  if (!bench.reach().driver) return;
+  if (!bench.capabilities().driver_control) return;
   const valve_bus::Rules& rules = bench.rules();
   const kernel::Duration before = answer.characters.front().start - answer.driver_on;
   const kernel::Duration behind = answer.driver_off - answer.characters.back().busy_until;
@@ -73,7 +73,7 @@ void expect_octets(NodeBench& bench, CaseJudge& judge, const Transmission& answe
   judge.expect(std::ranges::all_of(answer.characters, &DrivenCharacter::is_good), "answer_garbled",
                sighting("parity or stop bit"));
   // Of a node whose switches cannot be seen, any data with a check that fits.
-  const bool is_known = bench.reach().boards;
+  const bool is_known = bench.capabilities().process_side;
   judge.expect(!is_known || octets[0] == wanted[0], "answer_data_wrong", sighting("DATA0"));
   judge.expect(!is_known || octets[1] == wanted[1], "answer_data_wrong", sighting("DATA1"));
   judge.expect(octets[2] == (octets[0] ^ octets[1]), "answer_check_wrong", sighting("BCC"));
@@ -100,7 +100,7 @@ Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t 
   });
   expect_octets(bench, judge, answer, data0, data1);
   const kernel::Duration turnaround_time = answer.characters.front().start - (end + bench.distance());
-  const valve_bus::TimingUncertainty doubt = bench.doubt_of(answer);
+  const iut::TimingUncertainty doubt = bench.doubt_of(answer);
   const kernel::Duration least = bench.delimiter();
   const kernel::Duration most = least + turnaround_time_span(bench.rules());
   const auto sighting = [&] {
@@ -120,14 +120,14 @@ Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t 
 }
 
 void expect_valves(NodeBench& bench, CaseJudge& judge, std::uint16_t valves, std::string_view reason) {
-  bench.require(&valve_bus::NodeCapabilities::boards);
+  bench.require(&iut::Capabilities::process_side);
   judge.expect(bench.valves() == valves, reason,
                [&] { return Mismatch{{valves_text(valves)}, valves_text(bench.valves())}; });
 }
 
 void expect_no_valve_moved(NodeBench& bench, CaseJudge& judge, std::string_view reason,
                            std::string_view why_not) {
-  if (!bench.reach().boards) return;  // what cannot be seen is not judged
+  if (!bench.capabilities().process_side) return;  // what cannot be seen is not judged
   judge.expect(bench.boards().changes().empty(), reason, [&] {
     const Change& change = bench.boards().changes().front();
     return Mismatch{{fmt::format("no valve moves: {}", why_not)}, change_text(change), change.when};
@@ -150,8 +150,8 @@ void expect_ignored(NodeBench& bench, CaseJudge& judge, std::string_view reason,
 
 void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, std::uint8_t data1,
                         kernel::Time end) {
-  bench.require(&valve_bus::NodeCapabilities::boards);
-  const kernel::Duration doubt = bench.doubt_of_valves().later;
+  bench.require(&iut::Capabilities::process_side);
+  const kernel::Duration doubt = bench.uncertainty_of_valves().later;
   const std::uint16_t wanted = bench.valves_of(data0, data1);
   const kernel::Time arrived = end + bench.distance();
   const auto& changes = bench.boards().changes();
@@ -173,7 +173,7 @@ void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, 
           last.when};
     });
     bench.note_instant(first.when + kRounding >= arrived && last.when + doubt - arrived <= limit + kRounding,
-                       bench.doubt_of_valves());
+                       bench.uncertainty_of_valves());
     judge.expect(last.when - first.when <= bench.rules().output_skew, "valves_one_by_one", [&] {
       return Mismatch{{fmt::format("all valves move within {}", kernel::describe(bench.rules().output_skew))},
                       fmt::format("within {}", kernel::describe(last.when - first.when)),
@@ -199,7 +199,8 @@ void expect_serves(NodeBench& bench, CaseJudge& judge) {
   const auto frame = bench.telling_write();
   bench.send(frame);
   bench.await_response_window();
-  if (bench.reach().boards) expect_valves(bench, judge, bench.valves_of(frame[2], frame[3]), kReason);
+  if (bench.capabilities().process_side)
+    expect_valves(bench, judge, bench.valves_of(frame[2], frame[3]), kReason);
   bench.clear_observations();
   const auto switches = static_cast<std::uint16_t>(bench.random().below(0x10000));
   bench.boards().set_input(0, switches);

@@ -40,7 +40,7 @@ void data_of_a_read_is_not_looked_at(NodeBench& bench, CaseJudge& judge) {
 }
 
 void switches_are_told_exactly(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeCapabilities::boards);
+  bench.require(&iut::Capabilities::process_side);
   const auto ask = [&](std::uint16_t switches) {
     bench.clear_observations();
     bench.boards().set_input(0, switches);
@@ -56,7 +56,7 @@ void switches_are_told_exactly(NodeBench& bench, CaseJudge& judge) {
 
 // All switches change together, again and again: an answer has them all before or all behind a change.
 void a_snapshot_is_not_torn(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeCapabilities::moving_switches);
+  bench.require(&iut::Capabilities::moving_inputs);
   const auto half_period = 7 * kernel::kMicrosecond;
   bench.boards().set_signal(0, [half_period](kernel::Time when) {
     return (when - kernel::kStart) / half_period % 2 == 0 ? std::uint16_t{0x0000} : std::uint16_t{0xFFFF};

@@ -197,7 +197,7 @@ void scan_pitches(NodeBench& bench, CaseJudge& judge) {
 }
 
 void pulses_in_step_pass_the_check(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeCapabilities::boards);
+  bench.require(&iut::Capabilities::process_side);
   expect_serves(bench, judge);
   expect_columns_lost(bench, judge);
   if (can_be_scanned(bench.address())) {

@@ -1,119 +1,45 @@
 #include "conformance/valve_bus/node_sequence.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
-#include <array>
-#include <optional>
+#include <deque>
+#include <set>
 
 #include "conformance/valve_bus/node_cases.hpp"
 #include "conformance/valve_bus/node_expect.hpp"
-#include "conformance/valve_bus/node_model.hpp"
+#include "conformance/valve_bus/node_twin.hpp"
+#include "conformance/valve_bus/node_vocabulary.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
-// Bits of silence in which no receiver doubts: within a frame, between the two limits, behind a delimiter.
-constexpr std::array<std::int64_t, 8> kSilences{0, 11, 22, 33, 45, 45, 80, 500};
-constexpr std::array<std::int64_t, 5> kGaps{5, 13, 22, 33, 45};
-constexpr std::int64_t kDelimiterBits = 45;
-constexpr std::array<std::int64_t, 6> kData{0x00, 0xFF, 0x01, 0x05, 0x80, 0xA5};
-constexpr std::array<std::int64_t, 5> kIds{1, 0, 5, 69, 133};
-constexpr std::array<std::int64_t, 3> kCommands{0, 1, 2};
-constexpr std::array<std::int64_t, 4> kWaits{1, 10, 100, 1000};
-
-SequenceNumber octet(std::string_view name, std::span<const std::int64_t> likely = kData) {
-  return {name, 0, 0xFF, 0, likely};
+std::string text_of_valves(std::int64_t valves) {
+  return valves_text(static_cast<std::uint16_t>(valves));
 }
 
-// Behind what the command sends, to the next.
-SequenceNumber silence() {
-  return {"silence", 0, 100'000, kDelimiterBits, kSilences, true};
+// The valves may move from the last stop bit of a command on; a reference moves them when it is sure that the
+// frame is over.
+LevelKind valves_of_node(NodeBench& bench) {
+  const valve_bus::Rules& rules = bench.rules();
+  const iut::TimingUncertainty doubt = bench.uncertainty_of_valves();
+  return {.unasked = "moves_without_command",
+          .different = "valves_wrong",
+          .not_taken = "write_not_taken",
+          .earlier = bench.delimiter() + valve_bus::character_notice(rules) + kRounding + doubt.later,
+          .later = actuation_limit(rules) + kRounding + doubt.earlier,
+          .skew = rules.output_skew,
+          .text = text_of_valves};
 }
 
-enum class Word : std::uint8_t { write, read, command, response, octets, low, wait, power, switches };
-
-SequenceVocabulary node_vocabulary() {
-  // In the order of Word.
-  return {.words = {{.word = "write",
-                     .meaning = "a write of the node's own",
-                     .numbers = {octet("data0"), octet("data1"), silence()},
-                     .units = 5,
-                     .weight = 6},
-                    {.word = "read",
-                     .meaning = "a read of the node's own",
-                     .numbers = {octet("data0"), octet("data1"), silence()},
-                     .units = 5,
-                     .weight = 4},
-                    {.word = "command",
-                     .meaning = "a command to any address",
-                     .numbers = {octet("id", kIds), octet("command", kCommands), octet("data0"),
-                                 octet("data1"), silence()},
-                     .units = 5,
-                     .weight = 3},
-                    {.word = "response",
-                     .meaning = "a response of another node",
-                     .numbers = {octet("data0"), octet("data1"), silence()},
-                     .units = 3,
-                     .weight = 2},
-                    {.word = "octets",
-                     .meaning = "octets that are no frame, or happen to be one",
-                     .numbers = {silence()},
-                     .most_octets = 8,
-                     .weight = 2},
-                    {.word = "low",
-                     .meaning = "the line is low for so many bits",
-                     .numbers = {{"bits", 1, 100'000, 30}, silence()},
-                     .weight = 1},
-                    {.word = "wait",
-                     .meaning = "silence of so many milliseconds",
-                     .numbers = {{"ms", 1, 10'000, 10, kWaits}},
-                     .weight = 1},
-                    {.word = "power",
-                     .meaning = "the supply is off for so many bits and comes again",
-                     .numbers = {{"off", 10, 100'000, 20}, silence()},
-                     .weight = 1},
-                    {.word = "switches",
-                     .meaning = "limit switches stand like this",
-                     .numbers = {octet("data0"), octet("data1")},
-                     .weight = 2}},
-          .unit = "character",
-          .levels_per_unit = 11,
-          .gaps = kGaps};
-}
-
-std::vector<std::uint8_t> octets_of(Word word, const SequenceCommand& command, const NodeBench& bench) {
-  const auto number = [&](std::size_t n) { return static_cast<std::uint8_t>(command.numbers.at(n)); };
-  std::vector<std::uint8_t> octets;
-  switch (word) {
-    case Word::write:
-    case Word::read:
-      octets = {bench.address(), static_cast<std::uint8_t>(word == Word::write ? 0 : 1), number(0),
-                number(1)};
-      break;
-    case Word::command:
-      octets = {number(0), number(1), number(2), number(3)};
-      break;
-    case Word::response:
-      octets = {number(0), number(1)};
-      break;
-    default:
-      return command.octets;
-  }
-  std::uint8_t check = 0;
-  for (const std::uint8_t one : octets) check ^= one;
-  octets.push_back(check);
-  return octets;
-}
-
-class NodeSequenceRun {
+class NodeSequenceRun final : private segment::Tap {
  public:
-  NodeSequenceRun(NodeBench& bench, CaseJudge& judge)
-      : bench_(bench), judge_(judge), model_(bench.configuration()) {
-    model_.power_up(bench.now());
+  NodeSequenceRun(NodeBench& bench, CaseJudge& judge) : bench_(bench), judge_(judge) {
+    for (const auto& extreme : node_extremes(bench.configuration()))
+      twins_.emplace_back(extreme, bench.now());
     powered_at_ = bench.now() - bench.delimiter() * 2;
+    begin_valves();
+    bench_.arrivals().pass_to(this);
   }
+  ~NodeSequenceRun() override { bench_.arrivals().pass_to(nullptr); }
 
   void run(const Sequence& sequence) {
     for (const SequenceCommand& command : sequence) {
@@ -121,32 +47,36 @@ class NodeSequenceRun {
       if (is_over_) return;
     }
     bench_.await_response_window();
-    judge_silence();
+    compare();
   }
 
  private:
+  void on_wave(const line::Waveform& wave) override {
+    for (NodeTwin& twin : twins_) twin.line().on_wave(wave);
+  }
+
   void execute(const SequenceCommand& command) {
-    const auto word = static_cast<Word>(command.word);
+    const auto word = static_cast<NodeWord>(command.word);
     switch (word) {
-      case Word::low:
+      case NodeWord::low:
         drive_low(command.numbers[0]);
         break;
-      case Word::wait:
+      case NodeWord::wait:
         bench_.wait(command.numbers[0] * kernel::kMillisecond);
         break;
-      case Word::power:
-        judge_silence();
+      case NodeWord::power:
+        compare();
         if (!is_over_) cycle_power(bench_.bits(command.numbers[0]));
         break;
-      case Word::switches:
+      case NodeWord::switches:
         set_switches(static_cast<std::uint16_t>(command.numbers[0] | command.numbers[1] << 8));
         break;
       default:
         send(octets_of(word, command, bench_), command.faults);
     }
-    const bool has_silence = word != Word::wait && word != Word::switches;
+    const bool has_silence = word != NodeWord::wait && word != NodeWord::switches;
     if (has_silence) bench_.wait(bench_.bits(command.numbers.back()));
-    judge_silence();
+    compare();
   }
 
   // Character by character, as stations do: who listens learns of each when it is over.
@@ -174,7 +104,7 @@ class NodeSequenceRun {
     }
     // A host waits for what is due before it says anything else.
     const auto frames = bench_.arrived();
-    if (!frames.empty() && model_.is_answered(frames.back())) bench_.await_response_window();
+    if (!frames.empty() && is_answered(frames.back())) bench_.await_response_window();
   }
 
   // In pieces as long as a character: a line tells a transmission when it is over, and a receiver knows of a
@@ -190,21 +120,41 @@ class NodeSequenceRun {
   }
 
   void set_switches(std::uint16_t switches) {
-    switches_ = switches;
-    bench_.require(&valve_bus::NodeCapabilities::boards);
+    bench_.require(&iut::Capabilities::process_side);
     bench_.boards().set_input(0, switches);
+    for (NodeTwin& twin : twins_) {
+      twin.run_until(bench_.now());
+      twin.set_switches(switches);
+    }
   }
 
   void cycle_power(kernel::Duration off) {
     bench_.clear_observations();
     bench_.set_power(false);
+    for (NodeTwin& twin : twins_) twin.set_power(false, bench_.now());
     bench_.boards().forget_changes();
     bench_.wait(off);
     expect_ignored(bench_, judge_, "acts_without_power", "it has no supply");
     bench_.clear_observations();
     bench_.set_power(true);
+    for (NodeTwin& twin : twins_) twin.set_power(true, bench_.now());
     powered_at_ = bench_.now();
-    model_.power_up(bench_.now());
+    begin_valves();
+  }
+
+  void begin_valves() {
+    valves_.begin(0, bench_.now());
+    written_ = {0};
+    judged_until_ = bench_.now();
+  }
+
+  bool is_own(const ArrivedFrame& frame, unsigned command) const {
+    return frame.is_command() && frame.octets[0] == bench_.address() && frame.octets[1] == command;
+  }
+  // What the tester takes for a question: it asks nothing else meanwhile.
+  bool is_answered(const ArrivedFrame& frame) const {
+    const valve_bus::Rules& rules = bench_.rules();
+    return is_own(frame, rules.read_command) || (rules.answers_writes && is_own(frame, rules.write_command));
   }
 
   bool is_line_silent() const {
@@ -219,54 +169,69 @@ class NodeSequenceRun {
     // What speaks into an answer that is due is no host of this bus.
     const bool is_answer_disturbed =
         std::any_of(frames.begin(), frames.end() - (frames.empty() ? 0 : 1),
-                    [&](const ArrivedFrame& frame) { return model_.is_answered(frame); });
+                    [&](const ArrivedFrame& frame) { return is_answered(frame); });
     // A node may want a delimiter in front of its first frame.
     const bool is_soon = !frames.empty() && frames.front().is_command() &&
                          frames.front().start < powered_at_ + bench_.delimiter() + bench_.bits(2);
-    return is_near_limit || is_answer_disturbed || is_soon || bench_.now() > model_.holds_until();
+    return is_near_limit || is_answer_disturbed || is_soon;
   }
 
-  void judge_silence() {
+  void compare() {
     if (is_over_ || !is_line_silent()) return;
     is_over_ = is_doubtful();
     if (is_over_) return;
-    std::optional<NodeModel::Answer> due;
-    kernel::Time end{};
-    for (const ArrivedFrame& frame : bench_.arrived()) {
-      due = model_.hear(frame, switches_);
-      end = frame.end;
-    }
-    judge_valves();
-    if (due) {
-      expect_one_answer(bench_, judge_, due->data0, due->data1, end - bench_.distance());
-    } else {
-      expect_silence(bench_, judge_, "answers_without_command", "nothing that arrived asks for it");
-    }
+    for (NodeTwin& twin : twins_) twin.run_until(bench_.now());
+    judge_invariants();
+    compare_valves();
+    compare_answers();
     bench_.clear_observations();
   }
 
-  void judge_valves() {
-    if (!bench_.reach().boards) return;  // nobody sees them
-    const auto& changes = bench_.boards().changes();
-    for (std::size_t n = 0; n < changes.size(); ++n) {
-      const bool goes_on =
-          n + 1 < changes.size() && changes[n + 1].when - changes[n].when <= bench_.rules().output_skew;
-      if (!goes_on) object(model_.move(changes[n].after, changes[n].when), changes[n].after);
+  // What holds of every node, and of the reference, too: by what arrived alone.
+  void judge_invariants() {
+    const auto frames = bench_.arrived();
+    for (const ArrivedFrame& frame : frames) {
+      if (is_own(frame, bench_.rules().write_command))
+        written_.insert(bench_.valves_of(frame.octets[2], frame.octets[3]));
     }
-    object(model_.pass(bench_.now()), bench_.valves());
+    if (std::ranges::none_of(frames, [&](const ArrivedFrame& one) { return is_answered(one); }))
+      expect_silence(bench_, judge_, "answers_without_command", "nothing that arrived asks for it");
+    if (bench_.capabilities().process_side) {
+      judge_.expect(written_.contains(bench_.boards().valves()), "valves_wrong", [&] {
+        return Mismatch{{"what a write has set, or nothing"}, valves_text(bench_.boards().valves())};
+      });
+    }
   }
 
-  void object(const std::optional<NodeModel::Objection>& objection, std::uint16_t valves) {
-    if (!objection) return;
-    judge_.fail(objection->reason, {{objection->expected},
-                                    fmt::format("valves {:02X} {:02X}", valves & 0xFFU, valves >> 8U),
-                                    objection->when});
+  void compare_valves() {
+    if (!bench_.capabilities().process_side) return;  // nobody sees them
+    for (const auto& change : bench_.boards().changes()) valves_.set(change.after, change.when);
+    bench_.boards().forget_changes();
+    const LevelKind kind = valves_of_node(bench_);
+    std::vector<LevelHistory> extremes;
+    for (const NodeTwin& twin : twins_) extremes.push_back(twin.valves());
+    const kernel::Time until = std::max(judged_until_, bench_.now() - kind.earlier);
+    compare_levels(kind, valves_, extremes, judged_until_, until, judge_);
+    judged_until_ = until;
+  }
+
+  // Of a question the tester awaits the end, so what has come by now is all that comes.
+  void compare_answers() {
+    std::vector<Observations> answers;
+    for (NodeTwin& twin : twins_) answers.push_back(twin.take_answers());
+    if (answers.front().empty())
+      return expect_silence(bench_, judge_, "answers_without_command", "nothing that arrived asks for it");
+    const auto& octets = answers.front().front().values;
+    expect_one_answer(bench_, judge_, static_cast<std::uint8_t>(octets[0]),
+                      static_cast<std::uint8_t>(octets[1]), bench_.arrived().back().end - bench_.distance());
   }
 
   NodeBench& bench_;
   CaseJudge& judge_;
-  NodeModel model_;
-  std::uint16_t switches_ = 0;
+  std::deque<NodeTwin> twins_;
+  LevelHistory valves_;              // of the node under test
+  std::set<std::uint16_t> written_;  // since power-up
+  kernel::Time judged_until_{};
   kernel::Time powered_at_{};
   bool is_over_ = false;
 };
@@ -283,14 +248,14 @@ std::vector<PartialSource> sequence_details() {
 
 const SequenceRole& node_sequence_role() {
   static const SequenceRole role{
-      {.id = "valve_bus/node/check/follows_the_model",
+      {.id = "valve_bus/node/check/follows_the_reference",
        .purpose = "check",
        .requirement = "Whatever comes in whatever order, valves move and answers come by whole frames of the "
                       "node's own, and by nothing else.",
        .reference = valve_sources::paper("frames, block check, what a node does with a command"),
        .details = sequence_details(),
        .stimulus = "Commands at random, with flipped bits, dropped characters and gaps.",
-       .expected = "What a model of the rules says.",
+       .expected = "What the reference does with what arrived, within the times of the rules.",
        .tags = {},
        .catches = {}},
       node_vocabulary()};

@@ -31,7 +31,7 @@ void turn_round_is_within_its_span(NodeBench& bench, CaseJudge& judge) {
     const Transmission answer = expect_answer(bench, judge, switches, end);
     const kernel::Duration turnaround_time = answer.characters.front().start - end;
     // Where an instant is not known exactly, what is certain of it.
-    const valve_bus::TimingUncertainty doubt = bench.doubt_of(answer);
+    const iut::TimingUncertainty doubt = bench.doubt_of(answer);
     shortest = std::min(shortest, turnaround_time + doubt.later);
     longest = std::max(longest, turnaround_time - doubt.earlier);
   }
@@ -40,7 +40,7 @@ void turn_round_is_within_its_span(NodeBench& bench, CaseJudge& judge) {
 }
 
 void driver_is_on_for_the_answer_only(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeCapabilities::driver);
+  bench.require(&iut::Capabilities::driver_control);
   for (int n = 0; n < bench.volume(5, 100); ++n) {
     bench.clear_observations();
     const std::uint16_t switches = set_random_switches(bench);

@@ -31,7 +31,7 @@ void every_value_is_driven_at_once(NodeBench& bench, CaseJudge& judge) {
 }
 
 void a_repeated_write_does_not_move_the_valves(NodeBench& bench, CaseJudge& judge) {
-  bench.require(&valve_bus::NodeCapabilities::boards);
+  bench.require(&iut::Capabilities::process_side);
   const auto data0 = static_cast<std::uint8_t>(bench.random_octet() | 1U);
   const auto data1 = bench.random_octet();
   bench.write(data0, data1);

@@ -1,19 +1,24 @@
 #include "conformance/valve_bus/suite.hpp"
 
+#include <array>
 #include <map>
 
-#include "conformance/assigned.hpp"
 #include "conformance/case_recorder.hpp"
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_mutants.hpp"
+#include "conformance/valve_bus/host_sequence.hpp"
 #include "conformance/valve_bus/node_cases.hpp"
 #include "conformance/valve_bus/node_mutants.hpp"
 #include "conformance/valve_bus/node_sequence.hpp"
 #include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
+#include "protocols/valve_bus/attached_host.hpp"
+#include "protocols/valve_bus/attached_node.hpp"
 #include "protocols/valve_bus/dissector.hpp"
 #include "protocols/valve_bus/host.hpp"
+#include "protocols/valve_bus/host_settings.hpp"
 #include "protocols/valve_bus/node.hpp"
+#include "protocols/valve_bus/node_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -38,7 +43,7 @@ class ValveBusSuite final : public Suite {
   std::string_view protocol() const override { return "valve_bus"; }
   std::vector<std::string> roles() const override { return {"node", "host"}; }
   bool has_own(std::string_view role) const override {
-    return role == "node" ? bool(given_.node.own) : role == "host" && bool(given_.host.own);
+    return role == "node" ? bool(given_.own_node) : role == "host" && bool(given_.own_host);
   }
   const std::vector<TestCase>& cases() const override { return cases_; }
   const std::vector<Mutant>& mutants() const override { return mutants_; }
@@ -46,6 +51,12 @@ class ValveBusSuite final : public Suite {
     std::vector<judge::PicsItem> all = node_pics_items();
     for (judge::PicsItem& item : host_pics_items()) all.push_back(std::move(item));
     return all;
+  }
+
+  std::vector<field::NamedTable> tables() const override {
+    return {{"node", &valve_bus::kNodeTable},
+            {"host", &valve_bus::kHostTable},
+            {"rules", &valve_bus::kRulesTable}};
   }
 
   std::vector<std::string> caveats(const Setup& setup) const override {
@@ -67,43 +78,56 @@ class ValveBusSuite final : public Suite {
                           "cases of the valve bus make the line that they need; leave out the network, and "
                           "say in a PICS what the implementation is");
     }
+    if (!setup.playback_file.empty()) return;
+    CaseDevices devices(test_case, setup, given_.attach);
     if (is_of_host(test_case)) {
-      host_setting(test_case, setup).make_host(host_configuration({}, declared_host()));
+      host_setting(test_case, setup, devices).make_host(host_configuration({}, declared_host()));
     } else {
-      node_setting(test_case, setup).make_node(node_configuration({}, declared_node()));
+      node_setting(test_case, setup, devices).make_node(node_configuration({}, declared_node()));
     }
   }
 
   Outcome run(const TestCase& test_case, const Setup& setup) const override {
-    if (is_of_host(test_case)) {
-      return run_recorded(*host_cases_.at(test_case.id), host_setting(test_case, setup), setup.record);
-    }
+    if (is_of_host(test_case)) return run_host(*host_cases_.at(test_case.id), setup);
     return run_node(*node_cases_.at(test_case.id), setup);
   }
 
   std::span<const SequenceRole> sequence_roles() const override {
-    return std::span(&node_sequence_role(), 1);
+    static const std::array roles{node_sequence_role(), host_sequence_role()};
+    return roles;
   }
   Outcome run_sequence(const SequenceRole& role, const Sequence& sequence,
                        const Setup& setup) const override {
-    const auto procedure = [&sequence](NodeBench& bench, CaseJudge& judge) {
-      run_node_sequence(sequence, bench, judge);
-    };
-    return run_node({role.test_case, procedure}, setup);
+    if (role.test_case.role() == "host") {
+      const HostCase one{role.test_case, [&sequence](HostBench& bench, CaseJudge& judge) {
+                           run_host_sequence(sequence, bench, judge);
+                         }};
+      return run_host(one, setup);
+    }
+    return run_node(
+        {role.test_case,
+         [&sequence](NodeBench& bench, CaseJudge& judge) { run_node_sequence(sequence, bench, judge); }},
+        setup);
   }
 
  private:
+  Outcome run_host(const HostCase& host_case, const Setup& setup) const {
+    CaseDevices devices(host_case.test_case, setup, given_.attach);
+    return run_recorded(host_case, host_setting(host_case.test_case, setup, devices), devices, setup.record);
+  }
+
   // What happens on a real line never happens again: it is always recorded.
   Outcome run_node(const NodeCase& node_case, const Setup& setup) const {
+    CaseDevices devices(node_case.test_case, setup, given_.attach);
     const bool is_once = on_real_line(node_case.test_case, setup).has_value();
-    Outcome outcome =
-        run_recorded(node_case, node_setting(node_case.test_case, setup), setup.record || is_once);
+    Outcome outcome = run_recorded(node_case, node_setting(node_case.test_case, setup, devices), devices,
+                                   setup.record || is_once);
     outcome.happens_once = is_once;
     return outcome;
   }
 
   template <typename Case, typename Setting>
-  static Outcome run_recorded(const Case& one, Setting setting, bool is_recorded) {
+  static Outcome run_recorded(const Case& one, Setting setting, CaseDevices& devices, bool is_recorded) {
     CaseRecorder recorder;
     if (is_recorded) {
       setting.make_recorder = [&recorder](const trace::Trace& trace, const valve_bus::Rules& rules) {
@@ -113,6 +137,7 @@ class ValveBusSuite final : public Suite {
     Outcome outcome;
     outcome.result = run_on_bench(one, setting);
     recorder.keep(outcome);
+    devices.keep(outcome);
     return outcome;
   }
 
@@ -124,7 +149,7 @@ class ValveBusSuite final : public Suite {
     return fault::load_plan(setup.plan_file, {.disturbances = given_.disturbances});
   }
 
-  bool is_of_host(const TestCase& test_case) const { return host_cases_.contains(test_case.id); }
+  bool is_of_host(const TestCase& test_case) const { return test_case.role() == "host"; }
 
   // What the setup says, of either role.
   template <typename Setting>
@@ -138,36 +163,38 @@ class ValveBusSuite final : public Suite {
     return setting;
   }
 
-  NodeSetting node_setting(const TestCase& test_case, const Setup& setup) const {
+  NodeSetting node_setting(const TestCase& test_case, const Setup& setup, CaseDevices& devices) const {
     NodeSetting setting = setting_of<NodeSetting>(setup);
     setting.pics = declared_pics(test_case, setup);
-    setting.make_node = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id, seed = setup.seed,
-                         limits = setup.limits](const valve_bus::NodeConfiguration& configuration) {
-      return make_node({uri, id, seed, limits}, configuration);
+    setting.make_node = [this, &devices, uri = assigned_to(test_case, setup).uri](
+                            const valve_bus::NodeConfiguration& configuration) {
+      return devices.make<valve_bus::NodeRole>(
+          uri, configuration, [&, uri](const auto& of) { return local_node(devices.request(uri), of); });
     };
     return setting;
   }
 
-  HostSetting host_setting(const TestCase& test_case, const Setup& setup) const {
+  HostSetting host_setting(const TestCase& test_case, const Setup& setup, CaseDevices& devices) const {
     HostSetting setting = setting_of<HostSetting>(setup);
-    setting.make_host = [this, uri = assigned_to(test_case, setup).uri, id = test_case.id, seed = setup.seed,
-                         limits = setup.limits](const valve_bus::HostConfiguration& configuration) {
-      return make_host({uri, id, seed, limits}, configuration);
+    setting.make_host = [this, &devices, uri = assigned_to(test_case, setup).uri](
+                            const valve_bus::HostConfiguration& configuration) {
+      return devices.make<valve_bus::HostRole>(
+          uri, configuration, [&, uri](const auto& of) { return local_host(devices.request(uri), of); });
     };
     return setting;
   }
 
-  std::unique_ptr<valve_bus::NodeDevice> make_node(const IutRequest& wanted,
-                                                   const valve_bus::NodeConfiguration& configuration) const {
+  std::unique_ptr<valve_bus::NodeDevice> local_node(const IutRequest& wanted,
+                                                    const valve_bus::NodeConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Node>(configuration);
-    if (auto node = given_.node.make(wanted, configuration)) return node;
+    if (wanted.uri == kOwnUri && given_.own_node) return given_.own_node(wanted, configuration);
     return make_node_mutant(mutant_of(wanted.uri, "node of the valve bus"), configuration);
   }
 
-  std::unique_ptr<valve_bus::HostDevice> make_host(const IutRequest& wanted,
-                                                   const valve_bus::HostConfiguration& configuration) const {
+  std::unique_ptr<valve_bus::HostDevice> local_host(const IutRequest& wanted,
+                                                    const valve_bus::HostConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Host>(configuration);
-    if (auto host = given_.host.make(wanted, configuration)) return host;
+    if (wanted.uri == kOwnUri && given_.own_host) return given_.own_host(wanted, configuration);
     return make_host_mutant(mutant_of(wanted.uri, "host of the valve bus"), configuration);
   }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/assigned.hpp"
+#include "conformance/case_devices.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/disturbance.hpp"
 #include "harness/fault/stress.hpp"
@@ -19,12 +19,10 @@
 // Implementations of a role: `ref`, `mutant:NAME`, and what the suite was given.
 namespace fieldproof::conformance {
 
-using GivenNodes = StationSources<valve_bus::NodeDevice, valve_bus::NodeConfiguration>;
-using GivenHosts = StationSources<valve_bus::HostDevice, valve_bus::HostConfiguration>;
-
 struct ValveBusGiven {
-  GivenNodes node{};
-  GivenHosts host{};
+  Attach attach{};  // implementations outside; null: there are none
+  MakeOwn<valve_bus::NodeDevice, valve_bus::NodeConfiguration> own_node{};
+  MakeOwn<valve_bus::HostDevice, valve_bus::HostConfiguration> own_host{};
   // Nodes on real lines: what their URI says of them, as answers to a PICS that has none; nothing for a URI
   // of another kind.
   std::function<std::optional<judge::Pics>(const std::string& uri)> on_real_line{};

@@ -276,7 +276,8 @@ def serve(stream):
         kind = message[0]
         if kind == HELLO:
             name = b"basic device in Python"
-            stream.send(CAPABILITIES, f"HBH{len(name)}s", 1, 3, len(name), name)
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9s", 2, 3, len(name), name,
+                        1, 12, b"fieldbus_dll", 9, b"ff_device")
             continue
         if kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])

@@ -210,7 +210,7 @@ class Master:
 
     def begin_search(self, now):
         """Behind a silence in which all stations fall into reset."""
-        quiet = 1000 * (self.s["silence_limit_ns"] + self.s["silence_tolerance_ns"]) + SECOND // 1000
+        quiet = self.s["silence_limit"] + self.s["silence_tolerance"] + SECOND // 1000
         self.start_at, self.verdict_at = max(now, self.last_driven + quiet), NEVER
         self.found, self.open, self.search, self.tries = [], set(), self.searching(), 0
         next(self.search)
@@ -260,7 +260,7 @@ class Master:
         self.search = None
         if self.state == LOCATING:
             return self.end_locating(now)
-        expected = [self.s[f"expected_station_{n}"] for n in range(self.s["expected_stations"])]
+        expected = [self.s[f"expected_{n}"] for n in range(self.s["expected"])]
         found = [self.as_item(station) for station in self.found]
         if not error and expected and found != expected:
             error = "the ring is not the expected one"
@@ -279,8 +279,8 @@ class Master:
         telegrams = 6 + 2 * len(self.outputs) + self.s["end_telegrams"]
         pitch = 13000 + self.s["telegram_gap_millibits"]
         frame = telegrams * pitch * self.coding.bit // 1000
-        shortest = frame + self.ring_delay + self.s["software_time_ps"]
-        self.cycle_time = max(self.s["cycle_time_ps"], shortest)
+        shortest = frame + self.ring_delay + self.s["software_time"]
+        self.cycle_time = max(self.s["cycle_time"], shortest)
         self.put(CYCLE_TIME, self.cycle_time, now)
         self.is_fault_open = False
         self.bad_cycles, self.data_cycles = deque(), 0
@@ -330,7 +330,7 @@ class Master:
         else:
             delay = self.ring_delay
         self.verdict_at = now + frame + frame // 64 + delay + 14 * coding.bit
-        span = frame + delay + s["software_time_ps"]
+        span = frame + delay + s["software_time"]
         if not self.search:
             span = -(-span // self.cycle_time) * self.cycle_time if self.is_id else self.cycle_time
         self.verdict_at = min(self.verdict_at, now + span)
@@ -451,7 +451,7 @@ class Master:
             if self.inputs[word] != value:
                 self.inputs[word] = value
                 self.put(INPUT + word, value, now)
-        for n in range(self.s["copies"]):
+        for n in range(self.s["copy"]):
             copy = self.s[f"copy_{n}"]
             self.set_output(copy >> 16, self.inputs[copy & 0xFFFF], now)
 
@@ -516,7 +516,8 @@ def serve(stream, kind_of_master):
         kind = message[0]
         if kind == HELLO:
             name = kind_of_master.name
-            stream.send(CAPABILITIES, f"HBH{len(name)}s", 1, kind_of_master.unit, len(name), name)
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH8sH6s", 2, kind_of_master.unit, len(name), name,
+                        1, 8, b"interbus", 6, b"master")
             continue
         if kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])

@@ -177,7 +177,7 @@ class Slave:
         if word & s["control_acknowledge"]:
             self.messages = 0
         if word & s["control_reset"]:
-            self.off_until = when + 1000 * (s["silence_limit_ns"] + s["silence_tolerance_ns"])
+            self.off_until = when + s["silence_limit"] + s["silence_tolerance"]
         bits = {REMOTE: s["control_remote_off"], BRANCH: s["control_local_off"]}
         ports = [REMOTE, BRANCH] if s["has_branch"] else [REMOTE]
         on = tuple(p for p in ports if when >= self.off_until and not word & bits[p]
@@ -188,7 +188,7 @@ class Slave:
     # ---- time ----
 
     def silence_ends(self):
-        return self.last + 1000 * self.s["silence_limit_ns"] if self.is_supervised else NEVER
+        return self.last + self.s["silence_limit"] if self.is_supervised else NEVER
 
     def next_time(self):
         # A telegram that has begun before may be told 13 bits later.
@@ -234,7 +234,8 @@ def serve(stream, kind_of_slave):
         kind = message[0]
         if kind == HELLO:
             name = kind_of_slave.name
-            stream.send(CAPABILITIES, f"HBH{len(name)}s", 1, kind_of_slave.unit, len(name), name)
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH8sH5s", 2, kind_of_slave.unit, len(name), name,
+                        1, 8, b"interbus", 5, b"slave")
             continue
         if kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])

@@ -6,14 +6,15 @@ namespace island {
 
 using namespace fieldproof::conformance;
 
-std::vector<std::unique_ptr<Suite>> suites(ValveBusGiven given) {
-  given.node.own = [](const IutRequest& wanted, const NodeConfiguration& configuration) {
+std::unique_ptr<Suite> valve_bus_suite(ValveBusGiven given) {
+  given.own_node = [](const IutRequest& wanted, const NodeConfiguration& configuration) {
     return firmware(configuration, wanted.case_id, wanted.seed);
   };
-  std::vector<std::unique_ptr<Suite>> all;
-  all.push_back(valve_bus_suite(std::move(given)));
-  all.push_back(island_suite());
-  return all;
+  return fieldproof::conformance::valve_bus_suite(std::move(given));
+}
+
+std::unique_ptr<Suite> product_suite() {
+  return island_suite();
 }
 
 }  // namespace island

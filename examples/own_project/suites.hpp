@@ -3,13 +3,13 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include <conformance/valve_bus/suite.hpp>
 
 namespace island {
 
-std::vector<std::unique_ptr<fieldproof::conformance::Suite>> suites(
+std::unique_ptr<fieldproof::conformance::Suite> valve_bus_suite(
     fieldproof::conformance::ValveBusGiven given = {});
+std::unique_ptr<fieldproof::conformance::Suite> product_suite();
 
 }  // namespace island

@@ -68,8 +68,8 @@ class Node {
   }
 
   hostLost() {
-    const limit = this.settings.loss_limit_ms;
-    return limit > 0n ? this.lastCommand + (limit * SECOND) / 1000n : NEVER;
+    const limit = this.settings.loss_limit;
+    return limit > 0n ? this.lastCommand + limit : NEVER;
   }
 
   nextTime() {
@@ -131,7 +131,7 @@ function nodeFor(message, at = 1) {
 for (let node = null; ; ) {
   const message = receive();
   const type = message[0];
-  if (type === HELLO) send(CAPABILITIES, u16(1), u8(1), text("valve node in Node.js"));
+  if (type === HELLO) send(CAPABILITIES, u16(2), u8(1), text("valve node in Node.js"), u16(1), text("valve_bus"), text("node"));
   else if (type === ECHO) send(ECHOED, message.subarray(1));
   else {
     if (type === CASE_BEGIN) node = nodeFor(message);

@@ -55,8 +55,8 @@ class Node:
         return self.busy_until + 9 * self.half + self.bit if self.frame else NEVER
 
     def lost(self):
-        limit = self.settings["loss_limit_ms"]
-        return self.last_command + limit * SECOND // 1000 if limit else NEVER
+        limit = self.settings["loss_limit"]
+        return self.last_command + limit if limit else NEVER
 
     def next_time(self):
         answer = self.answer[0] - self.bit if self.answer else NEVER
@@ -118,7 +118,7 @@ def serve(stream):
         message = stream.receive()
         kind = message[0]
         if kind == HELLO:
-            stream.send(CAPABILITIES, "HBH20s", 1, 1, 20, b"valve node in Python")
+            stream.send(CAPABILITIES, "HBH20sHH9sH4s", 2, 1, 20, b"valve node in Python", 1, 9, b"valve_bus", 4, b"node")
             continue
         if kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])

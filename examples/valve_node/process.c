@@ -47,6 +47,12 @@ static void put(fieldproof_word value, unsigned octets) {
   for (; octets > 0; --octets, value >>= 8) *end++ = (unsigned char)(value & 0xFF);
 }
 
+static void put_text(const char* octets) {
+  const size_t count = strlen(octets);
+  put((fieldproof_word)count, 2);
+  memcpy(end, octets, count), end += count;
+}
+
 static void begin_message(unsigned type) {
   end = out + 4, put(type, 1);
 }
@@ -122,7 +128,8 @@ static void answer(valve_node* node, unsigned type) {
   int is_served = 1, is_on = type == POWER && number(1) != 0;
   if (type == HELLO) {
     begin_message(CAPABILITIES);
-    put(1, 2), put(FIELDPROOF_CHARACTERS, 1), put(4, 2), memcpy(end, "node", 4), end += 4;
+    put(2, 2), put(FIELDPROOF_CHARACTERS, 1), put_text("node");
+    put(1, 2), put_text("valve_bus"), put_text("node"); /* the one role that it serves */
   } else if (type == ECHO) {
     begin_message(ECHOED);
     memcpy(end, at, length - 1 < 32 ? length - 1 : 32), end += length - 1 < 32 ? length - 1 : 32;

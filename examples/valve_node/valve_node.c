@@ -35,7 +35,7 @@ fieldproof_time valve_node_begin(valve_node* node, const fieldproof_case* test_c
   node->address = (unsigned)(10 * setting(test_case, "address_tens") + setting(test_case, "address_units"));
   node->boards = setting(test_case, "boards") == 1 ? 0x00FF : 0xFFFF;
   node->answers_writes = setting(test_case, "answers_writes") != 0 || node->mutant == ANSWERS_WRITES;
-  node->loss_limit = setting(test_case, "loss_limit_ms") * (SECOND / 1000);
+  node->loss_limit = setting(test_case, "loss_limit");
   return valve_node_power(node, 0, 0);
 }
 

@@ -50,9 +50,11 @@ void AttachedCase::begin(const CaseBegin& begin, Bench& bench) {
 }
 
 void AttachedCase::set_power(bool is_on, kernel::Time now) {
-  is_supplied_ = is_on;
+  // At a real line, what happened before the switch is only known within this call.
+  is_supplied_ = is_on || (is_supplied_ && capabilities().is_wall_clock);
   for (auto& [kind, last] : last_) last = now;
   call(now, [&](Device& device) { device.set_power(is_on, now); });
+  is_supplied_ = is_on;
 }
 
 void AttachedCase::on_time(kernel::Time now) {

@@ -56,6 +56,35 @@ struct Transmission {
 // A word of the process side, by its number within the role.
 using Item = std::uint16_t;
 
+// How far what was seen may lie from what was: its instant is at least `earlier` before and at most `later`
+// after the one that was reported. Zero in virtual time.
+struct TimingUncertainty {
+  kernel::Duration earlier{};
+  kernel::Duration later{};
+
+  friend bool operator==(const TimingUncertainty&, const TimingUncertainty&) = default;
+};
+
+// What a bench can see of an implementation and do to it. In virtual time that is everything; of one at a
+// real line it may be less.
+struct Capabilities {
+  bool process_side = true;    // its outputs can be seen, its inputs set
+  bool moving_inputs = true;   // and moved while it works
+  bool driver_control = true;  // when its driver comes on and goes off can be seen
+  bool distance = true;        // it can be put farther away
+  bool power = true;           // its supply can be switched
+  bool is_wall_clock = false;  // a real line: only right characters at the nominal rate can be driven
+};
+
+// A role by the names of its protocol and of itself.
+struct RoleName {
+  std::string protocol;
+  std::string role;
+
+  std::string path() const { return protocol + "/" + role; }
+  friend bool operator==(const RoleName&, const RoleName&) = default;
+};
+
 // What an implementation can do while it is called.
 class Bench {
  public:
@@ -68,6 +97,8 @@ class Bench {
   virtual void transmit(unsigned port, line::Waveform& wave) = 0;
   virtual void write(Item item, std::uint64_t value, kernel::Time when) = 0;
   virtual std::uint64_t read(Item item, kernel::Time when) = 0;
+  // Of all that it does from now on.
+  virtual void set_uncertainty(TimingUncertainty /*uncertainty*/) {}
 };
 
 // What an implementation is told about a case: its id, which a name of a protocol and a role begins, and the
@@ -86,12 +117,15 @@ class Device {
   virtual ~Device() = default;
 
   virtual UnitKind unit_kind() const = 0;
+  virtual Capabilities capabilities() const { return {}; }
 
   // False when the implementation does not serve such a case. `bench` is used until `end`.
   virtual bool begin(const CaseBegin& begin, Bench& bench) = 0;
   virtual void set_power(bool is_on, kernel::Time now) = 0;
   virtual void receive(unsigned port, std::span<const Character> characters, kernel::Time now) = 0;
   virtual void receive(unsigned port, const line::Waveform& reception) = 0;
+  // Others begin to drive the line at this port, or nobody of them does any more; where the role has it.
+  virtual void on_activity(unsigned /*port*/, bool /*begins*/, kernel::Time /*now*/) {}
   virtual void on_time(kernel::Time now) = 0;
   virtual kernel::Time next_time() const = 0;
   virtual void end() = 0;

@@ -103,6 +103,33 @@ void MessageReader::finish() const {
   if (!bytes_.empty()) throw MessageError(fmt::format("{} octets more than it should have", bytes_.size()));
 }
 
+std::span<const std::uint8_t> write_capabilities(MessageWriter& writer,
+                                                 const PeerCapabilities& capabilities) {
+  writer.begin(MessageType::capabilities)
+      .u16(capabilities.version)
+      .u8(capabilities.unit)
+      .text(capabilities.name);
+  writer.u16(static_cast<std::uint16_t>(capabilities.roles.size()));
+  for (const RoleName& role : capabilities.roles) writer.text(role.protocol).text(role.role);
+  return writer.finish();
+}
+
+PeerCapabilities read_capabilities(MessageReader& reader) {
+  PeerCapabilities read;
+  read.version = reader.u16();
+  if (read.version != kMessageVersion) return read;
+  read.unit = reader.u8();
+  read.name = reader.text();
+  for (unsigned left = reader.u16(); left > 0; --left) {
+    RoleName role;
+    role.protocol = reader.text();
+    role.role = reader.text();
+    read.roles.push_back(std::move(role));
+  }
+  reader.finish();
+  return read;
+}
+
 std::span<const std::uint8_t> write_case_begin(MessageWriter& writer, const CaseBegin& begin) {
   writer.begin(MessageType::case_begin).text(begin.id).u64(begin.seed);
   writer.u16(static_cast<std::uint16_t>(begin.settings.size()));

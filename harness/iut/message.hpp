@@ -19,7 +19,7 @@
 // Contract: a reader refuses what is no such message with MessageError and never reads past it.
 namespace fieldproof::iut {
 
-inline constexpr std::uint16_t kMessageVersion = 1;
+inline constexpr std::uint16_t kMessageVersion = 2;
 inline constexpr std::size_t kMessageHead = 4;             // octets of the length
 inline constexpr std::size_t kLongestMessage = 1U << 20U;  // octets behind the length
 
@@ -105,6 +105,17 @@ class MessageReader {
 };
 
 // ---- contents that have a shape of their own ----
+
+// What an implementation answers to `hello`.
+struct PeerCapabilities {
+  std::uint16_t version = kMessageVersion;
+  std::uint8_t unit = 0;  // as it came: a UnitKind, or none
+  std::string name;
+  std::vector<RoleName> roles;  // that it serves
+};
+std::span<const std::uint8_t> write_capabilities(MessageWriter& writer, const PeerCapabilities& capabilities);
+// Of another version only the number is read.
+PeerCapabilities read_capabilities(MessageReader& reader);
 
 // Messages are ready to be sent when these return.
 std::span<const std::uint8_t> write_case_begin(MessageWriter& writer, const CaseBegin& begin);

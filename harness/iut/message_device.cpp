@@ -1,6 +1,7 @@
 #include "harness/iut/message_device.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -22,30 +23,46 @@ std::string octets_text(std::span<const std::uint8_t> message) {
 
 }  // namespace
 
-MessageDevice::MessageDevice(Peer peer, const RoleName& role, const PeerLimits& limits)
-    : peer_(std::move(peer)), limits_(limits) {
-  writer_.begin(MessageType::hello).u16(kMessageVersion).text(role.protocol).text(role.role);
-  const auto message = expect(writer_.finish(), MessageType::capabilities, limits_.start);
+PeerCapabilities hello(Peer& peer, const RoleName& role, std::chrono::milliseconds limit) {
+  MessageWriter writer;
+  writer.begin(MessageType::hello).u16(kMessageVersion).text(role.protocol).text(role.role);
+  peer.send(writer.finish(), limit);
+  const auto message = peer.receive(limit);
+  PeerCapabilities read;
   try {
     MessageReader reader(message);
-    const std::uint16_t version = reader.u16();
-    if (version != kMessageVersion) {
-      throw kernel::Error(kernel::ErrorKind::implementation,
-                          fmt::format("{} speaks version {} of the messages; this program speaks version {}",
-                                      peer_.what(), version, kMessageVersion));
-    }
-    const std::uint8_t kind = reader.u8();
-    if (kind < static_cast<std::uint8_t>(UnitKind::characters) ||
-        kind > static_cast<std::uint8_t>(UnitKind::telegrams)) {
+    if (reader.type() == MessageType::unsupported) return read;
+    if (reader.type() != MessageType::capabilities) throw MessageError("'capabilities' is expected");
+    read = read_capabilities(reader);
+    if (read.version == kMessageVersion && (read.unit < static_cast<std::uint8_t>(UnitKind::characters) ||
+                                            read.unit > static_cast<std::uint8_t>(UnitKind::telegrams))) {
       throw MessageError(
-          fmt::format("unit {}; there are 1 (characters), 2 (levels) and 3 (telegrams)", kind));
+          fmt::format("unit {}; there are 1 (characters), 2 (levels) and 3 (telegrams)", read.unit));
     }
-    unit_kind_ = static_cast<UnitKind>(kind);
-    own_name_ = kernel::escaped_line(reader.text());
-    reader.finish();
   } catch (const MessageError& error) {
-    refuse(message, error.what());
+    peer.blame(reasons::kGarbage, fmt::format("sends what is no message: {}", error.what()),
+               {octets_text(message)});
   }
+  if (read.version != kMessageVersion) {
+    throw kernel::Error(kernel::ErrorKind::implementation,
+                        fmt::format("{} speaks version {} of the messages; this program speaks version {}",
+                                    peer.what(), read.version, kMessageVersion));
+  }
+  return read;
+}
+
+MessageDevice::MessageDevice(Peer peer, const RoleName& role, const PeerLimits& limits)
+    : peer_(std::move(peer)), limits_(limits) {
+  const PeerCapabilities read = hello(peer_, role, limits_.start);
+  if (std::ranges::find(read.roles, role) == read.roles.end()) {
+    std::vector<std::string> served;
+    for (const RoleName& one : read.roles) served.push_back(kernel::escaped_line(one.path()));
+    throw kernel::Error(kernel::ErrorKind::implementation,
+                        fmt::format("{} does not serve the role {}; it serves {}", peer_.what(), role.path(),
+                                    served.empty() ? "none" : fmt::format("{}", fmt::join(served, ", "))));
+  }
+  unit_kind_ = static_cast<UnitKind>(read.unit);
+  own_name_ = kernel::escaped_line(read.name);
 }
 
 void MessageDevice::test_itself() {

@@ -11,10 +11,10 @@
 // until its `done` happens within the call.
 namespace fieldproof::iut {
 
-struct RoleName {
-  std::string protocol;  // "valve_bus"
-  std::string role;      // "node"
-};
+// Asks a peer what it is; an empty role: which ones does it serve? Throws Misbehaviour for a peer that does
+// not answer as it should, and kernel::Error(implementation) for one that speaks another version. One that
+// refuses the role serves none.
+PeerCapabilities hello(Peer& peer, const RoleName& role, std::chrono::milliseconds limit);
 
 class MessageDevice final : public Device {
  public:

@@ -26,7 +26,7 @@ constexpr PeerLimits kHasty{milliseconds(20'000), milliseconds(60)};
 // Within a call of this length a script has come to say something, however busy the machine is.
 constexpr PeerLimits kShort{milliseconds(20'000), milliseconds(1'000)};
 
-const RoleName kNode{"valve_bus", "node"};
+const RoleName kNode = kScriptedRole;
 const CaseBegin kCase{"valve_bus/node/a/case", 1, {{"bit_rate", 375'000}}};
 
 // Notes what is done to it.
@@ -108,7 +108,7 @@ TEST(MessageDeviceCase, ThatTakesLongerThanItMayIsAHang) {
 
 TEST(MessageDeviceHello, TellsUnitAndName) {
   Script script;
-  script.answers(capabilities_message(1, 2, "a\x1b[2J\xff")).stays();
+  script.answers(capabilities_message(kMessageVersion, 2, "a\x1b[2J\xff")).stays();
   const MessageDevice device = device_of(script);
   EXPECT_EQ(device.unit_kind(), UnitKind::levels);
   EXPECT_EQ(device.own_name(), "a\\x1B[2J\\xFF");
@@ -116,14 +116,14 @@ TEST(MessageDeviceHello, TellsUnitAndName) {
 
 TEST(MessageDeviceHello, OtherVersionIsRefusedWithBothNumbers) {
   Script script;
-  script.answers(capabilities_message(2)).stays();
+  script.answers(capabilities_message(1)).stays();
   EXPECT_EQ(refusal_of([&] { device_of(script); }),
-            "exec:script speaks version 2 of the messages; this program speaks version 1");
+            "exec:script speaks version 1 of the messages; this program speaks version 2");
 }
 
 TEST(MessageDeviceHello, UnitThatThereIsNotIsNoMessage) {
   Script script;
-  script.answers(capabilities_message(1, 4)).stays();
+  script.answers(capabilities_message(kMessageVersion, 4)).stays();
   const Blame blame = blame_for([&] { device_of(script); });
   EXPECT_EQ(blame.reason, reasons::kGarbage);
   EXPECT_THAT(blame.sentence, HasSubstr("unit 4"));
@@ -416,7 +416,7 @@ TEST(MessageDeviceAtSocket, SpeaksToWhoListensAtAPort) {
   const TcpListener listener;
   Peer peer = Peer::at_tcp_port("tcp:here", "127.0.0.1", listener.port, milliseconds(20'000));
   const Descriptor other(::accept4(listener.socket.number(), nullptr, nullptr, SOCK_CLOEXEC));
-  const MessageOctets hello = capabilities_message(1, 1, "far");
+  const MessageOctets hello = capabilities_message(kMessageVersion, 1, "far");
   ASSERT_EQ(::write(other.number(), hello.data(), hello.size()), static_cast<ssize_t>(hello.size()));
   const MessageDevice device(std::move(peer), kNode, kPatient);
   EXPECT_EQ(device.own_name(), "far");

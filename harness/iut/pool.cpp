@@ -67,6 +67,11 @@ Peer DevicePool::open() const {
   return Peer::at_tcp_port(uri_, parts.host, parts.port, limits_.start);
 }
 
+std::vector<RoleName> DevicePool::served_roles(const RoleName& asked) const {
+  Peer peer = open();
+  return hello(peer, asked, limits_.start).roles;
+}
+
 std::unique_ptr<MessageDevice> DevicePool::started() {
   if (failed_starts_ >= kMostFailedStarts) {
     throw Misbehaviour(reasons::kCrashed,

@@ -56,6 +56,9 @@ class DevicePool {
   Lease take();
   const std::string& uri() const { return uri_; }
 
+  // Which roles its implementation serves, as it says itself; or whether it serves this one.
+  std::vector<RoleName> served_roles(const RoleName& asked = {}) const;
+
   // Is it the URI of an implementation in another process?
   static bool is_meant(std::string_view uri);
 

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 constexpr PeerLimits kNoHurry{milliseconds(20'000), milliseconds(20'000)};
 
-const RoleName kValveNode{"valve_bus", "node"};
+const RoleName kValveNode = kScriptedRole;
 
 class PoolTest : public testing::Test {
  protected:

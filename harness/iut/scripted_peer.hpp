@@ -21,6 +21,8 @@
 // For tests: implementations that say what a test wants, whatever they hear.
 namespace fieldproof::iut {
 
+inline const RoleName kScriptedRole{"some_bus", "station"};
+
 using MessageOctets = std::vector<std::uint8_t>;
 
 inline MessageOctets octets_of(std::span<const std::uint8_t> message) {
@@ -29,7 +31,7 @@ inline MessageOctets octets_of(std::span<const std::uint8_t> message) {
 inline MessageOctets capabilities_message(std::uint16_t version = kMessageVersion, std::uint8_t unit = 1,
                                           std::string_view name = "script") {
   MessageWriter writer;
-  return octets_of(writer.begin(MessageType::capabilities).u16(version).u8(unit).text(name).finish());
+  return octets_of(write_capabilities(writer, {version, unit, std::string(name), {kScriptedRole}}));
 }
 inline MessageOctets echoed_message() {
   constexpr std::uint8_t kEcho[] = {0x00, 0xFF, 0x0A, 0x0D, 0x1A, 0x7F, 0x80, 0x55};

@@ -225,6 +225,7 @@ void SerialLine::wait_until_sent() const {
 Stamp SerialLine::write(std::span<const std::uint8_t> octets) {
   const kernel::Time begin = clock_.now();
   const auto length = static_cast<std::int64_t>(octets.size()) * character_;
+  if (receives_own_echo_) echo_.insert(echo_.end(), octets.begin(), octets.end());
   while (!octets.empty()) {
     const ssize_t sent = ::write(descriptor(), octets.data(), octets.size());
     if (sent > 0) {
@@ -251,6 +252,8 @@ std::optional<Arrival> SerialLine::read(kernel::Time until, int also) {
     if (count > 0) {
       Arrival arrival{{last_look_, clock_.now()}, {part.begin(), part.begin() + count}};
       last_look_ = look;
+      take_echo(arrival.octets);
+      if (arrival.octets.empty()) continue;
       return arrival;
     }
     // Nobody has the other end of a terminal that was made here before the first one opens it.
@@ -261,7 +264,22 @@ std::optional<Arrival> SerialLine::read(kernel::Time until, int also) {
   }
 }
 
+void SerialLine::take_echo(std::vector<std::uint8_t>& octets) {
+  const std::size_t count = std::min(echo_.size(), octets.size());
+  for (std::size_t n = 0; n < count; ++n) {
+    if (octets[n] == echo_[n]) continue;
+    throw Misbehaviour(
+        reasons::kGarbage,
+        fmt::format("serial:{} was sent {:02X} and {:02X} came back: somebody drove the line at the "
+                    "same time, or the adapter has no echo",
+                    path_, echo_[n], octets[n]));
+  }
+  echo_.erase(echo_.begin(), echo_.begin() + static_cast<std::ptrdiff_t>(count));
+  octets.erase(octets.begin(), octets.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
 void SerialLine::forget_arrived() {
+  echo_.clear();
   // Bounded: one who sends without end is heard by the case.
   for (int n = 0; n < 16 && read(kernel::kStart); ++n) {
   }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,7 +30,8 @@ struct SerialSettings {
   std::optional<line::CharacterFormat> format;  // absent: that of the case
   // What the way from the line to a read of the process may take beyond what stamps show; both ways.
   std::optional<kernel::Duration> latency;
-  std::string upper;  // URI of the upper tester's channel; empty: there is none
+  bool receives_own_echo = false;  // what this end sends comes back to it, as from a receiver that stays on
+  std::string upper;               // URI of the upper tester's channel; empty: there is none
 };
 
 inline constexpr std::string_view kSerialUri = "serial:";
@@ -71,6 +73,9 @@ class SerialLine {
   // sleeps until something comes.
   void look_every(kernel::Duration step) { step_ = step; }
 
+  // What is written comes back, and is taken away from what is read. Misbehaviour when something else comes.
+  void set_echo(bool receives_own_echo) { receives_own_echo_ = receives_own_echo; }
+
   // Hands all over; gives when the last stop bit was on the line: by a UART that takes its time behind the
   // call, at a terminal within it. Throws Misbehaviour when the device has gone or takes nothing.
   Stamp write(std::span<const std::uint8_t> octets);
@@ -97,7 +102,11 @@ class SerialLine {
   std::string link_;
   std::string path_;
   std::string direction_;
+  void take_echo(std::vector<std::uint8_t>& octets);
+
   bool is_terminal_ = false;
+  bool receives_own_echo_ = false;
+  std::deque<std::uint8_t> echo_;  // that has not come back yet
   kernel::Duration character_{};
   kernel::Duration step_ = kernel::Duration::max();
   kernel::Time last_look_{};  // at which nothing was there

@@ -46,6 +46,10 @@ void set_value(SerialSettings& settings, const std::string& uri, std::string_vie
     if (!count || *count < 0 || *count > 1'000'000)
       refuse_uri(uri, fmt::format("names no latency: '{}' is not like 200us", value));
     settings.latency = *count * kernel::kMicrosecond;
+  } else if (name == "echo") {
+    if (value != "yes" && value != "no")
+      refuse_uri(uri, fmt::format("says echo={}; write echo=yes where the adapter hears itself", value));
+    settings.receives_own_echo = value == "yes";
   } else {
     refuse_uri(uri, fmt::format("says '{}', which is nothing that a line has", name));
   }

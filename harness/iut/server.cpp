@@ -69,8 +69,14 @@ class MessagePipe {
 
 class Server final : private Bench {
  public:
-  Server(int input, int output, const MakeDevice& make_device, std::string_view own_name, const Idle& idle)
-      : input_(input), pipe_(input, output), make_device_(make_device), own_name_(own_name), idle_(idle) {}
+  Server(int input, int output, const RoleName& served, const MakeDevice& make_device,
+         std::string_view own_name, const Idle& idle)
+      : input_(input),
+        pipe_(input, output),
+        served_(served),
+        make_device_(make_device),
+        own_name_(own_name),
+        idle_(idle) {}
 
   void run() {
     while (true) {
@@ -119,15 +125,16 @@ class Server final : private Bench {
     role_.protocol = reader.text();
     role_.role = reader.text();
     reader.finish();
-    device_ = make_device_(role_);
+    const bool is_asked_which = role_ == RoleName{};
+    device_ = make_device_(is_asked_which ? served_ : role_);
     if (device_ == nullptr) {
-      throw kernel::Error(
-          kernel::ErrorKind::implementation,
-          fmt::format("the bench asks for a {}/{}, which is not served here", role_.protocol, role_.role));
+      writer_.begin(MessageType::unsupported);
+      return pipe_.send(writer_.finish());
     }
-    writer_.begin(MessageType::capabilities).u16(kMessageVersion);
-    writer_.u8(static_cast<std::uint8_t>(device_->unit_kind())).text(own_name_);
-    pipe_.send(writer_.finish());
+    pipe_.send(write_capabilities(writer_, {kMessageVersion,
+                                            static_cast<std::uint8_t>(device_->unit_kind()),
+                                            std::string(own_name_),
+                                            {is_asked_which ? served_ : role_}}));
   }
 
   void pass_on(MessageReader& reader) {
@@ -177,6 +184,7 @@ class Server final : private Bench {
 
   int input_;
   MessagePipe pipe_;
+  const RoleName& served_;
   const MakeDevice& make_device_;
   std::string_view own_name_;
   const Idle& idle_;
@@ -189,9 +197,9 @@ class Server final : private Bench {
 
 }  // namespace
 
-void serve(int input, int output, const MakeDevice& make_device, std::string_view own_name,
-           const Idle& idle) {
-  Server(input, output, make_device, own_name, idle).run();
+void serve(int input, int output, const RoleName& served, const MakeDevice& make_device,
+           std::string_view own_name, const Idle& idle) {
+  Server(input, output, served, make_device, own_name, idle).run();
 }
 
 }  // namespace fieldproof::iut

@@ -18,7 +18,8 @@ using Idle = std::function<void(int descriptor)>;
 
 // Until the bench closes its end. `input` and `output` may be one descriptor. Throws
 // kernel::Error(implementation) when the bench does not keep to the protocol.
-void serve(int input, int output, const MakeDevice& make_device, std::string_view own_name,
-           const Idle& idle = {});
+// A bench that does not say which role it wants is told `served`.
+void serve(int input, int output, const RoleName& served, const MakeDevice& make_device,
+           std::string_view own_name, const Idle& idle = {});
 
 }  // namespace fieldproof::iut

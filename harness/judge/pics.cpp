@@ -16,7 +16,7 @@ const T* answer(const std::map<std::string, Pics::Answer, std::less<>>& items, s
 
 bool Pics::supports(std::string_view item) const {
   const bool* declared = answer<bool>(items_, item);
-  return declared != nullptr && *declared;
+  return declared != nullptr ? *declared : duration(item, {}) > kernel::Duration{};
 }
 
 std::int64_t Pics::number(std::string_view item, std::int64_t absent) const {
@@ -27,6 +27,11 @@ std::int64_t Pics::number(std::string_view item, std::int64_t absent) const {
 std::string Pics::text(std::string_view item, std::string_view absent) const {
   const std::string* declared = answer<std::string>(items_, item);
   return declared == nullptr ? std::string(absent) : *declared;
+}
+
+kernel::Duration Pics::duration(std::string_view item, kernel::Duration absent) const {
+  const kernel::Duration* declared = answer<kernel::Duration>(items_, item);
+  return declared == nullptr ? absent : *declared;
 }
 
 Pics Pics::completed_by(Pics defaults) const {
@@ -44,6 +49,9 @@ std::string answers_text(const PicsItem& item) {
       return "true or false";
     case PicsKind::number:
       return fmt::format("a whole number from {} to {}", item.least, item.most);
+    case PicsKind::duration:
+      return fmt::format("a time from {} to {}", kernel::describe(kernel::Duration{item.least}),
+                         kernel::describe(kernel::Duration{item.most}));
     case PicsKind::text:
       break;
   }

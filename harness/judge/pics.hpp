@@ -7,20 +7,23 @@
 #include <variant>
 #include <vector>
 
+#include "harness/kernel/time.hpp"
+
 // Protocol implementation conformance statement: what an implementation declares about itself. Applicability
 // of a case and declared options (which safe state, which reactions) are decided from it, never guessed.
 namespace fieldproof::judge {
 
 class Pics {
  public:
-  using Answer = std::variant<bool, std::int64_t, std::string>;
+  using Answer = std::variant<bool, std::int64_t, std::string, kernel::Duration>;
 
   void declare(std::string item, Answer answer) {
     items_.insert_or_assign(std::move(item), std::move(answer));
   }
 
-  // False, or `absent`, for an item that is not declared.
+  // False, or `absent`, for an item that is not declared. A duration is supported when it is not zero.
   bool supports(std::string_view item) const;
+  kernel::Duration duration(std::string_view item, kernel::Duration absent) const;
   std::int64_t number(std::string_view item, std::int64_t absent) const;
   std::string text(std::string_view item, std::string_view absent) const;
 
@@ -34,7 +37,7 @@ class Pics {
 };
 
 // What an item may be answered with.
-enum class PicsKind : std::uint8_t { truth, number, text };
+enum class PicsKind : std::uint8_t { truth, number, text, duration };
 
 PicsKind kind_of(const Pics::Answer& answer);
 
@@ -44,12 +47,12 @@ struct PicsItem {
   std::string name;
   PicsKind kind = PicsKind::truth;
   std::string meaning;
-  std::int64_t most = 0;             // of a number
+  std::int64_t most = 0;             // of a number; of a duration in picoseconds
   std::vector<std::string> words{};  // that a text may be
-  std::int64_t least = 0;            // of a number
+  std::int64_t least = 0;            // the same
 };
 
-// "true or false", "a whole number from 0 to 64", "\"held\" or \"cleared\"".
+// "true or false", "a whole number from 0 to 64", "\"held\" or \"cleared\"", "a time from 0 ps to 1 s".
 std::string answers_text(const PicsItem& item);
 
 }  // namespace fieldproof::judge

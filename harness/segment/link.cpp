@@ -5,6 +5,7 @@
 
 #include "harness/segment/past_drive.hpp"
 #include "harness/segment/segment.hpp"
+#include "harness/segment/stop.hpp"
 
 namespace fieldproof::segment {
 
@@ -61,6 +62,7 @@ void Link::arm() {
 }
 
 void Link::on_time(kernel::Time) {
+  give_up_if_stopped();
   std::swap(arriving_, queue_[head_]);
   ++head_;
   arrive(arriving_);

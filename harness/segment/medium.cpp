@@ -5,6 +5,7 @@
 
 #include "harness/kernel/check.hpp"
 #include "harness/segment/past_drive.hpp"
+#include "harness/segment/stop.hpp"
 
 namespace fieldproof::segment {
 namespace {
@@ -192,6 +193,7 @@ void Medium::release(MediumPort::Transmission& transmission) {
 }
 
 void Medium::on_time(kernel::Time now) {
+  give_up_if_stopped();
   for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].tell_due(now);
   arm();
 }

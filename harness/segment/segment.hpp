@@ -25,7 +25,8 @@ class Segment {
   trace::Trace& trace() { return trace_; }
   kernel::Time now() const { return scheduler_.now(); }
 
-  // The station must outlive the segment's last run. Gives its number.
+  // The station must outlive the segment's last run. Gives its number. One that asks for the same instant for
+  // ever ends the run by a kernel::Error (implementation) with its name.
   std::size_t attach(Station& station, std::string name);
 
   // A one-way link to receiver number `receiver`, heard there as `port`.
@@ -51,7 +52,7 @@ class Segment {
   // time does with every reception, the early firing costs one look instead of a new arming each time.
   class Seat final : public kernel::Timer {
    public:
-    Seat(Segment& segment, Station& station);
+    Seat(Segment& segment, Station& station, trace::Channel name);
     void receive(PortIndex port, const line::Waveform& wave) {
       station_.receive(port, wave);
       refresh();
@@ -67,7 +68,10 @@ class Segment {
     Segment& segment_;
     Station& station_;
     kernel::SlotId slot_;
+    trace::Channel name_;
     kernel::Time armed_ = kernel::kNever;
+    kernel::Time called_at_ = kernel::kNever;  // on_time, the last time
+    unsigned calls_ = 0;                       // at that instant
   };
 
   kernel::Scheduler scheduler_;

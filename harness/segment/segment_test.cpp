@@ -157,5 +157,28 @@ TEST_F(SegmentTest, EqualHistoriesHaveEqualFingerprintsAndOthersHaveNot) {
   EXPECT_NE(fingerprint({}, "0101"), fingerprint(kernel::kPicosecond, "0101"));
 }
 
+// Asks for the instant at which it is, always.
+class Stuck final : public Station {
+ public:
+  void receive(PortIndex, const line::Waveform&) override {}
+  void on_time(kernel::Time) override {}
+  kernel::Time next_time() const override { return kStart + 3 * kMicrosecond; }
+};
+
+TEST(Segment, AStationThatAsksForTheSameInstantForEverEndsTheRunWithItsName) {
+  Segment segment;
+  Stuck stuck;
+  segment.attach(stuck, "node");
+  try {
+    segment.run_for(5 * kMicrosecond);
+    FAIL() << "the run ended";
+  } catch (const kernel::Error& error) {
+    EXPECT_EQ(error.kind(), kernel::ErrorKind::implementation);
+    const std::string sentence = error.what();
+    EXPECT_NE(sentence.find("\"node\""), std::string::npos) << sentence;
+    EXPECT_NE(sentence.find("same instant"), std::string::npos) << sentence;
+  }
+}
+
 }  // namespace
 }  // namespace fieldproof::segment

@@ -13,108 +13,11 @@ namespace {
 
 constexpr auto kEventKinds = static_cast<std::uint64_t>(FfEventKind::left) + 1;
 
-struct NamedCode {
-  const char* name;
-  std::uint8_t FfCodes::* code;
-};
-constexpr std::array kCodes{NamedCode{"code_cd", &FfCodes::cd},   NamedCode{"code_dt1", &FfCodes::dt1},
-                            NamedCode{"code_dt3", &FfCodes::dt3}, NamedCode{"code_sr", &FfCodes::sr},
-                            NamedCode{"code_ct", &FfCodes::ct},   NamedCode{"code_td", &FfCodes::td},
-                            NamedCode{"code_pn", &FfCodes::pn},   NamedCode{"code_pr", &FfCodes::pr},
-                            NamedCode{"code_pt", &FfCodes::pt},   NamedCode{"code_rt", &FfCodes::rt},
-                            NamedCode{"code_ri", &FfCodes::ri},   NamedCode{"code_cl", &FfCodes::cl},
-                            NamedCode{"code_tl", &FfCodes::tl},   NamedCode{"code_idle", &FfCodes::idle}};
-
-struct NamedNumber {
-  const char* name;
-  unsigned FfRules::* number;
-};
-constexpr std::array kNumbers{NamedNumber{"unpolled", &FfRules::unpolled},
-                              NamedNumber{"scheduling_overhead_octets", &FfRules::scheduling_overhead_octets},
-                              NamedNumber{"least_token_octets", &FfRules::least_token_octets},
-                              NamedNumber{"token_holding_octets", &FfRules::token_holding_octets},
-                              NamedNumber{"claim_delay_octets", &FfRules::claim_delay_octets},
-                              NamedNumber{"misses_until_removal", &FfRules::misses_until_removal}};
-
-struct NamedNode {
-  const char* name;
-  std::uint8_t FfRules::* node;
-};
-constexpr std::array kNodes{NamedNode{"first_node", &FfRules::first_node},
-                            NamedNode{"last_node", &FfRules::last_node},
-                            NamedNode{"first_unpolled", &FfRules::first_unpolled}};
-
-FfSchedule schedule_of(const SettingsReader& told) {
-  FfSchedule schedule;
-  schedule.version = told.number("schedule_version", schedule.version);
-  schedule.macrocycle = std::max(1U, told.number("macrocycle", schedule.macrocycle));
-  for (std::size_t n = 0; n < told.count("schedule"); ++n) {
-    schedule.items.push_back({told.number<std::uint32_t>(nth("schedule_at", n), 0),
-                              told.number<FfAddress>(nth("schedule_address", n), 0),
-                              told.priority(nth("schedule_priority", n))});
-  }
-  return schedule;
-}
-
 Octets request(FfAsk ask) {
   return {static_cast<std::uint8_t>(ask)};
 }
 
 }  // namespace
-
-LinkSettings ff_settings(const FfConfiguration& configuration) {
-  const FfRules& rules = configuration.rules;
-  LinkSettings settings;
-  tell_link(rules.link, settings);
-  for (const NamedCode& one : kCodes) settings.emplace_back(one.name, rules.codes.*one.code);
-  for (const NamedNode& one : kNodes) settings.emplace_back(one.name, rules.*one.node);
-  for (const NamedNumber& one : kNumbers) settings.emplace_back(one.name, rules.*one.number);
-  settings.insert(settings.end(), {{"target_rotation", rules.target_rotation.count()},
-                                   {"time_distribution_period", rules.time_distribution_period.count()},
-                                   {"steers_by_three_steps", rules.steers_by_three_steps ? 1 : 0},
-                                   {"returns_with_last_data", rules.returns_with_last_data ? 1 : 0},
-                                   {"node", configuration.node},
-                                   {"supports_long_addresses", configuration.supports_long_addresses ? 1 : 0},
-                                   {"begins_as_scheduler", configuration.begins_as_scheduler ? 1 : 0}});
-  tell_list("published", configuration.published, settings);
-  tell_list("subscribed", configuration.subscribed, settings);
-  tell_list("live", configuration.live, settings);
-  const FfSchedule& schedule = configuration.schedule;
-  settings.insert(settings.end(), {{"schedule_version", schedule.version},
-                                   {"macrocycle", schedule.macrocycle},
-                                   {"schedule", static_cast<std::int64_t>(schedule.items.size())}});
-  for (std::size_t n = 0; n < schedule.items.size(); ++n) {
-    const FfScheduleItem& item = schedule.items[n];
-    settings.emplace_back(nth("schedule_at", n), item.at);
-    settings.emplace_back(nth("schedule_address", n), item.address);
-    settings.emplace_back(nth("schedule_priority", n), static_cast<std::int64_t>(item.priority));
-  }
-  return settings;
-}
-
-FfConfiguration ff_configuration_of(const iut::CaseBegin& begin) {
-  const SettingsReader told(begin);
-  FfConfiguration configuration;
-  FfRules& rules = configuration.rules;
-  rules.link = link_of(begin);
-  for (const NamedCode& one : kCodes) rules.codes.*one.code = told.number(one.name, rules.codes.*one.code);
-  for (const NamedNode& one : kNodes) rules.*one.node = told.number(one.name, rules.*one.node);
-  for (const NamedNumber& one : kNumbers) rules.*one.number = told.number(one.name, rules.*one.number);
-  rules.target_rotation = kernel::Duration{told.number("target_rotation", rules.target_rotation.count())};
-  rules.time_distribution_period =
-      kernel::Duration{told.number("time_distribution_period", rules.time_distribution_period.count())};
-  rules.steers_by_three_steps = told.truth("steers_by_three_steps", rules.steers_by_three_steps);
-  rules.returns_with_last_data = told.truth("returns_with_last_data", rules.returns_with_last_data);
-  configuration.node = told.number("node", configuration.node);
-  configuration.supports_long_addresses =
-      told.truth("supports_long_addresses", configuration.supports_long_addresses);
-  configuration.begins_as_scheduler = told.truth("begins_as_scheduler", configuration.begins_as_scheduler);
-  configuration.published = told.list<FfAddress>("published");
-  configuration.subscribed = told.list<FfAddress>("subscribed");
-  configuration.live = told.list<std::uint8_t>("live");
-  configuration.schedule = schedule_of(told);
-  return configuration;
-}
 
 // ---- an implementation outside ----
 

@@ -7,6 +7,7 @@
 
 #include "protocols/fieldbus_dll/attached_link.hpp"
 #include "protocols/fieldbus_dll/ff_device.hpp"
+#include "protocols/fieldbus_dll/ff_settings.hpp"
 
 // A station of the profile FF-P between the bench and an implementation outside, in both directions:
 // AttachedFfDevice is a station of the bench that an iut::Device plays; ServedFfDevice is an iut::Device that
@@ -23,11 +24,6 @@ namespace fieldproof::fieldbus_dll {
 
 enum class FfAsk : std::uint8_t { submit = 1, write = 2, order_transfer = 3 };
 enum class FfIndication : std::uint8_t { data = 1, published = 2 };
-
-// Every number of rules and configuration by its name; lists as "published_0" and so on, with "published" for
-// how many there are; codes as "code_pt"; times in ps.
-LinkSettings ff_settings(const FfConfiguration& configuration);
-FfConfiguration ff_configuration_of(const iut::CaseBegin& begin);
 
 class AttachedFfDevice final : public FfDevice, private iut::Bench {
  public:
@@ -82,6 +78,26 @@ class ServedFfDevice final : public ServedLink<FfDevice>, private FfUser {
 
   Make make_;
   FfRules rules_;
+};
+
+// The role as benches and attachments know it.
+struct FfDeviceRole {
+  using Device = FfDevice;
+  using Configuration = FfConfiguration;
+  using Attached = AttachedFfDevice;
+  using Served = ServedFfDevice;
+  static constexpr const char* protocol = "fieldbus_dll";
+  static constexpr const char* role = "ff_device";
+};
+
+// The role as benches and attachments know it.
+struct FfLasRole {
+  using Device = FfDevice;
+  using Configuration = FfConfiguration;
+  using Attached = AttachedFfDevice;
+  using Served = ServedFfDevice;
+  static constexpr const char* protocol = "fieldbus_dll";
+  static constexpr const char* role = "ff_las";
 };
 
 }  // namespace fieldproof::fieldbus_dll

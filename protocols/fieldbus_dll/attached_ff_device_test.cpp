@@ -56,7 +56,7 @@ TEST(FfSettings, ThatAreNotToldAreThoseOfTheReference) {
 TEST(FfSettings, ThatAreImpossibleAreTheNearestThatAre) {
   const FfConfiguration back = ff_configuration_of(
       {"x", 1, {{"bit_rate", 0}, {"node", 4'711}, {"published", 1'000'000}, {"preamble_octets", -3}}});
-  EXPECT_EQ(back.rules.link.bit_rate, 1);
+  EXPECT_EQ(back.rules.link.bit_rate, 1'000);
   EXPECT_EQ(back.node, 255);
   EXPECT_EQ(back.published.size(), 1'000U);
   EXPECT_EQ(back.rules.link.preamble_octets, 1U);

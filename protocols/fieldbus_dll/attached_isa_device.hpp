@@ -7,6 +7,7 @@
 
 #include "protocols/fieldbus_dll/attached_link.hpp"
 #include "protocols/fieldbus_dll/isa_device.hpp"
+#include "protocols/fieldbus_dll/isa_settings.hpp"
 
 // A station of the profile ISA-D between the bench and an implementation outside, in both directions, as
 // attached_ff_device.hpp has it for FF-P. Of the user's octets:
@@ -23,11 +24,6 @@ inline constexpr iut::Item kReplyComing = 16;
 
 enum class IsaAsk : std::uint8_t { submit = 1, order_transfer = 3 };
 inline constexpr std::uint8_t kIsaData = 1;
-
-// Every number of rules and configuration by its name; codes as "code_et", items of the schedule as
-// "schedule_at_0" and so on, with "schedule" for how many there are; times in ps.
-LinkSettings isa_settings(const IsaConfiguration& configuration);
-IsaConfiguration isa_configuration_of(const iut::CaseBegin& begin);
 
 class AttachedIsaDevice final : public IsaDevice, private iut::Bench {
  public:
@@ -78,6 +74,26 @@ class ServedIsaDevice final : public ServedLink<IsaDevice>, private IsaUser {
 
   Make make_;
   IsaRules rules_;
+};
+
+// The role as benches and attachments know it.
+struct IsaDleRole {
+  using Device = IsaDevice;
+  using Configuration = IsaConfiguration;
+  using Attached = AttachedIsaDevice;
+  using Served = ServedIsaDevice;
+  static constexpr const char* protocol = "fieldbus_dll";
+  static constexpr const char* role = "isa_dle";
+};
+
+// The role as benches and attachments know it.
+struct IsaLasRole {
+  using Device = IsaDevice;
+  using Configuration = IsaConfiguration;
+  using Attached = AttachedIsaDevice;
+  using Served = ServedIsaDevice;
+  static constexpr const char* protocol = "fieldbus_dll";
+  static constexpr const char* role = "isa_las";
 };
 
 }  // namespace fieldproof::fieldbus_dll

@@ -8,6 +8,8 @@
 
 #include "harness/iut/acting_device.hpp"
 #include "harness/iut/misbehaviour.hpp"
+#include "harness/segment/medium.hpp"
+#include "harness/segment/segment.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {

@@ -12,43 +12,7 @@ namespace {
 
 constexpr std::size_t kMostFrameOctets = 300;  // of IEC 61158-2, with its check
 
-unsigned count_in(const iut::CaseBegin& begin, std::string_view name, std::int64_t absent,
-                  std::int64_t most) {
-  return static_cast<unsigned>(std::clamp<std::int64_t>(iut::setting(begin, name, absent), 0, most));
-}
-
 }  // namespace
-
-std::string nth(std::string_view name, std::size_t n) {
-  return fmt::format("{}_{}", name, n);
-}
-
-void tell_link(const LinkRules& rules, LinkSettings& settings) {
-  settings.insert(settings.end(), {{"bit_rate", rules.bit_rate},
-                                   {"preamble_octets", rules.preamble_octets},
-                                   {"slot_time_octets", rules.slot_time_octets},
-                                   {"response_delay_slots", rules.response_delay_slots},
-                                   {"inter_pdu_delay_octets", rules.inter_pdu_delay_octets}});
-  for (std::size_t n = 0; n < rules.most_data.size(); ++n)
-    settings.emplace_back(fmt::format("most_data_{}", n + 1), static_cast<std::int64_t>(rules.most_data[n]));
-}
-
-LinkRules link_of(const iut::CaseBegin& begin) {
-  const LinkRules absent;
-  LinkRules rules;
-  rules.bit_rate =
-      std::clamp<std::int64_t>(iut::setting(begin, "bit_rate", absent.bit_rate), 1, 1'000'000'000);
-  rules.preamble_octets = std::clamp(count_in(begin, "preamble_octets", absent.preamble_octets, 8), 1U, 8U);
-  rules.slot_time_octets = count_in(begin, "slot_time_octets", absent.slot_time_octets, 65'535);
-  rules.response_delay_slots = count_in(begin, "response_delay_slots", absent.response_delay_slots, 65'535);
-  rules.inter_pdu_delay_octets =
-      count_in(begin, "inter_pdu_delay_octets", absent.inter_pdu_delay_octets, 65'535);
-  for (std::size_t n = 0; n < rules.most_data.size(); ++n) {
-    rules.most_data[n] = count_in(begin, fmt::format("most_data_{}", n + 1),
-                                  static_cast<std::int64_t>(absent.most_data[n]), 65'535);
-  }
-  return rules;
-}
 
 void put_number(Octets& octets, std::uint64_t number, unsigned size) {
   while (size-- > 0) octets.push_back(static_cast<std::uint8_t>(number >> 8 * size));

@@ -1,14 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <deque>
-#include <limits>
 #include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "harness/iut/attached_case.hpp"
 #include "harness/iut/served_station.hpp"
@@ -32,56 +26,6 @@ inline constexpr unsigned kUserPort = 2;
 // Words that an implementation writes or reads, in each role.
 inline constexpr iut::Item kRefused = 0;  // told within `power` or a request of the user: it is not taken
 inline constexpr iut::Item kEvent = 1;    // told: kind | node << 8
-
-using LinkSettings = std::vector<std::pair<std::string, std::int64_t>>;
-
-// "published_3".
-std::string nth(std::string_view name, std::size_t n);
-
-// How many under the name itself, and each under its `nth` name.
-template <typename Values>
-void tell_list(std::string_view name, const Values& values, LinkSettings& settings) {
-  settings.emplace_back(std::string(name), static_cast<std::int64_t>(values.size()));
-  for (std::size_t n = 0; n < values.size(); ++n) settings.emplace_back(nth(name, n), values[n]);
-}
-
-// Settings by their names, each within what its type holds.
-class SettingsReader {
- public:
-  static constexpr std::int64_t kMostListed = 1'000;
-
-  explicit SettingsReader(const iut::CaseBegin& begin) : begin_(begin) {}
-
-  template <typename Number>
-  Number number(std::string_view name, Number absent) const {
-    constexpr auto kMost = static_cast<std::int64_t>(std::min<std::uint64_t>(
-        std::numeric_limits<std::int64_t>::max(), std::numeric_limits<Number>::max()));
-    return static_cast<Number>(
-        std::clamp<std::int64_t>(iut::setting(begin_, name, static_cast<std::int64_t>(absent)), 0, kMost));
-  }
-  bool truth(std::string_view name, bool absent) const {
-    return iut::setting(begin_, name, absent ? 1 : 0) != 0;
-  }
-  Priority priority(std::string_view name) const {
-    return static_cast<Priority>(std::clamp<std::int64_t>(iut::setting(begin_, name, 1), 1, 3));
-  }
-  std::size_t count(std::string_view name) const {
-    return static_cast<std::size_t>(std::clamp<std::int64_t>(iut::setting(begin_, name, 0), 0, kMostListed));
-  }
-  template <typename Number>
-  std::vector<Number> list(std::string_view name) const {
-    std::vector<Number> all;
-    for (std::size_t n = 0; n < count(name); ++n) all.push_back(number<Number>(nth(name, n), 0));
-    return all;
-  }
-
- private:
-  const iut::CaseBegin& begin_;
-};
-
-// Numbers of the link as settings, and back; what is not told is as in `absent`.
-void tell_link(const LinkRules& rules, LinkSettings& settings);
-LinkRules link_of(const iut::CaseBegin& begin);
 
 // Numbers in an octet string of the user, the high octet first.
 void put_number(Octets& octets, std::uint64_t number, unsigned size);

@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "protocols/fieldbus_dll/dlpdu_layout.hpp"
+
 namespace fieldproof::fieldbus_dll {
 namespace {
 
@@ -182,7 +184,53 @@ std::string field_text(Field field, const FfDlpdu& dlpdu) {
   return "";
 }
 
+std::string_view layout_text(Field field) {
+  switch (field) {
+    case Field::destination:
+      return "destination (2 or 4)";
+    case Field::source:
+      return "source (2 or 4)";
+    case Field::node:
+      return "node (1)";
+    case Field::duration:
+      return "duration in octets (2)";
+    case Field::version:
+      return "version of the schedule (2)";
+    case Field::link_time:
+      return "link time in 1/32 ms (6)";
+    case Field::writes:
+      return "writes, modulo 256 (1)";
+    case Field::status:
+      return "reason (1): 0 unknown address, 1 nothing written";
+    case Field::data:
+      return "DLSDU";
+    case Field::none:
+      break;
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string first_octet_text(unsigned code, unsigned free_bits) {
+  constexpr std::string_view kFree = "....LFPP";
+  std::string text = "`";
+  for (unsigned n = 0; n < 8; ++n) {
+    const unsigned bit = 0x80U >> n;
+    if (n == 4) text += ' ';
+    text += (free_bits & bit) != 0 ? kFree[n] : (code & bit) != 0 ? '1' : '0';
+  }
+  return text + "`";
+}
+
+std::string layout_text(FfType type, const FfCodes& codes) {
+  const FfShape& shape = shape_of(type);
+  std::string text = first_octet_text(codes.*shape.code, shape.free_bits);
+  for (const Field field : shape.fields) {
+    if (field != Field::none) text += fmt::format(", {}", layout_text(field));
+  }
+  return text;
+}
 
 std::optional<FfDlpdu> ff_dlpdu_of(std::span<const std::uint8_t> octets, const FfRules& rules) {
   if (octets.empty()) return std::nullopt;

@@ -3,9 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "protocols/fieldbus_dll/facts.hpp"
 #include "protocols/fieldbus_dll/link_rules.hpp"
 
 // Every number of the data link of Foundation Fieldbus (IEC 61158 type 1) as this project runs it: the
@@ -69,11 +67,8 @@ inline kernel::Duration response_delay(const LinkRules& link) {
 // What a schedule and link time count in.
 inline constexpr kernel::Duration kTick = kernel::kMillisecond / 32;
 
-// A sentence about the first number that cannot be: V(MID) may be at most (V(MRD) - 1) x V(ST) and 120, the
-// others have the ranges of the vendors' tables.
+// A sentence about the first number outside of the range of its row; V(MID) may besides be at most (V(MRD) -
+// 1) x V(ST).
 std::optional<std::string> impossible(const FfRules& rules);
-
-// Every number but those of the link, in the order above.
-std::vector<Fact> facts(const FfRules& rules);
 
 }  // namespace fieldproof::fieldbus_dll

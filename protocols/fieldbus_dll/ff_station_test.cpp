@@ -138,7 +138,7 @@ TEST(FfStationRules, AreRefusedWhenTheyCannotBe) {
   link.wait(100);
   EXPECT_EQ(link.heard(), "");
   EXPECT_EQ(user.take(), "");
-  EXPECT_EQ(*impossible(configuration.rules), "V(MID) is 25, and may be 0 to 24");
+  EXPECT_EQ(*impossible(configuration.rules), "inter_pdu_delay_octets is 25, and may be 0 to 24");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "harness/kernel/check.hpp"
+#include "protocols/fieldbus_dll/dlpdu_layout.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
@@ -106,7 +107,29 @@ std::string_view reason_text(EndReason reason) {
   return "";
 }
 
+std::string_view layout_of_fields(IsaType type) {
+  switch (type) {
+    case IsaType::es:
+      return ", duration in octets (2)";
+    case IsaType::ee:
+      return ", reason (1): 0 nothing to send, 1 no time, 2 single frame done";
+    case IsaType::tl:
+      return ", version of the schedule (2)";
+    default:
+      return "";
+  }
+}
+
 }  // namespace
+
+std::string layout_text(IsaType type, const IsaCodes& codes) {
+  const Shape& shape = shape_of(type);
+  unsigned free_bits = shape.has_priority ? kPriorityBits : 0U;
+  if (shape.may_be_final && !shape.is_always_final) free_bits |= kFinalBit;
+  const unsigned code = codes.*shape.code | (shape.is_always_final ? kFinalBit : 0U);
+  return fmt::format("{}, destination (1), source (1){}{}", first_octet_text(code, free_bits),
+                     layout_of_fields(type), shape.has_data ? ", DLSDU" : "");
+}
 
 std::optional<IsaDlpdu> isa_dlpdu_of(std::span<const std::uint8_t> octets, const IsaRules& rules) {
   if (octets.size() < kHeader) return std::nullopt;

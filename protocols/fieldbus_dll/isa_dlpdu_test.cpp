@@ -5,6 +5,9 @@
 
 #include <string>
 
+#include "harness/field/facts.hpp"
+#include "protocols/fieldbus_dll/rule_tables.hpp"
+
 namespace fieldproof::fieldbus_dll {
 namespace {
 
@@ -110,13 +113,14 @@ RC_GTEST_PROP(IsaDlpduProperty, WhateverIsReadIsWrittenTheSame, (const Octets& t
 
 TEST(IsaRules, EachNumberHasASource) {
   IsaRules rules;
-  for (const Fact& fact : facts(rules)) EXPECT_FALSE(fact.source.empty()) << fact.rule;
+  for (const field::Fact& fact : field::facts_of(kIsaRulesTable, rules))
+    EXPECT_FALSE(fact.source.empty()) << fact.name;
   rules.reply_wait_octets = 35;
   std::size_t changed = 0;
-  for (const Fact& fact : facts(rules)) {
-    if (fact.source != "changed for this run") continue;
+  for (const field::Fact& fact : field::facts_of(kIsaRulesTable, rules)) {
+    if (fact.source != "set for this run; not from a source") continue;
     ++changed;
-    EXPECT_EQ(fact.rule, "reply_wait_octets");
+    EXPECT_EQ(fact.name, "reply_wait_octets");
     EXPECT_EQ(fact.standing, judge::Standing::own);
   }
   EXPECT_EQ(changed, 1U);

@@ -1,10 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
-#include "protocols/fieldbus_dll/facts.hpp"
 #include "protocols/fieldbus_dll/link_rules.hpp"
 
 // Every number of the data link of the ISA draft of 1993 (dS50.02 part 4) as this project runs it: the
@@ -42,8 +39,5 @@ struct IsaRules {
 
   friend bool operator==(const IsaRules&, const IsaRules&) = default;
 };
-
-// Every number, in the order above.
-std::vector<Fact> facts(const IsaRules& rules);
 
 }  // namespace fieldproof::fieldbus_dll

@@ -55,17 +55,6 @@ std::optional<std::uint64_t> most_of(iut::Item item) {
 
 }  // namespace
 
-std::uint64_t packed_station(const FoundStation& station) {
-  return station.id_code | std::uint64_t{station.words & 0xFFFF} << 16 |
-         (static_cast<std::uint64_t>(station.before + 1) & 0xFFFF) << 32 |
-         (station.on_branch ? std::uint64_t{1} << 48 : 0);
-}
-
-FoundStation found_station_of(std::uint64_t value) {
-  return {static_cast<std::uint16_t>(value), words_of_packed(value),
-          static_cast<int>(value >> 32 & 0xFFFF) - 1, (value >> 48 & 1) != 0};
-}
-
 AttachedMaster::AttachedMaster(iut::Attachment attachment, const MasterConfiguration& configuration,
                                const std::string& case_id, std::uint64_t seed)
     : kept_(kMasterItems) {

@@ -12,7 +12,7 @@
 #include "harness/iut/attached_case.hpp"
 #include "harness/iut/served_station.hpp"
 #include "protocols/interbus/device.hpp"
-#include "protocols/interbus/rule_settings.hpp"
+#include "protocols/interbus/master_settings.hpp"
 #include "protocols/interbus/telegram_front.hpp"
 
 // A master between the bench and an implementation outside, in both directions: AttachedMaster is a master of
@@ -31,10 +31,7 @@ inline constexpr unsigned kApplicationPort = 1;
 // nothing for the others.
 enum class MasterOrder : std::uint16_t { start = 1, stop = 2, id_cycle = 3, output = 4 };
 
-// How many of each kind of word a master may have.
-inline constexpr unsigned kMostMasterWords = 0x1000;
 inline constexpr unsigned kMostErrorTexts = 32;
-inline constexpr kernel::Duration kLongestCycle = 3'600 * kernel::kSecond;
 
 inline constexpr iut::Item kMasterState = 0;  // kept, in the order of MasterState
 inline constexpr iut::Item kDataCycles = 1;   // kept, since power-up
@@ -56,13 +53,6 @@ inline constexpr iut::Item kStationMessages = 0x2000;  // 1 peripheral fault | 2
 inline constexpr iut::Item kInputImage = 0x3000;
 inline constexpr iut::Item kOutputImage = 0x4000;
 inline constexpr iut::Item kMasterItems = kOutputImage + kMostMasterWords;
-
-// ID code | words << 16 | (before + 1) << 32 | on branch << 48.
-std::uint64_t packed_station(const FoundStation& station);
-FoundStation found_station_of(std::uint64_t value);
-
-Settings master_settings(const MasterConfiguration& configuration);
-MasterConfiguration master_configuration_of(const iut::CaseBegin& begin);
 
 class AttachedMaster final : public MasterDevice, private iut::Bench {
  public:
@@ -150,6 +140,16 @@ class ServedMaster final : public iut::ServedStation<MasterDevice> {
 
   Make make_;
   std::vector<std::uint64_t> told_;  // by item, as the bench was told them
+};
+
+// The role as benches and attachments know it.
+struct MasterRole {
+  using Device = MasterDevice;
+  using Configuration = MasterConfiguration;
+  using Attached = AttachedMaster;
+  using Served = ServedMaster;
+  static constexpr const char* protocol = "interbus";
+  static constexpr const char* role = "master";
 };
 
 }  // namespace fieldproof::interbus

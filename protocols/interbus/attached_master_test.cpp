@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/field/facts.hpp"
 #include "harness/iut/acting_device.hpp"
 #include "harness/iut/limits.hpp"
 #include "harness/iut/misbehaviour.hpp"
@@ -126,7 +127,8 @@ TEST(MasterSettings, ComeBack) {
   back.length_codes = {};
   const auto values = [](const Rules& of) {
     std::vector<std::string> all;
-    for (const Fact& fact : facts(of)) all.push_back(std::string(fact.rule) + " " + fact.value);
+    for (const field::Fact& fact : field::facts_of(kRulesTable, of))
+      all.push_back(fact.name + " " + fact.value);
     return all;
   };
   EXPECT_EQ(values(back), values(same));
@@ -150,8 +152,8 @@ TEST(MasterSettings, ValuesOutsideOfTheirRangeAreBroughtIn) {
                                                             {{"status_pitch_bits", 0},
                                                              {"quality_bad_cycles", -5},
                                                              {"max_stations", 1'000'000},
-                                                             {"expected_stations", 1'000'000'000},
-                                                             {"cycle_time_ps", -1}}});
+                                                             {"expected", 1'000'000'000},
+                                                             {"cycle_time", -1}}});
   EXPECT_EQ(told.rules.status_pitch_bits, 5U);
   EXPECT_EQ(told.rules.quality_bad_cycles, 1U);
   EXPECT_EQ(told.rules.max_stations, 4096U);

@@ -5,33 +5,6 @@
 #include <algorithm>
 
 namespace fieldproof::interbus {
-namespace {
-
-constexpr unsigned kMostSlaveWords = kInputWord - kOutputWord;
-
-}  // namespace
-
-Settings slave_settings(const SlaveConfiguration& configuration) {
-  Rules rules = configuration.rules;
-  if (configuration.is_local) {
-    rules.forward_delay_half_bits = rules.return_delay_half_bits = rules.local_delay_half_bits;
-  }
-  Settings settings{{"id_code", configuration.id_code},
-                    {"words", configuration.words},
-                    {"has_branch", configuration.has_branch ? 1 : 0}};
-  tell_rules(rules, settings);
-  return settings;
-}
-
-SlaveConfiguration slave_configuration_of(const iut::CaseBegin& begin) {
-  SlaveConfiguration configuration;
-  configuration.id_code = static_cast<std::uint16_t>(setting_within(begin, "id_code", 0, 0x1FFF));
-  configuration.words = static_cast<unsigned>(setting_within(begin, "words", 0, kMostSlaveWords));
-  configuration.has_branch = setting_within(begin, "has_branch", 0, 1) != 0;
-  read_rules(begin, configuration.rules);
-  return configuration;
-}
-
 AttachedSlave::AttachedSlave(iut::Attachment attachment, const SlaveConfiguration& configuration,
                              const std::string& case_id, std::uint64_t seed)
     : words_(configuration.words), attached_(std::move(attachment)) {

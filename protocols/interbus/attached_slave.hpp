@@ -10,7 +10,7 @@
 #include "harness/iut/attached_case.hpp"
 #include "harness/iut/served_station.hpp"
 #include "protocols/interbus/device.hpp"
-#include "protocols/interbus/rule_settings.hpp"
+#include "protocols/interbus/slave_settings.hpp"
 #include "protocols/interbus/telegram_front.hpp"
 
 // A slave between the bench and an implementation outside, in both directions: AttachedSlave is a slave of
@@ -27,11 +27,6 @@ inline constexpr iut::Item kPeripheralFault = 0x200;
 inline constexpr iut::Item kReconfiguration = 0x201;  // the button is pressed
 inline constexpr iut::Item kRemotePlugged = 0x202;    // the bridge in the plug of OUT1 is closed
 inline constexpr iut::Item kBranchPlugged = 0x203;    // of OUT2
-
-Settings slave_settings(const SlaveConfiguration& configuration);
-// The other way round, up to the name; a slave on a local bus comes back as one with the delays of such a
-// one.
-SlaveConfiguration slave_configuration_of(const iut::CaseBegin& begin);
 
 class AttachedSlave final : public SlaveDevice, private iut::Bench {
  public:
@@ -88,6 +83,16 @@ class ServedSlave final : public iut::ServedStation<SlaveDevice>, private Termin
   Make make_;
   bool is_branch_plugged_ = false;
   bool is_remote_plugged_ = false;
+};
+
+// The role as benches and attachments know it.
+struct SlaveRole {
+  using Device = SlaveDevice;
+  using Configuration = SlaveConfiguration;
+  using Attached = AttachedSlave;
+  using Served = ServedSlave;
+  static constexpr const char* protocol = "interbus";
+  static constexpr const char* role = "slave";
 };
 
 }  // namespace fieldproof::interbus

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "protocols/interbus/live_network.hpp"
 #include "protocols/interbus/paper.hpp"
+#include "protocols/interbus/running_network.hpp"
 #include "protocols/interbus/station_timing.hpp"
 #include "protocols/interbus/timing.hpp"
 
@@ -22,10 +22,11 @@ constexpr int kOutputStation = 3;
 Duration delay_of(LatchModel model, Duration after_start) {
   const NetworkDescription network = paper_network();
   const Duration way = sample_to_latch(network);
-  LiveNetwork live(network, [&](int, const SlaveConfiguration& configuration) {
-    return std::make_unique<LatchingSlave>(configuration, model, way);
-  });
+  RunningNetwork live(network, {.make_slave = [&](int, const SlaveConfiguration& configuration) {
+                        return std::make_unique<LatchingSlave>(configuration, model, way);
+                      }});
   EXPECT_TRUE(live.bring_up());
+  live.keep_starts();
   live.segment().run_for(3 * live.status().cycle_time);
   const Time edge = live.data_cycle_starts().back() + 2 * live.status().cycle_time + after_start;
   live.ring().terminals(kInputStation).set_signal(0, [=](Time when) -> std::uint16_t {

@@ -1,73 +1,17 @@
-// What a master is told of its case, and how it is read back.
-#include <fmt/format.h>
+#include "protocols/interbus/master_settings.hpp"
 
-#include <algorithm>
 #include <array>
-#include <span>
 
-#include "protocols/interbus/attached_master.hpp"
+#include "protocols/interbus/rules.hpp"
 
 namespace fieldproof::interbus {
 namespace {
 
-// Of a number that is told: its name, where it stands, and its range.
-struct ToldNumber {
-  const char* name;
-  unsigned Rules::* member;
-  std::int64_t least;
-  std::int64_t most;
-};
+using field::row;
 
-constexpr std::array kNumbers{
-    ToldNumber{"telegram_gap_millibits", &Rules::telegram_gap_millibits, 0, 1'000'000},
-    ToldNumber{"status_pitch_bits", &Rules::status_pitch_bits, 5, 1'000},
-    ToldNumber{"end_telegrams", &Rules::end_telegrams, 0, 1'000},
-    ToldNumber{"stop_after_bad_cycles", &Rules::stop_after_bad_cycles, 1, 1'000'000},
-    ToldNumber{"quality_bad_cycles", &Rules::quality_bad_cycles, 1, 1'000'000},
-    ToldNumber{"quality_window_cycles", &Rules::quality_window_cycles, 1, 1'000'000'000},
-    // As many as there are items.
-    ToldNumber{"max_stations", &Rules::max_stations, 0, kMostMasterWords},
-    ToldNumber{"max_io_points", &Rules::max_io_points, 0, 16 * kMostMasterWords},
-    ToldNumber{"max_levels", &Rules::max_levels, 0, 1'000},
-    ToldNumber{"max_cable_m", &Rules::max_cable_m, 0, 1'000'000},
-};
-
-constexpr unsigned kLengthCodes = 32;
-
-std::string numbered(std::string_view name, std::size_t n) {
-  return fmt::format("{}_{}", name, n);
-}
-
-// What stands in a list: how many, then each by its number.
-template <typename Items, typename Pack>
-void tell_list(std::string_view count, std::string_view name, const Items& items, Pack pack,
-               Settings& settings) {
-  settings.emplace_back(count, static_cast<std::int64_t>(items.size()));
-  for (std::size_t n = 0; n < items.size(); ++n) settings.emplace_back(numbered(name, n), pack(items[n]));
-}
-
-template <typename Item, typename Unpack>
-std::vector<Item> list_of(const iut::CaseBegin& begin, std::string_view count, std::string_view name,
-                          Unpack unpack) {
-  std::vector<Item> items;
-  const std::int64_t size = setting_within(begin, count, 0, kMostMasterWords);
-  for (std::int64_t n = 0; n < size; ++n) {
-    const std::int64_t value = iut::setting(begin, numbered(name, static_cast<std::size_t>(n)), 0);
-    items.push_back(unpack(static_cast<std::uint64_t>(value)));
-  }
-  return items;
-}
-
-std::vector<LengthCode> told_length_codes(const iut::CaseBegin& begin) {
-  std::vector<LengthCode> codes;
-  for (unsigned code = 0; code < kLengthCodes; ++code) {
-    const std::int64_t words = iut::setting(begin, numbered("words_of_length_code", code), -1);
-    if (words < 0) continue;
-    codes.push_back(
-        {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(std::min<std::int64_t>(words, 0xFF))});
-  }
-  return codes;
-}
+constexpr std::string_view kOwn = "this project's choice";
+constexpr std::int64_t kMostPackedStation = (std::int64_t{1} << 49) - 1;
+constexpr std::int64_t kMostPackedCopy = (std::int64_t{1} << 32) - 1;
 
 std::uint64_t packed_copy(const MasterConfiguration::Copy& copy) {
   return (copy.input_word & 0xFFFFU) | std::uint64_t{copy.output_word & 0xFFFFU} << 16;
@@ -77,51 +21,61 @@ MasterConfiguration::Copy copy_of(std::uint64_t value) {
   return {static_cast<unsigned>(value & 0xFFFF), static_cast<unsigned>(value >> 16 & 0xFFFF)};
 }
 
+constexpr auto kGiven =
+    field::kNames<&Rules::bit_rate, &Rules::telegram, &Rules::telegram_gap_millibits,
+                  &Rules::status_pitch_bits, &Rules::forward_delay_half_bits, &Rules::return_delay_half_bits,
+                  &Rules::cable_delay_ps_per_m, &Rules::loopback_word, &Rules::frame_check,
+                  &Rules::status_clean, &Rules::status_marked, &Rules::end_telegrams, &Rules::software_time,
+                  &Rules::silence_limit, &Rules::silence_tolerance, &Rules::stop_after_bad_cycles,
+                  &Rules::quality_bad_cycles, &Rules::quality_window_cycles, &Rules::max_stations,
+                  &Rules::max_io_points, &Rules::max_levels, &Rules::max_cable_m, &Rules::control_remote_off,
+                  &Rules::control_local_off, &Rules::control_reset, &Rules::control_acknowledge,
+                  &Rules::message_reconfiguration, &Rules::message_check_error,
+                  &Rules::message_peripheral_fault, &Rules::length_codes>;
+
+constexpr std::array kStationRow{field::packed_item<FoundStation, packed_station, found_station_of>(
+    {field::kHexadecimal,
+     {0, kMostPackedStation},
+     "ID code | words << 16 | (number of the station before it + 1) << 32 | on its branch << 48",
+     kOwn})};
+constexpr field::Table<FoundStation> kStationTable = field::table<FoundStation>(kStationRow);
+constexpr std::array kCopyRow{field::packed_item<MasterConfiguration::Copy, packed_copy, copy_of>(
+    {field::kHexadecimal, {0, kMostPackedCopy}, "input word | output word << 16", kOwn})};
+constexpr field::Table<MasterConfiguration::Copy> kCopyTable =
+    field::table<MasterConfiguration::Copy>(kCopyRow);
+
+constexpr auto kRows = field::rows<MasterConfiguration>(
+    row<&MasterConfiguration::cycle_time>({field::kTime, field::between({}, kLongestCycle),
+                                           "the cycle time that is requested, 0 for the shortest", kOwn}),
+    field::part<&MasterConfiguration::rules>(kRulesTable, kGiven),
+    field::list<&MasterConfiguration::expected>(
+        kStationTable, kMostMasterWords,
+        {{}, {}, "stations that must be found, in the order of the ring; 0: what is found is taken", kOwn}),
+    field::list<&MasterConfiguration::copy>(
+        kCopyTable, kMostMasterWords,
+        {{}, {}, "words that are copied after each accepted data cycle", kOwn}));
+
 }  // namespace
 
-// Where a slave is told nanoseconds these are picoseconds, because the cycle time is made of them.
-Settings master_settings(const MasterConfiguration& configuration) {
-  const Rules& rules = configuration.rules;
-  Settings settings{{"cycle_time_ps", configuration.cycle_time.count()},
-                    {"software_time_ps", rules.software_time.count()},
-                    {"cable_delay_ps_per_m", rules.cable_delay_ps_per_m},
-                    {"loopback_word", rules.loopback_word}};
-  for (const ToldNumber& one : kNumbers) settings.emplace_back(one.name, rules.*one.member);
-  tell_rules(rules, settings);
-  for (const LengthCode& one : length_codes_of(rules)) {
-    settings.emplace_back(numbered("words_of_length_code", one.code), one.words);
-  }
-  tell_list(
-      "expected_stations", "expected_station", configuration.expected,
-      [](const FoundStation& one) { return static_cast<std::int64_t>(packed_station(one)); }, settings);
-  tell_list(
-      "copies", "copy", configuration.copy,
-      [](const auto& one) { return static_cast<std::int64_t>(packed_copy(one)); }, settings);
-  return settings;
+constexpr field::Table<MasterConfiguration> kMasterTable = field::table<MasterConfiguration>(kRows);
+
+field::Settings master_settings(const MasterConfiguration& configuration) {
+  return field::settings_of(kMasterTable, configuration);
 }
 
 MasterConfiguration master_configuration_of(const iut::CaseBegin& begin) {
-  MasterConfiguration configuration;
-  Rules& rules = configuration.rules;
-  const auto span = [&](std::string_view name, kernel::Duration absent) {
-    return kernel::Duration{setting_within(begin, name, absent.count(), kLongestCycle.count())};
-  };
-  configuration.cycle_time = span("cycle_time_ps", {});
-  rules.software_time = span("software_time_ps", rules.software_time);
-  rules.cable_delay_ps_per_m =
-      setting_within(begin, "cable_delay_ps_per_m", rules.cable_delay_ps_per_m, 1'000'000);
-  rules.loopback_word =
-      static_cast<std::uint16_t>(setting_within(begin, "loopback_word", rules.loopback_word, 0xFFFF));
-  for (const ToldNumber& one : kNumbers) {
-    const std::int64_t told = setting_within(begin, one.name, rules.*one.member, one.most);
-    rules.*one.member = static_cast<unsigned>(std::max(told, one.least));
-  }
-  read_rules(begin, rules);
-  rules.length_codes = told_length_codes(begin);
-  configuration.expected =
-      list_of<FoundStation>(begin, "expected_stations", "expected_station", found_station_of);
-  configuration.copy = list_of<MasterConfiguration::Copy>(begin, "copies", "copy", copy_of);
-  return configuration;
+  return field::taken_from(kMasterTable, begin.settings);
+}
+
+std::uint64_t packed_station(const FoundStation& station) {
+  return station.id_code | std::uint64_t{station.words & 0xFFFF} << 16 |
+         (static_cast<std::uint64_t>(station.before + 1) & 0xFFFF) << 32 |
+         (station.on_branch ? std::uint64_t{1} << 48 : 0);
+}
+
+FoundStation found_station_of(std::uint64_t value) {
+  return {static_cast<std::uint16_t>(value), static_cast<unsigned>(value >> 16 & 0xFFFF),
+          static_cast<int>(value >> 32 & 0xFFFF) - 1, (value >> 48 & 1) != 0};
 }
 
 }  // namespace fieldproof::interbus

@@ -4,21 +4,24 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "harness/judge/verdict.hpp"
 #include "harness/kernel/time.hpp"
 #include "harness/line/telegram.hpp"
 
 // Every number and every genuine option of INTERBUS that this project uses, one member each, with source and
-// standing in `facts`. A station takes its numbers from here and from nowhere else, so a mutant may be the
-// reference with one number changed.
+// standing in its row of `kRulesTable`. A station takes its numbers from here and from nowhere else, so a
+// mutant may be the reference with one number changed.
 //
 // What could not be verified without IEC 61158-3-8/-4-8 at hand (order and polarity of the header levels, the
 // loopback word, the coding of status word, control word and message bits, the final XOR of the frame check)
 // stands in this one table and can be exchanged as a whole. Wire compatibility with real INTERBUS is
 // therefore not claimed.
+namespace fieldproof::field {
+template <typename T>
+struct Table;
+}
+
 namespace fieldproof::interbus {
 
 // Length code of an ID code (its bits 8..12): not the binary number of words.
@@ -89,18 +92,9 @@ struct Rules {
 // The codes in force.
 std::span<const LengthCode> length_codes_of(const Rules& rules);
 
-// One line of the table of sources that README and reports print.
-struct Fact {
-  std::string_view rule;    // the member of Rules; a part of it in brackets where parts differ in standing
-  std::string value;        // as a person reads it, with unit
-  std::string_view source;  // in own words
-  judge::Standing standing;
-
-  bool is_about(std::string_view member) const { return rule.substr(0, rule.find('[')) == member; }
-};
-
-// Every member of Rules in the order above. A value that no source names (set by a network file or by a
-// mutant) has the standing `own`, whatever stands behind the reference's value.
-std::vector<Fact> facts(const Rules& rules);
+// Every member of Rules with its unit, range, source and standing.
+extern const field::Table<Rules> kRulesTable;
+// The same without the bit rate, which a network file gives beside its rules.
+extern const field::Table<Rules> kRulesInAFile;
 
 }  // namespace fieldproof::interbus

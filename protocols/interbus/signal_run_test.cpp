@@ -1,7 +1,7 @@
-#include "protocols/interbus/signal_run.hpp"
-
+// Subject: square waves through a ring.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -9,7 +9,9 @@
 
 #include "harness/fault/channel.hpp"
 #include "harness/kernel/error.hpp"
+#include "harness/network/signal_run.hpp"
 #include "protocols/interbus/paper.hpp"
+#include "protocols/interbus/running_network.hpp"
 #include "protocols/interbus/slave.hpp"
 #include "protocols/interbus/timing.hpp"
 
@@ -19,6 +21,14 @@ namespace {
 using kernel::kSecond;
 using measure::Frequency;
 using measure::Phase;
+using network::SignalRecord;
+using network::SignalSettings;
+
+SignalRecord record_signal(const NetworkDescription& description, const SignalSettings& settings,
+                           const RunningStations& stations = {}) {
+  RunningNetwork network(description, stations);
+  return network::record_signal(network, settings);
+}
 
 SignalSettings settings_at(std::int64_t hertz, kernel::Duration duration = 2 * kSecond) {
   SignalSettings settings;
@@ -43,9 +53,9 @@ TEST(SignalRunTest, EveryPulseOfEveryTrainIsSeen) {
   EXPECT_EQ(skew.lost_pulses + skew.lost_pauses + skew.foreign_words, 0U);
   EXPECT_EQ(skew.rise_delays.total().count(), skew.pulses);
   EXPECT_EQ(skew.widths.total().count(), skew.pulses);
-  EXPECT_EQ(record.rejected_cycles + record.id_cycles, 0U);
-  EXPECT_EQ(record.cycle_times.total().min(), kPaperBestCycle.count());
-  EXPECT_EQ(record.cycle_times.total().max(), kPaperBestCycle.count());
+  EXPECT_EQ(record.unserved_exchanges + record.service_exchanges, 0U);
+  EXPECT_EQ(record.cycles.front().times.total().min(), kPaperBestCycle.count());
+  EXPECT_EQ(record.cycles.front().times.total().max(), kPaperBestCycle.count());
 }
 
 TEST(SignalRunTest, ASeedDecidesEverything) {
@@ -104,14 +114,17 @@ class LossyReturn final : public fault::Channel {
 TEST(SignalRunTest, ADisturbanceIsPutOnTheRingAndToldApart) {
   LossyReturn lossy;
   SignalSettings settings = settings_at(50, 4 * kSecond);
-  settings.disturb = [&](Ring& ring, segment::Segment&) { ring.find_link("master/in")->set_channel(&lossy); };
+  settings.disturb = [&](network::Network& network) {
+    const auto places = network.places();
+    std::ranges::find(places, "master/in", &network::Place::name)->receiver->set_channel(&lossy);
+  };
   // The second of two seconds is said to be the burst.
   settings.phase_during = [](kernel::Time from, kernel::Time) {
     return (from - kernel::kStart) / kSecond % 2 == 1 ? Phase::burst : Phase::quiet;
   };
   const SignalRecord record = record_signal(paper_network(), settings);
-  EXPECT_GT(record.rejected_cycles, 50U);
-  EXPECT_GE(record.id_cycles, record.rejected_cycles);
+  EXPECT_GT(record.unserved_exchanges, 50U);
+  EXPECT_GE(record.service_exchanges, record.unserved_exchanges);
   const measure::EdgeSkew& skew = record.paths.front().skew;
   EXPECT_GT(skew.rise_delays.in(Phase::burst).count(), 20U);
   EXPECT_GT(skew.rise_delays.in(Phase::quiet).count(), 20U);
@@ -119,7 +132,7 @@ TEST(SignalRunTest, ADisturbanceIsPutOnTheRingAndToldApart) {
   const auto cycle = structural_cycle_time(paper_network());
   EXPECT_GT(skew.rise_delays.total().max(), kernel::Duration(5 * cycle / 2).count());
   EXPECT_EQ(skew.foreign_words, 0U);
-  EXPECT_GT(record.cycle_times.total().max(), kernel::Duration(cycle).count());
+  EXPECT_GT(record.cycles.front().times.total().max(), kernel::Duration(cycle).count());
 }
 
 // A slave that shifts the words of its image in time: the second one is a sample behind.
@@ -153,16 +166,16 @@ TEST(SignalRunTest, WordsOfOneStationBelongTogether) {
   EXPECT_EQ(whole.paths.size(), 2U);
   EXPECT_GT(whole.images, 400U);
   EXPECT_EQ(whole.torn_images, 0U);
-  settings.make_slave = [](int, const SlaveConfiguration& configuration) {
-    return std::make_unique<TearingSlave>(configuration);
-  };
-  const SignalRecord torn = record_signal(two_words(), settings);
+  const SignalRecord torn =
+      record_signal(two_words(), settings, {.make_slave = [](int, const SlaveConfiguration& configuration) {
+                      return std::make_unique<TearingSlave>(configuration);
+                    }});
   EXPECT_GT(torn.torn_images, torn.images / 3);
 }
 
-std::string refusal_of(const NetworkDescription& network, const SignalSettings& settings) {
+std::string refusal_of(const NetworkDescription& network, const RunningStations& stations = {}) {
   try {
-    record_signal(network, settings);
+    record_signal(network, settings_at(50), stations);
   } catch (const kernel::Error& error) {
     EXPECT_EQ(error.exit_code(), 65);
     return error.what();
@@ -173,13 +186,13 @@ std::string refusal_of(const NetworkDescription& network, const SignalSettings& 
 TEST(SignalRunTest, ANetworkWithoutCopyOrWithoutCyclesIsRefused) {
   NetworkDescription without = paper_network();
   without.copy.clear();
-  EXPECT_NE(refusal_of(without, settings_at(50)).find("/copy"), std::string::npos);
-  SignalSettings other = settings_at(50);
-  other.make_slave = [](int, SlaveConfiguration configuration) {
+  EXPECT_NE(refusal_of(without).find("/copy"), std::string::npos);
+  const Ring::MakeSlave other = [](int, SlaveConfiguration configuration) {
     configuration.id_code ^= 1;  // not the station that the master expects
     return std::make_unique<Slave>(configuration);
   };
-  EXPECT_NE(refusal_of(paper_network(), other).find("no data cycles"), std::string::npos);
+  EXPECT_NE(refusal_of(paper_network(), {.make_slave = other}).find("no data are exchanged"),
+            std::string::npos);
 }
 
 }  // namespace

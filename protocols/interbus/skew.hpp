@@ -38,35 +38,9 @@ EdgeDelay edge_delay(LatchModel model, kernel::Duration cycle, kernel::Duration 
 double mean_phase_lag_degrees(LatchModel model, kernel::Duration cycle, kernel::Duration frame,
                               double frequency_hz);
 
-// A pulse of `high` leaves as a whole number of cycles: `cycles` of them, or one more with probability
-// `probability_of_one_more`. `cycles` may be 0: then the pulse is lost unless it has one more.
-struct PulseWidth {
-  std::int64_t cycles;
-  double probability_of_one_more;
-  kernel::Duration shorter;  // `cycles` cycles
-  kernel::Duration longer;
-  kernel::Duration mean;                // equals `high`: the copy is unbiased
-  kernel::Duration standard_deviation;  // over all pulses, lost ones count as 0
-  kernel::Duration mean_absolute_error;
-  double lost_probability;
-};
-
-PulseWidth pulse_width(kernel::Duration high, kernel::Duration cycle);
-
 // Mean delay of the rising edge of those pulses, not longer than a cycle, that are not lost.
 kernel::Duration mean_delay_of_survivors(LatchModel model, kernel::Duration cycle, kernel::Duration frame,
                                          kernel::Duration high);
-
-// Largest error of the duty cycle of a single period, as a part of the period.
-double max_duty_error(double frequency_hz, kernel::Duration cycle);
-
-// Highest frequency at which no pulse and no pause is ever lost: the shorter of both lasts one cycle. `duty`
-// lies between 0 and 1. Where the cycle jitters, `longest_cycle` is the longest; where `lost_cycles` follow a
-// rejected one, the distance of two samples is 1 + lost_cycles cycles.
-double highest_frequency_hz(kernel::Duration longest_cycle, double duty = 0.5, unsigned lost_cycles = 0);
-
-// The frequency that the output seems to have above the highest one.
-double aliased_frequency_hz(double frequency_hz, kernel::Duration cycle);
 
 // Rejected cycles, independent, each with probability `reject_probability` below 1 and costing `lost_cycles`
 // cycles until the next one that counts. An edge needs two good cycles, one to the master and one back.

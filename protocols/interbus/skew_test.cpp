@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/kernel/random.hpp"
+#include "harness/measure/cyclic_copy.hpp"
 
 namespace fieldproof::interbus {
 namespace {
@@ -14,6 +15,11 @@ namespace {
 using kernel::Duration;
 using kernel::kMicrosecond;
 using kernel::kNanosecond;
+using measure::aliased_frequency_hz;
+using measure::highest_frequency_hz;
+using measure::max_duty_error;
+using measure::pulse_width;
+using measure::PulseWidth;
 
 constexpr Duration kBestCycle = 814 * kMicrosecond;        // of the paper, as it prints it
 constexpr Duration kFormulaCycle = 814'800 * kNanosecond;  // F1, n = 4

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "protocols/interbus/live_network.hpp"
+#include "protocols/interbus/running_network.hpp"
 #include "protocols/interbus/timing.hpp"
 
 namespace fieldproof::interbus {
@@ -19,7 +19,7 @@ NetworkDescription example(const char* file) {
 
 // Stations that know nothing of the closed forms: when each one samples, and when it latches.
 void expect_instants(const NetworkDescription& network) {
-  LiveNetwork live(network);
+  RunningNetwork live(network);
   ASSERT_TRUE(live.bring_up());
   const Duration cycle = live.status().cycle_time;
   const auto stations = static_cast<int>(live.ring().size());
@@ -31,6 +31,7 @@ void expect_instants(const NetworkDescription& network) {
       return std::uint16_t{0};
     });
   }
+  live.keep_starts();
   live.segment().run_for(3 * cycle);
   const auto arrivals = arrival_delays(network);
   ASSERT_EQ(arrivals.size(), sampled.size());

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "harness/field/settings.hpp"
 #include "harness/kernel/check.hpp"
-#include "protocols/interbus/rule_settings.hpp"
+#include "protocols/interbus/rules.hpp"
 
 namespace fieldproof::interbus {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::int64_t kMostIdleBits = 65'536;
 
 bool TelegramSpeaker::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
   Rules rules;
-  read_rules(begin, rules);
+  field::take_settings(kRulesTable, begin.settings, rules);
   code_ = &line::shared_telegram_code(rules.telegram);
   heard_.rate = rules.bit_rate;
   bench_ = &bench;

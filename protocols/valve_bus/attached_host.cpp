@@ -23,24 +23,6 @@ std::uint8_t octet_of(std::uint64_t value, unsigned place) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::int64_t>> host_settings(const HostConfiguration& configuration) {
-  return {{"characters", static_cast<std::int64_t>(configuration.rules.characters)},
-          {"dip", configuration.dip},
-          {"receives_own_echo", configuration.receives_own_echo ? 1 : 0},
-          {"verifies_writes", configuration.verifies_writes ? 1 : 0},
-          {"answers_writes", configuration.rules.answers_writes ? 1 : 0}};
-}
-
-HostConfiguration host_configuration_of(const iut::CaseBegin& begin) {
-  HostConfiguration configuration;
-  configuration.rules.characters = character_profile_of(begin);
-  configuration.dip = static_cast<unsigned>(iut::setting(begin, "dip", 0));
-  configuration.receives_own_echo = iut::setting(begin, "receives_own_echo", 0) != 0;
-  configuration.verifies_writes = iut::setting(begin, "verifies_writes", 0) != 0;
-  configuration.rules.answers_writes = iut::setting(begin, "answers_writes", 0) != 0;
-  return configuration;
-}
-
 AttachedHost::AttachedHost(iut::Attachment attachment, const HostConfiguration& configuration,
                            const std::string& case_id, std::uint64_t seed)
     : rules_(configuration.rules),

@@ -11,6 +11,7 @@
 #include "harness/iut/served_station.hpp"
 #include "protocols/valve_bus/attached_line.hpp"
 #include "protocols/valve_bus/device.hpp"
+#include "protocols/valve_bus/host_settings.hpp"
 
 // A host module between the bench and an implementation outside, in both directions: AttachedHost is a host
 // of the bench that an iut::Device plays; ServedHost is an iut::Device that a host of ours plays.
@@ -33,10 +34,6 @@ inline constexpr iut::Item kRejected = 0x200;
 inline constexpr iut::Item kLate = 0x300;
 inline constexpr iut::Item kRetries = 0x400;
 
-// "characters", "dip", "receives_own_echo", "verifies_writes", "answers_writes".
-std::vector<std::pair<std::string, std::int64_t>> host_settings(const HostConfiguration& configuration);
-HostConfiguration host_configuration_of(const iut::CaseBegin& begin);
-
 class AttachedHost final : public HostDevice, private iut::Bench {
  public:
   // Throws iut::Misbehaviour when the implementation refuses the case.
@@ -56,12 +53,14 @@ class AttachedHost final : public HostDevice, private iut::Bench {
   void on_time(kernel::Time now) override { attached_.on_time(now); }
   kernel::Time next_time() const override { return attached_.next_time(); }
   void end() override { attached_.end(); }
+  iut::Capabilities capabilities() const override { return attached_.capabilities(); }
 
  private:
   void transmit(const iut::Transmission& transmission) override { line_.transmit(transmission); }
   void transmit(unsigned port, line::Waveform& wave) override { line_.transmit(port, wave); }
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(iut::Item item, kernel::Time when) override;
+  void set_uncertainty(iut::TimingUncertainty uncertainty) override { line_.set_uncertainty(uncertainty); }
   void tell_response(std::uint64_t value, kernel::Time when);
   void tell_error(std::uint64_t value, kernel::Time when);
 
@@ -101,6 +100,16 @@ class ServedHost final : public iut::ServedStation<HostDevice>, private HostAppl
   std::uint64_t fifo_room_ = 0;
   std::uint64_t has_overflowed_ = 0;
   std::array<std::array<std::uint64_t, 256>, 4> counters_{};
+};
+
+// The role as benches and attachments know it.
+struct HostRole {
+  using Device = HostDevice;
+  using Configuration = HostConfiguration;
+  using Attached = AttachedHost;
+  using Served = ServedHost;
+  static constexpr const char* protocol = "valve_bus";
+  static constexpr const char* role = "host";
 };
 
 }  // namespace fieldproof::valve_bus

@@ -11,6 +11,7 @@ namespace fieldproof::valve_bus {
 namespace {
 
 constexpr std::size_t kMostCharacters = 4096;
+constexpr std::size_t kKnownInstants = 256;
 
 }  // namespace
 
@@ -33,6 +34,27 @@ void AttachedLine::begin(const Rules& rules, kernel::Time now) {
   transmitter_.begin_at(now);
 }
 
+// A UART sends whole characters of its format at its bit rate.
+void AttachedLine::expect_exact(const line::Waveform& reception) const {
+  if (reception.rate != rules_.bit_rate)
+    throw iut::CannotBeDone("serial: characters at another bit rate cannot be driven");
+  line::Levels levels;
+  if (characters_.size() == 1) {
+    const auto octet = static_cast<std::uint8_t>(characters_.front().data);
+    codec_.append(levels, std::span(&octet, 1));
+  }
+  if (levels.empty() || levels != reception.levels)
+    throw iut::CannotBeDone("serial: levels that are no right character cannot be driven");
+}
+
+iut::TimingUncertainty AttachedLine::uncertainty_of(kernel::Time driver_on) const {
+  // Instants are rounded where a transmission follows another without a gap.
+  const auto found = std::ranges::find_if(known_, [&](const Known& one) {
+    return std::chrono::abs(one.driver_on - driver_on) <= kernel::kNanosecond;
+  });
+  return found == known_.end() ? iut::TimingUncertainty{} : found->uncertainty;
+}
+
 void AttachedLine::receive(segment::PortIndex port, const line::Waveform& reception) {
   if (attached_.hears_levels()) {
     attached_.call(reception.end(), [&](iut::Device& device) { device.receive(port, reception); });
@@ -43,6 +65,7 @@ void AttachedLine::receive(segment::PortIndex port, const line::Waveform& recept
     characters_.push_back(
         {heard.start, heard.busy_until, heard.data, heard.is_parity_wrong, heard.is_stop_missing});
   });
+  if (attached_.capabilities().is_wall_clock) expect_exact(reception);
   // What is no character an asynchronous receiver does not hear.
   for (std::span<const iut::Character> rest(characters_); !rest.empty();) {
     const auto part = rest.first(std::min(rest.size(), kMostCharacters));
@@ -71,6 +94,10 @@ void AttachedLine::transmit(const iut::Transmission& transmission) {
   attached_.expect_drive(transmission.driver_on, transmission.driver_off, describe);
   if (transmission.start + length > transmission.driver_off + kernel::kNanosecond) {
     iut::refuse_impossible(describe());
+  }
+  if (uncertainty_ != iut::TimingUncertainty{}) {
+    known_.push_back({transmission.driver_on, uncertainty_});
+    if (known_.size() > kKnownInstants) known_.pop_front();
   }
   transmitter_.drive(*line_, transmission);
 }

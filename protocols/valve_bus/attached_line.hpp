@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <vector>
 
 #include "harness/iut/attached_case.hpp"
@@ -24,7 +25,18 @@ class AttachedLine {
   void transmit(const iut::Transmission& transmission);
   void transmit(unsigned port, line::Waveform& wave);
 
+  // Of all that it does from now on; kept with what it drives.
+  void set_uncertainty(iut::TimingUncertainty uncertainty) { uncertainty_ = uncertainty; }
+  iut::TimingUncertainty uncertainty() const { return uncertainty_; }
+  iut::TimingUncertainty uncertainty_of(kernel::Time driver_on) const;
+
  private:
+  struct Known {
+    kernel::Time driver_on;
+    iut::TimingUncertainty uncertainty;
+  };
+
+  void expect_exact(const line::Waveform& reception) const;
   void expect_port(unsigned port) const;
 
   iut::AttachedCase& attached_;
@@ -33,6 +45,8 @@ class AttachedLine {
   Transmitter transmitter_;
   segment::Port* line_ = nullptr;
   std::vector<iut::Character> characters_;
+  iut::TimingUncertainty uncertainty_;
+  std::deque<Known> known_;  // the last ones
 };
 
 // As a setting tells it: 0 is P0, 1 is P1, 2 is P2.

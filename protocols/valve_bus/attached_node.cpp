@@ -6,34 +6,6 @@
 
 namespace fieldproof::valve_bus {
 
-std::vector<std::pair<std::string, std::int64_t>> node_settings(const NodeConfiguration& configuration) {
-  const Rules& rules = configuration.rules;
-  return {{"bit_rate", rules.bit_rate},
-          {"characters", static_cast<std::int64_t>(rules.characters)},
-          {"address_tens", configuration.tens},
-          {"address_units", configuration.units},
-          {"boards", configuration.boards},
-          {"answers_writes", rules.answers_writes ? 1 : 0},
-          {"loss_limit_ms", rules.loss_limit / kernel::kMillisecond}};
-}
-
-NodeConfiguration node_configuration_of(const iut::CaseBegin& begin) {
-  NodeConfiguration configuration;
-  Rules& rules = configuration.rules;
-  const auto number = [&](std::string_view name, unsigned absent) {
-    return static_cast<unsigned>(iut::setting(begin, name, absent));
-  };
-  rules.bit_rate = std::clamp<std::int64_t>(iut::setting(begin, "bit_rate", rules.bit_rate), 1, 100'000'000);
-  rules.characters = character_profile_of(begin);
-  configuration.tens = number("address_tens", configuration.tens);
-  configuration.units = number("address_units", configuration.units);
-  configuration.boards = number("boards", configuration.boards);
-  rules.answers_writes = iut::setting(begin, "answers_writes", 0) != 0;
-  rules.loss_limit =
-      std::clamp<std::int64_t>(iut::setting(begin, "loss_limit_ms", 0), 0, 3'600'000) * kernel::kMillisecond;
-  return configuration;
-}
-
 AttachedNode::AttachedNode(iut::Attachment attachment, const NodeConfiguration& configuration,
                            const std::string& case_id, std::uint64_t seed)
     : rules_(configuration.rules), attached_(std::move(attachment)), line_(attached_, rules_) {

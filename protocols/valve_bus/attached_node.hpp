@@ -10,6 +10,7 @@
 #include "harness/iut/served_station.hpp"
 #include "protocols/valve_bus/attached_line.hpp"
 #include "protocols/valve_bus/device.hpp"
+#include "protocols/valve_bus/node_settings.hpp"
 
 // A local node between the bench and an implementation outside, in both directions: AttachedNode is a node of
 // the bench that an iut::Device plays; ServedNode is an iut::Device that a node of ours plays.
@@ -20,12 +21,6 @@ namespace fieldproof::valve_bus {
 
 inline constexpr iut::Item kValves = 0;
 inline constexpr iut::Item kLimitSwitches = 1;
-
-// "bit_rate", "characters" (0: P0, 1: P1, 2: P2), "address_tens", "address_units", "boards",
-// "answers_writes", "loss_limit_ms".
-std::vector<std::pair<std::string, std::int64_t>> node_settings(const NodeConfiguration& configuration);
-// The other way round; what is not there is as the configuration has it anyway.
-NodeConfiguration node_configuration_of(const iut::CaseBegin& begin);
 
 class AttachedNode final : public NodeDevice, private iut::Bench {
  public:
@@ -41,12 +36,18 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   void on_time(kernel::Time now) override { attached_.on_time(now); }
   kernel::Time next_time() const override { return attached_.next_time(); }
   void end() override { attached_.end(); }
+  iut::Capabilities capabilities() const override { return attached_.capabilities(); }
+  iut::TimingUncertainty uncertainty_of_answer(kernel::Time driver_on) const override {
+    return line_.uncertainty_of(driver_on);
+  }
+  iut::TimingUncertainty uncertainty_of_valves() const override { return line_.uncertainty(); }
 
  private:
   void transmit(const iut::Transmission& transmission) override { line_.transmit(transmission); }
   void transmit(unsigned port, line::Waveform& wave) override { line_.transmit(port, wave); }
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(iut::Item item, kernel::Time when) override;
+  void set_uncertainty(iut::TimingUncertainty uncertainty) override { line_.set_uncertainty(uncertainty); }
 
   Rules rules_;
   iut::AttachedCase attached_;
@@ -77,6 +78,16 @@ class ServedNode final : public iut::ServedStation<NodeDevice>, private NodeBoar
   }
 
   Make make_;
+};
+
+// The role as benches and attachments know it.
+struct NodeRole {
+  using Device = NodeDevice;
+  using Configuration = NodeConfiguration;
+  using Attached = AttachedNode;
+  using Served = ServedNode;
+  static constexpr const char* protocol = "valve_bus";
+  static constexpr const char* role = "node";
 };
 
 }  // namespace fieldproof::valve_bus

@@ -80,14 +80,14 @@ TEST_F(AttachedNodeTest, SettingsComeBack) {
       configuration_.rules.characters = CharacterProfile::eight_bits;
       configuration_.rules.answers_writes = true;
       configuration_.rules.loss_limit = 250 * kMillisecond;
-      configuration_.tens = 9;
-      configuration_.units = 8;
+      configuration_.address_tens = 9;
+      configuration_.address_units = 8;
       configuration_.boards = 1;
     }
     const NodeConfiguration back = node_configuration_of({"x", 1, node_settings(configuration_)});
     EXPECT_EQ(back.rules, configuration_.rules);
-    EXPECT_EQ(back.tens, configuration_.tens);
-    EXPECT_EQ(back.units, configuration_.units);
+    EXPECT_EQ(back.address_tens, configuration_.address_tens);
+    EXPECT_EQ(back.address_units, configuration_.address_units);
     EXPECT_EQ(back.boards, configuration_.boards);
   }
 }
@@ -292,7 +292,7 @@ class KeepingBench final : public iut::Bench {
 TEST(ServedNodeTest, PlaysTheNodeOfTheSettings) {
   ServedNode served([](const NodeConfiguration& wanted) { return std::make_unique<Node>(wanted); });
   NodeConfiguration configuration;
-  configuration.units = 5;
+  configuration.address_units = 5;
   KeepingBench bench;
   for (const kernel::Time start : {kNow, kStart}) {  // nothing of the case before counts
     ASSERT_TRUE(served.begin({"valve_bus/node/x", 1, node_settings(configuration)}, bench));

@@ -1,4 +1,5 @@
 #include "protocols/valve_bus/codec.hpp"
+#include "harness/field/facts.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -60,14 +61,14 @@ TEST(ValveBusRules, HaveTheTimesOfEachCharacterFormat) {
 TEST(ValveBusRules, NameTheSourceOfEachNumber) {
   Rules changed;
   changed.read_attempts = 4;
-  for (const Fact& fact : facts(changed)) {
-    EXPECT_FALSE(fact.source.empty()) << fact.rule;
-    if (fact.rule == "last_address") {
+  for (const field::Fact& fact : field::facts_of(kRulesTable, changed)) {
+    EXPECT_FALSE(fact.source.empty()) << fact.name;
+    if (fact.name == "last_address") {
       EXPECT_EQ(fact.standing, judge::Standing::seed);
     }
-    if (fact.rule == "read_attempts") {
+    if (fact.name == "read_attempts") {
       EXPECT_EQ(fact.value, "4");
-      EXPECT_EQ(fact.source, "set for this bus or mutant; not from a source");
+      EXPECT_EQ(fact.source, "set for this run; not from a source");
     }
   }
 }

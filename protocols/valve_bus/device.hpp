@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "harness/iut/device.hpp"
 #include "harness/segment/station.hpp"
 #include "protocols/valve_bus/rules.hpp"
 
@@ -27,25 +28,9 @@ class NodeBoards {
 struct NodeConfiguration {
   Rules rules;
   // The two address switches: decimal digits as they are set, 0..15 each (a switch can be of another kind).
-  unsigned tens = 0;
-  unsigned units = 1;
+  unsigned address_tens = 0;
+  unsigned address_units = 1;
   unsigned boards = 2;  // drive boards, 1 or 2
-};
-
-// What a bench can see of a node and do to it. In virtual time that is everything; of one behind a real line
-// it may be less.
-struct NodeCapabilities {
-  bool boards = true;           // its valves can be seen, its limit switches set
-  bool moving_switches = true;  // and moved while it works
-  bool driver = true;           // when its driver comes on and goes off can be seen
-  bool distance = true;         // it can be put farther away
-};
-
-// How far what was seen may lie from what was: its instant is at least `earlier` before and at most `later`
-// behind the one that was told.
-struct TimingUncertainty {
-  kernel::Duration earlier{};
-  kernel::Duration later{};
 };
 
 class NodeDevice : public segment::Station {
@@ -55,10 +40,10 @@ class NodeDevice : public segment::Station {
   // the valves are told off by who switches it.
   virtual void set_power(bool is_on, kernel::Time now) = 0;
 
-  virtual NodeCapabilities reach() const { return {}; }
+  virtual iut::Capabilities capabilities() const { return {}; }
   // Of what it drove when its driver came on at this instant, and of the last moves of its valves.
-  virtual TimingUncertainty doubt_of_answer(kernel::Time) const { return {}; }
-  virtual TimingUncertainty doubt_of_valves() const { return {}; }
+  virtual iut::TimingUncertainty uncertainty_of_answer(kernel::Time) const { return {}; }
+  virtual iut::TimingUncertainty uncertainty_of_valves() const { return {}; }
 };
 
 // ---- the host module and its PC ----
@@ -125,6 +110,7 @@ class HostApplication {
 
 class HostDevice : public segment::Station {
  public:
+  virtual iut::Capabilities capabilities() const { return {}; }
   virtual void wire(segment::Port& line, HostApplication& application) = 0;
   // The supply comes and goes; a host begins without it. Power-up is the only reset.
   virtual void set_power(bool is_on, kernel::Time now) = 0;

@@ -16,7 +16,7 @@ constexpr std::uint16_t kFirstBoard = 0x00FF;
 
 Node::Node(const NodeConfiguration& configuration)
     : configuration_(configuration),
-      address_(Node::address_of(configuration.tens, configuration.units)),
+      address_(Node::address_of(configuration.address_tens, configuration.address_units)),
       codec_(configuration.rules),
       collector_(configuration.rules) {}
 
@@ -31,7 +31,7 @@ void Node::set_power(bool is_on, kernel::Time now) {
   valves_ = 0;
   state_ = is_on ? NodeState::waiting : NodeState::off;
   if (!is_on) return;
-  address_ = address_of(configuration_.tens, configuration_.units);
+  address_ = address_of(configuration_.address_tens, configuration_.address_units);
   last_command_ = now;
   on_power_up(now);
 }

@@ -157,7 +157,7 @@ TEST_F(NodeWithoutHost, SwitchesItsValvesOffWhenTheOptionSaysSo) {
 
 class NodeOfOneBoard : public NodeTest {
  protected:
-  NodeOfOneBoard() : NodeTest({.rules = {}, .tens = 4, .units = 2, .boards = 1}) {}
+  NodeOfOneBoard() : NodeTest({.rules = {}, .address_tens = 4, .address_units = 2, .boards = 1}) {}
 };
 
 TEST_F(NodeOfOneBoard, LeavesTheSecondOctetAlone) {

@@ -2,21 +2,23 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "harness/judge/verdict.hpp"
 #include "harness/kernel/time.hpp"
 #include "harness/line/character.hpp"
 
 // Every number and every genuine option of the RS-485 bus for pneumatic valves, one member each, with source
-// and standing in `facts`. A station takes its numbers from here and from nowhere else, so a mutant may be
-// the reference with one number changed.
+// and standing in its row of `kRulesTable`. A station takes its numbers from here and from nowhere else, so a
+// mutant may be the reference with one number changed.
 //
 // The paper gives the frames, the addresses, the block check and the bit rate; it gives no character format,
 // no timing and no delimiter of frames. What was added to make a bus of it stands in this one table and is
 // marked as the project's own choice: nothing here is a standard.
+namespace fieldproof::field {
+template <typename T>
+struct Table;
+}
+
 namespace fieldproof::valve_bus {
 
 enum class CharacterProfile : std::uint8_t {
@@ -101,15 +103,7 @@ kernel::Duration response_time_out(const Rules& rules);
 // The bit rates of the DIP switches, position by position: what a timer at 12 MHz makes of its reload values.
 std::span<const std::int64_t> dip_bit_rates();
 
-// One line of the table of sources that README and reports print.
-struct Fact {
-  std::string_view rule;    // the member of Rules
-  std::string value;        // as a person reads it, with unit
-  std::string_view source;  // in own words
-  judge::Standing standing;
-};
-
-// Every member of Rules in the order above. A value that differs from the reference's has the standing `own`.
-std::vector<Fact> facts(const Rules& rules);
+// Every member of Rules with its unit, range, source and standing.
+extern const field::Table<Rules> kRulesTable;
 
 }  // namespace fieldproof::valve_bus

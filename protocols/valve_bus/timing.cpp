@@ -28,6 +28,11 @@ PollTime reference_poll_time(const Rules& rules, kernel::Duration distance) {
   return time;
 }
 
+kernel::Duration reference_write_time(const Rules& rules) {
+  return half_characters(rules, 2 * kCommandOctets) + delimiter(rules) + rules.write_distance +
+         bits(rules, kDriverOnBits);
+}
+
 kernel::Duration distance_of(const Rules& rules, unsigned node, unsigned nodes, double length_m) {
   const unsigned first = rules.unit_loads - 1;   // beside the host
   const unsigned others = rules.unit_loads - 2;  // between two repeaters

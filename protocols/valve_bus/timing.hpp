@@ -25,6 +25,9 @@ PollTime least_poll_time(const Rules& rules, kernel::Duration turnaround_time,
 // one character later, and its driver comes on in front of the start bit.
 PollTime reference_poll_time(const Rules& rules, kernel::Duration distance = {});
 
+// From the first start bit of a write to that of what follows it.
+kernel::Duration reference_write_time(const Rules& rules);
+
 // Where the node number `node` (from 0) of `nodes` lies on a cable of so many metres, spread evenly, as the
 // time from the host to it. Behind each 30 nodes (31 on the segment of the host) there is a repeater: 32 unit
 // loads are 31 nodes and the host, and two of them are repeaters in the segments behind.

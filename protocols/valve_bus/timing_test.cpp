@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "harness/kernel/error.hpp"
-#include "protocols/valve_bus/poll_run.hpp"
+#include "harness/network/quiet_run.hpp"
+#include "protocols/valve_bus/running_network.hpp"
 
 namespace fieldproof::valve_bus {
 namespace {
@@ -33,17 +34,17 @@ class PollCycle : public testing::TestWithParam<std::pair<unsigned, unsigned>> {
 
 TEST_P(PollCycle, IsWhatTheClosedFormSays) {
   const auto [dip, nodes] = GetParam();
-  Rules rules;
-  const PollRun run =
-      run_polls(rules, {.dip = dip, .nodes = nodes, .length_m = 1000, .cycles = 4, .seed = 7});
-  rules.bit_rate = dip_bit_rates()[dip];
+  NetworkDescription description = NetworkDescription::even(dip, nodes, 1000);
+  description.writes = false;
+  RunningNetwork network(description, 7);
+  const network::QuietRun run = network::run_quietly(network, 4, 7);
   kernel::Duration sum{};
   for (unsigned n = 0; n < nodes; ++n) {
-    sum += reference_poll_time(rules, distance_of(rules, n, nodes, 1000)).total();
+    sum += reference_poll_time(description.rules, distance_of(description.rules, n, nodes, 1000)).total();
   }
   ASSERT_EQ(run.cycles.size(), 4U);
-  EXPECT_EQ(run.errors, 0U);
-  EXPECT_EQ(run.wrong_responses, 0U);
+  EXPECT_EQ(run.counts.detected + run.counts.retried, 0U);
+  EXPECT_EQ(run.counts.accepted_wrong() + run.counts.missed_outputs, 0U);
   for (const kernel::Duration cycle : run.cycles) {
     EXPECT_LE(std::chrono::abs(cycle - sum), kernel::kNanosecond * nodes)
         << kernel::describe(cycle) << " instead of " << kernel::describe(sum);
@@ -55,10 +56,32 @@ INSTANTIATE_TEST_SUITE_P(OfBuses, PollCycle,
                                          std::pair{1U, 31U}, std::pair{2U, 5U}, std::pair{4U, 3U},
                                          std::pair{7U, 2U}));
 
-TEST(PollRun, RefusesABusThatIsNone) {
-  EXPECT_THROW(run_polls({}, {.nodes = 0}), kernel::Error);
-  EXPECT_THROW(run_polls({}, {.nodes = 100}), kernel::Error);
-  EXPECT_THROW(run_polls({}, {.dip = 8}), kernel::Error);
+// Writes and polls in turn, below the time after which a host refreshes.
+TEST(ValveBusTiming, ACycleOfWritesAndPollsIsTheSumOfBoth) {
+  for (const unsigned nodes : {1U, 2U, 8U, 20U}) {
+    RunningNetwork network(NetworkDescription::even(0, nodes, 1000), 7);
+    const network::CycleKind kind = network.cycles().front();
+    ASSERT_FALSE(kind.is_bound) << nodes;
+    const network::QuietRun run = network::run_quietly(network, 10, 7);
+    ASSERT_EQ(run.cycles.size(), 10U);
+    EXPECT_EQ(run.counts.detected + run.counts.accepted_wrong() + run.counts.missed_outputs, 0U) << nodes;
+    if (nodes == 1) continue;  // its PC waits for the valves before it writes the next word
+    for (const kernel::Duration cycle : run.cycles) {
+      EXPECT_LE(std::chrono::abs(cycle - kind.theory), kind.jitter)
+          << nodes << " nodes: " << kernel::describe(cycle) << " instead of "
+          << kernel::describe(kind.theory);
+    }
+  }
+}
+
+TEST(ValveBusTiming, WithRefreshesTheFormIsABound) {
+  RunningNetwork network(NetworkDescription::even(0, 99, 1000), 7);
+  const network::CycleKind kind = network.cycles().front();
+  EXPECT_TRUE(kind.is_bound);
+  const network::QuietRun run = network::run_quietly(network, 5, 7);
+  ASSERT_EQ(run.cycles.size(), 5U);
+  EXPECT_EQ(run.counts.detected + run.counts.accepted_wrong() + run.counts.missed_outputs, 0U);
+  for (const kernel::Duration cycle : run.cycles) EXPECT_LE(cycle, kind.theory);
 }
 
 }  // namespace

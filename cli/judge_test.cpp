@@ -1,0 +1,60 @@
+// Subject: cli/judge.cpp
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "cli/probe/program_fixture.hpp"
+
+// A stored run is judged again without the implementation, in every role and by every kind of attachment.
+namespace fieldproof::cli {
+namespace {
+
+class JudgeTest : public ProgramFixture {
+ protected:
+  // Runs a chapter of cases with an implementation, keeps all recordings, and judges them again.
+  void expect_same_verdicts(const std::string& selector, const std::string& iut, int exit_code) {
+    const Called run = call({"run", selector, "--iut", iut, "--volume", "quick", "--quiet", "--record", "all",
+                             "--seed", "3", "--out", "run"});
+    EXPECT_EQ(run.exit_code, exit_code) << iut << run.out << run.err;
+    const Called again = call({"judge", "run"});
+    EXPECT_EQ(again.exit_code, exit_code) << iut << again.out << again.err;
+    EXPECT_HOLDS(again.out, ", 0 of them otherwise than before");
+    EXPECT_EQ(again.out.find("\n0 of"), std::string::npos) << again.out;
+    std::filesystem::remove_all(folder_ / "run");
+  }
+};
+
+TEST_F(JudgeTest, EveryRoleOfThisProgram) {
+  expect_same_verdicts("interbus/slave/frame_check/**", "slave=ref", 0);
+  expect_same_verdicts("interbus/slave/frame_check/**", "mutant:latches_in_spite_of_own_error", 1);
+  expect_same_verdicts("interbus/master/rejection/**", "master=ref", 0);
+  expect_same_verdicts("interbus/network/**", "slave@2=ref", 0);
+  expect_same_verdicts("valve_bus/node/write/**", "node=ref", 0);
+  expect_same_verdicts("valve_bus/host/retry/**", "host=ref", 0);
+  expect_same_verdicts("fieldbus_dll/isa_dle/data/**", "isa_dle=ref", 0);
+  expect_same_verdicts("fieldbus_dll/isa_las/schedule/**", "isa_las=ref", 0);
+  expect_same_verdicts("fieldbus_dll/ff_device/token/**", "ff_device=ref", 0);
+  expect_same_verdicts("fieldbus_dll/ff_las/schedule/**", "ff_las=ref", 0);
+}
+
+TEST_F(JudgeTest, ImplementationsOutside) {
+  const std::string station = "exec:'" FIELDPROOF_EXE "' station ";
+  expect_same_verdicts("valve_bus/node/read/**", "plugin:" VALVE_NODE_PLUGIN, 0);
+  expect_same_verdicts("valve_bus/node/read/**", "exec:" VALVE_NODE_PROCESS, 0);
+  expect_same_verdicts("valve_bus/node/read/**", "exec:" VALVE_NODE_PROCESS " turns_round_late", 1);
+  expect_same_verdicts("interbus/slave/data_cycle/**", station + "interbus/slave", 0);
+  // One that ends at once.
+  expect_same_verdicts("valve_bus/node/read/**", "node=" + station + "valve_bus/node mutant:answers_twice",
+                       1);
+}
+
+TEST_F(JudgeTest, WithoutARecordingItSaysWhy) {
+  ASSERT_EQ(call({"run", "valve_bus/node/read/is_answered", "--iut", "mutant:answers_twice", "--record",
+                  "none", "--quiet", "--out", "run"})
+                .exit_code,
+            1);
+  EXPECT_HOLDS(call({"judge", "run"}).err, "no recording of the implementation is stored");
+}
+
+}  // namespace
+}  // namespace fieldproof::cli

@@ -1,0 +1,90 @@
+// Subject: `emc` and `measure` for every protocol, and with implementations outside in its networks.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/probe/program_fixture.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Networks : public ProgramFixture {
+ protected:
+  static std::string example(const char* name) { return (kSourceFolder / "examples" / name).string(); }
+  Called emc(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "emc");
+    arguments.insert(arguments.end(), {"--levels", "4", "--repetition", "5kHz", "--polarity", "+", "--quiet",
+                                       "--jobs", "1", "--json", "emc.json"});
+    return call(std::move(arguments));
+  }
+  nlohmann::json only_test() const { return json("emc.json").at("tests").at(0); }
+};
+
+TEST_F(Networks, OfEveryProtocolExchangeDataUnderBursts) {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"interbus", "--duration", "1s"},
+           {"valve_bus", "--duration", "1s"},
+           {"fieldbus_dll", "--duration", "10s"},
+           {"fieldbus_dll", "--iut", "isa_dle@1=ref", "--duration", "10s"}}) {
+    const Called called = emc(arguments);
+    EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
+    const nlohmann::json test = only_test();
+    EXPECT_GT(test.at("ledger").at("sent"), 50) << arguments.front();
+    EXPECT_GT(test.at("ledger").at("corrupted"), 0) << arguments.front();
+    EXPECT_EQ(test.at("ledger").at("accepted_wrong_inputs"), 0);
+    int cycles = 0;
+    for (const char* phase : {"quiet", "burst", "recovery"})
+      cycles += test.at("cycles").at(0).at(phase).at("count").get<int>();
+    EXPECT_GT(cycles, 10) << arguments.front();
+    expect_valid({"emc.json"}, "emc");
+  }
+}
+
+TEST_F(Networks, TakeAnImplementationOutsideAtAnyPlace) {
+  const Called node =
+      emc({"valve_bus", "--network", example("valve_bus.json"), "--duration", "300ms", "--iut",
+           "node@3=exec:" VALVE_NODE_PROCESS, "--iut", "node@5=mutant:ignores_writes"});
+  EXPECT_EQ(node.exit_code, 64) << "no such mutant: " << node.err;
+  const Called alone =
+      emc({"valve_bus", "--network", example("valve_bus.json"), "--duration", "300ms", "--iut",
+           "node@3=exec:" VALVE_NODE_PROCESS, "--iut", "node@5=exec:" VALVE_NODE_PROCESS});
+  EXPECT_EQ(alone.exit_code, 0) << alone.out << alone.err;
+  EXPECT_GT(only_test().at("ledger").at("sent"), 100);
+  EXPECT_EQ(only_test().at("ledger").at("accepted_wrong_outputs"), 0);
+  const Called measured = call({"measure", "valve_bus", "--network", example("valve_bus.json"), "--signal",
+                                "20Hz", "--duration", "5s", "--iut", "node@1=plugin:" VALVE_NODE_PLUGIN});
+  EXPECT_NE(measured.exit_code, 64) << measured.err;
+  EXPECT_HOLDS(measured.out, "limit switches of 1 to valves of 42");
+}
+
+TEST_F(Networks, OneThatDiesIsCriterionDWithItsReason) {
+  const Called called = emc({"valve_bus", "--duration", "300ms", "--iut", "node@2=exec:/bin/false"});
+  EXPECT_NE(called.exit_code, 0);
+}
+
+TEST_F(Networks, RefuseWhatHasNoPlaceInThem) {
+  const auto refusal = [&](std::vector<std::string> arguments) {
+    const Called called = emc(std::move(arguments));
+    EXPECT_EQ(called.exit_code, 64) << called.out << called.err;
+    return called.err;
+  };
+  EXPECT_HOLDS(refusal({"valve_bus", "--iut", "node@9=exec:true"}), "node@1 to node@8");
+  EXPECT_HOLDS(refusal({"valve_bus", "--iut", "slave=exec:true"}), "has no place");
+  EXPECT_HOLDS(refusal({"modbus"}), "'interbus', 'valve_bus', 'fieldbus_dll'");
+  EXPECT_HOLDS(refusal({"valve_bus", "--latch", "M3"}), "INTERBUS");
+}
+
+TEST_F(Networks, NameWhatIsNotExposed) {
+  write("long.json", R"({"name": "long", "nodes": 40, "cable": "2 km"})");
+  const Called called = emc({"valve_bus", "--network", "long.json", "--duration", "200ms"});
+  EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "32 of 41 receivers are exposed");
+  EXPECT_HOLDS(called.out, "not node@32/in: it lies after a repeater");
+}
+
+}  // namespace
+}  // namespace fieldproof::cli

@@ -1,0 +1,75 @@
+// What the program knows of a protocol: one row. Every verb asks these rows, so it works for every protocol
+// and role, or says in one sentence why it does not. A program of one's own gives rows of its own to
+// run_program.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/disturbances.hpp"
+#include "conformance/case_devices.hpp"
+#include "conformance/test_case.hpp"
+#include "harness/iut/plugin.hpp"
+#include "harness/iut/uart_line.hpp"
+#include "harness/judge/pics.hpp"
+
+namespace fieldproof::cli {
+
+// A role that an implementation outside can take, and the built-in station of it that can be served
+// (`fieldproof station`).
+struct Role {
+  std::string_view protocol;
+  std::string_view name;
+  iut::UnitOffer told;
+  // The station of `ref` or `mutant:NAME` as an implementation. Throws kernel::Error(usage) for a mutant
+  // that is not there.
+  std::unique_ptr<iut::Device> (*serve)(const std::string& uri);
+  // An implementation outside as one of levels; the begin is that of its case.
+  std::unique_ptr<iut::Device> (*in_levels)(iut::Attachment, const iut::CaseBegin&);
+  // The same station, but it receives and sends telegrams; null where the role has none.
+  std::unique_ptr<iut::Device> (*in_telegrams)(std::unique_ptr<iut::Device>) = nullptr;
+  // How its characters go over a serial line; null where it cannot be judged there, for this reason.
+  iut::UartLine (*uart)(const iut::CaseBegin&, const std::function<std::uint64_t(iut::Item)>&) = nullptr;
+  std::string_view why_not_serial = "its line carries no characters of a UART";
+  // The items that a station of the role reads.
+  std::span<const iut::Item> inputs{};
+  // What a station without an upper channel is told, from the answers of a PICS; null: it cannot play alone.
+  iut::CaseBegin (*alone)(const judge::Pics&) = nullptr;
+
+  std::string path() const { return std::string(protocol) + "/" + std::string(name); }
+};
+
+// What `plan` prints of a network file, and whether its bound is proven.
+struct Planned {
+  std::string text;
+  bool is_proven = false;
+};
+
+struct ProtocolEntry {
+  std::string_view name;
+  std::span<const Role> roles{};
+  // Disturbed by nothing but these; for implementations outside there is `attach`.
+  std::unique_ptr<conformance::Suite> (*suite)(const conformance::Attach& attach,
+                                               const Disturbances& disturbances) = nullptr;
+  // Finds what keeps the bound of a network file; null: there is nothing to plan.
+  Planned (*plan)(const std::string& file, std::uint64_t seed) = nullptr;
+};
+
+// The rows of this process. They must outlive it; set once, by run_program or by a test.
+void use_protocols(std::span<const ProtocolEntry> protocols);
+std::span<const ProtocolEntry> protocols();
+
+using Suites = std::vector<std::unique_ptr<conformance::Suite>>;
+Suites make_suites(const Disturbances& disturbances);
+
+std::vector<const Role*> roles();
+// Of "PROTOCOL/ROLE"; null for a path that is none.
+const Role* find_role(const std::string& path);
+// Throws kernel::Error(usage) with the known ones for a path that is none.
+const Role& role_named(const std::string& path);
+
+}  // namespace fieldproof::cli

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "harness/judge/pics.hpp"
+#include "protocols/interbus/device.hpp"
+
+// What is declared of a slave and of a master in a PICS.
+namespace fieldproof::conformance {
+
+enum class OutputsWhileReset : std::uint8_t { held, cleared };
+
+struct SlaveDeclaration {
+  interbus::SlaveConfiguration configuration{};
+  bool inputs = false;
+  bool outputs = false;
+  bool remote_interface = true;
+  bool reconfiguration_button = true;
+  bool peripheral_fault_input = true;
+  bool any_length_code = true;
+  OutputsWhileReset outputs_while_outgoing_bus_is_reset = OutputsWhileReset::held;
+};
+
+// What a PICS of a slave may answer.
+std::vector<judge::PicsItem> slave_pics_items();
+// What a station of the bench declares about itself: an answer to each of these items.
+judge::Pics declared_slave(const interbus::SlaveConfiguration& configuration);
+
+enum class BelowMinimum : std::uint8_t { clipped, refused };
+enum class OutputsAfterBusStop : std::uint8_t { zero, held };
+enum class LineAfterStop : std::uint8_t { silent, status_telegrams };
+
+struct MasterDeclaration {
+  BelowMinimum request_below_minimum{};
+  OutputsAfterBusStop outputs_after_bus_stop{};
+  LineAfterStop line_after_stop{};
+};
+
+std::vector<judge::PicsItem> master_pics_items();
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,48 @@
+#include "conformance/sequence_octets.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "conformance/fieldbus_dll/suite.hpp"
+#include "conformance/interbus/suite.hpp"
+#include "conformance/sequence_draw.hpp"
+#include "conformance/valve_bus/suite.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+std::vector<SequenceRole> all_roles() {
+  std::vector<SequenceRole> roles;
+  for (const auto& suite : {valve_bus_suite(), interbus_suite(), fieldbus_dll_suite()}) {
+    for (const SequenceRole& role : suite->sequence_roles()) roles.push_back(role);
+  }
+  return roles;
+}
+
+// What is drawn can be said in octets, so a search by octets reaches all that a search by drawing does.
+TEST(SequenceOctets, EachDrawnSequenceIsItsOctets) {
+  for (const SequenceRole& role : all_roles()) {
+    const SequenceSource source(role.vocabulary, 7);
+    for (std::uint64_t n = 0; n < 300; ++n) {
+      const Sequence drawn = source.draw(n);
+      const auto octets = octets_of_sequence(drawn, role.vocabulary);
+      ASSERT_EQ(sequence_of_octets(octets, role.vocabulary), drawn) << role.test_case.id << " " << n;
+    }
+  }
+}
+
+// A number outside of its limits would be refused by the reader of case files.
+RC_GTEST_PROP(SequenceOctets, EachInputIsASequenceThatCanBeStored, (std::vector<std::uint8_t> octets)) {
+  static const std::vector<SequenceRole> roles = all_roles();
+  for (const SequenceRole& role : roles) {
+    const Sequence sequence = sequence_of_octets(octets, role.vocabulary);
+    RC_ASSERT(sequence.size() <= kMostFuzzedCommands);
+    RC_ASSERT(sequence.empty() == octets.empty());
+    const config::Document document =
+        config::Document::parse(sequence_json(sequence, role.vocabulary), "sequence");
+    RC_ASSERT(read_sequence(document.root(), role.vocabulary) == sequence);
+  }
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance

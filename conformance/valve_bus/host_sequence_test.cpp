@@ -1,0 +1,74 @@
+#include "conformance/valve_bus/host_sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "conformance/sequence_check.hpp"
+#include "conformance/valve_bus/suite.hpp"
+#include "harness/kernel/sanitized.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+const Suite& suite_with_hosts() {
+  static const std::unique_ptr<Suite> suite = valve_bus_suite();
+  return *suite;
+}
+
+SequenceSearch host_search_of(const std::string& uri, std::uint64_t cases) {
+  SequenceSearch one;
+  one.suite = &suite_with_hosts();
+  one.role = &host_sequence_role();
+  one.setup.implementations = {{"host", 0, uri}};
+  one.cases = cases;
+  return one;
+}
+
+std::string host_lines(const SequenceSearchResult& result) {
+  if (!result.found) return "";
+  std::string text = result.found->outcome.result.reason + "\n";
+  for (const std::string& line : sequence_lines(result.found->smallest, host_sequence_role().vocabulary))
+    text += line + "\n";
+  return text;
+}
+
+TEST(HostSequence, TheReferenceIsNeverAccused) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    SequenceSearch one = host_search_of("ref", kernel::kIsSanitized ? 140 : 700);
+    one.setup.seed = seed;
+    const SequenceSearchResult result = search(one);
+    EXPECT_EQ(result.passed, one.cases) << seed << "\n" << host_lines(result);
+  }
+}
+
+// Also with a host whose receiver stays on, or that reads behind each write.
+TEST(HostSequence, TheReferenceIsNeverAccusedWithItsOptions) {
+  for (const char* option : {"receives_own_echo", "verifies_writes"}) {
+    SequenceSearch one = host_search_of("ref", kernel::kIsSanitized ? 140 : 700);
+    one.setup.pics.emplace().declare(option, true);
+    const SequenceSearchResult result = search(one);
+    EXPECT_EQ(result.passed, one.cases) << option << "\n" << host_lines(result);
+  }
+}
+
+TEST(HostSequence, FindsEachHostForCheckWithAtMostFiveCommands) {
+  unsigned found = 0;
+  for (const Mutant& mutant : suite_with_hosts().mutants()) {
+    if (!mutant.is_for_check || mutant.role != "host") continue;
+    const SequenceSearchResult result = search(host_search_of("mutant:" + mutant.name, 5'000));
+    ASSERT_TRUE(result.found) << mutant.name;
+    EXPECT_TRUE(result.found->is_confirmed) << mutant.name;
+    EXPECT_LE(result.found->smallest.size(), 5U) << mutant.name << "\n" << host_lines(result);
+    EXPECT_GE(result.found->smallest.size(), 2U) << mutant.name << "\n" << host_lines(result);
+    ++found;
+  }
+  EXPECT_EQ(found, 6U);
+}
+
+TEST(HostSequence, AcknowledgedWritesDoNotApply) {
+  SequenceSearch one = host_search_of("ref", 10);
+  one.setup.pics.emplace().declare("answers_writes", true);
+  EXPECT_EQ(search(one).not_applicable, 10U);
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance

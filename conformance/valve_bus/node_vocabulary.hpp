@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conformance/sequence.hpp"
+#include "conformance/valve_bus/node_bench.hpp"
+
+// The words of sequences for a local node, and the octets that some of them put on the line.
+namespace fieldproof::conformance {
+
+enum class NodeWord : std::uint8_t { write, read, command, response, octets, low, wait, power, switches };
+
+SequenceVocabulary node_vocabulary();
+// Without faults; none for a word that sends no characters.
+std::vector<std::uint8_t> octets_of(NodeWord word, const SequenceCommand& command, const NodeBench& bench);
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,251 @@
+#include "emc/immunity.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "emc/burst_clamp.hpp"
+#include "harness/segment/segment.hpp"
+
+namespace fieldproof::emc {
+namespace {
+
+using kernel::Duration;
+using kernel::kMillisecond;
+using kernel::kSecond;
+using kernel::Time;
+using network::Exchange;
+using network::State;
+
+constexpr Duration kSlice = 5 * kMillisecond;
+constexpr Duration kPauseBeforeStart = 50 * kMillisecond;
+// Recovery is not waited for beyond so many exchanges, or limits of the network, and this time.
+constexpr std::uint64_t kMostRecoveryExchanges = 1000;
+constexpr std::uint64_t kMostLimits = 10;
+constexpr Duration kLongestRecovery = 5 * kSecond;
+
+// Counts what a channel of any kind does.
+class CountedChannel final : public fault::Channel {
+ public:
+  explicit CountedChannel(std::unique_ptr<fault::Channel> channel) : channel_(std::move(channel)) {}
+
+  bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
+    ++statistics_.transmissions;
+    const bool is_changed = channel_->pass(sent, arrivals);
+    if (is_changed) {
+      ++statistics_.hit_transmissions;
+      ++statistics_.changed_transmissions;
+    }
+    return is_changed;
+  }
+
+  const BurstStatistics& statistics() const { return statistics_; }
+
+ private:
+  std::unique_ptr<fault::Channel> channel_;
+  BurstStatistics statistics_;
+};
+
+class Run final : private network::ExchangeWatcher {
+ public:
+  Run(network::Network& network, const LineResponse& response, const ImmunitySettings& settings)
+      : network_(network),
+        segment_(network.segment()),
+        random_(settings.seed),
+        statistics_(network, random_.split("process data")),
+        settings_(settings) {
+    for (const network::CycleKind& kind : network.cycles()) result_.cycles.push_back({kind});
+    last_begin_.resize(result_.cycles.size());
+    network_.watch(*this);
+    if (!come_up()) {
+      result_.complaint = network_.complaint();
+      return;
+    }
+    result_.came_up = true;
+    // What was not served while stations were still being found is no error.
+    bad_run_ = result_.longest_bad_run = 0;
+    off_ = segment_.now() + settings_.duration;
+    couple(response);
+    statistics_.begin();
+    suffer();
+    recover();
+    sum_up();
+    network_.end();
+  }
+
+  const ImmunityResult& result() const { return result_; }
+
+ private:
+  bool come_up() {
+    start();
+    const Time end = segment_.now() + network_.bring_up_limit();
+    while (segment_.now() < end && !is_exchanging_ && !is_stopped()) segment_.run_for(kSlice);
+    return is_exchanging_;
+  }
+
+  void start() {
+    is_exchanging_ = false;
+    std::ranges::fill(last_begin_, std::nullopt);
+    network_.start();
+  }
+
+  bool is_stopped() {
+    if (settings_.stop.stop_requested()) result_.is_complete = false;
+    return !result_.is_complete;
+  }
+
+  void couple(const LineResponse& response) {
+    if (settings_.make_channel) {
+      const kernel::Random random = random_.split("channels");
+      for (const network::Place& place : network_.places()) {
+        if (!place.is_exposed) continue;
+        counted_.emplace_back(settings_.make_channel(random.split(counted_.size())));
+        place.receiver->set_channel(&counted_.back());
+      }
+      return;
+    }
+    const BurstSettings& bursts = settings_.bursts;
+    clamp_.emplace(bursts, response.wrong_output(bursts.level.open_circuit_volts(), bursts.polarity),
+                   random_.split("bursts"), network_.recovery_limit().time);
+    clamp_->couple(network_, segment_.now(), off_);
+  }
+
+  void suffer() {
+    while (segment_.now() < off_ && !is_stopped()) {
+      segment_.run_until(std::min(segment_.now() + kSlice, off_));
+      restart_if_stopped();
+    }
+    // Bursts know themselves when they end.
+    if (!settings_.make_channel) return;
+    for (const network::Place& place : network_.places()) {
+      if (place.is_exposed) place.receiver->set_channel(nullptr);
+    }
+  }
+
+  void restart_if_stopped() {
+    if (network_.state() != State::stopped) return;
+    ++result_.stops;
+    start();
+  }
+
+  void recover() {
+    const std::uint64_t most =
+        std::max(kMostRecoveryExchanges, kMostLimits * network_.recovery_limit().exchanges);
+    is_recovering_ = true;
+    statistics_.begin_recovery();
+    const Time end = segment_.now() + kLongestRecovery;
+    while (segment_.now() < end && !statistics_.is_recovered() && recovery_exchanges_ < most &&
+           !is_stopped()) {
+      if (network_.state() == State::stopped || !segment_.step()) break;
+    }
+    result_.recovered_by_itself = statistics_.is_recovered() && is_exchanging_;
+    result_.recovery_exchanges = recovery_exchanges_;
+    if (result_.recovered_by_itself || !result_.is_complete) return;
+    network_.stop();
+    segment_.run_for(kPauseBeforeStart);
+    result_.recovered_after_start = come_up();
+  }
+
+  void on_exchange(const Exchange& exchange) override {
+    const std::uint64_t changed = changed_transmissions();
+    statistics_.on_exchange(exchange, changed != changed_before_);
+    changed_before_ = changed;
+    const bool is_served = exchange.outcome == network::Outcome::served;
+    if (is_served && exchange.kind == network::ExchangeKind::data && network_.state() == State::exchanging) {
+      is_exchanging_ = true;
+    }
+    bad_run_ = is_served ? 0 : bad_run_ + 1;
+    result_.longest_bad_run = std::max(result_.longest_bad_run, bad_run_);
+    result_.poor_quality = result_.poor_quality || network_.reports_poor_quality();
+    if (is_recovering_) ++recovery_exchanges_;
+  }
+
+  void on_shown(std::size_t signal, std::uint16_t word, Time when) override {
+    statistics_.on_shown(signal, word, when);
+  }
+
+  void on_cycle_begin(std::size_t kind, Time when) override {
+    std::optional<Time>& before = last_begin_.at(kind);
+    if (before) {
+      const measure::Phase phase = clamp_ ? clamp_->phase_during(*before, when) : measure::Phase::quiet;
+      result_.cycles[kind].times.add(phase, when - *before);
+    }
+    before = when;
+  }
+
+  template <typename Use>
+  void for_each_statistics(Use use) const {
+    if (clamp_) {
+      for (const BurstChannel& channel : clamp_->channels()) use(channel.statistics());
+    }
+    for (const CountedChannel& channel : counted_) use(channel.statistics());
+  }
+
+  std::uint64_t changed_transmissions() const {
+    std::uint64_t sum = 0;
+    for_each_statistics([&](const BurstStatistics& one) { sum += one.changed_transmissions; });
+    return sum;
+  }
+
+  void sum_up() {
+    result_.counts = statistics_.counts();
+    for_each_statistics([&](const BurstStatistics& one) {
+      ++result_.receivers;
+      result_.line += one;
+    });
+    result_.criterion = criterion();
+  }
+
+  Criterion criterion() const {
+    const bool works_again = result_.recovered_by_itself || result_.recovered_after_start;
+    if (result_.counts.accepted_wrong() > 0 || !works_again) return Criterion::d;
+    if (result_.stops > 0 || !result_.recovered_by_itself) return Criterion::c;
+    if (result_.recovery_exchanges > network_.recovery_limit().exchanges) return Criterion::c;
+    return result_.longest_bad_run > 0 || result_.counts.retried > 0 ? Criterion::b : Criterion::a;
+  }
+
+  network::Network& network_;
+  segment::Segment& segment_;
+  kernel::Random random_;
+  network::ExchangeStatistics statistics_;
+  const ImmunitySettings& settings_;
+  std::optional<BurstClamp> clamp_;
+  std::deque<CountedChannel> counted_;
+  Time off_{};
+  bool is_exchanging_ = false;  // a served exchange of data since the last start, seen on the line as well
+  bool is_recovering_ = false;
+  std::uint64_t recovery_exchanges_ = 0;
+  std::uint64_t bad_run_ = 0;
+  std::uint64_t changed_before_ = 0;
+  std::vector<std::optional<Time>> last_begin_;  // by kind of cycle
+  ImmunityResult result_;
+};
+
+}  // namespace
+
+std::string_view name(Criterion criterion) {
+  constexpr std::string_view kNames = "ABCD";
+  return kNames.substr(static_cast<std::size_t>(criterion), 1);
+}
+
+std::string_view text_of(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::a:
+      return "every exchange was served at the first attempt";
+    case Criterion::b:
+      return "exchanges were rejected or repeated and old data held; it recovered by itself within its limit";
+    case Criterion::c:
+      return "the bus stopped, or did not recover by itself in time; it worked after a start";
+    case Criterion::d:
+      return "wrong data were accepted, or it did not work after a start";
+  }
+  return "";
+}
+
+ImmunityResult run_immunity(network::Network& network, const LineResponse& response,
+                            const ImmunitySettings& settings) {
+  return Run(network, response, settings).result();
+}
+
+}  // namespace fieldproof::emc

@@ -1,0 +1,321 @@
+#include "harness/network/network_measurement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "harness/kernel/random.hpp"
+#include "harness/measure/cyclic_copy.hpp"
+
+namespace fieldproof::network {
+namespace {
+
+using kernel::Duration;
+using measure::Comparison;
+using measure::Distribution;
+using measure::Phase;
+
+constexpr double kPerMicrosecond = 1e6;  // picoseconds
+constexpr std::string_view kMicrosecond = "us";
+constexpr std::string_view kOfCycle = "of the cycle time";
+constexpr std::string_view kOfTheory = "of the theory";
+// A kind of sample of which the theory expects fewer may be missing altogether.
+constexpr double kFewSamples = 10;
+
+double us(double picoseconds) {
+  return picoseconds / kPerMicrosecond;
+}
+double us(Duration duration) {
+  return us(static_cast<double>(duration.count()));
+}
+double us(std::int64_t picoseconds) {
+  return us(static_cast<double>(picoseconds));
+}
+
+// Delays of the edges in front of an interval in which the input must be sampled for the edge to be seen: an
+// edge waits evenly up to a cycle, or up to the end of that interval.
+class DelayRows {
+ public:
+  DelayRows(std::string_view edges, Duration least, Duration cycle, Duration interval)
+      : edges_(edges), least_(least), cycle_(cycle), span_(std::min(cycle, interval)) {}
+
+  void append(std::vector<Comparison>& rows, const Distribution& delays) const {
+    if (delays.is_empty()) return;
+    const double span = us(span_);
+    const double count = static_cast<double>(delays.count());
+    const double deviation = span / std::sqrt(12.0);
+    rows.push_back(row("least delay", us(least_), us(delays.min()), span / count));
+    rows.push_back(row("mean delay", us(least_) + span / 2, us(delays.mean()), deviation / std::sqrt(count)));
+    rows.push_back(row("largest delay", us(least_) + span, us(delays.max()), span / count));
+    rows.push_back(row("standard deviation of the delay", deviation, us(delays.standard_deviation()),
+                       deviation / std::sqrt(2 * count)));
+  }
+
+ private:
+  Comparison row(std::string_view what, double theory, double measured, double standard_error) const {
+    return {fmt::format("{}, {}", what, edges_),
+            std::string(kMicrosecond),
+            theory,
+            measured,
+            us(cycle_),
+            std::string(kOfCycle),
+            standard_error};
+  }
+
+  std::string_view edges_;
+  Duration least_;
+  Duration cycle_;
+  Duration span_;
+};
+
+// Everything that a comparison of one path needs at hand. An edge waits for the sample, evenly up to a cycle.
+struct PathForms {
+  PathForms(const SignalRecord& record, const PathRecord& path)
+      : wave(record.settings.wave),
+        cycle(path.path.theory.cycle),
+        least_delay(path.path.theory.least_delay),
+        mean_delay(least_delay + Duration{std::llround(static_cast<double>(cycle.count()) / 2)}),
+        delay_deviation(std::llround(static_cast<double>(cycle.count()) / std::sqrt(12.0))),
+        high(wave.high()),
+        low(wave.period() - high),
+        width(measure::pulse_width(high, cycle)) {}
+
+  measure::SquareWave wave;
+  Duration cycle;
+  Duration least_delay;
+  Duration mean_delay;
+  Duration delay_deviation;
+  Duration high;
+  Duration low;
+  measure::PulseWidth width;
+};
+
+Comparison of_cycle(const PathForms& theory, std::string quantity, double expected, double measured,
+                    double standard_error) {
+  return {std::move(quantity), std::string(kMicrosecond), expected,      measured,
+          us(theory.cycle),    std::string(kOfCycle),     standard_error};
+}
+
+// Lost pulses have no phase: where a run was disturbed nobody knows which of them the disturbance took.
+void append_widths(std::vector<Comparison>& rows, const PathForms& theory, const measure::EdgeSkew& skew,
+                   bool is_disturbed) {
+  const Distribution& widths = skew.widths.in(Phase::quiet);
+  if (widths.is_empty()) return;
+  const measure::PulseWidth& width = theory.width;
+  const auto count = static_cast<double>(widths.count());
+  const double more = width.probability_of_one_more;
+  const double cycle = us(theory.cycle);
+  const bool is_lossy = width.cycles == 0;
+  if (is_lossy || (1 - more) * count >= kFewSamples) {
+    const Duration shortest = is_lossy ? width.longer : width.shorter;
+    rows.push_back(of_cycle(theory, "shortest pulse", us(shortest), us(widths.min()), 0));
+  }
+  if (more * count >= kFewSamples) {
+    rows.push_back(of_cycle(theory, "longest pulse", us(width.longer), us(widths.max()), 0));
+  }
+  if (!is_disturbed) {
+    const double came = count / (count + static_cast<double>(skew.lost_pulses));
+    rows.push_back(of_cycle(theory, "mean width of a pulse, lost ones as 0", us(width.mean),
+                            us(widths.mean()) * came, cycle * std::sqrt(more * (1 - more) / count)));
+  } else if (!is_lossy) {
+    rows.push_back(of_cycle(theory, "mean width of a pulse", us(width.mean), us(widths.mean()),
+                            cycle * std::sqrt(more * (1 - more) / count)));
+  }
+  rows.push_back(of_cycle(theory, "standard deviation of the width",
+                          is_lossy ? 0 : us(width.standard_deviation), us(widths.standard_deviation()),
+                          is_lossy ? 0 : cycle * std::abs(1 - 2 * more) / (2 * std::sqrt(count))));
+}
+
+void append_duty(std::vector<Comparison>& rows, const PathForms& theory, const measure::EdgeSkew& skew) {
+  const Distribution& errors = skew.duty_errors_ppm.in(Phase::quiet);
+  if (errors.is_empty()) return;
+  const auto largest = static_cast<double>(std::max(errors.max(), -errors.min()));
+  rows.push_back({"largest error of the duty cycle of a period, at most", "%",
+                  100 * measure::max_duty_error(theory.wave.frequency.hertz(), theory.cycle), largest * 1e-4,
+                  100, "of a period", 0, true});
+}
+
+Comparison share(std::string quantity, double expected, std::uint64_t lost, std::uint64_t all) {
+  const auto count = static_cast<double>(all);
+  return {std::move(quantity),
+          "",
+          expected,
+          static_cast<double>(lost) / count,
+          1,
+          "of all",
+          std::sqrt(expected * (1 - expected) / count)};
+}
+
+void append_losses(std::vector<Comparison>& rows, const PathForms& theory, const measure::EdgeSkew& skew) {
+  rows.push_back(share("share of lost pulses", theory.width.lost_probability, skew.lost_pulses, skew.pulses));
+  if (skew.pauses == 0) return;
+  rows.push_back(share("share of lost pauses",
+                       measure::pulse_width(theory.low, theory.cycle).lost_probability, skew.lost_pauses,
+                       skew.pauses));
+}
+
+void append_phase_lag(std::vector<Comparison>& rows, const PathForms& theory, const measure::EdgeSkew& skew) {
+  const Distribution& delays = skew.rise_delays.in(Phase::quiet);
+  if (delays.is_empty() || theory.width.cycles == 0) return;
+  const double degrees_per_us = 360 * theory.wave.frequency.hertz() * 1e-6;
+  const double lag = degrees_per_us * us(theory.mean_delay);
+  const double error = us(theory.delay_deviation) / std::sqrt(static_cast<double>(delays.count()));
+  rows.push_back({"mean lag of the rising edges", "deg", lag, degrees_per_us * us(delays.mean()), lag,
+                  std::string(kOfTheory), degrees_per_us * error});
+}
+
+Comparison none_of(std::string quantity, std::uint64_t count) {
+  return {std::move(quantity), "", 0, static_cast<double>(count), 1, "of one", 0, true};
+}
+
+std::vector<measure::Curve> curves_of(const measure::EdgeSkew& skew) {
+  const std::string unit(kMicrosecond);
+  return {{"delay, rising edges", unit, kPerMicrosecond, skew.rise_delays},
+          {"delay, falling edges", unit, kPerMicrosecond, skew.fall_delays},
+          {"width of a pulse", unit, kPerMicrosecond, skew.widths},
+          {"error of the width", unit, kPerMicrosecond, skew.width_errors},
+          {"error of the duty cycle of a period", "%", 1e4, skew.duty_errors_ppm}};
+}
+
+measure::Series series_of(const SignalRecord& record, const PathRecord& path) {
+  measure::Series series;
+  series.name = fmt::format("{} from {}", measure::describe(record.settings.wave.frequency), path.path.name);
+  if (!record.has_stopped) series.comparisons = compare_path(record, path);
+  series.curves = curves_of(path.skew);
+  series.counts = {{"lost pulses", path.skew.lost_pulses, path.skew.pulses},
+                   {"lost pauses", path.skew.lost_pauses, path.skew.pauses},
+                   {"words that the input never had", path.skew.foreign_words, 0},
+                   {"torn process images", record.torn_images, record.images},
+                   {"trains", static_cast<std::uint64_t>(record.trains), 0}};
+  if (record.has_stopped) series.counts.push_back({"the bus stopped for good", 1, 0});
+  series.trace = path.trace;
+  return series;
+}
+
+// The cycles of all signals together, a series for each kind.
+class CycleSeries {
+ public:
+  void add(const SignalRecord& record) {
+    if (cycles_.empty()) {
+      cycles_ = record.cycles;
+    } else {
+      for (std::size_t n = 0; n < cycles_.size(); ++n) cycles_[n].times.add(record.cycles[n].times);
+    }
+    data_ += record.data_exchanges;
+    service_ += record.service_exchanges;
+    unserved_ += record.unserved_exchanges;
+    retries_ += record.retries;
+  }
+
+  std::vector<measure::Series> finish(const ExchangeWords& words) const {
+    std::vector<measure::Series> all;
+    for (const CycleRecord& cycle : cycles_) {
+      measure::Series& series = all.emplace_back();
+      series.name = cycle.kind.name;
+      series.comparisons = compare_cycles(cycle.kind, cycle.times.in(Phase::quiet), all.size() == 1);
+      series.curves = {{cycle.kind.name + " time", std::string(kMicrosecond), kPerMicrosecond, cycle.times}};
+    }
+    if (all.empty()) return all;
+    auto& counts = all.front().counts;
+    counts.push_back({std::string(words.data), data_, 0});
+    if (!words.service.empty()) counts.push_back({std::string(words.service), service_, 0});
+    counts.push_back({std::string(words.unserved), unserved_, data_ + service_});
+    if (retries_ > 0) counts.push_back({"retries", retries_, 0});
+    return all;
+  }
+
+ private:
+  std::vector<CycleRecord> cycles_;
+  std::uint64_t data_ = 0;
+  std::uint64_t service_ = 0;
+  std::uint64_t unserved_ = 0;
+  std::uint64_t retries_ = 0;
+};
+
+}  // namespace
+
+std::vector<Comparison> compare_cycles(const CycleKind& kind, const Distribution& times, bool is_sampling) {
+  if (times.is_empty()) return {};
+  const std::string unit(kMicrosecond);
+  const double cycle = us(kind.theory);
+  std::vector<Comparison> rows;
+  if (kind.is_bound) {
+    rows.push_back({fmt::format("longest {}, at most", kind.name), unit, cycle, us(times.max()), cycle,
+                    std::string(kOfTheory), 0, true});
+    return rows;
+  }
+  rows.push_back(
+      {fmt::format("{} time", kind.name), unit, cycle, us(times.mean()), cycle, std::string(kOfTheory),
+       times.standard_deviation() / kPerMicrosecond / std::sqrt(static_cast<double>(times.count()))});
+  const bool has_jitter = kind.jitter > Duration::zero();
+  rows.push_back({fmt::format("jitter of the {}, peak to peak{}", kind.name, has_jitter ? ", at most" : ""),
+                  unit, us(kind.jitter), us(times.max() - times.min()), cycle, std::string(kOfCycle), 0,
+                  has_jitter});
+  if (!is_sampling) return rows;
+  const double highest = measure::highest_frequency_hz(kind.theory + kind.jitter);
+  rows.push_back({"highest frequency without loss, by the longest cycle", "Hz", highest,
+                  measure::highest_frequency_hz(Duration{times.max()}), highest, std::string(kOfTheory)});
+  return rows;
+}
+
+std::vector<Comparison> compare_path(const SignalRecord& record, const PathRecord& path) {
+  const PathForms theory(record, path);
+  const measure::EdgeSkew& skew = path.skew;
+  std::vector<Comparison> rows;
+  DelayRows("rising edges", theory.least_delay, theory.cycle, theory.high)
+      .append(rows, skew.rise_delays.in(Phase::quiet));
+  DelayRows("falling edges", theory.least_delay, theory.cycle, theory.low)
+      .append(rows, skew.fall_delays.in(Phase::quiet));
+  append_phase_lag(rows, theory, skew);
+  const bool is_disturbed = record.settings.disturb != nullptr;
+  append_widths(rows, theory, skew, is_disturbed);
+  append_duty(rows, theory, skew);
+  if (is_disturbed) return rows;
+  append_losses(rows, theory, skew);
+  rows.push_back(none_of("words that the input never had", skew.foreign_words));
+  rows.push_back(none_of("torn process images", record.torn_images));
+  return rows;
+}
+
+measure::Measurement measure_network(const MakeNetwork& make, const MeasurementSettings& settings) {
+  measure::Measurement measurement;
+  measurement.protocol = settings.protocol;
+  measurement.seed = settings.seed;
+  measurement.tolerance_percent = settings.tolerance_percent;
+  CycleSeries cycles;
+  ExchangeWords words;
+  for (std::size_t n = 0; n < settings.signals.size(); ++n) {
+    const std::unique_ptr<Network> network = make(kernel::Random(settings.seed).split(n).seed());
+    if (n == 0) {
+      measurement.network = network->name();
+      measurement.conditions = network->conditions();
+      measurement.conditions.push_back({"each signal", kernel::describe(settings.duration)});
+      measurement.conditions.insert(measurement.conditions.end(), settings.conditions.begin(),
+                                    settings.conditions.end());
+      words = network->exchange_words();
+    }
+    const SignalRecord record = record_signal(*network, {.wave = settings.signals[n],
+                                                         .duration = settings.duration,
+                                                         .seed = settings.seed,
+                                                         .disturb = settings.disturb,
+                                                         .phase_during = settings.phase_during});
+    cycles.add(record);
+    if (record.has_stopped) {
+      measurement.is_complete = false;
+      measurement.conditions.push_back(
+          {"not compared", fmt::format("{}: the bus stopped for good meanwhile",
+                                       measure::describe(settings.signals[n].frequency))});
+    }
+    for (const PathRecord& path : record.paths) measurement.series.push_back(series_of(record, path));
+    if (settings.on_progress) settings.on_progress(n + 1);
+  }
+  // The cycles come first.
+  std::vector<measure::Series> first = cycles.finish(words);
+  measurement.series.insert(measurement.series.begin(), std::make_move_iterator(first.begin()),
+                            std::make_move_iterator(first.end()));
+  return measurement;
+}
+
+}  // namespace fieldproof::network

@@ -1,0 +1,359 @@
+#include "protocols/fieldbus_dll/link_network.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "harness/kernel/check.hpp"
+#include "protocols/fieldbus_dll/ff_rules.hpp"
+
+namespace fieldproof::fieldbus_dll {
+namespace {
+
+using config::ObjectReader;
+using config::Value;
+using kernel::Duration;
+using kernel::Time;
+using network::Outcome;
+
+constexpr std::uint8_t kFirstNode = 0x10;
+constexpr std::uint8_t kLastNode = 0xF7;
+constexpr unsigned kMostStations = kLastNode - kFirstNode + 1;
+constexpr std::int64_t kLeadOctets = 80;
+constexpr std::int64_t kMacrocyclesToRecover = 2;
+constexpr std::int64_t kMacrocyclesOfSilence = 2;
+// An item of the schedule is a call, its answer and what is kept free in front of the next one, with the
+// longest frames that carry a word.
+constexpr std::int64_t kItemOctets = 120;
+// A node is found by a probe, one in each circulation of the token; a circulation visits all that are live.
+constexpr std::int64_t kVisitOctets = 60;
+constexpr std::int64_t kProbeOctets = 100;
+constexpr Duration kLeastBringUp = 10 * kernel::kSecond;
+
+LinkRules rules_at(std::int64_t bit_rate) {
+  LinkRules rules;
+  rules.bit_rate = bit_rate;
+  return rules;
+}
+
+std::vector<std::uint8_t> read_nodes(const Value& value) {
+  std::vector<std::uint8_t> nodes;
+  for (const Value& node : value.as_array(0, kMostStations)) nodes.push_back(node.as_integer<std::uint8_t>());
+  return nodes;
+}
+
+DataDescription read_data(const Value& value, Duration macrocycle) {
+  return config::read_object(value, [macrocycle](ObjectReader& object) {
+    return DataDescription{object.required("from").as_integer<std::uint8_t>(),
+                           object.required("to").as_integer<std::uint8_t>(),
+                           object.required("at").as_duration(Duration::zero(), macrocycle)};
+  });
+}
+
+bool has(const std::vector<std::uint8_t>& nodes, std::uint8_t node) {
+  return std::ranges::find(nodes, node) != nodes.end();
+}
+
+std::optional<std::string> violation_of_stations(const LinkDescription& link) {
+  if (link.masters.empty()) return "no link master: one must schedule the link";
+  if (link.masters.size() + link.devices.size() > kMostStations) {
+    return fmt::format("{} stations: a link has at most {}, because nodes have the addresses {} to {}",
+                       link.masters.size() + link.devices.size(), kMostStations, kFirstNode, kLastNode);
+  }
+  std::vector<std::uint8_t> all = link.masters;
+  all.insert(all.end(), link.devices.begin(), link.devices.end());
+  std::ranges::sort(all);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (all[n] < kFirstNode || all[n] > kLastNode)
+      return fmt::format("node {}: a node has an address from {} to {}", all[n], kFirstNode, kLastNode);
+    if (n > 0 && all[n] == all[n - 1]) return fmt::format("node {} is there twice; each has its own", all[n]);
+  }
+  for (const std::uint8_t node : link.not_exposed) {
+    if (!has(all, node)) return fmt::format("node {} is not exposed, and no station has it", node);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+LinkDescription LinkDescription::built_in(LinkProfile profile, std::int64_t bit_rate, unsigned devices) {
+  LinkDescription link;
+  link.profile = profile;
+  link.bit_rate = bit_rate;
+  link.masters = {0x10, 0x11};
+  for (unsigned n = 0; n < devices; ++n) link.devices.push_back(static_cast<std::uint8_t>(0x12 + n));
+  // A schedule counts in 1/32 ms.
+  const Duration item = (2 * needed_by_item(link) / kTick + 1) * kTick;
+  for (unsigned n = 0; n < devices; ++n) {
+    link.data.push_back(
+        {link.devices[n], link.devices[(n + 1) % devices], static_cast<std::int64_t>(n) * item});
+  }
+  link.macrocycle = std::max(link.macrocycle, static_cast<std::int64_t>(devices + 1) * item);
+  link.macrocycle = link.macrocycle / kTick * kTick;
+  link.name = fmt::format("two link masters and {} devices", devices);
+  return link;
+}
+
+LinkDescription LinkDescription::read(const Value& root) {
+  const LinkDescription link = config::read_object(root, [](ObjectReader& object) {
+    LinkDescription read;
+    read.name = object.required("name").as_string();
+    read.profile = object.required("profile").as_choice<LinkProfile>(
+        {{"foundation", LinkProfile::foundation}, {"isa", LinkProfile::isa}});
+    if (const auto rate = object.optional("bit_rate")) read.bit_rate = rate->as_bit_rate(31'250, 2'500'000);
+    read.masters = read_nodes(object.required("masters"));
+    read.devices = read_nodes(object.required("devices"));
+    if (const auto cycle = object.optional("macrocycle"))
+      read.macrocycle = cycle->as_duration(kernel::kMillisecond, 1000 * kernel::kSecond);
+    for (const Value& item : object.required("data").as_array(1)) {
+      read.data.push_back(read_data(item, read.macrocycle));
+    }
+    if (const auto spurs = object.optional("not_exposed")) read.not_exposed = read_nodes(*spurs);
+    return read;
+  });
+  if (const auto violation = violation_of(link)) config::fail(root, *violation);
+  return link;
+}
+
+LinkDescription LinkDescription::load(const std::filesystem::path& path) {
+  const config::Document document = config::Document::load(path);
+  return read(document.root());
+}
+
+Duration needed_by_item(const LinkDescription& link) {
+  return octets(rules_at(link.bit_rate), kItemOctets);
+}
+
+std::optional<std::string> violation_of(const LinkDescription& link) {
+  if (auto violation = violation_of_stations(link)) return violation;
+  if (link.macrocycle % kTick != Duration{})
+    return "the macrocycle is no multiple of 1/32 ms, in which link time counts";
+  std::vector<std::uint8_t> all = link.masters;
+  all.insert(all.end(), link.devices.begin(), link.devices.end());
+  for (std::size_t n = 0; n < link.data.size(); ++n) {
+    const DataDescription& item = link.data[n];
+    if (!has(all, item.from) || !has(all, item.to) || item.from == item.to)
+      return fmt::format("data from {} to {}: both are stations of the link, and two", item.from, item.to);
+    if (link.profile == LinkProfile::isa && !has(link.devices, item.from))
+      return fmt::format("data from {}: the token is delegated to devices", item.from);
+    if (item.at % kTick != Duration{})
+      return "an instant is no multiple of 1/32 ms, in which link time counts";
+    const Time next = kernel::kStart + (n + 1 < link.data.size() ? link.data[n + 1].at : link.macrocycle);
+    if (kernel::kStart + item.at + needed_by_item(link) > next) {
+      return fmt::format(
+          "data from {} at {}: an item of the schedule takes {}, and then the next one begins or "
+          "the macrocycle is over",
+          item.from, kernel::describe(item.at), kernel::describe(needed_by_item(link)));
+    }
+  }
+  return std::nullopt;
+}
+
+// ---- the running link ----
+
+LinkNetwork::LinkNetwork(const LinkDescription& description, const LinkRules& rules, std::uint64_t seed)
+    : description_(description),
+      rules_(rules),
+      random_(seed),
+      line_(segment_, "line", segment::ContentionRule::noise, random_),
+      tester_(rules) {
+  FIELDPROOF_CHECK(!violation_of(description_), "a link that runs is one within its limits");
+  line_.tap_driven(*this);
+  for (const DataDescription& item : description_.data) {
+    signals_.push_back(
+        {.name = fmt::format("word of node {} at node {}", item.from, item.to), .admissible_words = 2});
+  }
+  sources_.resize(signals_.size());
+  has_arrived_.resize(signals_.size());
+}
+
+segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t node,
+                                       const std::string& name) {
+  const std::size_t number = segment_.attach(station, name);
+  segment::MediumPort& place = line_.attach(name + "/in", number, 0, {});
+  place.sense_activity();
+  seats_.push_back({&station, node, number});
+  const bool is_exposed = !has(description_.not_exposed, node);
+  // Levels are half bits.
+  places_.push_back({.name = place.name(),
+                     .receiver = &place,
+                     .trace_channel = place.trace_channel(),
+                     .level_rate = 2 * rules_.bit_rate,
+                     .is_exposed = is_exposed,
+                     .why_not = is_exposed ? "" : "its spur is declared to lie in no clamp"});
+  return place;
+}
+
+void LinkNetwork::refresh(std::uint8_t node) {
+  const auto seat = std::ranges::find(seats_, node, &Seat::node);
+  if (seat != seats_.end()) segment_.refresh(seat->number);
+}
+
+void LinkNetwork::start() {
+  if (!std::exchange(has_tester_, true)) tester_number_ = segment_.attach(*this, "tester");
+  started_ = segment_.now();
+  last_call_.reset();
+  got_ = 0;
+  std::fill(has_arrived_.begin(), has_arrived_.end(), false);
+  is_on_ = true;
+  power_up(segment_.now());
+  for (std::size_t n = 0; n < sources_.size(); ++n) {
+    Source& source = sources_[n];
+    source.is_called = false;
+    source.closes_at = source.sampled_at = kernel::kNever;
+    give(n, source.function ? source.function(segment_.now()) : source.word, segment_.now());
+  }
+  for (const Seat& seat : seats_) segment_.refresh(seat.number);
+}
+
+void LinkNetwork::stop() {
+  is_on_ = false;
+  power_down(segment_.now());
+}
+
+network::State LinkNetwork::state() const {
+  const Time now = segment_.now();
+  if (got_ == sources_.size() && last_call_) {
+    return now - *last_call_ > kMacrocyclesOfSilence * description_.macrocycle ? network::State::stopped
+                                                                               : network::State::exchanging;
+  }
+  return !is_on_ || now - started_ > bring_up_limit() ? network::State::stopped : network::State::coming_up;
+}
+
+Duration LinkNetwork::bring_up_limit() const {
+  const auto stations = static_cast<std::int64_t>(seats_.size());
+  // Twice: the schedule takes its part of the line.
+  const Duration circulations =
+      stations * stations * octets(rules_, kVisitOctets) / 2 + stations * octets(rules_, kProbeOctets);
+  return kLeastBringUp + 3 * circulations + 4 * description_.macrocycle;
+}
+
+network::RecoveryLimit LinkNetwork::recovery_limit() const {
+  return {static_cast<std::uint64_t>(kMacrocyclesToRecover) * sources_.size(),
+          kMacrocyclesToRecover * description_.macrocycle, "two macrocycles", judge::Standing::own};
+}
+
+network::ExchangeWords LinkNetwork::exchange_words() const {
+  return {"items of the schedule", "", "items without their word"};
+}
+
+std::vector<measure::Condition> LinkNetwork::conditions() const {
+  return {{"profile", description_.profile == LinkProfile::foundation ? "Foundation Fieldbus" : "ISA"},
+          {"stations", fmt::format("{} link masters, {} devices", description_.masters.size(),
+                                   description_.devices.size())},
+          {"bit rate", fmt::format("{} bit/s", description_.bit_rate)},
+          {"macrocycle", kernel::describe(description_.macrocycle)},
+          {"a word is sampled before it is called for by", kernel::describe(lead())}};
+}
+
+void LinkNetwork::set_source(std::size_t signal, std::uint16_t word) {
+  sources_.at(signal).word = word;
+  give(signal, word, segment_.now());
+  refresh(description_.data[signal].from);
+}
+
+void LinkNetwork::set_source_function(std::size_t signal, std::function<std::uint16_t(Time)> word) {
+  sources_.at(signal).function = std::move(word);
+}
+
+std::uint16_t LinkNetwork::image(std::size_t) const {
+  FIELDPROOF_CHECK(false, "no signal of a link has an image");
+  return 0;
+}
+
+std::vector<network::CopiedPath> LinkNetwork::paths() const {
+  std::vector<network::CopiedPath> paths;
+  for (std::size_t n = 0; n < description_.data.size(); ++n) {
+    const DataDescription& item = description_.data[n];
+    paths.push_back({.name = fmt::format("node {} to node {}", item.from, item.to),
+                     .from = item.from,
+                     .to = item.to,
+                     .source = n,
+                     .sink = n,
+                     .theory = {description_.macrocycle, least_delay()}});
+  }
+  return paths;
+}
+
+void LinkNetwork::end() {
+  for (const Seat& seat : seats_) seat.station->end();
+}
+
+Duration LinkNetwork::lead() const {
+  return octets(rules_, kLeadOctets);
+}
+
+// ---- the lower tester and the applications ----
+
+void LinkNetwork::on_wave(const line::Waveform& wave) {
+  for (const Arrived& arrived : tester_.receive(wave)) on_driven(arrived.octets, arrived.begin, arrived.end);
+}
+
+void LinkNetwork::begin_cycle(std::size_t kind, Time when) {
+  if (watcher_ != nullptr) watcher_->on_cycle_begin(kind, when);
+}
+
+void LinkNetwork::on_called(std::size_t signal, Time begin, Time end) {
+  Source& source = sources_[signal];
+  if (source.is_called) close(signal, segment_.now());
+  source.is_called = true;
+  source.is_sent = source.is_got = false;
+  source.closes_at = end + answer_time();
+  last_call_ = begin;
+  if (signal == 0) begin_cycle(0, begin);
+  if (source.function) source.sampled_at = begin + description_.macrocycle - lead();
+  set_wake();
+}
+
+void LinkNetwork::on_sent(std::size_t signal) {
+  sources_[signal].is_sent = true;
+}
+
+void LinkNetwork::on_got(std::size_t signal, std::uint16_t word, Time when) {
+  sources_[signal].is_got = true;
+  if (!has_arrived_[signal]) {
+    has_arrived_[signal] = true;
+    ++got_;
+  }
+  if (watcher_ != nullptr) watcher_->on_shown(signal, word, when);
+}
+
+void LinkNetwork::set_wake() {
+  wakes_at_ = kernel::kNever;
+  for (const Source& source : sources_) {
+    wakes_at_ =
+        std::min({wakes_at_, source.sampled_at, source.is_called ? source.closes_at : kernel::kNever});
+  }
+  if (has_tester_) segment_.refresh(tester_number_);
+}
+
+void LinkNetwork::close(std::size_t signal, Time now) {
+  Source& source = sources_[signal];
+  source.is_called = false;
+  source.closes_at = kernel::kNever;
+  const Outcome outcome = source.is_got    ? Outcome::served
+                          : source.is_sent ? Outcome::rejected
+                                           : Outcome::missing;
+  if (watcher_ == nullptr) return;
+  watcher_->on_exchange({.end = now,
+                         .kind = network::ExchangeKind::data,
+                         .outcome = outcome,
+                         .retries = 0,
+                         .first_signal = signal,
+                         .signal_count = 1});
+}
+
+void LinkNetwork::on_time(Time now) {
+  for (std::size_t n = 0; n < sources_.size(); ++n) {
+    Source& source = sources_[n];
+    if (source.is_called && source.closes_at <= now) close(n, now);
+    if (source.sampled_at > now) continue;
+    source.sampled_at = kernel::kNever;
+    give(n, source.function(now), now);
+    refresh(description_.data[n].from);
+  }
+  set_wake();
+}
+
+}  // namespace fieldproof::fieldbus_dll

@@ -1,0 +1,110 @@
+#include "protocols/fieldbus_dll/link_network.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "harness/kernel/error.hpp"
+#include "harness/network/quiet_run.hpp"
+#include "protocols/fieldbus_dll/ff_las.hpp"
+#include "protocols/fieldbus_dll/ff_network.hpp"
+#include "protocols/fieldbus_dll/isa_network.hpp"
+
+namespace fieldproof::fieldbus_dll {
+namespace {
+
+std::unique_ptr<LinkNetwork> make(const LinkDescription& link) {
+  if (link.profile == LinkProfile::isa) return std::make_unique<IsaNetwork>(link, 1);
+  return std::make_unique<FfNetwork>(link, 1);
+}
+
+class LinkNetworkTest : public testing::TestWithParam<LinkProfile> {};
+
+TEST_P(LinkNetworkTest, EveryWordArrivesInEveryMacrocycle) {
+  for (const std::int64_t rate : {std::int64_t{31'250}, std::int64_t{1'000'000}}) {
+    const auto network = make(LinkDescription::built_in(GetParam(), rate));
+    const network::CycleKind kind = network->cycles().front();
+    const network::QuietRun run = network::run_quietly(*network, 20, 5);
+    ASSERT_TRUE(run.came_up) << rate;
+    ASSERT_EQ(run.cycles.size(), 20U);
+    EXPECT_EQ(run.counts.detected, 0U) << rate;
+    EXPECT_EQ(run.counts.accepted_wrong() + run.counts.missed_outputs, 0U) << rate;
+    for (const kernel::Duration cycle : run.cycles)
+      EXPECT_LE(std::chrono::abs(cycle - kind.theory), kind.jitter);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Profiles, LinkNetworkTest,
+                         testing::Values(LinkProfile::foundation, LinkProfile::isa));
+
+// Publishes its words with a bit turned.
+class TurnsABit final : public FfStation {
+ public:
+  using FfStation::FfStation;
+  bool write(FfAddress address, const Octets& data, kernel::Time now) override {
+    Octets turned = data;
+    turned.back() ^= 0x80;
+    return FfStation::write(address, turned, now);
+  }
+};
+
+TEST(FfNetworkTest, AWordThatNobodyGaveIsSeen) {
+  FfNetwork network(LinkDescription::built_in(LinkProfile::foundation), 1,
+                    {.make_device = [](std::size_t position,
+                                       const FfConfiguration& configuration) -> std::unique_ptr<FfDevice> {
+                      return position == 2 ? std::make_unique<TurnsABit>(configuration) : nullptr;
+                    }});
+  const network::QuietRun run = network::run_quietly(network, 5, 5);
+  EXPECT_GT(run.counts.accepted_wrong_inputs, 3U);
+}
+
+std::string refusal_of(const std::string& text) {
+  try {
+    const config::Document document = config::Document::parse(text, "link.json");
+    LinkDescription::read(document.root());
+  } catch (const kernel::Error& error) {
+    EXPECT_EQ(error.exit_code(), 65);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LinkDescriptionTest, RefusesWhatNoLinkIs) {
+  const auto link = [](const std::string& rest) {
+    return R"({"profile": "foundation", "name": "a", "masters": [16], )" + rest + "}";
+  };
+  EXPECT_EQ(refusal_of(link(R"("devices": [20, 21], "data": [{"from": 20, "to": 21, "at": "0 ms"}])")), "");
+  EXPECT_NE(refusal_of(link(R"("devices": [20, 20], "data": [{"from": 20, "to": 16, "at": "0 ms"}])"))
+                .find("twice"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal_of(link(R"("devices": [3], "data": [{"from": 3, "to": 16, "at": "0 ms"}])")).find("16 to 247"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal_of(link(R"("devices": [20], "data": [{"from": 20, "to": 21, "at": "0 ms"}])")).find("stations"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal_of(link(R"("devices": [20], "data": [{"from": 20, "to": 16, "at": "0.01 ms"}])")).find("1/32"),
+      std::string::npos);
+  EXPECT_NE(refusal_of(link(R"("devices": [20, 21], "data": [{"from": 20, "to": 21, "at": "0 ms"},
+      {"from": 21, "to": 20, "at": "1 ms"}])"))
+                .find("next one begins"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal_of(
+          link(R"("devices": [20], "data": [{"from": 20, "to": 16, "at": "0 ms"}], "not_exposed": [9])"))
+          .find("node 9"),
+      std::string::npos);
+}
+
+TEST(LinkDescriptionTest, TheLargestLinkHas232Stations) {
+  const LinkDescription link = LinkDescription::built_in(LinkProfile::foundation, 1'000'000, 230);
+  EXPECT_FALSE(violation_of(link).has_value());
+  LinkDescription more = link;
+  more.masters.push_back(0x0F);
+  EXPECT_NE(violation_of(more)->find("at most 232"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fieldproof::fieldbus_dll

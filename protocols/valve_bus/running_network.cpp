@@ -1,0 +1,410 @@
+#include "protocols/valve_bus/running_network.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "harness/kernel/check.hpp"
+#include "protocols/valve_bus/host.hpp"
+#include "protocols/valve_bus/node.hpp"
+#include "protocols/valve_bus/timing.hpp"
+
+namespace fieldproof::valve_bus {
+namespace {
+
+using kernel::Duration;
+using kernel::Time;
+using network::Outcome;
+
+constexpr std::size_t kCommandOfPc = 4;  // octets: ID, COMMAND, DATA0, DATA1
+// The PC gives the host so many commands in advance: never a pause between two, and words are fresh.
+constexpr std::size_t kCommandsAhead = 4;
+constexpr std::uint64_t kCyclesToRecover = 2;
+constexpr std::int64_t kCyclesOfSilence = 2;
+constexpr Duration kLeastSilence = 100 * kernel::kMillisecond;
+constexpr std::string_view kAfterRepeater = "it lies after a repeater, on a segment that is not in the clamp";
+
+std::unique_ptr<HostDevice> make_host(const RunningStations& stations,
+                                      const HostConfiguration& configuration) {
+  auto host = stations.make_host ? stations.make_host(configuration) : nullptr;
+  return host ? std::move(host) : std::make_unique<Host>(configuration);
+}
+
+std::uint8_t id_of(const NodeDescription& node) {
+  return static_cast<std::uint8_t>(node.address);
+}
+
+}  // namespace
+
+RunningNetwork::RunningNetwork(const NetworkDescription& description, std::uint64_t seed,
+                               const RunningStations& stations)
+    : description_(description),
+      random_(seed),
+      line_(segment_, "line", segment::ContentionRule::noise, random_),
+      host_(make_host(stations, {.rules = description.rules, .dip = description.dip})),
+      host_number_(segment_.attach(*host_, "host")),
+      pc_number_(0) {
+  const auto violation = violation_of(description_);
+  FIELDPROOF_CHECK(!violation, "a network that runs is one within its limits");
+  description_.rules.bit_rate = dip_bit_rates()[description_.dip];
+  segment::MediumPort& place = line_.attach("host/in", host_number_, 0, {});
+  host_->wire(place, *this);
+  places_.push_back({.name = place.name(),
+                     .receiver = &place,
+                     .trace_channel = place.trace_channel(),
+                     .level_rate = description_.rules.bit_rate});
+  for (const NodeDescription& node : description_.nodes) add_node(node, stations);
+  pc_number_ = segment_.attach(*this, "PC");
+  find_signals();
+  plan_steps();
+  find_cycle();
+}
+
+void RunningNetwork::add_node(const NodeDescription& node, const RunningStations& stations) {
+  const NodeConfiguration configuration{
+      .rules = description_.rules, .address_tens = node.address / 10, .address_units = node.address % 10};
+  const std::size_t position = seats_.size() + 1;
+  Seat& seat = seats_.emplace_back();
+  seat.description = node;
+  seat.way = distance_to(description_, position - 1);
+  seat.device = stations.make_node ? stations.make_node(position, configuration) : nullptr;
+  if (seat.device == nullptr) seat.device = std::make_unique<Node>(configuration);
+  seat.number = segment_.attach(*seat.device, fmt::format("node@{}", position));
+  segment::MediumPort& place = line_.attach(fmt::format("node@{}/in", position), seat.number, 0, seat.way);
+  place.tap_driven(node_drives_);
+  seat.device->wire(place, seat.block);
+  const bool is_exposed = repeaters_before(description_.rules, position - 1) == 0;
+  places_.push_back({.name = place.name(),
+                     .receiver = &place,
+                     .trace_channel = place.trace_channel(),
+                     .level_rate = description_.rules.bit_rate,
+                     .is_exposed = is_exposed,
+                     .why_not = is_exposed ? "" : kAfterRepeater});
+}
+
+bool RunningNetwork::is_copied_to(unsigned address) const {
+  return std::ranges::find(description_.copy, address, &CopyRule::to) != description_.copy.end();
+}
+
+std::size_t RunningNetwork::index_of(unsigned address) const {
+  const auto at = std::ranges::find(description_.nodes, address, &NodeDescription::address);
+  return static_cast<std::size_t>(at - description_.nodes.begin());
+}
+
+void RunningNetwork::find_signals() {
+  for (std::size_t n = 0; n < seats_.size(); ++n) {
+    Seat& seat = seats_[n];
+    seat.first_signal = signals_.size();
+    seat.is_written = description_.writes || is_copied_to(seat.description.address);
+    const std::string place = fmt::format("node@{} (address {})", n + 1, seat.description.address);
+    if (seat.is_written) {
+      // A refresh may repeat the write before while the next one waits for its turn.
+      signals_.push_back({.name = "valves of " + place,
+                          .is_output = true,
+                          .safe_value = std::uint16_t{0},
+                          .admissible_words = 2});
+    }
+    signals_.push_back({.name = "limit switches of " + place});
+    if (!seat.is_written) continue;
+    seat.block.on_change([this, signal = seat.first_signal](const ValveBlock::Change& change) {
+      if (watcher_ != nullptr) watcher_->on_shown(signal, change.after, change.when);
+    });
+  }
+}
+
+void RunningNetwork::plan_steps() {
+  for (std::size_t n = 0; n < seats_.size(); ++n) {
+    const unsigned address = seats_[n].description.address;
+    if (description_.writes && !is_copied_to(address)) steps_.push_back({n, true});
+    steps_.push_back({n, false});
+    for (const CopyRule& rule : description_.copy) {
+      if (rule.from == address) steps_.push_back({index_of(rule.to), true, n});
+    }
+  }
+}
+
+// Each write and each poll by its closed form. A host that refreshes writes between them takes longer: then
+// the form is for a cycle without, and is left open by what is measured.
+void RunningNetwork::find_cycle() {
+  const Rules& rules = description_.rules;
+  Duration sum{};
+  for (const Step& step : steps_) {
+    sum += step.is_write ? reference_write_time(rules)
+                         : reference_poll_time(rules, seats_[step.node].way).total();
+  }
+  const bool is_refreshed = sum > rules.refresh && std::ranges::any_of(steps_, &Step::is_write);
+  // Between any two commands a refresh may come.
+  if (is_refreshed) sum += static_cast<std::int64_t>(steps_.size()) * reference_write_time(rules);
+  const Duration rounding = kernel::kNanosecond * static_cast<std::int64_t>(2 * steps_.size());
+  cycles_ = {{"poll cycle", sum,
+              is_refreshed ? "sum of the polls and writes, and a refresh in front of each of them"
+                           : "sum of the polls and writes of one cycle, each by its frames and silences",
+              is_refreshed, rounding}};
+}
+
+// ---- the installation ----
+
+void RunningNetwork::start() {
+  const Time now = segment_.now();
+  started_ = now;
+  has_response_ = false;
+  for (Seat& seat : seats_) {
+    seat.device->set_power(false, now);
+    if (seat.block.valves() != 0) seat.block.drive_valves(0, now);
+    seat.device->set_power(true, now);
+    segment_.refresh(seat.number);
+    seat.is_open = seat.is_read = seat.is_closing = false;
+    seat.retries = 0;
+  }
+  host_->set_power(false, now);
+  host_->set_dip(description_.dip);
+  host_->set_power(true, now);
+  segment_.refresh(host_number_);
+  closings_.clear();
+  next_step_ = 0;
+  is_on_ = true;
+  wake();
+}
+
+void RunningNetwork::stop() {
+  const Time now = segment_.now();
+  host_->set_power(false, now);
+  segment_.refresh(host_number_);
+  is_on_ = false;
+  wakes_at_ = kernel::kNever;
+}
+
+network::State RunningNetwork::state() const {
+  const Time now = segment_.now();
+  if (has_response_ && node_drives_.last) {
+    return now - *node_drives_.last > longest_silence() ? network::State::stopped
+                                                        : network::State::exchanging;
+  }
+  return !is_on_ || now - started_ > bring_up_limit() ? network::State::stopped : network::State::coming_up;
+}
+
+// A poll that fails in each attempt.
+Duration RunningNetwork::longest_exchange() const {
+  const Rules& rules = description_.rules;
+  const PollTime poll = reference_poll_time(rules, seats_.back().way);
+  const Duration attempt = poll.total() + response_time_out(rules) + poll.silence;
+  return reference_write_time(rules) * 2 + rules.read_attempts * attempt;
+}
+
+// Until a read is answered that waits after others, each with a refresh in front of it.
+Duration RunningNetwork::longest_queue() const {
+  return 2 * static_cast<std::int64_t>(kCommandsAhead + 1) * longest_exchange();
+}
+
+Duration RunningNetwork::longest_silence() const {
+  return std::max(kLeastSilence,
+                  kCyclesOfSilence * static_cast<std::int64_t>(seats_.size()) * longest_exchange());
+}
+
+Duration RunningNetwork::bring_up_limit() const {
+  return kernel::kSecond + longest_silence();
+}
+
+network::RecoveryLimit RunningNetwork::recovery_limit() const {
+  const std::uint64_t exchanges = kCyclesToRecover * seats_.size();
+  return {exchanges, static_cast<std::int64_t>(kCyclesToRecover) * cycles_.front().theory, "two poll cycles",
+          judge::Standing::own};
+}
+
+network::ExchangeWords RunningNetwork::exchange_words() const {
+  return {"polls", "", "polls without a right response"};
+}
+
+std::vector<measure::Condition> RunningNetwork::conditions() const {
+  const Rules& rules = description_.rules;
+  const PollTime poll = reference_poll_time(rules, seats_.front().way);
+  return {
+      {"nodes", fmt::format("{} on {:g} m", seats_.size(), description_.length_m)},
+      {"bit rate", fmt::format("{} bit/s, position {} of the switches", rules.bit_rate, description_.dip)},
+      {"characters", std::string(text_of(rules.characters))},
+      {"poll of the first node",
+       fmt::format("{}: command {}, turnaround time {}, response {}, silence {}, way {}",
+                   kernel::describe(poll.total()), kernel::describe(poll.command),
+                   kernel::describe(poll.turnaround_time), kernel::describe(poll.response),
+                   kernel::describe(poll.silence), kernel::describe(poll.way))},
+      {"write", kernel::describe(reference_write_time(rules))}};
+}
+
+std::vector<network::ProtectedFrame> RunningNetwork::protected_frames() const {
+  const Duration cycle = cycles_.front().theory / static_cast<std::int64_t>(seats_.size());
+  return {{"response", "", 8 * kResponseOctets, cycle}, {"command", "", 8 * kCommandOctets, cycle}};
+}
+
+void RunningNetwork::set_source(std::size_t signal, std::uint16_t word) {
+  const auto seat = std::ranges::find_if(
+      seats_, [signal](const Seat& one) { return signal - one.first_signal < (one.is_written ? 2U : 1U); });
+  FIELDPROOF_CHECK(seat != seats_.end(), "a signal of the network is set");
+  if (signals_[signal].is_output) {
+    seat->valves = word;
+    seat->is_given = true;
+  } else {
+    seat->block.set_input(0, word);
+  }
+}
+
+void RunningNetwork::set_source_function(std::size_t signal, std::function<std::uint16_t(Time)> word) {
+  const auto seat = std::ranges::find_if(
+      seats_, [signal](const Seat& one) { return signal - one.first_signal < (one.is_written ? 2U : 1U); });
+  FIELDPROOF_CHECK(seat != seats_.end() && !signals_[signal].is_output,
+                   "a signal in time is one of an input");
+  seat->block.set_signal(0, std::move(word));
+}
+
+std::uint16_t RunningNetwork::image(std::size_t) const {
+  FIELDPROOF_CHECK(false, "no signal of a valve bus has an image");
+  return 0;
+}
+
+// From the sample, when the node is sure of the command, to the valves, when the other node is sure of the
+// write: the silences that make them sure are equally long.
+std::vector<network::CopiedPath> RunningNetwork::paths() const {
+  std::vector<network::CopiedPath> paths;
+  for (const CopyRule& rule : description_.copy) {
+    const Seat& from = seats_[index_of(rule.from)];
+    const Seat& to = seats_[index_of(rule.to)];
+    const PollTime poll = reference_poll_time(description_.rules);
+    paths.push_back({.name = fmt::format("limit switches of {} to valves of {}", rule.from, rule.to),
+                     .from = static_cast<int>(index_of(rule.from)) + 1,
+                     .to = static_cast<int>(index_of(rule.to)) + 1,
+                     .source = from.first_signal + (from.is_written ? 1 : 0),
+                     .sink = to.first_signal,
+                     .theory = {cycles_.front().theory, poll.turnaround_time + poll.response + poll.silence +
+                                                            poll.command + from.way + to.way}});
+  }
+  return paths;
+}
+
+void RunningNetwork::end() {
+  host_->end();
+  for (Seat& seat : seats_) seat.device->end();
+}
+
+// ---- the PC ----
+
+RunningNetwork::Seat* RunningNetwork::seat_of(std::uint8_t id) {
+  const std::size_t n = index_of(id);
+  return n < seats_.size() ? &seats_[n] : nullptr;
+}
+
+void RunningNetwork::wake() {
+  wakes_at_ = segment_.now();
+  segment_.refresh(pc_number_);
+}
+
+void RunningNetwork::on_response(const HostResponse& response, Time when) {
+  Seat* const seat = seat_of(response.id);
+  // An old response says again what was known.
+  if (seat == nullptr || response.is_old) return;
+  has_response_ = true;
+  seat->switches = static_cast<std::uint16_t>(response.data0 | response.data1 << 8);
+  if (watcher_ != nullptr) {
+    watcher_->on_shown(seat->first_signal + (seat->is_written ? 1 : 0), seat->switches, when);
+    if (seat == &seats_.front()) watcher_->on_cycle_begin(0, when);
+  }
+  close_later(*seat, Outcome::served);
+}
+
+void RunningNetwork::on_error(const HostError& error, Time) {
+  Seat* const seat = seat_of(error.id);
+  if (seat == nullptr) return;
+  if (error.kind == HostErrorKind::not_acknowledged || error.kind == HostErrorKind::readback_mismatch) {
+    seat->outcome = Outcome::rejected;
+    return;
+  }
+  close_later(*seat, error.kind == HostErrorKind::no_response ? Outcome::missing : Outcome::rejected);
+}
+
+// A write in the exchange was sent before the read, so its time to reach the valves has begun a write
+// distance earlier than the response came.
+void RunningNetwork::close_later(Seat& seat, Outcome outcome) {
+  seat.is_read = false;
+  if (!seat.is_open || seat.is_closing) return wake();
+  if (outcome != Outcome::served) seat.outcome = outcome;
+  seat.is_closing = true;
+  const Rules& rules = description_.rules;
+  const Duration rest = seat.is_written ? actuation_limit(rules) - rules.write_distance : Duration{};
+  const Time at = segment_.now() + std::max(rest, Duration{});
+  const auto node = static_cast<std::size_t>(
+      std::ranges::find_if(seats_, [&](const Seat& one) { return &one == &seat; }) - seats_.begin());
+  const auto after = std::ranges::find_if(closings_, [at](const Closing& other) { return other.at > at; });
+  closings_.insert(after, {at, node});
+  wake();
+}
+
+void RunningNetwork::close(std::size_t node, Time now) {
+  Seat& seat = seats_[node];
+  const std::uint64_t retries = host_->counters(id_of(seat.description)).retries;
+  const network::Exchange exchange{.end = now,
+                                   .kind = network::ExchangeKind::data,
+                                   .outcome = seat.outcome,
+                                   .retries = retries - std::min(retries, seat.retries),
+                                   .first_signal = seat.first_signal,
+                                   .signal_count = seat.is_written ? 2U : 1U};
+  seat.retries = retries;
+  seat.is_open = seat.is_closing = seat.is_read = false;
+  seat.outcome = Outcome::served;
+  if (watcher_ != nullptr) watcher_->on_exchange(exchange);
+}
+
+void RunningNetwork::on_time(Time now) {
+  if (!is_on_) return;
+  while (!closings_.empty() && closings_.front().at <= now) {
+    const std::size_t node = closings_.front().node;
+    closings_.pop_front();
+    close(node, now);
+  }
+  give_up_lost(now);
+  ask_next(now);
+  wakes_at_ = closings_.empty() ? kernel::kNever : closings_.front().at;
+  for (const Seat& seat : seats_) {
+    if (seat.is_read && !seat.is_closing) wakes_at_ = std::min(wakes_at_, seat.asked + longest_queue());
+  }
+}
+
+// What the host reports nothing about was lost within it.
+void RunningNetwork::give_up_lost(Time now) {
+  for (Seat& seat : seats_) {
+    if (seat.is_read && !seat.is_closing && seat.asked + longest_queue() <= now)
+      close_later(seat, Outcome::missing);
+  }
+}
+
+bool RunningNetwork::may_ask(const Step& step) const {
+  const Seat& seat = seats_[step.node];
+  if (seat.is_read || seat.is_closing) return false;
+  return !step.copied_from || !seats_[*step.copied_from].is_read;
+}
+
+void RunningNetwork::ask_next(Time now) {
+  const std::size_t all_room = description_.rules.fifo_octets;
+  for (std::size_t n = 0; n < steps_.size(); ++n) {
+    const std::size_t room = host_->fifo_room();
+    const std::size_t waiting = all_room - std::min(all_room, room);
+    if (room < kCommandOfPc || waiting >= kCommandsAhead * kCommandOfPc) break;
+    const Step& step = steps_[next_step_];
+    if (!may_ask(step)) break;
+    Seat& seat = seats_[step.node];
+    if (step.copied_from && !seat.is_given) seat.valves = seats_[*step.copied_from].switches;
+    const auto word = step.is_write ? seat.valves : std::uint16_t{0};
+    const std::array<std::uint8_t, kCommandOfPc> command{
+        id_of(seat.description),
+        static_cast<std::uint8_t>(step.is_write ? description_.rules.write_command
+                                                : description_.rules.read_command),
+        static_cast<std::uint8_t>(word & 0xFF), static_cast<std::uint8_t>(word >> 8)};
+    seat.is_open = true;
+    seat.is_read = !step.is_write;
+    if (seat.is_read) seat.asked = now;
+    next_step_ = (next_step_ + 1) % steps_.size();
+    host_->write(command, now);
+  }
+  segment_.refresh(host_number_);
+}
+
+}  // namespace fieldproof::valve_bus
