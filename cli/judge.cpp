@@ -20,6 +20,15 @@ std::string reason_not_judgeable(const CaseFile& stored) {
   return {};
 }
 
+std::string change_text(const judge::CaseResult& before, const judge::CaseResult& now) {
+  const std::string id = reports::escaped_line(before.id);
+  if (now.verdict == before.verdict && now.reason == before.reason)
+    return fmt::format("changed: {} has another fingerprint\n", id);
+  return fmt::format("changed: {} was {} '{}', is {} '{}'\n", id, judge::name(before.verdict),
+                     reports::escaped_line(before.reason), judge::name(now.verdict),
+                     reports::escaped_line(now.reason));
+}
+
 }  // namespace
 
 int judge_again(Session& session) {
@@ -45,15 +54,7 @@ int judge_again(Session& session) {
     if (result.verdict != before.verdict || result.reason != before.reason ||
         result.fingerprint != before.fingerprint) {
       ++changed;
-      const bool is_same = result.verdict == before.verdict && result.reason == before.reason;
-      if (is_same) {
-        session.terminal.print(
-            fmt::format("changed: {} has another fingerprint\n", reports::escaped_line(before.id)));
-      } else
-        session.terminal.print(fmt::format("changed: {} was {} '{}', is {} '{}'\n",
-                                           reports::escaped_line(before.id), judge::name(before.verdict),
-                                           reports::escaped_line(before.reason), judge::name(result.verdict),
-                                           reports::escaped_line(result.reason)));
+      session.terminal.print(change_text(before, result));
     }
     again.cases.push_back(result);
   }

@@ -57,7 +57,7 @@ std::vector<conformance::Entry> failed_entries(Session& session) {
   session.terminal.log(
       fmt::format("{} of the cases of {} did not pass", failed.size(), directory.path().string()));
   // The part of a whole that the stored run was is what it has failed in.
-  session.settings.clear_observations("shard");
+  session.settings.reset("shard");
   if (failed.empty()) return {};
   std::vector<conformance::Entry> entries = session.catalogue.select(failed);
   if (!session.operands.empty()) {

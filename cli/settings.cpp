@@ -184,7 +184,7 @@ const Setting& Settings::setting(std::string_view name) const {
   return found->second;
 }
 
-void Settings::clear_observations(std::string_view name) {
+void Settings::reset(std::string_view name) {
   if (const Option* option = find_option(name, verb_))
     settings_.insert_or_assign(std::string(name), fallback_of(*option));
 }

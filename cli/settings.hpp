@@ -60,7 +60,7 @@ class Settings {
   std::size_t choice(std::string_view name) const;
 
   // As if it had never been given.
-  void clear_observations(std::string_view name);
+  void reset(std::string_view name);
 
   Origin origin(std::string_view name) const { return setting(name).origin; }
   [[noreturn]] void refuse(std::string_view name, const std::string& sentence) const;

@@ -78,9 +78,9 @@ Outcome guarded_run(const Entry& entry, const Setup& setup, const RunOptions& ma
       [&] { return fmt::format("case {}, seed {}", entry.test_case->id, setup.seed); });
   try {
     if (manner.reset) {
-      if (const auto reason_not_runnable = manner.reset(*entry.test_case)) {
+      if (const auto why_not = manner.reset(*entry.test_case)) {
         return of_the_bench(*entry.test_case, Verdict::inconclusive, kResetFailed,
-                            "the implementation is reset before a case", *reason_not_runnable);
+                            "the implementation is reset before a case", *why_not);
       }
     }
     return entry.suite->run(*entry.test_case, setup);

@@ -84,7 +84,7 @@ bool RuleChannel::pass(const line::Waveform& sent, line::Waveforms& arrivals) {
   if (claims_.empty() && !is_edited_ && mutes_.empty() && promised_.empty()) return false;
   const std::size_t first = arrivals.size();
   write(is_edited_ ? edited_ : sent, arrivals);
-  await_response_window(sent, arrivals, first);
+  settle(sent, arrivals, first);
   return true;
 }
 
@@ -264,8 +264,7 @@ void RuleChannel::forget_before(kernel::Time time) {
 }
 
 // Holds the new arrivals against the mutes and against what was promised by earlier transmissions.
-void RuleChannel::await_response_window(const line::Waveform& sent, line::Waveforms& arrivals,
-                                        std::size_t first) {
+void RuleChannel::settle(const line::Waveform& sent, line::Waveforms& arrivals, std::size_t first) {
   if (!mutes_.empty()) silence(arrivals, first);
   work_.spend((arrivals.size() - first) * (kStepsOfAnArrival + promised_.size()));
   const kernel::Time end = sent.end();

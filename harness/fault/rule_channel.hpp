@@ -68,7 +68,7 @@ class RuleChannel final : public Channel {
   line::Levels& levels_to_change(const line::Waveform& sent);
   void write(const line::Waveform& sent, line::Waveforms& arrivals);
   void forget_before(kernel::Time time);
-  void await_response_window(const line::Waveform& sent, line::Waveforms& arrivals, std::size_t first);
+  void settle(const line::Waveform& sent, line::Waveforms& arrivals, std::size_t first);
   void silence(line::Waveforms& arrivals, std::size_t first) const;
   void mute(Interval interval);
 

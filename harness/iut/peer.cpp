@@ -82,7 +82,7 @@ Peer Peer::at_unix_socket(std::string what, const std::string& path) {
 }
 
 Peer Peer::at_tcp_port(std::string what, const std::string& host, const std::string& port,
-                       milliseconds observation_timeout) {
+                       milliseconds longest_wait) {
   Peer peer(std::move(what));
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
@@ -91,7 +91,7 @@ Peer Peer::at_tcp_port(std::string what, const std::string& host, const std::str
     cannot_connect(peer.what_, ::gai_strerror(failure));
   }
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> addresses(found, &::freeaddrinfo);
-  const timeval limit{observation_timeout.count() / 1000, (observation_timeout.count() % 1000) * 1000};
+  const timeval limit{longest_wait.count() / 1000, (longest_wait.count() % 1000) * 1000};
   int error = 0;
   for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
     peer.socket_ = Descriptor(::socket(one->ai_family, one->ai_socktype | SOCK_CLOEXEC, one->ai_protocol));

@@ -30,7 +30,7 @@ class Peer {
   static Peer at_socket(std::string what, Descriptor socket);
   static Peer at_unix_socket(std::string what, const std::string& path);
   static Peer at_tcp_port(std::string what, const std::string& host, const std::string& port,
-                          std::chrono::milliseconds observation_timeout);
+                          std::chrono::milliseconds longest_wait);
 
   // To one that has gone nothing is sent: the next `receive` tells what it said last, and that it has gone.
   void send(std::span<const std::uint8_t> message, std::chrono::milliseconds limit);

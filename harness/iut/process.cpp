@@ -138,8 +138,8 @@ Process::~Process() {
 
 // Looks and does not take it away: as long as the leader can still be waited for its number is no other's,
 // and so the signal to its group reaches nobody else.
-bool Process::has_ended(milliseconds observation_timeout) {
-  const auto until = std::chrono::steady_clock::now() + observation_timeout;
+bool Process::has_ended(milliseconds longest_wait) {
+  const auto until = std::chrono::steady_clock::now() + longest_wait;
   while (!has_ended_) {
     siginfo_t seen{};
     const int failure = ::waitid(P_PID, static_cast<id_t>(id_), &seen, WEXITED | WNOHANG | WNOWAIT);

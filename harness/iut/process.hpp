@@ -46,7 +46,7 @@ class Process {
   Descriptor& from_errors() { return from_errors_; }
 
   // Waits so long for its end. Whether it has ended.
-  bool has_ended(std::chrono::milliseconds observation_timeout);
+  bool has_ended(std::chrono::milliseconds longest_wait);
   // "ended with exit code 3", "was ended by signal 11 (Segmentation fault)"; of one that has ended.
   std::string how_it_ended() const;
   // All processes of the group, at once and for certain. What how_it_ended() says stays.

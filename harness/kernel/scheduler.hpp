@@ -83,7 +83,7 @@ class Scheduler {
 
   static Key earlier(Key a, Key b);
   void set_key(std::size_t slot, Key key);
-  void await_response_window();
+  void settle();
   Time next_without_fired() const;
   void fire();
   void grow();
@@ -165,7 +165,7 @@ inline Time Scheduler::next() const {
   return fired_ == kNoSlot ? Time{Duration{nodes_[1].time}} : next_without_fired();
 }
 
-inline void Scheduler::await_response_window() {
+inline void Scheduler::settle() {
   if (fired_ != kNoSlot) {
     set_key(fired_, kIdle);
     fired_ = kNoSlot;
@@ -177,12 +177,12 @@ inline void Scheduler::fire() {
   fired_ = static_cast<std::size_t>(first.order & kSlotMask);
   now_ = Time{Duration{first.time}};
   timers_[fired_]->on_time(now_);
-  await_response_window();
+  settle();
 }
 
 inline bool Scheduler::step() {
   // A handler that left by an exception, or one that steps the scheduler itself, has not settled.
-  await_response_window();
+  settle();
   if (nodes_[1].time == kIdle.time) return false;
   fire();
   return true;
@@ -191,7 +191,7 @@ inline bool Scheduler::step() {
 inline void Scheduler::run_until(Time end) {
   FIELDPROOF_CHECK(end >= now_ && end != kNever,
                    "a scheduler is run to an instant that has passed or to never");
-  await_response_window();
+  settle();
   const std::int64_t last = end.time_since_epoch().count();
   while (nodes_[1].time <= last) fire();
   now_ = end;

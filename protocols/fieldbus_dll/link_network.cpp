@@ -160,9 +160,13 @@ LinkNetwork::LinkNetwork(const LinkDescription& description, const LinkRules& ru
       tester_(rules) {
   FIELDPROOF_CHECK(!violation_of(description_), "a link that runs is one within its limits");
   line_.tap_driven(*this);
+  // A buffer has the latest word. A word that waits for a token outlives each one that is lost: it is late,
+  // not wrong, however many that are.
+  const bool has_buffers = description_.profile == LinkProfile::foundation;
+  constexpr unsigned kMostWaiting = 16;
   for (const DataDescription& item : description_.data) {
-    signals_.push_back(
-        {.name = fmt::format("word of node {} at node {}", item.from, item.to), .admissible_words = 2});
+    signals_.push_back({.name = fmt::format("word of node {} at node {}", item.from, item.to),
+                        .admissible_words = has_buffers ? 2 : kMostWaiting});
   }
   sources_.resize(signals_.size());
   has_arrived_.resize(signals_.size());

@@ -15,10 +15,6 @@ constexpr std::size_t kKnownInstants = 256;
 
 }  // namespace
 
-CharacterProfile character_profile_of(const iut::CaseBegin& begin) {
-  return static_cast<CharacterProfile>(std::clamp<std::int64_t>(iut::setting(begin, "characters", 0), 0, 2));
-}
-
 AttachedLine::AttachedLine(iut::AttachedCase& attached, const Rules& rules)
     : attached_(attached), rules_(rules), codec_(rules), transmitter_(rules) {
   if (attached.unit_kind() != iut::UnitKind::telegrams) return;

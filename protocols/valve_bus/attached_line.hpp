@@ -49,7 +49,4 @@ class AttachedLine {
   std::deque<Known> known_;  // the last ones
 };
 
-// As a setting tells it: 0 is P0, 1 is P1, 2 is P2.
-CharacterProfile character_profile_of(const iut::CaseBegin& begin);
-
 }  // namespace fieldproof::valve_bus
