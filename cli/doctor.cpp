@@ -129,7 +129,7 @@ void Doctor::examine_line(const std::string& uri) {
   const Role& role = role_named(role_.protocol + "/" + role_.role);
   if (role.uart == nullptr)
     throw kernel::Error(kernel::ErrorKind::usage, fmt::format("'{}': {}", uri, no_serial_line_for(role)));
-  const iut::UartLine uart = role.uart({}, nullptr);  // where a case says nothing
+  const iut::UartLine uart = role.uart({});  // where a case says nothing
   const std::int64_t rate = settings.bit_rate.value_or(uart.bit_rate);
   const line::CharacterFormat format = settings.format.value_or(uart.of_uart);
   line.set(rate, format);

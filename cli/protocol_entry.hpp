@@ -3,7 +3,6 @@
 // run_program.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -33,7 +32,7 @@ struct Role {
   // The same station, but it receives and sends telegrams; null where the role has none.
   std::unique_ptr<iut::Device> (*in_telegrams)(std::unique_ptr<iut::Device>) = nullptr;
   // How its characters go over a serial line; null where it cannot be judged there, for this reason.
-  iut::UartLine (*uart)(const iut::CaseBegin&, const std::function<std::uint64_t(iut::Item)>&) = nullptr;
+  iut::MakeUartLine uart = nullptr;
   std::string_view why_not_serial = "its line carries no characters of a UART";
   // The items that a station of the role reads.
   std::span<const iut::Item> inputs{};

@@ -70,7 +70,7 @@ std::unique_ptr<fieldbus_dll::FfDevice> ff_mutant_of(const std::string& name,
 
 // ---- serial lines ----
 
-iut::UartLine node_uart(const iut::CaseBegin& begin, const std::function<std::uint64_t(iut::Item)>&) {
+iut::UartLine node_uart(const iut::CaseBegin& begin) {
   return valve_bus::uart_line(valve_bus::node_configuration_of(begin).rules);
 }
 constexpr std::array kNodeInputs{valve_bus::kLimitSwitches};
@@ -99,7 +99,7 @@ constexpr Role with_telegrams(Role role, decltype(Role::in_telegrams) in_telegra
   return role;
 }
 
-constexpr Role with_uart(Role role, decltype(Role::uart) uart, std::span<const iut::Item> inputs,
+constexpr Role with_uart(Role role, iut::MakeUartLine uart, std::span<const iut::Item> inputs,
                          decltype(Role::alone) alone) {
   role.uart = uart;
   role.inputs = inputs;

@@ -16,7 +16,7 @@ namespace fieldproof::cli {
 class SerialPool {
  public:
   SerialPool(iut::RoleName role, iut::MakeUartLine make_uart)
-      : role_(std::move(role)), make_uart_(std::move(make_uart)) {}
+      : role_(std::move(role)), make_uart_(make_uart) {}
 
   // Opens what is not open yet: first the upper channel, which may be what makes the line. Throws
   // kernel::Error(implementation) for one that cannot be used.

@@ -12,11 +12,10 @@ constexpr std::size_t kMostReports = 100'000;
 }  // namespace
 
 bool LinePlayer::start(const CaseBegin& begin) {
-  begin_ = begin;
   station_.reset();
   line_.set_clock(clock_);
   is_supplied_ = false;
-  set_line();
+  set_line(begin);
   line_.forget_arrived();
   now_ = driven_until_ = kernel::kStart;
   blocks_.clear();
@@ -26,9 +25,8 @@ bool LinePlayer::start(const CaseBegin& begin) {
   return station_->begin(begin, *this);
 }
 
-void LinePlayer::set_line() {
-  const auto read = [this](Item item) { return values_[item]; };
-  uart_ = make_uart_(begin_, is_supplied_ && bench_ ? std::function<std::uint64_t(Item)>(read) : nullptr);
+void LinePlayer::set_line(const CaseBegin& begin) {
+  uart_ = make_uart_(begin);
   code_ = std::make_unique<line::CharacterCode>(uart_.on_wire);
   receiver_ = std::make_unique<line::CharacterReceiver>(uart_.on_wire, uart_.bit_rate);
   line_.set(uart_.bit_rate, uart_.of_uart);
@@ -64,21 +62,14 @@ void LinePlayer::set_power(bool is_on, kernel::Time now) {
   now_ = std::max(now_, now);
   look_at_inputs();
   is_supplied_ = is_on;
-  if (is_on) set_line();
   blocks_.clear();
   driven_until_ = now_;
   station_->set_power(is_on, now_);
   report();
 }
 
-void LinePlayer::receive(unsigned port, std::span<const Character> characters, kernel::Time) {
-  FIELDPROOF_CHECK(port != 0, "a station on a real line receives from that line");
-  advance(clock_.now());
-  now_ = std::max(now_, clock_.now());
-  std::vector<Character> stamped(characters.begin(), characters.end());
-  for (Character& one : stamped) one.start = one.busy_until = now_;
-  station_->receive(port, stamped, now_);
-  report();
+void LinePlayer::receive(unsigned, std::span<const Character>, kernel::Time) {
+  FIELDPROOF_CHECK(false, "a station on a real line receives from that line");
 }
 void LinePlayer::receive(unsigned, const line::Waveform&) {
   FIELDPROOF_CHECK(false, "a station on a real line receives from that line");

@@ -27,7 +27,7 @@ class LinePlayer final : public Device, private Bench {
   // The line must outlive the player. `inputs`: the items that a station of the role reads.
   LinePlayer(SerialLine& line, MakeUartLine make_uart, std::vector<Item> inputs, MakeStation make_station)
       : line_(line),
-        make_uart_(std::move(make_uart)),
+        make_uart_(make_uart),
         inputs_(std::move(inputs)),
         make_station_(std::move(make_station)) {}
 
@@ -61,7 +61,7 @@ class LinePlayer final : public Device, private Bench {
   using Report = std::variant<Write, Transmission>;
 
   bool start(const CaseBegin& begin);
-  void set_line();
+  void set_line(const CaseBegin& begin);
   void look_at_inputs();
   // Waits until then at most, or for what comes first, and does what is due.
   void turn(kernel::Time until, int descriptor);
@@ -83,7 +83,6 @@ class LinePlayer final : public Device, private Bench {
   std::vector<Item> inputs_;
   MakeStation make_station_;
   WallClock clock_;
-  CaseBegin begin_;
   std::unique_ptr<Device> station_;
   UartLine uart_;
   std::unique_ptr<line::CharacterCode> code_;

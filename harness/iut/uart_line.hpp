@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string_view>
 
 #include "harness/iut/device.hpp"
@@ -28,9 +27,8 @@ struct UartLine {
   }
 };
 
-// Of the settings of a case. `read` gives the items of the process side, such as switches for the bit rate.
-using MakeUartLine =
-    std::function<UartLine(const CaseBegin& begin, const std::function<std::uint64_t(Item)>& read)>;
+// Of the settings of a case.
+using MakeUartLine = UartLine (*)(const CaseBegin& begin);
 
 // A setting of `case_begin`: nanoseconds of the monotonic clock at which the case has begun.
 inline constexpr std::string_view kClockOrigin = "clock_origin_ns";

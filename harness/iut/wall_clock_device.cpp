@@ -22,9 +22,6 @@ constexpr std::uint64_t kMostUnasked = 1U << 14U;  // of a box after what it was
 
 }  // namespace
 
-WallClockDevice::WallClockDevice(const SerialAttachment& attachment, MakeUartLine make_uart)
-    : attachment_(attachment), make_uart_(std::move(make_uart)) {}
-
 Capabilities WallClockDevice::capabilities() const {
   const bool has_upper = attachment_.upper != nullptr;
   return {.process_side = has_upper,
@@ -36,11 +33,10 @@ Capabilities WallClockDevice::capabilities() const {
 }
 
 bool WallClockDevice::begin(const CaseBegin& begin, Bench& bench) {
-  begin_ = begin;
   bench_ = &bench;
   clock_ = WallClock();
   attachment_.line->set_clock(clock_);
-  set_line();
+  set_line(make_uart_(begin));
   if (attachment_.upper != nullptr) {
     CaseBegin of_box = begin;
     of_box.settings.emplace_back(kClockOrigin, clock_.origin());
@@ -52,9 +48,8 @@ bool WallClockDevice::begin(const CaseBegin& begin, Bench& bench) {
   return true;
 }
 
-void WallClockDevice::set_line() {
-  const auto read = [this](Item item) { return bench_->read(item, now_); };
-  uart_ = make_uart_(begin_, is_supplied_ ? std::function<std::uint64_t(Item)>(read) : nullptr);
+void WallClockDevice::set_line(const UartLine& uart) {
+  uart_ = uart;
   character_ = uart_.character_time();
   step_ = std::max(character_, kLeastStep);
   // With an upper channel it is known how much is on its way, and waited for.
@@ -77,9 +72,7 @@ void WallClockDevice::set_anchor(const Anchor& anchor) {
 void WallClockDevice::set_power(bool is_on, kernel::Time now) {
   now_ = now;
   if (is_supplied_) flush(now);
-  const bool is_first = !is_supplied_;
   is_supplied_ = is_on;
-  if (is_on && is_first) set_line();
   if (attachment_.upper == nullptr) {
     if (!is_on || now != kernel::kStart)
       refuse("the supply of the box cannot be switched without an upper channel");
@@ -116,19 +109,9 @@ void WallClockDevice::receive(unsigned, const line::Waveform&) {
   refuse("levels cannot be driven");
 }
 
-void WallClockDevice::receive(unsigned port, std::span<const Character> characters, kernel::Time now) {
+void WallClockDevice::receive(unsigned, std::span<const Character> characters, kernel::Time now) {
   now_ = now;
-  if (port == 0) {
-    for (const Character& character : characters) send(character);
-    return;
-  }
-  if (attachment_.upper == nullptr) refuse("without an upper channel the bench reaches the line alone");
-  flush(now);
-  const kernel::Time asked = clock_.now();
-  std::vector<Character> stamped(characters.begin(), characters.end());
-  for (Character& one : stamped) one.start = one.busy_until = asked;
-  attachment_.upper->receive(port, stamped, asked);
-  set_anchor({now, {asked, asked}});
+  for (const Character& character : characters) send(character);
 }
 
 // A UART sends whole characters of its format at its bit rate.

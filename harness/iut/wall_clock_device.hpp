@@ -10,8 +10,8 @@
 #include "harness/iut/serial_line.hpp"
 #include "harness/iut/uart_line.hpp"
 
-// A box at a serial line as an implementation, in wall-clock time, in any role whose line carries the
-// characters of a UART (port 0).
+// A box at a serial line as an implementation, in wall-clock time, in any role whose one port is a line
+// that carries the characters of a UART.
 //
 // The time of the case follows the clock of the machine by a margin: an instant of the case comes when all
 // that the line had brought by then, and a margin later, has been read. So what the box sends can be put
@@ -31,7 +31,8 @@ struct SerialAttachment {
 
 class WallClockDevice final : public Device, private Bench {
  public:
-  WallClockDevice(const SerialAttachment& attachment, MakeUartLine make_uart);
+  WallClockDevice(const SerialAttachment& attachment, MakeUartLine make_uart)
+      : attachment_(attachment), make_uart_(make_uart) {}
 
   UnitKind unit_kind() const override { return UnitKind::characters; }
   Capabilities capabilities() const override;
@@ -59,7 +60,7 @@ class WallClockDevice final : public Device, private Bench {
     std::uint64_t value = 0;
   };
 
-  void set_line();
+  void set_line(const UartLine& uart);
   void set_anchor(const Anchor& anchor);
   kernel::Time wall_of(kernel::Time instant) const { return anchor_.wall.latest + (instant - anchor_.at); }
   kernel::Time instant_of(kernel::Time wall) const { return anchor_.at + (wall - anchor_.wall.latest); }
@@ -90,7 +91,6 @@ class WallClockDevice final : public Device, private Bench {
 
   SerialAttachment attachment_;
   MakeUartLine make_uart_;
-  CaseBegin begin_;
   Bench* bench_ = nullptr;
   UartLine uart_;
   kernel::Duration character_{};
