@@ -116,6 +116,9 @@ void Doctor::examine_channel(iut::DevicePool& pool, std::string_view what) {
 
 void Doctor::examine_line(const std::string& uri) {
   const iut::SerialSettings settings = iut::serial_settings(uri);
+  const Role& role = role_named(role_.protocol + "/" + role_.role);
+  if (role.uart == nullptr)
+    throw kernel::Error(kernel::ErrorKind::usage, fmt::format("'{}': {}", uri, no_serial_line_for(role)));
   std::optional<iut::DevicePool> upper;
   if (settings.upper.empty()) {
     say("upper channel", "none: valves and switches are not seen, settings and supply stay as they are");
@@ -126,9 +129,6 @@ void Doctor::examine_line(const std::string& uri) {
   iut::SerialLine line(settings.path, clock);
   say("line", line.is_terminal() ? "open; a pseudo terminal: no bit rate, parity, framing, break, ninth bit"
                                  : "open");
-  const Role& role = role_named(role_.protocol + "/" + role_.role);
-  if (role.uart == nullptr)
-    throw kernel::Error(kernel::ErrorKind::usage, fmt::format("'{}': {}", uri, no_serial_line_for(role)));
   const iut::UartLine uart = role.uart({});  // where a case says nothing
   const std::int64_t rate = settings.bit_rate.value_or(uart.bit_rate);
   const line::CharacterFormat format = settings.format.value_or(uart.of_uart);

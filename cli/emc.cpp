@@ -116,6 +116,7 @@ class Campaign {
     done_.duration = virtual_time_from(settings);
     done_.has_bursts = wants_bursts(settings);
     done_.channel_caveats = network_->undetected_caveats();
+    network_->make(done_.seed);  // who cannot take part ends the call, and is no verdict
     planned_ = tests_from(settings, done_.has_bursts);
     for (EmcTest& test : planned_) {
       if (!test.has_bursts()) test.undetected = network_->undetected(test.flip_probability);

@@ -61,9 +61,25 @@ TEST_F(Networks, TakeAnImplementationOutsideAtAnyPlace) {
   EXPECT_HOLDS(measured.out, "limit switches of 1 to valves of 42");
 }
 
-TEST_F(Networks, OneThatDiesIsCriterionDWithItsReason) {
+TEST_F(Networks, OneThatCannotBeAttachedEndsTheCall) {
   const Called called = emc({"valve_bus", "--duration", "300ms", "--iut", "node@2=exec:/bin/false"});
-  EXPECT_NE(called.exit_code, 0);
+  EXPECT_EQ(called.exit_code, 5) << called.out << called.err;
+}
+
+TEST_F(Networks, JudgeTheReferenceOutsideAsInside) {
+  for (const char* role :
+       {"fieldbus_dll/isa_dle", "fieldbus_dll/isa_las", "fieldbus_dll/ff_device", "fieldbus_dll/ff_las",
+        "valve_bus/node", "valve_bus/host", "interbus/slave", "interbus/master"}) {
+    const std::string path = role;
+    const std::string protocol = path.substr(0, path.find('/'));
+    const std::string name = path.substr(path.find('/') + 1);
+    const auto ledger = [&](const std::string& iut) {
+      const Called called = emc({protocol, "--duration", "1s", "--iut", name + "@1=" + iut});
+      EXPECT_EQ(called.exit_code, 0) << iut << called.out << called.err;
+      return only_test().at("ledger");
+    };
+    EXPECT_EQ(ledger("exec:'" FIELDPROOF_EXE "' station " + path), ledger("ref")) << path;
+  }
 }
 
 TEST_F(Networks, RefuseWhatHasNoPlaceInThem) {

@@ -53,7 +53,6 @@ void IsaNetwork::add(std::uint8_t node, std::size_t position, const std::string&
   }
   Station& station = stations_.emplace_back();
   station.node = node;
-  station.is_master = is_master;
   station.device = make ? make(position, configuration) : nullptr;
   if (station.device == nullptr) {
     station.device =
@@ -85,7 +84,7 @@ std::vector<network::ProtectedFrame> IsaNetwork::protected_frames() const {
 
 void IsaNetwork::power_up(Time now) {
   for (Station& station : stations_) {
-    if (station.is_master && !std::exchange(station.has_started, true)) station.device->start(now);
+    if (!std::exchange(station.has_started, true)) station.device->start(now);
   }
 }
 

@@ -42,7 +42,6 @@ class IsaNetwork final : public LinkNetwork {
     std::uint8_t node = 0;
     std::unique_ptr<IsaDevice> device;
     std::unique_ptr<User> user;
-    bool is_master = false;
     bool has_started = false;
   };
 

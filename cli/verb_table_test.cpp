@@ -1,0 +1,112 @@
+// Subject: the program. Every verb works for every role and every attachment, or says in one sentence why it
+// cannot.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "cli/probe/program_fixture.hpp"
+#include "harness/kernel/sanitized.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+struct JudgedRole {
+  const char* protocol;
+  const char* name;
+  const char* test_case;  // a short one, that the reference passes
+
+  std::string path() const { return fmt::format("{}/{}", protocol, name); }
+  friend void PrintTo(const JudgedRole& role, std::ostream* out) { *out << role.path(); }
+};
+
+constexpr std::array kJudgedRoles = {
+    JudgedRole{"interbus", "slave", "frame_check/flipped_data_bit_is_rejected_marked_and_told"},
+    JudgedRole{"interbus", "master", "rejection/marked_status_names_the_segment"},
+    JudgedRole{"valve_bus", "node", "read/is_answered"},
+    JudgedRole{"valve_bus", "host", "request/write_is_sent_with_its_check"},
+    JudgedRole{"fieldbus_dll", "isa_dle", "single_token/one_frame_is_sent"},
+    JudgedRole{"fieldbus_dll", "isa_las", "schedule/each_item_has_its_time"},
+    JudgedRole{"fieldbus_dll", "ff_device", "probe/is_answered"},
+    JudgedRole{"fieldbus_dll", "ff_las", "schedule/each_item_has_its_time"},
+};
+
+class VerbTable : public ProgramFixture, public testing::WithParamInterface<JudgedRole> {
+ protected:
+  std::vector<std::pair<std::string, std::string>> attachments() const {
+    const std::string role = GetParam().name;
+    return {
+        {"ref", role + "=ref"},
+        {"exec:", role + "=exec:'" FIELDPROOF_EXE "' station " + GetParam().path()},
+        {"plugin:", role + "=plugin:" VALVE_NODE_PLUGIN},
+        {"serial:", role + "=serial:./line?baud=9600&format=8m1&upper=exec:'" FIELDPROOF_EXE "' station " +
+                        GetParam().path() + " --serial ./line"}};
+  }
+
+  // What a call says: that it works, or its sentence.
+  std::string square(const std::string& verb, const Called& called) const {
+    if (called.exit_code <= 4) return "works";
+    EXPECT_TRUE(called.exit_code == 5 || called.exit_code == 64 || called.exit_code == 65)
+        << verb << " " << called.exit_code << called.out << called.err;
+    const std::string sentence = called.err.substr(0, called.err.find('\n'));
+    EXPECT_TRUE(sentence.starts_with("fieldproof: ")) << verb << called.err;
+    EXPECT_GT(sentence.size(), 40U) << verb << called.err;
+    return sentence;
+  }
+
+  std::string print(const std::string& verb, const std::string& attachment, const Called& called) const {
+    const std::string text = square(verb, called);
+    std::cout << fmt::format("{:8} {:24} {:8} {}\n", verb, GetParam().path(), attachment, text);
+    return text;
+  }
+};
+
+TEST_P(VerbTable, HasNoEmptySquare) {
+  if (kernel::kIsSanitized)
+    GTEST_SKIP() << "not applicable: each part is run under sanitizers by tests of its own";
+  const std::string role = GetParam().path();
+  const std::string one = fmt::format("{}/{}", role, GetParam().test_case);
+  const std::string protocol = GetParam().protocol;
+  for (const auto& [kind, iut] : attachments()) {
+    const std::string out = "run_" + kind.substr(0, kind.size() - (kind.ends_with(':') ? 1 : 0));
+    const Called run =
+        call({"run", one, "--iut", iut, "--volume", "quick", "--record", "all", "--quiet", "--out", out});
+    const bool runs = print("run", kind, run) == "works";
+    const bool must_run = kind == "ref" || kind == "exec:" || role == "valve_bus/node";
+    EXPECT_EQ(runs, must_run) << role << kind << run.out << run.err;
+    if (must_run) EXPECT_EQ(run.exit_code, 0) << role << kind << run.out << run.err;
+    print("verify", kind, call({"verify", one, "--iut", iut, "--volume", "quick", "-n", "2"}));
+    print("doctor", kind, call({"doctor", "--iut", iut}));
+    print("check", kind, call({"check", role, "--iut", iut, "--cases", "3"}));
+    print("fuzz", kind, call({"fuzz", role, "--iut", iut, "--cases", "3"}));
+    for (const char* verb : {"emc", "measure"}) {
+      std::vector<std::string> words = {verb, protocol, "--iut", iut, "--duration", "1s", "--quiet"};
+      const std::vector<std::string> more =
+          verb == std::string("emc")
+              ? std::vector<std::string>{"--levels", "2", "--repetition", "5kHz", "--polarity", "+"}
+              : std::vector<std::string>{"--signal", "2Hz"};
+      words.insert(words.end(), more.begin(), more.end());
+      print(verb, kind, call(words));
+    }
+    if (!runs) continue;
+    std::string folder = one;
+    std::ranges::replace(folder, '/', '+');
+    const std::string case_file = out + "/cases/" + folder + "/case.json";
+    const Called judged = call({"judge", out});
+    EXPECT_EQ(judged.exit_code, 0) << role << kind << judged.out << judged.err;
+    print("judge", kind, judged);
+    print("replay", kind, call({"replay", case_file}));
+    print("shrink", kind, call({"shrink", case_file}));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, VerbTable, testing::ValuesIn(kJudgedRoles), [](const auto& one) {
+  return fmt::format("{}_{}", one.param.protocol, one.param.name);
+});
+
+}  // namespace
+}  // namespace fieldproof::cli
