@@ -9,7 +9,9 @@
 #include "cli/interruption.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/verbs.hpp"
+#include "harness/iut/serial_line.hpp"
 #include "harness/judge/result_json.hpp"
+#include "harness/kernel/error.hpp"
 #include "reports/text_summary.hpp"
 
 // `fieldproof verify`: runs cases several times; equal seeds must give equal fingerprints, verdicts and
@@ -124,6 +126,12 @@ int code_of(const Comparison& comparison, std::size_t equal) {
 
 int verify(Session& session) {
   const Target target = target_of(session);
+  for (const conformance::Assignment& one : target.setup.implementations) {
+    if (!one.uri.starts_with(iut::kSerialUri)) continue;
+    throw kernel::Error(
+        kernel::ErrorKind::usage,
+        fmt::format("'{}': what happens on a real line happens once, so there are no equal runs", one.uri));
+  }
   const auto runs = static_cast<std::size_t>(session.settings.number("runs", 2, kMostRuns));
   session.terminal.print(reports::run_header(identity_of(session, target.setup, target.entries.size()),
                                              manifest_of(session, 1)));
