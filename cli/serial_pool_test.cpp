@@ -216,15 +216,19 @@ TEST_F(SerialRuns, WhatCannotBeUsedEndsTheRun) {
 }
 
 // What is wrong with the node in C is told by the same case over the line as in lock step.
-class SerialMutants : public SerialRuns, public testing::WithParamInterface<MutantInC> {};
+class SerialRunsMutants : public SerialRuns, public testing::WithParamInterface<MutantInC> {};
 
-TEST_P(SerialMutants, IsFoundByTheCaseThatNamesIt) {
+TEST_P(SerialRunsMutants, IsFoundByTheCaseThatNamesIt) {
   const auto [name, test_case, reason] = GetParam();
-  const Case found = judged(uri("exec:" + in_c(name)), {test_case}).at(test_case);
+  Case found;
+  // Where others keep this machine busy its instants are in doubt, for a mutant as for a node that is right.
+  for (int attempt = 0; attempt < 3 && (attempt == 0 || found.reason == "timing_in_doubt"); ++attempt) {
+    found = judged(uri("exec:" + in_c(name)), {test_case}).at(test_case);
+  }
   EXPECT_EQ(found.reason, reason) << found.verdict << found.findings;
 }
 
-INSTANTIATE_TEST_SUITE_P(InC, SerialMutants, testing::ValuesIn(kMutantsInC),
+INSTANTIATE_TEST_SUITE_P(InC, SerialRunsMutants, testing::ValuesIn(kMutantsInC),
                          [](const testing::TestParamInfo<MutantInC>& one) {
                            return std::string(one.param.name);
                          });

@@ -159,8 +159,8 @@ Act read_numbers(config::ObjectReader& o, const config::Value& value) {
   }
   if (const auto uncertain = o.optional("uncertain")) {
     const auto parts = uncertain->as_array(2, 2);
-    const auto within_an_hour = [](const config::Value& value) {
-      return kernel::Duration{value.as_integer<std::int64_t>(0, 3600 * kernel::kSecond.count())};
+    const auto within_an_hour = [](const config::Value& part) {
+      return kernel::Duration{part.as_integer<std::int64_t>(0, 3600 * kernel::kSecond.count())};
     };
     return WasUncertain{{within_an_hour(parts[0]), within_an_hour(parts[1])}};
   }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 3> kMasters{0x10, 0x11, 0x14};
 constexpr std::array<std::uint8_t, 3> kPublishers{0x20, 0x21, 0x22};
-constexpr std::uint8_t kSelector = 0x20;
+constexpr std::uint8_t kSelectorOfTakeOver = 0x20;
 constexpr std::uint32_t kMacrocycle = 16'000;  // ticks: 500 ms
 constexpr kernel::Duration kMacrocycleTime = kMacrocycle * kTick;
 
@@ -23,7 +23,8 @@ constexpr kernel::Duration kBegin = 3 * kernel::kSecond;
 FfSchedule schedule() {
   FfSchedule all{.version = 1, .macrocycle = kMacrocycle, .items = {}};
   for (std::uint32_t n = 0; n < 6; ++n)
-    all.items.push_back({n * 2'600 + 100, address_of(kPublishers[n % 3], kSelector), Priority::normal});
+    all.items.push_back(
+        {n * 2'600 + 100, address_of(kPublishers[n % 3], kSelectorOfTakeOver), Priority::normal});
   return all;
 }
 
@@ -37,7 +38,7 @@ FfConfiguration configuration_of(std::uint8_t node, const FfRules& rules) {
   FfConfiguration configuration;
   configuration.rules = rules;
   configuration.node = node;
-  configuration.published = {address_of(node, kSelector)};
+  configuration.published = {address_of(node, kSelectorOfTakeOver)};
   configuration.schedule = schedule();
   configuration.begins_as_scheduler = node == kMasters.front();
   return configuration;
@@ -110,7 +111,7 @@ TakeOver run_take_over(const TakeOverSetting& setting) {
   for (const std::uint8_t node : kMasters) link.add_master(configuration_of(node, rules), user);
   for (const std::uint8_t node : kPublishers) {
     link.add_device(configuration_of(node, rules), user);
-    link.write(node, address_of(node, kSelector), {1, 2});
+    link.write(node, address_of(node, kSelectorOfTakeOver), {1, 2});
   }
   const kernel::Time death = kernel::kStart + kBegin +
                              kernel::Duration{static_cast<std::int64_t>(
