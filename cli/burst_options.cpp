@@ -89,7 +89,7 @@ std::vector<Value> choices(const Settings& settings, std::string_view option,
 }  // namespace
 
 std::vector<Level> levels_from(const Settings& settings) {
-  return LevelReader(settings, "levels").read(settings.words("levels"));
+  return LevelReader(settings, "test-levels").read(settings.words("test-levels"));
 }
 
 std::vector<emc::Repetition> repetitions_from(const Settings& settings) {

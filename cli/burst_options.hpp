@@ -1,4 +1,4 @@
-// The options of verbs that couple bursts into a network: --levels, --repetition and --polarity of a
+// The options of verbs that couple bursts into a network: --test-levels, --repetition and --polarity of a
 // campaign,
 // --bursts of a measurement, --profile of both. What is no such thing is refused as Settings says.
 #pragma once

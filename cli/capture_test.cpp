@@ -136,7 +136,7 @@ TEST_F(Capture, OfACleanRunShowsEveryTelegramAndNothingIsWrong) {
 
 TEST_F(Capture, OfAFaultedRunFlagsExactlyWhatWasCorrupted) {
   std::ofstream(folder_ / "plan.json") << kPlan;
-  const fs::path left = run(kNetworkCase, {"--plan", "plan.json"});
+  const fs::path left = run(kNetworkCase, {"--faults", "plan.json"});
   const reports::Reading reading = reports::read_with_tshark(kSourceFolder, left / "trace.pcapng", kFields);
   if (!reading.is_available) GTEST_SKIP() << reading.output;
   const Decoded told = told_in(lines_in(left / "trace.txt"));
@@ -200,7 +200,7 @@ TEST_F(Capture, IsWrittenOnDemandByReplay) {
 
 TEST_F(Capture, OfWavesIsReadByAnotherProgram) {
   std::ofstream(folder_ / "plan.json") << kPlan;
-  const fs::path left = run(kNetworkCase, {"--plan", "plan.json"});
+  const fs::path left = run(kNetworkCase, {"--faults", "plan.json"});
   call({"replay", (left / "case.json").string(), "--vcd", "c.vcd"});
   const std::string files = reports::shell_word((folder_ / "c.vcd").string()) + " " +
                             reports::shell_word((folder_ / "c.fst").string());

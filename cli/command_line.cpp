@@ -8,6 +8,7 @@
 
 #include "cli/build_info.hpp"
 #include "cli/options.hpp"
+#include "cli/verb_help.hpp"
 #include "cli/verbs.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
@@ -27,6 +28,23 @@ struct Collected {
     bool is_on = false;
   };
   std::deque<Value> values;
+};
+
+// Says what is typed, where the library's own words are "operands(0x)" and "N ...".
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    if (app->get_parent() == nullptr) return fmt::format("Usage: {} VERB [OPTIONS]\n", name);
+    std::string usage = "Usage: " + name;
+    for (const CLI::Option* operand :
+         app->get_options([](const CLI::Option* o) { return o->get_positional(); }))
+      usage += " " + operand->get_type_name();
+    return usage + " [OPTIONS]\n";
+  }
+  std::string make_positionals(const CLI::App*) const override { return {}; }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    return option->get_type_size() == 0 ? std::string{} : " " + option->get_type_name();
+  }
 };
 
 std::string help_of(const Option& option) {
@@ -52,10 +70,12 @@ void add_option(CLI::App& app, const Option& option, Collected::Value& value) {
 void add_verb(CLI::App& program, const Verb& verb, Collected& collected) {
   collected.verb = &verb;
   collected.app = program.add_subcommand(std::string(verb.name), std::string(verb.help));
+  collected.app->group(std::string(help_of_verb(verb.name).group));
+  collected.app->footer(footer_of(verb.name));
   if (verb.max_operands > 0) {
     CLI::Option* operands =
         collected.app->add_option("operands", collected.operands, std::string(verb.operands));
-    operands->type_name(std::string(verb.operands))->option_text(" ");
+    operands->type_name(std::string(verb.operands));
     operands->expected(static_cast<int>(verb.min_operands), static_cast<int>(verb.max_operands));
     if (verb.min_operands > 0) operands->required();
   }
@@ -93,6 +113,23 @@ std::string suggestion(const std::string& word, std::string_view verb) {
   return near.empty() ? std::string{} : fmt::format("; the nearest is '{}'", near.front());
 }
 
+std::string help_about(CLI::App& program, const std::vector<std::string>& operands) {
+  if (operands.empty()) {
+    return program.get_formatter()->make_help(&program, program.get_name(), CLI::AppFormatMode::Normal);
+  }
+  const std::string& name = operands.front();
+  std::vector<std::string> known;
+  for (const Verb& verb : verbs()) {
+    if (verb.name == name) return program.get_subcommand(name)->help("fieldproof");
+    known.emplace_back(verb.name);
+  }
+  if (const auto text = topic_text(name)) return *text;
+  for (const HelpTopic& topic : help_topics()) known.emplace_back(topic.name);
+  const auto near = config::nearest(name, std::span<const std::string>(known), 1);
+  throw kernel::Error(kernel::ErrorKind::usage,
+                      fmt::format("there is no help about '{}'; the nearest is '{}'", name, near.front()));
+}
+
 [[noreturn]] void refuse(const CLI::App& program, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = program.get_subcommands();
   const std::string verb = chosen.empty() ? std::string{} : chosen.front()->get_name();
@@ -111,6 +148,8 @@ std::string suggestion(const std::string& word, std::string_view verb) {
 Parsed parse_command_line(const std::vector<std::string>& arguments) {
   CLI::App program("Judges implementations of fieldbus protocols against named requirements.", "fieldproof");
   program.require_subcommand(1);
+  program.formatter(std::make_shared<HelpFormatter>());
+  program.footer(footer_of_program());
   program.set_version_flag("--version",
                            fmt::format("fieldproof {} ({}, {})", tool_version(), build_type(), compiler()));
   std::deque<Collected> collected;
@@ -127,7 +166,9 @@ Parsed parse_command_line(const std::vector<std::string>& arguments) {
     refuse(program, error);
   }
   for (const Collected& candidate : collected) {
-    if (candidate.app->parsed()) return {command_from(candidate), {}};
+    if (!candidate.app->parsed()) continue;
+    if (candidate.verb->name == "help") return {std::nullopt, help_about(program, candidate.operands)};
+    return {command_from(candidate), {}};
   }
   throw kernel::Error(kernel::ErrorKind::usage, "no verb is given; 'fieldproof --help' shows what there is");
 }

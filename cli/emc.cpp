@@ -34,7 +34,7 @@ using emc::Level;
 using emc::Polarity;
 using emc::Repetition;
 
-constexpr std::array<std::string_view, 5> kBurstOptions = {"levels", "repetition", "polarity", "profile",
+constexpr std::array<std::string_view, 5> kBurstOptions = {"test-levels", "repetition", "polarity", "profile",
                                                            "worst"};
 
 bool is_typed(const Settings& settings, std::string_view option) {
@@ -90,7 +90,7 @@ std::vector<EmcTest> tests_from(const Settings& settings, bool has_bursts) {
                         "an empty list of levels, repetition rates or polarities leaves nothing to test");
   }
   if (tests.size() > kMostTests) {
-    settings.refuse(has_bursts ? "levels" : "channel",
+    settings.refuse(has_bursts ? "test-levels" : "channel",
                     fmt::format("these are {} tests; at most {} make a campaign", tests.size(), kMostTests));
   }
   return tests;

@@ -23,7 +23,7 @@ class EmcVerb : public ProgramFixture {
 };
 
 TEST_F(EmcVerb, TellsEachTestAndTheLedger) {
-  const Called called = call({"--levels", "1,x:1000..2000:500", "--json", "emc.json"});
+  const Called called = call({"--test-levels", "1,x:1000..2000:500", "--json", "emc.json"});
   EXPECT_EQ(called.exit_code, 0) << called.err;
   EXPECT_NE(called.out.find("X (1500 V)"), std::string::npos) << called.out;
   EXPECT_NE(called.out.find("not calibrated"), std::string::npos) << called.out;
@@ -43,17 +43,17 @@ TEST_F(EmcVerb, TellsEachTestAndTheLedger) {
 }
 
 TEST_F(EmcVerb, TheNumberOfThreadsChangesNothing) {
-  EXPECT_EQ(call({"--jobs", "1", "--levels", "1..4", "--json", "one.json"}).exit_code, 0);
-  EXPECT_EQ(call({"--jobs", "2", "--levels", "1..4", "--json", "two.json"}).exit_code, 0);
+  EXPECT_EQ(call({"--jobs", "1", "--test-levels", "1..4", "--json", "one.json"}).exit_code, 0);
+  EXPECT_EQ(call({"--jobs", "2", "--test-levels", "1..4", "--json", "two.json"}).exit_code, 0);
   EXPECT_EQ(read("one.json"), read("two.json"));
   EXPECT_FALSE(read("one.json").empty());
 }
 
 TEST_F(EmcVerb, EndsWithOneWhereTheCriterionIsWorseThanAllowed) {
-  EXPECT_EQ(call({"--levels", "3", "--worst", "A"}).exit_code, 1);
-  EXPECT_EQ(call({"--levels", "3", "--worst", "A", "--profile", "C"}).exit_code, 0);
+  EXPECT_EQ(call({"--test-levels", "3", "--worst", "A"}).exit_code, 1);
+  EXPECT_EQ(call({"--test-levels", "3", "--worst", "A", "--profile", "C"}).exit_code, 0);
   const Called caught =
-      call({"--levels", "3", "--iut", "slave@1=mutant:does_not_mark_status", "--duration", "5s"});
+      call({"--test-levels", "3", "--iut", "slave@1=mutant:does_not_mark_status", "--duration", "5s"});
   EXPECT_EQ(caught.exit_code, 1);
   EXPECT_NE(caught.out.find("reproduce: fieldproof emc interbus"), std::string::npos) << caught.out;
 }
@@ -65,7 +65,7 @@ TEST_F(EmcVerb, RefusesWhatItCannotServe) {
     return called.err;
   };
   for (const char* level : {"5", "0", "x:", "x:0", "x:1000..500", "1..2..3", "one", "1.5", "x:nan"}) {
-    EXPECT_NE(refusal({"--levels", level}).find("level"), std::string::npos) << level;
+    EXPECT_NE(refusal({"--test-levels", level}).find("level"), std::string::npos) << level;
   }
   EXPECT_NE(refusal({"--repetition", "7kHz"}).find("2.5kHz"), std::string::npos);
   EXPECT_NE(refusal({"--polarity", "x"}).find("+, -"), std::string::npos);
@@ -115,7 +115,7 @@ TEST_F(EmcVerb, AChannelOnWhichNothingComesThroughShowsNothing) {
 
 TEST_F(EmcVerb, WhatIsTypedWinsOverAChannelInAFile) {
   write("channel.json", R"({"channel": "bsc:0.001"})");
-  const Called typed = call({"--config", "channel.json", "--levels", "1", "--quiet"});
+  const Called typed = call({"--config", "channel.json", "--test-levels", "1", "--quiet"});
   EXPECT_EQ(typed.exit_code, 0) << typed.err;
   EXPECT_HOLDS(typed.out, "1 (250 V)");
   EXPECT_HOLDS(call({"--config", "channel.json"}).out, "bsc 0.001");
@@ -128,11 +128,11 @@ TEST_F(EmcVerb, RefusesAChannelThatIsNone) {
     const Called called = call({"--channel", text});
     EXPECT_EQ(called.exit_code, 64) << text << called.out;
   }
-  EXPECT_EQ(call({"--channel", "bsc:0.001", "--levels", "3"}).exit_code, 64);
+  EXPECT_EQ(call({"--channel", "bsc:0.001", "--test-levels", "3"}).exit_code, 64);
 }
 
 TEST_F(EmcVerb, JsonIsValidForItsSchema) {
-  ASSERT_EQ(call({"--levels", "1", "--json", "emc.json"}).exit_code, 0);
+  ASSERT_EQ(call({"--test-levels", "1", "--json", "emc.json"}).exit_code, 0);
   expect_valid({"emc.json"}, "emc");
 }
 

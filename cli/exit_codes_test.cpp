@@ -92,7 +92,7 @@ TEST_F(ExitCode, SixtyFourNamesTheNeighboursOfAnUnmatchedSelector) {
 
 TEST_F(ExitCode, SixtyFiveNamesLineAndPointerOfABadFile) {
   write("plan.json", "{\n  \"rules\": [\n    1,\n    77\n  ]\n}\n");
-  const Called plan = probe({"run", "probe/**", "--plan", "plan.json"});
+  const Called plan = probe({"run", "probe/**", "--faults", "plan.json"});
   EXPECT_EQ(plan.exit_code, 65);
   EXPECT_HOLDS(plan.err, "plan.json:4: /rules/1: ");
   write("lab.json", "{\n  \"sed\": 4\n}\n");
@@ -126,7 +126,7 @@ TEST_F(ExitCode, OfTheRealProgramForWordsAndFiles) {
 }
 
 TEST_F(ExitCode, SixtyFourOrSixtyFiveForAValueThatIsEmpty) {
-  for (const char* option : {"plan", "network", "pics", "out", "json", "junit", "max-time", "iut"}) {
+  for (const char* option : {"faults", "network", "pics", "out", "json", "junit", "max-time", "iut"}) {
     const Called called = probe({"run", "probe/**", std::string("--") + option, ""});
     EXPECT_EQ(called.exit_code, 64) << option << called.err;
     EXPECT_HOLDS(called.err, std::string("--") + option + ": the value is empty");
@@ -141,7 +141,7 @@ TEST_F(ExitCode, SixtyFourOrSixtyFiveForAValueThatIsEmpty) {
 
 TEST_F(ExitCode, SixtyFiveForAFileThatNeverEndsOrNeverBegins) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  for (const char* option : {"--plan", "--network", "--pics", "--config"}) {
+  for (const char* option : {"--faults", "--network", "--pics", "--config"}) {
     for (const char* file : {"/dev/zero", "pipe", "."}) {
       const Called called = probe({"run", "probe/**", option, file});
       EXPECT_EQ(called.exit_code, 65) << option << " " << file << called.err;

@@ -86,7 +86,7 @@ TEST_F(OfInterbus, PositionIsOneThatANetworkHas) {
 TEST_F(OfInterbus, WrongFileIsFoundBeforeAnythingIsStored) {
   write("plan.json", "{\n\"rules\": 1}");
   write("network.json", "{\"name\": \"n\", \"bit_rate\": \"500 kbit/s\",\n\"stations\": 1}");
-  for (const char* option : {"plan", "network"}) {
+  for (const char* option : {"faults", "network"}) {
     const Called called = judged({std::string("--") + option, std::string(option) + ".json"});
     EXPECT_EQ(called.exit_code, 65);
     EXPECT_HOLDS(called.err, std::string(option) + ".json:2: ");
@@ -182,7 +182,7 @@ TEST_F(OfInterbus, PlanThatMakesTooMuchOfARunIsToldSo) {
   for (const char* effect : {R"({"delay": {"duration": "1000000 s"}})", R"({"repeat": {"count": 1000}})"}) {
     write("plan.json", std::string(R"({"rules": [{"scope": "level", "effect": )") + effect + "}]}");
     const Called called = real({"run", "interbus/network/timing/cycles_do_not_jitter", "--volume", "quick",
-                                "--record", "none", "--plan", "plan.json"});
+                                "--record", "none", "--faults", "plan.json"});
     EXPECT_EQ(called.exit_code, 2) << called.err;
     EXPECT_HOLDS(called.out, "plan_too_heavy");
   }

@@ -17,7 +17,7 @@ class Networks : public ProgramFixture {
   static std::string example(const char* name) { return (kSourceFolder / "examples" / name).string(); }
   Called emc(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "emc");
-    arguments.insert(arguments.end(), {"--levels", "4", "--repetition", "5kHz", "--polarity", "+", "--quiet",
+    arguments.insert(arguments.end(), {"--test-levels", "4", "--repetition", "5kHz", "--polarity", "+", "--quiet",
                                        "--jobs", "1", "--json", "emc.json"});
     return call(std::move(arguments));
   }

@@ -28,7 +28,7 @@ reports::RunIdentity identity_for(Session& session, const CaseFile& stored) {
   }
   if (stored.setup.volume == conformance::Volume::quick) identity.reproduce_options += " --volume quick";
   for (const auto& [option, file] : {std::pair{"network", stored.setup.network_file},
-                                     {"plan", stored.setup.plan_file},
+                                     {"faults", stored.setup.plan_file},
                                      {"pics", stored.pics_file}}) {
     if (!file.empty())
       identity.reproduce_options += fmt::format(" --{} {}", option, reports::shell_quoted(file));

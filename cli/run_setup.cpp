@@ -54,7 +54,7 @@ conformance::Setup setup_from(const Settings& settings, const conformance::Catal
   setup.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
   setup.volume = settings.choice("volume") == 0 ? conformance::Volume::quick : conformance::Volume::full;
   setup.network_file = settings.text("network");
-  setup.plan_file = settings.text("plan");
+  setup.plan_file = settings.text("faults");
   if (settings.is_set("pics")) setup.pics = load_pics(settings.text("pics"), catalogue.pics_items());
   setup.limits = limits_from(settings);
   setup.implementations = parse_implementations(settings.list("iut"), catalogue, selected);

@@ -26,7 +26,7 @@ void add_files(std::vector<NamedText>& all) {
                                    {"configuration", configuration_schema},
                                    {"matrix", matrix_schema},
                                    {"sequence", sequence_schema},
-                                   {"plan", fault::plan_schema},
+                                   {"faults", fault::plan_schema},
                                    {"profile", emc::profile_schema},
                                    {"diff", reports::diff_schema},
                                    {"emc", reports::emc_schema},

@@ -242,7 +242,7 @@ TEST(NamedSchemas, AreJsonOfFilesAndOfEachRole) {
     EXPECT_EQ(nlohmann::json::parse(one.text)["$schema"], "http://json-schema.org/draft-07/schema#")
         << one.name;
   }
-  for (const char* name : {"baseline", "network", "pics", "plan", "token_network"})
+  for (const char* name : {"baseline", "network", "pics", "faults", "token_network"})
     EXPECT_TRUE(names.contains(name));
   for (const auto& suite : catalogue().suites()) {
     for (const std::string& role : suite->roles()) {
@@ -315,7 +315,7 @@ TEST_F(Schemas, OfAConfiguration) {
                {good("{}"), good(R"({"seed": 7, "jobs": 2, "strict": true, "iut": ["ref"]})"),
                 good(R"({"seed": "18446744073709551615", "iut": "ref"})"), bad(R"({"sed": 7})"),
                 bad(R"({"seed": 1.5})"), bad(R"({"seed": -1})"), bad(R"({"strict": 1})"),
-                bad(R"({"plan": ""})"), bad(R"({"iut": [""]})"), bad(R"({"plan": ["a"]})")},
+                bad(R"({"faults": ""})"), bad(R"({"iut": [""]})"), bad(R"({"faults": ["a"]})")},
                [](const fs::path& file) {
                  Settings({"run", {}, {{"config", {file.string()}}}},
                           [](const std::string&) -> std::optional<std::string> { return std::nullopt; });

@@ -142,7 +142,7 @@ TEST_F(ValveBusCapture, OfAFaultedRunShowsEachCharacterThatArrivedOtherwise) {
   write("plan.json", R"({"rules": [{"when": {"receiver": "node/in", "frame_number": {"from": 3, "every": 7},
                                              "bit": 3}, "effect": {"flip": {}}}]})");
   call({"run", "valve_bus/node/read/**", "valve_bus/node/write/**", "--volume", "quick", "--record", "all",
-        "--out", "run", "--quiet", "--plan", "plan.json"});
+        "--out", "run", "--quiet", "--faults", "plan.json"});
   Sum sum;
   std::size_t faults = 0;
   for (const auto& entry : fs::directory_iterator(folder_ / "run" / "cases")) {

@@ -87,7 +87,7 @@ TEST_P(VerbTable, HasNoEmptySquare) {
       std::vector<std::string> words = {verb, protocol, "--iut", iut, "--duration", "1s", "--quiet"};
       const std::vector<std::string> more =
           verb == std::string("emc")
-              ? std::vector<std::string>{"--levels", "2", "--repetition", "5kHz", "--polarity", "+"}
+              ? std::vector<std::string>{"--test-levels", "2", "--repetition", "5kHz", "--polarity", "+"}
               : std::vector<std::string>{"--signal", "2Hz"};
       words.insert(words.end(), more.begin(), more.end());
       print(verb, kind, call(words));

@@ -49,7 +49,7 @@ struct Verb {
   std::size_t min_operands = 0;
   std::size_t max_operands = 0;
   std::string_view help;
-  int (*serve)(Session&) = nullptr;
+  int (*serve)(Session&) = nullptr;  // null: the command line answers it
 };
 
 std::span<const Verb> verbs();

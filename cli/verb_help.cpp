@@ -1,0 +1,188 @@
+#include "cli/verb_help.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/options.hpp"
+#include "harness/kernel/check.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+constexpr std::string_view kJudge = "Judge an implementation";
+constexpr std::string_view kAgain = "A stored run or case";
+constexpr std::string_view kNetwork = "Networks and numbers";
+constexpr std::string_view kKnow = "Look up";
+
+// clang-format off
+constexpr std::array kHelp = {
+    VerbHelp{"run", kJudge, {{
+        {"run 'valve_bus/node/**' --iut exec:./node", "every case for nodes of the valve bus against your process"},
+        {"run +must --iut slave@3=unix:/tmp/slave --html report.html", "by a tag; your slave at the third place of a ring"},
+        {"run --failed --iut exec:./node --record all", "what failed in the last run, with the trace of each case"}}}},
+    VerbHelp{"check", kJudge, {{
+        {"check valve_bus/node --iut exec:./node", "2000 random sequences, compared with the reference"},
+        {"check interbus/slave --iut plugin:./slave.so --cases 20000 --seed 7", "more of them, from another seed"},
+        {"check valve_bus/host --iut mutant:loses_commands --case found.json", "keep what was found, for replay"}}}},
+    VerbHelp{"fuzz", kJudge, {{
+        {"fuzz valve_bus/node --iut plugin:./libnode.so --max-time 15min", "guided by the coverage of your own library"},
+        {"fuzz fieldbus_dll/ff_device --iut plugin:./device.so?in-process", "faster, without protection against a crash"},
+        {"fuzz valve_bus/node --iut ref --cases 100", "try it on the reference"}}}},
+    VerbHelp{"matrix", kJudge, {{
+        {"matrix valve_bus", "which case kills which mutant of the reference"},
+        {"matrix interbus --jobs 2 --json matrix.json", "the same as JSON"},
+        {"matrix fieldbus_dll --max-time 10min --quiet", "with a limit of time"}}}},
+    VerbHelp{"verify", kJudge, {{
+        {"verify 'valve_bus/node/**' --iut exec:./node", "is your process deterministic: run twice, compare bit for bit"},
+        {"verify 'interbus/slave/timing/**' -n 5", "five times"},
+        {"verify found.case.json", "a stored case"}}}},
+    VerbHelp{"doctor", kJudge, {{
+        {"doctor", "what this machine has, and how well it knows instants"},
+        {"doctor --iut exec:./node", "can it be attached, which roles does it serve, how fast does it answer"},
+        {"doctor --iut 'serial:/dev/ttyUSB0?baud=62500&format=8e1'", "the same at a serial line"}}}},
+    VerbHelp{"station", kJudge, {{
+        {"station valve_bus/node ref", "the reference on standard input and output"},
+        {"station valve_bus/node mutant:answers_twice", "a mutant of it, as if it were yours"},
+        {"station valve_bus/node ref --serial ./line", "on a pseudo terminal, in wall-clock time"}}}},
+    VerbHelp{"judge", kAgain, {{
+        {"judge runs/latest", "the verdicts again, from what was recorded, without the implementation"},
+        {"judge runs/latest --quiet", "the exit code only"},
+        {"judge ci-artifacts/run --allow-inconclusive", "an inconclusive verdict is no failure"}}}},
+    VerbHelp{"replay", kAgain, {{
+        {"replay runs/latest/cases/valve_bus+node+read+is_answered/case.json", "one case again, compared bit for bit"},
+        {"replay found.case.json --iut exec:./node --bits", "print each transmission"},
+        {"replay found.case.json --pcapng found.pcapng", "look at it in Wireshark"}}}},
+    VerbHelp{"shrink", kAgain, {{
+        {"shrink found.case.json", "the fewest commands, faults and flipped bits that still fail"},
+        {"shrink found.case.json --case small.json", "written there"},
+        {"shrink found.case.json --max-time 5min", "with a limit of time"}}}},
+    VerbHelp{"diff", kAgain, {{
+        {"diff runs/before runs/after", "new failures, fixed ones, drifted measurements"},
+        {"diff runs/before runs/latest --json diff.json", "the same as JSON"},
+        {"diff main/run branch/run", "of two branches"}}}},
+    VerbHelp{"report", kAgain, {{
+        {"report runs/latest --html report.html", "one page of a stored run"},
+        {"report runs/latest emc.json measure.json --html report.html", "with bursts and cycle times of the same device"},
+        {"report runs/a runs/b --html both.html", "several runs on one page"}}}},
+    VerbHelp{"emc", kNetwork, {{
+        {"emc valve_bus --iut node@2=exec:./node", "burst immunity of a network with your node in it"},
+        {"emc interbus --test-levels 1..4 --json emc.json", "INTERBUS at all levels, as JSON for report"},
+        {"emc fieldbus_dll --network examples/foundation_link.json --worst B", "a network of yours; C fails"}}}},
+    VerbHelp{"measure", kNetwork, {{
+        {"measure valve_bus --iut node@2=exec:./node", "cycle time, jitter and skew with your node in the network"},
+        {"measure interbus --network examples/paper.json --json measure.json", "of a network of yours"},
+        {"measure interbus --bursts 3,100kHz,+", "quiet, during bursts, and after them"}}}},
+    VerbHelp{"residual", kNetwork, {{
+        {"residual --fcs CRC-16/IBM-3740 --bits 128", "undetected errors of a frame check, exact"},
+        {"residual --fcs CRC-32 --bits 4096 --ber 1e-4", "at one bit-error rate"},
+        {"residual --fcs CRC-16/IBM-3740 --bits 128 --samples 1000000", "with a simulation"}}}},
+    VerbHelp{"plan", kNetwork, {{
+        {"plan examples/foundation.json", "the target rotation time that keeps the bound in the file"},
+        {"plan network.json --seed 2", "another seed of the simulation that proves it"},
+        {"help plan", "its options"}}}},
+    VerbHelp{"paper", kNetwork, {{
+        {"paper interbus", "published figures, reproduced side by side"},
+        {"paper fieldbus --duration 60s", "a longer experiment"},
+        {"paper foundation --json paper.json", "for report"}}}},
+    VerbHelp{"list", kKnow, {{
+        {"list 'valve_bus/node/**'", "the ids of cases"},
+        {"list mutants", "the reference's seeded faults"},
+        {"list pics", "what a PICS may declare"}}}},
+    VerbHelp{"explain", kKnow, {{
+        {"explain valve_bus/node/read/is_answered", "what a case requires, by which source, and what it kills"},
+        {"explain valve_bus/node", "the settings of a role"},
+        {"explain bit_rate", "unit, range and source of a number"}}}},
+    VerbHelp{"schema", kKnow, {{
+        {"schema", "the names of all schemas"},
+        {"schema network", "of a file that describes a network"},
+        {"schema valve_bus/node", "of the settings that a role is given"}}}},
+    VerbHelp{"help", kKnow, {{
+        {"help run", "the same as run --help"},
+        {"help iut", "all that --iut can say"},
+        {"help exit-codes", "what a script can rely on"}}}},
+};
+
+constexpr std::array kTopics = {
+    HelpTopic{"iut", "what --iut can say",
+R"(  ref                          the built-in reference of the role (the default)
+  mutant:NAME                  the reference with one seeded fault; 'fieldproof list mutants' has the names
+  exec:./program ARGUMENTS     a process of yours that talks on its standard input and output
+  unix:/path, tcp:HOST:PORT    a process that listens there
+  plugin:./libx.so             a shared library behind one C header; ?in-process: faster, without protection
+  serial:/dev/ttyX?baud=N&format=8e1   a box at a serial line, in wall-clock time
+  ROLE=URI, ROLE@N=URI         which role it plays, and at which place: slave@3=exec:./slave
+)"},
+    HelpTopic{"selectors", "which cases",
+R"(  valve_bus/node/read/is_answered   one case, by its id
+  'valve_bus/node/**'               all below; * is one part of an id
+  +must                             by a tag
+  '!valve_bus/node/long*'           not these
+  @file                             selectors from a file, one a line
+)"},
+    HelpTopic{"exit-codes", "what a script can rely on",
+R"(    0  all judged cases pass, warn, or fail as the baseline expects
+    1  at least one unexpected failure; a finding of check or fuzz
+    2  no failure, but an inconclusive verdict
+    3  no failure, but a stale baseline or another fingerprint
+    4  nothing was judged
+    5  the implementation cannot be used
+   64  the call is wrong          65  a file is wrong
+   70  an error of fieldproof     74  output could not be written
+  130  interrupted               143  terminated; what was judged is kept
+)"},
+    HelpTopic{"verdicts", "what is said of a case",
+R"(  pass             the requirement is kept
+  warn             kept, but with something that users should know
+  fail             broken; the finding says what was expected and what was seen
+  inconclusive     not decided: a precondition failed, or an instant is nearer to its limit than it is known
+  error            the bench could not judge
+  not-applicable   the implementation does not have what the case is about
+)"},
+};
+// clang-format on
+
+std::string examples_text(std::span<const Example> examples) {
+  std::string text = "Examples:\n";
+  for (const Example& one : examples)
+    text += fmt::format("  fieldproof {}\n      {}\n", one.command, one.what);
+  return text;
+}
+
+const HelpTopic* find_topic(std::string_view name) {
+  const auto found = std::ranges::find(kTopics, name, &HelpTopic::name);
+  return found == kTopics.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const VerbHelp& help_of_verb(std::string_view verb) {
+  const auto found = std::ranges::find(kHelp, verb, &VerbHelp::verb);
+  FIELDPROOF_CHECK(found != kHelp.end(), "a verb has no help");
+  return *found;
+}
+
+std::span<const HelpTopic> help_topics() {
+  return kTopics;
+}
+
+std::optional<std::string> topic_text(std::string_view name) {
+  const HelpTopic* topic = find_topic(name);
+  if (topic == nullptr) return std::nullopt;
+  return fmt::format("{}: {}\n\n{}", topic->name, topic->title, topic->text);
+}
+
+std::string footer_of(std::string_view verb) {
+  std::string text;
+  if (find_option("iut", verb) != nullptr)
+    text = fmt::format("Implementations (--iut):\n{}\n", find_topic("iut")->text);
+  return text + examples_text(help_of_verb(verb).examples);
+}
+
+std::string footer_of_program() {
+  std::string text = "'fieldproof help VERB' has its options and examples. More pages:\n";
+  for (const HelpTopic& topic : kTopics) text += fmt::format("  help {:12} {}\n", topic.name, topic.title);
+  return text;
+}
+
+}  // namespace fieldproof::cli
