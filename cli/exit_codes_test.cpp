@@ -131,10 +131,10 @@ TEST_F(ExitCode, SixtyFourOrSixtyFiveForAValueThatIsEmpty) {
     EXPECT_EQ(called.exit_code, 64) << option << called.err;
     EXPECT_HOLDS(called.err, std::string("--") + option + ": the value is empty");
   }
-  write("lab.json", "{\n\"plan\": \"\"}");
+  write("lab.json", "{\n\"faults\": \"\"}");
   const Called file = probe({"run", "probe/**", "--config", "lab.json"});
   EXPECT_EQ(file.exit_code, 65);
-  EXPECT_HOLDS(file.err, "lab.json:2: /plan: the value is empty");
+  EXPECT_HOLDS(file.err, "lab.json:2: /faults: the value is empty");
   write("lab.json", "{\"seed\": 1.5}");
   EXPECT_HOLDS(probe({"run", "--config", "lab.json"}).err, "write a whole number");
 }

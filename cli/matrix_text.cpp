@@ -108,10 +108,11 @@ std::string matrix_text(const Matrix& matrix) {
   for (const RoleMatrix& role : matrix.roles) text += role_text(role);
   text += kLegend;
   for (const conformance::Hole& hole : matrix.holes) {
-    text += fmt::format("hole ({}): {}\n", conformance::name(hole.kind), hole.sentence);
+    text += fmt::format("{}: {}\n", conformance::name(hole.kind), hole.sentence);
   }
   if (!matrix.is_complete) return text + "the matrix is incomplete\n";
-  return text + (matrix.holes.empty() ? "no hole\n" : fmt::format("{} holes\n", matrix.holes.size()));
+  return text + (matrix.holes.empty() ? "no survivor\n"
+                                      : fmt::format("{} gaps in the suite\n", matrix.holes.size()));
 }
 
 std::string matrix_json(const Matrix& matrix) {

@@ -32,12 +32,12 @@ TEST_F(Shown, ColourAndBarOnATerminalOnly) {
 TEST_F(Shown, MatrixWithAndWithoutAHole) {
   const Called good = probe({"matrix", "probe", "--json", "matrix.json", "--jobs", "2"});
   EXPECT_EQ(good.exit_code, 0) << good.out << good.err;
-  EXPECT_EQ(last_line(good.out), "no hole");
+  EXPECT_EQ(last_line(good.out), "no survivor");
   EXPECT_HOLDS(read("matrix.json"), "fieldproof/matrix/1");
   const Called holes = probe({"matrix", "odd"});
   EXPECT_EQ(holes.exit_code, 1);
-  EXPECT_HOLDS(holes.out, "hole (surviving-mutant): no case catches the end mutant 'unseen'");
-  EXPECT_HOLDS(holes.out, "hole (false-alarm): odd/end/fails on the reference ends with fail ('always')");
+  EXPECT_HOLDS(holes.out, "surviving-mutant: no case catches the end mutant 'unseen'");
+  EXPECT_HOLDS(holes.out, "false-alarm: odd/end/fails on the reference ends with fail ('always')");
   EXPECT_FALSE(fs::exists(folder_ / "runs"));
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cli/options.hpp"
+#include "cli/protocol_entry.hpp"
 #include "harness/kernel/check.hpp"
 
 namespace fieldproof::cli {
@@ -18,40 +19,40 @@ constexpr std::string_view kKnow = "Look up";
 // clang-format off
 constexpr std::array kHelp = {
     VerbHelp{"run", kJudge, {{
-        {"run 'valve_bus/node/**' --iut exec:./node", "every case for nodes of the valve bus against your process"},
-        {"run +must --iut slave@3=unix:/tmp/slave --html report.html", "by a tag; your slave at the third place of a ring"},
-        {"run --failed --iut exec:./node --record all", "what failed in the last run, with the trace of each case"}}}},
+        {"run '{role}/**' --iut exec:./device", "every case of a role against your process"},
+        {"run +must --iut {name}@3=unix:./device.sock --html report.html", "by a tag; your device at the third place of a network"},
+        {"run --failed --iut exec:./device --record all", "what failed in the last run, with the trace of each case"}}}},
     VerbHelp{"check", kJudge, {{
-        {"check valve_bus/node --iut exec:./node", "2000 random sequences, compared with the reference"},
-        {"check interbus/slave --iut plugin:./slave.so --cases 20000 --seed 7", "more of them, from another seed"},
-        {"check valve_bus/host --iut mutant:loses_commands --case found.json", "keep what was found, for replay"}}}},
+        {"check {role} --iut exec:./device", "2000 random sequences, compared with the reference"},
+        {"check {role} --iut plugin:./device.so --cases 20000 --seed 7", "more of them, from another seed"},
+        {"check {role} --iut mutant:NAME --case found.json", "keep what was found, for replay"}}}},
     VerbHelp{"fuzz", kJudge, {{
-        {"fuzz valve_bus/node --iut plugin:./libnode.so --max-time 15min", "guided by the coverage of your own library"},
-        {"fuzz fieldbus_dll/ff_device --iut plugin:./device.so?in-process", "faster, without protection against a crash"},
-        {"fuzz valve_bus/node --iut ref --cases 100", "try it on the reference"}}}},
+        {"fuzz {role} --iut plugin:./libdevice.so --max-time 15min", "guided by the coverage of your own library"},
+        {"fuzz {role} --iut plugin:./device.so?in-process", "faster, without protection against a crash"},
+        {"fuzz {role} --iut ref --cases 100", "try it on the reference"}}}},
     VerbHelp{"matrix", kJudge, {{
-        {"matrix valve_bus", "which case kills which mutant of the reference"},
-        {"matrix interbus --jobs 2 --json matrix.json", "the same as JSON"},
-        {"matrix fieldbus_dll --max-time 10min --quiet", "with a limit of time"}}}},
+        {"matrix {protocol}", "which case kills which mutant of the reference"},
+        {"matrix {protocol} --jobs 2 --json matrix.json", "the same as JSON"},
+        {"matrix {protocol} --max-time 10min --quiet", "with a limit of time"}}}},
     VerbHelp{"verify", kJudge, {{
-        {"verify 'valve_bus/node/**' --iut exec:./node", "is your process deterministic: run twice, compare bit for bit"},
-        {"verify 'interbus/slave/timing/**' -n 5", "five times"},
+        {"verify '{role}/**' --iut exec:./device", "is your process deterministic: run twice, compare bit for bit"},
+        {"verify '{role}/**' -n 5", "five times"},
         {"verify found.case.json", "a stored case"}}}},
     VerbHelp{"doctor", kJudge, {{
         {"doctor", "what this machine has, and how well it knows instants"},
-        {"doctor --iut exec:./node", "can it be attached, which roles does it serve, how fast does it answer"},
+        {"doctor --iut exec:./device", "can it be attached, which roles does it serve, how fast does it answer"},
         {"doctor --iut 'serial:/dev/ttyUSB0?baud=62500&format=8e1'", "the same at a serial line"}}}},
     VerbHelp{"station", kJudge, {{
-        {"station valve_bus/node ref", "the reference on standard input and output"},
-        {"station valve_bus/node mutant:answers_twice", "a mutant of it, as if it were yours"},
-        {"station valve_bus/node ref --serial ./line", "on a pseudo terminal, in wall-clock time"}}}},
+        {"station {role} ref", "the reference on standard input and output"},
+        {"station {role} mutant:NAME", "a mutant of it, as if it were yours"},
+        {"station {role} ref --serial ./line", "on a pseudo terminal, in wall-clock time"}}}},
     VerbHelp{"judge", kAgain, {{
         {"judge runs/latest", "the verdicts again, from what was recorded, without the implementation"},
         {"judge runs/latest --quiet", "the exit code only"},
         {"judge ci-artifacts/run --allow-inconclusive", "an inconclusive verdict is no failure"}}}},
     VerbHelp{"replay", kAgain, {{
-        {"replay runs/latest/cases/valve_bus+node+read+is_answered/case.json", "one case again, compared bit for bit"},
-        {"replay found.case.json --iut exec:./node --bits", "print each transmission"},
+        {"replay runs/latest/cases/CASE/case.json", "one case again, compared bit for bit"},
+        {"replay found.case.json --iut exec:./device --bits", "print each transmission"},
         {"replay found.case.json --pcapng found.pcapng", "look at it in Wireshark"}}}},
     VerbHelp{"shrink", kAgain, {{
         {"shrink found.case.json", "the fewest commands, faults and flipped bits that still fail"},
@@ -66,13 +67,13 @@ constexpr std::array kHelp = {
         {"report runs/latest emc.json measure.json --html report.html", "with bursts and cycle times of the same device"},
         {"report runs/a runs/b --html both.html", "several runs on one page"}}}},
     VerbHelp{"emc", kNetwork, {{
-        {"emc valve_bus --iut node@2=exec:./node", "burst immunity of a network with your node in it"},
-        {"emc interbus --test-levels 1..4 --json emc.json", "INTERBUS at all levels, as JSON for report"},
-        {"emc fieldbus_dll --network examples/foundation_link.json --worst B", "a network of yours; C fails"}}}},
+        {"emc {protocol} --iut {name}@2=exec:./device", "burst immunity of a network with your device in it"},
+        {"emc {protocol} --test-levels 1..4 --json emc.json", "all levels, as JSON for report"},
+        {"emc {protocol} --network network.json --worst B", "a network of yours; C fails"}}}},
     VerbHelp{"measure", kNetwork, {{
-        {"measure valve_bus --iut node@2=exec:./node", "cycle time, jitter and skew with your node in the network"},
-        {"measure interbus --network examples/paper.json --json measure.json", "of a network of yours"},
-        {"measure interbus --bursts 3,100kHz,+", "quiet, during bursts, and after them"}}}},
+        {"measure {protocol} --iut {name}@2=exec:./device", "cycle time, jitter and skew with your device in the network"},
+        {"measure {protocol} --network network.json --json measure.json", "of a network of yours"},
+        {"measure {protocol} --bursts 3,100kHz,+", "quiet, during bursts, and after them"}}}},
     VerbHelp{"residual", kNetwork, {{
         {"residual --fcs CRC-16/IBM-3740 --bits 128", "undetected errors of a frame check, exact"},
         {"residual --fcs CRC-32 --bits 4096 --ber 1e-4", "at one bit-error rate"},
@@ -82,21 +83,21 @@ constexpr std::array kHelp = {
         {"plan network.json --seed 2", "another seed of the simulation that proves it"},
         {"help plan", "its options"}}}},
     VerbHelp{"paper", kNetwork, {{
-        {"paper interbus", "published figures, reproduced side by side"},
-        {"paper fieldbus --duration 60s", "a longer experiment"},
+        {"paper foundation", "published figures, reproduced side by side"},
+        {"paper foundation --duration 60s", "a longer experiment"},
         {"paper foundation --json paper.json", "for report"}}}},
     VerbHelp{"list", kKnow, {{
-        {"list 'valve_bus/node/**'", "the ids of cases"},
+        {"list '{role}/**'", "the ids of cases"},
         {"list mutants", "the reference's seeded faults"},
         {"list pics", "what a PICS may declare"}}}},
     VerbHelp{"explain", kKnow, {{
-        {"explain valve_bus/node/read/is_answered", "what a case requires, by which source, and what it kills"},
-        {"explain valve_bus/node", "the settings of a role"},
+        {"explain CASE-ID", "what a case requires, by which source, and what it kills"},
+        {"explain {role}", "the settings of a role"},
         {"explain bit_rate", "unit, range and source of a number"}}}},
     VerbHelp{"schema", kKnow, {{
         {"schema", "the names of all schemas"},
         {"schema network", "of a file that describes a network"},
-        {"schema valve_bus/node", "of the settings that a role is given"}}}},
+        {"schema {role}", "of the settings that a role is given"}}}},
     VerbHelp{"help", kKnow, {{
         {"help run", "the same as run --help"},
         {"help iut", "all that --iut can say"},
@@ -114,10 +115,10 @@ R"(  ref                          the built-in reference of the role (the defaul
   ROLE=URI, ROLE@N=URI         which role it plays, and at which place: slave@3=exec:./slave
 )"},
     HelpTopic{"selectors", "which cases",
-R"(  valve_bus/node/read/is_answered   one case, by its id
-  'valve_bus/node/**'               all below; * is one part of an id
+R"(  PROTOCOL/ROLE/CHAPTER/CASE        one case, by its id; 'fieldproof list' prints them
+  'PROTOCOL/ROLE/**'                all below; * is one part of an id
   +must                             by a tag
-  '!valve_bus/node/long*'           not these
+  '!PROTOCOL/ROLE/long*'            not these
   @file                             selectors from a file, one a line
 )"},
     HelpTopic{"exit-codes", "what a script can rely on",
@@ -142,19 +143,18 @@ R"(  pass             the requirement is kept
 };
 // clang-format on
 
-std::string examples_text(std::span<const Example> examples) {
-  std::string text = "Examples:\n";
-  for (const Example& one : examples)
-    text += fmt::format("  fieldproof {}\n      {}\n", one.command, one.what);
-  return text;
-}
-
 const HelpTopic* find_topic(std::string_view name) {
   const auto found = std::ranges::find(kTopics, name, &HelpTopic::name);
   return found == kTopics.end() ? nullptr : &*found;
 }
 
 }  // namespace
+
+std::string command_of(const Example& example) {
+  const Role& role = *roles().front();
+  return fmt::format(fmt::runtime(example.command), fmt::arg("role", role.path()),
+                     fmt::arg("name", role.name), fmt::arg("protocol", role.protocol));
+}
 
 const VerbHelp& help_of_verb(std::string_view verb) {
   const auto found = std::ranges::find(kHelp, verb, &VerbHelp::verb);
@@ -176,7 +176,11 @@ std::string footer_of(std::string_view verb) {
   std::string text;
   if (find_option("iut", verb) != nullptr)
     text = fmt::format("Implementations (--iut):\n{}\n", find_topic("iut")->text);
-  return text + examples_text(help_of_verb(verb).examples);
+  text += "Examples:\n";
+  for (const Example& one : help_of_verb(verb).examples) {
+    text += fmt::format("  fieldproof {}\n      {}\n", command_of(one), one.what);
+  }
+  return text;
 }
 
 std::string footer_of_program() {

@@ -1,5 +1,5 @@
-// What `fieldproof help` and `--help` print besides the rows of verbs and options: groups, examples, and pages about
-// what several verbs share.
+// What `fieldproof help` and `--help` print besides the rows of verbs and options: groups, examples, and
+// pages about what several verbs share.
 #pragma once
 
 #include <array>
@@ -11,9 +11,11 @@
 namespace fieldproof::cli {
 
 struct Example {
-  std::string_view command;  // without "fieldproof "
+  // Without "fieldproof "; {role}, {name} and {protocol} are those of the first role that the program knows.
+  std::string_view command;
   std::string_view what;
 };
+std::string command_of(const Example& example);
 
 struct VerbHelp {
   std::string_view verb;

@@ -10,6 +10,7 @@
 
 #include "cli/command_line.hpp"
 #include "cli/probe/program_fixture.hpp"
+#include "cli/protocols.hpp"
 #include "cli/verbs.hpp"
 
 namespace fieldproof::cli {
@@ -19,7 +20,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 // As a shell does it; examples quote with ' only.
-std::vector<std::string> words_of(std::string_view command) {
+std::vector<std::string> words_of(const std::string& command) {
   std::vector<std::string> words{"fieldproof", ""};
   bool is_quoted = false;
   for (const char c : command) {
@@ -35,9 +36,10 @@ std::vector<std::string> words_of(std::string_view command) {
 }
 
 TEST(VerbHelpTest, EachExampleIsACallOfItsVerb) {
+  use_protocols(built_in_protocols());
   for (const Verb& verb : verbs()) {
     for (const Example& example : help_of_verb(verb.name).examples) {
-      const std::vector<std::string> words = words_of(example.command);
+      const std::vector<std::string> words = words_of(command_of(example));
       if (words[1] == "help") {
         EXPECT_FALSE(parse_command_line(words).text.empty()) << example.command;
         continue;
@@ -50,12 +52,13 @@ TEST(VerbHelpTest, EachExampleIsACallOfItsVerb) {
 }
 
 TEST(VerbHelpTest, SaysWhatIsTypedAndHowAnImplementationIsNamed) {
+  use_protocols(built_in_protocols());
   for (const Verb& verb : verbs()) {
     const std::string text = parse_command_line({"fieldproof", "help", std::string(verb.name)}).text;
     EXPECT_THAT(text, HasSubstr("Usage: fieldproof " + std::string(verb.name)));
     EXPECT_THAT(text, Not(HasSubstr("operands")));
     EXPECT_THAT(text, HasSubstr("Examples:"));
-    if (text.find("--iut ") == std::string::npos) continue;
+    if (text.find("\n  --iut ") == std::string::npos) continue;
     for (const char* kind : {"mutant:", "exec:", "unix:", "tcp:", "plugin:", "serial:", "ROLE@N="})
       EXPECT_THAT(text, HasSubstr(kind)) << verb.name;
   }

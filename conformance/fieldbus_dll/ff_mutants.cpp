@@ -24,7 +24,7 @@ std::vector<FfRow> ff_token_rows() {
   using namespace ff_seeded_faults;
   return {
       {"no_probe_response", "", "does not answer probes", FfTable::station<NoProbeResponse>()},
-      {"answers_late", "", "begins an octet behind V(MRD) x V(ST)", FfTable::station<AnswersLate>()},
+      {"answers_late", "", "begins an octet after V(MRD) x V(ST)", FfTable::station<AnswersLate>()},
       {"answers_for_all_nodes", "", "takes everything for its own", FfTable::station<AnswersForAllNodes>()},
       {"live_from_the_start", "", "uses tokens without having been activated",
        FfTable::station<LiveFromTheStart>()},
@@ -47,7 +47,7 @@ std::vector<FfRow> ff_token_rows() {
        FfTable::station<SendsOtherAddress>(&FfDlpdu::source)},
       {"answers_cd_offline", "", "answers a CD without having been activated",
        FfTable::station<AnswersCdOffline>()},
-      {"activated_by_anything", "", "takes whatever an entity tells it for its activation",
+      {"activated_by_anything", "", "takes whatever an entity sends it for its activation",
        FfTable::station<ActivatedByAnything>()},
       {"activated_by_broadcast", "", "takes an activation of everybody for its own",
        FfTable::station<ActivatedByBroadcast>()},
@@ -79,10 +79,10 @@ std::vector<FfRow> ff_publisher_rows() {
   return {
       {"publishes_first_write", "", "publishes what was written first",
        FfTable::station<PublishesFirstWrite>()},
-      {"published_not_final", "", "keeps the token behind a DT3", FfTable::station<PublishedNotFinal>()},
+      {"published_not_final", "", "keeps the token after a DT3", FfTable::station<PublishedNotFinal>()},
       {"buffer_torn", "FF-21", "publishes half of an old buffer", FfTable::station<BufferTorn>()},
       {"counts_reads", "", "counts CDs as writes", FfTable::station<CountsReads>()},
-      {"counts_to_255", "", "does not begin anew behind 255 writes", FfTable::station<CountsTo255>()},
+      {"counts_to_255", "", "does not begin anew after 255 writes", FfTable::station<CountsTo255>()},
       {"counts_nothing", "", "does not count writes", FfTable::station<CountsNothing>()},
       {"publishes_anything", "", "answers a CD for any of its addresses with its buffer",
        FfTable::station<PublishesAnything>()},
@@ -108,40 +108,40 @@ std::vector<FfRow> ff_frame_rows() {
       {"check_of_tokens_only", "", "looks at the check of PTs only", FfTable::station<CheckOfTokensOnly>()},
       {"takes_violated_frames", "", "takes frames with code violations, whatever their check",
        FfTable::station<TakesViolatedFrames>()},
-      {"stuck_behind_violation", "", "hears nothing any more behind a code violation",
+      {"stuck_behind_violation", "", "receives nothing any more after a code violation",
        FfTable::station<FfStuckBehindViolation>()},
-      {"tells_other_source", "", "tells its user another source",
+      {"tells_other_source", "", "reports another source to its user",
        FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.source ^= 0x0100;
          tell_user(user, dlpdu, when);
        })},
-      {"tells_normal_priority", "", "tells its user normal priority, whatever came",
+      {"tells_normal_priority", "", "reports normal priority to its user, whatever came",
        FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.priority = fieldbus_dll::Priority::normal;
          tell_user(user, dlpdu, when);
        })},
-      {"tells_no_writes", "", "tells its user of a DT3 no number of writes",
+      {"tells_no_writes", "", "reports no number of writes of a DT3 to its user",
        FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.writes = 0;
          tell_user(user, dlpdu, when);
        })},
-      {"tells_twice", "", "tells its user everything twice",
+      {"tells_twice", "", "reports everything to its user twice",
        FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          tell_user(user, dlpdu, when);
          tell_user(user, dlpdu, when);
        })},
-      {"deaf_to_broadcasts", "", "does not tell its user what is for everybody",
+      {"deaf_to_broadcasts", "", "does not report to its user what is for everybody",
        FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          if (dlpdu.destination != fieldbus_dll::kEverybody) tell_user(user, dlpdu, when);
        })},
-      {"tells_live_lists", "", "tells its user what data link entities tell each other",
+      {"tells_live_lists", "", "reports to its user what data link entities send each other",
        FfTable::station<TellsLiveLists>()},
-      {"tail_ignored", "", "takes a DLPDU with an octet behind it", FfTable::station<TailIgnored>()},
+      {"tail_ignored", "", "takes a DLPDU with an octet after it", FfTable::station<TailIgnored>()},
       {"two_octets_of_preamble", "", "sends two octets of preamble",
        FfTable::with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 2; })},
-      {"short_silence", "", "begins V(MID) / 2 behind what was on the line",
+      {"short_silence", "", "begins V(MID) / 2 after what was on the line",
        FfTable::with_rules<FfStation>([](FfRules& rules) { rules.link.inter_pdu_delay_octets /= 2; })},
-      {"no_silence_behind_own", "", "begins an octet behind its own frames",
+      {"no_silence_behind_own", "", "begins an octet after its own frames",
        FfTable::station<NoSilenceBehindOwn>()},
   };
 }
@@ -153,8 +153,8 @@ std::vector<FfRow> ff_sequence_rows() {
        FfTable::station<TokenKeptBehindProbe>()},
       {"answer_kept_behind_other", "", "answers though another node was probed meanwhile",
        FfTable::station<AnswerKeptBehindOther>()},
-      {"data_ends_token", "", "drops the token when it hears data", FfTable::station<DataEndsToken>()},
-      {"deaf_behind_fault", "", "misses what comes behind a faulty frame",
+      {"data_ends_token", "", "drops the token when it receives data", FfTable::station<DataEndsToken>()},
+      {"deaf_behind_fault", "", "misses what comes after a faulty frame",
        FfTable::station<DeafBehindFault>()},
       {"newest_first", "", "sends what was submitted last", FfTable::station<NewestFirst<FfStation>>()},
       {"least_of_last_token", "", "sends by the priority of the token before",
@@ -163,10 +163,10 @@ std::vector<FfRow> ff_sequence_rows() {
        FfTable::station<DurationOfLastTokenToo>()},
       {"each_third_return_missing", "", "does not send each third RT",
        FfTable::station<EachThirdReturnMissing>()},
-      {"second_of_priority_lost", "", "forgets urgent data that waits behind a token",
+      {"second_of_priority_lost", "", "forgets urgent data that waits after a token",
        FfTable::station<SecondOfPriorityLost>()},
       {"tail_of_last_write", "", "keeps the tail of a longer buffer", FfTable::station<TailOfLastWrite>()},
-      {"writes_between_cds_count_once", "", "counts only the first write behind a CD",
+      {"writes_between_cds_count_once", "", "counts only the first write after a CD",
        FfTable::station<WritesBetweenCdsCountOnce>()},
       {"buffers_share_the_count", "", "counts the writes of all its buffers together",
        FfTable::station<BuffersShareTheCount>()},
@@ -213,7 +213,7 @@ std::vector<FfRow> ff_circulation_rows() {
       {"steps_to_the_extreme", "FF-4", "admits everything at once", FfTable::station<StepsToTheExtreme>()},
       {"rotation_counted_twice", "FF-3", "counts parts of a rotation twice",
        FfTable::station<RotationCountedTwice>()},
-      {"steps_back_to_the_extreme", "", "admits urgent data only at once behind a slow rotation",
+      {"steps_back_to_the_extreme", "", "admits urgent data only at once after a slow rotation",
        FfTable::station<StepsBackToTheExtreme>()},
       {"holder_never_stopped", "", "lets a holder overstay its token",
        FfTable::station<HolderNeverStopped>()},
@@ -236,7 +236,7 @@ std::vector<FfRow> ff_live_list_rows() {
        FfTable::station<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration&) {
          return dlpdu.type == FfType::dt1 && dlpdu.destination != kEverybody;
        })},
-      {"live_list_not_told", "", "does not tell its live list",
+      {"live_list_not_told", "", "does not send its live list",
        FfTable::station<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration&) {
          return dlpdu.type == FfType::dt1 && dlpdu.destination == kEverybody;
        })},
@@ -244,13 +244,13 @@ std::vector<FfRow> ff_live_list_rows() {
        FfTable::station<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration& configuration) {
          return dlpdu.type == FfType::pt && std::ranges::count(configuration.live, dlpdu.node) == 0;
        })},
-      {"live_list_reversed", "FF-23", "tells its live list with the bits turned",
+      {"live_list_reversed", "FF-23", "sends its live list with the bits turned",
        FfTable::station<LiveListReversed>()},
       {"probe_response_of_anybody_taken", "", "takes a PR of anybody for that of the node that it has probed",
        FfTable::station<ProbeResponseOfAnybodyTaken>()},
-      {"told_live_list_ignored", "", "does not keep the live list that it is told",
+      {"told_live_list_ignored", "", "does not keep the live list that it receives",
        FfTable::station<ToldLiveListIgnored>()},
-      {"live_list_cut", "", "tells its live list up to node 1F", FfTable::station<LiveListCut>()},
+      {"live_list_cut", "", "sends its live list up to node 1F", FfTable::station<LiveListCut>()},
       {"removed_after_one_miss", "FF-12", "removes who misses one token",
        FfTable::station<RemovesBehind>(1U)},
       {"removed_after_four_misses", "", "removes who misses four tokens",
@@ -258,9 +258,9 @@ std::vector<FfRow> ff_live_list_rows() {
       {"never_removed", "", "removes nobody", FfTable::station<RemovesBehind>(1'000'000U)},
       {"misses_not_forgotten", "FF-13", "counts misses though tokens are used in between",
        FfTable::station<MissesNotForgotten>()},
-      {"time_told_at_full_period", "FF-20", "tells the time each V(TDP)",
+      {"time_told_at_full_period", "FF-20", "sends the time each V(TDP)",
        FfTable::station<TimeToldAtFullPeriod>()},
-      {"time_at_half_speed", "", "tells half the time", FfTable::station<TimeAtHalfSpeed>()},
+      {"time_at_half_speed", "", "sends half the time", FfTable::station<TimeAtHalfSpeed>()},
       {"ct_ignored", "", "does not answer who asks for the time", FfTable::station<CtIgnored>()},
   };
 }
@@ -268,13 +268,13 @@ std::vector<FfRow> ff_live_list_rows() {
 std::vector<FfRow> ff_claim_rows() {
   using namespace ff_seeded_faults;
   return {
-      {"claims_after_one_slot", "FF-14", "claims the link behind one V(ST)",
+      {"claims_after_one_slot", "FF-14", "claims the link after one V(ST)",
        FfTable::station<ClaimsOtherwise>(1, false)},
       {"never_claims", "", "does not claim the link", FfTable::station<ClaimsOtherwise>(10'000'000, false)},
       {"claims_a_slot_late", "", "claims the link a V(ST) late", FfTable::station<ClaimsOtherwise>(1, true)},
       {"claims_a_slot_early", "", "claims the link a V(ST) early",
        FfTable::station<ClaimsOtherwise>(-1, true)},
-      {"frames_do_not_save_the_link", "", "claims the link whatever is heard",
+      {"frames_do_not_save_the_link", "", "claims the link whatever is received",
        FfTable::station<FramesDoNotSaveTheLink>()},
       {"noise_does_not_save_the_link", "FF-15", "takes noise for silence",
        FfTable::station<NoiseDoesNotSaveTheLink>()},
@@ -284,9 +284,9 @@ std::vector<FfRow> ff_claim_rows() {
       {"takes_transfer_of_others", "", "takes a TL for another", FfTable::station<TakesTransferOfOthers>()},
       {"schedule_version_ignored", "", "takes a TL for any version of the schedule",
        FfTable::station<ScheduleVersionIgnored>()},
-      {"order_ignored", "", "does not hand the link over when it is told to",
+      {"order_ignored", "", "does not hand the link over when it is ordered to",
        FfTable::station<OrderIgnored>()},
-      {"stays_behind_transfer", "", "stays though its heir speaks", FfTable::station<StaysBehindTransfer>()},
+      {"stays_behind_transfer", "", "stays though its heir sends", FfTable::station<StaysBehindTransfer>()},
       {"never_retakes", "", "does not take back what its heir does not take",
        FfTable::station<NeverRetakes>()},
       {"schedule_from_the_claim", "", "begins its schedule anew when it claims the link",
@@ -309,18 +309,18 @@ std::vector<FfRow> ff_las_sequence_rows() {
        FfTable::station<MissesOfAllCount>()},
       {"misses_forgiven_by_others", "", "forgets all misses when any node uses its token",
        FfTable::station<MissesForgivenByOthers>()},
-      {"misses_survive_removal", "", "removes who was removed before behind one miss",
+      {"misses_survive_removal", "", "removes who was removed before after one miss",
        FfTable::station<MissesSurviveRemoval>()},
       {"removed_never_found_again", "", "takes no probe response of who was removed",
        FfTable::station<RemovedNeverFoundAgain>()},
       {"returning_node_not_activated", "", "does not activate who was removed before",
        FfTable::station<ReturningNodeNotActivated>()},
-      {"only_first_change_told", "", "tells the live list once", FfTable::station<OnlyFirstChangeTold>()},
+      {"only_first_change_told", "", "sends the live list once", FfTable::station<OnlyFirstChangeTold>()},
       {"unanswered_item_dropped", "", "compels no more what was not answered twice",
        FfTable::station<UnansweredItemDropped>()},
-      {"all_admitted_behind_two_slow", "", "admits all data at once behind two slow rotations",
+      {"all_admitted_behind_two_slow", "", "admits all data at once after two slow rotations",
        FfTable::station<AllAdmittedBehindTwoSlow>()},
-      {"second_time_request_ignored", "", "tells the time to who asks once",
+      {"second_time_request_ignored", "", "sends the time to who asks once",
        FfTable::station<SecondTimeRequestIgnored>()},
       {"own_data_newest_first", "", "sends what its user submitted last",
        FfTable::station<NewestFirst<FfLas>>()},

@@ -231,7 +231,7 @@ NetworkParts Run::network_parts(std::size_t stations) {
   return parts;
 }
 
-// A coupler with an input and an output terminal behind it, and a station of two words: the least network
+// A coupler with an input and an output terminal after it, and a station of two words: the least network
 // that has everything.
 interbus::NetworkDescription small_network() {
   using interbus::StationDescription;
