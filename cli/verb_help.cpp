@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "cli/options.hpp"
 #include "cli/protocol_entry.hpp"
@@ -151,7 +152,10 @@ const HelpTopic* find_topic(std::string_view name) {
 }  // namespace
 
 std::string command_of(const Example& example) {
-  const Role& role = *roles().front();
+  // A program without a role of its own shows where one stands.
+  static constexpr Role kNamed{"PROTOCOL", "ROLE", {}, nullptr, nullptr};
+  const std::vector<const Role*> known = roles();
+  const Role& role = known.empty() ? kNamed : *known.front();
   return fmt::format(fmt::runtime(example.command), fmt::arg("role", role.path()),
                      fmt::arg("name", role.name), fmt::arg("protocol", role.protocol));
 }
