@@ -171,6 +171,11 @@ void NodeBench::interject(std::span<const std::uint8_t> octets, kernel::Time sta
   codec_.drive(*tester_, octets, start, {});
 }
 
+void NodeBench::wait_after_write() {
+  if (rules().answers_writes) await_response_window();
+  wait(delimiter() + kernel::kMicrosecond);
+}
+
 void NodeBench::clear_observations() {
   driven_.clear();
   arrived_.clear();

@@ -120,6 +120,9 @@ class NodeBench final : private segment::Station {
   void wait(kernel::Duration duration);
   // As long as the IUT may take to act on what it has heard, and to have said it.
   void await_response_window() { wait(settling_); }
+  // Silence after a write until the next frame may come: a delimiter, or the whole answer of a node that
+  // answers writes and a delimiter after it.
+  void wait_after_write();
   // Levels as they are, from now on, at any rate; runs until they are over.
   void drive(line::Waveform& wave);
   // The character as levels, one a bit.

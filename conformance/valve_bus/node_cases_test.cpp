@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "protocols/valve_bus/node.hpp"
 #include "protocols/valve_bus/rules.hpp"
 
 namespace fieldproof::conformance {
@@ -31,6 +34,7 @@ std::vector<DeclaredNode> declared_nodes() {
       {"acknowledges", declaring({{"answers_writes", true}})},
       {"acknowledges_P2", declaring({{"answers_writes", true}, {"characters", std::string("P2")}})},
       {"lets_go", declaring({{"loss_limit", 500 * kernel::kMillisecond}})},
+      {"lets_go_soon", declaring({{"loss_limit", 100 * kernel::kMillisecond}})},
   };
   constexpr std::int64_t kSlowest = 1'200;
   constexpr std::int64_t kFastest = 1'000'000;
@@ -42,25 +46,88 @@ std::vector<DeclaredNode> declared_nodes() {
   return all;
 }
 
-class DeclaredNodes : public testing::TestWithParam<DeclaredNode> {};
+// A node that answers as early as it may, and one that answers as late.
+class EarlyNode : public valve_bus::Node {
+ public:
+  using Node::Node;
+
+ private:
+  kernel::Duration turnaround_time() const override { return valve_bus::delimiter(rules()); }
+};
+class LateNode : public valve_bus::Node {
+ public:
+  using Node::Node;
+
+ private:
+  kernel::Duration turnaround_time() const override {
+    return valve_bus::delimiter(rules()) + valve_bus::turnaround_time_span(rules());
+  }
+};
+
+template <typename Node>
+std::unique_ptr<valve_bus::NodeDevice> make(const valve_bus::NodeConfiguration& configuration) {
+  return std::make_unique<Node>(configuration);
+}
+
+class DeclaredNodes : public testing::TestWithParam<DeclaredNode> {
+ protected:
+  template <typename Node>
+  static void expect_passes(std::uint64_t seeds) {
+    for (const NodeCase& one : node_cases()) {
+      if (is_canary(one.test_case)) continue;
+      const bool is_excluded =
+          one.test_case.not_applicable && one.test_case.not_applicable(GetParam().pics).has_value();
+      if (is_excluded || has_tag(one.test_case, kStressTag)) continue;
+      NodeSetting setting;
+      setting.volume = Volume::quick;
+      setting.pics = GetParam().pics;
+      setting.make_node = &make<Node>;
+      for (setting.seed = 1; setting.seed <= seeds; ++setting.seed) {
+        const judge::CaseResult result = run_on_bench(one, setting);
+        EXPECT_EQ(result.verdict, judge::Verdict::pass)
+            << result.id << " seed " << setting.seed << ": " << result.reason
+            << (result.findings.empty() ? "" : ", " + result.findings.front().actual);
+      }
+    }
+  }
+};
 
 // Whatever a node declares, the reference that is so passes: anything else is a false alarm.
 TEST_P(DeclaredNodes, PassAsTheyDeclare) {
-  for (const NodeCase& one : node_cases()) {
-    if (is_canary(one.test_case)) continue;
-    const bool is_excluded =
-        one.test_case.not_applicable && one.test_case.not_applicable(GetParam().pics).has_value();
-    if (is_excluded || has_tag(one.test_case, kStressTag)) continue;
-    NodeSetting setting;
-    setting.volume = Volume::quick;
-    setting.pics = GetParam().pics;
-    for (setting.seed = 1; setting.seed <= 3; ++setting.seed) {
-      const judge::CaseResult result = run_on_bench(one, setting);
-      EXPECT_EQ(result.verdict, judge::Verdict::pass)
-          << result.id << " seed " << setting.seed << ": " << result.reason
-          << (result.findings.empty() ? "" : ", " + result.findings.front().actual);
-    }
+  expect_passes<valve_bus::Node>(3);
+}
+TEST_P(DeclaredNodes, PassWhenTheyAnswerAsEarlyAsTheyMay) {
+  expect_passes<EarlyNode>(1);
+}
+TEST_P(DeclaredNodes, PassWhenTheyAnswerAsLateAsTheyMay) {
+  expect_passes<LateNode>(1);
+}
+
+// Takes a frame with a wrong check for a sign of life of its host.
+class KeptAliveByAnyFrame : public valve_bus::Node {
+ public:
+  using Node::Node;
+
+ private:
+  bool fits(std::span<const std::uint8_t> octets) const override {
+    is_wrong_ = !Node::fits(octets);
+    return true;
   }
+  void on_command(const valve_bus::Command& command, kernel::Time now) override {
+    if (!is_wrong_) Node::on_command(command, now);
+  }
+  mutable bool is_wrong_ = false;
+};
+
+TEST(NodePower, AWrongFrameIsNoSignOfLife) {
+  const auto cases = node_cases();
+  const auto one = std::ranges::find_if(cases, [](const NodeCase& each) {
+    return each.test_case.id == "valve_bus/node/power/valves_hold_without_a_host";
+  });
+  NodeSetting setting;
+  setting.pics = declaring({{"loss_limit", 100 * kernel::kMillisecond}});
+  setting.make_node = &make<KeptAliveByAnyFrame>;
+  EXPECT_EQ(run_on_bench(*one, setting).reason, "valves_hold_without_host");
 }
 
 INSTANTIATE_TEST_SUITE_P(OfTheReference, DeclaredNodes, testing::ValuesIn(declared_nodes()),

@@ -30,10 +30,16 @@ void switch_some_on(NodeBench& bench) {
   bench.clear_observations();
 }
 
+// A node that switches its valves off without a command is given one before each frame that is none.
+void keep_switched_on(NodeBench& bench) {
+  if (bench.rules().loss_limit > kernel::Duration{}) switch_some_on(bench);
+}
+
 void single_bit_errors_are_refused(NodeBench& bench, CaseJudge& judge) {
   switch_some_on(bench);
   for (const unsigned number : {bench.rules().write_command, bench.rules().read_command}) {
     for (unsigned bit = 0; bit < kBits; ++bit) {
+      keep_switched_on(bench);
       Frame frame = command(bench, number);
       flip(frame, bit);
       bench.send(frame);
@@ -114,6 +120,7 @@ void other_checks_are_refused(NodeBench& bench, CaseJudge& judge) {
       for (const std::uint8_t check : wrong) {
         if (check == right) continue;
         frame.back() = check;
+        keep_switched_on(bench);
         bench.send(frame);
         bench.await_response_window();
         expect_ignored(bench, judge, "acts_on_wrong_check",

@@ -55,7 +55,7 @@ void frames_are_told_apart_by_silence(NodeBench& bench, CaseJudge& judge) {
   }
   bench.send(bench.telling_write());
   const std::uint16_t moved = static_cast<std::uint16_t>(~bench.valves());
-  bench.wait(bench.delimiter() + kernel::kMicrosecond);
+  bench.wait_after_write();
   bench.send(written({bench.address(), 0, 0x0F, 0xF0}));
   bench.await_response_window();
   const auto& changes = bench.boards().changes();

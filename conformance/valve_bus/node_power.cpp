@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "conformance/valve_bus/node_cases.hpp"
 #include "conformance/valve_bus/node_expect.hpp"
 
@@ -14,7 +17,13 @@ void without_a_host_the_valves_hold(NodeBench& bench, CaseJudge& judge) {
   bench.clear_observations();
   const kernel::Duration limit = bench.rules().loss_limit;
   if (limit > kernel::Duration{}) {
-    bench.wait(limit - limit / 10);
+    bench.wait(limit / 2);
+    // Not a sign of life of the host: it is no command.
+    std::array<std::uint8_t, valve_bus::kCommandOctets> wrong = bench.telling_write();
+    wrong.back() ^= 0x01;
+    const kernel::Time before = bench.now();
+    bench.send(wrong);
+    bench.wait(std::max(limit - limit / 10 - limit / 2 - (bench.now() - before), kernel::Duration{}));
     expect_no_valve_moved(bench, judge, "valves_let_go",
                           fmt::format("the host may be silent for {}", kernel::describe(limit)));
     bench.wait(limit / 5);

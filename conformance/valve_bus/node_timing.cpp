@@ -127,7 +127,8 @@ void a_read_right_behind_a_write_is_served(NodeBench& bench, CaseJudge& judge) {
     const auto data1 = bench.random_octet();
     const std::uint16_t switches = set_random_switches(bench);
     bench.write(data0, data1);
-    bench.wait(bench.delimiter() + kernel::kMicrosecond);
+    bench.wait_after_write();
+    if (bench.rules().answers_writes) bench.clear_observations();
     const kernel::Time end = bench.read();
     bench.await_response_window();
     expect_valves(bench, judge, bench.valves_of(data0, data1), "write_lost");
