@@ -64,14 +64,14 @@ class Seats {
 
   bool is_empty() const { return uris_.empty(); }
 
-  // Null where a reference plays. `mutant` makes the one of a name.
-  template <typename Mutant>
-  std::unique_ptr<typename Kind::Device> make(std::size_t position, const Configuration& configuration,
-                                              std::uint64_t seed, const Mutant& mutant) const {
+  // Null where a reference plays.
+  std::unique_ptr<typename Kind::Device> make(
+      std::size_t position, const Configuration& configuration, std::uint64_t seed,
+      const conformance::DeviceMutants<typename Kind::Device, Configuration>& mutants) const {
     const auto at = uris_.find(position);
     if (at == uris_.end()) return nullptr;
     if (at->second.starts_with(conformance::kMutantUri)) {
-      return mutant(conformance::mutant_of(at->second, "station"), configuration);
+      return mutants.make(conformance::mutant_of(at->second, "station"), configuration);
     }
     auto attachment = attach_({Kind::protocol, Kind::role}, {at->second, case_id_, seed, limits_});
     if (!attachment) {
@@ -123,13 +123,13 @@ class PlannedInterbus final : public PlannedNetwork {
     stations.latch = latch_;
     if (!masters_.is_empty()) {
       stations.make_master = [this, seed](const interbus::MasterConfiguration& configuration) {
-        return masters_.make(1, configuration, seed, &conformance::make_master_mutant);
+        return masters_.make(1, configuration, seed, conformance::master_mutants());
       };
     }
     if (!slaves_.is_empty()) {
       stations.make_slave = [this, seed](int position, const interbus::SlaveConfiguration& configuration) {
         return slaves_.make(static_cast<std::size_t>(position), configuration, seed,
-                            &conformance::make_slave_mutant);
+                            conformance::slave_mutants());
       };
     }
     return std::make_unique<interbus::RunningNetwork>(network_, stations);
@@ -188,11 +188,11 @@ class PlannedValveBus final : public PlannedNetwork {
   std::unique_ptr<network::Network> make(std::uint64_t seed) const override {
     valve_bus::RunningStations stations;
     stations.make_host = [this, seed](const valve_bus::HostConfiguration& configuration) {
-      return hosts_.make(1, configuration, seed, &conformance::make_host_mutant);
+      return hosts_.make(1, configuration, seed, conformance::host_mutants());
     };
     stations.make_node = [this, seed](std::size_t position,
                                       const valve_bus::NodeConfiguration& configuration) {
-      return nodes_.make(position, configuration, seed, &conformance::make_node_mutant);
+      return nodes_.make(position, configuration, seed, conformance::node_mutants());
     };
     return std::make_unique<valve_bus::RunningNetwork>(network_, seed, stations);
   }
@@ -217,14 +217,6 @@ std::string profile_of(const fieldbus_dll::LinkDescription& link) {
   return link.bit_rate == kSlow ? "E2" : "F";
 }
 
-template <typename Device, typename Configuration>
-auto with_role(std::unique_ptr<Device> (*make)(std::string_view, std::string_view, const Configuration&),
-               std::string_view role) {
-  return [make, role](std::string_view name, const Configuration& configuration) {
-    return make(role, name, configuration);
-  };
-}
-
 class PlannedFoundation final : public PlannedNetwork {
  public:
   PlannedFoundation(const Session& session, fieldbus_dll::LinkDescription link)
@@ -244,11 +236,10 @@ class PlannedFoundation final : public PlannedNetwork {
     using fieldbus_dll::FfDevice;
     fieldbus_dll::FfStations stations;
     stations.make_master = [this, seed](std::size_t position, const FfConfiguration& configuration) {
-      return masters_.make(position, configuration, seed, with_role(&conformance::make_ff_mutant, "ff_las"));
+      return masters_.make(position, configuration, seed, conformance::ff_las_mutants());
     };
     stations.make_device = [this, seed](std::size_t position, const FfConfiguration& configuration) {
-      return devices_.make(position, configuration, seed,
-                           with_role(&conformance::make_ff_mutant, "ff_device"));
+      return devices_.make(position, configuration, seed, conformance::ff_device_mutants());
     };
     return std::make_unique<fieldbus_dll::FfNetwork>(link_, seed, stations);
   }
@@ -278,12 +269,10 @@ class PlannedIsa final : public PlannedNetwork {
     using fieldbus_dll::IsaDevice;
     fieldbus_dll::IsaStations stations;
     stations.make_master = [this, seed](std::size_t position, const IsaConfiguration& configuration) {
-      return masters_.make(position, configuration, seed,
-                           with_role(&conformance::make_isa_mutant, "isa_las"));
+      return masters_.make(position, configuration, seed, conformance::isa_las_mutants());
     };
     stations.make_device = [this, seed](std::size_t position, const IsaConfiguration& configuration) {
-      return devices_.make(position, configuration, seed,
-                           with_role(&conformance::make_isa_mutant, "isa_dle"));
+      return devices_.make(position, configuration, seed, conformance::isa_dle_mutants());
     };
     return std::make_unique<fieldbus_dll::IsaNetwork>(link_, seed, stations);
   }

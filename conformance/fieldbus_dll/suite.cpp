@@ -40,8 +40,11 @@ bool is_of_isa(std::string_view role) {
 
 class FieldbusDllSuite final : public Suite {
  public:
-  explicit FieldbusDllSuite(FieldbusDllGiven given) : given_(std::move(given)), mutants_(isa_mutants()) {
-    for (Mutant& one : ff_mutants()) mutants_.push_back(std::move(one));
+  explicit FieldbusDllSuite(FieldbusDllGiven given) : given_(std::move(given)) {
+    for (const auto& list : {isa_dle_mutants().mutants(), isa_las_mutants().mutants(),
+                             ff_device_mutants().mutants(), ff_las_mutants().mutants()}) {
+      mutants_.insert(mutants_.end(), list.begin(), list.end());
+    }
     const auto is_left_out = [this](const TestCase& one) {
       return given_.stresses.empty() && has_tag(one, kStressTag);
     };
@@ -210,7 +213,8 @@ class FieldbusDllSuite final : public Suite {
       return std::make_unique<fieldbus_dll::IsaDle>(of);
     }
     if (wanted.uri == kOwnUri && own_isa(role)) return own_isa(role)(wanted, of);
-    return make_isa_mutant(std::string(role), mutant_of(wanted.uri, "station of the profile ISA-D"), of);
+    return (role == kIsaLas ? isa_las_mutants() : isa_dle_mutants())
+        .make(mutant_of(wanted.uri, "station of the profile ISA-D"), of);
   }
 
   std::unique_ptr<fieldbus_dll::FfDevice> local_ff(std::string_view role, const IutRequest& wanted,
@@ -220,7 +224,8 @@ class FieldbusDllSuite final : public Suite {
       return std::make_unique<fieldbus_dll::FfStation>(of);
     }
     if (wanted.uri == kOwnUri && own_ff(role)) return own_ff(role)(wanted, of);
-    return make_ff_mutant(std::string(role), mutant_of(wanted.uri, "station of the profile FF-P"), of);
+    return (role == kFfLas ? ff_las_mutants() : ff_device_mutants())
+        .make(mutant_of(wanted.uri, "station of the profile FF-P"), of);
   }
 
   FieldbusDllGiven given_;

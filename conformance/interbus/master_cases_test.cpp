@@ -33,7 +33,7 @@ TEST(MasterSuite, names_every_purpose_and_every_mutant) {
     EXPECT_TRUE(purposes.contains(n < 10 ? "IM-0" + std::to_string(n) : "IM-" + std::to_string(n))) << n;
   }
   std::set<std::string> mutants;
-  for (const Mutant& mutant : master_mutants()) mutants.insert(mutant.label);
+  for (const Mutant& mutant : master_mutants().mutants()) mutants.insert(mutant.label);
   for (int n = 1; n <= 22; ++n) EXPECT_TRUE(mutants.contains("MM" + std::to_string(n))) << n;
 }
 

@@ -14,6 +14,7 @@
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/line_watch.hpp"
+#include "conformance/mutant_table.hpp"
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
@@ -120,8 +121,8 @@ struct NetworkCase {
 const std::vector<NetworkCase>& network_cases();
 std::vector<NetworkCase> network_immunity_cases();  // a part of them
 
-const std::vector<Mutant>& network_mutants();
-// The parts of a mutant by name; throws kernel::Error(usage) with the nearest names for an unknown one.
-NetworkParts mutant_network(std::string_view name, std::size_t stations);
+// The parts of a network of so many stations.
+using NetworkMutants = MutantTable<NetworkParts, std::size_t>;
+const NetworkMutants& network_mutants();
 
 }  // namespace fieldproof::conformance

@@ -95,17 +95,20 @@ Run::MakeSlave Run::slave_maker(const std::string& uri) {
         [this, uri](const interbus::SlaveConfiguration& of) -> std::unique_ptr<interbus::SlaveDevice> {
           if (uri == kReferenceUri) return std::make_unique<interbus::Slave>(of);
           if (uri == kOwnUri && given_.own_slave) return given_.own_slave(devices_.request(uri), of);
-          return make_slave_mutant(mutant_of(uri, "INTERBUS slave"), of);
+          return slave_mutants().make(mutant_of(uri, "INTERBUS slave"), of);
         });
   };
 }
 
 Run::MakeMaster Run::master_maker(const std::string& uri) {
   return [this, uri](const interbus::MasterConfiguration& configuration) {
-    return devices_.make<interbus::MasterRole>(uri, configuration, [this, uri](const auto& of) {
-      if (uri == kOwnUri && given_.own_master) return given_.own_master(devices_.request(uri), of);
-      return conformance::make_master(uri)(of);
-    });
+    return devices_.make<interbus::MasterRole>(
+        uri, configuration,
+        [this, uri](const interbus::MasterConfiguration& of) -> std::unique_ptr<interbus::MasterDevice> {
+          if (uri == kOwnUri && given_.own_master) return given_.own_master(devices_.request(uri), of);
+          if (uri == kReferenceUri) return std::make_unique<interbus::Master>(of);
+          return master_mutants().make(mutant_of(uri, "INTERBUS master"), of);
+        });
   };
 }
 
@@ -216,7 +219,7 @@ NetworkParts Run::network_parts(std::size_t stations) {
     } else if (assignment.role == "master") {
       parts.make_master = master_maker(assignment.uri);
     } else {
-      parts = mutant_network(mutant_of(assignment.uri, "INTERBUS network"), stations);
+      parts = network_mutants().make(mutant_of(assignment.uri, "INTERBUS network"), stations);
     }
   }
   if (slaves.empty()) return parts;
@@ -299,8 +302,9 @@ class InterbusSuite final : public Suite {
     add(master_cases());
     add(network_cases());
     checks_[blank_sequence_case().test_case.id] = [](Run& run) { run.check(blank_sequence_case()); };
-    for (const auto* list : {&slave_mutants(), &master_mutants(), &network_mutants()}) {
-      std::ranges::copy_if(*list, std::back_inserter(mutants_),
+    for (const auto& list :
+         {slave_mutants().mutants(), master_mutants().mutants(), network_mutants().mutants()}) {
+      std::ranges::copy_if(list, std::back_inserter(mutants_),
                            [&](const Mutant& one) { return !only_left_out_cases_name(one); });
     }
   }

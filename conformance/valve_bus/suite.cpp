@@ -36,8 +36,8 @@ class ValveBusSuite final : public Suite {
       cases_.push_back(one.test_case);
       host_cases_[one.test_case.id] = &one;
     }
-    mutants_ = node_mutants();
-    mutants_.insert(mutants_.end(), host_mutants().begin(), host_mutants().end());
+    mutants_ = node_mutants().mutants();
+    for (Mutant& one : host_mutants().mutants()) mutants_.push_back(std::move(one));
   }
 
   std::string_view protocol() const override { return "valve_bus"; }
@@ -188,14 +188,14 @@ class ValveBusSuite final : public Suite {
                                                     const valve_bus::NodeConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Node>(configuration);
     if (wanted.uri == kOwnUri && given_.own_node) return given_.own_node(wanted, configuration);
-    return make_node_mutant(mutant_of(wanted.uri, "node of the valve bus"), configuration);
+    return node_mutants().make(mutant_of(wanted.uri, "node of the valve bus"), configuration);
   }
 
   std::unique_ptr<valve_bus::HostDevice> local_host(const IutRequest& wanted,
                                                     const valve_bus::HostConfiguration& configuration) const {
     if (wanted.uri == kReferenceUri) return std::make_unique<valve_bus::Host>(configuration);
     if (wanted.uri == kOwnUri && given_.own_host) return given_.own_host(wanted, configuration);
-    return make_host_mutant(mutant_of(wanted.uri, "host of the valve bus"), configuration);
+    return host_mutants().make(mutant_of(wanted.uri, "host of the valve bus"), configuration);
   }
 
   ValveBusGiven given_;
