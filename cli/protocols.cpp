@@ -2,18 +2,22 @@
 
 #include <array>
 
-#include "cli/attachments.hpp"
+#include "cli/disturbances.hpp"
 #include "conformance/assigned.hpp"
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
+#include "conformance/fieldbus_dll/planned_network.hpp"
 #include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/planned_network.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/valve_bus/host_mutants.hpp"
 #include "conformance/valve_bus/node_bench.hpp"
 #include "conformance/valve_bus/node_mutants.hpp"
+#include "conformance/valve_bus/planned_network.hpp"
 #include "conformance/valve_bus/suite.hpp"
+#include "emc/interbus/undetected_cycle.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
@@ -116,36 +120,40 @@ constexpr std::array kFieldbusDllRoles{
     row<fieldbus_dll::FfLasRole, fieldbus_dll::FfLas, &conformance::ff_las_mutants>(kCharactersToo),
 };
 
-std::unique_ptr<conformance::Suite> interbus_suite(const conformance::Attach& attach,
-                                                   const Disturbances& disturbances) {
-  return conformance::interbus_suite(
-      {.attach = attach, .disturbances = disturbances.of_plans, .stresses = disturbances.stresses});
-}
-
-std::unique_ptr<conformance::Suite> valve_bus_suite(const conformance::Attach& attach,
-                                                    const Disturbances& disturbances) {
-  return conformance::valve_bus_suite({.attach = attach,
-                                       .on_real_line = station_on_real_line,
-                                       .disturbances = disturbances.of_plans,
-                                       .stresses = disturbances.stresses});
-}
-
-std::unique_ptr<conformance::Suite> fieldbus_dll_suite(const conformance::Attach& attach,
-                                                       const Disturbances& disturbances) {
-  return conformance::fieldbus_dll_suite(
-      {.attach = attach, .disturbances = disturbances.of_plans, .stresses = disturbances.link_stresses});
-}
-
 Planned token_plan(const std::string& file, std::uint64_t seed) {
   const auto network = fieldbus_dll::TokenNetwork::load(file);
   const auto plan = fieldbus_dll::plan_target(network.traffic, network.bound, seed);
   return {fieldbus_dll::network_text(network, seed) + fieldbus_dll::plan_text(plan, network), plan.is_proven};
 }
 
+std::vector<UndetectedPart> undetected_cycles(const std::string& network_file, double flip_probability) {
+  const emc::UndetectedCycle parts =
+      emc::undetected_cycle(conformance::planned_interbus_network(network_file), flip_probability);
+  return {{"code_word", parts.by_code_word}, {"shift", parts.by_shift}, {"misframing", parts.by_misframing}};
+}
+
 constexpr std::array kProtocols{
-    ProtocolEntry{"interbus", kInterbusRoles, interbus_suite},
-    ProtocolEntry{"valve_bus", kValveBusRoles, valve_bus_suite},
-    ProtocolEntry{"fieldbus_dll", kFieldbusDllRoles, fieldbus_dll_suite, token_plan},
+    ProtocolEntry{
+        .name = "interbus",
+        .roles = kInterbusRoles,
+        .suite = conformance::interbus_suite,
+        .network = {.own_network = "of the cycle-time paper",
+                    .plan = conformance::plan_interbus,
+                    .has_latch_models = true},
+        .undetected = {undetected_cycles,
+                       "That a flipped header level moves the end of the data, and how often a check "
+                       "fits then, follows from this project's reading of the header: the simulated "
+                       "stations and the theory share it."}},
+    ProtocolEntry{.name = "valve_bus",
+                  .roles = kValveBusRoles,
+                  .suite = conformance::valve_bus_suite,
+                  .network = {.own_network = "of 8 nodes on 1000 m", .plan = conformance::plan_valve_bus}},
+    ProtocolEntry{
+        .name = "fieldbus_dll",
+        .roles = kFieldbusDllRoles,
+        .suite = conformance::fieldbus_dll_suite,
+        .network = {.own_network = "of two link masters and 4 devices", .plan = conformance::plan_link},
+        .plan = token_plan},
 };
 
 }  // namespace

@@ -58,7 +58,7 @@ iut::Attachment served(const std::string& role, const std::string& mutant) {
 }
 
 std::unique_ptr<Suite> suite_outside(const std::string& role, const std::string& mutant) {
-  FieldbusDllGiven given;
+  SuiteGiven given;
   given.attach = [role, mutant](const iut::RoleName&,
                                 const IutRequest& request) -> std::optional<iut::Attachment> {
     if (request.uri != "outside") return std::nullopt;

@@ -131,9 +131,8 @@ judge::CaseResult run_master_case(std::string_view id, MasterBench::MakeMaster m
   judge::Pics pics;
   if (!item.empty()) pics.declare(std::string(item), std::string(answer));
   const MasterCase& one = master_case_of(id);
-  CaseJudge judge(one.test_case);
-  MasterBench bench(std::move(make_master), 1, volume, std::move(pics));
-  return judge.run_procedure([&](CaseJudge& j) { one.procedure(bench, j); });
+  return run_on_bench(
+      one, MasterSetting{.make_device = std::move(make_master), .volume = volume, .pics = std::move(pics)});
 }
 
 TEST(MasterSuite, RightMastersThatDifferFromTheReferencePass) {

@@ -31,8 +31,8 @@ SlaveSetting setting_for(const conformance::Setup& setup) {
   setting.volume = setup.volume;
   for (const Assignment& assignment : setup.implementations) {
     if (!assignment.uri.starts_with("mutant:")) continue;
-    setting.make_slave = [name =
-                              assignment.uri.substr(8)](const interbus::SlaveConfiguration& configuration) {
+    setting.make_device = [name =
+                               assignment.uri.substr(8)](const interbus::SlaveConfiguration& configuration) {
       return slave_mutants().make(name, configuration);
     };
   }
@@ -82,7 +82,7 @@ TEST(SlaveSuite, EachMutantIsCaughtAtAnotherPosition) {
       setting.volume = Volume::quick;
       setting.position = 2;
       setting.stations = 3;
-      setting.make_slave = [&](const interbus::SlaveConfiguration& configuration) {
+      setting.make_device = [&](const interbus::SlaveConfiguration& configuration) {
         return slave_mutants().make(declared.mutant, configuration);
       };
       const judge::CaseResult result = run_slave_case(slave_case, setting);
@@ -132,7 +132,7 @@ TEST(SlaveSuite, ACaseOfAVerifiedSourceMayFailForAnUnverifiedOne) {
     SlaveSetting setting = setting_for({});
     setting.volume = Volume::quick;
     const auto result_with = [&](const char* mutant) {
-      setting.make_slave = [mutant](const interbus::SlaveConfiguration& configuration) {
+      setting.make_device = [mutant](const interbus::SlaveConfiguration& configuration) {
         return slave_mutants().make(mutant, configuration);
       };
       return run_slave_case(slave_case, setting);
@@ -176,7 +176,7 @@ TEST(SlaveSuite, TheRegisterOfAnOutputStationIsNotJudged) {
   for (const SlaveCase& slave_case : cases_without_stress()) {
     if (is_canary(slave_case.test_case)) continue;
     SlaveSetting setting = setting_with_id_code(0x0201);
-    setting.make_slave = [](const interbus::SlaveConfiguration& configuration) {
+    setting.make_device = [](const interbus::SlaveConfiguration& configuration) {
       return slave_mutants().make("input_bit_stuck", configuration);
     };
     const judge::CaseResult result = run_slave_case(slave_case, setting);
