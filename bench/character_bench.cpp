@@ -89,7 +89,7 @@ line::Waveform train() {
   return wave;
 }
 
-// A receiver behind a plan, and a train of telegrams that passes again and again.
+// A receiver after a plan, and a train of telegrams that passes again and again.
 class Passing {
  public:
   explicit Passing(fault::Rule rule)

@@ -96,7 +96,7 @@ CycleSize size_of_cycle(Running& running) {
 
 // ---- the floor ----
 
-// Telegrams of one train in packed levels, gap behind each.
+// Telegrams of one train in packed levels, gap after each.
 class Floor {
  public:
   Floor(CycleSize size, unsigned stations) : size_(size), registers_(stations) {
@@ -278,11 +278,11 @@ constexpr double kInjectorWithoutHits = 1 / 1.3;
 const Rows kRows({
     {"INTERBUS hop, 64 stations", "hand-written loop", "hops", "", 0, make_floor},
     {"INTERBUS hop, 64 stations", "fieldproof", "hops", "hand-written loop", 0.5, make_hops},
-    {"INTERBUS, 1 station, 4 octets, beside real time", "clock", "us", "", 0, make_clock},
-    {"INTERBUS, 1 station, 4 octets, beside real time", "fieldproof", "us", "clock", 500,
+    {"INTERBUS, 1 station, 4 octets, against real time", "clock", "us", "", 0, make_clock},
+    {"INTERBUS, 1 station, 4 octets, against real time", "fieldproof", "us", "clock", 500,
      real_time_of(line_of(1, 2), 1000)},
-    {"INTERBUS, 64 stations, 128 octets, beside real time", "clock", "us", "", 0, make_clock},
-    {"INTERBUS, 64 stations, 128 octets, beside real time", "fieldproof", "us", "clock", 5,
+    {"INTERBUS, 64 stations, 128 octets, against real time", "clock", "us", "", 0, make_clock},
+    {"INTERBUS, 64 stations, 128 octets, against real time", "fieldproof", "us", "clock", 5,
      real_time_of(line_of(64, 1), 4)},
     {"INTERBUS data cycle", "1 station", "cycles", "", 0, cycles_of(1)},
     {"INTERBUS data cycle", "10 stations", "cycles", "", 0, cycles_of(10)},

@@ -1,4 +1,4 @@
-// A character to an implementation in this process: behind the functions of fieldproof_plugin.h in a shared
+// A character to an implementation in this process: after the functions of fieldproof_plugin.h in a shared
 // library, beside the same node called directly.
 #include <array>
 #include <memory>
@@ -69,7 +69,7 @@ class NoActs final : public iut::Bench {
   std::uint64_t read(iut::Item, kernel::Time) override { return 0; }
 };
 
-// Frames of characters and the silence behind each.
+// Frames of characters and the silence after each.
 Batch frames_to(std::shared_ptr<iut::Device> device) {
   const auto bench = std::make_shared<NoActs>();
   device->begin({"valve_bus/node/bench/call", 0, valve_bus::node_settings({})}, *bench);

@@ -256,8 +256,8 @@ std::vector<Row> rows_of_token() {
 #endif
   rows.push_back(row("a loop without events", "", 0, &by_hand));
   // At most three times the loop's time, and at most a fifth of ns-3's, are asked for.
-  rows.push_back(row("on the scheduler, beside the loop", "a loop", 0.33, &by_scheduler));
-  rows.push_back(row("on the scheduler, beside ns-3", "ns-3", 5, &by_scheduler));
+  rows.push_back(row("on the scheduler, against the loop", "a loop", 0.33, &by_scheduler));
+  rows.push_back(row("on the scheduler, against ns-3", "ns-3", 5, &by_scheduler));
   return rows;
 }
 

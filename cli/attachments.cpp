@@ -99,7 +99,7 @@ std::string plugin_path(std::string_view uri) {
   if (path.empty() || (end != uri.size() && uri.substr(end) != kInProcess)) {
     throw kernel::Error(kernel::ErrorKind::usage,
                         fmt::format("'{}' names no library; write plugin:./library.so, or with ?in-process "
-                                    "behind it",
+                                    "after it",
                                     uri));
   }
   return path;

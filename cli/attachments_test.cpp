@@ -353,7 +353,7 @@ TEST_F(Attachments, WhatCannotBeAttachedEndsTheRunWithAllThatIsKnown) {
 // Hosts and masters are told orders in characters; the others ask no more of the library than that it serves
 // the role.
 TEST_F(Attachments, LibraryWithoutCharactersIsRefusedBeforeTheRunWhereTheRoleIsToldSome) {
-  const std::string characters = "has no function 'receive'; its role is told characters";
+  const std::string characters = "has no function 'receive'; its role receives characters";
   const std::vector<std::pair<std::string, std::string>> all = {
       {"valve_bus/node/read/is_answered", "does not serve the role 'valve_bus/node'"},
       {"valve_bus/host/request/check_is_the_exclusive_or", characters},

@@ -66,7 +66,7 @@ constexpr std::array kOfMasters = {
 };
 
 // Two that the suite catches cannot show in a network whose master behaves, because it sends an ID cycle
-// behind each rejected one: loses_the_cycle_behind_a_rejected_one, waits_for_id_cycle_after_rejected_cycle.
+// after each rejected one: loses_the_cycle_behind_a_rejected_one, waits_for_id_cycle_after_rejected_cycle.
 constexpr std::array kOfSlaves = {
     Row{"latches_in_spite_of_own_error", Sign::wrong_data},
     Row{"latches_at_end_of_data_phase", Sign::wrong_data},

@@ -57,7 +57,7 @@ int code_of(std::uint64_t passed, std::uint64_t inconclusive) {
   return inconclusive > 0 ? kInconclusive : kAllAsExpected;
 }
 
-// Stores and prints what was found behind so many sequences.
+// Stores and prints what was found after so many sequences.
 int keep_found(Session& session, SequenceFile& target, const std::string& path,
                const conformance::SequenceFound& found, std::uint64_t run, const Interruption& interruption) {
   // Of one that does not do the same again the file keeps what was seen.

@@ -94,7 +94,7 @@ void Doctor::examine_machine() {
   say("a sleep of 1 ms ends late", late.text());
   say("an octet over a terminal", ways.text());
   say("a stamp is known to", widths.text());
-  say("U of a turn-round", fmt::format("usually {}, at worst {}, as busy as the machine is now",
+  say("U of a turnaround", fmt::format("usually {}, at worst {}, as busy as the machine is now",
                                        kernel::describe(2 * ways.median() + widths.median()),
                                        kernel::describe(2 * ways.worst() + widths.worst())));
 }

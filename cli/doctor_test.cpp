@@ -13,7 +13,7 @@ class DoctorTest : public ProgramFixture {};
 TEST_F(DoctorTest, SaysHowWellTheMachineKnowsInstants) {
   const Called called = call({"doctor"});
   EXPECT_EQ(called.exit_code, 0) << called.err;
-  for (const char* words : {"a look at the clock", "a stamp is known to", "U of a turn-round"})
+  for (const char* words : {"a look at the clock", "a stamp is known to", "U of a turnaround"})
     EXPECT_HOLDS(called.out, words);
 }
 

@@ -143,7 +143,7 @@ Assignment parse_implementation(const std::string& text, const Catalogue& catalo
   } else if (assignment.uri != "ref" && !is_attachment(assignment.uri) && !is_own(assignment, suites)) {
     refuse(text,
            "there is no such kind of implementation; write ref, mutant:NAME, plugin:LIBRARY, exec:PROGRAM, "
-           "unix:PATH, tcp:HOST:PORT, or one of them behind ROLE= or ROLE@POSITION=");
+           "unix:PATH, tcp:HOST:PORT, or one of them after ROLE= or ROLE@POSITION=");
   }
   return assignment;
 }

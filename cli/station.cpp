@@ -26,7 +26,7 @@ bool wants_telegrams(const Session& session, const Role& role, const std::string
   if (role.in_telegrams == nullptr) {
     session.settings.refuse("units", fmt::format("there are no telegrams for '{}'", role.path()));
   }
-  if (is_plugin_uri(uri)) session.settings.refuse("units", "a library says itself what it hears");
+  if (is_plugin_uri(uri)) session.settings.refuse("units", "a library says itself what it receives");
   return true;
 }
 

@@ -86,7 +86,7 @@ void serve_socket(const std::string& path, iut::SerialLine& line, const Role& ro
 }
 
 // The name of a terminal whose maker was killed, which may be that of another terminal by now: one that was
-// made behind the name.
+// made after the name.
 bool is_left_behind(const std::string& path) {
   struct stat link{};
   struct stat device{};

@@ -31,7 +31,7 @@ struct IutRequest {
 template <typename Device, typename Configuration>
 using MakeOwn = std::function<std::unique_ptr<Device>(const IutRequest&, const Configuration&)>;
 
-// The name behind `mutant:`. Throws kernel::Error(usage) for any other URI; `what` is "INTERBUS slave".
+// The name after `mutant:`. Throws kernel::Error(usage) for any other URI; `what` is "INTERBUS slave".
 std::string mutant_of(const std::string& uri, std::string_view what);
 
 }  // namespace fieldproof::conformance

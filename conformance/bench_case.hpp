@@ -11,7 +11,7 @@
 #include "conformance/test_case.hpp"
 
 // What cases that run on a bench of their protocol have in common: a procedure on a bench that is made for
-// one run, chapters of cases, and a canary behind them.
+// one run, chapters of cases, and a canary after them.
 namespace fieldproof::conformance {
 
 template <typename Bench, typename Needs>
@@ -26,7 +26,7 @@ struct BenchCase {
 // Of cases that take the bench as it is.
 struct NoNeeds {};
 
-// What is judged behind a procedure, whatever it was about.
+// What is judged after a procedure, whatever it was about.
 template <typename Bench>
 void judge_end(Bench& bench, CaseJudge& judge) {
   bench.line_watch().judge(judge);

@@ -101,7 +101,7 @@ const std::vector<Worst>& worst_acts() {
   return all;
 }
 
-// Before a case has begun it may be refused, and nothing may be done yet; behind its end nothing may be done
+// Before a case has begun it may be refused, and nothing may be done yet; after its end nothing may be done
 // any more.
 std::string expected_reason(const Worst& worst, std::string_view call) {
   if (call == "begin" && worst.act == "refuses_in_the_middle") return "implementation_refuses_case";
@@ -135,7 +135,7 @@ std::size_t hostile_processes() {
 
 // What a loaded machine, under a sanitizer, may take for a run; and what a call may take of one that is right
 // but for the worst. Where the bench waits as long as it may the limit is shorter: it holds for the cases
-// before and behind it too, in which the implementation is right.
+// before and after it too, in which the implementation is right.
 constexpr std::chrono::milliseconds kPatience{20'000};
 constexpr std::chrono::milliseconds kShortest{2'000};
 
@@ -183,7 +183,7 @@ class HostileStation : public testing::TestWithParam<Attack> {
 TEST_P(HostileStation, CostsItsOwnVerdictAndNoOther) {
   const std::size_t descriptors = open_descriptors();
   for (const Worst& worst : worst_acts()) {
-    // Behind the end of a case nobody asks for a next time.
+    // After the end of a case nobody asks for a next time.
     if (worst.act.starts_with("time_") && GetParam().call == "end") continue;
     SCOPED_TRACE(fmt::format("{} in {}", worst.act, GetParam().call));
     const auto begin = std::chrono::steady_clock::now();
@@ -193,7 +193,7 @@ TEST_P(HostileStation, CostsItsOwnVerdictAndNoOther) {
     EXPECT_EQ(results[0].verdict, judge::Verdict::pass) << results[0].reason;
     EXPECT_EQ(results[1].verdict, judge::Verdict::fail);
     if (worst.act == "answers_twice") {
-      // One answer too many is seen at once, or by what it does to those behind it.
+      // One answer too many is seen at once, or by what it does to those after it.
       const bool is_blamed = results[1].reason.starts_with("implementation_");
       EXPECT_TRUE(is_blamed || GetParam().role == &kDeviceRole) << results[1].reason;
     } else {

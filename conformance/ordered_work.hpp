@@ -60,7 +60,7 @@ class OrderedWork {
     std::vector<std::jthread> workers;
     running_ = pool;
     for (std::size_t i = 0; i < pool; ++i) workers.emplace_back([this] { take_work(); });
-    // A deliver that throws must not leave workers behind that start further pieces.
+    // A deliver that throws must not leave workers after that start further pieces.
     struct Closing {
       OrderedWork* owner;
       ~Closing() { owner->close(); }

@@ -5,7 +5,7 @@
 //                         parts (also none); a text without these characters names one case
 //   +must                 every case with the tag
 //   @smoke.txt            the selectors of a file, one per line; `#` starts a comment
-//   !interbus/slave/long* takes away what the selector behind it matches
+//   !interbus/slave/long* takes away what the selector after it matches
 //
 // Contract: cases tagged `canary` must fail, so they are selected only when they are named exactly or by
 // `+canary`, never by a glob. A selector file that cannot be read, that includes itself, is very long or has

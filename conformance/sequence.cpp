@@ -29,7 +29,7 @@ std::string fault_text(const SequenceFault& fault, std::string_view unit) {
     case SequenceFaultKind::gap:
       break;
   }
-  return fmt::format("{} bits of silence behind {} {}", fault.value, unit, fault.unit);
+  return fmt::format("{} bits of silence after {} {}", fault.value, unit, fault.unit);
 }
 
 ordered_json fault_json(const SequenceFault& fault) {

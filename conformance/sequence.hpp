@@ -24,7 +24,7 @@ enum class SequenceFaultKind : std::uint8_t {
 };
 
 // What is wrong with the transmission of one command. A unit is what the line consists of: a character, a
-// telegram; one behind the last of them, or a level behind its end, does nothing.
+// telegram; one after the last of them, or a level after its end, does nothing.
 struct SequenceFault {
   SequenceFaultKind kind = SequenceFaultKind::flip;
   std::uint32_t unit = 0;   // from 0

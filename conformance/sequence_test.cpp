@@ -39,7 +39,7 @@ TEST(Sequence, IsToldInWords) {
   EXPECT_EQ(
       sequence_lines(sequence, node_words()),
       (std::vector<std::string>{
-          "write data0 165 data1 60 silence 45; level 3 of character 2 flipped; 22 bits of silence behind "
+          "write data0 165 data1 60 silence 45; level 3 of character 2 flipped; 22 bits of silence after "
           "character 0; character 4 dropped",
           "octets silence 0 octets 01 FF"}));
   EXPECT_EQ(faults_in(sequence), 3U);

@@ -25,7 +25,7 @@ using line::Sampling;
 constexpr std::int64_t kBitRate = 500'000;
 constexpr Duration kBit = 2 * kMicrosecond;
 
-// The output is forced to `forced` for the time [from, to) behind each pulse.
+// The output is forced to `forced` for the time [from, to) after each pulse.
 WrongOutput forced(bool forced, Duration from, Duration to) {
   WrongOutput wrong;
   wrong.of_level.at(forced ? 0 : 1) = {{from, to}};
@@ -349,7 +349,7 @@ Line arbitrary_line() {
     at = wave.end() + Duration{draws.between(0, 40'000'000)};
     line.waves.push_back(std::move(wave));
   }
-  // No other comes behind the last one: it may be cut in the middle of a unit, or have any level wrong.
+  // No other comes after the last one: it may be cut in the middle of a unit, or have any level wrong.
   line::Levels& last = line.waves.back().levels;
   if (*rc::gen::arbitrary<bool>())
     last.resize(last.size() - draws.below(std::min<std::size_t>(13, last.size())));

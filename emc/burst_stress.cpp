@@ -28,7 +28,7 @@ BurstSchedule burst_at(kernel::Time from, BurstSettings settings, const kernel::
   return {settings, random};
 }
 
-// The longest burst that the tolerances allow, and the pitch behind its last pulse.
+// The longest burst that the tolerances allow, and the pitch after its last pulse.
 kernel::Duration longest_burst(Repetition repetition) {
   return repetition == Repetition::khz_100 ? kernel::kMillisecond : 20 * kernel::kMillisecond;
 }

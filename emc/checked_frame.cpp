@@ -106,7 +106,7 @@ FrameFate CheckedFrame::fate(std::span<const std::uint16_t> message, std::span<c
   received_.clear();
   if (impact_.is_unclear()) {
     FIELDPROOF_CHECK(!is_in_step(format_),
-                     "a receiver that does not look at the framing is in doubt about it");
+                     "a receiver that does not look at the framing is uncertain about it");
     rewrite(heard);
   } else {
     if (impact_.flipped_bits().empty()) return FrameFate::intact;

@@ -18,7 +18,7 @@
 // One frame of characters under pulses: does its receiver notice?
 //
 // The last character is the exclusive or of the others. The characters follow each other without a gap, with
-// a quiet character in front and one behind; pulses make the receiver's output wrong, and a real
+// a quiet character in front and one after; pulses make the receiver's output wrong, and a real
 // CharacterReceiver finds edges and samples in what is left. A frame is taken when it has as many characters
 // as were sent, each with its stop bit (and with the right parity, where that is looked at), and the
 // exclusive or of all is 0. So a frame whose framing breaks, or that has a character more or less, is
@@ -27,7 +27,7 @@
 // The other receiver here has the clock of the sender: it samples each bit where the sender's grid says, and
 // start and stop bits are to it two more bits that have to be right. That is how closed forms see a line. A
 // real one starts its clock at the falling edge of each character, so a pulse at that edge moves all samples
-// of the character, and a start bit that is lost moves the characters behind it.
+// of the character, and a start bit that is lost moves the characters after it.
 //
 // As in a burst channel the real receiver gets the frame with bits flipped where only sampled bits are wrong,
 // and at 64 levels per bit else; why that is the same stands in sampled_impact.hpp.
@@ -81,7 +81,7 @@ class CheckedFrame {
 
   // The quiet character in front begins at kStart.
   kernel::Time end() const { return end_; }  // of the one behind
-  // In front of and behind a pulse this is where it can do anything, whatever its effect.
+  // In front of and after a pulse this is where it can do anything, whatever its effect.
   const Interval& reach() const { return reach_; }
 
   // `message` is the characters in front of the check, pulses are in order.

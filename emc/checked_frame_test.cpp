@@ -132,13 +132,13 @@ TEST(CheckedFrame, HearsACharacterInTheSilenceInFront) {
   in_step.clock = ReceiverClock::of_the_sender;
   CheckedFrame deaf(in_step, pulse_effects(ForcedLevel::low, 1300 * kNanosecond));
   EXPECT_EQ(deaf.fate(kMessage, early), FrameFate::intact);
-  // Behind the frame it is one character more.
+  // After the frame it is one character more.
   const std::array<FramePulse, 1> late{{{kStart + 61 * kFrameBit, 0}}};
   EXPECT_EQ(frame.fate(kMessage, late), FrameFate::detected);
 }
 
 // A glitch at the start edge of the third character starts the receiver's clock 240 ns early, and a pulse in
-// that character that lies behind its samples by the sender's clock then meets them by the receiver's.
+// that character that lies after its samples by the sender's clock then meets them by the receiver's.
 TEST(CheckedFrame, APulseAtAStartEdgeMovesTheSamples) {
   const auto fate = [](ReceiverClock clock, bool has_edge) {
     CheckedFrameFormat format = format_of({});
@@ -146,7 +146,7 @@ TEST(CheckedFrame, APulseAtAStartEdgeMovesTheSamples) {
     format.sampling = line::kMidBit;
     CheckedFrame frame(format, pulse_effects(ForcedLevel::low, 300 * kNanosecond));
     const kernel::Time edge = kStart + 30 * kFrameBit;
-    // 0xA5 has its lowest bit set. Its sample comes 3 us behind the edge, or 240 ns earlier.
+    // 0xA5 has its lowest bit set. Its sample comes 3 us after the edge, or 240 ns earlier.
     std::vector<FramePulse> pulses{{edge + 2600 * kNanosecond, 0}};
     if (has_edge) pulses.insert(pulses.begin(), {edge - 240 * kNanosecond, 0});
     return frame.fate(kMessage, pulses);

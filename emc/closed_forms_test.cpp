@@ -38,7 +38,7 @@ constexpr Duration kCycle = 814'800 * kNanosecond;
 constexpr double kPulsesPerSecond = 250;
 constexpr double kActivity = 364.0 / 814.8;
 
-// The output is forced to 0 for a time from `delay` behind each pulse on.
+// The output is forced to 0 for a time from `delay` after each pulse on.
 WrongOutput forced_low(Duration tau, Duration delay = {}) {
   WrongOutput wrong;
   wrong.of_level[1] = {{delay, delay + tau}};

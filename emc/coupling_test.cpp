@@ -35,7 +35,7 @@ TEST(CouplingTest, ACouplingNetworkPassesThePulse) {
   expect_near(LineResponse(coupling).coupled_peak(), 0.5);
 }
 
-// The peak of a pulse behind a low-pass alone. The clamp is made to pass the pulse as it is.
+// The peak of a pulse after a low-pass alone. The clamp is made to pass the pulse as it is.
 TEST(CouplingTest, TheFilterReducesThePulseAsCalculated) {
   const auto peak = [](double mhz) {
     Coupling coupling;
@@ -46,7 +46,7 @@ TEST(CouplingTest, TheFilterReducesThePulseAsCalculated) {
     coupling.filter_mhz = mhz;
     return LineResponse(coupling).differential_peak() / (150.0 / 200.0);
   };
-  // The undershoot behind 33 nF takes a little of the slow ones.
+  // The undershoot after 33 nF takes a little of the slow ones.
   expect_near(peak(0.1), 0.036, 0.03);
   expect_near(peak(1), 0.236, 0.02);
   expect_near(peak(2), 0.364, 0.02);
@@ -110,7 +110,7 @@ TEST(CouplingTest, PolaritiesAreMirrorImages) {
   }
   coupling.ringing_part = 0;
   const LineResponse smooth(coupling);
-  // The pulse behind the clamp's capacitance has an undershoot, which stays below the threshold here.
+  // The pulse after the clamp's capacitance has an undershoot, which stays below the threshold here.
   EXPECT_TRUE(smooth.wrong_output(800, Polarity::positive).of_level[1].empty());
   EXPECT_FALSE(smooth.wrong_output(800, Polarity::positive).of_level[0].empty());
 }

@@ -43,7 +43,7 @@ class Framing {
   Framing& operator=(const Framing&) = delete;
   virtual ~Framing() = default;
 
-  // Appends the units of levels that are one bit each, in order, at least those that end behind level `from`
+  // Appends the units of levels that are one bit each, in order, at least those that end after level `from`
   // and begin up to level `until`. False when one up to there is cut or broken: then nothing can be said
   // without the receiver.
   virtual bool find(const line::Levels& levels, std::size_t from, std::size_t until,

@@ -79,7 +79,7 @@ struct BurstSettings {
   // Each pulse strays from its place. Where no tolerances are drawn it does so whatever is said here.
   bool has_jitter = true;
   BurstPhase phase = BurstPhase::asynchronous;
-  // The first burst begins so long behind `on`, and none runs when the generator is switched on; drawn where
+  // The first burst begins so long after `on`, and none runs when the generator is switched on; drawn where
   // nothing is said.
   std::optional<kernel::Duration> first_burst{};
   unsigned sweep_steps = 16;
@@ -125,7 +125,7 @@ class BurstSchedule {
 
   const BurstTiming& timing() const { return timing_; }
 
-  // The burst of a pulse, for reports: from its first pulse to one pitch behind its last.
+  // The burst of a pulse, for reports: from its first pulse to one pitch after its last.
   struct Window {
     kernel::Time from;
     kernel::Time to;

@@ -57,7 +57,7 @@ class ManchesterLine {
   }
 
  private:
-  // Frames without a gap over the next burst, from any phase on. Gives an instant behind it.
+  // Frames without a gap over the next burst, from any phase on. Gives an instant after it.
   kernel::Time run_burst(kernel::Time from) {
     BurstSchedule schedule = channel_.schedule();
     const kernel::Time first = schedule.first_from(from);

@@ -96,7 +96,7 @@ DisturbanceModel read_burst_model(const Value& value) {
 
 // ---- channels that flip bits ----
 
-// A channel that flips bits, whatever the levels of a transmission are (behind bursts they are parts of
+// A channel that flips bits, whatever the levels of a transmission are (after bursts they are parts of
 // bits), and tells the trace which.
 class BitFlips final : public fault::Channel {
  public:

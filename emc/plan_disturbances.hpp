@@ -14,7 +14,7 @@
 //
 // Bursts: one generator for all receivers of the disturbance, on from the begin of its window to the end,
 // with the tolerances that it draws. The first burst comes anywhere within a burst period, or `first_burst`
-// behind the begin of the window. `volts` in place of `level` is level X. A profile is a built-in one by its
+// after the begin of the window. `volts` in place of `level` is level X. A profile is a built-in one by its
 // name, or an object as in a profile file. Receivers are not declared, so every transmission that is hit
 // reaches the receiver with its wrong times in it, and the receiver itself samples.
 //

@@ -103,7 +103,7 @@ std::optional<std::uint64_t> GilbertElliottProcess::next_flip(std::uint64_t bits
   }
 }
 
-// The state behind the bits comes from the chain of two states in closed form; how long it then stays and
+// The state after the bits comes from the chain of two states in closed form; how long it then stays and
 // when it flips have no memory and are drawn anew.
 void GilbertElliottProcess::skip(std::uint64_t bits) {
   const double now = is_bad_ ? 1 : 0;

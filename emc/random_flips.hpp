@@ -76,7 +76,7 @@ class GilbertElliottProcess {
   std::uint64_t clean_ = 0;  // bits until a flip in this state
 };
 
-// Idle time passes for the state too, at the rate of the transmission behind it.
+// Idle time passes for the state too, at the rate of the transmission after it.
 class GilbertElliottChannel final : public fault::Channel {
  public:
   GilbertElliottChannel(const GilbertElliott& parameters, kernel::Random random);
@@ -93,7 +93,7 @@ class GilbertElliottChannel final : public fault::Channel {
   std::uint64_t flipped_ = 0;
 };
 
-// Exactly these bits, as (transmission, bit), both from 0, whatever happens in between. Positions behind the
+// Exactly these bits, as (transmission, bit), both from 0, whatever happens in between. Positions after the
 // end of a transmission do nothing and are counted.
 class BitListChannel final : public fault::Channel {
  public:

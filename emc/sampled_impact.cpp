@@ -11,7 +11,7 @@ void SampledImpact::judge(const line::Levels& levels, const std::vector<Span>& h
   units_.clear();
   is_unclear_ = framing_ == nullptr;
   if (is_unclear_ || heard.empty()) return;
-  // The bits behind the last wrong time matter as far as a glitch in it may pass for a start.
+  // The bits after the last wrong time matter as far as a glitch in it may pass for a start.
   const auto from = static_cast<std::size_t>(grid_.level_of(heard.front().from));
   const auto until = static_cast<std::size_t>(grid_.level_of(heard.back().to - 1)) + 2;
   is_unclear_ = !framing_->find(levels, from, until, units_);
@@ -41,7 +41,7 @@ void SampledImpact::judge_in_unit(const FramedUnit& unit, Place& place) {
   is_unclear_ = is_edge_moved || (is_wrong && role != BitRole::sampled);
   if (is_wrong) flipped_.push_back(static_cast<std::size_t>(bit));
   if (role != BitRole::stop) return pass_bit(bit, place);
-  // The receiver looks for an edge behind its last sample of a stop bit; what is wrong at that instant and
+  // The receiver looks for an edge after its last sample of a stop bit; what is wrong at that instant and
   // does not decide the bit may be one.
   const std::int64_t decided = grid_.begin_of(bit) + last_sample();
   while (place.span < heard_->size() && (*heard_)[place.span].from <= decided) {
@@ -51,7 +51,7 @@ void SampledImpact::judge_in_unit(const FramedUnit& unit, Place& place) {
   if (place.span < heard_->size()) place.at = (*heard_)[place.span].from;
 }
 
-// Goes on behind the bit.
+// Goes on after the bit.
 void SampledImpact::pass_bit(std::int64_t bit, Place& place) const {
   const std::int64_t end = grid_.begin_of(bit + 1);
   while (place.span < heard_->size() && (*heard_)[place.span].to <= end) ++place.span;

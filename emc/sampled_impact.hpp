@@ -18,7 +18,7 @@
 //     and not at all otherwise;
 //   - bits with the role `sampled` change values and move no other bit: flipping them at the bit rate gives
 //     the same as the wrong wave itself;
-//   - an edge on the idle line whose samples are idle again is refused, and leaves nothing behind when no
+//   - an edge on the idle line whose samples are idle again is refused, and leaves nothing after when no
 //     true edge came before the last of these samples.
 // Everything else (start and stop bits that are sampled wrongly, bits that decide about the framing, edges
 // near a start, glitches that may pass for a start) is left to the receiver: `is_unclear`.

@@ -80,7 +80,7 @@ void IdealRing::apply(std::size_t visible) {
     if (!answer_.is_id_cycle) outputs_[station] = word_of(station);
   }
   if (!answer_.is_id_cycle) return;
-  // Only the remote interface of the first station has something behind it.
+  // Only the remote interface of the first station has something after it.
   visible_ = (word_of(0) & 1) == 0 ? kStations : 1;
 }
 

@@ -414,7 +414,7 @@ void World::restart() {
 
 void World::recover() {
   // What was disturbed last still comes back: up to two cycles with the longest delay. It holds up the
-  // answers behind it, each a little less than the one before.
+  // answers after it, each a little less than the one before.
   (void)run_until_working(2, 50 * kMillisecond);
   for (unsigned ends = ends_ - 1; is_held_up_ && ends != ends_;) {
     ends = ends_;

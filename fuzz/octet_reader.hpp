@@ -6,7 +6,7 @@
 #include <span>
 
 // How a fuzz target reads its input as a script: octet by octet from the front, so that a change at one place
-// of the input changes one place of the script. Behind the end every octet is 0.
+// of the input changes one place of the script. After the end every octet is 0.
 namespace fieldproof::fuzz {
 
 class OctetReader {

@@ -25,7 +25,7 @@ struct HeardTelegram {
   std::uint8_t data = 0;
 };
 
-// The telegrams of a line of bit-wide levels, idle behind its end, under the layout of the rules' defaults.
+// The telegrams of a line of bit-wide levels, idle after its end, under the layout of the rules' defaults.
 // Calls sink(HeardTelegram).
 template <typename Sink>
 FIELDPROOF_UNINSTRUMENTED void hear_bit_by_bit(const line::Levels& levels, Sink&& sink) {

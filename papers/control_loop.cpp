@@ -133,7 +133,7 @@ PublishedSection control_loop_with_operator(const Settings& settings) {
       "Neither paper has them. Beside the published loop an operator writes each new setpoint and reads once "
       "a second, as a client; the transmitter reports alarms as urgent and trends as time-available data to "
       "everybody. V(TTRT) decides who waits: a short one holds back trends and messages, a long one lets "
-      "alarms wait behind them; below the rotation without any data nothing but urgent data goes, and no "
+      "alarms wait after them; below the rotation without any data nothing but urgent data goes, and no "
       "setpoint ever comes. Nothing is sent again but a setpoint without a response, after 5 s.";
   const auto loop_of = [&](double messages, kernel::Duration target, double loss) {
     ControlLoopSetting setting = loop_setting(settings, DataWay::published, messages);

@@ -134,7 +134,7 @@ TEST(TimelineWriter, TellsWhatLiesAroundTheFirstFinding) {
   EXPECT_EQ(told_of(3001, 0), (Span{3000, "0", true}));
   EXPECT_EQ(told_of(10, std::nullopt), (Span{10, "0", false}));
   EXPECT_EQ(told_of(10, std::nullopt, true), (Span{10, "0", true}));
-  // 2500 up to and with the finding's instant, 500 behind it.
+  // 2500 up to and with the finding's instant, 500 after it.
   EXPECT_EQ(told_of(9000, 2499), (Span{3000, "0", true}));
   EXPECT_EQ(told_of(9000, 2500), (Span{3000, "1000000", true}));
   EXPECT_EQ(told_of(9000, 8999), (Span{2500, "6500000000", true}));

@@ -168,7 +168,7 @@ class DumpWriter {
     }
   }
 
-  // The last value of each variable that changes at `time`; the next changes are behind it.
+  // The last value of each variable that changes at `time`; the next changes are after it.
   std::map<std::size_t, std::uint64_t> take_changes(std::int64_t time) {
     std::map<std::size_t, std::uint64_t> last;
     for (; next_ < changes_.size() && changes_[next_].time == time; ++next_) {

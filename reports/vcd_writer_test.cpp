@@ -19,7 +19,7 @@ std::string dump_of(const trace::Recording& recording) {
   return vcd(recording, "fieldproof 0.1.0", "a/b/c");
 }
 
-// Everything behind the definitions.
+// Everything after the definitions.
 std::string values_of(const std::string& dump) {
   constexpr std::string_view kEnd = "$enddefinitions $end\n";
   return dump.substr(dump.find(kEnd) + kEnd.size());

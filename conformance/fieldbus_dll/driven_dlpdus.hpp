@@ -24,13 +24,13 @@ struct DrivenDlpdu {
   Octets octets;                 // without the check; whatever was found when it is not well formed
 
   std::uint8_t octet(std::size_t n) const { return n < octets.size() ? octets[n] : std::uint8_t{0}; }
-  // Behind control octet and both addresses.
+  // After control octet and both addresses.
   Octets rest() const;
   // "64 10 21 00", with what is wrong about it; of more than 32 octets both ends.
   std::string text() const;
 };
 
-// The octets and the frame check behind them.
+// The octets and the frame check after them.
 Octets with_frame_check(std::span<const std::uint8_t> octets);
 // The half bits of a frame around the octets.
 line::Levels half_bits_of_frame(std::span<const std::uint8_t> octets, unsigned preamble_octets = 1);

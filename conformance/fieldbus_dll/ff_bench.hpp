@@ -91,7 +91,7 @@ class FfBench final : public LinkBench {
   Octets dt3(fieldbus_dll::FfAddress from, const Octets& data) const;  // final
   Octets activation(std::uint8_t node) const;
 
-  // What the tester says V(MID) behind a DLPDU of the IUT, or later; nothing: silence.
+  // What the tester says V(MID) after a DLPDU of the IUT, or later; nothing: silence.
   struct Reply {
     Octets octets;
     kernel::Duration later{};

@@ -84,7 +84,7 @@ void each_circulation_probes(FfBench& bench, CaseJudge& judge) {
     const bool is_ascending = node > last;
     if (!is_ascending) ++wraps;
     judge.expect(is_ascending || node == 0x15, "probes_out_of_order", [&] {
-      return Mismatch{{fmt::format("the next address behind {:02X}", last)}, one.text(), one.begin};
+      return Mismatch{{fmt::format("the next address after {:02X}", last)}, one.text(), one.begin};
     });
     last = node;
   }
@@ -136,7 +136,7 @@ void who_overstays_is_stopped(FfBench& bench, CaseJudge& judge) {
     }
     judge.expect(next.has_value(), "holder_not_stopped", [&] {
       return Mismatch{
-          {fmt::format("the token of 12 taken back in a silence behind {}", kernel::describe(over))},
+          {fmt::format("the token of 12 taken back in a silence after {}", kernel::describe(over))},
           "the station was silent",
           latest};
     });
@@ -324,10 +324,10 @@ std::vector<FfCase> ff_circulation_cases() {
         .purpose = "FF-18",
         .requirement = "A token comes back to the scheduler when its duration is over.",
         .reference = ff_paper("duration of the token"),
-        .details = {{own("the scheduler takes it in a silence of V(MID), a V(ST) behind the duration"),
+        .details = {{own("the scheduler takes it in a silence of V(MID), a V(ST) after the duration"),
                      {"holder_not_stopped", "holder_stopped_early"}}},
         .stimulus = "A holder that sends for ever, with silences of twice V(MID).",
-        .expected = "The scheduler speaks in a silence behind the duration, not before.",
+        .expected = "The scheduler sends in a silence after the duration, not before.",
         .tags = {"must", "timing"},
         .catches = {{"holder_never_stopped", "holder_not_stopped"}}},
        who_overstays_is_stopped,
@@ -337,7 +337,7 @@ std::vector<FfCase> ff_circulation_cases() {
         .requirement = "A token is returned by who holds it.",
         .reference = own("DT1 with F of another"),
         .stimulus = "A PT for 12; a DT1 with F of 13.",
-        .expected = "Silence for V(MRD) x V(ST) behind it, no more than two slot times more.",
+        .expected = "Silence for V(MRD) x V(ST) after it, no more than two slot times more.",
         .tags = {"must", "timing"},
         .catches = {{"return_of_anybody_taken", "takes_return_of_another"}}},
        a_return_of_another_is_none,

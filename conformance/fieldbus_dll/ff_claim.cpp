@@ -63,7 +63,7 @@ void a_silent_link_is_claimed(FfBench& bench, CaseJudge& judge) {
     has_compelled |= is_cd(bench, one);
     has_passed |= is_pt(bench, one);
   }
-  judge.expect(has_compelled && has_passed, "link_not_run", "CDs and PTs behind the CL", "none");
+  judge.expect(has_compelled && has_passed, "link_not_run", "CDs and PTs after the CL", "none");
 }
 
 void the_macrocycle_goes_on(FfBench& bench, CaseJudge& judge) {
@@ -86,8 +86,8 @@ void the_macrocycle_goes_on(FfBench& bench, CaseJudge& judge) {
     const kernel::Duration late = (one.begin + kLinkRounding - end + into + macrocycle - at) % macrocycle;
     judge.expect(late <= bench.octets(bench.rules().scheduling_overhead_octets) + 2 * kLinkRounding,
                  "macrocycle_lost", [&] {
-                   return Mismatch{{"the CD at its place in the macrocycle, as link time tells it"},
-                                   fmt::format("{} behind it", kernel::describe(late)),
+                   return Mismatch{{"the CD at its place in the macrocycle, as link time says"},
+                                   fmt::format("{} after it", kernel::describe(late)),
                                    one.begin};
                  });
     ++compelled;
@@ -286,7 +286,7 @@ std::vector<FfCase> ff_claim_cases() {
   return {
       {{.id = "fieldbus_dll/ff_las/claim/a_silent_link_is_claimed",
         .purpose = "FF-29",
-        .requirement = "A link master claims the link when nothing was heard for V(ST) x V(TN).",
+        .requirement = "A link master claims the link when nothing was received for V(ST) x V(TN).",
         .reference = vendors("V(ST) x V(TN), V(MICD)"),
         .stimulus = "Silence.",
         .expected = "A CL within V(MICD) and an octet; then CDs and tokens.",
@@ -298,7 +298,7 @@ std::vector<FfCase> ff_claim_cases() {
        {.change = standby}},
       {{.id = "fieldbus_dll/ff_las/claim/the_macrocycle_goes_on",
         .purpose = "FF-29",
-        .requirement = "Who claims the link runs the schedule by the link time that was told.",
+        .requirement = "Who claims the link runs the schedule by the link time that was sent.",
         .reference = memory("link time and macrocycle"),
         .stimulus = "A TD, then silence.",
         .expected = "A CL; each CD at its place in the macrocycle, at most V(MSO) later.",
@@ -308,9 +308,9 @@ std::vector<FfCase> ff_claim_cases() {
        {.change = standby}},
       {{.id = "fieldbus_dll/ff_las/claim/who_was_told_to_be_live_gets_the_token",
         .purpose = "FF-24",
-        .requirement = "Who claims the link knows the live nodes from the live list that was told.",
+        .requirement = "Who claims the link knows the live nodes from the live list that was sent.",
         .reference = memory("live list of a link master"),
-        .details = {{own("how a live list is told"), {"live_list_not_kept"}}},
+        .details = {{own("how a live list is sent"), {"live_list_not_kept"}}},
         .stimulus = "A live list with 12 and 15, then silence.",
         .expected = "A CL; PTs for 12 and 15.",
         .tags = {"must"},
@@ -342,7 +342,7 @@ std::vector<FfCase> ff_claim_cases() {
         .purpose = "FF-32",
         .requirement = "Activity that is no frame keeps a link master from claiming, too.",
         .reference = own("noise is activity"),
-        .stimulus = "Noise behind 90 % of V(ST) x V(TN).",
+        .stimulus = "Noise after 90 % of V(ST) x V(TN).",
         .expected = "No CL; one when the silence lasts.",
         .tags = {"must", "timing"},
         .catches = {{"noise_does_not_save_the_link", "claim_in_noise"}}},
@@ -375,7 +375,7 @@ std::vector<FfCase> ff_claim_cases() {
       {{.id = "fieldbus_dll/ff_las/transfer/is_made_when_ordered",
         .purpose = "FF-33",
         .requirement =
-            "A scheduler that is told to hands the link over by TL, and leaves when another speaks.",
+            "A scheduler that is ordered to hands the link over by TL, and leaves when another sends.",
         .reference = memory("TL"),
         .details = {{own("version of the schedule in a TL"), {"not_transferred"}}},
         .stimulus = "The user orders a transfer to 15; then another probes.",
@@ -386,12 +386,12 @@ std::vector<FfCase> ff_claim_cases() {
        {.change = scheduler}},
       {{.id = "fieldbus_dll/ff_las/transfer/what_is_not_taken_is_taken_back",
         .purpose = "FF-33",
-        .requirement = "A scheduler whose heir says nothing goes on behind V(MRD) x V(ST).",
+        .requirement = "A scheduler whose heir says nothing goes on after V(MRD) x V(ST).",
         .reference = memory("TL"),
         .details = {{own("V(MRD) x V(ST) supervises a TL"), {"taken_back_early", "not_taken_back"}}},
         .stimulus = "The user orders a transfer to 15, which is silent.",
         .expected =
-            "A TL for 15; the schedule goes on within two slot times behind V(MRD) x V(ST), not before.",
+            "A TL for 15; the schedule goes on within two slot times after V(MRD) x V(ST), not before.",
         .tags = {"must", "timing"},
         .catches = {{"never_retakes", "not_taken_back"}}},
        a_transfer_that_is_not_taken_is_taken_back,
@@ -408,7 +408,7 @@ std::vector<FfCase> ff_claim_cases() {
        {.change = standby}},
       {{.id = "fieldbus_dll/ff_las/claim/a_second_scheduler_is_left_the_link",
         .purpose = "FF-34",
-        .requirement = "A scheduler that hears the CL of another leaves.",
+        .requirement = "A scheduler that receives the CL of another leaves.",
         .reference = memory("two schedulers"),
         .stimulus = "A CL of 13.",
         .expected = "Silence.",
@@ -418,7 +418,7 @@ std::vector<FfCase> ff_claim_cases() {
        {.change = scheduler}},
       {{.id = "fieldbus_dll/ff_las/claim/a_second_token_is_left_the_link",
         .purpose = "FF-34",
-        .requirement = "A scheduler that hears the PT of another leaves.",
+        .requirement = "A scheduler that receives the PT of another leaves.",
         .reference = memory("two schedulers"),
         .stimulus = "A PT of another for 15.",
         .expected = "Silence.",

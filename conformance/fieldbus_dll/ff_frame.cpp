@@ -72,7 +72,7 @@ void wrong_checks_are_seen_whatever_comes(FfBench& bench, CaseJudge& judge) {
   judge.expect(bench.user().data.size() == 1, "does_not_recover", "a right DT1 is delivered", "it was not");
 }
 
-// Behind the preamble, of which any part will do, each half bit is turned once.
+// After the preamble, of which any part will do, each half bit is turned once.
 void a_frame_without_its_code_is_none(FfBench& bench, CaseJudge& judge) {
   constexpr std::size_t kPreamble = 16;
   bench.submit(Priority::urgent, bench.numbered_data(4));
@@ -85,7 +85,7 @@ void a_frame_without_its_code_is_none(FfBench& bench, CaseJudge& judge) {
       wrong.flip(n);
       bench.send_half_bits(std::move(wrong));
       expect_silence(bench, judge, "acts_on_violation", fmt::format("half bit {} is turned", n));
-      judge.expect(bench.user().data.empty(), "acts_on_violation", "nothing is told: there is no frame",
+      judge.expect(bench.user().data.empty(), "acts_on_violation", "nothing is reported: there is no frame",
                    "something was");
     }
   }
@@ -137,11 +137,11 @@ void what_comes_is_told_as_it_is(FfBench& bench, CaseJudge& judge) {
   }
   const auto rounds = static_cast<std::size_t>(bench.volume(2, 20));
   judge.expect(bench.user().data.size() >= 6 * rounds, "not_told", [&] {
-    return Mismatch{{fmt::format("{} DT1 are told", 6 * rounds)},
+    return Mismatch{{fmt::format("{} DT1 are reported", 6 * rounds)},
                     fmt::format("{}", bench.user().data.size())};
   });
   judge.expect(bench.user().published.size() >= rounds, "not_told", [&] {
-    return Mismatch{{fmt::format("{} DT3 are told", rounds)},
+    return Mismatch{{fmt::format("{} DT3 are reported", rounds)},
                     fmt::format("{}", bench.user().published.size())};
   });
 }
@@ -251,14 +251,14 @@ std::vector<FfCase> ff_frame_cases() {
         .requirement = "A frame with a symbol that is none, or without a delimiter, is ignored.",
         .reference = line("Manchester code, N+ and N-, delimiters"),
         .stimulus = "A PT and a DT1 to the station with each half bit turned once, but for the preamble.",
-        .expected = "Silence, and nothing is told; a right PT is served then.",
+        .expected = "Silence, and nothing is reported; a right PT is served then.",
         .tags = {"must"},
         .catches = {{"takes_violated_frames", "acts_on_violation"},
                     {"stuck_behind_violation", "does_not_recover"}}},
        a_frame_without_its_code_is_none},
       {{.id = "fieldbus_dll/ff_device/frame/addresses_are_read_as_long_as_they_are",
         .purpose = "FF-38",
-        .requirement = "Long and short addresses are told apart by L.",
+        .requirement = "Long and short addresses are distinguished by L.",
         .reference = memory("bit L"),
         .stimulus = "DT1 with short addresses to the station, with long ones to another and to the station.",
         .expected = "The first is delivered, the second not, the third whole or not at all.",
@@ -267,13 +267,13 @@ std::vector<FfCase> ff_frame_cases() {
        addresses_are_read_as_long_as_they_are},
       {{.id = "fieldbus_dll/ff_device/frame/what_comes_is_told_as_it_is",
         .purpose = "FF-38",
-        .requirement = "A user is told what was sent to it: data, source, destination, priority.",
+        .requirement = "What was sent to a user is reported to it: data, source, destination, priority.",
         .reference = memory("DT1 and DT3 at the interface to the user"),
-        .details = {{own("the number of writes in a DT3; what entities tell each other"),
+        .details = {{own("the number of writes in a DT3; what entities send each other"),
                      {"told_otherwise"}}},
         .stimulus =
             "DT1 of two stations in each priority, to the station and to everybody; a live list; DT3.",
-        .expected = "Each DT1 and DT3 is told once, as it was sent; the live list is not.",
+        .expected = "Each DT1 and DT3 is reported once, as it was sent; the live list is not.",
         .tags = {"must"},
         .catches = {{"tells_other_source", "told_otherwise"},
                     {"tells_normal_priority", "told_otherwise"},
@@ -310,10 +310,10 @@ std::vector<FfCase> ff_frame_cases() {
        unknown_dlpdus_are_left},
       {{.id = "fieldbus_dll/ff_device/frame/silence_is_kept",
         .purpose = "FF-35",
-        .requirement = "A station keeps V(MID) of silence behind its own DLPDUs and those of others.",
-        .reference = vendors("V(MID): silence behind every DLPDU"),
+        .requirement = "A station keeps V(MID) of silence after its own DLPDUs and those of others.",
+        .reference = vendors("V(MID): silence after every DLPDU"),
         .stimulus = "Tokens, CDs and probes.",
-        .expected = "No DLPDU of the station sooner than V(MID) behind another.",
+        .expected = "No DLPDU of the station sooner than V(MID) after another.",
         .tags = {"must", "timing"},
         .catches = {{"short_silence", "gap_too_short"}, {"no_silence_behind_own", "gap_too_short"}}},
        silence_is_kept},

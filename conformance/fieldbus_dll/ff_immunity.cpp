@@ -164,20 +164,20 @@ void a_scheduler_goes_on_under_bursts(FfBench& bench, CaseJudge& judge) {
 
 FfCase bursts_at_device(std::string_view rate, void (*change)(FfConfiguration&)) {
   using link_sources::line;
-  return {
-      {.id = fmt::format("fieldbus_dll/ff_device/immunity/bursts_ask_for_nothing_at_{}", rate),
-       .purpose = "FF-37",
-       .requirement = "Under bursts a station says what was asked for, and its user is told what was sent; "
-                      "behind a burst the first token is used.",
-       .reference = line("frame check 1DCF"),
-       .stimulus = fmt::format("{}, while tokens, CDs, probes and data go on, for it and for others.",
-                               kBurstStimulus),
-       .expected = "Nothing unasked, nothing told otherwise; behind each burst its data is sent.",
-       .tags = {"must", std::string(kStressTag)},
-       .catches = {{"takes_violated_frames", "told_otherwise"},
-                   {"stuck_behind_violation", "does_not_recover"}}},
-      bursts_ask_for_nothing,
-      {.change = change}};
+  return {{.id = fmt::format("fieldbus_dll/ff_device/immunity/bursts_ask_for_nothing_at_{}", rate),
+           .purpose = "FF-37",
+           .requirement =
+               "Under bursts a station says what was asked for, and what was sent is reported to its user; "
+               "after a burst the first token is used.",
+           .reference = line("frame check 1DCF"),
+           .stimulus = fmt::format("{}, while tokens, CDs, probes and data go on, for it and for others.",
+                                   kBurstStimulus),
+           .expected = "Nothing unasked, nothing reported otherwise; after each burst its data is sent.",
+           .tags = {"must", std::string(kStressTag)},
+           .catches = {{"takes_violated_frames", "told_otherwise"},
+                       {"stuck_behind_violation", "does_not_recover"}}},
+          bursts_ask_for_nothing,
+          {.change = change}};
 }
 
 }  // namespace

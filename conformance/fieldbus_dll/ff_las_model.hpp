@@ -19,7 +19,7 @@
 //   nothing while a token, a CD or a probe is out: until it is answered, the line was silent for V(MRD) x
 //   V(ST), or the token is over
 //   each item of the schedule in its order, not before it is due, and before all else when it is; at most
-//   V(MSO) behind the instant at which the line is free
+//   V(MSO) after the instant at which the line is free
 //   tokens from V(DMDT) to V(DTHT) that end before the next item, once in a circulation to each live node,
 //   in the order of addresses, the first one marked, with the priority that the rotations before lead to
 //   between two circulations a probe, ascending, of nodes that are not live and may be polled

@@ -17,7 +17,7 @@ constexpr std::uint32_t kDue = 16'000;
 constexpr std::int64_t kBeforeDue = 1'953;
 
 // A link at 31.25 kbit/s: an octet takes 256 us, V(MID) is 8, V(MRD) x V(ST) 32 octets. It tells what is said
-// and answered, V(MID) behind what was last on the line.
+// and answered, V(MID) after what was last on the line.
 class FfLasModelTest : public testing::Test {
  protected:
   static fieldbus_dll::FfConfiguration configuration() {
@@ -47,10 +47,10 @@ class FfLasModelTest : public testing::Test {
 
   Time heard_end(std::int64_t octets) { return octet_at(now_ += 8 + octets); }
   void returned() { model_.hear_answer(heard_end(6)); }
-  // What comes next comes behind V(MRD) x V(ST) of silence.
+  // What comes next comes after V(MRD) x V(ST) of silence.
   void unanswered() { now_ += 24; }
 
-  // IDLEs keep the line, until a DLPDU that comes V(MID) behind would begin there.
+  // IDLEs keep the line, until a DLPDU that comes V(MID) after would begin there.
   void idle_until(std::int64_t octet) {
     while (octet - now_ > 120) EXPECT_EQ(says({0x10}, 80), "");
     now_ = octet - 8;
@@ -210,7 +210,7 @@ TEST_F(FfLasModelTest, TheTimeGoesOnAndIsToldToWhoAsks) {
   EXPECT_EQ(says({0x11, 0, 0, 0, 0, 0, 100}), "");
   EXPECT_EQ(passes(0x11, kFirstMark), "");
   model_.hear_time_request(heard_end(7));
-  // 8 + 9 + 8 + 7 + 8 + 12 octet durations of 8.192 ticks behind the first.
+  // 8 + 9 + 8 + 7 + 8 + 12 octet durations of 8.192 ticks after the first.
   EXPECT_EQ(says({0x11, 0, 0, 0, 0, 0x02, 0x0E}), "");
   model_.hear_time_request(heard_end(7));
   EXPECT_EQ(says({0x10}), "time_request_ignored");

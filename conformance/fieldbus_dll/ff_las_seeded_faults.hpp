@@ -260,7 +260,7 @@ class CtIgnored : public FfLas {
 
 class ClaimsOtherwise : public FfLas {
  public:
-  // Behind so many slot times, and those of its node where `by_node` is set.
+  // After so many slot times, and those of its node where `by_node` is set.
   ClaimsOtherwise(const FfConfiguration& configuration, int slots, bool by_node)
       : FfLas(configuration), slots_(slots), by_node_(by_node) {}
 

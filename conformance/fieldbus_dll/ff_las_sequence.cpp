@@ -215,7 +215,7 @@ class FfLasSequenceRun {
 
   // ---- what others say ----
 
-  // V(MID) behind the end of what was said last, or later.
+  // V(MID) after the end of what was said last, or later.
   kernel::Time say(const Octets& octets, std::int64_t later = 0) {
     bench_.wait(bench_.least_gap() + bench_.octets(later));
     return bench_.send(octets);
@@ -322,7 +322,7 @@ std::vector<PartialSource> ff_las_sequence_details() {
                      {"does_not_wait", "order_wrong", "begin_not_marked", "token_for_removed",
                       "token_shorter_than_the_time", "priority_wrong", "time_request_ignored",
                       "data_not_sent", "sends_other_data"}});
-  details.push_back({own("what has changed is told within two circulations"),
+  details.push_back({own("what has changed is sent within two circulations"),
                      {"not_activated", "live_list_not_told", "live_list_wrong"}});
   details.push_back(
       {vendors("V(DMDT), V(DTHT), V(MSO), V(FUN), V(NUN), V(TDP)"),
@@ -339,7 +339,7 @@ const SequenceRole& ff_las_sequence_role() {
        .purpose = "check",
        .requirement =
            "Whatever nodes do in whatever order, a scheduler runs its schedule, passes the token to who is "
-           "live, with the priority that rotations lead to, and tells what has changed.",
+           "live, with the priority that rotations lead to, and sends what has changed.",
        .reference = link_sources::ff_paper("the scheduler: CD by its schedule, tokens in between"),
        .details = ff_las_sequence_details(),
        .stimulus =

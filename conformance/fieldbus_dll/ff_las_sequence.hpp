@@ -16,7 +16,7 @@ const SequenceRole& ff_las_sequence_role();
 FfNeeds ff_las_sequence_needs();
 
 // Does the commands in order and judges each DLPDU of the scheduler against the model. Where no command says
-// otherwise nodes return each token at once, answer each CD, and leave probes unanswered. Behind the last
+// otherwise nodes return each token at once, answer each CD, and leave probes unanswered. After the last
 // command that goes on for three macrocycles.
 void run_ff_las_sequence(const Sequence& sequence, FfBench& bench, CaseJudge& judge);
 

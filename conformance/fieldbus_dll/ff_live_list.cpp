@@ -65,7 +65,7 @@ void a_node_that_answers_is_activated(FfBench& bench, CaseJudge& judge) {
   judge.expect(activated.has_value(), "not_activated", "an activation for 13", "none");
   judge.expect(passed.has_value() && *passed <= 1, "no_token_for_new_node", [&] {
     return Mismatch{{"a PT for 13 in the next circulation"},
-                    passed ? fmt::format("in circulation {} behind its PR", *passed) : "none"};
+                    passed ? fmt::format("in circulation {} after its PR", *passed) : "none"};
   });
   judge.expect(listed.has_value(), "live_list_not_told", "the live list for everybody", "none");
 }
@@ -122,10 +122,10 @@ Misses miss(FfBench& bench, const std::function<bool(std::size_t)>& misses, std:
 
 void who_misses_three_tokens_is_removed(FfBench& bench, CaseJudge& judge) {
   const Misses found = miss(bench, [](std::size_t token) { return token >= 4; }, 6'000);
-  judge.expect(found.is_removed, "not_removed", "no PT for 11 behind the third that it missed", "PTs go on");
+  judge.expect(found.is_removed, "not_removed", "no PT for 11 after the third that it missed", "PTs go on");
   judge.expect(found.tokens_until_removal == 3, "removed_at_other_time", [&] {
-    return Mismatch{{"removed behind the third token that it missed"},
-                    fmt::format("behind {}", found.tokens_until_removal)};
+    return Mismatch{{"removed after the third token that it missed"},
+                    fmt::format("after {}", found.tokens_until_removal)};
   });
   judge.expect(found.is_told, "live_list_not_told", "a live list without 11 for everybody", "none");
   judge.expect(found.is_probed, "not_probed_again", "a PN for 11 later", "none");
@@ -151,9 +151,9 @@ std::vector<FfCase> ff_live_list_cases() {
         .purpose = "FF-24",
         .requirement =
             "A node that answers a PN is activated, gets the token in the next circulation, and the live "
-            "list is told to all.",
+            "list is sent to all.",
         .reference = memory("live list maintenance"),
-        .details = {{own("how a live list is told"), {"live_list_wrong"}}},
+        .details = {{own("how a live list is sent"), {"live_list_wrong"}}},
         .stimulus = "A PR of node 13.",
         .expected = "An activation, a live list with it, a PT for it.",
         .tags = {"must"},
@@ -176,10 +176,10 @@ std::vector<FfCase> ff_live_list_cases() {
        {.change = one_node}},
       {{.id = "fieldbus_dll/ff_las/live_list/who_misses_three_tokens_is_removed",
         .purpose = "FF-25",
-        .requirement = "A node that uses none of three tokens in a row is removed, and that is told to all.",
+        .requirement = "A node that uses none of three tokens in a row is removed, and that is sent to all.",
         .reference = memory("removal from the live list"),
         .stimulus = "Node 11 falls silent.",
-        .expected = "No PT for it behind the third; a live list without it; a PN for it later.",
+        .expected = "No PT for it after the third; a live list without it; a PN for it later.",
         .tags = {"must"},
         .catches = {{"removed_after_one_miss", "removed_at_other_time"},
                     {"removed_after_four_misses", "removed_at_other_time"},

@@ -124,7 +124,7 @@ std::optional<LinkObjection> FfModel::say(const DrivenDlpdu& dlpdu) {
   const bool is_early = dlpdu.begin + kLinkRounding < earliest();
   if (is_early) return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
   if (!answer_ && !token_)
-    return LinkObjection{"speaks_unasked", "silence: nothing that it heard asks for it"};
+    return LinkObjection{"speaks_unasked", "silence: nothing that it received asks for it"};
   auto objection = answer_ ? say_answer(dlpdu) : say_under_token(dlpdu);
   silent_since_ = dlpdu.end;
   return objection;

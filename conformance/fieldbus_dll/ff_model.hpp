@@ -19,12 +19,12 @@
 //   within
 //                    the duration; the token is returned by F or by RT as soon as nothing fits any more
 //   CD of its own    DT3 with the buffer as it was written last, and with the number of its writes; else SR
-//                    or nothing; without F an RT behind it
+//                    or nothing; without F an RT after it
 //   PN of its own    PR
 //   another DLPDU    an answer that has not begun is not due any more; one of a scheduler takes a token back
 //   anything else    nothing; what is due waits for V(MID) of silence
 //
-// What is answered begins V(MID) behind the last that was on the line, and V(MRD) x V(ST) behind what asks
+// What is answered begins V(MID) after the last that was on the line, and V(MRD) x V(ST) after what asks
 // for it at the latest.
 namespace fieldproof::conformance {
 

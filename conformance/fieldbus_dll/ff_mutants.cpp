@@ -20,7 +20,7 @@ std::vector<FfRow> ff_token_rows() {
   using namespace ff_seeded_faults;
   return {
       {"no_probe_response", "", "does not answer probes", mutant<NoProbeResponse>()},
-      {"answers_late", "", "begins an octet behind V(MRD) x V(ST)", mutant<AnswersLate>()},
+      {"answers_late", "", "begins an octet after V(MRD) x V(ST)", mutant<AnswersLate>()},
       {"answers_for_all_nodes", "", "takes everything for its own", mutant<AnswersForAllNodes>()},
       {"live_from_the_start", "", "uses tokens without having been activated", mutant<LiveFromTheStart>()},
       {"impossible_rules_taken", "", "starts with a V(MID) that cannot be", mutant<ImpossibleRulesTaken>()},
@@ -36,7 +36,7 @@ std::vector<FfRow> ff_token_rows() {
       {"sends_as_another", "", "sends with the source of another node",
        mutant<SendsOtherAddress>(&FfDlpdu::source)},
       {"answers_cd_offline", "", "answers a CD without having been activated", mutant<AnswersCdOffline>()},
-      {"activated_by_anything", "", "takes whatever an entity tells it for its activation",
+      {"activated_by_anything", "", "takes whatever an entity sends it for its activation",
        mutant<ActivatedByAnything>()},
       {"activated_by_broadcast", "", "takes an activation of everybody for its own",
        mutant<ActivatedByBroadcast>()},
@@ -66,10 +66,10 @@ std::vector<FfRow> ff_publisher_rows() {
   using namespace ff_seeded_faults;
   return {
       {"publishes_first_write", "", "publishes what was written first", mutant<PublishesFirstWrite>()},
-      {"published_not_final", "", "keeps the token behind a DT3", mutant<PublishedNotFinal>()},
+      {"published_not_final", "", "keeps the token after a DT3", mutant<PublishedNotFinal>()},
       {"buffer_torn", "FF-21", "publishes half of an old buffer", mutant<BufferTorn>()},
       {"counts_reads", "", "counts CDs as writes", mutant<CountsReads>()},
-      {"counts_to_255", "", "does not begin anew behind 255 writes", mutant<CountsTo255>()},
+      {"counts_to_255", "", "does not begin anew after 255 writes", mutant<CountsTo255>()},
       {"counts_nothing", "", "does not count writes", mutant<CountsNothing>()},
       {"publishes_anything", "", "answers a CD for any of its addresses with its buffer",
        mutant<PublishesAnything>()},
@@ -95,40 +95,40 @@ std::vector<FfRow> ff_frame_rows() {
       {"check_of_tokens_only", "", "looks at the check of PTs only", mutant<CheckOfTokensOnly>()},
       {"takes_violated_frames", "", "takes frames with code violations, whatever their check",
        mutant<TakesViolatedFrames>()},
-      {"stuck_behind_violation", "", "hears nothing any more behind a code violation",
+      {"stuck_behind_violation", "", "receives nothing any more after a code violation",
        mutant<FfStuckBehindViolation>()},
-      {"tells_other_source", "", "tells its user another source",
+      {"tells_other_source", "", "reports another source to its user",
        mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.source ^= 0x0100;
          tell_user(user, dlpdu, when);
        })},
-      {"tells_normal_priority", "", "tells its user normal priority, whatever came",
+      {"tells_normal_priority", "", "reports normal priority to its user, whatever came",
        mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.priority = fieldbus_dll::Priority::normal;
          tell_user(user, dlpdu, when);
        })},
-      {"tells_no_writes", "", "tells its user of a DT3 no number of writes",
+      {"tells_no_writes", "", "reports no number of writes of a DT3 to its user",
        mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.writes = 0;
          tell_user(user, dlpdu, when);
        })},
-      {"tells_twice", "", "tells its user everything twice",
+      {"tells_twice", "", "reports everything to its user twice",
        mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          tell_user(user, dlpdu, when);
          tell_user(user, dlpdu, when);
        })},
-      {"deaf_to_broadcasts", "", "does not tell its user what is for everybody",
+      {"deaf_to_broadcasts", "", "does not report to its user what is for everybody",
        mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          if (dlpdu.destination != fieldbus_dll::kEverybody) tell_user(user, dlpdu, when);
        })},
-      {"tells_live_lists", "", "tells its user what data link entities tell each other",
+      {"tells_live_lists", "", "reports to its user what data link entities send each other",
        mutant<TellsLiveLists>()},
-      {"tail_ignored", "", "takes a DLPDU with an octet behind it", mutant<TailIgnored>()},
+      {"tail_ignored", "", "takes a DLPDU with an octet after it", mutant<TailIgnored>()},
       {"two_octets_of_preamble", "", "sends two octets of preamble",
        with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 2; })},
-      {"short_silence", "", "begins V(MID) / 2 behind what was on the line",
+      {"short_silence", "", "begins V(MID) / 2 after what was on the line",
        with_rules<FfStation>([](FfRules& rules) { rules.link.inter_pdu_delay_octets /= 2; })},
-      {"no_silence_behind_own", "", "begins an octet behind its own frames", mutant<NoSilenceBehindOwn>()},
+      {"no_silence_behind_own", "", "begins an octet after its own frames", mutant<NoSilenceBehindOwn>()},
   };
 }
 
@@ -139,17 +139,17 @@ std::vector<FfRow> ff_sequence_rows() {
        mutant<TokenKeptBehindProbe>()},
       {"answer_kept_behind_other", "", "answers though another node was probed meanwhile",
        mutant<AnswerKeptBehindOther>()},
-      {"data_ends_token", "", "drops the token when it hears data", mutant<DataEndsToken>()},
-      {"deaf_behind_fault", "", "misses what comes behind a faulty frame", mutant<DeafBehindFault>()},
+      {"data_ends_token", "", "drops the token when it receives data", mutant<DataEndsToken>()},
+      {"deaf_behind_fault", "", "misses what comes after a faulty frame", mutant<DeafBehindFault>()},
       {"newest_first", "", "sends what was submitted last", mutant<NewestFirst<FfStation>>()},
       {"least_of_last_token", "", "sends by the priority of the token before", mutant<LeastOfLastToken>()},
       {"duration_of_last_token_too", "", "adds the duration of the token before",
        mutant<DurationOfLastTokenToo>()},
       {"each_third_return_missing", "", "does not send each third RT", mutant<EachThirdReturnMissing>()},
-      {"second_of_priority_lost", "", "forgets urgent data that waits behind a token",
+      {"second_of_priority_lost", "", "forgets urgent data that waits after a token",
        mutant<SecondOfPriorityLost>()},
       {"tail_of_last_write", "", "keeps the tail of a longer buffer", mutant<TailOfLastWrite>()},
-      {"writes_between_cds_count_once", "", "counts only the first write behind a CD",
+      {"writes_between_cds_count_once", "", "counts only the first write after a CD",
        mutant<WritesBetweenCdsCountOnce>()},
       {"buffers_share_the_count", "", "counts the writes of all its buffers together",
        mutant<BuffersShareTheCount>()},
@@ -189,7 +189,7 @@ std::vector<FfRow> ff_circulation_rows() {
       {"steers_the_wrong_way", "FF-2", "admits less when the rotation is fast", mutant<SteersTheWrongWay>()},
       {"steps_to_the_extreme", "FF-4", "admits everything at once", mutant<StepsToTheExtreme>()},
       {"rotation_counted_twice", "FF-3", "counts parts of a rotation twice", mutant<RotationCountedTwice>()},
-      {"steps_back_to_the_extreme", "", "admits urgent data only at once behind a slow rotation",
+      {"steps_back_to_the_extreme", "", "admits urgent data only at once after a slow rotation",
        mutant<StepsBackToTheExtreme>()},
       {"holder_never_stopped", "", "lets a holder overstay its token", mutant<HolderNeverStopped>()},
       {"return_of_anybody_taken", "", "takes a DT1 with F of anybody for the return of the token",
@@ -211,7 +211,7 @@ std::vector<FfRow> ff_live_list_rows() {
        mutant<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration&) {
          return dlpdu.type == FfType::dt1 && dlpdu.destination != kEverybody;
        })},
-      {"live_list_not_told", "", "does not tell its live list",
+      {"live_list_not_told", "", "does not send its live list",
        mutant<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration&) {
          return dlpdu.type == FfType::dt1 && dlpdu.destination == kEverybody;
        })},
@@ -219,19 +219,19 @@ std::vector<FfRow> ff_live_list_rows() {
        mutant<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration& configuration) {
          return dlpdu.type == FfType::pt && std::ranges::count(configuration.live, dlpdu.node) == 0;
        })},
-      {"live_list_reversed", "FF-23", "tells its live list with the bits turned", mutant<LiveListReversed>()},
+      {"live_list_reversed", "FF-23", "sends its live list with the bits turned", mutant<LiveListReversed>()},
       {"probe_response_of_anybody_taken", "", "takes a PR of anybody for that of the node that it has probed",
        mutant<ProbeResponseOfAnybodyTaken>()},
-      {"told_live_list_ignored", "", "does not keep the live list that it is told",
+      {"told_live_list_ignored", "", "does not keep the live list that it receives",
        mutant<ToldLiveListIgnored>()},
-      {"live_list_cut", "", "tells its live list up to node 1F", mutant<LiveListCut>()},
+      {"live_list_cut", "", "sends its live list up to node 1F", mutant<LiveListCut>()},
       {"removed_after_one_miss", "FF-12", "removes who misses one token", mutant<RemovesBehind>(1U)},
       {"removed_after_four_misses", "", "removes who misses four tokens", mutant<RemovesBehind>(4U)},
       {"never_removed", "", "removes nobody", mutant<RemovesBehind>(1'000'000U)},
       {"misses_not_forgotten", "FF-13", "counts misses though tokens are used in between",
        mutant<MissesNotForgotten>()},
-      {"time_told_at_full_period", "FF-20", "tells the time each V(TDP)", mutant<TimeToldAtFullPeriod>()},
-      {"time_at_half_speed", "", "tells half the time", mutant<TimeAtHalfSpeed>()},
+      {"time_told_at_full_period", "FF-20", "sends the time each V(TDP)", mutant<TimeToldAtFullPeriod>()},
+      {"time_at_half_speed", "", "sends half the time", mutant<TimeAtHalfSpeed>()},
       {"ct_ignored", "", "does not answer who asks for the time", mutant<CtIgnored>()},
   };
 }
@@ -239,12 +239,12 @@ std::vector<FfRow> ff_live_list_rows() {
 std::vector<FfRow> ff_claim_rows() {
   using namespace ff_seeded_faults;
   return {
-      {"claims_after_one_slot", "FF-14", "claims the link behind one V(ST)",
+      {"claims_after_one_slot", "FF-14", "claims the link after one V(ST)",
        mutant<ClaimsOtherwise>(1, false)},
       {"never_claims", "", "does not claim the link", mutant<ClaimsOtherwise>(10'000'000, false)},
       {"claims_a_slot_late", "", "claims the link a V(ST) late", mutant<ClaimsOtherwise>(1, true)},
       {"claims_a_slot_early", "", "claims the link a V(ST) early", mutant<ClaimsOtherwise>(-1, true)},
-      {"frames_do_not_save_the_link", "", "claims the link whatever is heard",
+      {"frames_do_not_save_the_link", "", "claims the link whatever is received",
        mutant<FramesDoNotSaveTheLink>()},
       {"noise_does_not_save_the_link", "FF-15", "takes noise for silence", mutant<NoiseDoesNotSaveTheLink>()},
       {"transfer_ignored", "", "does not take over by a TL", mutant<TransferIgnored>()},
@@ -252,8 +252,8 @@ std::vector<FfRow> ff_claim_rows() {
       {"takes_transfer_of_others", "", "takes a TL for another", mutant<TakesTransferOfOthers>()},
       {"schedule_version_ignored", "", "takes a TL for any version of the schedule",
        mutant<ScheduleVersionIgnored>()},
-      {"order_ignored", "", "does not hand the link over when it is told to", mutant<OrderIgnored>()},
-      {"stays_behind_transfer", "", "stays though its heir speaks", mutant<StaysBehindTransfer>()},
+      {"order_ignored", "", "does not hand the link over when it is ordered to", mutant<OrderIgnored>()},
+      {"stays_behind_transfer", "", "stays though its heir sends", mutant<StaysBehindTransfer>()},
       {"never_retakes", "", "does not take back what its heir does not take", mutant<NeverRetakes>()},
       {"schedule_from_the_claim", "", "begins its schedule anew when it claims the link",
        mutant<ScheduleFromTheClaim>()},
@@ -273,18 +273,18 @@ std::vector<FfRow> ff_las_sequence_rows() {
        mutant<MissesOfAllCount>()},
       {"misses_forgiven_by_others", "", "forgets all misses when any node uses its token",
        mutant<MissesForgivenByOthers>()},
-      {"misses_survive_removal", "", "removes who was removed before behind one miss",
+      {"misses_survive_removal", "", "removes who was removed before after one miss",
        mutant<MissesSurviveRemoval>()},
       {"removed_never_found_again", "", "takes no probe response of who was removed",
        mutant<RemovedNeverFoundAgain>()},
       {"returning_node_not_activated", "", "does not activate who was removed before",
        mutant<ReturningNodeNotActivated>()},
-      {"only_first_change_told", "", "tells the live list once", mutant<OnlyFirstChangeTold>()},
+      {"only_first_change_told", "", "sends the live list once", mutant<OnlyFirstChangeTold>()},
       {"unanswered_item_dropped", "", "compels no more what was not answered twice",
        mutant<UnansweredItemDropped>()},
-      {"all_admitted_behind_two_slow", "", "admits all data at once behind two slow rotations",
+      {"all_admitted_behind_two_slow", "", "admits all data at once after two slow rotations",
        mutant<AllAdmittedBehindTwoSlow>()},
-      {"second_time_request_ignored", "", "tells the time to who asks once",
+      {"second_time_request_ignored", "", "sends the time to who asks once",
        mutant<SecondTimeRequestIgnored>()},
       {"own_data_newest_first", "", "sends what its user submitted last", mutant<NewestFirst<FfLas>>()},
   });

@@ -23,7 +23,7 @@ constexpr std::uint8_t kFirstNode = 0x11;
 constexpr std::size_t kPaperNodes = 16;
 constexpr double kLoad = 0.2;
 
-// A packet takes the line for its frame and the silence behind it: 600 and 2136 us of the paper. Frames are
+// A packet takes the line for its frame and the silence after it: 600 and 2136 us of the paper. Frames are
 // 10 octets longer than their data, the silence is 8.
 constexpr std::size_t kUrgentData = 57;
 constexpr std::size_t kAvailableData = 249;

@@ -136,7 +136,7 @@ void a_token_in_front_of_a_cd_uses_the_time(FfBench& bench, CaseJudge& judge) {
   judge.expect(cut > 3, "no_token", "tokens that are cut in front of a CD", fmt::format("{}", cut));
 }
 
-// The next thing that is said behind a CD which nobody answers.
+// The next thing that is said after a CD which nobody answers.
 void a_missing_answer_costs_its_time(FfBench& bench, CaseJudge& judge) {
   std::optional<DrivenDlpdu> cd;
   const kernel::Time end = kernel::kStart + bench.volume(4, 50) * (kMacrocycle * fieldbus_dll::kTick);
@@ -195,7 +195,7 @@ void nothing_but_cds(FfConfiguration& configuration) {
 }
 
 void the_line_is_kept_active(FfBench& bench, CaseJudge& judge) {
-  // The lowest link master claims behind this silence.
+  // The lowest link master claims after this silence.
   const kernel::Duration claim = 16 * bench.slot();
   const auto all = bench.serve(kernel::kStart + bench.octets(8'000),
                                [&](const DrivenDlpdu& one) { return bench.returned(one); });
@@ -263,7 +263,7 @@ std::vector<FfCase> ff_schedule_cases() {
         .requirement = "A CD that nobody answers costs V(MRD) x V(ST), no more than two slot times more.",
         .reference = memory("V(MRD) x V(ST)"),
         .stimulus = "CDs without an answer.",
-        .expected = "The next DLPDU within two slot times behind V(MRD) x V(ST), not before.",
+        .expected = "The next DLPDU within two slot times after V(MRD) x V(ST), not before.",
         .tags = {"must", "timing"},
         .catches = {{"answer_time_from_begin", "goes_on_early"}, {"answer_time_doubled", "goes_on_late"}}},
        a_missing_answer_costs_its_time,

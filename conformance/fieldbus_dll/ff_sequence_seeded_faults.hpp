@@ -50,7 +50,7 @@ class DeafBehindFault : public FfStation {
   bool is_deaf_ = false;
 };
 
-// ---- what a token leaves behind ----
+// ---- what a token leaves after ----
 
 template <typename Base>
 class NewestFirst : public Base {
@@ -104,7 +104,7 @@ class SecondOfPriorityLost : public FfStation {
   }
 };
 
-// ---- what a publisher leaves behind ----
+// ---- what a publisher leaves after ----
 
 class TailOfLastWrite : public FfStation {
   using FfStation::FfStation;

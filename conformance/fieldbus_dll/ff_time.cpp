@@ -95,7 +95,7 @@ std::vector<FfCase> ff_time_cases() {
   return {
       {{.id = "fieldbus_dll/ff_las/time/is_distributed",
         .purpose = "FF-27",
-        .requirement = "Link time is told within 95 % of V(TDP).",
+        .requirement = "Link time is sent within 95 % of V(TDP).",
         .reference = vendors("V(TDP)"),
         .details = {time},
         .stimulus = "200 times V(TDP) with tokens and CDs.",

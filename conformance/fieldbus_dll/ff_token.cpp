@@ -95,7 +95,7 @@ void what_fits_exactly_is_sent_and_no_more(FfBench& bench, CaseJudge& judge) {
 }
 
 void ff_nothing_is_sent_behind_the_duration(FfBench& bench, CaseJudge& judge) {
-  // Short frames, too: of those some end just behind a duration.
+  // Short frames, too: of those some end just after a duration.
   for (int n = 0; n < bench.volume(60, 300); ++n) {
     const std::uint64_t longest = n % 6 == 0 ? 250 : 12;
     const auto duration = static_cast<unsigned>(32 + bench.random().below(4 * longest));
@@ -107,7 +107,7 @@ void ff_nothing_is_sent_behind_the_duration(FfBench& bench, CaseJudge& judge) {
     for (const DrivenDlpdu& one : bench.listen()) {
       judge.expect(one.end <= over + kLinkRounding, "talks_behind_duration", [&] {
         return Mismatch{
-            {fmt::format("silence behind {}, {} octets behind the PT", kernel::describe(over), duration)},
+            {fmt::format("silence after {}, {} octets after the PT", kernel::describe(over), duration)},
             fmt::format("{} until {}", one.text(), kernel::describe(one.end)),
             one.begin};
       });
@@ -214,7 +214,7 @@ std::vector<FfCase> ff_token_cases() {
        what_fits_exactly_is_sent_and_no_more},
       {{.id = "fieldbus_dll/ff_device/token/nothing_is_sent_behind_the_duration",
         .purpose = "FF-07",
-        .requirement = "A station sends nothing behind the duration of its token.",
+        .requirement = "A station sends nothing after the duration of its token.",
         .reference = ff_paper("duration of the token"),
         .stimulus = "More data than fits; 300 random durations.",
         .expected = "The last frame ends within the duration.",

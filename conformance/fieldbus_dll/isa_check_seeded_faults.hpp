@@ -54,7 +54,7 @@ class IsaDeafBehindFault : public IsaDle {
   bool is_deaf_ = false;
 };
 
-// ---- what something leaves behind ----
+// ---- what something leaves after ----
 
 class IsaNewestFirst : public IsaDle {
   using IsaDle::IsaDle;

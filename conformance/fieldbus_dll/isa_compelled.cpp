@@ -115,7 +115,7 @@ std::vector<IsaCase> isa_compelled_cases() {
         .requirement = "A station whose reply is not there within V(FD) is silent.",
         .reference = isa_paper("VC(FD): the time to form a reply"),
         .details = {forming, {own("what was too late answers the next CD"), {"late_data_lost"}}},
-        .stimulus = "A CD; the user says that it works on the reply and submits it behind V(FD).",
+        .stimulus = "A CD; the user says that it works on the reply and submits it after V(FD).",
         .expected = "Silence; the data answers the next CD.",
         .tags = {"must", "timing"},
         .catches = {{"replies_late", "reply_too_late"}, {"late_reply_lost", "late_data_lost"}}},

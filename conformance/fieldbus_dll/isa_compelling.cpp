@@ -11,7 +11,7 @@ namespace {
 using fieldbus_dll::IsaService;
 using fieldbus_dll::Priority;
 
-// The IUT has a long token, has just sent a CD to the peer, and has a DLSDU to send behind it.
+// The IUT has a long token, has just sent a CD to the peer, and has a DLSDU to send after it.
 struct Compelled {
   DrivenDlpdu cd;
   Octets behind;
@@ -34,9 +34,9 @@ Compelled compel(IsaBench& bench, CaseJudge& judge) {
 }
 
 void expect_goes_on(IsaBench& bench, CaseJudge& judge, const Octets& behind) {
-  const DrivenDlpdu next = expect_next(bench, judge, "does_not_go_on", "the DLSDU behind the CD");
+  const DrivenDlpdu next = expect_next(bench, judge, "does_not_go_on", "the DLSDU after the CD");
   judge.expect(next.rest() == behind, "does_not_go_on",
-               [&] { return Mismatch{{"the DLSDU behind the CD"}, next.text(), next.begin}; });
+               [&] { return Mismatch{{"the DLSDU after the CD"}, next.text(), next.begin}; });
 }
 
 void a_late_reply_is_waited_for(IsaBench& bench, CaseJudge& judge) {
@@ -59,10 +59,10 @@ void a_missing_reply_costs_rr(IsaBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 20); ++n) {
     const Compelled compelled = compel(bench, judge);
     const kernel::Time over = compelled.cd.end + bench.reply_wait();
-    const DrivenDlpdu next = expect_next(bench, judge, "does_not_go_on", "the DLSDU behind the CD");
+    const DrivenDlpdu next = expect_next(bench, judge, "does_not_go_on", "the DLSDU after the CD");
     expect_begins(judge, next, over, "resumes_early", over + bench.octets(1), "resumes_late");
     judge.expect(next.rest() == compelled.behind, "does_not_go_on",
-                 [&] { return Mismatch{{"the DLSDU behind the CD"}, next.text(), next.begin}; });
+                 [&] { return Mismatch{{"the DLSDU after the CD"}, next.text(), next.begin}; });
     bench.listen();
   }
 }
@@ -83,7 +83,7 @@ void a_reply_behind_rr_is_none(IsaBench& bench, CaseJudge& judge) {
     bench.run_until(end);
     bench.listen();
     judge.expect(!bench.user().was_delivered(reply), "late_reply_taken",
-                 "a reply that begins behind V(RR) is none", "it was delivered");
+                 "a reply that begins after V(RR) is none", "it was delivered");
   }
 }
 
@@ -117,7 +117,7 @@ std::vector<IsaCase> isa_compelling_cases() {
   return {
       {{.id = "fieldbus_dll/isa_dle/compelling/a_late_reply_is_waited_for",
         .purpose = "ISA-19",
-        .requirement = "A reply that begins within V(RR) is taken, and the token holder goes on behind it.",
+        .requirement = "A reply that begins within V(RR) is taken, and the token holder goes on after it.",
         .reference = isa_paper("VC(RR): the time for which a reply is waited for"),
         .stimulus = "An ES; the IUT compels the peer, which begins to reply an octet before V(RR) is over.",
         .expected = "The reply is delivered, and the next DLSDU follows it.",
@@ -133,7 +133,7 @@ std::vector<IsaCase> isa_compelling_cases() {
         .details = {{own("V(RR) is V(MRD) x V(ST), 32 octets, from the end of the CD"),
                      {"resumes_early", "resumes_late"}}},
         .stimulus = "An ES; the IUT compels the peer, which is silent.",
-        .expected = "The next DLSDU within an octet behind V(RR).",
+        .expected = "The next DLSDU within an octet after V(RR).",
         .tags = {"must", "timing"},
         .catches = {{"reply_wait_without_slots", "resumes_early"},
                     {"reply_wait_a_tenth_longer", "resumes_late"},
@@ -141,11 +141,11 @@ std::vector<IsaCase> isa_compelling_cases() {
        a_missing_reply_costs_rr},
       {{.id = "fieldbus_dll/isa_dle/compelling/a_reply_behind_rr_is_none",
         .purpose = "ISA-21",
-        .requirement = "A reply that begins behind V(RR) is none, and nothing is sent into it.",
+        .requirement = "A reply that begins after V(RR) is none, and nothing is sent into it.",
         .reference = isa_paper("VC(RR): the time for which a reply is waited for"),
         .details = {{own("late replies are discarded"), {"late_reply_taken"}}},
-        .stimulus = "An ES; the IUT compels the peer, which begins to reply two octets behind V(RR).",
-        .expected = "The IUT has begun before, or begins behind the reply; the reply is not delivered.",
+        .stimulus = "An ES; the IUT compels the peer, which begins to reply two octets after V(RR).",
+        .expected = "The IUT has begun before, or begins after the reply; the reply is not delivered.",
         .tags = {"must", "timing"},
         .catches = {{"reply_wait_a_tenth_longer", "late_reply_taken"},
                     {"deaf_and_late", "talks_into_reply"}}},

@@ -19,7 +19,7 @@ unsigned in_octets(const IsaBench& bench, kernel::Duration duration) {
   return static_cast<unsigned>((duration + one - kLinkRounding) / one);
 }
 
-// How long the IUT itself takes until it begins, behind an ES.
+// How long the IUT itself takes until it begins, after an ES.
 kernel::Duration start_latency(IsaBench& bench, CaseJudge& judge) {
   const Octets data = bench.numbered_data(8);
   bench.submit_unit_data(Priority::normal, data);
@@ -94,7 +94,7 @@ void nothing_is_sent_behind_the_duration(IsaBench& bench, CaseJudge& judge) {
     for (const DrivenDlpdu& one : bench.listen()) {
       judge.expect(one.end <= over + kLinkRounding, "talks_behind_duration", [&] {
         return Mismatch{
-            {fmt::format("silence behind {}, {} octets behind the ES", kernel::describe(over), duration)},
+            {fmt::format("silence after {}, {} octets after the ES", kernel::describe(over), duration)},
             fmt::format("{} until {}", one.text(), kernel::describe(one.end)),
             one.begin};
       });
@@ -151,7 +151,7 @@ std::vector<IsaCase> isa_duration_cases() {
        what_does_not_fit_stays},
       {{.id = "fieldbus_dll/isa_dle/duration/nothing_is_sent_behind_it",
         .purpose = "ISA-12",
-        .requirement = "A station sends nothing behind the duration of its token, the EE included.",
+        .requirement = "A station sends nothing after the duration of its token, the EE included.",
         .reference = isa_paper("VC(RD) at the holder"),
         .stimulus = "More data than fits; ES for 10, 20, 50, 100, 500, 5000 octets.",
         .expected = "The last frame ends within the duration.",

@@ -55,7 +55,7 @@ TokenUse expect_token_use(IsaBench& bench, CaseJudge& judge, kernel::Time from) 
   kernel::Time since = from;
   for (const DrivenDlpdu& one : bench.listen()) {
     judge.expect(!has_ended, "talks_behind_end",
-                 [&] { return Mismatch{{"silence behind the EE"}, one.text(), one.begin}; });
+                 [&] { return Mismatch{{"silence after the EE"}, one.text(), one.begin}; });
     expect_begins(judge, one, since, "answers_too_early", since + bench.reply_wait(), "answers_too_late");
     since = one.end;
     if (is_type(one, codes.ee)) {

@@ -117,13 +117,13 @@ void the_schedule_goes_on_under_bursts(IsaBench& bench, CaseJudge& judge) {
 IsaCase bursts_at_dle(std::string_view name, std::int64_t bit_rate) {
   return {{.id = fmt::format("fieldbus_dll/isa_dle/immunity/bursts_ask_for_nothing_at_{}", name),
            .purpose = "ISA-19",
-           .requirement =
-               "Under bursts a station says what was asked for, and its user is told what was sent; behind a "
-               "burst the first token is used.",
+           .requirement = "Under bursts a station says what was asked for, and what was sent is reported to "
+                          "its user; after a "
+                          "burst the first token is used.",
            .reference = link_sources::line("frame check 1DCF"),
            .stimulus =
                fmt::format("{}, while tokens, CDs and data go on, for it and for others.", kBurstStimulus),
-           .expected = "Nothing unasked, nothing told otherwise; behind each burst its data is sent.",
+           .expected = "Nothing unasked, nothing reported otherwise; after each burst its data is sent.",
            .tags = {"must", std::string(kStressTag)},
            .catches = {{"stuck_behind_violation", "does_not_recover"}}},
           bursts_ask_a_dle_for_nothing,

@@ -25,7 +25,7 @@ class ItemsSkipped : public IsaLas {
   int passed_ = 0;
 };
 
-// Each round of the schedule begins two periods behind the last one.
+// Each round of the schedule begins two periods after the last one.
 class PeriodDoubled : public IsaLas {
   using IsaLas::IsaLas;
   void advance() override {

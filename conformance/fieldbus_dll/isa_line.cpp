@@ -37,8 +37,8 @@ void all_preambles_are_taken(IsaBench& bench, CaseJudge& judge) {
     bench.send_half_bits(half_bits_of_frame(du, preamble));
     bench.wait(bench.reply_wait());
     expect_heard(bench, judge, data, "preamble_not_taken",
-                 fmt::format("a frame with {} octets of preamble is heard", preamble));
-    // What the station drives itself is held to the half bit behind the case.
+                 fmt::format("a frame with {} octets of preamble is received", preamble));
+    // What the station drives itself is held to the half bit after the case.
     bench.submit_unit_data(Priority::normal, bench.numbered_data(10));
     bench.send_half_bits(half_bits_of_frame(with_frame_check(bench.et(Priority::normal)), preamble));
     bench.listen();
@@ -54,7 +54,7 @@ void other_clocks_are_taken(IsaBench& bench, CaseJudge& judge) {
       bench.send_wave({bench.now(), 2 * bench.rules().link.bit_rate * parts / kParts, std::move(half_bits)});
       bench.wait(bench.reply_wait());
       expect_heard(bench, judge, data, "clock_not_taken",
-                   fmt::format("a frame at {:.1f} % of the bit rate is heard",
+                   fmt::format("a frame at {:.1f} % of the bit rate is received",
                                100.0 * static_cast<double>(parts) / static_cast<double>(kParts)));
     }
   }
@@ -84,7 +84,7 @@ void jitter_is_taken(IsaBench& bench, CaseJudge& judge) {
     bench.send_wave(jittered(bench, half_bits));
     bench.wait(bench.reply_wait());
     expect_heard(bench, judge, data, "jitter_not_taken",
-                 "a frame whose edges are up to a tenth of a bit off is heard");
+                 "a frame whose edges are up to a tenth of a bit off is received");
   }
 }
 
@@ -121,7 +121,7 @@ std::vector<IsaCase> isa_line_cases() {
         .requirement = "A frame has 1 to 8 octets of preamble and both delimiters, to the half bit.",
         .reference = line("preamble and delimiters"),
         .stimulus = "Frames with 1 to 8 octets of preamble; tokens under which the IUT sends some itself.",
-        .expected = "All are heard; what the IUT sends is exact, and has V(MID) of silence in front.",
+        .expected = "All are received; what the IUT sends is exact, and has V(MID) of silence in front.",
         .tags = {"must"},
         .catches = {{"wants_one_preamble_octet", "preamble_not_taken"},
                     {"sends_no_preamble", "frame_malformed"},
@@ -134,7 +134,7 @@ std::vector<IsaCase> isa_line_cases() {
         .requirement = "A receiver takes frames whose clock is 0.2 % off.",
         .reference = memory("tolerance of the bit rate"),
         .stimulus = "Frames of 205 octets at 99.8, 100 and 100.2 % of the bit rate.",
-        .expected = "All are heard.",
+        .expected = "All are received.",
         .tags = {"must", "timing"},
         .catches = {{"does_not_recover_clock", "clock_not_taken"}}},
        other_clocks_are_taken},
@@ -143,7 +143,7 @@ std::vector<IsaCase> isa_line_cases() {
         .requirement = "A receiver takes frames whose edges are up to a tenth of a bit off.",
         .reference = memory("jitter at a receiver"),
         .stimulus = "Frames of 205 octets, each edge moved at random.",
-        .expected = "All are heard.",
+        .expected = "All are received.",
         .tags = {"must", "timing"},
         .catches = {{"wants_exact_edges", "jitter_not_taken"}}},
        jitter_is_taken},

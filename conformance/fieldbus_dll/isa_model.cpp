@@ -102,11 +102,11 @@ std::optional<std::uint8_t> IsaModel::compelled() const {
 std::optional<LinkObjection> IsaModel::say(const DrivenDlpdu& dlpdu) {
   const Time begin = dlpdu.begin + kLinkRounding;
   if (awaited_ && begin < awaited_->until)
-    return LinkObjection{"does_not_wait_for_reply", "V(RR) of silence behind its CD, or a reply"};
+    return LinkObjection{"does_not_wait_for_reply", "V(RR) of silence after its CD, or a reply"};
   if (begin < earliest())
     return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
   if (!answer_ && !token_)
-    return LinkObjection{"speaks_unasked", "silence: nothing that it heard asks for it"};
+    return LinkObjection{"speaks_unasked", "silence: nothing that it received asks for it"};
   auto objection = answer_ ? say_reply(dlpdu) : say_under_token(dlpdu);
   silent_since_ = dlpdu.end;
   return objection;

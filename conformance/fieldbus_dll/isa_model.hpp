@@ -18,10 +18,10 @@
 //   ET   one frame of what is at least as urgent as the ET says, the most urgent first; then EE
 //   ES   frames, as long as all that must follow them ends within the duration; then EE
 //   CD   DT with what the user has for it, else without data
-//   behind a CD of its own: a reply, V(RR) of waiting, or another DLPDU, which ends its token
+//   after a CD of its own: a reply, V(RR) of waiting, or another DLPDU, which ends its token
 //
-// What is said begins V(MID) behind the last that was on the line, and V(RR) behind it at the latest, a reply
-// to a CD V(FD) behind the CD.
+// What is said begins V(MID) after the last that was on the line, and V(RR) after it at the latest, a reply
+// to a CD V(FD) after the CD.
 namespace fieldproof::conformance {
 
 class IsaModel {

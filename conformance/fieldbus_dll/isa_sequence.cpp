@@ -79,7 +79,7 @@ void what_is_urgent_goes_next(IsaBench& bench, CaseJudge& judge) {
     for (const Octets& data : in_order) {
       const DrivenDlpdu one = expect_next(bench, judge, "frames_missing", "the next DLSDU");
       judge.expect(one.rest() == data, "not_most_urgent", [&] {
-        return Mismatch{{"behind the frame that is being sent, the urgent one"}, one.text(), one.begin};
+        return Mismatch{{"after the frame that is being sent, the urgent one"}, one.text(), one.begin};
       });
     }
     bench.listen();
@@ -115,7 +115,7 @@ std::vector<IsaCase> isa_sequence_cases() {
         .requirement = "A station returns the token as soon as it needs it no more.",
         .reference = isa_paper("EE: the use of the token has ended"),
         .stimulus = "One DLSDU, a long ES.",
-        .expected = "The EE between V(MID) and V(RR) behind the DU.",
+        .expected = "The EE between V(MID) and V(RR) after the DU.",
         .tags = {"must", "timing"},
         .catches = {{"no_end_of_sequence", "token_not_returned"}, {"rests_before_end", "answers_too_late"}}},
        what_is_not_used_is_returned},

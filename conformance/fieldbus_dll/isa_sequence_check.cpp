@@ -34,7 +34,7 @@ enum class IsaWord : std::uint8_t {
   wait
 };
 
-// What the tester does behind a CD of the station.
+// What the tester does after a CD of the station.
 enum class Peer : std::uint8_t { silent, replies, stranger_replies, stranger_sends };
 
 SequenceNumber isa_priority(std::string_view name = "priority") {

@@ -208,7 +208,7 @@ std::vector<IsaCase> isa_transfer_cases() {
         .requirement = "Of two schedulers the one with the lower address stays.",
         .reference = own("two schedulers"),
         .stimulus = "An ET from a higher address, then one from a lower.",
-        .expected = "The schedule goes on behind the first; no ET, ES or TL behind the second.",
+        .expected = "The schedule goes on after the first; no ET, ES or TL after the second.",
         .tags = {"must"},
         .catches = {{"never_yields", "two_schedulers"}, {"always_yields", "left_to_higher"}}},
        the_lower_address_keeps_the_link,

@@ -15,7 +15,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-// How a station never stops: a DLPDU behind the other one, with so much silence between.
+// How a station never stops: a DLPDU after the other one, with so much silence between.
 struct Babble {
   Octets octets;
   std::int64_t silence_octets;

@@ -34,7 +34,7 @@ void judge_told(const LinkBench& bench, CaseJudge& judge, const std::vector<Repo
     const auto found = std::find_if(next, sent.end(), is_same);
     if (found == sent.end() && std::ranges::any_of(bench.arrived_unsent(), is_same)) continue;
     judge.expect(found != sent.end(), "told_otherwise", [&] {
-      return Mismatch{{"its user is told what was sent to it, once and as it was"}, describe(told)};
+      return Mismatch{{"what was sent to its user is reported to it, once and as it was"}, describe(told)};
     });
     next = found + 1;
   }

@@ -19,7 +19,7 @@ struct LinkBurstLedger {
 };
 
 // Each stress in turn, again and again, each from some instant within a frame on: `act` until it is over,
-// then `behind`, when the line is quiet.
+// then `after`, when the line is quiet.
 template <typename Act, typename Behind>
 void under_each_stress(LinkBench& bench, int rounds, Act act, Behind behind) {
   constexpr std::uint64_t kOctetsOfAFrame = 20;

@@ -5,13 +5,13 @@
 #include "conformance/fieldbus_dll/link_bench.hpp"
 #include "conformance/sequence.hpp"
 
-// What sequences of every profile of the data link have in common: the silence behind a command, and how it
+// What sequences of every profile of the data link have in common: the silence after a command, and how it
 // is put on the line with its faults. A unit is an octet of a frame, its delimiters included; the preamble is
 // none, because of a frame with a part of it any receiver may hear the rest.
 namespace fieldproof::conformance {
 
 inline constexpr unsigned kHalfBitsOfAnOctet = 16;
-// What a flip can hit: a half bit, which breaks the code, and behind those a whole bit, which only the frame
+// What a flip can hit: a half bit, which breaks the code, and after those a whole bit, which only the frame
 // check sees. Of whole bits two are flipped at most: the check sees any three of a frame.
 inline constexpr unsigned kFlipsOfAnOctet = kHalfBitsOfAnOctet + 8;
 
@@ -19,10 +19,10 @@ inline constexpr unsigned kFlipsOfAnOctet = kHalfBitsOfAnOctet + 8;
 // less than V(MID), before the station may begin.
 inline constexpr std::int64_t kLinkSettles = 100;
 
-// Behind what the command sends, to the next.
+// After what the command sends, to the next.
 SequenceNumber link_silence();
 
-// Sends the octets in a frame, their check behind them. False: with faults, after which it is no frame to
+// Sends the octets in a frame, their check after them. False: with faults, after which it is no frame to
 // anybody.
 bool send_link_command(LinkBench& bench, const Octets& octets, const SequenceCommand& command);
 

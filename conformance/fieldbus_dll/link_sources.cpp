@@ -37,11 +37,11 @@ const std::vector<PartialSource>& isa_details() {
   using link_sources::vendors;
   static const std::vector<PartialSource> details{
       {line("preamble and delimiters"), {"frame_malformed", "check_wrong"}},
-      {vendors("V(MID): silence behind every DLPDU"), {"gap_too_short", "answers_too_early"}},
+      {vendors("V(MID): silence after every DLPDU"), {"gap_too_short", "answers_too_early"}},
       {own("who is silent for V(RR) says nothing any more"), {"answers_too_late", "next_too_late"}},
       {own("encoding of the profile ISA-D"),
        {"dlpdu_wrong", "source_wrong", "end_reason_wrong", "unexpected_dlpdu"}},
-      {own("EE behind a single frame, too"), {"token_not_returned"}},
+      {own("EE after a single frame, too"), {"token_not_returned"}},
   };
   return details;
 }
@@ -53,10 +53,10 @@ const std::vector<PartialSource>& ff_details() {
   using link_sources::vendors;
   static const std::vector<PartialSource> details{
       {line("preamble and delimiters"), {"frame_malformed", "check_wrong"}},
-      {vendors("V(MID): silence behind every DLPDU"), {"gap_too_short", "answers_too_early"}},
+      {vendors("V(MID): silence after every DLPDU"), {"gap_too_short", "answers_too_early"}},
       {memory("V(MRD) x V(ST): until then an answer has begun"), {"answers_too_late"}},
       {memory("octets of the DLPDUs"), {"dlpdu_wrong", "unexpected_dlpdu"}},
-      {own("what is answered behind something else"), {"does_not_recover"}},
+      {own("what is answered after something else"), {"does_not_recover"}},
   };
   return details;
 }

@@ -18,7 +18,7 @@ void spoil(CycleFaults& faults) {
   faults.flips = {{0, 0x01, false}};
 }
 
-// The ring offers other inputs in a cycle that is spoilt; gives what the application saw right behind it.
+// The ring offers other inputs in a cycle that is spoilt; gives what the application saw right after it.
 std::uint16_t seen_behind_bad_cycle(MasterBench& bench, CaseJudge& judge, std::uint16_t offered) {
   bench.ring().set_input(0, offered);
   bench.set_script([](const CycleInfo& info, CycleFaults& faults) {

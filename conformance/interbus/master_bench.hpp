@@ -179,7 +179,7 @@ class MasterBench {
   std::uint64_t stress_number_ = 0;
 };
 
-// The ring of the cycle-time paper: a coupler, behind its second interface 16 inputs and 16 outputs.
+// The ring of the cycle-time paper: a coupler, after its second interface 16 inputs and 16 outputs.
 std::vector<interbus::VirtualStation> paper_ring();
 
 }  // namespace fieldproof::conformance

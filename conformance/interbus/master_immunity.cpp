@@ -144,7 +144,7 @@ void bring_up_fast_ring(MasterBench& bench, CaseJudge& judge) {
 
 void judge_run(MasterBench& bench, CaseJudge& judge, const Ledger& ledger, bool goes_on) {
   judge.expect(goes_on, "no_data_cycle", "the master goes on with cycles", "no cycle ends any more");
-  judge.expect(bench.is_in_run(), "stopped_without_cause", "the bus runs on behind the faults",
+  judge.expect(bench.is_in_run(), "stopped_without_cause", "the bus runs on after the faults",
                "it has stopped");
   judge.measure("share of rejected cycles", "", ledger.share_of_bad());
   judge.measure("longest run of cycles without new data", "cycles",
@@ -219,7 +219,7 @@ class StressedRun {
     bench_.on_cycle([this] { on_cycle(); });
   }
 
-  // One burst, and the cycles behind it that bring valid data again.
+  // One burst, and the cycles after it that bring valid data again.
   void suffer(const fault::Stress& stress) {
     bench_.begin_stress(stress);
     const kernel::Time end = bench_.now() + stress.duration;
@@ -296,7 +296,7 @@ void stresses(MasterBench& bench, CaseJudge& judge) {
                "no input of a disturbed cycle reaches the application", "an input does");
   judge.measure("transmissions struck by a pulse", "", static_cast<double>(bench.stressed_transmissions()));
   judge.measure("cycles that arrived wrong with a right check", "", static_cast<double>(run.unseen()));
-  judge.measure("stops of the bus behind ten bad cycles", "", static_cast<double>(run.stops()));
+  judge.measure("stops of the bus after ten bad cycles", "", static_cast<double>(run.stops()));
   judge_run(bench, judge, run.ledger(), run.is_going_on());
 }
 

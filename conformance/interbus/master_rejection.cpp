@@ -92,7 +92,7 @@ void bad_check(MasterBench& bench, CaseJudge& judge) {
       CycleFaults faults;
       faults.flips = {{octet, static_cast<std::uint8_t>(1U << bit), false}};
       expect_cycle_rejected(bench, judge, std::move(faults), "bad_check_accepted",
-                            fmt::format("bit {} of octet {} changed behind the last station", bit, octet));
+                            fmt::format("bit {} of octet {} changed after the last station", bit, octet));
     }
   }
 }
@@ -129,7 +129,7 @@ std::vector<std::vector<CycleFaults::Flip>> weight_four_patterns() {
   return patterns;
 }
 
-// What the flips make of the input word of the paper's ring: its two octets come behind those of the output
+// What the flips make of the input word of the paper's ring: its two octets come after those of the output
 // terminal, which is the last station.
 std::uint16_t changed_input(const std::vector<CycleFaults::Flip>& flips) {
   unsigned octets[kUserOctets] = {};
@@ -201,7 +201,7 @@ void extra_telegram(MasterBench& bench, CaseJudge& judge) {
   CycleFaults trailing;
   trailing.trailing_telegram = true;
   expect_cycle_rejected(bench, judge, std::move(trailing), "extra_telegram_accepted",
-                        "a telegram behind the last one");
+                        "a telegram after the last one");
 }
 
 void flipped_flag(MasterBench& bench, CaseJudge& judge) {
@@ -222,7 +222,7 @@ void flipped_flag(MasterBench& bench, CaseJudge& judge) {
   CycleFaults status;
   status.status_flag_flipped = true;
   expect_cycle_rejected(bench, judge, std::move(status), "flipped_flag_accepted",
-                        "flag of the status telegram behind the cycle changed");
+                        "flag of the status telegram after the cycle changed");
 }
 
 // That a cycle ends when the loopback word is back, and that a telegram has 5 bits of head, was read; that a
@@ -268,7 +268,7 @@ std::vector<MasterCase> master_rejection_cases() {
   add("wrong_return_check_is_rejected", "IM-13",
       "The master compares the check of the last station with what it received",
       {"Buesing/Meyer, Practical Guide", "check per segment", Standing::searched},
-      "each bit of the data, and of the check, changed behind the last station",
+      "each bit of the data, and of the check, changed after the last station",
       {{"own_check_ignored", "bad_check_accepted"}, {"inputs_taken_before_check", "rejected_inputs_seen"}},
       bad_check);
   cases.back().test_case.details = {
@@ -297,7 +297,7 @@ std::vector<MasterCase> master_rejection_cases() {
       kHeader, "the stop bit of each returned telegram missing",
       {{"stop_bit_ignored", "framing_error_accepted"}}, missing_stop);
   add("inserted_telegram_is_rejected", "IM-34", "A telegram too many rejects the cycle", kHeader,
-      "a telegram inserted at each place of the cycle, and behind it",
+      "a telegram inserted at each place of the cycle, and after it",
       {{"telegram_count_ignored", "extra_telegram_accepted"}}, extra_telegram);
   add("changed_flag_is_rejected", "IM-35",
       "A data telegram that became a status telegram, or the other way "

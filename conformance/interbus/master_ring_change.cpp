@@ -170,7 +170,7 @@ std::vector<MasterCase> master_ring_change_cases() {
                                   "meaning of the bits; dynamic messages in the ID register", Standing::own};
   add("cut_ring_is_located", "IM-17",
       "When the ring is cut the bus stops, the outputs are as declared and the master finds the place",
-      stopped, "the cable cut behind each station in turn",
+      stopped, "the cable cut after each station in turn",
       "stop within the declared number of cycles; the place named",
       {{"fault_not_searched", "fault_not_located"}}, cut_ring);
   add("added_station_is_reported", "IM-28", "A station that is added in run is a configuration error",

@@ -1,6 +1,6 @@
 // Chapter skew: from an input to the output that the copy task drives from it (IM-24 to IM-26).
 //
-// Model: inputs are taken at the start of the frame of cycle k, copied behind it, sent in cycle k + 1 and put
+// Model: inputs are taken at the start of the frame of cycle k, copied after it, sent in cycle k + 1 and put
 // out at the end of that frame: T_c + T_x later, T_x from the start of the frame to the latch. An edge waits
 // for the next sample, evenly between 0 and T_c.
 #include <fmt/format.h>

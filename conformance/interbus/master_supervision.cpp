@@ -16,7 +16,7 @@ using interbus::SeenCycle;
 using judge::Standing;
 using CycleInfo = interbus::RingEmulator::CycleInfo;
 
-// A bit of the first input word changed behind the last station.
+// A bit of the first input word changed after the last station.
 void spoil(CycleFaults& faults) {
   faults.flips = {{0, 0x01, false}};
 }
@@ -156,7 +156,7 @@ void alternating(MasterBench& bench, CaseJudge& judge) {
   });
 }
 
-// Behind a stop the line is silent or carries status telegrams without a gap, and no cycles.
+// After a stop the line is silent or carries status telegrams without a gap, and no cycles.
 void expect_quiet(MasterBench& bench, CaseJudge& judge) {
   const std::uint64_t cycles = bench.ring().cycle_count();
   bench.ring().forget_statistics();
@@ -217,7 +217,7 @@ std::vector<MasterCase> master_supervision_cases() {
   add("status_telegrams_fill_every_pause", "IM-01",
       "Status telegrams fill every pause; only when it stops is a master silent for more than 25 ms",
       {"Phoenix Contact UK, operation and maintenance", "status telegrams", Standing::searched},
-      "power up on an open ring; identification; run with a cycle time of 40 ms; the search behind a cut "
+      "power up on an open ring; identification; run with a cycle time of 40 ms; the search after a cut "
       "cable",
       "telegrams within 1 s and never a silence above 25 ms", {"must", "timing"},
       {{"silent_in_long_pauses", "silence_too_long"},

@@ -187,7 +187,7 @@ std::vector<MasterCase> master_timing_cases() {
       {"this project", "+-1 %", Standing::own}, "a return line 1 % slower and 1 % faster",
       "no cycle rejected", {"timing"}, {{"no_clock_tolerance", "clock_tolerance"}}, clock_tolerance);
   add("telegrams_have_their_gap", "IM-38", "The mean pitch of the telegrams of a cycle is 1.15 times 13 bit",
-      {"this project; Park 2004, section 2.2", "a gap behind each telegram, for the factor of 1.15",
+      {"this project; Park 2004, section 2.2", "a gap after each telegram, for the factor of 1.15",
        Standing::own},
       "a data cycle with 64 user octets", "14.95 bit within 5 %", {"timing"},
       {{"telegrams_without_gap", "pitch_off"}}, telegram_pitch);

@@ -82,7 +82,7 @@ class NetworkBench final : private network::ExchangeWatcher {
   bool bring_up();
   void run_cycles(std::int64_t count) { segment().run_for(status().cycle_time * count); }
 
-  // To 200 us behind the start of a data cycle, when every station has sampled its inputs: what changes then
+  // To 200 us after the start of a data cycle, when every station has sampled its inputs: what changes then
   // has just missed the cycle.
   void run_behind_sampling();
 

@@ -99,8 +99,8 @@ class BurstExchange {
       if (bench_.bring_up() && goes_on()) return;
     }
     judge_.fail("network_does_not_go_on",
-                {{fmt::format("a good data cycle, put out everywhere, within {} cycles behind a burst; or "
-                              "behind a stop of the bus and a start",
+                {{fmt::format("a good data cycle, put out everywhere, within {} cycles after a burst; or "
+                              "after a stop of the bus and a start",
                               kMostRecoveryCycles)},
                  fmt::format("none; the master is in state {}", static_cast<int>(bench_.status().state))});
   }
@@ -150,7 +150,7 @@ class BurstExchange {
     tell("transmissions struck by a pulse", "", static_cast<double>(struck()));
     tell("cycles rejected by the master", "", static_cast<double>(counts.detected));
     tell("cycles with wrong words", "", static_cast<double>(counts.wrong_exchanges));
-    tell("starts behind a stop of the bus", "", static_cast<double>(starts_));
+    tell("starts after a stop of the bus", "", static_cast<double>(starts_));
   }
 
   NetworkBench& bench_;
@@ -165,7 +165,7 @@ void words_under_bursts(NetworkBench& bench, CaseJudge& judge) {
   FIELDPROOF_CHECK(!bench.stresses().empty(), "a case under stresses has some");
   if (bench.network().rules.end_telegrams > 0) {
     throw iut::CannotBeDone(
-        "telegrams behind the status word hide errors: what moves the end of the data passes each check");
+        "telegrams after the status word hide errors: what moves the end of the data passes each check");
   }
   judge.expect(bench.bring_up(), "network_does_not_run", "data cycles on a quiet line", "none");
   BurstExchange(bench, judge).run();
@@ -178,7 +178,7 @@ std::vector<NetworkCase> network_immunity_cases() {
   test_case.id = "interbus/network/immunity/no_wrong_word_is_accepted_under_bursts";
   test_case.requirement =
       "Under bursts the applications of master and stations keep old words or get those that were sent, but "
-      "for the few that pass any check of 16 bits; behind a burst the network goes on, or it says that it "
+      "for the few that pass any check of 16 bits; after a burst the network goes on, or it says that it "
       "has "
       "stopped and does so after a start.";
   test_case.details = {{sources::own("how many wrong cycles are no chance, how soon a network goes on"),
@@ -187,7 +187,7 @@ std::vector<NetworkCase> network_immunity_cases() {
   test_case.stimulus =
       "Bursts of IEC 61000-4-4 on all cables of the remote bus, 5 and 100 kHz, both polarities, the two "
       "highest levels, while all words change from cycle to cycle: each ten times, or a minute of them.";
-  test_case.expected = "No more cycles with wrong words than chance explains; data cycles behind each burst.";
+  test_case.expected = "No more cycles with wrong words than chance explains; data cycles after each burst.";
   test_case.tags = {"must", std::string(kStressTag)};
   test_case.catches = {{"slave_latches_in_spite_of_its_check", "wrong_output_accepted"},
                        {"master_does_not_check", "wrong_input_accepted"},

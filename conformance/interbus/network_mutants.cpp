@@ -40,7 +40,7 @@ std::vector<NetworkMutants::Row> network_rows() {
          return with_change(
              [](interbus::NetworkDescription& n) { last_station(n.stations).id_code ^= 0x0010; });
        }},
-      {"master_misses_branches", "", "the master never looks behind a second outgoing interface",
+      {"master_misses_branches", "", "the master never looks after a second outgoing interface",
        [](std::size_t) { return with_master("branches_not_searched"); }},
       {"master_sends_first_station_first", "", "the master sends the outputs of the first station first",
        [](std::size_t) { return with_master("first_station_first"); }},

@@ -233,7 +233,7 @@ void RingEmulator::on_status() {
   unsigned count = line::kStatusTelegramLevels;
   if (std::exchange(expects_status_, false) && is_faulted_) {
     if (faults_.status_flag_flipped) {
-      // The receiver takes the idle line behind it for data.
+      // The receiver takes the idle line after it for data.
       levels = (levels | ~std::uint64_t{0} << count) ^ (std::uint64_t{1} << flag_level_);
       count = line::kDataTelegramLevels;
     }

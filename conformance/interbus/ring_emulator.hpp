@@ -114,7 +114,7 @@ class RingEmulator : public segment::Station {
   const std::vector<VirtualStation>& stations() const { return stations_; }
   // Another ring in place of this one, with every interface switched on.
   void replace_ring(std::vector<VirtualStation> stations);
-  // The cable behind station k (-1: behind the master) is cut; nothing comes back while the ring includes it.
+  // The cable after station k (-1: after the master) is cut; nothing comes back while the ring includes it.
   void cut_after(int station) { cut_after_ = station; }
   void mend() { cut_after_.reset(); }
   // Message bits that stay until they are changed.
@@ -169,7 +169,7 @@ class RingEmulator : public segment::Station {
   void emit(const line::Telegram& telegram, std::uint8_t octet);
   // The bit of what leaves at which a telegram belongs: counted from the start of the reception.
   std::size_t bit_of(const line::Waveform& wave, std::uint32_t level) const;
-  // At a bit, or right behind what was sent before.
+  // At a bit, or right after what was sent before.
   void emit_levels(std::size_t bit, std::uint64_t levels, unsigned count) {
     const std::size_t at = std::max(bit, out_.levels.size());
     out_.levels.make_room(at + count);

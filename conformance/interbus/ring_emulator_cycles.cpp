@@ -207,14 +207,14 @@ bool RingEmulator::has_cycle(std::uint64_t number) const {
 }
 
 const SeenCycle& RingEmulator::first_cycle() const {
-  if (cycle_count_ == 0) iut::refuse_impossible("tells of cycles, and the ring has seen none on its line");
+  if (cycle_count_ == 0) iut::refuse_impossible("reports cycles, and the ring has seen none on its line");
   return cycle_count_ > kKept ? first_ : kept_.front();
 }
 
 const SeenCycle& RingEmulator::cycle(std::uint64_t number) const {
   // By the master's own count there was one.
   if (number >= cycle_count_) {
-    iut::refuse_impossible("tells the end of a cycle that the ring has not seen on its line");
+    iut::refuse_impossible("reports the end of a cycle that the ring has not seen on its line");
   }
   FIELDPROOF_CHECK(has_cycle(number), "a cycle is asked for that the emulator has not kept");
   return kept_[number % kKept];

@@ -89,7 +89,8 @@ SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
 
 void SlaveBench::require_line_interface() {
   if (ring_.slave(position_).has_line_interface()) return;
-  throw iut::CannotBeDone("the slave hears and says telegrams; the levels of its lines are the bench's own");
+  throw iut::CannotBeDone(
+      "the slave receives and sends telegrams; the levels of its lines are the bench's own");
 }
 
 // The chain of stations from the master to the IUT, each with the interface that leads on.

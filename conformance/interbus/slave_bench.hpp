@@ -84,7 +84,7 @@ class SlaveBench final : private segment::Station {
   segment::Segment& segment() { return segment_; }
   interbus::Ring& ring() { return ring_; }
   int position() const { return position_; }
-  // Register length of the station behind OUT1 or OUT2; 0 without one.
+  // Register length of the station after OUT1 or OUT2; 0 without one.
   unsigned neighbour_words(bool on_branch) const { return neighbour_words_[on_branch ? 1 : 0]; }
   SlaveModel& model() { return model_; }
 
@@ -106,7 +106,7 @@ class SlaveBench final : private segment::Station {
   // Judges nothing.
   void bring_up();
   void id_cycle(std::uint16_t control) { return id_cycle(control, {}); }
-  // `behind`: for stations behind the IUT, the last one first.
+  // `after`: for stations after the IUT, the last one first.
   void id_cycle(std::uint16_t control, std::span<const std::uint16_t> behind);
   void data_cycle(std::span<const std::uint16_t> words) { return data_cycle(words, {}); }
   void data_cycle(std::span<const std::uint16_t> words, std::span<const std::uint16_t> behind);
@@ -143,7 +143,7 @@ class SlaveBench final : private segment::Station {
   std::size_t code_word_bits() const { return 8 * (2 + 2 * words() + 2); }
   std::size_t code_word_level(const CyclePlace& cycle, std::size_t bit) const;
   // Drives the IUT's incoming line itself and runs until it has answered. Clears the views before; the start
-  // is set to now. Behind other stations it may send status telegrams through the ring first.
+  // is set to now. After other stations it may send status telegrams through the ring first.
   void drive_at_receiver(line::Waveform& wave);
   // A whole data cycle as the station in front of the IUT would send it, alone in the ring.
   line::Levels direct_data_cycle(std::span<const std::uint16_t> words, unsigned gap_bits);

@@ -256,9 +256,8 @@ std::vector<SlaveCase> slave_data_cycle_cases() {
   cases.push_back(
       {{.id = "interbus/slave/data_cycle/loopback_word_returns_unchanged",
         .purpose = "IS-07",
-        .requirement =
-            "The loopback word is data for a slave: whatever its value, it passes unchanged behind "
-            "the slave's own register.",
+        .requirement = "The loopback word is data for a slave: whatever its value, it passes unchanged after "
+                       "the slave's own register.",
         .reference = sources::park("section 2.2: the cycle ends when the loopback word has returned"),
         .details = details::answer(),
         .stimulus = "Valid data cycles with each of the 65 536 loopback words.",

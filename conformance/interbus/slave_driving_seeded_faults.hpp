@@ -51,7 +51,7 @@ class SwallowsStatusTelegrams : public ChangesWhatItDrives {
   void change(line::Waveform& wave) override;
 };
 
-// Changes the last bit of a transfer octet that leaves at a given place behind the slave's own register.
+// Changes the last bit of a transfer octet that leaves at a given place after the slave's own register.
 class ChangesAnOctet : public ChangesWhatItDrives {
   using ChangesWhatItDrives::ChangesWhatItDrives;
   void change(line::Waveform& wave) override;

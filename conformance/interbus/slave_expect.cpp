@@ -197,7 +197,7 @@ void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<cons
          .first_difference = fmt::format("data cycle {} of the train", n)});
   }
   judge.expect(next == changes.size(), "outputs_changed_without_cycle", [&] {
-    return Mismatch{.expected = {"no output changes behind the last cycle"},
+    return Mismatch{.expected = {"no output changes after the last cycle"},
                     .actual = change_text(changes[next]),
                     .time = changes[next].when};
   });

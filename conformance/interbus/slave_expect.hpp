@@ -47,7 +47,7 @@ void expect_rejected(SlaveBench& bench, CaseJudge& judge, std::size_t n);
 void expect_good_cycle(SlaveBench& bench, CaseJudge& judge, std::string_view reason);
 void expect_clean_status(SlaveBench& bench, CaseJudge& judge, const CycleOnLine& out);
 
-// The data cycles of the last train were each latched, in order and in time; `words` are theirs, one behind
+// The data cycles of the last train were each latched, in order and in time; `words` are theirs, one after
 // the other. `valid_cycle_rejected`, `outputs_changed_before_check`, `outputs_latched_late`. Forgets changes.
 void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words);
 

@@ -49,7 +49,7 @@ void reject_single_bit(SlaveBench& bench, CaseJudge& judge, std::size_t bit) {
   bench.id_cycle(bench.interfaces_off());
   const std::uint16_t message = bench.rules().message_check_error;
   judge.expect((id_register(bench, judge) & message) != 0, "message_missing", [&] {
-    return Mismatch{.expected = {fmt::format("message bit {:04X}h in the ID cycle behind it", message)},
+    return Mismatch{.expected = {fmt::format("message bit {:04X}h in the ID cycle after it", message)},
                     .actual = fmt::format("ID register {:04X}h", id_register(bench, judge)),
                     .first_difference = fmt::format("bit {} of the code word was flipped", bit)};
   });
@@ -263,11 +263,11 @@ void add_cases_of_single_bits(std::vector<SlaveCase>& cases) {
         .purpose = "IS-10",
         .requirement =
             "A slave whose received check does not fit what it received marks the status word that "
-            "passes, takes nothing over, and tells the error in the next ID cycle.",
+            "passes, takes nothing over, and reports the error in the next ID cycle.",
         .reference = sources::practical_guide("comparison with the checksum of the previous device"),
         .details = {details::mark(), details::message(), details::status_coding()},
         .stimulus = "Data cycles in which one bit of loopback word or process data is flipped at the slave's "
-                    "receiver, each bit in turn; an ID cycle behind each.",
+                    "receiver, each bit in turn; an ID cycle after each.",
         .expected = "The status word leaves marked, no output changes, the message bit stands in the ID "
                     "register; a clean cycle afterwards is accepted.",
         .tags = {"must"},
@@ -286,7 +286,7 @@ void add_cases_of_single_bits(std::vector<SlaveCase>& cases) {
         .details = {details::mark(), details::message(), details::status_coding()},
         .stimulus =
             "Data cycles in which one bit of the check is flipped at the slave's receiver, each bit in "
-            "turn; an ID cycle behind each.",
+            "turn; an ID cycle after each.",
         .expected = "The status word leaves marked, no output changes, the message bit stands in the ID "
                     "register; a clean cycle afterwards is accepted.",
         .tags = {"must"},

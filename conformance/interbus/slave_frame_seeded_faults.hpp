@@ -178,7 +178,7 @@ class IgnoresSelectInsideACycle : public Slave {
   line::TelegramLayout layout_;
 };
 
-// Misses a start bit right behind a stop bit.
+// Misses a start bit right after a stop bit.
 class NeedsIdleBetweenTelegrams : public Slave {
  public:
   explicit NeedsIdleBetweenTelegrams(const SlaveConfiguration& configuration)

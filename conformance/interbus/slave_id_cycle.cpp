@@ -32,7 +32,7 @@ std::vector<SlaveCase> slave_id_cycle_cases() {
       {{.id = "interbus/slave/id_cycle/returns_its_id_code_and_then_the_loopback_word",
         .purpose = "IS-03",
         .requirement = "In an ID cycle the 16-bit ID register of the slave is in the ring: its own ID code "
-                       "leaves first, bits 0 to 12 as declared, and behind it everything that came in.",
+                       "leaves first, bits 0 to 12 as declared, and after it everything that came in.",
         .reference = sources::park("section 2.2: identification cycle and loopback word"),
         .details = details::answer(),
         .stimulus =

@@ -97,7 +97,7 @@ unsigned recover(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arrivals) {
     if (std::ranges::equal(bench.outputs(), words)) break;
   }
   judge.expect(lost < bench.rules().published_recovery_cycles, "no_recovery", [&] {
-    return Mismatch{.expected = {fmt::format("one of {} clean cycles behind the faults is taken over",
+    return Mismatch{.expected = {fmt::format("one of {} clean cycles after the faults is taken over",
                                              bench.rules().published_recovery_cycles)},
                     .actual = "none was"};
   });
@@ -181,7 +181,7 @@ void stresses(SlaveBench& bench, CaseJudge& judge) {
     }
   }
   judge.measure("transmissions struck by a pulse", "", static_cast<double>(bench.stressed_transmissions()));
-  judge.measure("clean cycles lost behind a burst", "", longest_recovery);
+  judge.measure("clean cycles lost after a burst", "", longest_recovery);
 }
 
 void random_faults(SlaveBench& bench, CaseJudge& judge) {
@@ -190,7 +190,7 @@ void random_faults(SlaveBench& bench, CaseJudge& judge) {
   Faults faults;
   for (const double chance : {0.001, 0.01, 0.05}) faults_of_chance(bench, judge, arrivals, chance, faults);
   judge.measure("cycles struck by a flip", "", faults.struck);
-  judge.measure("clean cycles lost behind the faults", "", faults.longest_recovery);
+  judge.measure("clean cycles lost after the faults", "", faults.longest_recovery);
 }
 
 }  // namespace
@@ -245,7 +245,7 @@ std::vector<SlaveCase> slave_immunity_cases() {
         .purpose = "IS-42",
         .requirement =
             "Under bursts at the slave's receiver, outputs change only by a cycle whose check fits, and "
-            "behind each burst clean cycles are accepted again within the published five.",
+            "after each burst clean cycles are accepted again within the published five.",
         .reference = {"Beckhoff BC4000 documentation",
                       "five cycle times until valid data are exchanged again", judge::Standing::searched},
         .details = {details::status_coding(),
@@ -256,7 +256,7 @@ std::vector<SlaveCase> slave_immunity_cases() {
             "Data cycles between status telegrams, while single bursts of IEC 61000-4-4 couple into the "
             "slave's incoming line: levels 4 and 3, 5 and 100 kHz, both polarities.",
         .expected =
-            "After each cycle the outputs show the words before it, or those of the cycle; behind each "
+            "After each cycle the outputs show the words before it, or those of the cycle; after each "
             "burst one of five clean cycles is taken over.",
         .tags = {"must", std::string(kStressTag)},
         .catches = {{"latches_in_spite_of_own_error", "wrong_value_latched"},

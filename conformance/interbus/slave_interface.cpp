@@ -73,7 +73,7 @@ void expect_register_of_neighbour(SlaveBench& bench, CaseJudge& judge, const Int
   expect_neighbour_in_ring(bench, judge, interface, "interface_not_opened");
   expect_outputs(bench, judge, words, "valid_cycle_rejected");
   if (!bench.pics().supports("inputs")) return;
-  // The slave's own register leaves behind that of the neighbour.
+  // The slave's own register leaves after that of the neighbour.
   const CycleOnLine out = cycle_that_left(bench, judge, 0);
   for (std::size_t n = 0; n < load.size(); ++n) {
     judge.expect(out.telegrams[2 * behind.size() + n].data == load[n], "register_content_wrong", [&] {
@@ -214,7 +214,7 @@ std::vector<SlaveCase> slave_interface_cases() {
         .details = details::answer(),
         .stimulus =
             "ID cycles with OUT1 off, on and off again, data cycles between them; a station of one word is "
-            "behind OUT1.",
+            "after OUT1.",
         .expected =
             "Telegrams leave on OUT1 only from the cycle after the one that ordered it, until the end of "
             "the one that ended it; the ring is longer by the neighbour's register in between.",
@@ -229,12 +229,12 @@ std::vector<SlaveCase> slave_interface_cases() {
         .purpose = "IS-31",
         .requirement =
             "The control word of an ID cycle switches the second outgoing interface (OUT2) at the end of "
-            "that cycle: the stations behind it are added to the ring or removed.",
+            "that cycle: the stations after it are added to the ring or removed.",
         .reference = sources::from_memory("local bus on and off; the coding is this project's"),
         .details = details::answer(),
         .stimulus =
             "ID cycles with OUT2 off, on and off again, data cycles between them; a station of one word is "
-            "behind OUT2.",
+            "after OUT2.",
         .expected =
             "Telegrams leave on OUT2 only from the cycle after the one that ordered it, until the end of "
             "the one that ended it; the ring is longer by the neighbour's register in between.",
@@ -251,7 +251,7 @@ std::vector<SlaveCase> slave_interface_cases() {
         .reference = sources::own("the control word's coding; reserved bits are 0"),
         .stimulus =
             "ID cycles with each reserved bit of the control word set alone and all of them set, OUT1 on; a "
-            "data cycle behind each.",
+            "data cycle after each.",
         .expected = "OUT1 stays on, and the data cycles are taken over.",
         .tags = {"must"},
         .catches = {{"reserved_control_bit_closes_remote", "reserved_control_bit_obeyed"}},
@@ -263,7 +263,7 @@ std::vector<SlaveCase> slave_interface_cases() {
         .purpose = "IS-33",
         .requirement =
             "The reset bit of the control word makes the outgoing bus silent for at least 25 ms, so that "
-            "every station behind the slave resets. The slave's own outputs do what it declares.",
+            "every station after the slave resets. The slave's own outputs do what it declares.",
         .reference = sources::from_memory("reset of the outgoing bus; the coding is this project's"),
         .stimulus =
             "An ID cycle with the reset bit; for 25 ms status telegrams and ID cycles that ask for OUT1; "

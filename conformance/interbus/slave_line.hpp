@@ -15,7 +15,7 @@
 // trains of telegrams.
 //
 // A view keeps the waveforms since its last `clear` and decodes them when it is first asked, so a line that
-// nobody looks at costs a copy. What a station drives ahead is there when its time has come, also behind a
+// nobody looks at costs a copy. What a station drives ahead is there when its time has come, also after a
 // `clear`. A telegram that its own waveform cuts is completed by what follows, or by the
 // idle line.
 namespace fieldproof::conformance {
@@ -105,10 +105,10 @@ class TrainWriter {
   std::span<const CyclePlace> cycles() const { return cycles_; }
   std::size_t data_telegram_count() const { return data_telegrams_; }
 
-  // Idle levels behind each telegram that is appended from here on.
+  // Idle levels after each telegram that is appended from here on.
   void set_gap(unsigned bits) { gap_ = bits; }
   unsigned gap() const { return gap_; }
-  // Status telegrams behind each telegram of the cycles that are appended from here on.
+  // Status telegrams after each telegram of the cycles that are appended from here on.
   void set_status_between(unsigned count) { status_between_ = count; }
 
   void telegram(std::uint8_t header, std::uint8_t data);

@@ -42,11 +42,11 @@ void expect_undisturbed_data_cycles(SlaveBench& bench, CaseJudge& judge) {
 void check_condition(SlaveBench& bench, CaseJudge& judge, std::uint16_t message, std::string_view reason,
                      const std::function<void(bool)>& set) {
   bench.bring_up();
-  expect_messages(bench, judge, 0, "message_without_cause", "nothing is to be told");
+  expect_messages(bench, judge, 0, "message_without_cause", "nothing is to be reported");
   for (unsigned round = 0; round < bench.volume(2U, 20U); ++round) {
     set(true);
     expect_undisturbed_data_cycles(bench, judge);
-    expect_messages(bench, judge, message, reason, "told in the next ID cycle");
+    expect_messages(bench, judge, message, reason, "reported in the next ID cycle");
     expect_undisturbed_data_cycles(bench, judge);
     set(false);
     expect_undisturbed_data_cycles(bench, judge);
@@ -98,7 +98,7 @@ std::vector<SlaveCase> slave_message_cases() {
       {{.id = "interbus/slave/messages/peripheral_fault_shows_in_the_next_id_cycle",
         .purpose = "IS-34",
         .requirement =
-            "A fault at the periphery is told by its message bit in the next ID cycle and by nothing "
+            "A fault at the periphery is reported by its message bit in the next ID cycle and by nothing "
             "else: data cycles go on undisturbed.",
         .reference = sources::from_memory("messages become visible only in an ID cycle"),
         .details = details::answer(),
@@ -110,12 +110,13 @@ std::vector<SlaveCase> slave_message_cases() {
         .tags = {"must"},
         .catches = {{"peripheral_fault_not_told", "peripheral_fault_not_told"},
                     {"peripheral_fault_marks_data_cycles", "data_cycle_disturbed"}},
-        .not_applicable = for_item("peripheral_fault_input", "the slave has no peripheral fault to tell")},
+        .not_applicable = for_item("peripheral_fault_input", "the slave has no peripheral fault to report")},
        peripheral_fault_is_told});
   cases.push_back(
       {{.id = "interbus/slave/messages/reconfiguration_button_shows_in_the_next_id_cycle",
         .purpose = "IS-35",
-        .requirement = "A request for reconfiguration is told by its own message bit in the next ID cycle.",
+        .requirement =
+            "A request for reconfiguration is reported by its own message bit in the next ID cycle.",
         .reference = sources::from_memory("messages become visible only in an ID cycle"),
         .details = details::answer(),
         .stimulus =
@@ -137,9 +138,8 @@ std::vector<SlaveCase> slave_message_cases() {
         .stimulus =
             "A clean cycle and an ID cycle; two data cycles with one bit flipped at the slave's receiver; "
             "two ID cycles.",
-        .expected =
-            "No message behind the clean cycle; the message in the first ID cycle behind the rejected "
-            "ones; none in the second.",
+        .expected = "No message after the clean cycle; the message in the first ID cycle after the rejected "
+                    "ones; none in the second.",
         .tags = {"must"},
         .catches = {{"message_never_cleared", "message_not_cleared"},
                     {"message_without_error", "message_without_error"},

@@ -47,7 +47,7 @@ std::vector<SlaveRow> slave_check_rows() {
        mutant<LosesEvery200thCycle>()},
       {"locks_up_after_rejected_cycle", "", "takes no cycle any more after a rejected one",
        mutant<LocksUpAfterRejectedCycle>()},
-      {"loses_the_cycle_behind_a_rejected_one", "", "does not take the words of the cycle behind a wrong one",
+      {"loses_the_cycle_behind_a_rejected_one", "", "does not take the words of the cycle after a wrong one",
        mutant<LosesTheCycleBehindARejectedOne>()},
       {"waits_for_id_cycle_after_rejected_cycle", "",
        "takes no data cycle after a rejected one until an ID cycle",
@@ -59,7 +59,7 @@ std::vector<SlaveRow> slave_telegram_rows() {
   using namespace slave_seeded_faults;
   return {
       {"stop_bit_not_checked", "MS16", "takes telegrams without a stop bit", mutant<StopBitNotChecked>()},
-      {"does_not_resynchronise", "MS18", "hears nothing behind a missing stop bit until it is reset",
+      {"does_not_resynchronise", "MS18", "receives nothing after a missing stop bit until it is reset",
        mutant<DoesNotResynchronise>()},
       {"status_telegram_shifts", "MS17", "shifts its register by a status telegram",
        mutant<StatusTelegramShifts>()},
@@ -70,7 +70,7 @@ std::vector<SlaveRow> slave_telegram_rows() {
        mutant<StrayTelegramSpoilsNextCycle>()},
       {"ignores_select_inside_a_cycle", "", "looks at the SL bit of the first telegram of a cycle only",
        mutant<IgnoresSelectInsideACycle>()},
-      {"needs_idle_between_telegrams", "", "misses a start bit right behind a stop bit",
+      {"needs_idle_between_telegrams", "", "misses a start bit right after a stop bit",
        mutant<NeedsIdleBetweenTelegrams>()},
       {"follows_any_rate", "", "adapts its clock to any bit rate within 10 %", mutant<FollowsAnyRate>()},
       {"clock_too_fast", "", "has a clock that runs 3.5 % fast",
@@ -161,14 +161,14 @@ std::vector<SlaveRow> slave_management_rows() {
        mutant<PeripheralFaultNotTold>()},
       {"peripheral_fault_marks_data_cycles", "", "marks the status word of data cycles at a peripheral fault",
        mutant<PeripheralFaultMarksDataCycles>()},
-      {"messages_confused", "", "tells a reconfiguration as a peripheral fault and the other way round",
+      {"messages_confused", "", "reports a reconfiguration as a peripheral fault and the reverse",
        with_rules<interbus::Slave>(
            [](Rules& rules) { std::swap(rules.message_reconfiguration, rules.message_peripheral_fault); })},
       {"message_never_cleared", "MS19", "keeps the message of a check error after it was read",
        mutant<MessageNeverCleared>()},
       {"message_without_error", "MS19", "sets the message of a check error by each data cycle",
        mutant<MessageWithoutError>()},
-      {"tells_no_check_error", "", "does not tell check errors in ID cycles", mutant<TellsNoCheckError>()},
+      {"tells_no_check_error", "", "does not report check errors in ID cycles", mutant<TellsNoCheckError>()},
   };
 }
 

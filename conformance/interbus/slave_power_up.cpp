@@ -77,7 +77,7 @@ std::vector<SlaveCase> slave_power_up_cases() {
             "again one second of status telegrams; then a data cycle.",
         .expected = "Each status telegram leaves with the header it came with, no data telegram leaves, no "
                     "output changes, and "
-                    "the data cycle behind them is accepted without another ID cycle.",
+                    "the data cycle after them is accepted without another ID cycle.",
         .tags = {"must"},
         .catches = {{"swallows_status_telegrams", "status_telegram_lost"},
                     {"select_bit_in_status_telegrams", "status_telegram_changed"},

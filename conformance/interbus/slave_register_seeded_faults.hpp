@@ -76,7 +76,7 @@ class ClearsOutputsOnRejectedCycle : public Slave {
   }
 };
 
-// Terminals that do as those behind them, where nothing else is said.
+// Terminals that do as those after them, where nothing else is said.
 class PassingTerminals : public Terminals {
  public:
   void attach(Terminals& behind, unsigned words) {

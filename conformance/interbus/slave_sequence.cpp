@@ -11,7 +11,7 @@ namespace fieldproof::conformance {
 namespace {
 
 constexpr std::array<std::int64_t, 5> kLikelyWords{0x0000, 0xFFFF, 0x0001, 0x8000, 0xA55A};
-// Of a data telegram: behind start level and header, in front of the stop level.
+// Of a data telegram: after start level and header, in front of the stop level.
 constexpr unsigned kFirstDataLevel = line::kDataTelegramLevels - 9;
 constexpr unsigned kDataLevels = 8;
 

@@ -9,8 +9,8 @@
 //
 // The model: outputs hold, or show the words of a cycle that arrived whole with a check that fits and a clean
 // status word, and nothing else; a cycle that nothing disturbs is taken over and answered as `SlaveModel`
-// says. Behind a fault that left the telegrams of a cycle as they are, that holds for the very next cycle;
-// behind any other one for the cycle after as many as the published recovery takes.
+// says. After a fault that left the telegrams of a cycle as they are, that holds for the very next cycle;
+// after any other one for the cycle after as many as the published recovery takes.
 namespace fieldproof::conformance {
 
 // "interbus/slave/check/follows_the_model".

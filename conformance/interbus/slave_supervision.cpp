@@ -83,7 +83,7 @@ std::vector<SlaveCase> slave_supervision_cases() {
         .purpose = "IS-27",
         .requirement =
             "Silence shorter than the supervision time of 25 ms changes nothing: outputs hold, and the "
-            "cycle behind it is a normal one.",
+            "cycle after it is a normal one.",
         .reference = sources::phoenix_maintenance("status telegrams away for more than 25 ms"),
         .details = {details::status_coding()},
         .stimulus = "A valid data cycle, status telegrams, 24.0 ms of silence, a data cycle.",
@@ -113,13 +113,13 @@ std::vector<SlaveCase> slave_supervision_cases() {
         .purpose = "IS-29",
         .requirement =
             "After power-up and after a reset, outputs stay in the safe state until an ID cycle has "
-            "told the master what is in the ring.",
+            "shown the master what is in the ring.",
         .reference = sources::own("data cycles count only after identification"),
         .details = {details::status_coding()},
         .stimulus =
             "Valid data cycles right after power-up, and after a silence of 26 ms; then an ID cycle and a "
             "data cycle.",
-        .expected = "No output changes by the data cycles without ID cycle; the one behind it is taken over.",
+        .expected = "No output changes by the data cycles without ID cycle; the one after it is taken over.",
         .tags = {"must"},
         .catches = {{"outputs_without_identification", "outputs_driven_before_identification"}},
         .not_applicable = for_outputs()},

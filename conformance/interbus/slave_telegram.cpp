@@ -96,7 +96,7 @@ void stop_level_missing(SlaveBench& bench, CaseJudge& judge) {
 
 constexpr unsigned kGlitchLevelsPerBit = 20;
 
-// One low pulse on the idle line, idle line behind it, then a data cycle, all in one waveform; pulse and idle
+// One low pulse on the idle line, idle line after it, then a data cycle, all in one waveform; pulse and idle
 // line in twentieths of a bit.
 void drive_glitch_and_cycle(SlaveBench& bench, std::size_t low, std::size_t idle,
                             std::span<const std::uint16_t> words) {
@@ -117,7 +117,7 @@ std::vector<std::uint16_t> other_words(SlaveBench& bench) {
   return words;
 }
 
-// The cycle behind the glitch left and was taken over, and nothing before it was.
+// The cycle after the glitch left and was taken over, and nothing before it was.
 void expect_cycle_behind_glitch(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words,
                                 const std::string& glitch) {
   FoundCycle arrived;
@@ -127,11 +127,11 @@ void expect_cycle_behind_glitch(SlaveBench& bench, CaseJudge& judge, std::span<c
   if (!is_right_data_cycle(bench, arrived))
     judge.inconclusive("cycle_did_not_arrive", {{"the cycle arrives as it was driven"}, "it did not"});
   judge.expect(left.is_found && left.octets.size() == arrived.octets.size(), "cycle_after_glitch_rejected",
-               "the cycle leaves behind the " + glitch, "it did not leave whole");
+               "the cycle leaves after the " + glitch, "it did not leave whole");
   const kernel::Time check_phase = bench.in().start_of(bench.in().data_telegrams().back());
   for (const auto& change : bench.changes()) {
     judge.expect(change.when >= check_phase, "output_changed_by_glitch", [&] {
-      return Mismatch{.expected = {"outputs change behind the check phase of the cycle"},
+      return Mismatch{.expected = {"outputs change after the check phase of the cycle"},
                       .actual = fmt::format("they changed at {}", kernel::describe(change.when)),
                       .time = change.when,
                       .first_difference = glitch};
@@ -140,7 +140,7 @@ void expect_cycle_behind_glitch(SlaveBench& bench, CaseJudge& judge, std::span<c
   expect_outputs(bench, judge, words, "cycle_after_glitch_rejected");
   judge.expect(left.status == bench.rules().status_clean, "status_word_wrong",
                "an accepted cycle leaves with a clean status word",
-               fmt::format("status word {:04X}h behind the {}", left.status, glitch));
+               fmt::format("status word {:04X}h after the {}", left.status, glitch));
   bench.terminals().forget_changes();
 }
 
@@ -164,7 +164,7 @@ void short_glitch_is_ignored(SlaveBench& bench, CaseJudge& judge) {
   for (unsigned round = 0; round < bench.volume(2U, 50U); ++round) {
     for (unsigned low = 2; low <= 8; ++low, idle = idle > 1 ? idle - 1 : 14) {
       const std::string glitch =
-          fmt::format("low pulse of {}/20 of a bit with {} bits of idle line behind", low, idle);
+          fmt::format("low pulse of {}/20 of a bit with {} bits of idle line after", low, idle);
       const std::vector<std::uint16_t> words = other_words(bench);
       drive_glitch_and_cycle(bench, low, std::size_t{idle} * kGlitchLevelsPerBit, words);
       expect_nothing_before_the_cycle(bench, judge, glitch);
@@ -184,7 +184,7 @@ void long_glitch_costs_no_cycle(SlaveBench& bench, CaseJudge& judge) {
     drive_glitch_and_cycle(bench, 12, kLeast + more, words);
     expect_cycle_behind_glitch(
         bench, judge, words,
-        fmt::format("low pulse of 12/20 of a bit with {}/20 bits of idle line behind", kLeast + more));
+        fmt::format("low pulse of 12/20 of a bit with {}/20 bits of idle line after", kLeast + more));
   }
 }
 
@@ -246,7 +246,7 @@ void add_cases_of_wrong_bits(std::vector<SlaveCase>& cases) {
         .details = {details::status_coding()},
         .stimulus =
             "Data cycles in which the CR bit of the last data telegram is set at the slave's receiver; "
-            "then cycles in which that of the first check telegram is cleared. A clean cycle behind each.",
+            "then cycles in which that of the first check telegram is cleared. A clean cycle after each.",
         .expected = "No output changes by an early check phase that does not fit; the clean cycles are "
                     "accepted. Whether a late "
                     "check phase changed outputs is recorded.",
@@ -278,7 +278,7 @@ void add_cases_of_wrong_bits(std::vector<SlaveCase>& cases) {
         .purpose = "IS-20",
         .requirement =
             "A telegram without its stop bit is broken, whatever its octet says: its cycle is not taken "
-            "over. The receiver finds the telegrams behind it again within two status telegrams.",
+            "over. The receiver finds the telegrams after it again within two status telegrams.",
         .reference = sources::own("resynchronisation within two status telegrams"),
         .details = {details::status_coding()},
         .stimulus =
@@ -303,7 +303,7 @@ void add_cases_of_the_line(std::vector<SlaveCase>& cases) {
         .details = {details::status_coding()},
         .stimulus =
             "Low pulses of 0.10 to 0.40 bit on the idle line at the slave's receiver, with 1 to 14 bits of "
-            "idle line behind them; then a clean cycle.",
+            "idle line after them; then a clean cycle.",
         .expected = "Nothing leaves but the clean cycle, which is accepted; no output changes before it.",
         .tags = {"must"},
         .catches = {{"start_bit_not_validated", "glitch_taken_for_telegram"}},
@@ -333,7 +333,7 @@ void add_cases_of_the_line(std::vector<SlaveCase>& cases) {
             "shift nothing and do not enter the frame check.",
         .reference = sources::phoenix_maintenance("status telegrams in every pause"),
         .details = details::answer(),
-        .stimulus = "Valid data cycles with 1, 2 and 5 status telegrams behind each data telegram.",
+        .stimulus = "Valid data cycles with 1, 2 and 5 status telegrams after each data telegram.",
         .expected =
             "The data telegrams leave as without them, the status telegrams leave, the outputs take over "
             "the words.",

@@ -95,7 +95,7 @@ RoleRow master_row() {
 
 // ---- network ----
 
-// A coupler with an input and an output terminal behind it, and a station of two words: the least network
+// A coupler with an input and an output terminal after it, and a station of two words: the least network
 // that has everything.
 NetworkDescription small_network() {
   using interbus::StationDescription;

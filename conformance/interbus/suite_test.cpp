@@ -128,7 +128,7 @@ TEST(InterbusSuite, AStationOfTheCallersIsJudged) {
   EXPECT_EQ(made, 1);
 }
 
-// A receiver behind a cable that loses whatever is sent.
+// A receiver after a cable that loses whatever is sent.
 class Deaf final : public fault::Channel {
   bool pass(const line::Waveform&, line::Waveforms&) override { return true; }
 };

@@ -9,7 +9,7 @@
 #include "harness/segment/station.hpp"
 #include "protocols/valve_bus/rules.hpp"
 
-// What arrived at the receiver of an implementation, behind all faults of the line, as frames: an ear of the
+// What arrived at the receiver of an implementation, after all faults of the line, as frames: an ear of the
 // bench that knows the rules of silence and of the exclusive or by itself, by no code of the stations.
 //
 // Limit: it samples as the declared receiver does, the majority of three. Under disturbances that are shorter

@@ -124,7 +124,7 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   std::optional<HostFrame> next_frame(kernel::Duration within);
   // Levels as the IUT drove them in the frame that was got last.
   const std::vector<line::Waveform>& last_waves() const { return last_waves_; }
-  // Gives the line the octets, the first start bit so long behind the last frame's last stop bit. Does not
+  // Gives the line the octets, the first start bit so long after the last frame's last stop bit. Does not
   // run. Gives their end.
   kernel::Time answer(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time);
   kernel::Time answer(const valve_bus::Response& response) { return answer(response, turnaround_time()); }

@@ -53,8 +53,8 @@ std::function<std::optional<std::string>(const judge::Pics&)> for_host_without(s
 
 std::function<std::optional<std::string>(const judge::Pics&)> for_plain_writes() {
   return [](const judge::Pics& pics) -> std::optional<std::string> {
-    if (pics.supports("answers_writes")) return "the host waits for an acknowledge behind each write";
-    if (pics.supports("verifies_writes")) return "the host sends a read behind each write";
+    if (pics.supports("answers_writes")) return "the host waits for an acknowledge after each write";
+    if (pics.supports("verifies_writes")) return "the host sends a read after each write";
     return std::nullopt;
   };
 }

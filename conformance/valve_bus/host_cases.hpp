@@ -34,7 +34,7 @@ std::function<std::optional<std::string>(const judge::Pics&)> for_host_with(std:
 std::function<std::optional<std::string>(const judge::Pics&)> for_host_without(std::string item,
                                                                                std::string sentence);
 
-// Applies only to a host that sends a write and does not look behind it.
+// Applies only to a host that sends a write and does not look after it.
 std::function<std::optional<std::string>(const judge::Pics&)> for_plain_writes();
 
 }  // namespace fieldproof::conformance

@@ -128,7 +128,7 @@ void a_dead_node_costs_three_time_outs(HostBench& bench, CaseJudge& judge) {
       bench.time_out() * 105 / 100 + character_notice(rules) + bench.characters(5) + bench.bits(3);
   for (int n = 0; n < bench.volume(1, 20); ++n) {
     const kernel::Duration whole = polled_all(bench, judge, 0);
-    // The last one would take its time for late responses behind the cycle.
+    // The last one would take its time for late responses after the cycle.
     const auto dead = static_cast<unsigned>(bench.random().between(1, rules.last_address - 1));
     const kernel::Duration with_dead = polled_all(bench, judge, dead);
     judge.measure("cycle of 99 nodes", "us", in_microseconds(whole));
@@ -265,10 +265,10 @@ std::vector<HostCase> host_cycle_cases() {
                    polls_do_not_jitter});
   cases.push_back({{.id = "valve_bus/host/cycle/write_is_verified",
                     .purpose = "RH-31",
-                    .requirement = "With the option, a read behind each write must give what was written; "
-                                   "else the PC is told.",
+                    .requirement = "With the option, a read after each write must give what was written; "
+                                   "else this is reported to the PC.",
                     .reference = valve_sources::own("verification by a read"),
-                    .stimulus = "Writes; the reads behind them answered rightly and wrongly.",
+                    .stimulus = "Writes; the reads after them answered rightly and wrongly.",
                     .expected = "An error for each that is answered otherwise, nothing for the others.",
                     .tags = {"must", "option"},
                     .catches = {{"verification_not_compared", "error_not_told"}}},
@@ -277,7 +277,7 @@ std::vector<HostCase> host_cycle_cases() {
   cases.push_back({{.id = "valve_bus/host/cycle/write_is_acknowledged",
                     .purpose = "RH-18",
                     .requirement = "With the option, a write that is not acknowledged is sent three times in "
-                                   "all; then the PC is told an error.",
+                                   "all; then an error is reported to the PC.",
                     .reference = valve_sources::own("option: nodes acknowledge writes"),
                     .stimulus = "A write that is acknowledged, and one that is not.",
                     .expected = "Nothing for the first; the second three times, and an error.",

@@ -39,7 +39,7 @@ void expect_driver_around(HostBench& bench, CaseJudge& judge, const HostFrame& f
       behind + kRounding >= kernel::Duration{}, "driver_released_early",
       duration_sighting("the driver is on until the last stop bit is over", behind, frame.sent.driver_off));
   judge.expect(behind <= bench.bits(rules.driver_off_bits) + kRounding, "driver_not_released",
-               duration_sighting("the driver is off at most two bits behind the last stop bit", behind,
+               duration_sighting("the driver is off at most two bits after the last stop bit", behind,
                                  frame.sent.driver_off));
 }
 
@@ -65,8 +65,7 @@ void expect_form(HostBench& bench, CaseJudge& judge, const HostFrame& frame) {
   judge.expect(std::ranges::all_of(frame.sent.characters, &DrivenCharacter::is_good), "frame_garbled",
                sighting("characters with a right parity and a stop bit"));
   const unsigned check = octets[0] ^ octets[1] ^ octets[2] ^ octets[3];
-  judge.expect(octets[4] == check, "check_wrong",
-               sighting("the exclusive or of the four octets behind them"));
+  judge.expect(octets[4] == check, "check_wrong", sighting("the exclusive or of the four octets after them"));
   const kernel::Duration gap = frame.sent.longest_gap();
   judge.expect(gap <= valve_bus::longest_gap(bench.rules()) + kRounding, "gap_in_frame",
                duration_sighting("at most 1.5 characters between two octets", gap, frame.start));
@@ -122,7 +121,7 @@ void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id, const 
   const HostResponse* seen = response_told(told);
   const auto sighting = [&] {
     return Mismatch{
-        {fmt::format("the PC is told of {:02X}: {:02X} {:02X}", id, response.data0, response.data1)},
+        {fmt::format("the PC gets the data of {:02X}: {:02X} {:02X}", id, response.data0, response.data1)},
         told_text(told)};
   };
   judge.expect(seen != nullptr, "response_not_told", sighting);
@@ -144,9 +143,9 @@ void expect_old(HostBench& bench, CaseJudge& judge, std::uint8_t id, const Respo
   const auto told = bench.next_told(bench.observation_timeout());
   const HostResponse* seen = response_told(told);
   const auto sighting = [&] {
-    return Mismatch{
-        {fmt::format("the PC is told of {:02X}, as old: {:02X} {:02X}", id, response.data0, response.data1)},
-        told_text(told)};
+    return Mismatch{{fmt::format("the PC gets the data of {:02X}, as old: {:02X} {:02X}", id, response.data0,
+                                 response.data1)},
+                    told_text(told)};
   };
   judge.expect(seen != nullptr, "old_data_not_told", sighting);
   judge.expect(seen->id == id && Response{seen->data0, seen->data1} == response, "old_data_wrong", sighting);
@@ -166,7 +165,7 @@ void expect_nothing_told(HostBench& bench, CaseJudge& judge, kernel::Duration wi
                          std::string_view why_not) {
   const auto told = bench.next_told(within);
   judge.expect(!told, reason, [&] {
-    return Mismatch{{fmt::format("the PC is told nothing: {}", why_not)}, told_text(told), told->when};
+    return Mismatch{{fmt::format("nothing is reported to the PC: {}", why_not)}, told_text(told), told->when};
   });
 }
 

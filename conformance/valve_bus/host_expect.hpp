@@ -44,7 +44,7 @@ void expect_old_if_known(HostBench& bench, CaseJudge& judge, std::uint8_t id);
 void expect_nothing_told(HostBench& bench, CaseJudge& judge, kernel::Duration within, std::string_view reason,
                          std::string_view why_not);
 
-// The IUT polls again behind an attempt that has failed: `no_retry`.
+// The IUT polls again after an attempt that has failed: `no_retry`.
 HostFrame expect_retry(HostBench& bench, CaseJudge& judge, const HostFrame& first);
 // A read of this node, with a random response, is served.
 valve_bus::Response expect_read_served(HostBench& bench, CaseJudge& judge, std::uint8_t id);

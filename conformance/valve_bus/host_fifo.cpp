@@ -89,7 +89,8 @@ void a_lost_command_is_lost_whole(HostBench& bench, CaseJudge& judge) {
   for (unsigned n = 1; n < fitting; ++n) expect_numbered(bench, judge, n);
   expect_numbered(bench, judge, fitting + 1);
   expect_no_request(bench, judge, 150 * kernel::kMillisecond, "part_sent", "nothing whole is left");
-  expect_nothing_told(bench, judge, kernel::kMillisecond, "part_told", "the command has been told as lost");
+  expect_nothing_told(bench, judge, kernel::kMillisecond, "part_told",
+                      "the command has been reported as lost");
 }
 
 void the_fifo_goes_round(HostBench& bench, CaseJudge& judge) {
@@ -118,8 +119,8 @@ void part_of_a_command_is_not_sent(HostBench& bench, CaseJudge& judge) {
     const auto error = bench.next_told(kernel::Duration{});
     const auto* seen = error ? std::get_if<valve_bus::HostError>(&error->what) : nullptr;
     judge.expect(seen != nullptr && *seen == valve_bus::HostError{part[0], HostErrorKind::part_of_command},
-                 "does_not_resync", "the PC is told that part of a command was given up",
-                 error ? text_of(*error) : std::string("nothing was told"));
+                 "does_not_resync", "the PC gets the report that part of a command was given up",
+                 error ? text_of(*error) : std::string("nothing was reported"));
     expect_numbered(bench, judge, 70);
   }
 }
@@ -143,7 +144,7 @@ std::vector<HostCase> host_fifo_cases() {
   cases.push_back(
       {{.id = "valve_bus/host/fifo/full_fifo_keeps_the_oldest",
         .purpose = "RH-22",
-        .requirement = "When the FIFO is full the newest commands are lost, the PC is told of "
+        .requirement = "When the FIFO is full the newest commands are lost, the PC gets a report of "
                        "each, and those in the FIFO are sent.",
         .reference = own,
         .stimulus = "More commands at once than fit.",
@@ -172,20 +173,21 @@ std::vector<HostCase> host_fifo_cases() {
                     .tags = {"must", "long"},
                     .catches = {{"fifo_wraps_one_early", "request_wrong"}}},
                    the_fifo_goes_round});
-  cases.push_back({{.id = "valve_bus/host/fifo/part_of_a_command_is_not_sent",
-                    .purpose = "RH-24",
-                    .requirement = "While the rest of a command has not come nothing is sent for it; after "
-                                   "100 ms it is given up, the PC is told, and what comes then is a new "
-                                   "command.",
-                    .reference = valve_sources::own("a command that stays a part is given up"),
-                    .stimulus = "One, two, three octets of a command; the rest after 90 ms, or after 110 ms "
-                                "another command.",
-                    .expected = "The first is sent whole, the second given up; the other is sent.",
-                    .tags = {"must", "timing"},
-                    .catches = {{"part_sent", "part_sent"},
-                                {"never_resyncs", "does_not_resync"},
-                                {"resyncs_early", "command_torn"}}},
-                   part_of_a_command_is_not_sent});
+  cases.push_back(
+      {{.id = "valve_bus/host/fifo/part_of_a_command_is_not_sent",
+        .purpose = "RH-24",
+        .requirement = "While the rest of a command has not come nothing is sent for it; after "
+                       "100 ms it is given up, this is reported to the PC, and what comes then is a new "
+                       "command.",
+        .reference = valve_sources::own("a command that stays a part is given up"),
+        .stimulus = "One, two, three octets of a command; the rest after 90 ms, or after 110 ms "
+                    "another command.",
+        .expected = "The first is sent whole, the second given up; the other is sent.",
+        .tags = {"must", "timing"},
+        .catches = {{"part_sent", "part_sent"},
+                    {"never_resyncs", "does_not_resync"},
+                    {"resyncs_early", "command_torn"}}},
+       part_of_a_command_is_not_sent});
   return cases;
 }
 

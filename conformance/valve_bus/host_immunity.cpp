@@ -37,7 +37,7 @@ void expect_told_follows(HostBench& bench, CaseJudge& judge, const valve_bus::Ho
            frame.end <= when;
   });
   judge.expect(follows, "told_without_response", [&] {
-    return Mismatch{{fmt::format("the PC is told what arrived only: {}", arrived_text(bench))},
+    return Mismatch{{fmt::format("only what arrived is reported to the PC: {}", arrived_text(bench))},
                     fmt::format("{:02X} {:02X} of node {:02X}", told.data0, told.data1, told.id),
                     when};
   });
@@ -88,10 +88,11 @@ void bursts_tell_nothing_by_themselves(HostBench& bench, CaseJudge& judge) {
   judge.measure("reads under bursts", "", static_cast<double>(ledger.reads));
   judge.measure("characters that arrived otherwise", "", static_cast<double>(bench.stressed_transmissions()));
   for (std::size_t poll = 1; poll < ledger.by_attempt.size(); ++poll) {
-    judge.measure(fmt::format("told at poll {}", poll), "", static_cast<double>(ledger.by_attempt.at(poll)));
+    judge.measure(fmt::format("reported at poll {}", poll), "",
+                  static_cast<double>(ledger.by_attempt.at(poll)));
   }
   judge.measure("reads that failed", "", static_cast<double>(ledger.failed));
-  judge.measure("wrong data told", "", static_cast<double>(ledger.told_wrong));
+  judge.measure("wrong data reported", "", static_cast<double>(ledger.told_wrong));
   if (bench.stressed_transmissions() == 0) {
     judge.inconclusive("nothing_was_hit", {{"bursts change characters"}, "no character arrived otherwise"});
   }
@@ -104,13 +105,13 @@ std::vector<HostCase> host_immunity_cases() {
   cases.push_back(
       {{.id = "valve_bus/host/immunity/bursts_tell_nothing_by_themselves",
         .purpose = "RH-36",
-        .requirement = "Under bursts the PC is told what arrives with a check that fits, or that a "
-                       "read has failed, within three polls; behind a burst reads are served.",
+        .requirement = "Under bursts the PC gets what arrives with a check that fits, or that a "
+                       "read has failed, within three polls; after a burst reads are served.",
         .reference = valve_sources::paper("block check; use in disturbed surroundings"),
         .details = {{valve_sources::own("a read that failed is repeated twice"), {"polled_too_often"}}},
         .stimulus = "Bursts of IEC 61000-4-4, 5 and 100 kHz, both polarities, the two highest "
                     "levels, while reads go on that are all answered.",
-        .expected = "Each response that is told follows from a frame that arrived; wrong data "
+        .expected = "Each response that is reported follows from a frame that arrived; wrong data "
                     "whose exclusive or fits are counted. Each read ends.",
         .tags = {"must", std::string(kStressTag)},
         .catches = {{"response_not_checked", "told_without_response"},

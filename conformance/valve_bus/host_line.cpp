@@ -33,7 +33,7 @@ void an_echo_is_no_response(HostBench& bench, CaseJudge& judge) {
 void expect_read_fails(HostBench& bench, CaseJudge& judge, std::uint8_t id, std::string_view data_reason,
                        std::string_view hanging_reason) {
   const auto told = bench.next_told(2 * bench.observation_timeout());
-  judge.expect(told.has_value(), hanging_reason, "the PC is told an error", "nothing was told");
+  judge.expect(told.has_value(), hanging_reason, "an error is reported to the PC", "nothing was reported");
   judge.expect(std::holds_alternative<HostError>(told->what), data_reason,
                fmt::format("an error of {:02X}", id), text_of(*told));
   expect_nothing_told(bench, judge, kernel::kMillisecond, data_reason, "nothing was known of the node");
@@ -77,7 +77,7 @@ void a_high_line_is_a_time_out(HostBench& bench, CaseJudge& judge) {
   bench.answer_levels(high, bench.bits(4));
   const auto told = bench.next_told(2 * bench.observation_timeout());
   const HostError wanted{request.command().id, HostErrorKind::no_response};
-  judge.expect(told.has_value(), "waits_for_ever", "the PC is told an error", "nothing was told");
+  judge.expect(told.has_value(), "waits_for_ever", "an error is reported to the PC", "nothing was reported");
   const auto* error = std::get_if<HostError>(&told->what);
   judge.expect(error != nullptr && *error == wanted, "error_wrong", "an error: no response", text_of(*told));
   expect_nothing_told(bench, judge, kernel::kMillisecond, "high_line_told", "nothing was said");
@@ -94,7 +94,7 @@ void noise_between_polls_is_drained(HostBench& bench, CaseJudge& judge) {
     const bool is_response = noise.size() == valve_bus::kResponseOctets;
     if (is_response) noise[2] = noise[0] ^ noise[1];
     bench.say(noise);
-    // Behind a valid response as long as it takes to be told; else the next read may come at once.
+    // After a valid response as long as it takes to be told; else the next read may come at once.
     const double silence = is_response ? 8 : static_cast<double>(bench.random().below(8));
     expect_nothing_told(bench, judge, bench.characters(silence), "noise_told", "nothing was asked");
   }
@@ -107,11 +107,11 @@ std::vector<HostCase> host_line_cases() {
   std::vector<HostCase> cases;
   cases.push_back({{.id = "valve_bus/host/line/echo_is_no_response",
                     .purpose = "RH-13",
-                    .requirement = "A host that hears what it sends does not take it for a response.",
+                    .requirement = "A host that receives its own echo does not take it for a response.",
                     .reference = valve_sources::calculated("ID ^ COMMAND = DATA0 is a valid response"),
                     .stimulus = "Reads of which the first three octets are a valid response; the receiver is "
                                 "on while the host drives.",
-                    .expected = "The PC is told what the node answers.",
+                    .expected = "What the node answers is reported to the PC.",
                     .tags = {"must", "hazard"},
                     .catches = {{"echo_taken_as_response", "echo_told"}}},
                    an_echo_is_no_response,
@@ -122,7 +122,7 @@ std::vector<HostCase> host_line_cases() {
                                    "of zeros have a right check: their stop bits are missing.",
                     .reference = valve_sources::own("the stop bit is looked at"),
                     .stimulus = "The line low for three characters, as three and as one break.",
-                    .expected = "Nothing is told; the node is polled again and served.",
+                    .expected = "Nothing is reported; the node is polled again and served.",
                     .tags = {"must", "hazard"},
                     .catches = {{"stop_bits_not_looked_at", "low_line_told"}}},
                    three_low_characters_are_no_response});
@@ -131,7 +131,7 @@ std::vector<HostCase> host_line_cases() {
                     .requirement = "A line that stays low ends a read in an error, and the host serves again "
                                    "when it is released.",
                     .reference = valve_sources::own("the PC is never left without an answer"),
-                    .stimulus = "The line low behind a request, longer than all attempts take.",
+                    .stimulus = "The line low after a request, longer than all attempts take.",
                     .expected = "An error, no data; then a read is served.",
                     .tags = {"must"},
                     .catches = {{"waits_for_silence", "waits_for_ever"}}},
@@ -140,7 +140,7 @@ std::vector<HostCase> host_line_cases() {
                     .purpose = "RH-15",
                     .requirement = "A line that stays high is no response.",
                     .reference = valve_sources::own("a character begins with a low start bit"),
-                    .stimulus = "The line driven high behind a request.",
+                    .stimulus = "The line driven high after a request.",
                     .expected = "An error: no response, and no data; then a read is served.",
                     .tags = {"must"},
                     .catches = {{"silence_told_as_data", "high_line_told"}}},
@@ -148,11 +148,11 @@ std::vector<HostCase> host_line_cases() {
   cases.push_back(
       {{.id = "valve_bus/host/line/noise_between_polls_is_drained",
         .purpose = "RH-28",
-        .requirement = "What is heard between two polls is not told and does not disturb the next "
+        .requirement = "What is received between two polls is not reported and does not disturb the next "
                        "one.",
         .reference = valve_sources::own("what nobody asked for is drained"),
         .stimulus = "One to four octets between two reads, also a valid response.",
-        .expected = "They are not told, and the reads are served.",
+        .expected = "They are not reported, and the reads are served.",
         .tags = {"must"},
         .catches = {{"keeps_stray_octets", "response_not_told"}, {"stray_told_as_response", "noise_told"}}},
        noise_between_polls_is_drained});

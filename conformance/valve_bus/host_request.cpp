@@ -49,7 +49,7 @@ void expect_sent(HostBench& bench, CaseJudge& judge, const Command& command) {
 void expect_refused(HostBench& bench, CaseJudge& judge, const Command& command, HostErrorKind kind,
                     std::string_view sent_reason) {
   bench.order(command);
-  // What is refused is refused when its turn comes: behind the distance of a write and a refresh.
+  // What is refused is refused when its turn comes: after the distance of a write and a refresh.
   expect_no_request(bench, judge, bench.characters(20) + 3 * kernel::kMillisecond, sent_reason,
                     fmt::format("{} is no command", text_of_command(command)));
   expect_error(bench, judge, {command.id, kind});
@@ -104,25 +104,25 @@ std::vector<HostCase> host_request_cases() {
         .catches = {{"request_check_without_id", "check_wrong"}, {"request_check_is_sum", "check_wrong"}},
         .not_applicable = for_plain_writes()},
        each_check_is_the_exclusive_or});
-  cases.push_back(
-      {{.id = "valve_bus/host/request/ids_1_to_99_are_sent",
-        .purpose = "RH-03",
-        .requirement = "Commands for the IDs 1 to 99 are sent; those for 0 and 100 to 255 are "
-                       "refused, and the PC is told.",
-        .reference = valve_sources::paper("ID 1 to 99"),
-        .details = {{valve_sources::own("refusal is told as an error"), {"error_not_told", "error_wrong"}}},
-        .stimulus = "A read and a write for each of the 256 IDs.",
-        .expected = "99 reads and writes on the line, an error for each other.",
-        .tags = {"must"},
-        .catches = {{"sends_id_100", "refused_id_sent"},
-                    {"sends_id_0", "refused_id_sent"},
-                    {"refuses_id_99", "no_request"},
-                    {"refuses_silently", "error_not_told"}},
-        .not_applicable = for_plain_writes()},
-       ids_1_to_99_are_sent});
+  cases.push_back({{.id = "valve_bus/host/request/ids_1_to_99_are_sent",
+                    .purpose = "RH-03",
+                    .requirement = "Commands for the IDs 1 to 99 are sent; those for 0 and 100 to 255 are "
+                                   "refused, and this is reported to the PC.",
+                    .reference = valve_sources::paper("ID 1 to 99"),
+                    .details = {{valve_sources::own("refusal is reported as an error"),
+                                 {"error_not_told", "error_wrong"}}},
+                    .stimulus = "A read and a write for each of the 256 IDs.",
+                    .expected = "99 reads and writes on the line, an error for each other.",
+                    .tags = {"must"},
+                    .catches = {{"sends_id_100", "refused_id_sent"},
+                                {"sends_id_0", "refused_id_sent"},
+                                {"refuses_id_99", "no_request"},
+                                {"refuses_silently", "error_not_told"}},
+                    .not_applicable = for_plain_writes()},
+                   ids_1_to_99_are_sent});
   cases.push_back({{.id = "valve_bus/host/request/undefined_commands_are_refused",
                     .purpose = "RH-04",
-                    .requirement = "Commands 2 to 255 are refused, and the PC is told.",
+                    .requirement = "Commands 2 to 255 are refused, and this is reported to the PC.",
                     .reference = valve_sources::own("only commands 0 and 1 are defined"),
                     .stimulus = "Each of them once, then a read.",
                     .expected = "Nothing on the line and an error for each; then the read is served.",

@@ -70,7 +70,7 @@ class DriverCutsStopBit : public Host {
   }
 };
 
-// Takes three octets for a response as soon as it has them, and sends at once behind it.
+// Takes three octets for a response as soon as it has them, and sends at once after it.
 class DelimiterMissing : public Host {
   using Host::Host;
   Duration silence() const override { return {}; }

@@ -44,14 +44,14 @@ void expect_taken(HostBench& bench, CaseJudge& judge, std::uint8_t id, const Res
                   std::string_view refused_reason) {
   const auto told = bench.next_told(telling_time(bench));
   judge.expect(told.has_value(), refused_reason, [&] {
-    return Mismatch{{fmt::format("the PC is told of {:02X}: {:02X} {:02X}", id, octets[0], octets[1])},
+    return Mismatch{{fmt::format("the PC gets the data of {:02X}: {:02X} {:02X}", id, octets[0], octets[1])},
                     "nothing"};
   });
   const auto* response = std::get_if<valve_bus::HostResponse>(&told->what);
   judge.expect(response != nullptr && *response == valve_bus::HostResponse{id, octets[0], octets[1]},
                "response_wrong", [&] {
                  return Mismatch{
-                     {fmt::format("the PC is told of {:02X}: {:02X} {:02X}", id, octets[0], octets[1])},
+                     {fmt::format("the PC gets the data of {:02X}: {:02X} {:02X}", id, octets[0], octets[1])},
                      text_of(*told)};
                });
 }
@@ -120,7 +120,7 @@ void early_responses_are_refused(HostBench& bench, CaseJudge& judge) {
       const HostFrame request = order_read(bench, judge, bench.random_id());
       bench.answer(random_response(bench), bench.bits(bits));
       expect_refused_response(bench, judge, request, "early_response_told",
-                              fmt::format("a response {} bits behind the request", bits));
+                              fmt::format("a response {} bits after the request", bits));
     }
   }
 }
@@ -234,30 +234,32 @@ judge::Reference silence_ends_a_frame() {
 }
 
 void add_cases_of_octets(std::vector<HostCase>& cases) {
-  cases.push_back({{.id = "valve_bus/host/response/is_told_once_with_its_id",
-                    .purpose = "RH-02",
-                    .requirement = "The PC is told the response to its read once, with the ID of the node "
-                                   "that it read.",
-                    .reference = valve_sources::paper("frame of the node"),
-                    .details = {{valve_sources::own("the ID is that of the read"), {"told_twice"}}},
-                    .stimulus = "Reads of many nodes with random responses.",
-                    .expected = "Each is told once, with its ID and data.",
-                    .tags = {"must"},
-                    .catches = {{"told_twice", "told_twice"},
-                                {"told_of_node_before", "response_wrong"},
-                                {"response_exchanged", "response_wrong"}}},
-                   a_response_is_told_once});
-  cases.push_back({{.id = "valve_bus/host/response/each_wrong_bit_is_refused",
-                    .purpose = "RH-06",
-                    .requirement = "A response whose block check does not fit is refused, and the node is "
-                                   "polled again.",
-                    .reference = valve_sources::paper("host on a wrong block check"),
-                    .stimulus = "Responses with each of their 24 bits wrong in turn.",
-                    .expected = "Nothing is told; the next poll is answered rightly, and that is told.",
-                    .tags = {"must"},
-                    .catches = {{"response_not_checked", "wrong_response_told"},
-                                {"bad_response_not_repeated", "no_retry"}}},
-                   each_wrong_bit_is_refused});
+  cases.push_back(
+      {{.id = "valve_bus/host/response/is_told_once_with_its_id",
+        .purpose = "RH-02",
+        .requirement = "The response to a read is reported to the PC once, with the ID of the node "
+                       "that it read.",
+        .reference = valve_sources::paper("frame of the node"),
+        .details = {{valve_sources::own("the ID is that of the read"), {"told_twice"}}},
+        .stimulus = "Reads of many nodes with random responses.",
+        .expected = "Each is reported once, with its ID and data.",
+        .tags = {"must"},
+        .catches = {{"told_twice", "told_twice"},
+                    {"told_of_node_before", "response_wrong"},
+                    {"response_exchanged", "response_wrong"}}},
+       a_response_is_told_once});
+  cases.push_back(
+      {{.id = "valve_bus/host/response/each_wrong_bit_is_refused",
+        .purpose = "RH-06",
+        .requirement = "A response whose block check does not fit is refused, and the node is "
+                       "polled again.",
+        .reference = valve_sources::paper("host on a wrong block check"),
+        .stimulus = "Responses with each of their 24 bits wrong in turn.",
+        .expected = "Nothing is reported; the next poll is answered rightly, and that is reported.",
+        .tags = {"must"},
+        .catches = {{"response_not_checked", "wrong_response_told"},
+                    {"bad_response_not_repeated", "no_retry"}}},
+       each_wrong_bit_is_refused});
   cases.push_back(
       {{.id = "valve_bus/host/response/two_wrong_bits_of_a_column_are_taken",
         .purpose = "RH-07",
@@ -267,7 +269,7 @@ void add_cases_of_octets(std::vector<HostCase>& cases) {
         .stimulus =
             "Responses of two equal octets; responses with two wrong bits: all 24 pairs in one column, "
             "and the 252 others.",
-        .expected = "The 24 and the equal ones are told as they arrive, the others are refused.",
+        .expected = "The 24 and the equal ones are reported as they arrive, the others are refused.",
         .tags = {"must"},
         .catches = {{"id_in_response_check", "right_check_refused"},
                     {"response_check_too_strict", "right_check_refused"},
@@ -278,8 +280,8 @@ void add_cases_of_octets(std::vector<HostCase>& cases) {
                     .requirement = "What begins within 10 bits of the request belongs to its frame and is no "
                                    "response.",
                     .reference = silence_ends_a_frame(),
-                    .stimulus = "Responses that begin 2, 5 and 10 bits behind the request.",
-                    .expected = "Nothing is told; the node is polled again and served.",
+                    .stimulus = "Responses that begin 2, 5 and 10 bits after the request.",
+                    .expected = "Nothing is reported; the node is polled again and served.",
                     .tags = {"must", "timing"},
                     .catches = {{"takes_early_response", "early_response_told"}},
                     .not_applicable = for_host_without("takes_early_responses",
@@ -291,8 +293,8 @@ void add_cases_of_octets(std::vector<HostCase>& cases) {
                                    "more are a valid one.",
                     .reference = valve_sources::paper("frame of the node"),
                     .stimulus = "One and two octets of a response; responses with 1 to 12 octets of zeros "
-                                "behind and in front.",
-                    .expected = "Nothing is told; the node is polled again and served.",
+                                "after and in front.",
+                    .expected = "Nothing is reported; the node is polled again and served.",
                     .tags = {"must"},
                     .catches = {{"takes_two_octets", "wrong_length_told"},
                                 {"takes_first_three_octets", "wrong_length_told"},
@@ -321,27 +323,28 @@ void add_cases_of_characters(std::vector<HostCase>& cases) {
                        "its check, unless they say the same.",
         .reference = valve_sources::derived("nodes in parallel on one pair"),
         .stimulus = "Mixtures of two responses whose check does not fit; two equal responses.",
-        .expected = "The mixtures are not told and the node is polled again; equal ones are told.",
+        .expected = "The mixtures are not reported and the node is polled again; equal ones are reported.",
         .tags = {"must"},
         .catches = {{"response_not_checked", "mixture_told"}}},
        two_nodes_at_once_are_refused});
-  cases.push_back({{.id = "valve_bus/host/response/of_another_node_is_taken",
-                    .purpose = "RH-34",
-                    .requirement = "A response of the wrong node in time is told as that of the node that "
-                                   "was read: nothing in it says whose it is. No host of this bus can do "
-                                   "otherwise; one that does has another frame.",
-                    .reference = valve_sources::paper("frame of the node: no ID in it"),
-                    .stimulus = "Reads that a node with a wrong address answers.",
-                    .expected = "The response is told.",
-                    .tags = {"must", "hazard"},
-                    .catches = {{"id_in_response_check", "right_check_refused"}}},
-                   a_response_of_another_node_is_taken});
+  cases.push_back(
+      {{.id = "valve_bus/host/response/of_another_node_is_taken",
+        .purpose = "RH-34",
+        .requirement = "A response of the wrong node in time is reported as that of the node that "
+                       "was read: nothing in it says whose it is. No host of this bus can do "
+                       "otherwise; one that does has another frame.",
+        .reference = valve_sources::paper("frame of the node: no ID in it"),
+        .stimulus = "Reads that a node with a wrong address answers.",
+        .expected = "The response is reported.",
+        .tags = {"must", "hazard"},
+        .catches = {{"id_in_response_check", "right_check_refused"}}},
+       a_response_of_another_node_is_taken});
   cases.push_back({{.id = "valve_bus/host/response/characters_of_other_formats_are_refused",
                     .purpose = "RH-35",
                     .requirement = "With parity, responses in another character format are wrong, not data.",
                     .reference = valve_sources::own("character format P1"),
                     .stimulus = "Responses in characters P0 and P2.",
-                    .expected = "Nothing is told; the node is polled again and served.",
+                    .expected = "Nothing is reported; the node is polled again and served.",
                     .tags = {"must"},
                     .catches = {{"parity_not_looked_at", "foreign_format_told"}},
                     .not_applicable = for_characters("P1")},
@@ -352,7 +355,7 @@ void add_cases_of_characters(std::vector<HostCase>& cases) {
                     .requirement = "With nine bits, the host does not look at the ninth of a response.",
                     .reference = valve_sources::own("character format P0"),
                     .stimulus = "Responses with the ninth bit of each character 0 in turn.",
-                    .expected = "They are told.",
+                    .expected = "They are reported.",
                     .tags = {"must"},
                     .catches = {{"wants_ninth_bit", "ninth_bit_looked_at"}},
                     .not_applicable = for_characters("P0")},

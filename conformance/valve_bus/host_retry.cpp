@@ -53,7 +53,7 @@ void a_silent_node_is_polled_three_times(HostBench& bench, CaseJudge& judge) {
     const auto told = bench.next_told(bench.observation_timeout());
     judge.expect(told && told->when <= limit, "error_late", [&] {
       return Mismatch{{fmt::format("an error at {} at the latest", kernel::describe(limit))},
-                      told ? text_of(*told) : std::string("nothing was told")};
+                      told ? text_of(*told) : std::string("nothing was reported")};
     });
     const auto* error = std::get_if<HostError>(&told->what);
     judge.expect(error != nullptr && *error == HostError{id, HostErrorKind::no_response}, "error_wrong",
@@ -146,7 +146,7 @@ void three_wrong_responses_are_an_error(HostBench& bench, CaseJudge& judge) {
     expect_no_request(bench, judge, 2 * bench.time_out(), "polled_too_often", "three attempts in all");
     expect_error(bench, judge, {id, HostErrorKind::bad_response}, "wrong_response_told");
     expect_old(bench, judge, id, known);
-    expect_nothing_told(bench, judge, kernel::kMillisecond, "told_twice", "it has been told");
+    expect_nothing_told(bench, judge, kernel::kMillisecond, "told_twice", "it has been reported");
   }
 }
 
@@ -155,7 +155,7 @@ HostCase silent_node_case(unsigned dip, std::string_view rate, std::vector<MustC
       {.id = fmt::format("valve_bus/host/retry/silent_node_is_polled_three_times_at_{}", rate),
        .purpose = "RH-08",
        .requirement = "A node that does not answer within a delimiter and 3 ms is polled again, three "
-                      "times in all; then the PC is told an error.",
+                      "times in all; then an error is reported to the PC.",
        .reference = valve_sources::own("time-out and attempts"),
        .stimulus = fmt::format("Reads of nodes that do not answer, at {} bit/s.", rate),
        .expected = "Three polls; the time-out within 5 %, where the host knows of a start bit when its "
@@ -183,14 +183,14 @@ std::vector<HostCase> host_retry_cases() {
                     .requirement = "A response that begins 5 % before the time-out is taken.",
                     .reference = own,
                     .stimulus = "Responses at 0.95 times the time-out.",
-                    .expected = "They are told.",
+                    .expected = "They are reported.",
                     .tags = {"must", "timing"},
                     .catches = {{"time_out_short", "response_not_told"}}},
                    a_response_just_in_time_is_taken});
   cases.push_back(
       {{.id = "valve_bus/host/retry/late_response_is_drained",
         .purpose = "RH-09",
-        .requirement = "A response that begins 5 % behind the last time-out is counted, not told, "
+        .requirement = "A response that begins 5 % after the last time-out is counted, not reported, "
                        "and not taken for the response of the node that is polled next.",
         .reference = own,
         .stimulus = "A late response to the last attempt, with a read of another node waiting.",
@@ -200,29 +200,30 @@ std::vector<HostCase> host_retry_cases() {
        a_late_response_is_drained});
   cases.push_back({{.id = "valve_bus/host/retry/third_attempt_is_taken",
                     .purpose = "RH-16",
-                    .requirement = "Behind two wrong responses a right one is told; retries and wrong "
+                    .requirement = "After two wrong responses a right one is reported; retries and wrong "
                                    "responses are counted for this node.",
                     .reference = own,
                     .stimulus = "Two responses with a wrong check, a missing octet or a missing stop bit, "
                                 "then a right one.",
-                    .expected = "It is told; two retries, two rejected; other nodes' counters stand.",
+                    .expected = "It is reported; two retries, two rejected; other nodes' counters stand.",
                     .tags = {"must"},
                     .catches = {{"two_attempts", "no_retry"},
                                 {"bad_response_not_repeated", "no_retry"},
                                 {"counters_shared", "counters_wrong"}}},
                    the_third_attempt_is_taken});
-  cases.push_back({{.id = "valve_bus/host/retry/three_wrong_responses_are_an_error",
-                    .purpose = "RH-17",
-                    .requirement = "Behind three wrong responses the PC is told an error, and what was known "
-                                   "of the node, marked as old.",
-                    .reference = own,
-                    .stimulus = "A right response, then three wrong ones to the next read.",
-                    .expected = "Three polls, an error, the old data marked as old.",
-                    .tags = {"must"},
-                    .catches = {{"old_told_as_new", "old_data_told_as_new"},
-                                {"old_forgotten", "old_data_not_told"},
-                                {"four_attempts", "polled_too_often"}}},
-                   three_wrong_responses_are_an_error});
+  cases.push_back(
+      {{.id = "valve_bus/host/retry/three_wrong_responses_are_an_error",
+        .purpose = "RH-17",
+        .requirement = "After three wrong responses an error is reported to the PC, and what was known "
+                       "of the node, marked as old.",
+        .reference = own,
+        .stimulus = "A right response, then three wrong ones to the next read.",
+        .expected = "Three polls, an error, the old data marked as old.",
+        .tags = {"must"},
+        .catches = {{"old_told_as_new", "old_data_told_as_new"},
+                    {"old_forgotten", "old_data_not_told"},
+                    {"four_attempts", "polled_too_often"}}},
+       three_wrong_responses_are_an_error});
   return cases;
 }
 

@@ -40,7 +40,7 @@ TEST(HostSequence, TheReferenceIsNeverAccused) {
   }
 }
 
-// Also with a host whose receiver stays on, or that reads behind each write.
+// Also with a host whose receiver stays on, or that reads after each write.
 TEST(HostSequence, TheReferenceIsNeverAccusedWithItsOptions) {
   for (const char* option : {"receives_own_echo", "verifies_writes"}) {
     SequenceSearch one = host_search_of("ref", kernel::kIsSanitized ? 140 : 700);

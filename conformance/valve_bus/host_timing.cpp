@@ -28,7 +28,7 @@ void a_write_is_left_alone(HostBench& bench, CaseJudge& judge) {
     const HostFrame two = expect_request(bench, judge, second);
     const kernel::Duration distance = two.start - one.end;
     judge.expect(distance + kernel::kNanosecond >= least, "write_distance_too_short", [&] {
-      return Mismatch{{fmt::format("{} or more behind a write", kernel::describe(least))},
+      return Mismatch{{fmt::format("{} or more after a write", kernel::describe(least))},
                       kernel::describe(distance),
                       two.start};
     });
@@ -51,7 +51,7 @@ void a_write_is_not_answered(HostBench& bench, CaseJudge& judge) {
   bench.note_write(write->command());
 }
 
-// What nobody asked for behind a write.
+// What nobody asked for after a write.
 void unasked_octets_are_drained(HostBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 100); ++n) {
     const Command write = some_write(bench, 8);
@@ -88,7 +88,7 @@ void the_driver_is_on_for_requests_only(HostBench& bench, CaseJudge& judge) {
     const HostFrame frame = order_read(bench, judge, bench.random_id());
     judge.measure("driver on before the start bit", "us",
                   in_microseconds(frame.start - frame.sent.driver_on));
-    judge.measure("driver on behind the stop bit", "us", in_microseconds(frame.sent.driver_off - frame.end));
+    judge.measure("driver on after the stop bit", "us", in_microseconds(frame.sent.driver_off - frame.end));
     const Response response{bench.random_octet(), bench.random_octet()};
     bench.answer(response);
     expect_response(bench, judge, frame.command().id, response);
@@ -104,7 +104,7 @@ void the_latest_response_is_taken_at_all_rates(HostBench& bench, CaseJudge& judg
     for (int n = 0; n < bench.volume(1, 20); ++n) {
       const HostFrame request = order_read(bench, judge, bench.random_id());
       const Response response{bench.random_octet(), bench.random_octet()};
-      // Behind a repeater of 10 us each way.
+      // After a repeater of 10 us each way.
       bench.answer(response,
                    bench.delimiter() + turnaround_time_span(bench.rules()) + 20 * kernel::kMicrosecond);
       expect_response(bench, judge, request.command().id, response);
@@ -115,14 +115,14 @@ void the_latest_response_is_taken_at_all_rates(HostBench& bench, CaseJudge& judg
 }  // namespace
 
 std::vector<HostCase> host_timing_cases() {
-  const judge::Reference distance = valve_sources::own("a delimiter and 1 ms behind a write");
+  const judge::Reference distance = valve_sources::own("a delimiter and 1 ms after a write");
   std::vector<HostCase> cases;
   cases.push_back({{.id = "valve_bus/host/timing/write_is_left_alone",
                     .purpose = "RH-18",
-                    .requirement = "Behind a write the line is left alone for a delimiter and 1 ms: the time "
+                    .requirement = "After a write the line is left alone for a delimiter and 1 ms: the time "
                                    "of the node.",
                     .reference = distance,
-                    .stimulus = "Two writes, one behind the other.",
+                    .stimulus = "Two writes, one after the other.",
                     .expected = "The second begins no earlier than that.",
                     .tags = {"must", "timing"},
                     .catches = {{"write_distance_missing", "write_distance_too_short"}},
@@ -134,24 +134,24 @@ std::vector<HostCase> host_timing_cases() {
                                    "repeat the write but by its refresh.",
                     .reference = valve_sources::paper("a node answers requests for data only"),
                     .stimulus = "A write that nobody answers.",
-                    .expected = "It is sent once up to its refresh; the PC is told nothing.",
+                    .expected = "It is sent once up to its refresh; nothing is reported to the PC.",
                     .tags = {"must", "timing"},
                     .catches = {{"write_waits_for_answer", "write_repeated"}},
                     .not_applicable = for_plain_writes()},
                    a_write_is_not_answered});
   cases.push_back({{.id = "valve_bus/host/timing/unasked_octets_are_drained",
                     .purpose = "RH-18",
-                    .requirement = "What comes behind a write is nobody's response: it is drained.",
+                    .requirement = "What comes after a write is nobody's response: it is drained.",
                     .reference = valve_sources::derived("a write has no response"),
-                    .stimulus = "Three octets with a right check behind a write; then a read.",
-                    .expected = "They are not told; the read is served.",
+                    .stimulus = "Three octets with a right check after a write; then a read.",
+                    .expected = "They are not reported; the read is served.",
                     .tags = {"must"},
                     .catches = {{"stray_told_as_response", "unasked_told"}},
                     .not_applicable = for_plain_writes()},
                    unasked_octets_are_drained});
   cases.push_back({{.id = "valve_bus/host/timing/delimiter_is_in_front_of_each_request",
                     .purpose = "RH-19",
-                    .requirement = "A request begins 3.5 characters behind whatever was on the line, at the "
+                    .requirement = "A request begins 3.5 characters after whatever was on the line, at the "
                                    "earliest.",
                     .reference = valve_sources::own("silence of 3.5 characters ends a frame"),
                     .stimulus = "Reads and writes that wait for each other, responses at many times.",
@@ -178,10 +178,10 @@ std::vector<HostCase> host_timing_cases() {
         .purpose = "RH-30",
         .requirement = "At every bit rate a response that begins as late as a node may begin it "
                        "is taken.",
-        .reference = valve_sources::own("turn-round and time-out"),
-        .stimulus = "At each position of the DIP switches, a response 2 ms behind the delimiter "
+        .reference = valve_sources::own("turnaround and time-out"),
+        .stimulus = "At each position of the DIP switches, a response 2 ms after the delimiter "
                     "(where that is longer, two characters and two bits), from 10 us away.",
-        .expected = "It is told.",
+        .expected = "It is reported.",
         .tags = {"must", "timing"},
         .catches = {{"time_out_fixed", "response_not_told"}},
         .not_applicable = for_host_with("dip_can_be_set", "the bench cannot set the bit rate of the host")},

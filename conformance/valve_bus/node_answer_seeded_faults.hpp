@@ -67,7 +67,7 @@ class AnswersAtOnce : public Node {
   Duration turnaround_time() const override { return {}; }
 };
 
-// The first start bit that many hundredths of the least and of the greatest turn-round behind the command.
+// The first start bit that many hundredths of the least and of the greatest turn-round after the command.
 class TurnsRoundEarly : public AnswersAtOnce {
  public:
   TurnsRoundEarly(const valve_bus::NodeConfiguration& configuration, int hundredths)

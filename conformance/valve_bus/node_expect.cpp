@@ -41,8 +41,8 @@ void expect_driver(NodeBench& bench, CaseJudge& judge, const Transmission& answe
   });
   judge.expect(behind <= bench.bits(rules.driver_off_bits) + kRounding, "driver_not_released", [&] {
     return Mismatch{
-        {fmt::format("the driver is off at most {} bits behind the last stop bit", rules.driver_off_bits)},
-        fmt::format("{} behind it", kernel::describe(behind)),
+        {fmt::format("the driver is off at most {} bits after the last stop bit", rules.driver_off_bits)},
+        fmt::format("{} after it", kernel::describe(behind)),
         answer.driver_off};
   });
 }
@@ -104,7 +104,7 @@ Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t 
   const kernel::Duration least = bench.delimiter();
   const kernel::Duration most = least + turnaround_time_span(bench.rules());
   const auto sighting = [&] {
-    return Mismatch{{fmt::format("the first start bit {} to {} behind the last stop bit of the command",
+    return Mismatch{{fmt::format("the first start bit {} to {} after the last stop bit of the command",
                                  kernel::describe(least), kernel::describe(most))},
                     instant_text(turnaround_time, doubt),
                     answer.characters.front().start};
@@ -168,7 +168,7 @@ void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, 
     const kernel::Duration limit = bench.delimiter() + actuation_limit(bench.rules());
     judge.expect(last.when - arrived <= limit + kRounding, "valves_too_late", [&] {
       return Mismatch{
-          {fmt::format("the valves move at most {} behind the last stop bit", kernel::describe(limit))},
+          {fmt::format("the valves move at most {} after the last stop bit", kernel::describe(limit))},
           change_text(last),
           last.when};
     });

@@ -31,7 +31,7 @@ void long_frames_are_discarded(NodeBench& bench, CaseJudge& judge) {
     frame.resize(frame.size() + more, 0);
     bench.send(frame);
     bench.await_response_window();
-    expect_ignored(bench, judge, "acts_on_long_frame", fmt::format("{} octets behind it", more));
+    expect_ignored(bench, judge, "acts_on_long_frame", fmt::format("{} octets after it", more));
     NodeBench::Octets in_front(more, 0);
     const auto behind = bench.telling_write();
     in_front.insert(in_front.end(), behind.begin(), behind.end());
@@ -62,7 +62,7 @@ void frames_are_told_apart_by_silence(NodeBench& bench, CaseJudge& judge) {
   judge.expect(
       changes.size() == 2 && changes[0].after == bench.valves_of(static_cast<std::uint8_t>(moved),
                                                                  static_cast<std::uint8_t>(moved >> 8)),
-      "misses_frames_behind_delimiter", "both writes are taken, one behind the other",
+      "misses_frames_behind_delimiter", "both writes are taken, one after the other",
       fmt::format("the valves moved {} times", changes.size()));
   expect_valves(bench, judge, bench.valves_of(0x0F, 0xF0), "misses_frames_behind_delimiter");
 }
@@ -135,7 +135,7 @@ std::vector<NodeCase> node_framing_cases() {
   cases.push_back({{.id = "valve_bus/node/framing/short_frames_are_discarded",
                     .purpose = "RN-12",
                     .requirement = "A frame of fewer than five octets is discarded when silence ends it, and "
-                                   "leaves nothing behind.",
+                                   "leaves nothing after.",
                     .reference = silence,
                     .stimulus = "The first one, two, three, four octets of a write, then a write and a read.",
                     .expected = "No valve moves by the short frame; the node serves what follows.",
@@ -148,7 +148,7 @@ std::vector<NodeCase> node_framing_cases() {
                     .requirement = "A frame of more than five octets is discarded, also when five of its "
                                    "octets are a valid command: an octet of zeros changes no exclusive or.",
                     .reference = silence,
-                    .stimulus = "A write with 1 to 300 octets of zeros behind it and in front of it.",
+                    .stimulus = "A write with 1 to 300 octets of zeros after it and in front of it.",
                     .expected = "No valve moves, and the node serves what follows.",
                     .tags = {"must"},
                     .catches = {{"takes_first_five_octets", "acts_on_long_frame"},
@@ -179,7 +179,7 @@ std::vector<NodeCase> node_framing_cases() {
                    gaps_inside_a_frame});
   cases.push_back({{.id = "valve_bus/node/framing/joined_frames_are_no_write",
                     .purpose = "RN-16",
-                    .requirement = "The response of one node and the poll of node 1 behind it are not taken "
+                    .requirement = "The response of one node and the poll of node 1 after it are not taken "
                                    "for a write, although their octets are one.",
                     .reference = valve_sources::calculated("ID 0 ID 1 1 has a block check that fits"),
                     .stimulus = "A response that begins with the node's ID and a poll of node 1, without and "
@@ -191,7 +191,7 @@ std::vector<NodeCase> node_framing_cases() {
   cases.push_back({{.id = "valve_bus/node/framing/own_frame_behind_a_response_is_taken",
                     .purpose = "RN-17",
                     .requirement = "What other nodes answer does not keep a node from hearing its own frame.",
-                    .reference = valve_sources::derived("nodes in parallel on one pair hear each other"),
+                    .reference = valve_sources::derived("nodes in parallel on one pair receive each other"),
                     .stimulus = "A response of another node, a delimiter, a write.",
                     .expected = "The write is taken.",
                     .tags = {"must"},

@@ -68,7 +68,7 @@ class TakesOtherLengths : public Node {
   std::array<std::uint8_t, 5> last_{};
 };
 
-// Hears nothing for a while behind what it has just heard.
+// Hears nothing for a while after what it has just heard.
 class DeafBehindResponse : public Node {
   using Node::Node;
   void on_frame(const CollectedFrame& frame, Time now) override {

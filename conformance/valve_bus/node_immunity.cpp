@@ -92,12 +92,12 @@ std::vector<NodeCase> node_immunity_cases() {
       {{.id = "valve_bus/node/immunity/bursts_move_nothing_by_themselves",
         .purpose = "RN-39",
         .requirement = "Under bursts valves move and answers come only by frames that arrive with a "
-                       "check that fits; behind a burst the first frame is served.",
+                       "check that fits; after a burst the first frame is served.",
         .reference = valve_sources::paper("block check; use in disturbed surroundings"),
         .stimulus = "Bursts of IEC 61000-4-4, 5 and 100 kHz, both polarities, the two highest levels, "
                     "while writes and reads go on.",
         .expected = "Each move follows from a frame that arrived; wrong data whose exclusive or fits "
-                    "are counted. Behind each burst a write and a read are served.",
+                    "are counted. After each burst a write and a read are served.",
         .tags = {"must", std::string(kStressTag)},
         .catches = {{"write_not_checked", "moves_without_command"},
                     {"valves_off_on_wrong_check", "moves_without_command"},

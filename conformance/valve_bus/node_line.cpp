@@ -75,7 +75,7 @@ void a_break_is_no_frame(NodeBench& bench, CaseJudge& judge) {
   }
 }
 
-// A low pulse of so many tenths of a bit, then a frame as long behind it as a delimiter, or at once.
+// A low pulse of so many tenths of a bit, then a frame as long after it as a delimiter, or at once.
 void glitch(NodeBench& bench, unsigned tenths) {
   line::Waveform wave;
   wave.rate = 10 * bench.rules().bit_rate;
@@ -134,7 +134,7 @@ void a_command_into_an_answer_is_not_taken(NodeBench& bench, CaseJudge& judge) {
     bench.await_response_window();
     expect_no_valve_moved(bench, judge, "acts_on_garbled_command", "it was sent into the node's own answer");
     judge.expect(bench.answers().front().driver_off < bench.now() - bench.characters(2),
-                 "driver_not_released", "the driver goes off behind the answer", "it is on");
+                 "driver_not_released", "the driver goes off after the answer", "it is on");
     expect_serves(bench, judge);
   }
 }
@@ -194,7 +194,7 @@ std::vector<NodeCase> node_line_cases() {
   cases.push_back(
       {{.id = "valve_bus/node/line/break_is_no_frame",
         .purpose = "RN-25",
-        .requirement = "A line that is low says nothing, and a delimiter behind it the node hears "
+        .requirement = "A line that is low says nothing, and a delimiter after it the node receives "
                        "again.",
         .reference = valve_sources::own("recovery within a delimiter"),
         .stimulus = "The line low for 1 ms, 10 ms and 1 s; a delimiter; a write.",
@@ -205,11 +205,11 @@ std::vector<NodeCase> node_line_cases() {
   cases.push_back({{.id = "valve_bus/node/line/glitches_are_no_start_bits",
                     .purpose = "RN-26",
                     .requirement = "A low pulse shorter than half a bit is no start bit; a longer one costs "
-                                   "the frame behind it at most.",
+                                   "the frame after it at most.",
                     .reference = valve_sources::derived("three samples in the middle of the start bit, two "
                                                         "of which must be low"),
                     .stimulus = "Low pulses of 0.1 to 0.9 bit right in front of a write.",
-                    .expected = "Up to 0.4 bit the write is taken; behind the longer ones the next is.",
+                    .expected = "Up to 0.4 bit the write is taken; after the longer ones the next is.",
                     .tags = {"must"},
                     .catches = {{"start_bit_not_validated", "takes_glitch_for_start_bit"}}},
                    glitches_are_no_start_bits});

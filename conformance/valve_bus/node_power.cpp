@@ -92,7 +92,7 @@ std::vector<NodeCase> node_power_cases() {
                     .requirement = "A loss of power in the middle of a frame is a power-up: the rest of the "
                                    "frame is none, and the valves are off.",
                     .reference = valve_sources::own("safe state after power-up"),
-                    .stimulus = "Power goes and comes behind each octet of a write.",
+                    .stimulus = "Power goes and comes after each octet of a write.",
                     .expected = "The valves stay off, nothing is said; then the node serves.",
                     .tags = {"must"},
                     .catches = {{"keeps_octets_over_power_loss", "remembers_over_power_loss"},

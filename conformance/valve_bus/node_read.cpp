@@ -54,7 +54,7 @@ void switches_are_told_exactly(NodeBench& bench, CaseJudge& judge) {
   }
 }
 
-// All switches change together, again and again: an answer has them all before or all behind a change.
+// All switches change together, again and again: an answer has them all before or all after a change.
 void a_snapshot_is_not_torn(NodeBench& bench, CaseJudge& judge) {
   bench.require(&iut::Capabilities::moving_inputs);
   const auto half_period = 7 * kernel::kMicrosecond;
@@ -121,17 +121,18 @@ std::vector<NodeCase> node_read_cases() {
                     .tags = {"must"},
                     .catches = {{"read_drives_valves", "valves_moved_by_read"}}},
                    data_of_a_read_is_not_looked_at});
-  cases.push_back({{.id = "valve_bus/node/read/switches_are_told_exactly",
-                    .purpose = "RN-05",
-                    .requirement = "Each limit switch has its bit, and an answer tells the switches as they "
-                                   "are when it is asked for.",
-                    .reference = valve_sources::paper("limit switches at both ends of 8 cylinders"),
-                    .stimulus = "Each switch alone made, each alone open.",
-                    .expected = "Exactly these bits.",
-                    .tags = {"must"},
-                    .catches = {{"switches_latched_at_power_up", "answer_data_wrong"},
-                                {"switch_bit_stuck", "answer_data_wrong"}}},
-                   switches_are_told_exactly});
+  cases.push_back(
+      {{.id = "valve_bus/node/read/switches_are_told_exactly",
+        .purpose = "RN-05",
+        .requirement = "Each limit switch has its bit, and an answer reports the switches as they "
+                       "are when it is asked for.",
+        .reference = valve_sources::paper("limit switches at both ends of 8 cylinders"),
+        .stimulus = "Each switch alone made, each alone open.",
+        .expected = "Exactly these bits.",
+        .tags = {"must"},
+        .catches = {{"switches_latched_at_power_up", "answer_data_wrong"},
+                    {"switch_bit_stuck", "answer_data_wrong"}}},
+       switches_are_told_exactly});
   cases.push_back({{.id = "valve_bus/node/read/snapshot_is_not_torn",
                     .purpose = "RN-05",
                     .requirement = "The switches of an answer are those of one instant.",

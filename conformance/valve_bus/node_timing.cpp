@@ -35,8 +35,8 @@ void turn_round_is_within_its_span(NodeBench& bench, CaseJudge& judge) {
     shortest = std::min(shortest, turnaround_time + doubt.later);
     longest = std::max(longest, turnaround_time - doubt.earlier);
   }
-  judge.measure("shortest turn-round", "us", microseconds(shortest));
-  judge.measure("longest turn-round", "us", microseconds(longest));
+  judge.measure("shortest turnaround", "us", microseconds(shortest));
+  judge.measure("longest turnaround", "us", microseconds(longest));
 }
 
 void driver_is_on_for_the_answer_only(NodeBench& bench, CaseJudge& judge) {
@@ -49,7 +49,7 @@ void driver_is_on_for_the_answer_only(NodeBench& bench, CaseJudge& judge) {
     const Transmission answer = expect_answer(bench, judge, switches, end);
     judge.measure("driver on before the start bit", "us",
                   microseconds(answer.characters.front().start - answer.driver_on));
-    judge.measure("driver on behind the stop bit", "us",
+    judge.measure("driver on after the stop bit", "us",
                   microseconds(answer.driver_off - answer.characters.back().busy_until));
     bench.clear_observations();
     const auto data0 = bench.random_octet();
@@ -164,7 +164,7 @@ void far_nodes_answer_in_time(NodeBench& bench, CaseJudge& judge) {
     const Transmission answer = expect_answer(bench, judge, switches, end);
     // The host waits 1 ms longer than a node may take; that is for the way.
     const kernel::Duration heard = answer.characters.front().start + bench.distance() - end;
-    judge.expect_between("response as the host hears it", "us", microseconds(heard),
+    judge.expect_between("response as the host receives it", "us", microseconds(heard),
                          microseconds(bench.delimiter()),
                          microseconds(valve_bus::response_time_out(bench.rules())), "too_late_for_host");
   }
@@ -173,11 +173,11 @@ void far_nodes_answer_in_time(NodeBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<NodeCase> node_timing_cases() {
-  const judge::Reference own = valve_sources::own("turn-round from 3.5 characters to 2 ms more");
+  const judge::Reference own = valve_sources::own("turnaround from 3.5 characters to 2 ms more");
   std::vector<NodeCase> cases;
   cases.push_back({{.id = "valve_bus/node/timing/turn_round_is_within_its_span",
                     .purpose = "RN-18",
-                    .requirement = "An answer begins 3.5 characters behind the command at the earliest, when "
+                    .requirement = "An answer begins 3.5 characters after the command at the earliest, when "
                                    "the host has let go of the line, and at most 2 ms later.",
                     .reference = own,
                     .stimulus = "Ten thousand reads.",
@@ -192,7 +192,7 @@ std::vector<NodeCase> node_timing_cases() {
   cases.push_back({{.id = "valve_bus/node/timing/driver_is_on_for_the_answer_only",
                     .purpose = "RN-19",
                     .requirement = "The driver comes on at least a bit before an answer and is off at most "
-                                   "two bits behind it; else a node does not drive the line.",
+                                   "two bits after it; else a node does not drive the line.",
                     .reference = valve_sources::paper("a node that does not send listens"),
                     .stimulus = "Reads and writes.",
                     .expected = "The driver is on around the answers, and at no other time.",
@@ -235,7 +235,7 @@ std::vector<NodeCase> node_timing_cases() {
                     .requirement = "A node answers reads that follow each other as closely as a host can "
                                    "send them, without end.",
                     .reference = valve_sources::derived("one host that polls its nodes in turn"),
-                    .stimulus = "A hundred thousand reads, each a delimiter behind the answer to the last.",
+                    .stimulus = "A hundred thousand reads, each a delimiter after the answer to the last.",
                     .expected = "Each is answered.",
                     .tags = {"must", "long"},
                     .catches = {{"falls_silent_after_400_reads", "no_answer"}}},
@@ -243,11 +243,11 @@ std::vector<NodeCase> node_timing_cases() {
   cases.push_back(
       {{.id = "valve_bus/node/timing/far_node_answers_in_time",
         .purpose = "RN-38",
-        .requirement = "Behind a repeater of 10 us each way a node still answers in time for the "
+        .requirement = "After a repeater of 10 us each way a node still answers in time for the "
                        "host.",
         .reference = own,
         .stimulus = "Reads from 10 us away.",
-        .expected = "The host hears the answer within the time that it waits.",
+        .expected = "The host receives the answer within the time that it waits.",
         .tags = {"must", "timing"},
         .catches = {{"turns_round_3_ms_late", "no_answer"}, {"turns_round_late", "answer_too_late"}}},
        far_nodes_answer_in_time,

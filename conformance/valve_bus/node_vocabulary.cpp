@@ -5,7 +5,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-// Bits of silence in which no receiver doubts: within a frame, between the two limits, behind a delimiter.
+// Bits of silence in which no receiver doubts: within a frame, between the two limits, after a delimiter.
 constexpr std::array<std::int64_t, 8> kSilences{0, 11, 22, 33, 45, 45, 80, 500};
 constexpr std::array<std::int64_t, 5> kGaps{5, 13, 22, 33, 45};
 constexpr std::int64_t kDelimiterBits = 45;
@@ -18,7 +18,7 @@ SequenceNumber octet(std::string_view name, std::span<const std::int64_t> likely
   return {name, 0, 0xFF, 0, likely};
 }
 
-// Behind what the command sends, to the next.
+// After what the command sends, to the next.
 SequenceNumber silence() {
   return {"silence", 0, 100'000, kDelimiterBits, kSilences, true};
 }

@@ -75,7 +75,7 @@ std::vector<NodeCase> node_write_cases() {
                        "does not answer it.",
         .reference = valve_sources::paper("communication frames; node on a write"),
         .stimulus = "Writes of random octets.",
-        .expected = "The valves stand as DATA0 and DATA1 say, at most 2 ms behind the delimiter and not "
+        .expected = "The valves stand as DATA0 and DATA1 say, at most 2 ms after the delimiter and not "
                     "before the check; the line stays silent.",
         .tags = {"must"},
         .catches = {{"check_is_sum", "write_not_taken"},

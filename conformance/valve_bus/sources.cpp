@@ -22,13 +22,13 @@ judge::Reference derived(std::string place) {
 const std::vector<PartialSource>& node_details() {
   using valve_sources::own;
   static const std::vector<PartialSource> details{
-      {own("turn-round from 3.5 characters to 2 ms more"), {"answer_too_early", "answer_too_late"}},
+      {own("turnaround from 3.5 characters to 2 ms more"), {"answer_too_early", "answer_too_late"}},
       {own("driver times"), {"driver_on_late", "driver_not_released"}},
       {own("silence inside a frame"), {"gap_in_answer"}},
       {own("character formats"), {"answer_garbled", "ninth_bit_wrong"}},
       {own("which switch has which bit"), {"answer_data_wrong"}},
       {own("order of the bits; DATA1 is the second board"), {"valves_wrong"}},
-      {own("2 ms behind the delimiter"), {"valves_too_late"}},
+      {own("2 ms after the delimiter"), {"valves_too_late"}},
       {own("together means within 1 us"), {"valves_one_by_one"}},
       {own("a write is not answered"), {"write_answered"}},
       {own("silence of 3.5 characters ends a frame, whatever came before it"), {"does_not_recover"}},
@@ -43,10 +43,10 @@ const std::vector<PartialSource>& host_details() {
       {own("driver times"), {"driver_on_late", "driver_released_early", "driver_not_released"}},
       {own("character formats"), {"frame_garbled"}},
       {own("a read that failed is repeated twice"), {"no_retry"}},
-      {own("what the PC is told of a read"),
+      {own("what is reported to the PC of a read"),
        {"told_as_old", "told_twice", "error_not_told", "error_wrong", "old_data_not_told", "old_data_wrong",
         "old_data_told_as_new"}},
-      {own("how long a host may wait before it sends or tells"), {"no_request", "response_not_told"}},
+      {own("how long a host may wait before it sends or reports"), {"no_request", "response_not_told"}},
       {own("silence of 3.5 characters ends a frame, whatever came before it"), {"does_not_recover"}},
   };
   return details;

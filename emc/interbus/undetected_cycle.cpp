@@ -53,7 +53,7 @@ PassingShifts passing_shifts(const interbus::NetworkDescription& network) {
                                                 static_cast<std::uint8_t>(prefix & 0xFF)};
     const auto before = check.update(check.start(), octets);
     const auto right = check.check_octets(before);
-    // The octet that would have to be the last one of the data, and the check that is sent behind it; the
+    // The octet that would have to be the last one of the data, and the check that is sent after it; the
     // second octet of that is where the status word begins.
     const auto sent = check.check_octets(check.update_octet(before, right[0]));
     if (sent[0] == right[1] && sent[1] == status_high) ++fitting;

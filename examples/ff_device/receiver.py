@@ -168,7 +168,7 @@ class Device:
             self.take(dlpdu, end)
 
     def may_begin(self):
-        """V(MID) of silence, behind others and behind what it has said itself."""
+        """V(MID) of silence, after others and after what it has said itself."""
         if self.hears_activity:
             return NEVER
         return max(self.heard_until, self.driven_until) + self.octets(self.s["inter_pdu_delay_octets"])

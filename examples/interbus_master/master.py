@@ -56,7 +56,7 @@ class Frame:
         return [value & 0xFF, value >> 8] if reflected else [value >> 8, value & 0xFF]
 
     def cycle(self, is_id, words):
-        """(is check, octet) of the telegrams that carry `words` behind the loopback word."""
+        """(is check, octet) of the telegrams that carry `words` after the loopback word."""
         octets = [octet for word in [self.s["loopback_word"]] + words for octet in (word >> 8, word & 0xFF)]
         status = self.s["status_clean"]
         behind = self.check(octets) + [status >> 8, status & 0xFF] + [0] * self.s["end_telegrams"]
@@ -126,7 +126,7 @@ class ReturnedLevels:
         return [line + (end,) for line, end in zip(lines, ends)]
 
     def telegrams(self, until):
-        """(start, (is ID, is check), octet or None, has stop level) of those not told yet that are over."""
+        """(start, (is ID, is check), octet or None, has stop level) of those not reported yet that are over."""
         coding, bit_rate = self.coding, self.coding.rate
         flag, is_data = coding.s["flag_place"], str(coding.s["data_flag_level"])
         for origin, rate, levels, end in self.lines(until):
@@ -209,7 +209,7 @@ class Master:
     # ---- recognition: stations join one by one, in the order of the ring ----
 
     def begin_search(self, now):
-        """Behind a silence in which all stations fall into reset."""
+        """After a silence in which all stations fall into reset."""
         quiet = self.s["silence_limit"] + self.s["silence_tolerance"] + SECOND // 1000
         self.start_at, self.verdict_at = max(now, self.last_driven + quiet), NEVER
         self.found, self.open, self.search, self.tries = [], set(), self.searching(), 0
@@ -396,7 +396,7 @@ class Master:
             is_alone = self.state == READY and not self.found
             if not is_alone and self.tries >= self.s["stop_after_bad_cycles"]:
                 self.name_place(self.probe[0], len(self.found), now)
-                self.end_search(f"nothing comes back behind station {self.probe[0]}", now)
+                self.end_search(f"nothing comes back after station {self.probe[0]}", now)
             return
         self.tries = 0
         if not ids:
@@ -483,7 +483,7 @@ class LevelMaster(Master):
         super().__init__(stream, settings, coding, ReturnedLevels(coding))
 
     def drive(self, now, telegrams, pause):
-        """A cycle and the status telegrams behind it."""
+        """A cycle and the status telegrams after it."""
         levels = self.coding.text_of(self.is_id, telegrams) + self.coding.pause_of(pause)
         self.stream.send(TRANSMIT_LEVELS, f"BqqI{(len(levels) + 7) // 8}s", 0, now, self.coding.rate,
                          len(levels), int(levels[::-1], 2).to_bytes((len(levels) + 7) // 8, "little"))

@@ -13,7 +13,7 @@ STOP_MISSING = 2  # flag of one that was heard
 
 
 class ReturnedTelegrams:
-    """What has come back. It is told when a transmission begins, telegrams of the future with it."""
+    """What has come back. It is reported when a transmission begins, telegrams of the future with it."""
     def __init__(self):
         self.heard = []
 
@@ -45,7 +45,7 @@ class TelegramMaster(Master):
         self.stream.send(TRANSMIT_CHARACTERS, "BqqqHH", LINE, start, start, start, 1, telegram)
 
     def drive(self, now, telegrams, pause):
-        """A cycle and the status telegrams behind it."""
+        """A cycle and the status telegrams after it."""
         bit = self.coding.bit
         for n, (is_check, octet) in enumerate(telegrams):
             kind = DATA | (SELECT if self.is_id else 0) | (CONTROL if is_check else 0)

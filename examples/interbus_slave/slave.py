@@ -27,7 +27,7 @@ class Receiver:
         return 1  # idle
 
     def next_edge(self):
-        """The first fall to 0 at or behind self.at."""
+        """The first fall to 0 at or after self.at."""
         for start, rate, count, packed in self.waves:
             n = max(0, -(-(self.at - start) * rate // SECOND))
             while n < count:
@@ -43,7 +43,7 @@ class Receiver:
         return start + count * SECOND // rate
 
     def telegrams(self, now):
-        """(start, levels behind the start level) of each one that is whole, or over, by `now`."""
+        """(start, levels after the start level) of each one that is whole, or over, by `now`."""
         while self.waves and (edge := self.next_edge()) != NEVER:
             known = max(now, self.heard_until())
             sample = lambda n: self.level(edge + self.bit // 2 + n * self.bit)

@@ -68,7 +68,7 @@ void answers_within_300_us(NodeBench& bench, CaseJudge& judge) {
     bench.await_response_window();
     const Transmission answer = expect_answer(bench, judge, switches, asked);
     const kernel::Duration took = answer.characters.front().start - asked - bench.delimiter();
-    expect_at_once(judge, "answer behind the silence", took, "answers_too_slowly");
+    expect_at_once(judge, "answer after the silence", took, "answers_too_slowly");
   }
 }
 
@@ -80,7 +80,7 @@ void moves_within_300_us(NodeBench& bench, CaseJudge& judge) {
     bench.await_response_window();
     expect_write_taken(bench, judge, data0, 0, written);
     const kernel::Duration took = bench.boards().changes().front().when - written - bench.delimiter();
-    expect_at_once(judge, "valves behind the silence", took, "moves_too_slowly");
+    expect_at_once(judge, "valves after the silence", took, "moves_too_slowly");
   }
 }
 
@@ -88,7 +88,7 @@ const std::vector<NodeCase>& cases() {
   static const std::vector<NodeCase> all{
       {{.id = "island/node/read/answers_within_300_us",
         .purpose = "VI-01",
-        .requirement = "The valve island answers a read at most 0.3 ms behind the silence that ends it.",
+        .requirement = "The valve island answers a read at most 0.3 ms after the silence that ends it.",
         .reference = kDataSheet,
         .stimulus = "Reads with random limit switches.",
         .expected = "Each answer is right and begins in time.",
@@ -98,7 +98,7 @@ const std::vector<NodeCase>& cases() {
       {{.id = "island/node/write/moves_within_300_us",
         .purpose = "VI-02",
         .requirement =
-            "The valve island moves its valves at most 0.3 ms behind the silence that ends a write.",
+            "The valve island moves its valves at most 0.3 ms after the silence that ends a write.",
         .reference = kDataSheet,
         .stimulus = "Writes that change every valve of the first board.",
         .expected = "The valves stand as each write says, in time.",

@@ -33,7 +33,7 @@ constexpr Scale kTime{"duration", "25 ms", "picoseconds", kTimeUnits};
 constexpr Scale kRate{"bit rate", "500 kbit/s", "bits per second", kRateUnits};
 constexpr Scale kLength{"length", "12 m", "", kLengthUnits};
 
-// digits * 10^power, negated if is_negative. No leading zeros, and no trailing ones behind the point.
+// digits * 10^power, negated if is_negative. No leading zeros, and no trailing ones after the point.
 struct Decimal {
   bool is_negative = false;
   std::string digits;

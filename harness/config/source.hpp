@@ -1,6 +1,6 @@
 // What a Document keeps of its text: the values in reading order, each with the octets it was written with.
 //
-// Nodes are stored depth first, so the first child of a container is the node behind it and the others
+// Nodes are stored depth first, so the first child of a container is the node after it and the others
 // follow by `next`. Lines are not stored: they are searched from the offset when an error asks for them.
 // Private to this folder.
 #pragma once

@@ -38,7 +38,7 @@ class ArrivalWriter {
     shift_time_ = std::min(shift_time_ + duration, kFarthest);
   }
 
-  // Levels of the transmission at their shifted time, and `late` behind it.
+  // Levels of the transmission at their shifted time, and `late` after it.
   void write(Piece piece, kernel::Duration late = {});
 
   // Other levels of the same rate at the shifted time of level `at`.

@@ -28,7 +28,7 @@ class Plan {
   Plan() = default;
   explicit Plan(std::vector<Rule> rules) : rules_(std::move(rules)) {}
 
-  // Rules are asked in the order in which they were added; so are disturbances, behind them.
+  // Rules are asked in the order in which they were added; so are disturbances, after them.
   Plan& add(Rule rule) {
     rules_.push_back(std::move(rule));
     return *this;

@@ -66,7 +66,7 @@ void read_window(ObjectReader& object, Windowed& windowed) {
   if (!to) return;
   windowed.to = kernel::kStart + to->as_duration({}, kLongestDuration);
   if (windowed.to <= windowed.from || windowed.to == kernel::kStart) {
-    config::fail(*to, "the window ends before it begins; write an instant behind \"from\"");
+    config::fail(*to, "the window ends before it begins; write an instant after \"from\"");
   }
 }
 

@@ -43,7 +43,7 @@ class KeptFaults final : public trace::Recorder {
   std::vector<std::string> texts;
 };
 
-// One receiver "rx" behind a plan.
+// One receiver "rx" after a plan.
 class Bench {
  public:
   explicit Bench(Plan plan, std::uint64_t seed = 1, std::uint64_t most_work = PlanWork::kMostSteps)
@@ -99,7 +99,7 @@ TEST(Plan, EachEffectDoesWhatItSays) {
   };
   EXPECT_EQ(arrives(Flip{}), "@0 000111");
   EXPECT_EQ(arrives(Flip{{1, 3}}), "@0 001110");
-  EXPECT_EQ(arrives(Flip{{4}}), "@0 001011") << "behind the transmission there is nothing to flip";
+  EXPECT_EQ(arrives(Flip{{4}}), "@0 001011") << "after the transmission there is nothing to flip";
   EXPECT_EQ(arrives(Force{false}), "@0 000011");
   EXPECT_EQ(arrives(Force{true, 1}), "@0 001011");
   EXPECT_EQ(arrives(Force{false, 4}), "@0 000000");
@@ -464,7 +464,7 @@ RC_GTEST_PROP(Plan, ArrivalsNeverOverlap, (std::uint64_t seed)) {
 }
 
 TEST(InstalledPlan, MutesThatMeetAreOneSilence) {
-  // Each level silences the line for two levels more: from the first one on until two behind the last.
+  // Each level silences the line for two levels more: from the first one on until two after the last.
   Rule rule = rule_of(Mute{2 * kMicrosecond});
   rule.scope = Scope::level;
   rule.when.to = kStart + 3 * kMicrosecond;

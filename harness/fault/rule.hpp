@@ -20,7 +20,7 @@
 //  - Rules are asked in order of installation, about the transmission as it was sent; no rule sees what
 //    another one has made of it.
 //  - Flip and Force accumulate, level by level in order of installation: a force overrides the flips and
-//    forces of rules before it, a flip behind it inverts what was forced.
+//    forces of rules before it, a flip after it inverts what was forced.
 //  - Drop, Delay, Repeat and Insert claim the levels of their part. The first rule that claims a level wins;
 //  a
 //    later rule whose part touches a claimed level does not answer (no hit, no draw). Parts that do not touch
@@ -34,7 +34,7 @@ namespace fieldproof::fault {
 inline constexpr kernel::Duration kLongestDuration{1'000'000'000'000'000'000};
 
 // Inverts levels, counted from the first level of the part; without a list all levels of the part. Positions
-// behind the end of the part but inside the transmission are legal; behind the transmission they do nothing.
+// after the end of the part but inside the transmission are legal; after the transmission they do nothing.
 struct Flip {
   std::vector<std::uint32_t> levels{};
   friend bool operator==(const Flip&, const Flip&) = default;
@@ -64,14 +64,14 @@ struct Drop {
 };
 
 // The part arrives `count` more times, each `gap` after the end of the one before; the rest of the
-// transmission arrives behind that.
+// transmission arrives after that.
 struct Repeat {
   std::uint32_t count = 1;
   kernel::Duration gap{};
   friend bool operator==(const Repeat&, const Repeat&) = default;
 };
 
-// Levels at the rate of the transmission, in front of the part or behind it; what follows them arrives later
+// Levels at the rate of the transmission, in front of the part or after it; what follows them arrives later
 // by their length.
 struct Insert {
   line::Levels levels;

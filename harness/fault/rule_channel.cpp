@@ -165,7 +165,7 @@ void RuleChannel::ask_about(BoundRule& bound, const Span& span, Piece part, cons
   enter(bound, span, part, sent);
 }
 
-// Claims do not touch each other, so only the first one that ends behind the begin of the part can touch it.
+// Claims do not touch each other, so only the first one that ends after the begin of the part can touch it.
 bool RuleChannel::is_claimed(Piece part) const {
   const auto next = std::partition_point(claims_.begin(), claims_.end(),
                                          [&](const Claim& claim) { return claim.part.end() <= part.first; });

@@ -19,7 +19,7 @@
 // Contract: all positions mean the transmission as it was sent, whatever else is changed in it. Flips and
 // forces are applied first, in order; then the parts that are dropped, removed, repeated or inserted, from
 // front to back (parts should not overlap; one that begins inside the part before it is ignored); then the
-// start and the rate. Positions behind the end do nothing. Arming allocates nothing once the channel is warm.
+// start and the rate. Positions after the end do nothing. Arming allocates nothing once the channel is warm.
 namespace fieldproof::fault {
 
 class ScriptedChannel final : public Channel {
@@ -39,20 +39,20 @@ class ScriptedChannel final : public Channel {
     return order(level ? Kind::force_one : Kind::force_zero, first, count);
   }
 
-  // The levels do not arrive; what is behind them arrives in time.
+  // The levels do not arrive; what is after them arrives in time.
   ScriptedChannel& drop(std::size_t first, std::size_t count) { return order(Kind::drop, first, count); }
-  // The levels do not arrive; what is behind them arrives earlier by their length.
+  // The levels do not arrive; what is after them arrives earlier by their length.
   ScriptedChannel& remove(std::size_t first, std::size_t count) { return order(Kind::remove, first, count); }
-  // The levels arrive twice; what is behind them arrives later by their length.
+  // The levels arrive twice; what is after them arrives later by their length.
   ScriptedChannel& repeat(std::size_t first, std::size_t count) { return order(Kind::repeat, first, count); }
-  // New levels in front of level `at` (size() appends them); what is behind arrives later by their length.
+  // New levels in front of level `at` (size() appends them); what is after arrives later by their length.
   ScriptedChannel& insert(std::size_t at, const line::Levels& levels);
   ScriptedChannel& insert(std::size_t at, std::uint64_t bits, unsigned count);
   // Nothing from level `at` on arrives.
   ScriptedChannel& cut(std::size_t at) { return order(Kind::drop, at, kToTheEnd); }
   ScriptedChannel& lose() { return cut(0); }
 
-  // The same on telegram k of the transmission, from 0; behind the last telegram they do nothing.
+  // The same on telegram k of the transmission, from 0; after the last telegram they do nothing.
   ScriptedChannel& drop_telegram(std::size_t k) { return order(Kind::drop, k, kTelegram); }
   ScriptedChannel& remove_telegram(std::size_t k) { return order(Kind::remove, k, kTelegram); }
   ScriptedChannel& repeat_telegram(std::size_t k) { return order(Kind::repeat, k, kTelegram); }

@@ -74,7 +74,7 @@ void AttachedCase::expect_time_to_pass() const {
   if (now_ - counted_from_ >= kStandstill) return;
   throw Misbehaviour(reasons::kFloods,
                      fmt::format("the implementation has asked for {} calls since {}, and it is {}; its next "
-                                 "time must lie behind the one that has come",
+                                 "time must lie after the one that has come",
                                  kMostActions, kernel::describe(counted_from_), kernel::describe(now_)));
 }
 

@@ -17,7 +17,7 @@
 // throws Misbehaviour(kImpossible) out of the call; one that did wrong once is not called again.
 namespace fieldproof::iut {
 
-// A device for one case and what is to be done behind it.
+// A device for one case and what is to be done after it.
 struct Attachment {
   Device* device = nullptr;
   std::shared_ptr<void> lease;            // keeps the device

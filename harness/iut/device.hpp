@@ -11,11 +11,11 @@
 #include "harness/line/waveform.hpp"
 
 // An implementation under test as the bench calls it, whatever it is: a shared library, a process, a peer
-// behind a socket, a station of our own. A protocol wraps it as one of its devices.
+// after a socket, a station of our own. A protocol wraps it as one of its devices.
 //
 // Contract: calls come in order of time, one at a time. Within a call the implementation acts through the
 // `Bench` that `begin` gave it: it transmits, moves its outputs, asks for its inputs, at instants that are
-// now or later. Behind each call `next_time` says when it wants to be called again. Time is virtual and
+// now or later. After each call `next_time` says when it wants to be called again. Time is virtual and
 // begins with the case; nothing happens between two calls.
 //
 // An implementation that does not keep to this throws Misbehaviour out of the call (see misbehaviour.hpp).

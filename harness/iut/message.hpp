@@ -79,7 +79,7 @@ class MessageWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-// Reads one message behind its length. All throw MessageError for content that is not there.
+// Reads one message after its length. All throw MessageError for content that is not there.
 class MessageReader {
  public:
   explicit MessageReader(std::span<const std::uint8_t> bytes);

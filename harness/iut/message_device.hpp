@@ -7,7 +7,7 @@
 #include "harness/iut/message.hpp"
 #include "harness/iut/peer.hpp"
 
-// An implementation behind messages, in lock step: each call is a message, and what the implementation does
+// An implementation after messages, in lock step: each call is a message, and what the implementation does
 // until its `done` happens within the call.
 namespace fieldproof::iut {
 

@@ -12,7 +12,7 @@
 #include "harness/iut/process.hpp"
 
 // The other end of a stream of messages: a process at its standard streams, or who listens at a socket. It is
-// supervised: what it does not do in time, or does too much, is Misbehaviour with its evidence, and behind
+// supervised: what it does not do in time, or does too much, is Misbehaviour with its evidence, and after
 // that the peer is of no use any more.
 //
 // Limits: the log (its standard error) is kept up to kKeptLog octets, the last ones.
@@ -34,7 +34,7 @@ class Peer {
 
   // To one that has gone nothing is sent: the next `receive` tells what it said last, and that it has gone.
   void send(std::span<const std::uint8_t> message, std::chrono::milliseconds limit);
-  // The next message, without its length, within the limit behind `begin`. Valid until the next call.
+  // The next message, without its length, within the limit after `begin`. Valid until the next call.
   std::span<const std::uint8_t> receive(std::chrono::milliseconds limit,
                                         Clock::time_point begin = Clock::now());
   // Whether there is anything to read although nothing was asked; of a peer that is alive. Of what has
@@ -50,7 +50,7 @@ class Peer {
   // Whoever it is, it cannot be used any more.
   void end();
 
-  // Misbehaviour with what is known of it: the last lines of its log stand behind the evidence.
+  // Misbehaviour with what is known of it: the last lines of its log stand after the evidence.
   [[noreturn]] void blame(std::string_view reason, const std::string& sentence,
                           std::vector<std::string> evidence = {});
 

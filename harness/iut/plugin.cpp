@@ -44,7 +44,7 @@ const fieldproof_character* as_they_lie(std::span<const Character> characters) {
 }
 
 constexpr const char* kNoCharacters =
-    "has no function 'receive'; its role is told characters whatever the unit of its line";
+    "has no function 'receive'; its role receives characters whatever the unit of its line";
 
 // A library stays loaded as long as what it gave is used.
 struct Plugin {

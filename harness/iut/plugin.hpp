@@ -7,7 +7,7 @@
 #include "harness/iut/device.hpp"
 #include "harness/iut/fieldproof_plugin.h"
 
-// An implementation behind the functions of fieldproof_plugin.h, called in this process: in a shared library,
+// An implementation after the functions of fieldproof_plugin.h, called in this process: in a shared library,
 // or linked into the program. One that crashes takes the process with it: where that must not be, it is
 // loaded by a process of its own (`fieldproof station`).
 namespace fieldproof::iut {

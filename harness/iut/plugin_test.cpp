@@ -188,7 +188,7 @@ TEST(PluginTest, RoleThatIsToldCharactersTooNeedsWhoTakesThem) {
     EXPECT_EQ(error.kind(), kernel::ErrorKind::implementation);
     EXPECT_STREQ(
         error.what(),
-        "plugin echo: has no function 'receive'; its role is told characters whatever the unit of its "
+        "plugin echo: has no function 'receive'; its role receives characters whatever the unit of its "
         "line");
   }
   echo.receive = [](void*, unsigned, const fieldproof_character*, unsigned, fieldproof_time) {

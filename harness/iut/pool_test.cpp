@@ -164,7 +164,7 @@ TEST_F(PoolTest, StartThatSucceedsForgivesThoseBefore) {
   EXPECT_EQ(starts(), 9);
 }
 
-// Two connections, one behind the other, that answer all that a pool asks for.
+// Two connections, one after the other, that answer all that a pool asks for.
 class PoolThreads : public PoolTest {
  protected:
   PoolThreads() : listener_(folder_.file("s")), thread_([this] { serve(); }) {}

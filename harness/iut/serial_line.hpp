@@ -37,7 +37,7 @@ struct SerialSettings {
 inline constexpr std::string_view kSerialUri = "serial:";
 
 // "serial:/dev/ttyUSB0?baud=9600&format=8e1&latency=200us&upper=unix:/path"; `upper` is the last one, and all
-// behind it is its URI. Throws kernel::Error(usage) for what is no such URI.
+// after it is its URI. Throws kernel::Error(usage) for what is no such URI.
 SerialSettings serial_settings(const std::string& uri);
 
 // "8e1": data bits, parity (n, e, o, m, s), stop bits. Nothing for other text.
@@ -76,7 +76,7 @@ class SerialLine {
   // What is written comes back, and is taken away from what is read. Misbehaviour when something else comes.
   void set_echo(bool receives_own_echo) { receives_own_echo_ = receives_own_echo; }
 
-  // Hands all over; gives when the last stop bit was on the line: by a UART that takes its time behind the
+  // Hands all over; gives when the last stop bit was on the line: by a UART that takes its time after the
   // call, at a terminal within it. Throws Misbehaviour when the device has gone or takes nothing.
   Stamp write(std::span<const std::uint8_t> octets);
   // What has arrived by `until`; waits for it. Nothing when nothing has. Throws Misbehaviour when the device

@@ -48,7 +48,8 @@ void set_value(SerialSettings& settings, const std::string& uri, std::string_vie
     settings.latency = *count * kernel::kMicrosecond;
   } else if (name == "echo") {
     if (value != "yes" && value != "no")
-      refuse_uri(uri, fmt::format("says echo={}; write echo=yes where the adapter hears itself", value));
+      refuse_uri(uri,
+                 fmt::format("says echo={}; write echo=yes where the adapter receives its own echo", value));
     settings.receives_own_echo = value == "yes";
   } else {
     refuse_uri(uri, fmt::format("says '{}', which is nothing that a line has", name));

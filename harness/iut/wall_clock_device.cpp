@@ -138,7 +138,7 @@ void WallClockDevice::expect_an_answer() const {
   constexpr std::uint64_t kLongestAnswer = 64;
   if (arrived_ - arrived_before_ > kLongestAnswer) {
     throw Misbehaviour(reasons::kFloods,
-                       fmt::format("the implementation has sent {} octets, and talks while it should hear",
+                       fmt::format("the implementation has sent {} octets, and sends while it should receive",
                                    arrived_ - arrived_before_));
   }
   refuse("nothing can be sent into an answer");

@@ -37,7 +37,7 @@ struct Reference {
   Standing standing = Standing::own;
 };
 
-// The reference of what rests on both: the weaker standing decides, and `part` is named behind `whole`.
+// The reference of what rests on both: the weaker standing decides, and `part` is named after `whole`.
 Reference resting_on_both(Reference whole, const Reference& part);
 
 }  // namespace fieldproof::judge

@@ -84,7 +84,7 @@ void CharacterReceiver::receive(const Waveform& wave, std::vector<Received>& rec
         Received{code_.from_bits(bits), start, sampling_.decided_at(start, length - 1, bit_rate_), {}});
     last.character.level = static_cast<std::uint32_t>(edge);
     last.busy_until = busy_until(wave, last);
-    // With the stop bit missing the line is low: the next falling edge lies behind an idle level anyhow.
+    // With the stop bit missing the line is low: the next falling edge lies after an idle level anyhow.
     edge = sampler_.behind(length - 1);
   }
 }

@@ -150,7 +150,7 @@ TEST(CharacterReceiver, AGlitchJustBeforeTheStartShiftsTheSamplingGrid) {
   EXPECT_EQ(first_start(9), 9U) << "two of three samples see the line idle again";
 }
 
-// The last bit looked at is the stop bit: 9 whole bits behind the edge, first sample wanted 9 + 8/16
+// The last bit looked at is the stop bit: 9 whole bits after the edge, first sample wanted 9 + 8/16
 // (middle). A faster sender's stop bit ends at 10 of its bits: 10/9.5 = 1.0526; a slower one's begins at 9:
 // 9/9.5.
 TEST(CharacterReceiver, BearsRatesUpToBothLimits) {

@@ -91,7 +91,7 @@ std::vector<FourBits> weight_four_code_words(const FrameCheckParameters& paramet
   for (auto group = pairs.begin(); group != pairs.end();) {
     const auto end = std::find_if(group, pairs.end(), [&](const Pair& p) { return p.sum != group->sum; });
     // Each set of four splits into two pairs in three ways, all with equal sums: the one whose pairs lie
-    // behind each other counts.
+    // after each other counts.
     for (auto low = group; low != end; ++low) {
       for (auto high = group; high != end; ++high) {
         if (low->second < high->first) {

@@ -60,7 +60,7 @@ class FrameCheck16 {
   }
   std::uint16_t compute(std::span<const std::uint8_t> octets) const { return finish(update(start_, octets)); }
 
-  // What a sender puts on the line behind the message, in this order.
+  // What a sender puts on the line after the message, in this order.
   constexpr std::array<std::uint8_t, 2> check_octets(State state) const {
     const auto bits = static_cast<unsigned>(state ^ xorout_in_line_order_);
     return {static_cast<std::uint8_t>(bits & 0xFF), static_cast<std::uint8_t>(bits >> 8)};

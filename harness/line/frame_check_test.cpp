@@ -43,7 +43,7 @@ std::vector<bool> bits_of(std::span<const std::uint8_t> octets, bool least_first
   return bits;
 }
 
-// Long division on paper: the message with the initial register on top, `width` zeros behind.
+// Long division on paper: the message with the initial register on top, `width` zeros after.
 FrameCheckValue by_long_division(const FrameCheckParameters& p, std::vector<bool> bits) {
   const std::size_t message = bits.size();
   bits.resize(message + p.width);

@@ -49,7 +49,7 @@ class ManchesterCode {
   std::array<std::uint16_t, 256> octets_{};  // octet -> 16 levels, the first in bit 0
 };
 
-// A receiver that takes each half bit in its middle, at (2 k + 1) / 4 bit times behind the begin of the
+// A receiver that takes each half bit in its middle, at (2 k + 1) / 4 bit times after the begin of the
 // transmission, from a waveform of any rate. Nothing is rounded.
 //
 // Limit: its clock is that of the transmission. How a receiver recovers it from the preamble, and how far it

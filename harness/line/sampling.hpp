@@ -45,7 +45,7 @@ struct Sampling {
 inline constexpr Sampling kMajorityOfThree{Sampling::Kind::majority_of_three};
 inline constexpr Sampling kMidBit{Sampling::Kind::mid_bit};
 
-// The first level at or after `from` that is 0 behind a level that is 1, or size(). In front of level 0 the
+// The first level at or after `from` that is 0 after a level that is 1, or size(). In front of level 0 the
 // line is idle, so level 0 is an edge when it is 0.
 std::size_t falling_edge(const Levels& levels, std::size_t from);
 
@@ -77,7 +77,7 @@ class Sampler {
   // Whether all of the waveform that a bit depends on is there.
   bool is_decided(unsigned bit) const { return edge_ + places_[bit].behind <= levels_->size(); }
 
-  // The first level that begins at or behind the last sample of a bit: from there on the receiver looks for
+  // The first level that begins at or after the last sample of a bit: from there on the receiver looks for
   // the next edge.
   std::size_t behind(unsigned bit) const { return within(places_[bit].behind); }
 

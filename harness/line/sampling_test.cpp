@@ -70,7 +70,7 @@ TEST(Sampling, FindsFallingEdges) {
   EXPECT_EQ(falling_edge(levels, 69), 70U);
 }
 
-// The definition, in whole numbers: level n behind the edge begins at n / rate, a sample is taken at
+// The definition, in whole numbers: level n after the edge begins at n / rate, a sample is taken at
 // sixteenths / (16 * bit rate).
 struct SlowSampler {
   std::int64_t rate;
@@ -84,7 +84,7 @@ struct SlowSampler {
     while (begins(n + 1) <= taken(bit, sixteenth)) ++n;
     return static_cast<std::size_t>(n);
   }
-  // The first that begins at or behind it.
+  // The first that begins at or after it.
   std::size_t behind(unsigned bit, unsigned sixteenth) const {
     std::int64_t n = 0;
     while (begins(n) < taken(bit, sixteenth)) ++n;

@@ -89,8 +89,8 @@ class TelegramCode {
     return decode_until(levels, at, levels.size(), sink);
   }
 
-  // The same for who wants the telegrams that begin up to level `until`, and bears a few behind it. What is
-  // given, when it lies in the levels behind `until`, is where to go on: no telegram begins in between.
+  // The same for who wants the telegrams that begin up to level `until`, and bears a few after it. What is
+  // given, when it lies in the levels after `until`, is where to go on: no telegram begins in between.
   template <typename Sink>
   std::size_t decode_until(const Levels& levels, std::size_t at, std::size_t until, Sink&& sink) const {
     const std::size_t size = levels.size();

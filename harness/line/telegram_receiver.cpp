@@ -78,7 +78,7 @@ bool TelegramReceiver::sample_telegram(const Waveform& wave, std::size_t& at, Te
     telegram.level = static_cast<std::uint32_t>(at);
     if (!sampler_.is_decided(telegram.levels() - 1)) return false;
     at = sampler_.behind(telegram.levels() - 1);
-    // A line that stays low behind a missing stop bit is no start bit; one that has risen by then may fall.
+    // A line that stays low after a missing stop bit is no start bit; one that has risen by then may fall.
     if (!wave.levels[at - 1]) at = next_idle(wave.levels, at);
     return true;
   }

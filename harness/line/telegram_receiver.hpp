@@ -76,7 +76,7 @@ class TelegramReceiver {
     if (at < size) {
       keep(wave, at);
     } else if (!wave.levels[size - 1]) {
-      // Behind a missing stop bit: a start bit needs an edge, so the next reception may have to rise first.
+      // After a missing stop bit: a start bit needs an edge, so the next reception may have to rise first.
       low_until_ = wave.end();
     }
   }
@@ -98,7 +98,7 @@ class TelegramReceiver {
       }
     }
     const std::size_t next = wave.first_level_at(joined.time_of(at));
-    // Where they end on a low line that goes on, the next edge is behind it.
+    // Where they end on a low line that goes on, the next edge is after it.
     const bool stays_low = at == joined.levels.size() && !joined.levels[at - 1];
     return stays_low ? next_idle(wave.levels, next) : next;
   }
@@ -113,9 +113,9 @@ class TelegramReceiver {
   // waveform cuts it (`at` is then its first level), else `at` is where the search goes on.
   bool sample_telegram(const Waveform& wave, std::size_t& at, Telegram& telegram);
   void keep(const Waveform& wave, std::size_t from);
-  // Idle levels behind a cut telegram that complete it whatever it is.
+  // Idle levels after a cut telegram that complete it whatever it is.
   std::size_t idle_levels(const Waveform& wave) const;
-  // Makes one waveform of what is pending and `second` behind it; false when they share no grid.
+  // Makes one waveform of what is pending and `second` after it; false when they share no grid.
   bool join_on_grid(const Waveform& second);
   // The same at a rate at which both can be written, with as much of `second` as a telegram that began before
   // it can last.

@@ -129,7 +129,7 @@ class Levels {
     return count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
   }
 
-  // Room for `levels` levels and one guard word of idle levels behind them.
+  // Room for `levels` levels and one guard word of idle levels after them.
   void reserve(std::size_t levels) {
     if (levels + 64 > capacity_) grow(levels);
   }

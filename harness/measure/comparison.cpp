@@ -14,7 +14,7 @@ std::string_view name(Agreement agreement) {
 }
 
 Agreement agreement(const Comparison& comparison, double tolerance_percent) {
-  FIELDPROOF_CHECK(comparison.whole > 0, "a deviation is told in parts of something");
+  FIELDPROOF_CHECK(comparison.whole > 0, "a deviation is given in parts of something");
   const double deviation = comparison.deviation_percent();
   const double beyond = (comparison.is_bound ? deviation : std::abs(deviation)) - tolerance_percent;
   if (beyond <= 0) return Agreement::holds;

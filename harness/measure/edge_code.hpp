@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-// Words that tell which edge of a signal they show. Bit 0 is the signal itself, high behind an odd number of
+// Words that tell which edge of a signal they show. Bit 0 is the signal itself, high after an odd number of
 // edges; the other bits number the edges, so that what appears at an output can be matched to what was at the
 // input also where pulses are lost. Numbers are multiplied by an odd constant: words of neighbouring edges
 // differ in many bits, and a word that mixes two of them, or in which bits are wrong, is hardly ever the word

@@ -12,7 +12,7 @@
 // it. A pulse lasts at the output from there until the output shows a later edge. A pulse is lost when the
 // output never showed its rising edge, a pause when it never showed the falling edge in front of it; where a
 // pause is lost, the output stays high over both pulses, which are told apart by the numbers of their edges.
-// The rest behind a train is no pause of the signal: the edge in front of it
+// The rest after a train is no pause of the signal: the edge in front of it
 // counts neither as late nor as lost. The last pulse of a record has no width when nothing follows it.
 //
 // A value belongs to the phase of the time from its first input edge to its last output edge.

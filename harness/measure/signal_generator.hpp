@@ -16,7 +16,7 @@
 //
 // Contract: edges are counted from 1, odd ones rise, even ones fall. The k-th rising edge (from 0) of a train
 // that is triggered at t comes at t + phase + k periods, its falling edge `duty` of a period later; each sum
-// is rounded once. A train is triggered behind the last edge before it.
+// is rounded once. A train is triggered after the last edge before it.
 namespace fieldproof::measure {
 
 struct SquareWave {
@@ -41,7 +41,7 @@ class SignalGenerator {
   const std::vector<kernel::Time>& edges() const { return edges_; }
   kernel::Time edge(std::uint64_t number) const { return edges_.at(number - 1); }
   std::uint64_t pulse_count() const { return edges_.size() / 2; }
-  // Between two pulses of one train; what lies behind a train is a rest.
+  // Between two pulses of one train; what lies after a train is a rest.
   std::uint64_t pause_count() const { return pulse_count() - train_ends_.size(); }
   // The last edge of a train, in front of a rest.
   bool is_train_end(std::uint64_t number) const;

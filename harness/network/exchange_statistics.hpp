@@ -69,7 +69,7 @@ class ExchangeStatistics {
   const ErrorStatistics& counts() const { return counts_; }
   // Of what is counted.
   const std::optional<WrongWord>& first_wrong() const { return first_wrong_; }
-  // Whether the last served exchange of data left a sink behind; how many have left none.
+  // Whether the last served exchange of data left a sink after; how many have left none.
   bool has_missed() const { return has_missed_; }
   std::uint64_t good_exchanges() const { return good_exchanges_; }
 

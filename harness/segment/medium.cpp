@@ -85,7 +85,7 @@ void MediumPort::tell_due(kernel::Time now) {
 }
 
 void MediumPort::tell_activity(kernel::Time now) {
-  // What is over and not told yet is activity still: its end is told behind it.
+  // What is over and not told yet is activity still: its end is told after it.
   const bool is_active = !flights_.empty() && flights_.front().start <= now;
   if (is_active == is_active_) return;
   is_active_ = is_active;

@@ -99,7 +99,7 @@ TEST(Medium, ActivityIsWhatIsDrivenAndNotWhatAFaultMakesOfIt) {
   bus.run();
   EXPECT_EQ(bus.ears[1].heard.find("0101"), std::string::npos);
   EXPECT_EQ(bus.ears[1].activity, "from 6; to 10; ");
-  EXPECT_EQ(bus.ears[2].activity, "") << "who did not ask is not told";
+  EXPECT_EQ(bus.ears[2].activity, "") << "who did not ask is not reported";
 }
 
 TEST(Medium, TellsATransmissionAtItsEndAsItWasDriven) {
@@ -125,7 +125,7 @@ TEST(Medium, ResolvesOverlapsAtEachPlaceForItself) {
   bus.drive(1, wave_of("0011", 4 * kMicrosecond));
   bus.run();
   EXPECT_EQ(bus.ears[2].heard, "@3 0110011 told 10; ") << "the last level of one is the first of the other";
-  EXPECT_EQ(bus.ears[0].heard, "@5 0011 told 9; ") << "does not hear itself";
+  EXPECT_EQ(bus.ears[0].heard, "@5 0011 told 9; ") << "does not receive itself";
   EXPECT_EQ(bus.ears[1].heard, "@1 0110 told 5; ");
 }
 

@@ -56,7 +56,7 @@ class ProcessWords {
   static constexpr std::size_t kMostChanges = 65'536;
   const std::vector<Change>& changes() const { return changes_; }
   void forget_changes() { changes_.clear(); }
-  // Called at each change as it is written, behind those that were added before.
+  // Called at each change as it is written, after those that were added before.
   void on_change(std::function<void(const Change&)> hook) { on_change_.push_back(std::move(hook)); }
   std::uint64_t write_count() const { return write_count_; }
   kernel::Time last_write() const { return last_write_; }

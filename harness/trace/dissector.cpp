@@ -14,7 +14,7 @@ class PlainTeller final : public Teller {
   Decoded tell(const line::Waveform& wave) override { return {PlainDissector().brief(wave), false}; }
 };
 
-// What stands behind time and channel.
+// What stands after time and channel.
 class LineWriter {
  public:
   explicit LineWriter(const Dissector& dissector) : dissector_(dissector) {}

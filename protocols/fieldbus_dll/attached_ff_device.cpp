@@ -58,7 +58,7 @@ void AttachedFfDevice::transmit(const iut::Transmission& transmission) {
     link_.transmit(transmission);
     return;
   }
-  attached_.expect_in_order(transmission.start, "tells its user something");
+  attached_.expect_in_order(transmission.start, "reports something to its user");
   const Octets octets = AttachedLink::told_octets(transmission);
   const std::uint8_t what = octets.empty() ? std::uint8_t{0} : octets.front();
   const auto dlpdu = octets.empty() ? std::nullopt : ff_dlpdu_of(std::span(octets).subspan(1), rules_);
@@ -68,19 +68,19 @@ void AttachedFfDevice::transmit(const iut::Transmission& transmission) {
              dlpdu->type == FfType::dt3) {
     user_->on_published(*dlpdu, transmission.start);
   } else {
-    iut::refuse_impossible("tells its user what is neither 01 and a DT1 nor 02 and a DT3");
+    iut::refuse_impossible("reports to its user what is neither 01 and a DT1 nor 02 and a DT3");
   }
 }
 
 void AttachedFfDevice::write(iut::Item item, std::uint64_t value, kernel::Time when) {
-  attached_.expect_in_order(when, "tells its user an event");
+  attached_.expect_in_order(when, "reports an event to its user");
   if (item == kRefused) {
     link_.refuse();
   } else if (item != kEvent) {
     iut::refuse_impossible(fmt::format("writes item {}, which a station of FF-P does not have", item));
   } else if ((value & 0xFF) >= kEventKinds || value >> 16 != 0) {
-    iut::refuse_impossible(fmt::format("tells {:X}h as an event; there are kinds 0 to {} of nodes up to 255",
-                                       value, kEventKinds - 1));
+    iut::refuse_impossible(fmt::format(
+        "reports {:X}h as an event; there are kinds 0 to {} of nodes up to 255", value, kEventKinds - 1));
   } else {
     user_->on_event({static_cast<FfEventKind>(value & 0xFF), static_cast<std::uint8_t>(value >> 8)}, when);
   }

@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
                  [](iut::Bench& bench) { bench.transmit({kUserPort, kAct, kAct, kAct, {1, 0x34}}); }},
         WrongAct{"neither 01 and a DT1", kLevels,
                  [](iut::Bench& bench) { bench.transmit({kUserPort, kAct, kAct, kAct, {}}); }},
-        WrongAct{"tells its user no octets", kLevels,
+        WrongAct{"reports no octets to its user", kLevels,
                  [](iut::Bench& bench) { bench.transmit({kUserPort, kAct, kAct, kAct, {1, 0x100}}); }},
         WrongAct{"drives port 1", kFrames,
                  [](iut::Bench& bench) { bench.transmit({1, kAct, kAct, kAct, {1}}); }},

@@ -44,24 +44,24 @@ void AttachedIsaDevice::transmit(const iut::Transmission& transmission) {
     link_.transmit(transmission);
     return;
   }
-  attached_.expect_in_order(transmission.start, "tells its user something");
+  attached_.expect_in_order(transmission.start, "reports something to its user");
   const Octets octets = AttachedLink::told_octets(transmission);
   const auto dlpdu = octets.empty() ? std::nullopt : isa_dlpdu_of(std::span(octets).subspan(1), rules_);
   const bool is_data = dlpdu && (dlpdu->type == IsaType::du || dlpdu->type == IsaType::dt);
   if (!is_data || octets.front() != kIsaData)
-    iut::refuse_impossible("tells its user what is not 01 and a DU or DT");
+    iut::refuse_impossible("reports to its user what is not 01 and a DU or DT");
   user_->on_data(*dlpdu, transmission.start);
 }
 
 void AttachedIsaDevice::write(iut::Item item, std::uint64_t value, kernel::Time when) {
-  attached_.expect_in_order(when, "tells its user an event");
+  attached_.expect_in_order(when, "reports an event to its user");
   if (item == kRefused) {
     link_.refuse();
   } else if (item != kEvent) {
     iut::refuse_impossible(fmt::format("writes item {}, which a station of ISA-D does not have", item));
   } else if ((value & 0xFF) >= kIsaEventKinds || value >> 16 != 0) {
-    iut::refuse_impossible(fmt::format("tells {:X}h as an event; there are kinds 0 to {} of nodes up to 255",
-                                       value, kIsaEventKinds - 1));
+    iut::refuse_impossible(fmt::format(
+        "reports {:X}h as an event; there are kinds 0 to {} of nodes up to 255", value, kIsaEventKinds - 1));
   } else {
     user_->on_event({static_cast<IsaEventKind>(value & 0xFF), static_cast<std::uint8_t>(value >> 8)}, when);
   }

@@ -27,9 +27,10 @@ std::uint64_t number_at(std::span<const std::uint8_t> octets, std::size_t at, un
 AttachedLink::AttachedLink(iut::AttachedCase& attached, const LinkRules& rules)
     : attached_(attached), rules_(rules) {
   if (attached.unit_kind() != iut::UnitKind::characters) return;
-  throw kernel::Error(kernel::ErrorKind::implementation,
-                      "a station of the data link hears and says levels or telegrams; this implementation "
-                      "announces characters");
+  throw kernel::Error(
+      kernel::ErrorKind::implementation,
+      "a station of the data link receives and sends levels or telegrams; this implementation "
+      "announces characters");
 }
 
 // ---- what it is told ----
@@ -52,7 +53,8 @@ void AttachedLink::tell_frame(const line::Waveform& reception) {
   const auto frames = line::delimited_frames_in(reception, rules_.bit_rate);
   const bool is_one = frames.size() == 1 && frames[0].end == line::FrameEnd::whole &&
                       wave_of(frames[0].octets, reception.start).levels == reception.levels;
-  if (!is_one) throw iut::CannotBeDone("an implementation that hears telegrams hears whole frames only");
+  if (!is_one)
+    throw iut::CannotBeDone("an implementation that receives telegrams receives whole frames only");
   const unsigned before = rules_.preamble_octets + 1;
   std::vector<iut::Character> characters;
   for (const std::uint8_t octet : frames[0].octets) {
@@ -146,7 +148,8 @@ void AttachedLink::drive_due(kernel::Time now) {
 Octets AttachedLink::told_octets(const iut::Transmission& transmission) {
   Octets octets;
   for (const std::uint16_t one : transmission.characters) {
-    if (one > 0xFF || octets.size() >= kMostFrameOctets) iut::refuse_impossible("tells its user no octets");
+    if (one > 0xFF || octets.size() >= kMostFrameOctets)
+      iut::refuse_impossible("reports no octets to its user");
     octets.push_back(static_cast<std::uint8_t>(one));
   }
   return octets;

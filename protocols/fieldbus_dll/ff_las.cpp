@@ -5,7 +5,7 @@
 namespace fieldproof::fieldbus_dll {
 namespace {
 
-// The lowest link master claims behind V(ST) x 16; half of that leaves room for what was begun.
+// The lowest link master claims after V(ST) x 16; half of that leaves room for what was begun.
 constexpr unsigned kKeepActiveSlots = 8;
 
 }  // namespace

@@ -82,7 +82,7 @@ class FfLas : public FfStation {
   virtual kernel::Time answer_awaited_until(const Place& question) const {
     return question.end + response_delay(rules().link);
   }
-  // Who holds a token may use it until then; behind that it is taken back where it leaves the line silent.
+  // Who holds a token may use it until then; after that it is taken back where it leaves the line silent.
   virtual kernel::Time holder_until(kernel::Time passed, unsigned grant) const {
     return passed + octet_times(grant) + octet_times(rules().link.slot_time_octets);
   }
@@ -119,7 +119,7 @@ class FfLas : public FfStation {
   FfDlpdu time_dlpdu(kernel::Time now) const;
   kernel::Time next_cd() const;
   void set_schedule(kernel::Time now);
-  // A frame that begins now, and `more` behind it, ends before what is due.
+  // A frame that begins now, and `more` after it, ends before what is due.
   bool has_time(const FfDlpdu& dlpdu, kernel::Duration more, kernel::Time now) const;
   kernel::Time timer() const;
 

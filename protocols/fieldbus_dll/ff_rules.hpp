@@ -53,7 +53,7 @@ struct FfRules {
   // The priority of a token goes by all three steps; else from urgent to time-available at once, as in the
   // paper's model.
   bool steers_by_three_steps = true;
-  // The last DT1 under a token returns it; else an RT behind does.
+  // The last DT1 under a token returns it; else an RT after does.
   bool returns_with_last_data = true;
 
   friend bool operator==(const FfRules&, const FfRules&) = default;

@@ -17,10 +17,10 @@
 //                                                │
 //                                                └──CD: DT3 with F, or SR──▶ idle
 //
-// It keeps V(MID) of silence behind whatever was on the line and begins to answer within V(MRD) x V(ST), or
+// It keeps V(MID) of silence after whatever was on the line and begins to answer within V(MRD) x V(ST), or
 // not at all. What a scheduler sends while a token is held shows that it was taken back.
 //
-// It returns the token with F in its last DT1: behind that nothing else would fit, or nothing else is there.
+// It returns the token with F in its last DT1: after that nothing else would fit, or nothing else is there.
 // A token that it cannot use is returned by RT. All that it sends ends within the duration.
 //
 // Every decision that a wrong implementation takes otherwise has a name and can be overridden one by one.

@@ -29,7 +29,7 @@ class FfStationTest : public testing::Test {
     ASSERT_TRUE(station_.submit({priority, to, std::move(octets)}, link_.now()));
     link_.refresh();
   }
-  // What is said behind it, within 200 octets.
+  // What is said after it, within 200 octets.
   std::string behind(const FfDlpdu& dlpdu) {
     link_.say(dlpdu);
     link_.wait(200);

@@ -9,7 +9,7 @@
 // Function blocks of a control loop: analog input, PID and analog output, and a process to control.
 //
 // What blocks exchange is a value with its status. That values are single precision, the high octet first,
-// with one octet of status in front, is from memory; that the number of the sample stands behind them is this
+// with one octet of status in front, is from memory; that the number of the sample stands after them is this
 // project's choice, so that whoever gets a value can tell where it comes from.
 namespace fieldproof::fieldbus_dll {
 

@@ -84,7 +84,7 @@ struct IsaConfiguration {
 class IsaDevice : public segment::Station {
  public:
   virtual void wire(segment::Port& line, IsaUser& user) = 0;
-  // Behind what has been submitted in the same priority. False: more data than the priority carries, any with
+  // After what has been submitted in the same priority. False: more data than the priority carries, any with
   // a CD, or an address that is none; nothing is kept of it.
   virtual bool submit(const IsaRequest& request, kernel::Time now) = 0;
 

@@ -17,7 +17,7 @@
 //     │           awaiting_reply ──another DLPDU: the token is dropped──▶ idle
 //     └──CD──▶ replying ──DT, or VC(FD) = 0: silence──▶ idle
 //
-// It keeps V(MID) of silence behind whatever was on the line. VC(RR) that runs out while others are active
+// It keeps V(MID) of silence after whatever was on the line. VC(RR) that runs out while others are active
 // waits for the end of that activity. What a scheduler sends while a token is held shows that it was taken
 // back, and whatever is sent before a reply, that nobody waits for it any more.
 //

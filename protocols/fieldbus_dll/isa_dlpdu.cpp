@@ -72,7 +72,7 @@ void append_word(Octets& octets, std::uint16_t word) {
   octets.push_back(static_cast<std::uint8_t>(word & 0xFF));
 }
 
-// False: the fields behind the addresses do not exist so.
+// False: the fields after the addresses do not exist so.
 bool read_fields(std::span<const std::uint8_t> octets, IsaDlpdu& dlpdu) {
   switch (dlpdu.type) {
     case IsaType::es:

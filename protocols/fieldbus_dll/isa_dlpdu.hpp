@@ -43,7 +43,7 @@ std::optional<IsaDlpdu> isa_dlpdu_of(std::span<const std::uint8_t> octets, const
 // Fields that the type does not have are not looked at.
 Octets octets_of(const IsaDlpdu& dlpdu, const IsaRules& rules);
 
-// Octets of a DLPDU with its check, before which and behind which is the frame.
+// Octets of a DLPDU with its check, before which and after which is the frame.
 std::size_t octets_on_line(IsaType type, std::size_t data = 0);
 
 // Sent by a scheduler and by nobody else.

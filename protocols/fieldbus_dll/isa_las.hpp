@@ -18,8 +18,8 @@
 // Another one that acts as a scheduler makes it leave when that has the lower address. Between the items of
 // the schedule it sends what its own user has submitted, where that ends in time.
 //
-// Of a single frame only VC(RR) tells that the holder is lost. It runs anew behind whatever is heard, and
-// twice as long behind a CD of the holder, who waits as long for its reply.
+// Of a single frame only VC(RR) tells that the holder is lost. It runs anew after whatever is heard, and
+// twice as long after a CD of the holder, who waits as long for its reply.
 namespace fieldproof::fieldbus_dll {
 
 enum class LasState : std::uint8_t { standby, scheduling, awaiting_single, awaiting_sequence, transferring };

@@ -93,7 +93,7 @@ TEST_F(IsaLasTest, RepliesToTheHolderOfItsToken) {
   ASSERT_TRUE(las_->submit({IsaService::reply_data, Priority::normal, 0, Octets(100, 0x55)}, link_.now()));
   link_.wait(400);
   EXPECT_EQ(user.take().substr(0, 22), "DT normal 10 -> 21 fin");
-  // The next token waits for the reply of 105 octets and for the EE behind it.
+  // The next token waits for the reply of 105 octets and for the EE after it.
   EXPECT_TRUE(
       link_.heard().ends_with("@168 EE 21 -> 10, single frame done\n@185 ET time-available 10 -> 21\n"
                               "@201 EE 21 -> 10, nothing to send\n"));

@@ -31,7 +31,7 @@ class LineEnd {
 
   void wire(segment::Port& line) { line_ = &line; }
 
-  // The octets, their check behind them, in a frame that begins at `start`. Gives the frame's end.
+  // The octets, their check after them, in a frame that begins at `start`. Gives the frame's end.
   kernel::Time transmit(std::span<const std::uint8_t> octets, kernel::Time start);
   // Half bits as they are.
   kernel::Time drive(line::Levels half_bits, kernel::Time start);
@@ -55,7 +55,7 @@ class LineEnd {
   kernel::Time driven_until_ = kernel::kStart;
 };
 
-// The octets with their check behind them.
+// The octets with their check after them.
 Octets with_check(std::span<const std::uint8_t> octets);
 
 }  // namespace fieldproof::fieldbus_dll

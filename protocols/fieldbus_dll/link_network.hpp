@@ -99,7 +99,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   // ---- of a profile ----
   virtual void power_up(kernel::Time now) = 0;
   virtual void power_down(kernel::Time now) = 0;
-  // What stations drive, with the check behind it.
+  // What stations drive, with the check after it.
   virtual void on_driven(const Octets& octets, kernel::Time begin, kernel::Time end) = 0;
   // The application of the source has a new word.
   virtual void give(std::size_t signal, std::uint16_t word, kernel::Time now) = 0;

@@ -32,7 +32,7 @@ struct LinkRules {
   friend bool operator==(const LinkRules&, const LinkRules&) = default;
 };
 
-// What stands before and behind the octets of a frame: preamble, start and end delimiter.
+// What stands before and after the octets of a frame: preamble, start and end delimiter.
 inline unsigned octets_around(const LinkRules& rules) {
   return rules.preamble_octets + 2;
 }

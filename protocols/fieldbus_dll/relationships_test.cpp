@@ -168,7 +168,7 @@ TEST(RelationshipsTest, WhatIsLostIsGivenUpOrMissed) {
   EXPECT_GT(given_up, asked / 20);
   EXPECT_LT(given_up, asked / 2);
   EXPECT_EQ(reported, 400U);
-  // Two listeners; reports are numbered, so each gap is seen but for those in front of the first and behind
+  // Two listeners; reports are numbered, so each gap is seen but for those in front of the first and after
   // the last that came.
   const std::size_t missed = all.client().missed_reports() + all.listener().missed_reports();
   EXPECT_LE(all.reports.size() + missed, 2 * reported);

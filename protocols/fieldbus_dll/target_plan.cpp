@@ -18,7 +18,7 @@ kernel::Duration unreachable(const TokenTraffic& traffic) {
   for (const TokenNode& node : traffic.nodes) {
     for (const PacketStream& stream : node.streams) longest += stream.length;
   }
-  // Each visit and each packet may wait for items; behind that many macrocycles all of them had their gap.
+  // Each visit and each packet may wait for items; after that many macrocycles all of them had their gap.
   if (!traffic.schedule.empty()) longest += static_cast<int>(traffic.nodes.size() + 1) * traffic.macrocycle;
   return longest + kernel::kPicosecond;
 }

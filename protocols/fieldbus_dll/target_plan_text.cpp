@@ -110,7 +110,7 @@ std::string model_text(const TokenTraffic& traffic, kernel::Duration target) {
 std::string why_not_text(const TargetRun& tried) {
   if (tried.meets_bound) return "; time-available queues grow";
   if (tried.fewest >= kFewPackets) return "";
-  return fmt::format("; a node sent {} packets, too few to tell", tried.fewest);
+  return fmt::format("; a node sent {} packets, too few to know", tried.fewest);
 }
 
 }  // namespace

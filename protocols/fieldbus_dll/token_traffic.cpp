@@ -234,7 +234,7 @@ class TokenPath {
     return totals_[kUrgent].delays.count() < run_.urgent_packets && now_ - kernel::kStart < kLongestRun;
   }
 
-  // The token goes on, behind all items that it would meet.
+  // The token goes on, after all items that it would meet.
   void spend(kernel::Duration duration) {
     while (now_ + duration > item_.begin()) {
       if (is_counting_) waited_ += item_.begin() - now_;

@@ -18,7 +18,7 @@ constexpr kernel::Duration kShortestWarmUp = 3 * kernel::kSecond;
 constexpr double kBatchesOfRun = 40;  // about
 constexpr std::uint64_t kSmallestBatch = 5;
 
-// Frames are 11 octets longer than their data, the silence behind them is 51.
+// Frames are 11 octets longer than their data, the silence after them is 51.
 constexpr unsigned kSilence = 51;
 constexpr std::size_t kUrgentData = 75 - 11 - kSilence;
 constexpr std::size_t kAvailableData = 267 - 11 - kSilence;

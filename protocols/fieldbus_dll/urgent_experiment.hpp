@@ -9,7 +9,7 @@
 // station one of each at most for each token, which is the single service of the paper; what has arrived by
 // the time when the station begins to send goes with it.
 //
-// A packet takes the line for its frame and the silence behind it: 75 and 267 octets, as in the paper. Slot
+// A packet takes the line for its frame and the silence after it: 75 and 267 octets, as in the paper. Slot
 // time, silence and preamble are such that a rotation without packets takes the paper's 16 ms, one probe
 // included; the paper's boards needed 1 ms for each node by their own slowness. The token has two steps.
 namespace fieldproof::fieldbus_dll {
@@ -27,7 +27,7 @@ struct ExperimentFigures {
   std::uint64_t longest_available = 0;  // time-available packets that wait at one node at the end
 };
 
-// For so long in virtual time, behind three seconds in which nodes become live and queues fill. Rates
+// For so long in virtual time, after three seconds in which nodes become live and queues fill. Rates
 // and TTRT are those of the traffic, which otherwise must be `paper_traffic`; else, and for less than a
 // second or more than a day, kernel::Error(configuration).
 ExperimentFigures run_urgent_experiment(const UrgentTraffic& traffic, kernel::Duration duration,

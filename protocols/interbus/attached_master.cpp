@@ -201,10 +201,11 @@ void AttachedMaster::drive(unsigned port, line::Waveform& wave) {
 
 // The application sees each word at once, so none can be told ahead.
 void AttachedMaster::write(iut::Item item, std::uint64_t value, kernel::Time when) {
-  attached_->expect_ahead(when, "tells its application something");
+  attached_->expect_ahead(when, "reports something to its application");
   if (when > attached_->now()) {
-    iut::refuse_impossible(fmt::format("tells its application at {} what is so at {}; ask for a call then",
-                                       kernel::describe(attached_->now()), kernel::describe(when)));
+    iut::refuse_impossible(
+        fmt::format("reports to its application at {} what is so at {}; ask for a call then",
+                    kernel::describe(attached_->now()), kernel::describe(when)));
   }
   const auto most = most_of(item);
   if (!most) iut::refuse_impossible(fmt::format("writes item {}, which a master does not have", item));

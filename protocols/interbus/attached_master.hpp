@@ -22,7 +22,7 @@
 // Port 1 is the application: its
 // orders are told as characters whatever the unit, one order a call, each over at the instant of the call.
 // The implementation keeps the words that its application may look at up to date within the call in which
-// they change, and tells the end of each cycle behind them. It is told the settings of master_settings.
+// they change, and tells the end of each cycle after them. It is told the settings of master_settings.
 namespace fieldproof::interbus {
 
 inline constexpr unsigned kApplicationPort = 1;
@@ -44,7 +44,7 @@ inline constexpr iut::Item kCycleTime = 7;     // kept, in force: ps
 inline constexpr iut::Item kFaultPlace = 8;    // kept: 0, or 1 << 32 | from + 1 | (to + 1) << 16
 inline constexpr iut::Item kStationCount = 9;  // kept
 inline constexpr iut::Item kCycleEnd = 10;     // told: 1 data cycle | 2 accepted
-// Read, behind a cycle end: order | word << 16 | value << 32, 0 when there is none left.
+// Read, after a cycle end: order | word << 16 | value << 32, 0 when there is none left.
 inline constexpr iut::Item kNextOrder = 11;
 // Kept, + n each.
 inline constexpr iut::Item kErrorText = 0x100;         // of the configuration: octets 8n to 8n + 7, 8n lowest
@@ -63,7 +63,7 @@ class AttachedMaster final : public MasterDevice, private iut::Bench {
   void wire(segment::Port& out) override { out_ = &out; }
   // Also switches the supply on, once.
   void start(kernel::Time now) override;
-  // What is ordered within the hook the implementation may read at once; what it does not is told behind the
+  // What is ordered within the hook the implementation may read at once; what it does not is told after the
   // call in which the cycle has ended.
   void stop(kernel::Time now) override { order({MasterOrder::stop, {}, now}); }
   void request_id_cycle(kernel::Time now) override { order({MasterOrder::id_cycle, {}, now}); }

@@ -59,7 +59,7 @@ class AttachedMasterTest : public testing::Test, private segment::Port {
   std::string complaint_about(iut::Item item, std::uint64_t value) {
     return complaint([=](iut::Bench& bench) { bench.write(item, value, kCalledAt); });
   }
-  // What was ordered behind the start, and when.
+  // What was ordered after the start, and when.
   std::vector<std::uint16_t> ordered() const {
     std::vector<std::uint16_t> all;
     for (const ActingDevice::Heard& heard : device_.heard) {
@@ -402,7 +402,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongAct{"goes up to 4096", [](iut::Bench& bench) { bench.write(kStationCount, 4097, kCalledAt); }},
         WrongAct{"ask for a call then",
                  [](iut::Bench& bench) { bench.write(kDataCycles, 1, kCalledAt + kMillisecond); }},
-        WrongAct{"tells its application something at",
+        WrongAct{"reports something to its application at",
                  [](iut::Bench& bench) { bench.write(kDataCycles, 1, kCalledAt - kMillisecond); }},
         WrongAct{"a master has 11 to read", [](iut::Bench& bench) { bench.read(0, kCalledAt); }},
         WrongAct{"drives port 1",

@@ -27,7 +27,7 @@ StationDescription station(const char* name, std::uint16_t id_code) {
   return {.name = name, .id_code = id_code, .cable_m = 0, .is_local = false, .branch = {}};
 }
 
-// The device in a ring with one station behind it.
+// The device in a ring with one station after it.
 class AttachedSlaveTest : public testing::Test, private segment::Station {
  protected:
   AttachedSlaveTest() { network_.stations = {station("iut", 0x0203), station("neighbour", 0x0103)}; }

@@ -12,7 +12,7 @@
 #include "protocols/interbus/rules.hpp"
 
 // The levels of a cycle as a master drives them: the telegrams of the summation frame with their mean gap,
-// and the status telegrams behind it up to the start of the next cycle.
+// and the status telegrams after it up to the start of the next cycle.
 //
 // Telegram k begins at level 13 * k + floor(k * gap), so the mean pitch is exactly 13 bit plus the gap; a
 // frame of `count` telegrams lasts exactly count * (13 + gap) bit, which need not be a whole number of
@@ -54,7 +54,7 @@ class CycleWriter {
 
   // Appends status telegrams up to the last one that ends at or before level `end`.
   void append_status(line::Levels& levels, std::size_t end) const;
-  // The first whole level behind a frame.
+  // The first whole level after a frame.
   std::size_t first_status_level(std::size_t telegrams) const;
 
   const line::TelegramCode& code() const { return code_; }

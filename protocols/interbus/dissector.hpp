@@ -7,7 +7,7 @@
 
 // INTERBUS telegrams written for a person, the same way everywhere: findings, recordings, tests.
 //
-//   data A55A 1234 | check 29CC 0000 | 37 status      a cycle and the pause behind it
+//   data A55A 1234 | check 29CC 0000 | 37 status      a cycle and the pause after it
 //   id A55A 0003 | id check 1D0F 0000                 an ID cycle
 //   data A5 5! 1234                                   the stop bit of the telegram with 5x is missing
 //   … cut 01001                                       levels at the end that make no whole telegram

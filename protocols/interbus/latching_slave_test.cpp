@@ -18,7 +18,7 @@ using kernel::Time;
 constexpr int kInputStation = 2;
 constexpr int kOutputStation = 3;
 
-// From the only edge at the input, `after_start` behind the start of a data cycle, to the output.
+// From the only edge at the input, `after_start` after the start of a data cycle, to the output.
 Duration delay_of(LatchModel model, Duration after_start) {
   const NetworkDescription network = paper_network();
   const Duration way = sample_to_latch(network);
@@ -47,7 +47,7 @@ class LatchingSlaveTest : public testing::Test {
   Duration arrival_ = arrival_delays(network_).at(kInputStation - 1);
 };
 
-// An edge just at a sample, and one a picosecond behind it, for which the next sample is a cycle away.
+// An edge just at a sample, and one a picosecond after it, for which the next sample is a cycle away.
 TEST_F(LatchingSlaveTest, FrameEdgesSamplesAtTheStartOfTheFrame) {
   EXPECT_EQ(delay_of(LatchModel::frame_edges, arrival_), cycle_ + frame_);
   EXPECT_EQ(delay_of(LatchModel::frame_edges, arrival_ + kernel::kPicosecond),

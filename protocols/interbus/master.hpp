@@ -27,7 +27,7 @@
 //   start: from off and bus_stop, after a silence in which the stations fall into reset.
 //
 // A cycle is one waveform, driven at its start: the summation frame and the status telegrams of the pause up
-// to the next cycle. The verdict is taken one telegram behind the end of what must come back, so that a
+// to the next cycle. The verdict is taken one telegram after the end of what must come back, so that a
 // telegram too many is seen; after an accepted data cycle the copy task and then the application's hook run.
 // A rejected cycle leaves the inputs as they were; an ID cycle follows it, which shows through the message
 // bits where the error lies. Cycles start at multiples of the cycle time; an ID cycle that does not fit takes
@@ -89,7 +89,7 @@ class Master : public MasterDevice, private TopologyDecisions {
   virtual kernel::Duration lateness(std::uint64_t) const { return {}; }  // of the start of a cycle
   virtual bool clears_outputs_on_stop() const { return true; }
 
-  // ---- decisions behind a cycle ----
+  // ---- decisions after a cycle ----
   // What a data cycle brought, in the order of the input image; by default nothing of a rejected one.
   virtual void on_rejected_inputs(std::span<const std::uint16_t>) {}
   virtual void run_copy_task();

@@ -8,7 +8,7 @@ namespace fieldproof::interbus {
 namespace {
 
 constexpr kernel::Duration kStatusRun = kernel::kMillisecond;
-// A telegram behind the last expected one begins within this many bits, if it belongs to the frame.
+// A telegram after the last expected one begins within this many bits, if it belongs to the frame.
 constexpr std::int64_t kGuardBits = line::kDataTelegramLevels;
 // How much later than computed a frame may come back: two telegrams, and this part of the frame for stations
 // whose clock runs slower.
@@ -52,7 +52,7 @@ void Master::drive_status(kernel::Time now) {
   wave_.levels.clear();
   const std::size_t end_level = levels_within(end - now);
   writer_.append_status(wave_.levels, end_level);
-  // The idle time behind the last telegram belongs to the next run.
+  // The idle time after the last telegram belongs to the next run.
   wave_.levels.resize(std::min(wave_.levels.size(), end_level));
   if (wave_.levels.empty()) return;
   driven_until_ = wave_.end();

@@ -82,7 +82,7 @@ class OneStation : public segment::Port {
     for (std::size_t n = 0; n + 2 < transfer; ++n) octets.push_back(data[n].data);
     const auto check = check_.check_octets(check_.update(check_.start(), octets));
     octets.insert(octets.end(), {check[0], check[1], 0, 0});
-    // A data cycle of another ring is rejected, so that the ID cycle behind it shows it.
+    // A data cycle of another ring is rejected, so that the ID cycle after it shows it.
     if (answer_ == Answer::bad || (answer_ == Answer::other_station && !is_id)) octets[0] ^= 1;
     line::Waveform back;
     back.start = sent.start + 6 * kernel::kMicrosecond;
@@ -189,7 +189,7 @@ TEST(MasterStates, every_state_with_every_event) {
     }
     end_row(table);
   }
-  // A cell is the state behind the event, or the first other state that the cycles led to. Ready, off and
+  // A cell is the state after the event, or the first other state that the cycles led to. Ready, off and
   // bus_stop have no cycles of their own: ready ends with the first ID cycle of the recognition.
   const std::string approved = R"(
                 | off           | ready         | identification| run           | locating      | bus_stop

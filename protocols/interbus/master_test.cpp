@@ -18,7 +18,7 @@ StationDescription station(std::string name, std::uint16_t id) {
   return description;
 }
 
-// A coupler with a 16-bit input and a 16-bit output module behind its second interface.
+// A coupler with a 16-bit input and a 16-bit output module after its second interface.
 NetworkDescription coupler_and_modules() {
   NetworkDescription network;
   network.name = "paper";

@@ -19,7 +19,7 @@ bool Master::accepts_check(const ReturnedCycle& returned) const {
 
 FaultLocation Master::locate(int first_marked) const {
   if (first_marked >= 0) return {first_marked - 1, first_marked};
-  // No station saw it: it lies behind the last one.
+  // No station saw it: it lies after the last one.
   return {static_cast<int>(stations_.size()) - 1, -1};
 }
 

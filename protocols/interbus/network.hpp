@@ -12,7 +12,7 @@
 #include "protocols/interbus/rules.hpp"
 
 // A network as a file describes it: the remote bus as a list of stations in the order of the cable, each with
-// the stations behind its second outgoing interface (local bus or branch), the cable lengths, the bit rate,
+// the stations after its second outgoing interface (local bus or branch), the cable lengths, the bit rate,
 // the formula that its cycle time is held against, and the copy task of the master.
 //
 // Reading is strict (network.schema.json has the shape); an unknown key, an undefined length code, too many
@@ -65,7 +65,7 @@ struct Violation {
 // words that they have, from inputs to outputs, no output written twice).
 std::optional<Violation> check(const NetworkDescription& network);
 
-// A station in the order of the ring: a station, what lies behind its second interface, then the next one.
+// A station in the order of the ring: a station, what lies after its second interface, then the next one.
 struct RingPlace {
   const StationDescription* station = nullptr;
   int before = -1;         // index of the station whose outgoing interface it hangs on; -1: the master

@@ -53,10 +53,9 @@ class Checker {
   void check_bus(const StationDescription& station, const std::string& place, bool is_branch,
                  bool is_local_line) {
     if (station.is_local && !is_branch) {
-      return refuse(
-          place + "/bus",
-          "a local bus begins behind the second outgoing interface of a station; write this station "
-          "into the branch of its bus coupler");
+      return refuse(place + "/bus",
+                    "a local bus begins after the second outgoing interface of a station; write this station "
+                    "into the branch of its bus coupler");
     }
     if (station.is_local != is_local_line) {
       refuse(place + "/bus",

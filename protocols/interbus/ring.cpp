@@ -70,7 +70,7 @@ void Ring::lay_cable(const NetworkDescription& network, const RingPlace& place, 
   links_.push_back(cable);
 }
 
-// What hangs behind a station follows it in the ring without a break.
+// What hangs after a station follows it in the ring without a break.
 void Ring::find_last_behind(const std::vector<RingPlace>& places) {
   last_behind_.resize(places.size());
   for (std::size_t n = places.size(); n-- > 0;) {
@@ -89,8 +89,8 @@ segment::Link* Ring::find_link(std::string_view receiver) {
   return nullptr;
 }
 
-// A return link carries what has passed its station and everything behind it; behind a station with a branch
-// that is not a run of neighbours, so the ring is followed from each station to the last one behind it.
+// A return link carries what has passed its station and everything after it; after a station with a branch
+// that is not a run of neighbours, so the ring is followed from each station to the last one after it.
 std::vector<Ring::Receiver> Ring::receivers() {
   std::vector<Receiver> all;
   for (std::size_t n = 0; n < slaves_.size(); ++n) {

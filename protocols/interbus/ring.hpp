@@ -21,8 +21,8 @@
 // What the trace is told: each change of an output, as "output" at "slave@3" with word * 65536 + value, at
 // the instant of the change.
 //
-// Receivers, and so the links to them, are named "slave@3/in", "slave@3/return" (from behind OUT1),
-// "slave@3/branch_return" (from behind OUT2) and "master/in"; positions count from 1 in ring order.
+// Receivers, and so the links to them, are named "slave@3/in", "slave@3/return" (from after OUT1),
+// "slave@3/branch_return" (from after OUT2) and "master/in"; positions count from 1 in ring order.
 namespace fieldproof::interbus {
 
 class Ring {

@@ -188,7 +188,7 @@ class RingBench {
     const std::size_t until = ends.size() + count;
     for (int left = 100'000; ends.size() < until && left > 0 && segment.step(); --left) {
     }
-    // What the slaves latch behind the verdict of the master.
+    // What the slaves latch after the verdict of the master.
     segment.run_for(master.status().cycle_time / 4);
   }
 

@@ -39,7 +39,7 @@ struct Rules {
   // Line.
   std::int64_t bit_rate = 500'000;  // bit/s
   line::TelegramLayout telegram;
-  // Mean idle time behind a telegram of a cycle, in thousandths of a bit: 0.15 * 13 bit.
+  // Mean idle time after a telegram of a cycle, in thousandths of a bit: 0.15 * 13 bit.
   unsigned telegram_gap_millibits = 1950;
   unsigned status_pitch_bits = 6;  // from start to start of status telegrams in a pause
   // Retiming of a remote-bus station on the way out and on the way back, in half bits: 2 * 1.5 bit a station.
@@ -54,7 +54,7 @@ struct Rules {
   std::string frame_check = "CRC-16/IBM-3740";
   std::uint16_t status_clean = 0x0000;
   std::uint16_t status_marked = 0xFFFF;  // an erring station ORs these bits in
-  // Telegrams behind the status word. The printed formula counts 8 + n telegrams where the text of the same
+  // Telegrams after the status word. The printed formula counts 8 + n telegrams where the text of the same
   // source has 6 + n; 2 here gives the printed reading.
   unsigned end_telegrams = 0;
   kernel::Duration software_time = 450 * kernel::kMicrosecond;  // of the master, chip generation 4

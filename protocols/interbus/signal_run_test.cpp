@@ -135,7 +135,7 @@ TEST(SignalRunTest, ADisturbanceIsPutOnTheRingAndToldApart) {
   EXPECT_GT(record.cycles.front().times.total().max(), kernel::Duration(cycle).count());
 }
 
-// A slave that shifts the words of its image in time: the second one is a sample behind.
+// A slave that shifts the words of its image in time: the second one is a sample after.
 class TearingSlave final : public Slave {
  public:
   using Slave::Slave;

@@ -277,7 +277,7 @@ double simulated_extra_delay(double reject, unsigned lost, double& without_extra
   for (std::int64_t edge = 0; edge + 1 < slot - 1'000; ++edge) {
     while (starts[next] <= edge) ++next;
     // The first good cycle carries it to the master, the second one back; without errors the second starts 2
-    // slots behind that of the edge.
+    // slots after that of the edge.
     const std::int64_t extra = starts[next + 1] - (edge + 2);
     sum += static_cast<double>(extra);
     clean += extra == 0 ? 1 : 0;

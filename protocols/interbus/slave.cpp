@@ -128,7 +128,7 @@ void Slave::note_life(const line::Waveform& wave, const line::Telegram& telegram
   if (telegram.is_data()) last_data_ = last_telegram_;
 }
 
-// Regenerates what comes back from behind an interface.
+// Regenerates what comes back from after an interface.
 void Slave::relay_only(segment::PortIndex from, const line::Waveform& reception) {
   const bool is_on = from == kFromBranch ? return_branch_on_ : return_remote_on_;
   if (!is_on) return;
@@ -212,7 +212,7 @@ std::uint8_t Slave::on_check(bool id_cycle, const line::Waveform& wave, const li
     enter_check(wave.time_of(telegram.level));
   } else if (phase_ != (id_cycle ? Phase::id_check : Phase::data_check)) {
     // Check telegrams without their transfer phase are passed on as they are; in the pause they are the end
-    // telegrams behind a cycle.
+    // telegrams after a cycle.
     if (phase_ != Phase::pause) abandon_cycle(wave.time_of(telegram.level));
     on_stray_check();
     return telegram.data;
@@ -410,7 +410,7 @@ void Slave::apply_control(std::uint16_t control, kernel::Time when) {
   control &= heeded_control_bits();
   if ((control & r.control_acknowledge) != 0) messages_ = 0;
   if ((control & r.control_reset) != 0) {
-    // Long enough that everything behind this station has reset itself.
+    // Long enough that everything after this station has reset itself.
     outgoing_reset_until_ = when + r.silence_limit + r.silence_tolerance;
   }
   const bool may_switch_on = when >= outgoing_reset_until_;

@@ -63,7 +63,7 @@ class Slave : public SlaveDevice {
 
   // ---- decisions ----
   virtual bool is_telegram_valid(const line::Telegram& telegram) const { return !telegram.is_stop_missing(); }
-  // Whether the receiver finds the next telegram behind one without stop bit.
+  // Whether the receiver finds the next telegram after one without stop bit.
   virtual bool resynchronises() const { return true; }
   virtual bool status_telegram_shifts() const { return false; }
   virtual kernel::Time sign_of_life(kernel::Time last_telegram, kernel::Time last_data_telegram) const;
@@ -88,7 +88,7 @@ class Slave : public SlaveDevice {
   }
   // Called for each octet of a transfer phase of an ID cycle: a slave that acts on its control word early.
   virtual void on_control_octet(kernel::Time) {}
-  // Whether `next`, behind a control word that took effect, goes the new way already.
+  // Whether `next`, after a control word that took effect, goes the new way already.
   virtual bool goes_new_way(const line::Telegram& next) const {
     return !next.is_data() || (next.header & line::kControl) == 0;
   }

@@ -91,7 +91,7 @@ class SlaveTest : public ::testing::Test {
     return cycle({0xA5, 0x5A, octet(first >> 8), octet(first), octet(second >> 8), octet(second)},
                  kDataCycle.transfer, kDataCycle.check);
   }
-  // Sends an ID cycle and tells when the silence behind it is too long.
+  // Sends an ID cycle and tells when the silence after it is too long.
   kernel::Time limit_behind_an_id_cycle() {
     const kernel::Time begin = segment.now();
     send(id_cycle());

@@ -24,7 +24,7 @@ class Way {
   }
 
  private:
-  // From in front of the cable to the next station to where its own way back ends; with all behind it.
+  // From in front of the cable to the next station to where its own way back ends; with all after it.
   Duration pass(Duration at) {
     const std::size_t station = next_++;
     const RingPlace& place = places_[station];

@@ -60,10 +60,11 @@ std::unique_ptr<TelegramFront> front_of(const iut::AttachedCase& attached, const
                                         std::string_view role) {
   if (attached.unit_kind() == iut::UnitKind::telegrams) return std::make_unique<TelegramFront>(rules);
   if (attached.unit_kind() == iut::UnitKind::levels) return nullptr;
-  throw kernel::Error(kernel::ErrorKind::implementation,
-                      fmt::format("an INTERBUS {} hears and says levels or telegrams; this implementation "
-                                  "announces {}",
-                                  role, name(attached.unit_kind())));
+  throw kernel::Error(
+      kernel::ErrorKind::implementation,
+      fmt::format("an INTERBUS {} receives and sends levels or telegrams; this implementation "
+                  "announces {}",
+                  role, name(attached.unit_kind())));
 }
 
 }  // namespace fieldproof::interbus

@@ -21,7 +21,7 @@
 //
 // It starts at its start level and is over 13 or 5 bits later; `is_stop_missing` as the receiver saw it.
 // What begins within a reception is told when that begins. A telegram that the end of a reception cuts is
-// told when the next one completes it, or 13 bits behind its start.
+// told when the next one completes it, or 13 bits after its start.
 namespace fieldproof::interbus {
 
 inline constexpr unsigned kTelegramHeaderBit = 8;  // of the character, where line::kSelect stands

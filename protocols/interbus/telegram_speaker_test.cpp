@@ -24,7 +24,7 @@ class NoBench final : public iut::Bench {
   std::uint64_t read(iut::Item, kernel::Time) override { return 0; }
 };
 
-// What a device of levels hears of two status telegrams, the second one `apart` behind the start of the
+// What a device of levels hears of two status telegrams, the second one `apart` after the start of the
 // first.
 std::vector<line::Waveform> heard_of_two(kernel::Duration apart) {
   auto device = std::make_unique<iut::ActingDevice>(iut::UnitKind::levels);

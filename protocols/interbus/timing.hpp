@@ -21,7 +21,7 @@
 // Two findings about the formula as Park 2004 prints it (F1):
 //
 // 1. F1 with n = 2 gives the printed 755.0 us: (1.15 * 13 * 10 + 3) bit * 2 us + 450 us. But the network of
-//    that paper, IB IL 24 DI 16 and IB IL 24 DO 16 behind one coupler, has two registers of 16 bit: n = 4.
+//    that paper, IB IL 24 DI 16 and IB IL 24 DO 16 after one coupler, has two registers of 16 bit: n = 4.
 //    The same paper's text gives 6 octets of frame information, not 8, and F4, which has 6 + n, yields the
 //    same 755.0 us with n = 4. The printed "(8 + n), n = 2" and "(6 + n), n = 4" are the same number of
 //    telegrams, so 755.0 us cannot tell them apart.

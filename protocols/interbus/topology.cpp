@@ -58,7 +58,7 @@ void Topology::observe(std::span<const std::uint16_t> ids) {
   if (ids.size() > stations_.size()) {
     add_station(ids.back());
   } else if (probe_.station >= 0) {
-    // Nothing behind it: the station closes the ring again.
+    // Nothing after it: the station closes the ring again.
     control_[static_cast<std::size_t>(probe_.station)] |= off_bit(probe_.on_branch);
   }
   if (!is_finished_) next_probe();

@@ -10,7 +10,7 @@
 
 // Recognition of a ring step by step, as pure logic: which control words the next ID cycle carries, and what
 // its result means. The first cycle shows the station that closes the ring; then for each station its second
-// interface (OUT2) and after everything behind it its remote one (OUT1) is switched on by one ID cycle, and
+// interface (OUT2) and after everything after it its remote one (OUT1) is switched on by one ID cycle, and
 // the next ID cycle shows whether the ring has grown by one. What is found is always the new end of the
 // ring, so the list of stations is in the order of the ring at any time.
 //
@@ -41,7 +41,7 @@ class Topology {
   std::span<const std::uint16_t> control_words() const { return control_; }
   unsigned words() const { return words_; }
 
-  // The control word for a station that may have appeared behind the last known one.
+  // The control word for a station that may have appeared after the last known one.
   std::uint16_t pad_word() const { return both_off_; }
 
   // A good ID cycle with the words of so many stations, in the order of the ring.
@@ -50,7 +50,7 @@ class Topology {
   bool is_finished() const { return is_finished_; }
   const std::string& error() const { return error_; }
 
-  // The station whose interface is being looked behind; -1: the master.
+  // The station whose interface is being looked after; -1: the master.
   int probed_station() const;
 
   static constexpr std::uint16_t kCodeMask = 0x1FFF;  // of an ID register, without the messages

@@ -60,7 +60,8 @@ HostCounters AttachedHost::counters(std::uint8_t id) const {
 }
 
 void AttachedHost::tell_response(std::uint64_t value, kernel::Time when) {
-  if (value > 0x01FF'FFFF) iut::refuse_impossible(fmt::format("tells the PC {:X}h as a response", value));
+  if (value > 0x01FF'FFFF)
+    iut::refuse_impossible(fmt::format("reports {:X}h to the PC as a response", value));
   application_->on_response(
       {octet_of(value, 0), octet_of(value, 1), octet_of(value, 2), octet_of(value, 3) != 0}, when);
 }
@@ -68,13 +69,13 @@ void AttachedHost::tell_response(std::uint64_t value, kernel::Time when) {
 void AttachedHost::tell_error(std::uint64_t value, kernel::Time when) {
   if (value >> 8 >= kErrorKinds) {
     iut::refuse_impossible(
-        fmt::format("tells the PC an error of kind {}; there are 0 to {}", value >> 8, kErrorKinds - 1));
+        fmt::format("reports to the PC an error of kind {}; there are 0 to {}", value >> 8, kErrorKinds - 1));
   }
   application_->on_error({octet_of(value, 0), static_cast<HostErrorKind>(value >> 8)}, when);
 }
 
 void AttachedHost::write(iut::Item item, std::uint64_t value, kernel::Time when) {
-  attached_.expect_in_order(when, "tells its PC something");
+  attached_.expect_in_order(when, "reports something to its PC");
   const unsigned kind = item / kIds - 1U;
   if (item == kResponse) {
     tell_response(value, when);
@@ -137,7 +138,7 @@ void ServedHost::before_call() {
   station().set_dip(static_cast<unsigned>(dip));
 }
 
-// What the PC may look at is kept up to date behind each call.
+// What the PC may look at is kept up to date after each call.
 void ServedHost::after_call() {
   if (!is_on_) return;
   keep(kFifoRoom, station().fifo_room(), fifo_room_);

@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongAct{"item 1280, which", [](iut::Bench& bench) { bench.write(0x500, 0, kCalledAt); }},
         WrongAct{"item 0, which", [](iut::Bench& bench) { bench.write(kDip, 0, kCalledAt); }},
         WrongAct{"reads item 1", [](iut::Bench& bench) { bench.read(kResponse, kCalledAt); }},
-        WrongAct{"tells its PC something at",
+        WrongAct{"reports something to its PC at",
                  [](iut::Bench& bench) { bench.write(kFifoRoom, 0, kCalledAt - kMillisecond); }},
         WrongAct{"drives port 1",
                  [](iut::Bench& bench) { bench.transmit({1, kCalledAt, kCalledAt, kCalledAt, {}}); }}));

@@ -18,9 +18,10 @@ constexpr std::size_t kKnownInstants = 256;
 AttachedLine::AttachedLine(iut::AttachedCase& attached, const Rules& rules)
     : attached_(attached), rules_(rules), codec_(rules), transmitter_(rules) {
   if (attached.unit_kind() != iut::UnitKind::telegrams) return;
-  throw kernel::Error(kernel::ErrorKind::implementation,
-                      "a station of the valve bus hears and says characters or levels; this implementation "
-                      "announces telegrams");
+  throw kernel::Error(
+      kernel::ErrorKind::implementation,
+      "a station of the valve bus receives and sends characters or levels; this implementation "
+      "announces telegrams");
 }
 
 void AttachedLine::begin(const Rules& rules, kernel::Time now) {

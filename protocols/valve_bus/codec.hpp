@@ -119,7 +119,7 @@ class CharacterCodec {
     unsigned behind = 0;
   };
 
-  // Drives the characters one behind the other, the first start bit at `start`. Gives the end.
+  // Drives the characters one after the other, the first start bit at `start`. Gives the end.
   kernel::Time drive(segment::Port& line, std::span<const std::uint8_t> octets, kernel::Time start,
                      const DriverTime& driver) {
     return drive(line, octets, start, driver, rules_.bit_rate);

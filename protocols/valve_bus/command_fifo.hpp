@@ -9,12 +9,12 @@
 #include "protocols/valve_bus/frame.hpp"
 #include "protocols/valve_bus/rules.hpp"
 
-// The FIFO between the PC and the host module: a ring of octets in which commands of four stand one behind
+// The FIFO between the PC and the host module: a ring of octets in which commands of four stand one after
 // the other.
 //
 // Contract: whole commands come out in the order in which they went in. What does not fit is lost command by
 // command, the newest ones, never a part of one, so the stream stays in step. A command whose rest does not
-// come in time is for `take_part`; what is written behind it begins a new one.
+// come in time is for `take_part`; what is written after it begins a new one.
 namespace fieldproof::valve_bus {
 
 class CommandFifo {

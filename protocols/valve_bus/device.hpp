@@ -53,12 +53,12 @@ struct HostConfiguration {
   unsigned dip = 0;  // position of the switches, an index of dip_bit_rates()
   // How it is wired: the receiver stays on while the driver is.
   bool receives_own_echo = false;
-  // For nodes whose switches follow their valves: a read behind each write of the PC must give what was
+  // For nodes whose switches follow their valves: a read after each write of the PC must give what was
   // written.
   bool verifies_writes = false;
 };
 
-// What was last read of a node, told behind each read of the PC.
+// What was last read of a node, told after each read of the PC.
 struct HostResponse {
   std::uint8_t id = 0;
   std::uint8_t data0 = 0;
@@ -117,7 +117,7 @@ class HostDevice : public segment::Station {
   // The switches are turned; a host reads them at power-up.
   virtual void set_dip(unsigned position) = 0;
 
-  // Octets from the PC into the FIFO: commands of four octets, ID COMMAND DATA0 DATA1, one behind the other.
+  // Octets from the PC into the FIFO: commands of four octets, ID COMMAND DATA0 DATA1, one after the other.
   virtual void write(std::span<const std::uint8_t> octets, kernel::Time now) = 0;
   virtual std::size_t fifo_room() const = 0;  // octets
   // Commands have been lost since power-up.

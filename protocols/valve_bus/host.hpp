@@ -21,7 +21,7 @@
 //                   └───────────────────┘ distance over
 //
 // A response has no address: only its time says to which read it belongs. So nothing is sent while one may
-// still come: behind a wrong response the host waits until the time-out, and behind the last attempt a little
+// still come: after a wrong response the host waits until the time-out, and after the last attempt a little
 // longer, for one that is late. What comes when nothing is awaited is drained.
 //
 // While it drives the line it does not listen, however it is wired.
@@ -98,7 +98,7 @@ class Host : public HostDevice {
   virtual bool may_repeat(const Exchange& exchange) const;
   // A line that is not silent for so long is not waited for.
   virtual kernel::Duration longest_talk() const { return time_out(); }
-  // What is left for a late response behind the last attempt.
+  // What is left for a late response after the last attempt.
   virtual kernel::Duration late_span() const;
 
   // ---- decisions: what is heard ----

@@ -41,7 +41,7 @@ class HostTest : public testing::Test, private segment::Station, private HostApp
     for (int n = 0; n < 20'000 && octets_.size() < kCommandOctets; ++n) wait(10 * kMicrosecond);
     return octets_;
   }
-  // The octets, so long behind the last stop bit of the request.
+  // The octets, so long after the last stop bit of the request.
   void answer(const Octets& octets, kernel::Duration turnaround_time = 400 * kMicrosecond) {
     codec_.drive(*nodes_, octets, heard_until_ + turnaround_time, {});
   }
@@ -292,7 +292,7 @@ TEST_F(HostTest, HasAStateForEachEvent) {
   tell("write");
   answer({1});
   wait(600 * kMicrosecond);
-  tell("octet behind a write");
+  tell("octet after a write");
   wait(kMillisecond);
   tell("distance over");
   write({6, 1, 0, 0});
@@ -302,12 +302,12 @@ TEST_F(HostTest, HasAStateForEachEvent) {
   wait(200 * kMicrosecond + 3 * character_time({}));
   tell("three octets");
   wait(frame_end);
-  tell("silence behind a response");
+  tell("silence after a response");
   write({6, 1, 0, 0});
   request();
   answer({1, 2, 4}, 200 * kMicrosecond);
   wait(200 * kMicrosecond + 3 * character_time({}) + frame_end);
-  tell("silence behind a wrong response");
+  tell("silence after a wrong response");
   wait(3 * kMillisecond);
   tell("time-out of the first attempt");
   request();
@@ -320,12 +320,12 @@ TEST_F(HostTest, HasAStateForEachEvent) {
   EXPECT_EQ(states,
             "power up -> idle\n"
             "write -> resting\n"
-            "octet behind a write -> resting\n"
+            "octet after a write -> resting\n"
             "distance over -> idle\n"
             "read -> awaiting\n"
             "three octets -> awaiting\n"
-            "silence behind a response -> idle\n"
-            "silence behind a wrong response -> awaiting\n"
+            "silence after a response -> idle\n"
+            "silence after a wrong response -> awaiting\n"
             "time-out of the first attempt -> awaiting\n"
             "time-out of the last attempt -> resting\n"
             "time for a late response over -> idle\n"

@@ -7,7 +7,7 @@
 #include "protocols/valve_bus/codec.hpp"
 #include "protocols/valve_bus/device.hpp"
 
-// The reference local node: it listens, takes a command for its address when the silence behind it is sure,
+// The reference local node: it listens, takes a command for its address when the silence after it is sure,
 // drives its valves or answers with its limit switches.
 //
 //   off ──power──▶ waiting ──character──▶ collecting ──silence of 3.5 characters──▶ waiting    (valves, or
@@ -21,7 +21,7 @@
 // Every decision that a wrong implementation takes otherwise has a name and can be overridden one by one.
 namespace fieldproof::valve_bus {
 
-// What it takes the reference node to work out an answer, behind the delimiter.
+// What it takes the reference node to work out an answer, after the delimiter.
 inline constexpr kernel::Duration kNodeProcessing = 100 * kernel::kMicrosecond;
 
 enum class NodeState : std::uint8_t { off, waiting, collecting, answering };

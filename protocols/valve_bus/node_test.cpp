@@ -199,28 +199,28 @@ TEST_F(NodeTest, HasAStateForEachEvent) {
   send(Octets{1});
   tell("character");
   wait(delimiter({}) + character_notice({}) + kernel::kNanosecond);
-  tell("silence behind part of a frame");
+  tell("silence after part of a frame");
   send(Command{2, 1, 0, 0});
   wait(delimiter({}) + character_notice({}) + kernel::kNanosecond);
-  tell("silence behind a read of another node");
+  tell("silence after a read of another node");
   send(Command{1, 0, 0, 0});
   wait(delimiter({}) + character_notice({}) + kernel::kNanosecond);
-  tell("silence behind a write of its own");
+  tell("silence after a write of its own");
   send(Command{1, 1, 0, 0});
   wait(delimiter({}) + character_notice({}) + kernel::kNanosecond);
-  tell("silence behind a read of its own");
+  tell("silence after a read of its own");
   wait(200 * kMicrosecond);
-  tell("turn-round over");
+  tell("turnaround over");
   node_->set_power(false, now());
   tell("power off");
   EXPECT_EQ(told,
             "power up -> waiting\n"
             "character -> collecting\n"
-            "silence behind part of a frame -> waiting\n"
-            "silence behind a read of another node -> waiting\n"
-            "silence behind a write of its own -> waiting\n"
-            "silence behind a read of its own -> answering\n"
-            "turn-round over -> waiting\n"
+            "silence after part of a frame -> waiting\n"
+            "silence after a read of another node -> waiting\n"
+            "silence after a write of its own -> waiting\n"
+            "silence after a read of its own -> answering\n"
+            "turnaround over -> waiting\n"
             "power off -> off\n");
 }
 

@@ -42,7 +42,7 @@ struct Rules {
   unsigned write_command = 0;
   unsigned read_command = 1;
 
-  // Node. Times begin with the delimiter behind the command.
+  // Node. Times begin with the delimiter after the command.
   kernel::Duration turnaround_time_span = 2 * kernel::kMillisecond;  // within which a response begins
   kernel::Duration actuation_limit = 2 * kernel::kMillisecond;
   kernel::Duration output_skew = 1 * kernel::kMicrosecond;  // of the outputs that one command changes
@@ -91,12 +91,12 @@ inline kernel::Duration delimiter(const Rules& rules) {
 // A receiver learns of a character when it is over, so of silence it is only sure a character later; a bit
 // more is for a sender whose clock is slow.
 kernel::Duration character_notice(const Rules& rules);
-// What a node may take behind the delimiter, to begin its response and to move its valves: the span and the
+// What a node may take after the delimiter, to begin its response and to move its valves: the span and the
 // limit of the rules, or twice the notice at bit rates at which that is longer.
 kernel::Duration turnaround_time_span(const Rules& rules);
 kernel::Duration actuation_limit(const Rules& rules);
 
-// How long a host waits behind its last stop bit for the first start bit of the response: a delimiter and the
+// How long a host waits after its last stop bit for the first start bit of the response: a delimiter and the
 // wait of the rules, or what a node may take and a notice of it where that is longer.
 kernel::Duration response_time_out(const Rules& rules);
 

@@ -29,8 +29,8 @@ PollTime reference_poll_time(const Rules& rules, kernel::Duration distance = {})
 kernel::Duration reference_write_time(const Rules& rules);
 
 // Where the node number `node` (from 0) of `nodes` lies on a cable of so many metres, spread evenly, as the
-// time from the host to it. Behind each 30 nodes (31 on the segment of the host) there is a repeater: 32 unit
-// loads are 31 nodes and the host, and two of them are repeaters in the segments behind.
+// time from the host to it. After each 30 nodes (31 on the segment of the host) there is a repeater: 32 unit
+// loads are 31 nodes and the host, and two of them are repeaters in the segments after.
 kernel::Duration distance_of(const Rules& rules, unsigned node, unsigned nodes, double length_m);
 
 }  // namespace fieldproof::valve_bus

@@ -116,10 +116,10 @@ await check("numbers of the summary are those of the run", async (page) => {
   if (!firstRun) return;
   const text = await page.locator("#summary").innerText();
   const { counts } = firstRun.results;
-  expect(text.includes(`not run: ${counts.not_run}`), "not run is not told");
-  expect(text.includes(firstRun.results.run.seed), "the seed is not told");
-  expect((await page.locator("#summary .command code").first().innerText()).includes(firstRun.command), "the command is not told");
-  if (!firstRun.results.run.complete) expect(text.includes("incomplete"), "that it is incomplete is not told");
+  expect(text.includes(`not run: ${counts.not_run}`), "not run is not reported");
+  expect(text.includes(firstRun.results.run.seed), "the seed is not reported");
+  expect((await page.locator("#summary .command code").first().innerText()).includes(firstRun.command), "the command is not reported");
+  if (!firstRun.results.run.complete) expect(text.includes("incomplete"), "that it is incomplete is not reported");
 });
 
 await check("text, verdicts and standing filter", async (page) => {
@@ -133,7 +133,7 @@ await check("text, verdicts and standing filter", async (page) => {
   await page.check("#unverified-only");
   const unverified = cases.filter((one) => !one.reference.verified || one.findings.some((finding) => !finding.reference.verified));
   expectEqual(await shownCases(page), unverified.length, "unverified cases");
-  expect((await page.locator(".count").innerText()).startsWith(String(unverified.length)), "the count is not told");
+  expect((await page.locator(".count").innerText()).startsWith(String(unverified.length)), "the count is not reported");
 });
 
 await check("heads sort up and down", async (page) => {

@@ -78,7 +78,7 @@ function caughtPart({ name, content }) {
 export function coverageSection(data) {
   const matrices = documentsOf(data, "fieldproof/matrix/1");
   if (data.runs.length + matrices.length === 0) return null;
-  const hint = matrices.length ? null : element("p", {class: "quiet"}, "How many mutants the cases catch is told by ",
+  const hint = matrices.length ? null : element("p", {class: "quiet"}, "How many mutants the cases catch is reported by ",
       element("code", {}, "fieldproof matrix PROTOCOL --json F"), ", given to the same report.");
   return section("coverage", "Coverage", data.runs.map((run) => coverageOf(run, data.catalogue)), matrices.map(caughtPart), hint);
 }

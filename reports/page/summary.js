@@ -7,7 +7,7 @@ import { duration, number, part, plural } from "./format.js";
 const kMeaning = {
   error: "the bench or the implementation broke off",
   fail: "a requirement is not met",
-  inconclusive: "it cannot be told",
+  inconclusive: "it cannot be reported",
   warn: "met, with a remark",
   pass: "met",
   "not-applicable": "the implementation declares otherwise",
