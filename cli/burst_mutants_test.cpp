@@ -151,12 +151,12 @@ const ImmunityResult& reference(Line line) {
 }
 
 interbus::RunningStations with_master(std::string_view name) {
-  return {.make_master = conformance::mutant_master(name)};
+  return {.make_master = conformance::master_mutants().maker(name)};
 }
 
 interbus::RunningStations with_slave(int at, std::string_view name) {
   return {.make_slave = [=](int position, const interbus::SlaveConfiguration& configuration) {
-    return position == at ? conformance::make_slave_mutant(name, configuration) : nullptr;
+    return position == at ? conformance::slave_mutants().make(name, configuration) : nullptr;
   }};
 }
 

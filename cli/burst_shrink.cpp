@@ -72,7 +72,7 @@ struct DisturbedRun {
 
 DisturbedRun run_disturbed(const CaseFile& stored) {
   const auto struck = std::make_shared<FlippedBits>();
-  const Disturbances all = watched(all_disturbances(), struck);
+  const conformance::Disturbances all = watched(all_disturbances(), struck);
   const conformance::Catalogue catalogue(make_suites(stored.is_quiet ? without_stresses(all) : all));
   const conformance::CaseRun done = conformance::run_case(catalogue.at(stored.id), stored.setup);
   return {std::move(*struck), done.outcome.result};

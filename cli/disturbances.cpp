@@ -5,7 +5,7 @@
 
 namespace fieldproof::cli {
 
-Disturbances all_disturbances() {
+conformance::Disturbances all_disturbances() {
   return {emc::catalogue_stresses(), emc::catalogue_link_stresses(), emc::plan_disturbances()};
 }
 

@@ -102,10 +102,10 @@ class Campaign {
   explicit Campaign(Session& session)
       : session_(session),
         interruption_(session.settings.duration("max-time")),
-        row_(network_row_of(session, "emc")),
-        network_(row_.plan(session)) {
+        row_(network_entry_of(session, "emc")),
+        network_(plan_network(session, row_)) {
     const Settings& settings = session.settings;
-    done_.protocol = row_.protocol;
+    done_.protocol = row_.name;
     done_.network = network_->name();
     done_.exchange = network_->exchange();
     done_.implementations = fmt::format("{}", fmt::join(settings.list("iut"), " "));
@@ -115,11 +115,12 @@ class Campaign {
     done_.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
     done_.duration = virtual_time_from(settings);
     done_.has_bursts = wants_bursts(settings);
-    done_.channel_caveats = network_->undetected_caveats();
+    if (!row_.undetected.caveat.empty()) done_.channel_caveats.emplace_back(row_.undetected.caveat);
     network_->make(done_.seed);  // who cannot take part ends the call, and is no verdict
     planned_ = tests_from(settings, done_.has_bursts);
     for (EmcTest& test : planned_) {
-      if (!test.has_bursts()) test.undetected = network_->undetected(test.flip_probability);
+      if (test.has_bursts() || row_.undetected.parts == nullptr) continue;
+      test.undetected = row_.undetected.parts(settings.text("network"), test.flip_probability);
     }
   }
 
@@ -128,7 +129,7 @@ class Campaign {
     const emc::LineResponse response(done_.profile.coupling);
     done_.threshold_volts = response.threshold_volts();
     session_.terminal.print(
-        simulation_header(session_, done_.seed, session_.settings.text("network"), row_.own_network));
+        simulation_header(session_, done_.seed, session_.settings.text("network"), row_.network.own_network));
     session_.terminal.print(emc_table_head(done_.has_bursts));
     conformance::OrderedWork<Ran> work;
     work.count = planned_.size();
@@ -210,8 +211,8 @@ class Campaign {
 
   Session& session_;
   Interruption interruption_;
-  const NetworkRow& row_;
-  std::unique_ptr<PlannedNetwork> network_;
+  const ProtocolEntry& row_;
+  std::unique_ptr<conformance::PlannedNetwork> network_;
   std::vector<EmcTest> planned_;
   EmcCampaign done_;
 };

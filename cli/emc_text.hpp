@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/networks.hpp"
+#include "cli/protocol_entry.hpp"
 #include "emc/frame_residual.hpp"
 #include "emc/immunity.hpp"
 #include "emc/profile.hpp"

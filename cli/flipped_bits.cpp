@@ -86,7 +86,7 @@ using MakeChannel = decltype(fault::Stress::make_channel);
 
 // `change` makes another MakeChannel of each.
 template <typename Change>
-void change_stresses(Disturbances& all, Change change) {
+void change_stresses(conformance::Disturbances& all, Change change) {
   for (fault::Stress& stress : all.stresses) stress.make_channel = change(stress.make_channel);
   for (auto& [bit_rate, stresses] : all.link_stresses) {
     for (fault::Stress& stress : stresses) stress.make_channel = change(stress.make_channel);
@@ -95,7 +95,7 @@ void change_stresses(Disturbances& all, Change change) {
 
 }  // namespace
 
-Disturbances watched(Disturbances all, const std::shared_ptr<FlippedBits>& struck) {
+conformance::Disturbances watched(conformance::Disturbances all, const std::shared_ptr<FlippedBits>& struck) {
   change_stresses(all, [&struck](const MakeChannel& make) {
     return [make, struck](const fault::StressPlace& place) {
       return std::make_unique<WatchedChannel>(make(place), place, struck);
@@ -113,7 +113,7 @@ Disturbances watched(Disturbances all, const std::shared_ptr<FlippedBits>& struc
   return all;
 }
 
-Disturbances without_stresses(Disturbances all) {
+conformance::Disturbances without_stresses(conformance::Disturbances all) {
   change_stresses(all, [](const MakeChannel&) { return [](const fault::StressPlace&) { return nullptr; }; });
   return all;
 }

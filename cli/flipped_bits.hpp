@@ -30,10 +30,10 @@ struct StruckBit {
 using FlippedBits = std::vector<StruckBit>;
 
 // The same disturbances, with a note in `struck` of all that they do.
-Disturbances watched(Disturbances all, const std::shared_ptr<FlippedBits>& struck);
+conformance::Disturbances watched(conformance::Disturbances all, const std::shared_ptr<FlippedBits>& struck);
 
 // The same for plans; stresses disturb nothing, for as long as those do.
-Disturbances without_stresses(Disturbances all);
+conformance::Disturbances without_stresses(conformance::Disturbances all);
 
 // The text of a plan with these bits instead of all disturbances of `plan`, which is the text of one, or
 // empty.

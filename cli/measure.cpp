@@ -59,7 +59,8 @@ int code_of(measure::Agreement agreement) {
 // Bursts that begin with the signal and go on until its end.
 class BurstsWhileMeasuring {
  public:
-  BurstsWhileMeasuring(const Settings& settings, const PlannedNetwork& planned, std::uint64_t seed)
+  BurstsWhileMeasuring(const Settings& settings, const conformance::PlannedNetwork& planned,
+                       std::uint64_t seed)
       : profile_(settings.origin("profile") == Origin::fallback
                      ? emc::Profile::named(planned.default_profile())
                      : profile_from(settings)),
@@ -92,8 +93,8 @@ class BurstsWhileMeasuring {
 };
 
 measure::Measurement measured_by(Session& session) {
-  const NetworkRow& row = network_row_of(session, "measure");
-  const std::unique_ptr<PlannedNetwork> planned = row.plan(session);
+  const ProtocolEntry& row = network_entry_of(session, "measure");
+  const std::unique_ptr<conformance::PlannedNetwork> planned = plan_network(session, row);
   network::MeasurementSettings settings = measurement_from(session);
   std::optional<BurstsWhileMeasuring> bursts;
   if (session.settings.is_set("bursts")) {
@@ -103,7 +104,7 @@ measure::Measurement measured_by(Session& session) {
   }
   settings.on_progress = [&](std::size_t done) { session.terminal.progress(done); };
   session.terminal.print(
-      simulation_header(session, settings.seed, session.settings.text("network"), row.own_network));
+      simulation_header(session, settings.seed, session.settings.text("network"), row.network.own_network));
   session.terminal.begin_progress(settings.signals.size(), "signals");
   measure::Measurement measured =
       network::measure_network([&](std::uint64_t seed) { return planned->make(seed); }, settings);

@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "cli/command_line.hpp"
+#include "cli/disturbances.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/verbs.hpp"
 #include "harness/iut/misbehaviour.hpp"

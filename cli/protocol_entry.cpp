@@ -21,11 +21,12 @@ std::span<const ProtocolEntry> protocols() {
   return of_this_process;
 }
 
-Suites make_suites(const Disturbances& disturbances) {
-  const conformance::Attach attach = attachments();
+Suites make_suites(const conformance::Disturbances& disturbances) {
+  const conformance::SuiteGiven given{
+      .attach = attachments(), .disturbances = disturbances, .on_real_line = station_on_real_line};
   Suites all;
   for (const ProtocolEntry& protocol : protocols())
-    if (protocol.suite != nullptr) all.push_back(protocol.suite(attach, disturbances));
+    if (protocol.suite != nullptr) all.push_back(protocol.suite(given));
   return all;
 }
 

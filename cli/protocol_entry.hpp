@@ -9,9 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/disturbances.hpp"
-#include "conformance/case_devices.hpp"
-#include "conformance/test_case.hpp"
+#include "conformance/planned_network.hpp"
+#include "conformance/suite.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/uart_line.hpp"
 #include "harness/judge/pics.hpp"
@@ -48,12 +47,25 @@ struct Planned {
   bool is_proven = false;
 };
 
+// A way for a frame to arrive wrong at one receiver and to pass, where each bit flips with the same chance.
+struct UndetectedPart {
+  std::string name;  // "code_word"
+  double probability = 0;
+};
+
+// What passes the checks of a network where each bit flips with the same chance, in closed form.
+struct UndetectedTheory {
+  std::vector<UndetectedPart> (*parts)(const std::string& network_file, double flip_probability) = nullptr;
+  std::string_view caveat{};  // what it rests on
+};
+
 struct ProtocolEntry {
   std::string_view name;
   std::span<const Role> roles{};
-  // Disturbed by nothing but these; for implementations outside there is `attach`.
-  std::unique_ptr<conformance::Suite> (*suite)(const conformance::Attach& attach,
-                                               const Disturbances& disturbances) = nullptr;
+  std::unique_ptr<conformance::Suite> (*suite)(conformance::SuiteGiven given) = nullptr;
+  // What `emc` and `measure` run; without a plan there is nothing.
+  conformance::NetworkRow network{};
+  UndetectedTheory undetected{};  // without parts none is prepared
   // Finds what keeps the bound of a network file; null: there is nothing to plan.
   Planned (*plan)(const std::string& file, std::uint64_t seed) = nullptr;
 };
@@ -63,7 +75,7 @@ void use_protocols(std::span<const ProtocolEntry> protocols);
 std::span<const ProtocolEntry> protocols();
 
 using Suites = std::vector<std::unique_ptr<conformance::Suite>>;
-Suites make_suites(const Disturbances& disturbances);
+Suites make_suites(const conformance::Disturbances& disturbances);
 
 std::vector<const Role*> roles();
 // Of "PROTOCOL/ROLE"; null for a path that is none.

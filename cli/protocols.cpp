@@ -2,18 +2,22 @@
 
 #include <array>
 
-#include "cli/attachments.hpp"
+#include "cli/disturbances.hpp"
 #include "conformance/assigned.hpp"
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
+#include "conformance/fieldbus_dll/planned_network.hpp"
 #include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/planned_network.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/valve_bus/host_mutants.hpp"
 #include "conformance/valve_bus/node_bench.hpp"
 #include "conformance/valve_bus/node_mutants.hpp"
+#include "conformance/valve_bus/planned_network.hpp"
 #include "conformance/valve_bus/suite.hpp"
+#include "emc/interbus/undetected_cycle.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
@@ -33,14 +37,13 @@
 namespace fieldproof::cli {
 namespace {
 
-// `make_mutant` gives the station of a mutant by its name.
-template <typename Kind, typename Reference, auto make_mutant>
+template <typename Kind, typename Reference, auto mutants>
 std::unique_ptr<iut::Device> serve(const std::string& uri) {
   const bool is_reference = uri == conformance::kReferenceUri;
   const std::string name = is_reference ? "" : conformance::mutant_of(uri, "built-in station");
-  if (!is_reference) make_mutant(name, {});  // while it is the caller's mistake
+  if (!is_reference) mutants().maker(name);  // while it is the caller's mistake
   return std::make_unique<typename Kind::Served>([is_reference, name](const auto& configuration) {
-    return is_reference ? std::make_unique<Reference>(configuration) : make_mutant(name, configuration);
+    return is_reference ? std::make_unique<Reference>(configuration) : mutants().make(name, configuration);
   });
 }
 
@@ -49,23 +52,6 @@ std::unique_ptr<iut::Device> in_levels(iut::Attachment attachment, const iut::Ca
   return std::make_unique<typename Kind::Served>([attachment, begin](const auto& configuration) {
     return std::make_unique<typename Kind::Attached>(attachment, configuration, begin.id, begin.seed);
   });
-}
-
-constexpr const char kIsaDle[] = "isa_dle";
-constexpr const char kIsaLas[] = "isa_las";
-constexpr const char kFfDevice[] = "ff_device";
-constexpr const char kFfLas[] = "ff_las";
-
-// Mutants of the data link stand in one table for both roles of a profile.
-template <const char* role>
-std::unique_ptr<fieldbus_dll::IsaDevice> isa_mutant_of(const std::string& name,
-                                                       const fieldbus_dll::IsaConfiguration& of) {
-  return conformance::make_isa_mutant(role, name, of);
-}
-template <const char* role>
-std::unique_ptr<fieldbus_dll::FfDevice> ff_mutant_of(const std::string& name,
-                                                     const fieldbus_dll::FfConfiguration& of) {
-  return conformance::make_ff_mutant(role, name, of);
 }
 
 // ---- serial lines ----
@@ -89,9 +75,9 @@ std::unique_ptr<iut::Device> in_telegrams(std::unique_ptr<iut::Device> station) 
 
 // ---- rows ----
 
-template <typename Kind, typename Reference, auto make_mutant>
+template <typename Kind, typename Reference, auto mutants>
 constexpr Role row(iut::UnitOffer told) {
-  return {Kind::protocol, Kind::role, told, &serve<Kind, Reference, make_mutant>, &in_levels<Kind>};
+  return {Kind::protocol, Kind::role, told, &serve<Kind, Reference, mutants>, &in_levels<Kind>};
 }
 
 constexpr Role with_telegrams(Role role, decltype(Role::in_telegrams) in_telegrams) {
@@ -116,44 +102,23 @@ constexpr auto kInItsUnit = iut::UnitOffer::in_its_unit;
 constexpr auto kCharactersToo = iut::UnitOffer::in_characters_too;
 
 constexpr std::array kInterbusRoles{
-    with_telegrams(row<interbus::SlaveRole, interbus::Slave, &conformance::make_slave_mutant>(kInItsUnit),
+    with_telegrams(row<interbus::SlaveRole, interbus::Slave, &conformance::slave_mutants>(kInItsUnit),
                    &in_telegrams<3>),
-    with_telegrams(
-        row<interbus::MasterRole, interbus::Master, &conformance::make_master_mutant>(kCharactersToo),
-        &in_telegrams<1>),
+    with_telegrams(row<interbus::MasterRole, interbus::Master, &conformance::master_mutants>(kCharactersToo),
+                   &in_telegrams<1>),
 };
 constexpr std::array kValveBusRoles{
-    with_uart(row<valve_bus::NodeRole, valve_bus::Node, &conformance::make_node_mutant>(kInItsUnit),
-              node_uart, kNodeInputs, node_alone),
-    without_serial(row<valve_bus::HostRole, valve_bus::Host, &conformance::make_host_mutant>(kCharactersToo),
+    with_uart(row<valve_bus::NodeRole, valve_bus::Node, &conformance::node_mutants>(kInItsUnit), node_uart,
+              kNodeInputs, node_alone),
+    without_serial(row<valve_bus::HostRole, valve_bus::Host, &conformance::host_mutants>(kCharactersToo),
                    "it begins exchanges by itself, and its cases know no uncertainty of instants"),
 };
 constexpr std::array kFieldbusDllRoles{
-    row<fieldbus_dll::IsaDleRole, fieldbus_dll::IsaDle, &isa_mutant_of<kIsaDle>>(kCharactersToo),
-    row<fieldbus_dll::IsaLasRole, fieldbus_dll::IsaLas, &isa_mutant_of<kIsaLas>>(kCharactersToo),
-    row<fieldbus_dll::FfDeviceRole, fieldbus_dll::FfStation, &ff_mutant_of<kFfDevice>>(kCharactersToo),
-    row<fieldbus_dll::FfLasRole, fieldbus_dll::FfLas, &ff_mutant_of<kFfLas>>(kCharactersToo),
+    row<fieldbus_dll::IsaDleRole, fieldbus_dll::IsaDle, &conformance::isa_dle_mutants>(kCharactersToo),
+    row<fieldbus_dll::IsaLasRole, fieldbus_dll::IsaLas, &conformance::isa_las_mutants>(kCharactersToo),
+    row<fieldbus_dll::FfDeviceRole, fieldbus_dll::FfStation, &conformance::ff_device_mutants>(kCharactersToo),
+    row<fieldbus_dll::FfLasRole, fieldbus_dll::FfLas, &conformance::ff_las_mutants>(kCharactersToo),
 };
-
-std::unique_ptr<conformance::Suite> interbus_suite(const conformance::Attach& attach,
-                                                   const Disturbances& disturbances) {
-  return conformance::interbus_suite(
-      {.attach = attach, .disturbances = disturbances.of_plans, .stresses = disturbances.stresses});
-}
-
-std::unique_ptr<conformance::Suite> valve_bus_suite(const conformance::Attach& attach,
-                                                    const Disturbances& disturbances) {
-  return conformance::valve_bus_suite({.attach = attach,
-                                       .on_real_line = station_on_real_line,
-                                       .disturbances = disturbances.of_plans,
-                                       .stresses = disturbances.stresses});
-}
-
-std::unique_ptr<conformance::Suite> fieldbus_dll_suite(const conformance::Attach& attach,
-                                                       const Disturbances& disturbances) {
-  return conformance::fieldbus_dll_suite(
-      {.attach = attach, .disturbances = disturbances.of_plans, .stresses = disturbances.link_stresses});
-}
 
 Planned token_plan(const std::string& file, std::uint64_t seed) {
   const auto network = fieldbus_dll::TokenNetwork::load(file);
@@ -161,10 +126,34 @@ Planned token_plan(const std::string& file, std::uint64_t seed) {
   return {fieldbus_dll::network_text(network, seed) + fieldbus_dll::plan_text(plan, network), plan.is_proven};
 }
 
+std::vector<UndetectedPart> undetected_cycles(const std::string& network_file, double flip_probability) {
+  const emc::UndetectedCycle parts =
+      emc::undetected_cycle(conformance::planned_interbus_network(network_file), flip_probability);
+  return {{"code_word", parts.by_code_word}, {"shift", parts.by_shift}, {"misframing", parts.by_misframing}};
+}
+
 constexpr std::array kProtocols{
-    ProtocolEntry{"interbus", kInterbusRoles, interbus_suite},
-    ProtocolEntry{"valve_bus", kValveBusRoles, valve_bus_suite},
-    ProtocolEntry{"fieldbus_dll", kFieldbusDllRoles, fieldbus_dll_suite, token_plan},
+    ProtocolEntry{
+        .name = "interbus",
+        .roles = kInterbusRoles,
+        .suite = conformance::interbus_suite,
+        .network = {.own_network = "of the cycle-time paper",
+                    .plan = conformance::plan_interbus,
+                    .has_latch_models = true},
+        .undetected = {undetected_cycles,
+                       "That a flipped header level moves the end of the data, and how often a check "
+                       "fits then, follows from this project's reading of the header: the simulated "
+                       "stations and the theory share it."}},
+    ProtocolEntry{.name = "valve_bus",
+                  .roles = kValveBusRoles,
+                  .suite = conformance::valve_bus_suite,
+                  .network = {.own_network = "of 8 nodes on 1000 m", .plan = conformance::plan_valve_bus}},
+    ProtocolEntry{
+        .name = "fieldbus_dll",
+        .roles = kFieldbusDllRoles,
+        .suite = conformance::fieldbus_dll_suite,
+        .network = {.own_network = "of two link masters and 4 devices", .plan = conformance::plan_link},
+        .plan = token_plan},
 };
 
 }  // namespace

@@ -16,10 +16,15 @@ namespace fieldproof::conformance {
 
 template <typename Bench, typename Needs>
 struct BenchCase {
+  using BenchType = Bench;
+
   TestCase test_case;
   std::function<void(Bench&, CaseJudge&)> procedure;
   Needs needs{};
 };
+
+// Of cases that take the bench as it is.
+struct NoNeeds {};
 
 // What is judged after a procedure, whatever it was about.
 template <typename Bench>
@@ -35,8 +40,10 @@ judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting
   // Made within the procedure: what an implementation does when it is powered is its verdict, too.
   std::optional<Bench> bench;
   CaseJudge judge(one.test_case);
-  judge.use_clock([&] { return bench ? bench->now() : kernel::kStart; });
-  judge.use_decode([&] { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
+  judge.use_clock([&] { return bench ? bench->segment().now() : kernel::kStart; });
+  if constexpr (requires { bench->decode_lines(); }) {
+    judge.use_decode([&] { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
+  }
   judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
     bench.emplace(one.needs, setting);
     one.procedure(*bench, j);
@@ -45,8 +52,8 @@ judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting
   result.seed = setting.seed;
   if (!bench) return result;
   result.fingerprint = bench->segment().trace().fingerprint();
-  result.virtual_time = bench->now() - kernel::kStart;
-  result.planned_hits = bench->planned_hits();
+  result.virtual_time = bench->segment().now() - kernel::kStart;
+  if constexpr (requires { bench->planned_hits(); }) result.planned_hits = bench->planned_hits();
   return result;
 }
 

@@ -24,6 +24,20 @@ namespace fieldproof::conformance {
 using Attach =
     std::function<std::optional<iut::Attachment>(const iut::RoleName& role, const IutRequest& request)>;
 
+[[noreturn]] void refuse_outside(const iut::RoleName& role);
+
+// The station that an implementation outside plays. A `Kind` without an Attached has stations of the program
+// only: an implementation outside is refused.
+template <typename Kind>
+std::unique_ptr<typename Kind::Device> attached_station(iut::Attachment attachment,
+                                                        const typename Kind::Configuration& configuration,
+                                                        const std::string& case_id, std::uint64_t seed) {
+  if constexpr (requires { typename Kind::Attached; }) {
+    return std::make_unique<typename Kind::Attached>(std::move(attachment), configuration, case_id, seed);
+  } else {
+    refuse_outside({Kind::protocol, Kind::role});
+  }
+}
 class CaseDevices {
  public:
   // All must outlive it. Loads the recording that the setup names.
@@ -43,16 +57,17 @@ class CaseDevices {
                                               const typename Kind::Configuration& configuration,
                                               MakeLocal make_local) {
     std::optional<iut::Attachment> attachment = outside({Kind::protocol, Kind::role}, uri);
-    if (!attachment && !setup_.as_device) return make_local(configuration);
-    if (!attachment) {
-      // It is made of its configuration, and not of the settings that an implementation outside is told.
-      const auto served = std::make_shared<typename Kind::Served>(
-          [make_local, configuration](const auto&) { return make_local(configuration); });
-      attachment.emplace(iut::Attachment{served.get(), served, {}});
+    if constexpr (requires { typename Kind::Served; }) {
+      if (!attachment && setup_.as_device) {
+        // It is made of its configuration, and not of the settings that an implementation outside is told.
+        const auto served = std::make_shared<typename Kind::Served>(
+            [make_local, configuration](const auto&) { return make_local(configuration); });
+        attachment.emplace(iut::Attachment{served.get(), served, {}});
+      }
     }
+    if (!attachment) return make_local(configuration);
     if (setup_.record && !is_played_back()) *attachment = iut::recorded(std::move(*attachment), *recording_);
-    return std::make_unique<typename Kind::Attached>(std::move(*attachment), configuration, test_case_.id,
-                                                     setup_.seed);
+    return attached_station<Kind>(std::move(*attachment), configuration, test_case_.id, setup_.seed);
   }
 
   // What was recorded goes to the outcome.

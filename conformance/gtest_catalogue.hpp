@@ -18,6 +18,7 @@
 #include <functional>
 #include <string>
 
+#include "conformance/suite.hpp"
 #include "conformance/test_case.hpp"
 
 namespace fieldproof::conformance {

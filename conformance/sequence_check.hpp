@@ -6,6 +6,7 @@
 #include <stop_token>
 
 #include "conformance/sequence.hpp"
+#include "conformance/suite.hpp"
 #include "conformance/test_case.hpp"
 
 // The search of `check`: draws sequence after sequence, runs each on a bench of its own until one fails, and

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "harness/kernel/check.hpp"
-
 namespace fieldproof::conformance {
 
 std::string TestCase::role() const {
@@ -44,10 +42,6 @@ bool has_tag(const TestCase& test_case, std::string_view tag) {
 
 bool is_canary(const TestCase& test_case) {
   return has_tag(test_case, "canary");
-}
-
-Outcome Suite::run_sequence(const SequenceRole& role, const Sequence&, const Setup&) const {
-  FIELDPROOF_CHECK(false, "a suite runs sequences of the roles that it names: " + role.test_case.id);
 }
 
 std::string_view name(Volume volume) {

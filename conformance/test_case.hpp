@@ -10,16 +10,14 @@
 #include <vector>
 
 #include "conformance/sequence.hpp"
-#include "harness/fault/plan_part.hpp"
-#include "harness/field/named_table.hpp"
 #include "harness/iut/limits.hpp"
 #include "harness/judge/finding.hpp"
 #include "harness/judge/pics.hpp"
 #include "harness/trace/dissector.hpp"
 #include "harness/trace/recording.hpp"
 
-// One test case, one mutant, and the suite of a protocol that runs a case against an implementation.
-// There is one definition of a case: the command line, GoogleTest and the matrix all use it.
+// One test case, one mutant, and what decides a run of a case and comes of it (conformance/suite.hpp makes
+// it). There is one definition of a case: the command line, GoogleTest and the matrix all use it.
 namespace fieldproof::iut {
 class DeviceRecording;
 }
@@ -132,49 +130,6 @@ struct Outcome {
 struct SequenceRole {
   TestCase test_case;  // "valve_bus/node/check/follows_the_model"
   SequenceVocabulary vocabulary;
-};
-
-// A protocol's suite. `run` never throws for a misbehaving implementation: that is a verdict. It throws
-// kernel::Error for a setup that cannot be served, naming what would be right.
-class Suite {
- public:
-  Suite() = default;
-  Suite(const Suite&) = delete;
-  Suite& operator=(const Suite&) = delete;
-  virtual ~Suite() = default;
-
-  virtual std::string_view protocol() const = 0;
-  virtual std::vector<std::string> roles() const = 0;
-  virtual const std::vector<TestCase>& cases() const = 0;
-  virtual const std::vector<Mutant>& mutants() const = 0;
-  virtual Outcome run(const TestCase& test_case, const Setup& setup) const = 0;
-
-  // Whether the program brought an implementation of this role along, with the URI `own`.
-  virtual bool has_own(std::string_view /*role*/) const { return false; }
-  // The farthest position of a role on a network of the suite's own.
-  virtual int last_position() const { return 1; }
-  // What a PICS of this protocol may answer.
-  virtual std::vector<judge::PicsItem> pics_items() const { return {}; }
-  // The settings of each role, by its name, and the numbers of the protocol as "rules".
-  virtual std::vector<field::NamedTable> tables() const { return {}; }
-  // Of the files that describe an installation of this protocol.
-  virtual std::vector<field::NamedSchema> schemas() const { return {}; }
-  // The answers of the setup, completed by what the suite takes for granted; nothing when the setup has none.
-  virtual std::optional<judge::Pics> declared_pics(const TestCase&, const Setup& setup) const {
-    return setup.pics;
-  }
-  // What a report must say about all results under this setup; sentences.
-  virtual std::vector<std::string> caveats(const Setup&) const { return {}; }
-  // The parts of the setup's plan of faults, in the order in which results count their hits.
-  virtual std::vector<fault::PlanPart> plan_parts(const Setup&) const { return {}; }
-  // What `check` draws sequences of, by role.
-  virtual std::span<const SequenceRole> sequence_roles() const { return {}; }
-  // One run of a sequence of one of these roles on a bench of its own, judged by the model of the role; as
-  // for `run`, the seed of the setup is that of the case.
-  virtual Outcome run_sequence(const SequenceRole& role, const Sequence& sequence, const Setup& setup) const;
-
-  // Throws the kernel::Error of `run` for files and places of this setup, without running anything.
-  virtual void check(const TestCase&, const Setup&) const {}
 };
 
 }  // namespace fieldproof::conformance

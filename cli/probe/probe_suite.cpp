@@ -192,7 +192,7 @@ std::unique_ptr<SuiteOfFunctions> gone_suite() {
 
 // There is no line to disturb.
 template <auto make>
-std::unique_ptr<conformance::Suite> undisturbed(const conformance::Attach&, const Disturbances&) {
+std::unique_ptr<conformance::Suite> undisturbed(conformance::SuiteGiven) {
   return make();
 }
 

@@ -27,7 +27,7 @@ struct FfSetting {
   using MakeStation =
       std::function<std::unique_ptr<fieldbus_dll::FfDevice>(const fieldbus_dll::FfConfiguration&)>;
 
-  MakeStation make_station;
+  MakeStation make_device;
   bool is_link_master = false;
   std::uint64_t seed = 1;
   Volume volume = Volume::full;

@@ -4,90 +4,77 @@
 #include "conformance/fieldbus_dll/ff_las_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_sequence_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_sequence_seeded_faults.hpp"
-#include "conformance/fieldbus_dll/mutant_table.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
-using fieldbus_dll::FfConfiguration;
-using fieldbus_dll::FfDevice;
 using fieldbus_dll::FfDlpdu;
 using fieldbus_dll::FfLas;
 using fieldbus_dll::FfRules;
 using fieldbus_dll::FfStation;
 using fieldbus_dll::FfType;
 using fieldbus_dll::FfUser;
-using FfTable = MutantTable<FfDevice, FfConfiguration>;
-using FfRow = FfTable::Row;
+using FfRow = FfMutants::Row;
 
 std::vector<FfRow> ff_token_rows() {
   using namespace ff_seeded_faults;
   return {
-      {"no_probe_response", "", "does not answer probes", FfTable::station<NoProbeResponse>()},
-      {"answers_late", "", "begins an octet after V(MRD) x V(ST)", FfTable::station<AnswersLate>()},
-      {"answers_for_all_nodes", "", "takes everything for its own", FfTable::station<AnswersForAllNodes>()},
-      {"live_from_the_start", "", "uses tokens without having been activated",
-       FfTable::station<LiveFromTheStart>()},
-      {"impossible_rules_taken", "", "starts with a V(MID) that cannot be",
-       FfTable::station<ImpossibleRulesTaken>()},
-      {"priority_inverted", "", "sends what is at most as urgent as the token",
-       FfTable::station<FfPriorityInverted>()},
-      {"priority_ignored", "", "does not look at the priority of a token",
-       FfTable::station<FfPriorityIgnored>()},
-      {"fifo_across_priorities", "", "sends in the order of submission",
-       FfTable::station<FfFifoAcrossPriorities>()},
-      {"one_frame_a_token", "", "sends one frame under a token", FfTable::station<OneFrameAToken>()},
-      {"no_return_when_empty", "", "keeps a token for which it has nothing",
-       FfTable::station<NoReturnWhenEmpty>()},
+      {"no_probe_response", "", "does not answer probes", mutant<NoProbeResponse>()},
+      {"answers_late", "", "begins an octet after V(MRD) x V(ST)", mutant<AnswersLate>()},
+      {"answers_for_all_nodes", "", "takes everything for its own", mutant<AnswersForAllNodes>()},
+      {"live_from_the_start", "", "uses tokens without having been activated", mutant<LiveFromTheStart>()},
+      {"impossible_rules_taken", "", "starts with a V(MID) that cannot be", mutant<ImpossibleRulesTaken>()},
+      {"priority_inverted", "", "sends what is at most as urgent as the token", mutant<FfPriorityInverted>()},
+      {"priority_ignored", "", "does not look at the priority of a token", mutant<FfPriorityIgnored>()},
+      {"fifo_across_priorities", "", "sends in the order of submission", mutant<FfFifoAcrossPriorities>()},
+      {"one_frame_a_token", "", "sends one frame under a token", mutant<OneFrameAToken>()},
+      {"no_return_when_empty", "", "keeps a token for which it has nothing", mutant<NoReturnWhenEmpty>()},
       {"marked_token_unknown", "", "does not know a PT that begins a circulation",
-       FfTable::station<MarkedTokenUnknown>()},
+       mutant<MarkedTokenUnknown>()},
       {"sends_to_another", "", "sends to another node than its user says",
-       FfTable::station<SendsOtherAddress>(&FfDlpdu::destination)},
+       mutant<SendsOtherAddress>(&FfDlpdu::destination)},
       {"sends_as_another", "", "sends with the source of another node",
-       FfTable::station<SendsOtherAddress>(&FfDlpdu::source)},
-      {"answers_cd_offline", "", "answers a CD without having been activated",
-       FfTable::station<AnswersCdOffline>()},
+       mutant<SendsOtherAddress>(&FfDlpdu::source)},
+      {"answers_cd_offline", "", "answers a CD without having been activated", mutant<AnswersCdOffline>()},
       {"activated_by_anything", "", "takes whatever an entity sends it for its activation",
-       FfTable::station<ActivatedByAnything>()},
+       mutant<ActivatedByAnything>()},
       {"activated_by_broadcast", "", "takes an activation of everybody for its own",
-       FfTable::station<ActivatedByBroadcast>()},
+       mutant<ActivatedByBroadcast>()},
       {"activated_by_its_users_data", "", "takes data for its user for its activation",
-       FfTable::station<ActivatedByItsUsersData>()},
+       mutant<ActivatedByItsUsersData>()},
       {"silence_of_the_usual_link", "", "keeps the usual V(MID), whatever its link's is",
-       FfTable::station<SilenceOfTheUsualLink>()},
+       mutant<SilenceOfTheUsualLink>()},
       {"answers_in_the_usual_time", "", "answers within the usual V(MRD) x V(ST), whatever its link's is",
-       FfTable::station<AnswersInTheUsualTime>()},
-      {"returns_twice", "FF-7", "returns a token by F and by RT", FfTable::station<ReturnsTwice>()},
-      {"never_final", "", "sends its last frame without F", FfTable::station<NeverFinal>()},
-      {"queue_lost_with_token", "", "forgets what did not fit", FfTable::station<QueueLostWithToken>()},
-      {"duration_in_bits", "FF-5", "counts the duration in bits", FfTable::station<DurationTimes>(1)},
-      {"duration_in_two_octets", "", "counts the duration in pairs of octets",
-       FfTable::station<DurationTimes>(16)},
-      {"duration_ignored", "", "does not look at the duration", FfTable::station<FfDurationIgnored>()},
+       mutant<AnswersInTheUsualTime>()},
+      {"returns_twice", "FF-7", "returns a token by F and by RT", mutant<ReturnsTwice>()},
+      {"never_final", "", "sends its last frame without F", mutant<NeverFinal>()},
+      {"queue_lost_with_token", "", "forgets what did not fit", mutant<QueueLostWithToken>()},
+      {"duration_in_bits", "FF-5", "counts the duration in bits", mutant<DurationTimes>(1)},
+      {"duration_in_two_octets", "", "counts the duration in pairs of octets", mutant<DurationTimes>(16)},
+      {"duration_ignored", "", "does not look at the duration", mutant<FfDurationIgnored>()},
       {"duration_from_begin_of_pt", "", "counts the duration from the begin of the PT",
-       FfTable::station<DurationFromBeginOfPt>()},
-      {"fit_is_strict", "", "leaves what would fit exactly", FfTable::station<FfFitIsStrict>()},
+       mutant<DurationFromBeginOfPt>()},
+      {"fit_is_strict", "", "leaves what would fit exactly", mutant<FfFitIsStrict>()},
       {"overhead_not_charged", "FF-6", "leaves preamble and delimiters out of what must fit",
-       FfTable::station<OverheadNotCharged>()},
+       mutant<OverheadNotCharged>()},
       {"urgent_as_long_as_normal", "FF-19", "accepts urgent data of 128 octets",
-       FfTable::station<FfUrgentAsLongAsNormal>()},
+       mutant<FfUrgentAsLongAsNormal>()},
   };
 }
 
 std::vector<FfRow> ff_publisher_rows() {
   using namespace ff_seeded_faults;
   return {
-      {"publishes_first_write", "", "publishes what was written first",
-       FfTable::station<PublishesFirstWrite>()},
-      {"published_not_final", "", "keeps the token after a DT3", FfTable::station<PublishedNotFinal>()},
-      {"buffer_torn", "FF-21", "publishes half of an old buffer", FfTable::station<BufferTorn>()},
-      {"counts_reads", "", "counts CDs as writes", FfTable::station<CountsReads>()},
-      {"counts_to_255", "", "does not begin anew after 255 writes", FfTable::station<CountsTo255>()},
-      {"counts_nothing", "", "does not count writes", FfTable::station<CountsNothing>()},
+      {"publishes_first_write", "", "publishes what was written first", mutant<PublishesFirstWrite>()},
+      {"published_not_final", "", "keeps the token after a DT3", mutant<PublishedNotFinal>()},
+      {"buffer_torn", "FF-21", "publishes half of an old buffer", mutant<BufferTorn>()},
+      {"counts_reads", "", "counts CDs as writes", mutant<CountsReads>()},
+      {"counts_to_255", "", "does not begin anew after 255 writes", mutant<CountsTo255>()},
+      {"counts_nothing", "", "does not count writes", mutant<CountsNothing>()},
       {"publishes_anything", "", "answers a CD for any of its addresses with its buffer",
-       FfTable::station<PublishesAnything>()},
-      {"subscribed_to_all", "", "delivers what everybody publishes", FfTable::station<SubscribedTo>(true)},
-      {"subscribed_to_none", "", "delivers nothing of a publisher", FfTable::station<SubscribedTo>(false)},
+       mutant<PublishesAnything>()},
+      {"subscribed_to_all", "", "delivers what everybody publishes", mutant<SubscribedTo>(true)},
+      {"subscribed_to_none", "", "delivers nothing of a publisher", mutant<SubscribedTo>(false)},
   };
 }
 
@@ -96,102 +83,94 @@ std::vector<FfRow> ff_frame_rows() {
   using Octet = std::uint8_t;
   return {
       {"takes_other_residue", "FF-18", "takes a check that is not complemented, too",
-       FfTable::station<TakesOtherResidue>()},
-      {"check_of_high_octet", "", "looks at one octet of the check", FfTable::station<CheckOfHighOctet>()},
+       mutant<TakesOtherResidue>()},
+      {"check_of_high_octet", "", "looks at one octet of the check", mutant<CheckOfHighOctet>()},
       {"long_read_as_short", "FF-24", "reads long addresses as short ones",
-       FfTable::station<ReadsControlAs>(+[](Octet octet) { return static_cast<Octet>(octet & 0xF7); })},
+       mutant<ReadsControlAs>(+[](Octet octet) { return static_cast<Octet>(octet & 0xF7); })},
       {"priority_zero_taken", "", "takes a PT without priority",
-       FfTable::station<ReadsControlAs>(+[](Octet octet) { return octet == 0x30 ? Octet{0x31} : octet; })},
-      {"es_is_pt", "", "takes an ES for a PT", FfTable::station<ReadsControlAs>(+[](Octet octet) {
+       mutant<ReadsControlAs>(+[](Octet octet) { return octet == 0x30 ? Octet{0x31} : octet; })},
+      {"es_is_pt", "", "takes an ES for a PT", mutant<ReadsControlAs>(+[](Octet octet) {
          return (octet & 0xF8) == 0x38 ? static_cast<Octet>(octet & 0xF7) : octet;
        })},
-      {"check_of_tokens_only", "", "looks at the check of PTs only", FfTable::station<CheckOfTokensOnly>()},
+      {"check_of_tokens_only", "", "looks at the check of PTs only", mutant<CheckOfTokensOnly>()},
       {"takes_violated_frames", "", "takes frames with code violations, whatever their check",
-       FfTable::station<TakesViolatedFrames>()},
+       mutant<TakesViolatedFrames>()},
       {"stuck_behind_violation", "", "receives nothing any more after a code violation",
-       FfTable::station<FfStuckBehindViolation>()},
+       mutant<FfStuckBehindViolation>()},
       {"tells_other_source", "", "reports another source to its user",
-       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+       mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.source ^= 0x0100;
          tell_user(user, dlpdu, when);
        })},
       {"tells_normal_priority", "", "reports normal priority to its user, whatever came",
-       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+       mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.priority = fieldbus_dll::Priority::normal;
          tell_user(user, dlpdu, when);
        })},
       {"tells_no_writes", "", "reports no number of writes of a DT3 to its user",
-       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+       mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          dlpdu.writes = 0;
          tell_user(user, dlpdu, when);
        })},
       {"tells_twice", "", "reports everything to its user twice",
-       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+       mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          tell_user(user, dlpdu, when);
          tell_user(user, dlpdu, when);
        })},
       {"deaf_to_broadcasts", "", "does not report to its user what is for everybody",
-       FfTable::station<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
+       mutant<TellsOtherwise>(+[](FfUser& user, FfDlpdu dlpdu, kernel::Time when) {
          if (dlpdu.destination != fieldbus_dll::kEverybody) tell_user(user, dlpdu, when);
        })},
       {"tells_live_lists", "", "reports to its user what data link entities send each other",
-       FfTable::station<TellsLiveLists>()},
-      {"tail_ignored", "", "takes a DLPDU with an octet after it", FfTable::station<TailIgnored>()},
+       mutant<TellsLiveLists>()},
+      {"tail_ignored", "", "takes a DLPDU with an octet after it", mutant<TailIgnored>()},
       {"two_octets_of_preamble", "", "sends two octets of preamble",
-       FfTable::with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 2; })},
+       with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 2; })},
       {"short_silence", "", "begins V(MID) / 2 after what was on the line",
-       FfTable::with_rules<FfStation>([](FfRules& rules) { rules.link.inter_pdu_delay_octets /= 2; })},
-      {"no_silence_behind_own", "", "begins an octet after its own frames",
-       FfTable::station<NoSilenceBehindOwn>()},
+       with_rules<FfStation>([](FfRules& rules) { rules.link.inter_pdu_delay_octets /= 2; })},
+      {"no_silence_behind_own", "", "begins an octet after its own frames", mutant<NoSilenceBehindOwn>()},
   };
 }
 
 std::vector<FfRow> ff_sequence_rows() {
   using namespace ff_seeded_faults;
-  std::vector<FfRow> rows{
+  return FfMutants::for_check({
       {"token_kept_behind_probe", "", "uses a token though another node was probed meanwhile",
-       FfTable::station<TokenKeptBehindProbe>()},
+       mutant<TokenKeptBehindProbe>()},
       {"answer_kept_behind_other", "", "answers though another node was probed meanwhile",
-       FfTable::station<AnswerKeptBehindOther>()},
-      {"data_ends_token", "", "drops the token when it receives data", FfTable::station<DataEndsToken>()},
-      {"deaf_behind_fault", "", "misses what comes after a faulty frame",
-       FfTable::station<DeafBehindFault>()},
-      {"newest_first", "", "sends what was submitted last", FfTable::station<NewestFirst<FfStation>>()},
-      {"least_of_last_token", "", "sends by the priority of the token before",
-       FfTable::station<LeastOfLastToken>()},
+       mutant<AnswerKeptBehindOther>()},
+      {"data_ends_token", "", "drops the token when it receives data", mutant<DataEndsToken>()},
+      {"deaf_behind_fault", "", "misses what comes after a faulty frame", mutant<DeafBehindFault>()},
+      {"newest_first", "", "sends what was submitted last", mutant<NewestFirst<FfStation>>()},
+      {"least_of_last_token", "", "sends by the priority of the token before", mutant<LeastOfLastToken>()},
       {"duration_of_last_token_too", "", "adds the duration of the token before",
-       FfTable::station<DurationOfLastTokenToo>()},
-      {"each_third_return_missing", "", "does not send each third RT",
-       FfTable::station<EachThirdReturnMissing>()},
+       mutant<DurationOfLastTokenToo>()},
+      {"each_third_return_missing", "", "does not send each third RT", mutant<EachThirdReturnMissing>()},
       {"second_of_priority_lost", "", "forgets urgent data that waits after a token",
-       FfTable::station<SecondOfPriorityLost>()},
-      {"tail_of_last_write", "", "keeps the tail of a longer buffer", FfTable::station<TailOfLastWrite>()},
+       mutant<SecondOfPriorityLost>()},
+      {"tail_of_last_write", "", "keeps the tail of a longer buffer", mutant<TailOfLastWrite>()},
       {"writes_between_cds_count_once", "", "counts only the first write after a CD",
-       FfTable::station<WritesBetweenCdsCountOnce>()},
+       mutant<WritesBetweenCdsCountOnce>()},
       {"buffers_share_the_count", "", "counts the writes of all its buffers together",
-       FfTable::station<BuffersShareTheCount>()},
-  };
-  for (FfRow& row : rows) row.is_for_check = true;
-  return rows;
+       mutant<BuffersShareTheCount>()},
+  });
 }
 
 std::vector<FfRow> ff_schedule_rows() {
   using namespace ff_seeded_faults;
   return {
-      {"token_over_due", "FF-8", "passes tokens whatever is due", FfTable::station<TokenOverDue>()},
+      {"token_over_due", "FF-8", "passes tokens whatever is due", mutant<TokenOverDue>()},
       {"least_token_ignored", "FF-9", "passes tokens for less than V(DMDT)",
-       FfTable::with_rules<FfLas>([](FfRules& rules) { rules.least_token_octets = 32; })},
-      {"no_allowance_for_pt", "", "does not count what the PT itself takes",
-       FfTable::station<NoAllowanceForPt>()},
+       with_rules<FfLas>([](FfRules& rules) { rules.least_token_octets = 32; })},
+      {"no_allowance_for_pt", "", "does not count what the PT itself takes", mutant<NoAllowanceForPt>()},
       {"cut_to_the_least", "", "passes tokens of V(DMDT) when not all of V(DTHT) is left",
-       FfTable::station<CutToTheLeast>()},
-      {"schedule_in_centiseconds", "", "keeps its schedule to 10 ms",
-       FfTable::station<ScheduleInCentiseconds>()},
-      {"item_skipped", "", "leaves an item out", FfTable::station<ItemSkipped>()},
+       mutant<CutToTheLeast>()},
+      {"schedule_in_centiseconds", "", "keeps its schedule to 10 ms", mutant<ScheduleInCentiseconds>()},
+      {"item_skipped", "", "leaves an item out", mutant<ItemSkipped>()},
       {"answer_time_from_begin", "FF-17", "counts V(MRD) x V(ST) from the begin of its frame",
-       FfTable::station<AnswerTimeFromBegin>()},
-      {"answer_time_doubled", "", "waits twice V(MRD) x V(ST)", FfTable::station<AnswerTimeDoubled>()},
-      {"line_left_silent", "", "does not keep the line active", FfTable::station<LineLeftSilent>()},
+       mutant<AnswerTimeFromBegin>()},
+      {"answer_time_doubled", "", "waits twice V(MRD) x V(ST)", mutant<AnswerTimeDoubled>()},
+      {"line_left_silent", "", "does not keep the line active", mutant<LineLeftSilent>()},
   };
 }
 
@@ -199,32 +178,28 @@ std::vector<FfRow> ff_circulation_rows() {
   using namespace ff_seeded_faults;
   return {
       {"descending_order", "", "passes the token in descending order",
-       FfTable::station<PassesOtherwise>(
-           +[](FfDlpdu& pt) { pt.node = static_cast<std::uint8_t>(0x25 - pt.node); })},
+       mutant<PassesOtherwise>(+[](FfDlpdu& pt) { pt.node = static_cast<std::uint8_t>(0x25 - pt.node); })},
       {"begin_not_marked", "", "does not mark the first token of a circulation",
-       FfTable::station<PassesOtherwise>(+[](FfDlpdu& pt) { pt.begins_circulation = false; })},
-      {"probes_unpolled", "FF-10", "probes all addresses", FfTable::station<ProbesUnpolled>()},
-      {"probes_live_nodes", "", "probes live nodes, too", FfTable::station<ProbesOtherwise>(1, true)},
-      {"probes_descending", "", "probes in descending order", FfTable::station<ProbesOtherwise>(-1, false)},
+       mutant<PassesOtherwise>(+[](FfDlpdu& pt) { pt.begins_circulation = false; })},
+      {"probes_unpolled", "FF-10", "probes all addresses", mutant<ProbesUnpolled>()},
+      {"probes_live_nodes", "", "probes live nodes, too", mutant<ProbesOtherwise>(1, true)},
+      {"probes_descending", "", "probes in descending order", mutant<ProbesOtherwise>(-1, false)},
       {"no_probe_when_busy", "FF-11", "does not probe when nodes have much to say",
-       FfTable::station<NoProbeWhenBusy>()},
-      {"steers_the_wrong_way", "FF-2", "admits less when the rotation is fast",
-       FfTable::station<SteersTheWrongWay>()},
-      {"steps_to_the_extreme", "FF-4", "admits everything at once", FfTable::station<StepsToTheExtreme>()},
-      {"rotation_counted_twice", "FF-3", "counts parts of a rotation twice",
-       FfTable::station<RotationCountedTwice>()},
+       mutant<NoProbeWhenBusy>()},
+      {"steers_the_wrong_way", "FF-2", "admits less when the rotation is fast", mutant<SteersTheWrongWay>()},
+      {"steps_to_the_extreme", "FF-4", "admits everything at once", mutant<StepsToTheExtreme>()},
+      {"rotation_counted_twice", "FF-3", "counts parts of a rotation twice", mutant<RotationCountedTwice>()},
       {"steps_back_to_the_extreme", "", "admits urgent data only at once after a slow rotation",
-       FfTable::station<StepsBackToTheExtreme>()},
-      {"holder_never_stopped", "", "lets a holder overstay its token",
-       FfTable::station<HolderNeverStopped>()},
+       mutant<StepsBackToTheExtreme>()},
+      {"holder_never_stopped", "", "lets a holder overstay its token", mutant<HolderNeverStopped>()},
       {"return_of_anybody_taken", "", "takes a DT1 with F of anybody for the return of the token",
-       FfTable::station<ReturnOfAnybodyTaken>()},
+       mutant<ReturnOfAnybodyTaken>()},
       {"own_buffer_kept", "", "does not publish its own buffer",
-       FfTable::station<IdlesInPlaceOf>(
+       mutant<IdlesInPlaceOf>(
            +[](const FfDlpdu& dlpdu, const FfConfiguration&) { return dlpdu.type == FfType::dt3; })},
-      {"target_ignored", "", "does not look at V(TTRT)", FfTable::station<TargetIgnored>()},
+      {"target_ignored", "", "does not look at V(TTRT)", mutant<TargetIgnored>()},
       {"equal_rotation_is_fast", "FF-1", "takes a rotation of V(TTRT) for a fast one",
-       FfTable::station<EqualRotationIsFast>()},
+       mutant<EqualRotationIsFast>()},
   };
 }
 
@@ -233,35 +208,31 @@ std::vector<FfRow> ff_live_list_rows() {
   using fieldbus_dll::kEverybody;
   return {
       {"no_activation", "", "does not activate a node that it has found",
-       FfTable::station<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration&) {
+       mutant<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration&) {
          return dlpdu.type == FfType::dt1 && dlpdu.destination != kEverybody;
        })},
       {"live_list_not_told", "", "does not send its live list",
-       FfTable::station<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration&) {
+       mutant<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration&) {
          return dlpdu.type == FfType::dt1 && dlpdu.destination == kEverybody;
        })},
       {"new_node_without_token", "", "passes no token to nodes that it has found",
-       FfTable::station<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration& configuration) {
+       mutant<IdlesInPlaceOf>(+[](const FfDlpdu& dlpdu, const FfConfiguration& configuration) {
          return dlpdu.type == FfType::pt && std::ranges::count(configuration.live, dlpdu.node) == 0;
        })},
-      {"live_list_reversed", "FF-23", "sends its live list with the bits turned",
-       FfTable::station<LiveListReversed>()},
+      {"live_list_reversed", "FF-23", "sends its live list with the bits turned", mutant<LiveListReversed>()},
       {"probe_response_of_anybody_taken", "", "takes a PR of anybody for that of the node that it has probed",
-       FfTable::station<ProbeResponseOfAnybodyTaken>()},
+       mutant<ProbeResponseOfAnybodyTaken>()},
       {"told_live_list_ignored", "", "does not keep the live list that it receives",
-       FfTable::station<ToldLiveListIgnored>()},
-      {"live_list_cut", "", "sends its live list up to node 1F", FfTable::station<LiveListCut>()},
-      {"removed_after_one_miss", "FF-12", "removes who misses one token",
-       FfTable::station<RemovesBehind>(1U)},
-      {"removed_after_four_misses", "", "removes who misses four tokens",
-       FfTable::station<RemovesBehind>(4U)},
-      {"never_removed", "", "removes nobody", FfTable::station<RemovesBehind>(1'000'000U)},
+       mutant<ToldLiveListIgnored>()},
+      {"live_list_cut", "", "sends its live list up to node 1F", mutant<LiveListCut>()},
+      {"removed_after_one_miss", "FF-12", "removes who misses one token", mutant<RemovesBehind>(1U)},
+      {"removed_after_four_misses", "", "removes who misses four tokens", mutant<RemovesBehind>(4U)},
+      {"never_removed", "", "removes nobody", mutant<RemovesBehind>(1'000'000U)},
       {"misses_not_forgotten", "FF-13", "counts misses though tokens are used in between",
-       FfTable::station<MissesNotForgotten>()},
-      {"time_told_at_full_period", "FF-20", "sends the time each V(TDP)",
-       FfTable::station<TimeToldAtFullPeriod>()},
-      {"time_at_half_speed", "", "sends half the time", FfTable::station<TimeAtHalfSpeed>()},
-      {"ct_ignored", "", "does not answer who asks for the time", FfTable::station<CtIgnored>()},
+       mutant<MissesNotForgotten>()},
+      {"time_told_at_full_period", "FF-20", "sends the time each V(TDP)", mutant<TimeToldAtFullPeriod>()},
+      {"time_at_half_speed", "", "sends half the time", mutant<TimeAtHalfSpeed>()},
+      {"ct_ignored", "", "does not answer who asks for the time", mutant<CtIgnored>()},
   };
 }
 
@@ -269,91 +240,68 @@ std::vector<FfRow> ff_claim_rows() {
   using namespace ff_seeded_faults;
   return {
       {"claims_after_one_slot", "FF-14", "claims the link after one V(ST)",
-       FfTable::station<ClaimsOtherwise>(1, false)},
-      {"never_claims", "", "does not claim the link", FfTable::station<ClaimsOtherwise>(10'000'000, false)},
-      {"claims_a_slot_late", "", "claims the link a V(ST) late", FfTable::station<ClaimsOtherwise>(1, true)},
-      {"claims_a_slot_early", "", "claims the link a V(ST) early",
-       FfTable::station<ClaimsOtherwise>(-1, true)},
+       mutant<ClaimsOtherwise>(1, false)},
+      {"never_claims", "", "does not claim the link", mutant<ClaimsOtherwise>(10'000'000, false)},
+      {"claims_a_slot_late", "", "claims the link a V(ST) late", mutant<ClaimsOtherwise>(1, true)},
+      {"claims_a_slot_early", "", "claims the link a V(ST) early", mutant<ClaimsOtherwise>(-1, true)},
       {"frames_do_not_save_the_link", "", "claims the link whatever is received",
-       FfTable::station<FramesDoNotSaveTheLink>()},
-      {"noise_does_not_save_the_link", "FF-15", "takes noise for silence",
-       FfTable::station<NoiseDoesNotSaveTheLink>()},
-      {"transfer_ignored", "", "does not take over by a TL", FfTable::station<TransferIgnored>()},
-      {"transfer_not_checked", "FF-22", "takes a TL with a wrong check",
-       FfTable::station<TransferNotChecked>()},
-      {"takes_transfer_of_others", "", "takes a TL for another", FfTable::station<TakesTransferOfOthers>()},
+       mutant<FramesDoNotSaveTheLink>()},
+      {"noise_does_not_save_the_link", "FF-15", "takes noise for silence", mutant<NoiseDoesNotSaveTheLink>()},
+      {"transfer_ignored", "", "does not take over by a TL", mutant<TransferIgnored>()},
+      {"transfer_not_checked", "FF-22", "takes a TL with a wrong check", mutant<TransferNotChecked>()},
+      {"takes_transfer_of_others", "", "takes a TL for another", mutant<TakesTransferOfOthers>()},
       {"schedule_version_ignored", "", "takes a TL for any version of the schedule",
-       FfTable::station<ScheduleVersionIgnored>()},
-      {"order_ignored", "", "does not hand the link over when it is ordered to",
-       FfTable::station<OrderIgnored>()},
-      {"stays_behind_transfer", "", "stays though its heir sends", FfTable::station<StaysBehindTransfer>()},
-      {"never_retakes", "", "does not take back what its heir does not take",
-       FfTable::station<NeverRetakes>()},
+       mutant<ScheduleVersionIgnored>()},
+      {"order_ignored", "", "does not hand the link over when it is ordered to", mutant<OrderIgnored>()},
+      {"stays_behind_transfer", "", "stays though its heir sends", mutant<StaysBehindTransfer>()},
+      {"never_retakes", "", "does not take back what its heir does not take", mutant<NeverRetakes>()},
       {"schedule_from_the_claim", "", "begins its schedule anew when it claims the link",
-       FfTable::station<ScheduleFromTheClaim>()},
-      {"deaf_in_standby", "", "is no device while another is the scheduler",
-       FfTable::station<DeafInStandby>()},
-      {"own_data_kept", "", "does not send what its user submits", FfTable::station<OwnDataKept>()},
+       mutant<ScheduleFromTheClaim>()},
+      {"deaf_in_standby", "", "is no device while another is the scheduler", mutant<DeafInStandby>()},
+      {"own_data_kept", "", "does not send what its user submits", mutant<OwnDataKept>()},
       {"schedule_not_begun", "", "takes over without running its schedule",
-       FfTable::station<ScheduleNotBegunBehindTl>()},
-      {"never_leaves", "", "stays whoever else is the scheduler", FfTable::station<NeverLeaves>()},
-      {"stays_behind_claim", "FF-16", "stays when another claims the link",
-       FfTable::station<StaysBehindClaim>()},
+       mutant<ScheduleNotBegunBehindTl>()},
+      {"never_leaves", "", "stays whoever else is the scheduler", mutant<NeverLeaves>()},
+      {"stays_behind_claim", "FF-16", "stays when another claims the link", mutant<StaysBehindClaim>()},
   };
 }
 
 std::vector<FfRow> ff_las_sequence_rows() {
   using namespace ff_seeded_faults;
-  std::vector<FfRow> rows{
+  return FfMutants::for_check({
       {"misses_of_all_count", "", "counts the tokens that nodes miss in a row, whoever they are",
-       FfTable::station<MissesOfAllCount>()},
+       mutant<MissesOfAllCount>()},
       {"misses_forgiven_by_others", "", "forgets all misses when any node uses its token",
-       FfTable::station<MissesForgivenByOthers>()},
+       mutant<MissesForgivenByOthers>()},
       {"misses_survive_removal", "", "removes who was removed before after one miss",
-       FfTable::station<MissesSurviveRemoval>()},
+       mutant<MissesSurviveRemoval>()},
       {"removed_never_found_again", "", "takes no probe response of who was removed",
-       FfTable::station<RemovedNeverFoundAgain>()},
+       mutant<RemovedNeverFoundAgain>()},
       {"returning_node_not_activated", "", "does not activate who was removed before",
-       FfTable::station<ReturningNodeNotActivated>()},
-      {"only_first_change_told", "", "sends the live list once", FfTable::station<OnlyFirstChangeTold>()},
+       mutant<ReturningNodeNotActivated>()},
+      {"only_first_change_told", "", "sends the live list once", mutant<OnlyFirstChangeTold>()},
       {"unanswered_item_dropped", "", "compels no more what was not answered twice",
-       FfTable::station<UnansweredItemDropped>()},
+       mutant<UnansweredItemDropped>()},
       {"all_admitted_behind_two_slow", "", "admits all data at once after two slow rotations",
-       FfTable::station<AllAdmittedBehindTwoSlow>()},
+       mutant<AllAdmittedBehindTwoSlow>()},
       {"second_time_request_ignored", "", "sends the time to who asks once",
-       FfTable::station<SecondTimeRequestIgnored>()},
-      {"own_data_newest_first", "", "sends what its user submitted last",
-       FfTable::station<NewestFirst<FfLas>>()},
-  };
-  for (FfRow& row : rows) row.is_for_check = true;
-  return rows;
-}
-
-const FfTable& ff_table() {
-  static const FfTable table = [] {
-    FfTable::Role device{"ff_device", {}};
-    for (auto group : {ff_token_rows, ff_publisher_rows, ff_frame_rows, ff_sequence_rows}) {
-      for (FfRow& row : group()) device.rows.push_back(std::move(row));
-    }
-    FfTable::Role las{"ff_las", {}};
-    for (auto group :
-         {ff_schedule_rows, ff_circulation_rows, ff_live_list_rows, ff_claim_rows, ff_las_sequence_rows}) {
-      for (FfRow& row : group()) las.rows.push_back(std::move(row));
-    }
-    return FfTable{{std::move(device), std::move(las)}};
-  }();
-  return table;
+       mutant<SecondTimeRequestIgnored>()},
+      {"own_data_newest_first", "", "sends what its user submitted last", mutant<NewestFirst<FfLas>>()},
+  });
 }
 
 }  // namespace
 
-std::vector<Mutant> ff_mutants() {
-  return ff_table().mutants();
+const FfMutants& ff_device_mutants() {
+  static const FfMutants table("ff_device",
+                               {ff_token_rows, ff_publisher_rows, ff_frame_rows, ff_sequence_rows});
+  return table;
 }
 
-std::unique_ptr<FfDevice> make_ff_mutant(std::string_view role, std::string_view name,
-                                         const FfConfiguration& configuration) {
-  return ff_table().make(role, name, configuration);
+const FfMutants& ff_las_mutants() {
+  static const FfMutants table("ff_las", {ff_schedule_rows, ff_circulation_rows, ff_live_list_rows,
+                                          ff_claim_rows, ff_las_sequence_rows});
+  return table;
 }
 
 }  // namespace fieldproof::conformance

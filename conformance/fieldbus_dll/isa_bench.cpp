@@ -25,7 +25,7 @@ bool IsaUpperTester::was_delivered(const Octets& data) const {
 IsaBench::IsaBench(const IsaNeeds& needs, const IsaSetting& setting)
     : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume, setting.stresses),
       configuration_(configuration_of(needs, setting)),
-      station_(setting.make_station(configuration_)) {
+      station_(setting.make_device(configuration_)) {
   if (setting.make_recorder)
     segment().trace().set_recorder(setting.make_recorder(segment().trace(), rules()));
   station_->wire(attach_station(*station_, setting.plan), user_);

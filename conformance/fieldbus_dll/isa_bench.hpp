@@ -27,7 +27,7 @@ struct IsaSetting {
   using MakeStation =
       std::function<std::unique_ptr<fieldbus_dll::IsaDevice>(const fieldbus_dll::IsaConfiguration&)>;
 
-  MakeStation make_station;
+  MakeStation make_device;
   std::uint8_t address = 0x21;  // of the IUT
   std::uint64_t seed = 1;
   Volume volume = Volume::full;

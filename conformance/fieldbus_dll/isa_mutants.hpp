@@ -1,19 +1,13 @@
 #pragma once
 
-#include <memory>
-#include <string_view>
-#include <vector>
-
-#include "conformance/test_case.hpp"
+#include "conformance/mutant_table.hpp"
 #include "protocols/fieldbus_dll/isa_device.hpp"
 
-// The stations of the profile ISA-D that its suite must tell from the reference.
+// The mutants of a data link entity and of a link master of the profile ISA-D.
 namespace fieldproof::conformance {
 
-std::vector<Mutant> isa_mutants();
-
-// Throws kernel::Error(usage) for a name that is none of this role, with the nearest ones.
-std::unique_ptr<fieldbus_dll::IsaDevice> make_isa_mutant(std::string_view role, std::string_view name,
-                                                         const fieldbus_dll::IsaConfiguration& configuration);
+using IsaMutants = DeviceMutants<fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration>;
+const IsaMutants& isa_dle_mutants();
+const IsaMutants& isa_las_mutants();
 
 }  // namespace fieldproof::conformance

@@ -8,6 +8,8 @@
 
 #include "conformance/fieldbus_dll/suite.hpp"
 #include "harness/kernel/sanitized.hpp"
+#include "protocols/fieldbus_dll/attached_ff_device.hpp"
+#include "protocols/fieldbus_dll/attached_isa_device.hpp"
 #include "protocols/fieldbus_dll/line_end.hpp"
 
 namespace fieldproof::conformance {
@@ -70,8 +72,11 @@ class StationsThatNeverStop : public testing::TestWithParam<Babble> {};
 TEST_P(StationsThatNeverStop, FailEveryCase) {
   const auto ff = babbling<FfBabbler, fieldbus_dll::FfDevice, fieldbus_dll::FfConfiguration>(GetParam());
   const auto isa = babbling<IsaBabbler, fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration>(GetParam());
-  const auto suite =
-      fieldbus_dll_suite({.own_isa_dle = isa, .own_isa_las = isa, .own_ff_device = ff, .own_ff_las = ff});
+  const auto suite = fieldbus_dll_suite({.own = OwnStations()
+                                                    .add<fieldbus_dll::IsaDleRole>(isa)
+                                                    .add<fieldbus_dll::IsaLasRole>(isa)
+                                                    .add<fieldbus_dll::FfDeviceRole>(ff)
+                                                    .add<fieldbus_dll::FfLasRole>(ff)});
   conformance::Setup setup;
   setup.volume = Volume::quick;
   const std::vector<TestCase>& cases = suite->cases();

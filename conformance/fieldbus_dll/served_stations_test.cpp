@@ -36,14 +36,16 @@ const Suite& suite_inside() {
 // An empty name is the reference.
 std::unique_ptr<FfDevice> station_named(const std::string& role, const std::string& mutant,
                                         const FfConfiguration& configuration) {
-  if (!mutant.empty()) return make_ff_mutant(role, mutant, configuration);
-  if (role == "ff_las") return std::make_unique<fieldbus_dll::FfLas>(configuration);
+  const bool is_las = role == "ff_las";
+  if (!mutant.empty()) return (is_las ? ff_las_mutants() : ff_device_mutants()).make(mutant, configuration);
+  if (is_las) return std::make_unique<fieldbus_dll::FfLas>(configuration);
   return std::make_unique<fieldbus_dll::FfStation>(configuration);
 }
 std::unique_ptr<IsaDevice> station_named(const std::string& role, const std::string& mutant,
                                          const IsaConfiguration& configuration) {
-  if (!mutant.empty()) return make_isa_mutant(role, mutant, configuration);
-  if (role == "isa_las") return std::make_unique<fieldbus_dll::IsaLas>(configuration);
+  const bool is_las = role == "isa_las";
+  if (!mutant.empty()) return (is_las ? isa_las_mutants() : isa_dle_mutants()).make(mutant, configuration);
+  if (is_las) return std::make_unique<fieldbus_dll::IsaLas>(configuration);
   return std::make_unique<fieldbus_dll::IsaDle>(configuration);
 }
 
@@ -56,7 +58,7 @@ iut::Attachment served(const std::string& role, const std::string& mutant) {
 }
 
 std::unique_ptr<Suite> suite_outside(const std::string& role, const std::string& mutant) {
-  FieldbusDllGiven given;
+  SuiteGiven given;
   given.attach = [role, mutant](const iut::RoleName&,
                                 const IutRequest& request) -> std::optional<iut::Attachment> {
     if (request.uri != "outside") return std::nullopt;

@@ -21,14 +21,17 @@ std::vector<VirtualStation> paper_ring() {
   return {{0x0008, 0, -1, false}, {0x01BE, 1, 0, true}, {0x01BD, 1, 1, false}};
 }
 
-MasterBench::MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume, judge::Pics pics,
-                         std::span<const fault::Stress> stresses)
-    : make_master_(std::move(make_master)),
-      volume_(volume),
-      pics_(std::move(pics)),
-      random_(seed),
+MasterBench::MasterBench(const NoNeeds&, const MasterSetting& setting)
+    : make_master_(setting.make_device),
+      volume_(setting.volume),
+      pics_(setting.pics.value_or(judge::Pics{})),
+      random_(setting.seed),
       line_watch_(interbus::shortest_telegram(interbus::Rules{})),
-      stressed_(stresses) {}
+      stressed_(setting.stresses) {
+  if (setting.make_recorder) {
+    segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules_));
+  }
+}
 
 MasterBench::~MasterBench() = default;
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/bench_case.hpp"
 #include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/ring_emulator.hpp"
 #include "conformance/judging.hpp"
@@ -31,13 +32,23 @@
 // Of an item that it does not declare, each answer is admissible.
 namespace fieldproof::conformance {
 
+// Who plays, and how.
+struct MasterSetting {
+  std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)> make_device{};
+  std::uint64_t seed = 1;
+  Volume volume = Volume::full;
+  std::optional<judge::Pics> pics{};
+  std::span<const fault::Stress> stresses{};
+  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
+  std::function<trace::Recorder*(const trace::Trace&, const interbus::Rules&)> make_recorder{};
+};
+
 class MasterBench {
  public:
   using MakeMaster =
       std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)>;
 
-  MasterBench(MakeMaster make_master, std::uint64_t seed, Volume volume, judge::Pics pics = {},
-              std::span<const fault::Stress> stresses = {});
+  MasterBench(const NoNeeds&, const MasterSetting& setting);
   ~MasterBench();
   MasterBench(const MasterBench&) = delete;
   MasterBench& operator=(const MasterBench&) = delete;

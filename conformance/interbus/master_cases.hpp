@@ -1,8 +1,8 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "conformance/bench_case.hpp"
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/test_case.hpp"
@@ -10,10 +10,7 @@
 // The test cases for an INTERBUS master, IM-01 to IM-40 of the catalogue of test purposes, and a canary.
 namespace fieldproof::conformance {
 
-struct MasterCase {
-  TestCase test_case;
-  std::function<void(MasterBench&, CaseJudge&)> procedure;
-};
+using MasterCase = BenchCase<MasterBench, NoNeeds>;
 
 const std::vector<MasterCase>& master_cases();
 

@@ -33,7 +33,7 @@ TEST(MasterSuite, names_every_purpose_and_every_mutant) {
     EXPECT_TRUE(purposes.contains(n < 10 ? "IM-0" + std::to_string(n) : "IM-" + std::to_string(n))) << n;
   }
   std::set<std::string> mutants;
-  for (const Mutant& mutant : master_mutants()) mutants.insert(mutant.label);
+  for (const Mutant& mutant : master_mutants().mutants()) mutants.insert(mutant.label);
   for (int n = 1; n <= 22; ++n) EXPECT_TRUE(mutants.contains("MM" + std::to_string(n))) << n;
 }
 
@@ -131,9 +131,8 @@ judge::CaseResult run_master_case(std::string_view id, MasterBench::MakeMaster m
   judge::Pics pics;
   if (!item.empty()) pics.declare(std::string(item), std::string(answer));
   const MasterCase& one = master_case_of(id);
-  CaseJudge judge(one.test_case);
-  MasterBench bench(std::move(make_master), 1, volume, std::move(pics));
-  return judge.run_procedure([&](CaseJudge& j) { one.procedure(bench, j); });
+  return run_on_bench(
+      one, MasterSetting{.make_device = std::move(make_master), .volume = volume, .pics = std::move(pics)});
 }
 
 TEST(MasterSuite, RightMastersThatDifferFromTheReferencePass) {

@@ -20,17 +20,16 @@ interbus::NetworkDescription built_from(const interbus::NetworkDescription& netw
 
 }  // namespace
 
-NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkParts& parts,
-                           const fault::Plan& plan, std::uint64_t seed, Volume volume,
-                           std::span<const fault::Stress> stresses)
-    : network_(std::move(network)),
-      built_(built_from(network_, parts)),
+NetworkBench::NetworkBench(const NoNeeds&, const NetworkSetting& setting)
+    : network_(setting.network),
+      built_(built_from(network_, setting.parts)),
       places_(interbus::ring_order(network_)),
-      volume_(volume),
-      random_(seed),
-      running_(built_, {.make_master = parts.make_master, .make_slave = parts.make_slave}, &network_),
+      volume_(setting.volume),
+      random_(setting.seed),
+      running_(built_, {.make_master = setting.parts.make_master, .make_slave = setting.parts.make_slave},
+               &network_),
       line_watch_(interbus::shortest_telegram(network_.rules)),
-      stresses_(stresses) {
+      stresses_(setting.stresses) {
   running_.on_cycle_end([this, place = segment().trace().add_channel("master")](
                             kernel::Time now, bool data_cycle, bool accepted) {
     segment().trace().observe(place, now, interbus::observed_cycle_end(data_cycle, accepted), 0);
@@ -39,7 +38,10 @@ NetworkBench::NetworkBench(interbus::NetworkDescription network, const NetworkPa
   running_.keep_starts();
   for (segment::Link* link : ring().links()) line_watch_.watch(*link, segment().trace());
   for (std::size_t n = 0; n < ring().remote_links().size(); ++n) stressed_.emplace_back(stresses_);
-  install(plan);
+  install(setting.plan);
+  if (setting.make_recorder) {
+    segment().trace().set_recorder(setting.make_recorder(segment().trace(), network_.rules));
+  }
 }
 
 network::ExchangeStatistics& NetworkBench::begin_exchange() {

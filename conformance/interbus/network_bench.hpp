@@ -11,9 +11,11 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/bench_case.hpp"
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/line_watch.hpp"
+#include "conformance/mutant_table.hpp"
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
@@ -36,10 +38,20 @@ struct NetworkParts {
   std::function<void(interbus::NetworkDescription&)> change_network;
 };
 
+struct NetworkSetting {
+  interbus::NetworkDescription network;
+  NetworkParts parts;
+  std::uint64_t seed = 1;
+  Volume volume = Volume::full;
+  fault::Plan plan{};
+  std::span<const fault::Stress> stresses{};
+  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
+  std::function<trace::Recorder*(const trace::Trace&, const interbus::Rules&)> make_recorder{};
+};
+
 class NetworkBench final : private network::ExchangeWatcher {
  public:
-  NetworkBench(interbus::NetworkDescription network, const NetworkParts& parts, const fault::Plan& plan,
-               std::uint64_t seed, Volume volume, std::span<const fault::Stress> stresses = {});
+  NetworkBench(const NoNeeds&, const NetworkSetting& setting);
 
   // As the description says, whatever a mutant built.
   const interbus::NetworkDescription& network() const { return network_; }
@@ -112,16 +124,13 @@ class NetworkBench final : private network::ExchangeWatcher {
   std::uint64_t changed_before_ = 0;  // at the end of the cycle before
 };
 
-struct NetworkCase {
-  TestCase test_case;
-  std::function<void(NetworkBench&, CaseJudge&)> procedure;
-};
+using NetworkCase = BenchCase<NetworkBench, NoNeeds>;
 
 const std::vector<NetworkCase>& network_cases();
 std::vector<NetworkCase> network_immunity_cases();  // a part of them
 
-const std::vector<Mutant>& network_mutants();
-// The parts of a mutant by name; throws kernel::Error(usage) with the nearest names for an unknown one.
-NetworkParts mutant_network(std::string_view name, std::size_t stations);
+// The parts of a network of so many stations.
+using NetworkMutants = MutantTable<NetworkParts, std::size_t>;
+const NetworkMutants& network_mutants();
 
 }  // namespace fieldproof::conformance

@@ -31,7 +31,7 @@ std::unique_ptr<Suite> outside(const std::string& mutant) {
                                  const IutRequest& request) -> std::optional<iut::Attachment> {
     if (request.uri != "outside") return std::nullopt;
     const auto served = std::make_shared<ServedMaster>([mutant](const MasterConfiguration& told) {
-      return mutant.empty() ? std::make_unique<interbus::Master>(told) : make_master_mutant(mutant, told);
+      return mutant.empty() ? std::make_unique<interbus::Master>(told) : master_mutants().make(mutant, told);
     });
     return iut::Attachment{served.get(), served, {}};
   };
@@ -84,7 +84,7 @@ TEST_P(ServedMutants, AreJudgedAsInside) {
 
 std::vector<std::string> mutant_names() {
   std::vector<std::string> names;
-  for (const Mutant& one : master_mutants()) names.push_back(one.name);
+  for (const Mutant& one : master_mutants().mutants()) names.push_back(one.name);
   return names;
 }
 

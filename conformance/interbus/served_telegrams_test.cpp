@@ -37,12 +37,12 @@ iut::Attachment speaker_of(std::unique_ptr<iut::Device> served, unsigned line_po
 std::unique_ptr<Suite> in_telegrams(const std::string& mutant) {
   const auto slave = [mutant]() {
     return std::make_unique<interbus::ServedSlave>([mutant](const SlaveConfiguration& told) {
-      return mutant.empty() ? std::make_unique<interbus::Slave>(told) : make_slave_mutant(mutant, told);
+      return mutant.empty() ? std::make_unique<interbus::Slave>(told) : slave_mutants().make(mutant, told);
     });
   };
   const auto master = [mutant]() {
     return std::make_unique<interbus::ServedMaster>([mutant](const MasterConfiguration& told) {
-      return mutant.empty() ? std::make_unique<interbus::Master>(told) : make_master_mutant(mutant, told);
+      return mutant.empty() ? std::make_unique<interbus::Master>(told) : master_mutants().make(mutant, told);
     });
   };
   return interbus_suite(
@@ -137,8 +137,8 @@ std::vector<Deviating> all_mutants() {
   const auto add = [&](const std::string& role, const std::string& name) {
     if (!unsayable().contains(name) && !unsayable().contains(role + "_" + name)) all.push_back({role, name});
   };
-  for (const Mutant& one : slave_mutants()) add("slave", one.name);
-  for (const Mutant& one : master_mutants()) add("master", one.name);
+  for (const Mutant& one : slave_mutants().mutants()) add("slave", one.name);
+  for (const Mutant& one : master_mutants().mutants()) add("master", one.name);
   return all;
 }
 

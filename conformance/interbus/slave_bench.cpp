@@ -64,8 +64,8 @@ SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
       ring_(segment_, network_, seat_,
             [&](int position,
                 const interbus::SlaveConfiguration& configuration) -> std::unique_ptr<interbus::SlaveDevice> {
-              if (position != setting.position || !setting.make_slave) return nullptr;
-              return setting.make_slave(configuration);
+              if (position != setting.position || !setting.make_device) return nullptr;
+              return setting.make_device(configuration);
             }),
       pics_(
           setting.pics.value_or(judge::Pics{}).completed_by(declared_slave(ring_.configuration(position_)))),

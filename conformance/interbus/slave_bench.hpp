@@ -51,7 +51,7 @@ struct SlaveSetting {
   using MakeSlave =
       std::function<std::unique_ptr<interbus::SlaveDevice>(const interbus::SlaveConfiguration&)>;
 
-  MakeSlave make_slave;  // null: the reference
+  MakeSlave make_device;  // null: the reference
   int position = 1;
   int stations = 1;                                     // of the bench's own network, at least `position`
   std::optional<interbus::NetworkDescription> network;  // instead of the bench's own

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/bench_case.hpp"
 #include "conformance/interbus/slave_bench.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/test_case.hpp"
@@ -12,11 +13,7 @@
 // The test cases for an INTERBUS slave, IS-01 to IS-42 of the catalogue of test purposes, and a canary.
 namespace fieldproof::conformance {
 
-struct SlaveCase {
-  TestCase test_case;
-  std::function<void(SlaveBench&, CaseJudge&)> procedure;
-  SlaveNeeds needs{};
-};
+using SlaveCase = BenchCase<SlaveBench, SlaveNeeds>;
 
 const std::vector<SlaveCase>& slave_cases();
 

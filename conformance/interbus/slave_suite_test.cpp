@@ -31,9 +31,9 @@ SlaveSetting setting_for(const conformance::Setup& setup) {
   setting.volume = setup.volume;
   for (const Assignment& assignment : setup.implementations) {
     if (!assignment.uri.starts_with("mutant:")) continue;
-    setting.make_slave = [name =
-                              assignment.uri.substr(8)](const interbus::SlaveConfiguration& configuration) {
-      return make_slave_mutant(name, configuration);
+    setting.make_device = [name =
+                               assignment.uri.substr(8)](const interbus::SlaveConfiguration& configuration) {
+      return slave_mutants().make(name, configuration);
     };
   }
   return setting;
@@ -82,8 +82,8 @@ TEST(SlaveSuite, EachMutantIsCaughtAtAnotherPosition) {
       setting.volume = Volume::quick;
       setting.position = 2;
       setting.stations = 3;
-      setting.make_slave = [&](const interbus::SlaveConfiguration& configuration) {
-        return make_slave_mutant(declared.mutant, configuration);
+      setting.make_device = [&](const interbus::SlaveConfiguration& configuration) {
+        return slave_mutants().make(declared.mutant, configuration);
       };
       const judge::CaseResult result = run_slave_case(slave_case, setting);
       EXPECT_EQ(result.verdict, judge::Verdict::fail) << slave_case.test_case.id << " " << declared.mutant;
@@ -132,8 +132,8 @@ TEST(SlaveSuite, ACaseOfAVerifiedSourceMayFailForAnUnverifiedOne) {
     SlaveSetting setting = setting_for({});
     setting.volume = Volume::quick;
     const auto result_with = [&](const char* mutant) {
-      setting.make_slave = [mutant](const interbus::SlaveConfiguration& configuration) {
-        return make_slave_mutant(mutant, configuration);
+      setting.make_device = [mutant](const interbus::SlaveConfiguration& configuration) {
+        return slave_mutants().make(mutant, configuration);
       };
       return run_slave_case(slave_case, setting);
     };
@@ -176,8 +176,8 @@ TEST(SlaveSuite, TheRegisterOfAnOutputStationIsNotJudged) {
   for (const SlaveCase& slave_case : cases_without_stress()) {
     if (is_canary(slave_case.test_case)) continue;
     SlaveSetting setting = setting_with_id_code(0x0201);
-    setting.make_slave = [](const interbus::SlaveConfiguration& configuration) {
-      return make_slave_mutant("input_bit_stuck", configuration);
+    setting.make_device = [](const interbus::SlaveConfiguration& configuration) {
+      return slave_mutants().make("input_bit_stuck", configuration);
     };
     const judge::CaseResult result = run_slave_case(slave_case, setting);
     if (result.verdict == judge::Verdict::not_applicable) continue;
@@ -210,13 +210,13 @@ TEST(SlaveSuite, EveryTestPurposeHasACaseAndEveryMutantAMutant) {
     EXPECT_TRUE(purposes.contains("IS-" + number)) << "IS-" << number;
   }
   std::set<std::string> mutants;
-  for (const Mutant& mutant : slave_mutants()) mutants.insert(mutant.label);
+  for (const Mutant& mutant : slave_mutants().mutants()) mutants.insert(mutant.label);
   for (unsigned n = 1; n <= 22; ++n) EXPECT_TRUE(mutants.contains("MS" + std::to_string(n))) << "MS" << n;
 }
 
 TEST(SlaveSuite, UnknownMutantNamesItsNeighbours) {
   try {
-    make_slave_mutant("crc_preset_zer", {});
+    slave_mutants().make("crc_preset_zer", {});
     FAIL();
   } catch (const kernel::Error& error) {
     EXPECT_NE(std::string(error.what()).find("crc_preset_zero"), std::string::npos);

@@ -118,11 +118,11 @@ TEST(InterbusSuite, ARecordingIsJudgedLikeTheImplementationItself) {
 
 TEST(InterbusSuite, AStationOfTheCallersIsJudged) {
   int made = 0;
-  const auto own = interbus_suite(
-      {.own_slave = [&made](const IutRequest&, const interbus::SlaveConfiguration& configuration) {
-        ++made;
-        return std::make_unique<interbus::Slave>(configuration);
-      }});
+  const auto own = interbus_suite({.own = own_station<interbus::SlaveRole>(
+                                       [&made](const IutRequest&, const interbus::SlaveConfiguration& of) {
+                                         ++made;
+                                         return std::make_unique<interbus::Slave>(of);
+                                       })});
   const TestCase& test_case = own->cases().front();
   EXPECT_EQ(own->run(test_case, setup_of("slave", "own")).result.verdict, judge::Verdict::pass);
   EXPECT_EQ(made, 1);
@@ -138,7 +138,7 @@ TEST(InterbusSuite, CasesOfStressesAreThereWithStresses) {
   EXPECT_EQ(std::ranges::count_if(suite().cases(), has_stress_tag), 0);
   const fault::Stress deaf{"nothing arrives for 2 ms", 2 * kernel::kMillisecond,
                            [](const fault::StressPlace&) { return std::make_unique<Deaf>(); }};
-  const auto stressed = interbus_suite({.stresses = {deaf}});
+  const auto stressed = interbus_suite({.disturbances = {.stresses = {deaf}}});
   EXPECT_EQ(std::ranges::count_if(stressed->cases(), has_stress_tag), 3);
   for (const TestCase& test_case : stressed->cases()) {
     if (!has_stress_tag(test_case)) continue;
@@ -167,9 +167,10 @@ class TemporaryFile {
 
 TEST(InterbusSuite, AStationOfTheCallersTakesPartInEveryCaseThatHasItsRole) {
   const auto own =
-      interbus_suite({.own_slave = [](const IutRequest&, const interbus::SlaveConfiguration& configuration) {
-        return std::make_unique<interbus::Slave>(configuration);
-      }});
+      interbus_suite({.own = own_station<interbus::SlaveRole>(
+                          [](const IutRequest&, const interbus::SlaveConfiguration& configuration) {
+                            return std::make_unique<interbus::Slave>(configuration);
+                          })});
   for (const TestCase& test_case : own->cases()) {
     const bool has_role = test_case.role() == "slave" || std::ranges::count(test_case.parts, "slave") > 0;
     if (!has_role || is_canary(test_case)) continue;

@@ -18,7 +18,7 @@ constexpr std::size_t kHistoryLines = 24;
 
 std::unique_ptr<valve_bus::HostDevice> host_made(const HostSetting& setting,
                                                  const HostConfiguration& configuration) {
-  if (setting.make_host) return setting.make_host(configuration);
+  if (setting.make_device) return setting.make_device(configuration);
   return std::make_unique<valve_bus::Host>(configuration);
 }
 

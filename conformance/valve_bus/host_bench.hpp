@@ -45,7 +45,7 @@ struct HostNeeds {
 struct HostSetting {
   using MakeHost = std::function<std::unique_ptr<valve_bus::HostDevice>(const valve_bus::HostConfiguration&)>;
 
-  MakeHost make_host;  // null: the reference
+  MakeHost make_device;  // null: the reference
   std::uint64_t seed = 1;
   Volume volume = Volume::full;
   std::optional<judge::Pics> pics;

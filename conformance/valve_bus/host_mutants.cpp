@@ -1,79 +1,42 @@
 #include "conformance/valve_bus/host_mutants.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <functional>
-#include <string>
-#include <utility>
-
 #include "conformance/valve_bus/character_seeded_faults.hpp"
 #include "conformance/valve_bus/host_application_seeded_faults.hpp"
 #include "conformance/valve_bus/host_request_seeded_faults.hpp"
 #include "conformance/valve_bus/host_response_seeded_faults.hpp"
 #include "conformance/valve_bus/host_sequence_seeded_faults.hpp"
-#include "harness/config/nearest.hpp"
-#include "harness/kernel/error.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
-using valve_bus::HostConfiguration;
-using valve_bus::HostDevice;
-
-using MakeHost = std::function<std::unique_ptr<HostDevice>(const HostConfiguration&)>;
-
-template <typename Mutant, typename... More>
-MakeHost host(More... more) {
-  return [=](const HostConfiguration& configuration) {
-    return std::make_unique<Mutant>(configuration, more...);
-  };
-}
-
-// The reference under rules with one number changed.
-template <typename RuleChange>
-MakeHost host_with_rules(RuleChange change) {
-  return [change](const HostConfiguration& configuration) {
-    HostConfiguration changed = configuration;
-    change(changed.rules);
-    return std::make_unique<valve_bus::Host>(changed);
-  };
-}
-
-struct HostRow {
-  std::string_view name;
-  std::string_view label;
-  std::string_view description;
-  MakeHost make_host;
-  bool is_for_check = false;
-};
+using HostRow = HostMutants::Row;
 
 std::vector<HostRow> host_command_rows() {
   using namespace host_seeded_faults;
   return {
-      {"sends_id_100", "MH15", "sends commands to ID 100", host<AddressesFrom>(1U, 100U)},
-      {"sends_id_0", "", "sends commands to ID 0", host<AddressesFrom>(0U, 99U)},
-      {"refuses_id_99", "", "refuses commands to ID 99", host<AddressesFrom>(1U, 98U)},
-      {"refuses_silently", "", "does not report to the PC what it refuses", host<RefusesSilently>()},
-      {"sends_any_command", "", "sends undefined commands", host<SendsAnyCommand>()},
-      {"data_exchanged", "MH19", "sends DATA1 in front of DATA0", host<DataExchanged>()},
-      {"loses_commands", "", "loses each fiftieth command", host<LosesCommands>()},
-      {"doubles_commands", "", "sends each fiftieth command twice", host<DoublesCommands>()},
+      {"sends_id_100", "MH15", "sends commands to ID 100", mutant<AddressesFrom>(1U, 100U)},
+      {"sends_id_0", "", "sends commands to ID 0", mutant<AddressesFrom>(0U, 99U)},
+      {"refuses_id_99", "", "refuses commands to ID 99", mutant<AddressesFrom>(1U, 98U)},
+      {"refuses_silently", "", "does not report to the PC what it refuses", mutant<RefusesSilently>()},
+      {"sends_any_command", "", "sends undefined commands", mutant<SendsAnyCommand>()},
+      {"data_exchanged", "MH19", "sends DATA1 in front of DATA0", mutant<DataExchanged>()},
+      {"loses_commands", "", "loses each fiftieth command", mutant<LosesCommands>()},
+      {"doubles_commands", "", "sends each fiftieth command twice", mutant<DoublesCommands>()},
       {"fifo_wraps_one_early", "MH9", "writes round a FIFO that is one octet shorter than it reads",
-       host<HostOfFifo<WrapsOneEarly>>()},
+       mutant<HostOfFifo<WrapsOneEarly>>()},
       {"overflow_not_told", "MH10", "drops the newest commands of a full FIFO without a word",
-       host<OverflowNotTold>()},
+       mutant<OverflowNotTold>()},
       {"overflow_drops_oldest", "", "drops the oldest command for a new one when its FIFO is full",
-       host<HostOfFifo<DropsOldest>>()},
+       mutant<HostOfFifo<DropsOldest>>()},
       {"overflow_drops_octets", "", "loses single octets when its FIFO is full, not whole commands",
-       host<HostOfFifo<LosesPartsOfCommands>>()},
+       mutant<HostOfFifo<LosesPartsOfCommands>>()},
       {"part_sent", "MH11", "sends what it has of a command of which the rest does not come",
-       host<PartSent>()},
+       mutant<PartSent>()},
       {"never_resyncs", "", "waits for the rest of a command for ever",
-       host_with_rules(
+       with_rules<valve_bus::Host>(
            [](valve_bus::Rules& rules) { rules.partial_command_limit = 1000 * kernel::kSecond; })},
       {"resyncs_early", "", "gives up a command of which the rest takes 10 ms",
-       host_with_rules(
+       with_rules<valve_bus::Host>(
            [](valve_bus::Rules& rules) { rules.partial_command_limit = 10 * kernel::kMillisecond; })},
   };
 }
@@ -82,41 +45,44 @@ std::vector<HostRow> host_request_rows() {
   using namespace host_seeded_faults;
   return {
       {"request_check_without_id", "MH1", "leaves the ID out of the block check of a request",
-       host<RequestCheckWithoutId>()},
-      {"request_check_is_sum", "", "sends the sum for the block check", host<RequestCheckIsSum>()},
-      {"gap_in_request", "", "leaves 20 bits of silence inside a request", host<GapInRequest>()},
-      {"delimiter_missing", "MH12", "sends at once after a response", host<DelimiterMissing>()},
+       mutant<RequestCheckWithoutId>()},
+      {"request_check_is_sum", "", "sends the sum for the block check", mutant<RequestCheckIsSum>()},
+      {"gap_in_request", "", "leaves 20 bits of silence inside a request", mutant<GapInRequest>()},
+      {"delimiter_missing", "MH12", "sends at once after a response", mutant<DelimiterMissing>()},
       {"delimiter_of_two_silent_characters", "", "leaves two characters of silence between frames",
-       host_with_rules([](valve_bus::Rules& rules) { rules.delimiter_half_characters = 4; })},
-      {"driver_cuts_stop_bit", "MH13", "switches its driver off one bit early", host<DriverCutsStopBit>()},
+       with_rules<valve_bus::Host>([](valve_bus::Rules& rules) { rules.delimiter_half_characters = 4; })},
+      {"driver_cuts_stop_bit", "MH13", "switches its driver off one bit early", mutant<DriverCutsStopBit>()},
       {"driver_on_with_start_bit", "", "switches its driver on with the start bit",
-       host<RequestDriver>(0U, 1U)},
+       mutant<RequestDriver>(0U, 1U)},
       {"driver_stays_on", "", "keeps its driver on for 20 bits after a request",
-       host<RequestDriver>(1U, 20U)},
-      {"requests_late_in_turns", "", "waits 4 ms after each seventh request", host<RequestsLateInTurns>()},
+       mutant<RequestDriver>(1U, 20U)},
+      {"requests_late_in_turns", "", "waits 4 ms after each seventh request", mutant<RequestsLateInTurns>()},
       {"dip_off_by_one", "MH20", "takes the bit rate of the next position of its switches",
-       host<DipOffByOne>()},
-      {"clock_off_by_one_percent", "", "has a clock that is 1 % fast", host<ClockOffByOnePercent>()},
+       mutant<DipOffByOne>()},
+      {"clock_off_by_one_percent", "", "has a clock that is 1 % fast", mutant<ClockOffByOnePercent>()},
       {"dip_read_in_operation", "", "takes another bit rate as soon as its switches are turned",
-       host<DipReadInOperation>()},
+       mutant<DipReadInOperation>()},
   };
 }
 
 std::vector<HostRow> host_write_rows() {
   using namespace host_seeded_faults;
   return {
-      {"write_waits_for_answer", "MH8", "repeats a write until it is answered", host<WriteWaitsForAnswer>()},
+      {"write_waits_for_answer", "MH8", "repeats a write until it is answered",
+       mutant<WriteWaitsForAnswer>()},
       {"write_distance_missing", "", "sends a delimiter after a write",
-       host_with_rules([](valve_bus::Rules& rules) { rules.write_distance = {}; })},
-      {"refreshes_first_data", "MH18", "refreshes what it wrote to a node first", host<RefreshesFirstData>()},
+       with_rules<valve_bus::Host>([](valve_bus::Rules& rules) { rules.write_distance = {}; })},
+      {"refreshes_first_data", "MH18", "refreshes what it wrote to a node first",
+       mutant<RefreshesFirstData>()},
       {"refreshes_each_100_ms", "", "refreshes writes each 100 ms",
-       host_with_rules([](valve_bus::Rules& rules) { rules.refresh = 100 * kernel::kMillisecond; })},
+       with_rules<valve_bus::Host>(
+           [](valve_bus::Rules& rules) { rules.refresh = 100 * kernel::kMillisecond; })},
       {"never_refreshes", "", "sends each write once",
-       host_with_rules([](valve_bus::Rules& rules) { rules.refresh = 1000 * kernel::kSecond; })},
+       with_rules<valve_bus::Host>([](valve_bus::Rules& rules) { rules.refresh = 1000 * kernel::kSecond; })},
       {"verification_not_compared", "", "reads after a write and does not compare",
-       host<VerificationNotCompared>()},
+       mutant<VerificationNotCompared>()},
       {"acknowledge_not_awaited", "", "does not wait for the acknowledge of a write",
-       host<AcknowledgeNotAwaited>()},
+       mutant<AcknowledgeNotAwaited>()},
   };
 }
 
@@ -125,23 +91,24 @@ std::vector<HostRow> host_wait_rows() {
   using kernel::kMicrosecond;
   return {
       {"time_out_fixed", "MH6", "has the time-out of 375 kbit/s at every bit rate",
-       host<TimeOutOtherwise>(3103 * kMicrosecond, 0U)},
-      {"time_out_short", "", "has a time-out that is 10 % short", host<TimeOutOtherwise>(Duration{}, 90U)},
-      {"time_out_long", "", "has a time-out that is 20 % long", host<TimeOutOtherwise>(Duration{}, 120U)},
+       mutant<TimeOutOtherwise>(3103 * kMicrosecond, 0U)},
+      {"time_out_short", "", "has a time-out that is 10 % short", mutant<TimeOutOtherwise>(Duration{}, 90U)},
+      {"time_out_long", "", "has a time-out that is 20 % long", mutant<TimeOutOtherwise>(Duration{}, 120U)},
       {"four_attempts", "MH7", "sends a read four times",
-       host_with_rules([](valve_bus::Rules& rules) { rules.read_attempts = 4; })},
+       with_rules<valve_bus::Host>([](valve_bus::Rules& rules) { rules.read_attempts = 4; })},
       {"two_attempts", "MH7", "sends a read two times",
-       host_with_rules([](valve_bus::Rules& rules) { rules.read_attempts = 2; })},
+       with_rules<valve_bus::Host>([](valve_bus::Rules& rules) { rules.read_attempts = 2; })},
       {"bad_response_not_repeated", "", "does not repeat a read that was answered wrongly",
-       host<BadResponseNotRepeated>()},
+       mutant<BadResponseNotRepeated>()},
       {"takes_late_response", "MH4", "takes a late response for that of the next node",
-       host<TakesLateResponse>()},
-      {"late_not_counted", "", "does not count late responses", host<LateNotCounted>()},
+       mutant<TakesLateResponse>()},
+      {"late_not_counted", "", "does not count late responses", mutant<LateNotCounted>()},
       {"takes_early_response", "", "takes a response that begins with the end of the request",
-       host<TakesEarlyResponse>()},
+       mutant<TakesEarlyResponse>()},
       {"waits_long_behind_errors", "", "sends nothing for 20 ms after an error",
-       host<WaitsLongBehindErrors>()},
-      {"waits_for_silence", "", "waits for ever when the line does not fall silent", host<WaitsForSilence>()},
+       mutant<WaitsLongBehindErrors>()},
+      {"waits_for_silence", "", "waits for ever when the line does not fall silent",
+       mutant<WaitsForSilence>()},
   };
 }
 
@@ -150,103 +117,73 @@ std::vector<HostRow> host_response_rows() {
   using Which = TakesOtherResponses::Which;
   return {
       {"response_not_checked", "MH2", "does not look at the block check of a response",
-       host<ResponseNotChecked>()},
+       mutant<ResponseNotChecked>()},
       {"id_in_response_check", "MH3", "needs the ID in the block check of a response",
-       host<ResponseCheckWithId>()},
+       mutant<ResponseCheckWithId>()},
       {"response_check_is_parity", "", "looks at the parity of the block check only",
-       host<ResponseCheckIsParity>()},
+       mutant<ResponseCheckIsParity>()},
       {"response_check_too_strict", "", "refuses responses of two equal octets",
-       host<ResponseCheckTooStrict>()},
+       mutant<ResponseCheckTooStrict>()},
       {"takes_two_octets", "", "takes a response without its check",
-       host<TakesOtherResponses>(Which::two_octets)},
+       mutant<TakesOtherResponses>(Which::two_octets)},
       {"takes_first_three_octets", "", "takes the first three octets of a longer frame",
-       host<TakesOtherResponses>(Which::first_three)},
+       mutant<TakesOtherResponses>(Which::first_three)},
       {"takes_last_three_octets", "", "takes the last three octets of a longer frame",
-       host<TakesOtherResponses>(Which::last_three)},
+       mutant<TakesOtherResponses>(Which::last_three)},
       {"response_gaps_of_three_characters", "", "allows three characters of silence inside a response",
-       host_with_rules([](valve_bus::Rules& rules) { rules.longest_gap_half_characters = 6; })},
+       with_rules<valve_bus::Host>([](valve_bus::Rules& rules) { rules.longest_gap_half_characters = 6; })},
       {"response_gaps_of_one_character", "", "allows one character of silence inside a response",
-       host_with_rules([](valve_bus::Rules& rules) { rules.longest_gap_half_characters = 2; })},
-      {"echo_taken_as_response", "MH5", "takes its own echo for a response", host<TakesEcho>()},
+       with_rules<valve_bus::Host>([](valve_bus::Rules& rules) { rules.longest_gap_half_characters = 2; })},
+      {"echo_taken_as_response", "MH5", "takes its own echo for a response", mutant<TakesEcho>()},
       {"keeps_stray_octets", "", "keeps what nobody asked for in front of the next response",
-       host<KeepsStrayOctets>()},
+       mutant<KeepsStrayOctets>()},
       {"stray_told_as_response", "", "reports what nobody asked for as a response",
-       host<StrayToldAsResponse>()},
-      {"stop_bits_not_looked_at", "MH17", "does not look at stop bits", host<StopBitIgnored<Host>>()},
-      {"parity_not_looked_at", "", "does not look at parity", host<ParityIgnored<Host>>()},
-      {"wants_ninth_bit", "", "needs the ninth bit to be 1", host<NinthBitRequired<Host>>()},
+       mutant<StrayToldAsResponse>()},
+      {"stop_bits_not_looked_at", "MH17", "does not look at stop bits", mutant<StopBitIgnored<Host>>()},
+      {"parity_not_looked_at", "", "does not look at parity", mutant<ParityIgnored<Host>>()},
+      {"wants_ninth_bit", "", "needs the ninth bit to be 1", mutant<NinthBitRequired<Host>>()},
   };
 }
 
 std::vector<HostRow> host_telling_rows() {
   using namespace host_seeded_faults;
   return {
-      {"told_twice", "", "reports each response to the PC twice", host<ToldTwice>()},
+      {"told_twice", "", "reports each response to the PC twice", mutant<ToldTwice>()},
       {"told_of_node_before", "", "reports a response as that of the node that was read before",
-       host<ToldOfNodeBefore>()},
-      {"response_exchanged", "MH19", "reports DATA1 of a response before DATA0", host<ResponseExchanged>()},
-      {"old_told_as_new", "MH14", "reports old data as new when a read fails", host<OldToldAsNew>()},
-      {"old_forgotten", "", "does not report old data when a read fails", host<OldForgotten>()},
-      {"silence_told_as_data", "", "reports FF FF when nothing answers", host<SilenceToldAsData>()},
-      {"counters_shared", "MH16", "has one set of counters for all nodes", host<CountersShared>()},
+       mutant<ToldOfNodeBefore>()},
+      {"response_exchanged", "MH19", "reports DATA1 of a response before DATA0", mutant<ResponseExchanged>()},
+      {"old_told_as_new", "MH14", "reports old data as new when a read fails", mutant<OldToldAsNew>()},
+      {"old_forgotten", "", "does not report old data when a read fails", mutant<OldForgotten>()},
+      {"silence_told_as_data", "", "reports FF FF when nothing answers", mutant<SilenceToldAsData>()},
+      {"counters_shared", "MH16", "has one set of counters for all nodes", mutant<CountersShared>()},
   };
 }
 
 std::vector<HostRow> host_sequence_rows() {
   using namespace host_seeded_faults;
-  std::vector<HostRow> rows{
+  return HostMutants::for_check({
       {"repeated_read_not_sent", "", "answers a read of the node that was read last by itself",
-       host<RepeatedReadNotSent>()},
+       mutant<RepeatedReadNotSent>()},
       {"one_retry_less_behind_error", "", "sends a read twice only when the one before it failed",
-       host<OneRetryLessBehindError>()},
+       mutant<OneRetryLessBehindError>()},
       {"old_data_survive_power", "", "reports what it knew before its supply was off",
-       host<OldDataSurvivePower>()},
+       mutant<OldDataSurvivePower>()},
       {"rejected_response_kept", "", "takes DATA0 of a response that it rejected for that of the next",
-       host<RejectedResponseKept>()},
+       mutant<RejectedResponseKept>()},
       {"refused_command_costs_next", "", "loses the command after one that it refused",
-       host<RefusedCommandCostsNext>()},
+       mutant<RefusedCommandCostsNext>()},
       {"write_behind_error_exchanged", "", "sends the data of a write after a failed read in the wrong order",
-       host<WriteBehindErrorExchanged>()},
-  };
-  for (HostRow& row : rows) row.is_for_check = true;
-  return rows;
-}
-
-const std::vector<HostRow>& host_rows() {
-  static const std::vector<HostRow> table = [] {
-    std::vector<HostRow> all;
-    for (auto group : {host_command_rows, host_request_rows, host_write_rows, host_wait_rows,
-                       host_response_rows, host_telling_rows, host_sequence_rows}) {
-      for (HostRow& row : group()) all.push_back(std::move(row));
-    }
-    return all;
-  }();
-  return table;
+       mutant<WriteBehindErrorExchanged>()},
+  });
 }
 
 }  // namespace
 
-const std::vector<Mutant>& host_mutants() {
-  static const std::vector<Mutant> mutants = [] {
-    std::vector<Mutant> all;
-    for (const HostRow& row : host_rows()) {
-      all.push_back({std::string(row.name), std::string(row.label), "host", std::string(row.description),
-                     row.is_for_check});
-    }
-    return all;
-  }();
-  return mutants;
-}
-
-std::unique_ptr<HostDevice> make_host_mutant(std::string_view name, const HostConfiguration& configuration) {
-  std::vector<std::string_view> names;
-  for (const HostRow& row : host_rows()) {
-    if (row.name == name) return row.make_host(configuration);
-    names.push_back(row.name);
-  }
-  throw kernel::Error(kernel::ErrorKind::usage,
-                      fmt::format("there is no mutant host \"{}\"; near are {}", name,
-                                  fmt::join(config::nearest(name, names, 3), ", ")));
+const HostMutants& host_mutants() {
+  static const HostMutants table(
+      "host", {host_command_rows, host_request_rows, host_write_rows, host_wait_rows, host_response_rows,
+               host_telling_rows, host_sequence_rows});
+  return table;
 }
 
 }  // namespace fieldproof::conformance

@@ -26,7 +26,7 @@ std::string characters_text(const Transmission& transmission) {
 
 std::unique_ptr<valve_bus::NodeDevice> made(const NodeSetting& setting,
                                             const NodeConfiguration& configuration) {
-  if (setting.make_node) return setting.make_node(configuration);
+  if (setting.make_device) return setting.make_device(configuration);
   return std::make_unique<valve_bus::Node>(configuration);
 }
 

@@ -48,7 +48,7 @@ struct NodeNeeds {
 struct NodeSetting {
   using MakeNode = std::function<std::unique_ptr<valve_bus::NodeDevice>(const valve_bus::NodeConfiguration&)>;
 
-  MakeNode make_node;  // null: the reference
+  MakeNode make_device;  // null: the reference
   std::uint64_t seed = 1;
   Volume volume = Volume::full;
   std::optional<judge::Pics> pics;

@@ -1,10 +1,9 @@
 #include "island.hpp"
 
-#include <conformance/assigned.hpp>
-#include <conformance/case_recorder.hpp>
-#include <conformance/suite_of_functions.hpp>
+#include <conformance/bench_role.hpp>
 #include <conformance/valve_bus/node_cases.hpp>
 #include <conformance/valve_bus/node_expect.hpp>
+#include <conformance/valve_bus/node_mutants.hpp>
 #include <harness/iut/plugin.hpp>
 #include <protocols/valve_bus/attached_node.hpp>
 #include <protocols/valve_bus/dissector.hpp>
@@ -41,12 +40,14 @@ class MovesSlowly final : public Island {
   }
 };
 
-std::unique_ptr<NodeDevice> node_of(const IutRequest& wanted, const NodeConfiguration& configuration) {
-  if (wanted.uri == kOwnUri) return firmware(configuration, wanted.case_id, wanted.seed);
-  if (wanted.uri == kReferenceUri) return std::make_unique<Island>(configuration);
-  const std::string mutant = mutant_of(wanted.uri, "valve island");
-  if (mutant == "answers_slowly") return std::make_unique<AnswersSlowly>(configuration);
-  return std::make_unique<MovesSlowly>(configuration);
+std::vector<NodeMutants::Row> rows() {
+  return {{"answers_slowly", "MV1", "answers a read 1 ms later", mutant<AnswersSlowly>()},
+          {"moves_slowly", "MV2", "moves its valves 1 ms later", mutant<MovesSlowly>()}};
+}
+
+const NodeMutants& mutants() {
+  static const NodeMutants table("node", {rows});
+  return table;
 }
 
 // ---- the cases ----
@@ -107,23 +108,6 @@ const std::vector<NodeCase>& cases() {
   return all;
 }
 
-Outcome run(const NodeCase& one, const Setup& setup) {
-  CaseRecorder recorder;
-  NodeSetting setting{.seed = setup.seed, .volume = setup.volume, .pics = setup.pics};
-  const std::string uri = assigned_to(one.test_case, setup).uri;
-  setting.make_node = [&](const NodeConfiguration& configuration) {
-    return node_of({uri, one.test_case.id, setup.seed}, configuration);
-  };
-  if (setup.record) {
-    setting.make_recorder = [&](const trace::Trace& trace, const valve_bus::Rules& rules) {
-      return &recorder.start(trace, std::make_shared<valve_bus::FrameDissector>(rules));
-    };
-  }
-  Outcome outcome{run_on_bench(one, setting), {}};
-  recorder.keep(outcome);
-  return outcome;
-}
-
 }  // namespace
 
 std::unique_ptr<NodeDevice> firmware(const NodeConfiguration& configuration, const std::string& case_id,
@@ -134,15 +118,22 @@ std::unique_ptr<NodeDevice> firmware(const NodeConfiguration& configuration, con
                                                    case_id, seed);
 }
 
-std::unique_ptr<Suite> island_suite() {
-  auto suite = std::make_unique<SuiteOfFunctions>("island", std::vector<std::string>{"node"});
-  suite->add(Mutant{"answers_slowly", "MV1", "node", "answers a read 1 ms later"});
-  suite->add(Mutant{"moves_slowly", "MV2", "node", "moves its valves 1 ms later"});
-  suite->add_own("node");
-  for (const NodeCase& one : cases()) {
-    suite->add(one.test_case, [&one](const TestCase&, const Setup& setup) { return run(one, setup); });
-  }
-  return suite;
+OwnStations own_firmware() {
+  return own_station<valve_bus::NodeRole>(
+      [](const IutRequest& wanted, const NodeConfiguration& configuration) {
+        return firmware(configuration, wanted.case_id, wanted.seed);
+      });
+}
+
+std::unique_ptr<Suite> island_suite(SuiteGiven given) {
+  given.own = own_firmware();
+  return std::make_unique<Suite>(
+      SuiteRows{
+          .protocol = "island",
+          .roles = {row_of<valve_bus::NodeRole, Island>(
+              {.what = "valve island", .mutants = mutants},
+              CaseRole<NodeCase, NodeSetting, valve_bus::FrameDissector>{.name = "node", .cases = cases})}},
+      std::move(given));
 }
 
 }  // namespace island

@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include <conformance/test_case.hpp>
+#include <conformance/suite.hpp>
 #include <protocols/valve_bus/device.hpp>
 
 namespace island {
@@ -18,6 +18,9 @@ using fieldproof::valve_bus::NodeDevice;
 std::unique_ptr<NodeDevice> firmware(const NodeConfiguration& configuration, const std::string& case_id,
                                      std::uint64_t seed);
 
-std::unique_ptr<fieldproof::conformance::Suite> island_suite();
+// The firmware as what the URI `own` means.
+fieldproof::conformance::OwnStations own_firmware();
+
+std::unique_ptr<fieldproof::conformance::Suite> island_suite(fieldproof::conformance::SuiteGiven given);
 
 }  // namespace island

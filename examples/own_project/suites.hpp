@@ -4,12 +4,12 @@
 
 #include <memory>
 
-#include <conformance/valve_bus/suite.hpp>
+#include <conformance/suite.hpp>
 
 namespace island {
 
 std::unique_ptr<fieldproof::conformance::Suite> valve_bus_suite(
-    fieldproof::conformance::ValveBusGiven given = {});
-std::unique_ptr<fieldproof::conformance::Suite> product_suite();
+    fieldproof::conformance::SuiteGiven given = {});
+std::unique_ptr<fieldproof::conformance::Suite> product_suite(fieldproof::conformance::SuiteGiven given = {});
 
 }  // namespace island

@@ -1,0 +1,161 @@
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "conformance/bench_case.hpp"
+#include "conformance/running_case.hpp"
+#include "conformance/suite.hpp"
+
+// Rows of a suite for roles whose cases run on a bench.
+//
+// A `Setting` says who plays, and how: seed, volume, stresses and make_recorder; where the bench has them
+// also pics, plan and make_device. A role is a `Kind`, see conformance/case_devices.hpp.
+namespace fieldproof::conformance {
+
+template <typename Case>
+struct SequenceRow {
+  const SequenceRole& (*role)();
+  void (*run)(const Sequence&, typename Case::BenchType&, CaseJudge&);
+  decltype(Case::needs) needs{};
+};
+
+// Cases on a bench, whoever plays.
+template <typename Case, typename Setting, typename Dissector>
+struct CaseRole {
+  std::string_view name;
+  const std::vector<Case>& (*cases)();
+  // What is not the same for all benches.
+  void (*adjust)(Setting&, RunningCase&) = nullptr;
+  // Throws kernel::Error for a setup that the case cannot be run with.
+  void (*check)(const Case&, const Setting&, const RunningCase&) = nullptr;
+  judge::CaseResult (*run)(const Case&, const Setting&) = [](const Case& one, const Setting& setting) {
+    return run_on_bench(one, setting);
+  };
+  // The answers of the setup, completed by those of the bench; null: nothing completes them.
+  judge::Pics (*declared_pics)(const Case&, const Setting&) = nullptr;
+  std::vector<judge::PicsItem> (*pics_items)() = nullptr;
+  const field::AnyTable* settings = nullptr;
+  std::optional<SequenceRow<Case>> sequences{};
+
+  // The same but for who plays.
+  Setting setting(RunningCase& run_of_case) const {
+    Setting made;
+    const Disturbances& disturbances = run_of_case.given().disturbances;
+    made.seed = run_of_case.setup().seed;
+    made.volume = run_of_case.setup().volume;
+    if constexpr (std::is_pointer_v<decltype(made.stresses)>) {
+      made.stresses = &disturbances.link_stresses;
+    } else {
+      made.stresses = disturbances.stresses;
+    }
+    if constexpr (requires { made.pics; }) made.pics = run_of_case.pics();
+    if constexpr (requires { made.plan; }) made.plan = run_of_case.plan();
+    if (run_of_case.is_recorded()) {
+      made.make_recorder = [&run_of_case](const trace::Trace& trace, const auto& rules) {
+        return &run_of_case.start_recorder(trace, std::make_shared<Dissector>(rules));
+      };
+    }
+    if (adjust != nullptr) adjust(made, run_of_case);
+    return made;
+  }
+
+  // The case of an id; that of a sequence has no procedure yet.
+  Case find(const TestCase& test_case) const {
+    for (const Case& one : cases())
+      if (one.test_case.id == test_case.id) return one;
+    Case blank{test_case, nullptr};
+    if (sequences) blank.needs = sequences->needs;
+    return blank;
+  }
+};
+
+namespace bench_role {
+
+// `play` puts an implementation into a setting.
+template <typename Case, typename Setting, typename Dissector, typename Play>
+RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
+  RoleRow row;
+  row.name = role.name;
+  // Two roles of one bench may have one list of cases.
+  for (const Case& one : role.cases())
+    if (one.test_case.role() == role.name) row.cases.push_back(one.test_case);
+  if (role.pics_items != nullptr) row.pics_items = role.pics_items();
+  row.settings = role.settings;
+  const auto run_case = [role, play](const Case& one, RunningCase& run) {
+    Setting setting = role.setting(run);
+    play(setting, run);
+    Outcome outcome;
+    outcome.result = role.run(one, setting);
+    run.keep(outcome);
+    return outcome;
+  };
+  row.run = [role, run_case](const TestCase& test_case, RunningCase& run) {
+    return run_case(role.find(test_case), run);
+  };
+  row.check = [role](const TestCase& test_case, RunningCase& run) {
+    const Setting setting = role.setting(run);
+    if (role.check != nullptr) role.check(role.find(test_case), setting, run);
+  };
+  if (role.declared_pics != nullptr) {
+    row.declared_pics = [role](const TestCase& test_case, RunningCase& run) -> std::optional<judge::Pics> {
+      if (!run.pics()) return std::nullopt;
+      return role.declared_pics(role.find(test_case), role.setting(run));
+    };
+  }
+  if (role.sequences) {
+    row.sequences = role.sequences->role();
+    row.run_sequence = [role, run_case](const Sequence& sequence, RunningCase& run) {
+      Case one = role.find(run.test_case());
+      one.procedure = [&sequence, run_sequence = role.sequences->run](auto& bench, CaseJudge& judge) {
+        run_sequence(sequence, bench, judge);
+      };
+      return run_case(one, run);
+    };
+  }
+  return row;
+}
+
+}  // namespace bench_role
+
+// A role whose cases bring all players along.
+template <typename Case, typename Setting, typename Dissector>
+RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role) {
+  return bench_role::row_of(role, [](Setting&, RunningCase&) {});
+}
+
+// Who can play a role in the program itself.
+template <typename Kind>
+struct Stations {
+  using Configuration = typename Kind::Configuration;
+
+  std::string_view what;  // "INTERBUS slave"
+  const DeviceMutants<typename Kind::Device, Configuration>& (*mutants)();
+  // That implementations are tried out with.
+  Configuration (*configuration)() = [] { return Configuration{}; };
+};
+
+// A role in which one implementation is judged.
+template <typename Kind, typename Reference, typename Case, typename Setting, typename Dissector>
+RoleRow row_of(const Stations<Kind>& stations, const CaseRole<Case, Setting, Dissector>& role) {
+  const auto maker = [stations](const std::string& uri, RunningCase& run) {
+    return run.maker<Kind, Reference>(uri, stations.mutants(), stations.what);
+  };
+  RoleRow row = bench_role::row_of(role, [maker](Setting& setting, RunningCase& run) {
+    setting.make_device = maker(run.assigned().uri, run);
+  });
+  row.mutants = stations.mutants().mutants();
+  row.try_out = [stations, maker](const std::string& uri, RunningCase& run) {
+    maker(uri, run)(stations.configuration());
+  };
+  return row;
+}
+
+}  // namespace fieldproof::conformance

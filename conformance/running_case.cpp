@@ -1,0 +1,44 @@
+#include "conformance/running_case.hpp"
+
+#include "harness/fault/plan_file.hpp"
+
+namespace fieldproof::conformance {
+
+RunningCase::RunningCase(const TestCase& test_case, const Setup& setup, const SuiteGiven& given,
+                         const line::TelegramCode* telegrams)
+    : test_case_(test_case),
+      setup_(setup),
+      given_(given),
+      telegrams_(telegrams),
+      assigned_(assigned_to(test_case, setup)),
+      on_real_line_(given.on_real_line ? given.on_real_line(assigned_.uri) : std::nullopt),
+      devices_(test_case, setup, given.attach) {}
+
+std::optional<judge::Pics> RunningCase::pics() const {
+  if (!on_real_line_) return setup_.pics;
+  return setup_.pics ? setup_.pics->completed_by(*on_real_line_) : on_real_line_;
+}
+
+fault::Plan declared_plan(const Setup& setup, const SuiteGiven& given, const line::TelegramCode* telegrams) {
+  if (setup.plan_file.empty()) return {};
+  return fault::load_plan(setup.plan_file,
+                          {.telegrams = telegrams, .disturbances = given.disturbances.of_plans});
+}
+
+trace::Recorder& RunningCase::start_recorder(const trace::Trace& trace,
+                                             std::shared_ptr<const trace::Dissector> dissector) {
+  dissector_ = std::move(dissector);
+  return recorder_.emplace(trace);
+}
+
+void RunningCase::keep(Outcome& outcome) {
+  if (recorder_) {
+    Recording& kept = outcome.recording;
+    kept.trace = recorder_->take();
+    kept.dissector = std::move(dissector_);
+    kept.truncated = kept.trace.is_cut;
+  }
+  devices_.keep(outcome);
+}
+
+}  // namespace fieldproof::conformance

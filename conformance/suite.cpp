@@ -1,0 +1,132 @@
+#include "conformance/suite.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "conformance/running_case.hpp"
+#include "conformance/stressed_receiver.hpp"
+#include "harness/kernel/check.hpp"
+#include "harness/kernel/error.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+bool is_named_in(const std::vector<TestCase>& cases, const Mutant& mutant) {
+  return std::ranges::any_of(cases, [&](const TestCase& one) {
+    return one.role() == mutant.role && std::ranges::any_of(one.catches, [&](const MustCatch& caught) {
+             return caught.mutant == mutant.name;
+           });
+  });
+}
+
+}  // namespace
+
+Suite::Suite(SuiteRows rows, SuiteGiven given) : rows_(std::move(rows)), given_(std::move(given)) {
+  for (RoleRow& row : rows_.roles) {
+    std::vector<TestCase> left_out;
+    for (TestCase& one : row.cases) {
+      const bool is_out = !given_.disturbances.have_stresses() && has_tag(one, kStressTag);
+      (is_out ? left_out : cases_).push_back(std::move(one));
+    }
+    // Mutants that only bursts tell are no survivors of a suite that was given none.
+    for (Mutant& one : row.mutants) {
+      if (is_named_in(left_out, one) && !is_named_in(cases_, one)) continue;
+      mutants_.push_back(std::move(one));
+    }
+    if (row.sequences) sequence_roles_.push_back(*row.sequences);
+    row.cases.clear();
+    row.mutants.clear();
+  }
+}
+
+std::vector<std::string> Suite::roles() const {
+  std::vector<std::string> names;
+  for (const RoleRow& row : rows_.roles) names.push_back(row.name);
+  return names;
+}
+
+RoleRow& Suite::role(std::string_view name) {
+  const auto found = std::ranges::find(rows_.roles, name, &RoleRow::name);
+  FIELDPROOF_CHECK(found != rows_.roles.end(), "a suite has a row for the role of each case");
+  return *found;
+}
+
+const RoleRow& Suite::row_of(const TestCase& test_case) const {
+  return const_cast<Suite*>(this)->role(test_case.role());
+}
+
+const line::TelegramCode* Suite::telegrams(const Setup& setup) const {
+  return rows_.telegrams == nullptr || setup.plan_file.empty() ? nullptr
+                                                               : rows_.telegrams(setup.network_file);
+}
+
+RunningCase Suite::begin(const TestCase& test_case, const Setup& setup) const {
+  return RunningCase(test_case, setup, given_, telegrams(setup));
+}
+
+void Suite::check_setup(const RoleRow& row, const TestCase& test_case, RunningCase& run) const {
+  if (!run.setup().network_file.empty() && !rows_.why_no_network.empty())
+    throw kernel::Error(kernel::ErrorKind::usage, std::string(rows_.why_no_network));
+  if (row.check) row.check(test_case, run);
+}
+
+Outcome Suite::run(const TestCase& test_case, const Setup& setup) const {
+  const RoleRow& row = row_of(test_case);
+  RunningCase run = begin(test_case, setup);
+  check_setup(row, test_case, run);
+  Outcome outcome = row.run(test_case, run);
+  outcome.happens_once = run.is_on_real_line();
+  return outcome;
+}
+
+Outcome Suite::run_sequence(const SequenceRole& role, const Sequence& sequence, const Setup& setup) const {
+  const RoleRow& row = row_of(role.test_case);
+  FIELDPROOF_CHECK(bool(row.run_sequence),
+                   "a suite runs sequences of the roles that it names: " + role.test_case.id);
+  RunningCase run = begin(role.test_case, setup);
+  Outcome outcome = row.run_sequence(sequence, run);
+  outcome.happens_once = run.is_on_real_line();
+  return outcome;
+}
+
+void Suite::check(const TestCase& test_case, const Setup& setup) const {
+  RunningCase run = begin(test_case, setup);
+  check_setup(row_of(test_case), test_case, run);
+  if (run.is_played_back()) return;
+  for (const Assignment& one : setup.implementations) {
+    const std::string role = one.role.empty() ? test_case.role() : one.role;
+    const bool takes_part = role == test_case.role() || std::ranges::count(test_case.parts, role) > 0;
+    const auto row = std::ranges::find(rows_.roles, role, &RoleRow::name);
+    if (takes_part && row != rows_.roles.end() && row->try_out) row->try_out(one.uri, run);
+  }
+}
+
+std::vector<judge::PicsItem> Suite::pics_items() const {
+  std::vector<judge::PicsItem> all;
+  for (const RoleRow& row : rows_.roles) all.insert(all.end(), row.pics_items.begin(), row.pics_items.end());
+  return all;
+}
+
+std::vector<field::NamedTable> Suite::tables() const {
+  std::vector<field::NamedTable> all;
+  for (const RoleRow& row : rows_.roles)
+    if (row.settings != nullptr) all.push_back({row.name, row.settings});
+  all.insert(all.end(), rows_.rules.begin(), rows_.rules.end());
+  return all;
+}
+
+std::optional<judge::Pics> Suite::declared_pics(const TestCase& test_case, const Setup& setup) const {
+  const RoleRow& row = row_of(test_case);
+  RunningCase run = begin(test_case, setup);
+  return row.declared_pics ? row.declared_pics(test_case, run) : run.pics();
+}
+
+std::vector<std::string> Suite::caveats(const Setup& setup) const {
+  return declared_plan(setup, given_, telegrams(setup)).caveats();
+}
+
+std::vector<fault::PlanPart> Suite::plan_parts(const Setup& setup) const {
+  return declared_plan(setup, given_, telegrams(setup)).parts();
+}
+
+}  // namespace fieldproof::conformance
