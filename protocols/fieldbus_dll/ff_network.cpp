@@ -127,9 +127,11 @@ std::vector<network::ProtectedFrame> FfNetwork::protected_frames() const {
 }
 
 void FfNetwork::power_up(Time now) {
-  for (Station& station : stations_) {
-    if (!std::exchange(station.has_started, true)) station.device->start(now);
-  }
+  for (Station& station : stations_) station.device->start(now);
+}
+
+void FfNetwork::power_down(Time now) {
+  for (Station& station : stations_) station.device->stop(now);
 }
 
 void FfNetwork::give(std::size_t signal, std::uint16_t word, Time now) {
