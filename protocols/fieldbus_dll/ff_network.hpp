@@ -2,7 +2,9 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
+#include <vector>
 
 #include "protocols/fieldbus_dll/ff_device.hpp"
 #include "protocols/fieldbus_dll/link_network.hpp"
@@ -50,7 +52,7 @@ class FfNetwork final : public LinkNetwork {
            bool is_master);
   FfConfiguration configuration_of(std::uint8_t node, bool is_master) const;
   void on_published(const User& user, const FfDlpdu& dlpdu, kernel::Time when);
-  FfAddress address_of_word(std::size_t signal) const;
+  void find_addresses();
   std::vector<network::CycleKind> kinds() const;
 
   void power_up(kernel::Time now) override;
@@ -62,6 +64,8 @@ class FfNetwork final : public LinkNetwork {
 
   FfRules rules_;
   std::deque<Station> stations_;
+  std::vector<FfAddress> addresses_;  // of the buffers, by signal
+  std::map<FfAddress, std::size_t> signal_of_address_;
 };
 
 }  // namespace fieldproof::fieldbus_dll
