@@ -20,9 +20,9 @@ using network::State;
 
 constexpr Duration kSlice = 5 * kMillisecond;
 constexpr Duration kPauseBeforeStart = 50 * kMillisecond;
-// Recovery is not waited for beyond so many exchanges, or limits of the network, and this time.
+// Recovery is not waited for beyond so many exchanges and this time, or so many limits of the network.
 constexpr std::uint64_t kMostRecoveryExchanges = 1000;
-constexpr std::uint64_t kMostLimits = 10;
+constexpr std::int64_t kMostLimits = 10;
 constexpr Duration kLongestRecovery = 5 * kSecond;
 
 // Counts what a channel of any kind does.
@@ -130,21 +130,28 @@ class Run final : private network::ExchangeWatcher {
   }
 
   void recover() {
-    const std::uint64_t most =
-        std::max(kMostRecoveryExchanges, kMostLimits * network_.recovery_limit().exchanges);
-    is_recovering_ = true;
-    statistics_.begin_recovery();
-    const Time end = segment_.now() + kLongestRecovery;
-    while (segment_.now() < end && !statistics_.is_recovered() && recovery_exchanges_ < most &&
-           !is_stopped()) {
-      if (network_.state() == State::stopped || !segment_.step()) break;
-    }
-    result_.recovered_by_itself = statistics_.is_recovered() && is_exchanging_;
+    const std::uint64_t most = std::max(kMostRecoveryExchanges, static_cast<std::uint64_t>(kMostLimits) *
+                                                                    network_.recovery_limit().exchanges);
+    result_.recovered_by_itself = delivers_all(most);
     result_.recovery_exchanges = recovery_exchanges_;
     if (result_.recovered_by_itself || !result_.is_complete) return;
     network_.stop();
     segment_.run_for(kPauseBeforeStart);
-    result_.recovered_after_start = come_up();
+    result_.recovered_after_start = come_up() && delivers_all(most);
+  }
+
+  // Each signal arrives once more, within so many exchanges.
+  bool delivers_all(std::uint64_t most) {
+    is_recovering_ = true;
+    recovery_exchanges_ = 0;
+    statistics_.begin_recovery();
+    const Time end =
+        segment_.now() + std::max(kLongestRecovery, kMostLimits * network_.recovery_limit().time);
+    while (segment_.now() < end && !statistics_.is_recovered() && recovery_exchanges_ < most &&
+           !is_stopped()) {
+      if (network_.state() == State::stopped || !segment_.step()) break;
+    }
+    return statistics_.is_recovered() && is_exchanging_;
   }
 
   void on_exchange(const Exchange& exchange) override {

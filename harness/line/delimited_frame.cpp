@@ -25,9 +25,7 @@ Levels delimiter_levels(const ManchesterCode& code, std::span<const Symbol> symb
 class FrameFinder {
  public:
   explicit FrameFinder(const Levels& half_bits)
-      : half_bits_(half_bits),
-        start_(delimiter_levels(code_, kStartDelimiter).window(0) & kDelimiterMask),
-        end_(delimiter_levels(code_, kEndDelimiter).window(0) & kDelimiterMask) {}
+      : half_bits_(half_bits), code_(shared_code()), start_(of(kStartDelimiter)), end_(of(kEndDelimiter)) {}
 
   std::vector<DelimitedFrame> find() {
     std::vector<DelimitedFrame> frames;
@@ -45,6 +43,14 @@ class FrameFinder {
  private:
   static constexpr std::uint64_t kDelimiterMask = (std::uint64_t{1} << kDelimiterLevels) - 1;
 
+  // Its table is made once: many stations look into each transmission.
+  static const ManchesterCode& shared_code() {
+    static const ManchesterCode code{ManchesterLayout{}};
+    return code;
+  }
+  std::uint64_t of(std::span<const Symbol> delimiter) const {
+    return delimiter_levels(code_, delimiter).window(0) & kDelimiterMask;
+  }
   bool is(std::uint64_t delimiter, std::size_t at) const {
     return at + kDelimiterLevels <= half_bits_.size() &&
            (half_bits_.window(at) & kDelimiterMask) == delimiter;
@@ -77,7 +83,7 @@ class FrameFinder {
   }
 
   const Levels& half_bits_;
-  ManchesterCode code_{ManchesterLayout{}};
+  const ManchesterCode& code_;
   std::uint64_t start_;
   std::uint64_t end_;
 };

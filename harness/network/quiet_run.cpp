@@ -19,6 +19,9 @@ class Run final : private ExchangeWatcher {
     const kernel::Time end = segment.now() + network.bring_up_limit();
     while (segment.now() < end && network.state() != State::exchanging) segment.run_for(kStep);
     run_.came_up = network.state() == State::exchanging;
+    // What the sources had before is not known: their words of before the start come first.
+    statistics_.begin_recovery();
+    while (run_.came_up && !statistics_.is_recovered() && segment.now() < end) segment.run_for(kStep);
     statistics_.begin();
     is_counting_ = run_.came_up;
     while (is_counting_ && run_.cycles.size() < wanted_ && network.state() == State::exchanging) {

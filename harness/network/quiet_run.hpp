@@ -15,7 +15,7 @@ namespace fieldproof::network {
 struct QuietRun {
   bool came_up = false;
   std::vector<kernel::Duration> cycles;  // of the first kind
-  ErrorStatistics counts;                // from when it had come up
+  ErrorStatistics counts;                // from when it had come up and each word had arrived once
 };
 
 // `network` has not been started. Ends earlier where it stops.

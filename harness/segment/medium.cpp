@@ -19,9 +19,10 @@ kernel::Duration between(kernel::Duration a, kernel::Duration b) {
 
 }  // namespace
 
-MediumPort::MediumPort(Medium& medium, std::string_view name, std::size_t station, PortIndex port,
-                       kernel::Duration position, bool receives_own_echo)
+MediumPort::MediumPort(Medium& medium, std::size_t index, std::string_view name, std::size_t station,
+                       PortIndex port, kernel::Duration position, bool receives_own_echo)
     : medium_(medium),
+      index_(index),
       trace_channel_(medium.segment_.trace().add_channel(std::string(name))),
       station_(station),
       port_(port),
@@ -35,6 +36,11 @@ const std::string& MediumPort::name() const {
 
 void MediumPort::drive(line::Waveform& wave) {
   medium_.drive(*this, wave);
+}
+
+void MediumPort::sense_activity() {
+  senses_activity_ = true;
+  medium_.due_.set(index_, next());
 }
 
 bool MediumPort::is_busy(kernel::Time now) const {
@@ -150,7 +156,8 @@ Medium::~Medium() {
 
 MediumPort& Medium::attach(std::string_view name, std::size_t station, PortIndex port,
                            kernel::Duration position, bool receives_own_echo) {
-  return ports_.emplace_back(*this, name, station, port, position, receives_own_echo);
+  due_.add();
+  return ports_.emplace_back(*this, ports_.size(), name, station, port, position, receives_own_echo);
 }
 
 MediumPort& Medium::listen(std::string_view name, kernel::Duration position) {
@@ -176,6 +183,7 @@ void Medium::drive(MediumPort& from, line::Waveform& wave) {
     const MediumPort::Flight flight{&transmission, start + delay, end + delay};
     if (&port != &from || from.receives_own_echo_) {
       port.expect(flight);
+      due_.set(port.index_, port.next());
       continue;
     }
     const kernel::Time now = segment_.now();
@@ -194,13 +202,15 @@ void Medium::release(MediumPort::Transmission& transmission) {
 
 void Medium::on_time(kernel::Time now) {
   give_up_if_stopped();
-  for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].tell_due(now);
+  for (std::size_t i = due_.first_due(0, now); i < ports_.size(); i = due_.first_due(i + 1, now)) {
+    ports_[i].tell_due(now);
+    due_.set(i, ports_[i].next());
+  }
   arm();
 }
 
 void Medium::arm() {
-  kernel::Time at = kernel::kNever;
-  for (const MediumPort& port : ports_) at = std::min(at, port.next());
+  const kernel::Time at = due_.earliest();
   if (at != segment_.scheduler().armed(slot_)) segment_.scheduler().arm(slot_, at);
 }
 

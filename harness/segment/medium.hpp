@@ -8,6 +8,7 @@
 
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/scheduler.hpp"
+#include "harness/segment/earliest_due.hpp"
 #include "harness/segment/receiver.hpp"
 #include "harness/segment/segment.hpp"
 #include "harness/segment/station.hpp"
@@ -58,7 +59,7 @@ class Medium;
 class MediumPort final : public Port, public Receiver {
  public:
   // Made by Medium::attach.
-  MediumPort(Medium& medium, std::string_view name, std::size_t station, PortIndex port,
+  MediumPort(Medium& medium, std::size_t index, std::string_view name, std::size_t station, PortIndex port,
              kernel::Duration position, bool receives_own_echo);
 
   void drive(line::Waveform& wave) override;
@@ -68,7 +69,7 @@ class MediumPort final : public Port, public Receiver {
   bool is_busy(kernel::Time now) const;
 
   // From now on its station is told of activity.
-  void sense_activity() { senses_activity_ = true; }
+  void sense_activity();
 
   const std::string& name() const;
   trace::Channel trace_channel() const { return trace_channel_; }
@@ -104,6 +105,7 @@ class MediumPort final : public Port, public Receiver {
   void tell(const line::Waveform& wave);
 
   Medium& medium_;
+  std::size_t index_;  // of the place on the medium
   trace::Channel trace_channel_;
   std::size_t station_;
   PortIndex port_;
@@ -160,6 +162,7 @@ class Medium final : private kernel::Timer {
   kernel::Random random_;
   kernel::SlotId slot_;
   std::deque<MediumPort> ports_;
+  EarliestDue due_;  // of the ports
   std::deque<MediumPort::Transmission> transmissions_;
   std::vector<MediumPort::Transmission*> free_;
   std::vector<Tap*> driven_taps_;

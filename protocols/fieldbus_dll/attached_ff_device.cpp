@@ -101,9 +101,12 @@ bool ServedFfDevice::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
 }
 
 void ServedFfDevice::set_power(bool is_on, kernel::Time now) {
-  if (!is_on) return;
   act(now, [&] {
-    if (!station().start(now)) refuse(now);
+    if (!is_on) {
+      station().stop(now);
+    } else if (!station().start(now)) {
+      refuse(now);
+    }
   });
 }
 

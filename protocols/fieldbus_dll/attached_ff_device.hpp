@@ -33,6 +33,7 @@ class AttachedFfDevice final : public FfDevice, private iut::Bench {
 
   void wire(segment::Port& line, FfUser& user) override;
   bool start(kernel::Time now) override { return link_.start(now); }
+  void stop(kernel::Time now) override { link_.stop(now); }
   bool submit(const FfRequest& request, kernel::Time now) override;
   bool write(FfAddress address, const Octets& data, kernel::Time now) override;
   void order_transfer(std::uint8_t node, kernel::Time now) override;

@@ -87,8 +87,7 @@ bool ServedIsaDevice::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
 }
 
 void ServedIsaDevice::set_power(bool is_on, kernel::Time now) {
-  if (!is_on) return;
-  act(now, [&] { station().start(now); });
+  act(now, [&] { is_on ? station().start(now) : station().stop(now); });
 }
 
 bool ServedIsaDevice::asked(const Octets& wanted, kernel::Time now) {

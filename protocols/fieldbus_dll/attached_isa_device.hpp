@@ -33,6 +33,7 @@ class AttachedIsaDevice final : public IsaDevice, private iut::Bench {
 
   void wire(segment::Port& line, IsaUser& user) override;
   void start(kernel::Time now) override { link_.start(now); }
+  void stop(kernel::Time now) override { link_.stop(now); }
   bool submit(const IsaRequest& request, kernel::Time now) override;
   void order_transfer(std::uint8_t node, kernel::Time now) override;
 

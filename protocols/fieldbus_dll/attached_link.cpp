@@ -82,6 +82,11 @@ bool AttachedLink::start(kernel::Time now) {
   return is_taken([&] { attached_.set_power(true, now); });
 }
 
+void AttachedLink::stop(kernel::Time now) {
+  ahead_.clear();
+  attached_.set_power(false, now);
+}
+
 void AttachedLink::refuse() {
   if (!is_asking_) iut::refuse_impossible("refuses something, and nothing is asked of it");
   is_refused_ = true;

@@ -43,6 +43,7 @@ class AttachedLink {
   bool ask(const Octets& request, kernel::Time now);
   // The supply, which begins and ends what the station does.
   bool start(kernel::Time now);
+  void stop(kernel::Time now);
   // What is asked for at the moment is not taken. Misbehaviour where nothing is.
   void refuse();
 

@@ -82,6 +82,8 @@ class FfDevice : public segment::Station {
   virtual void wire(segment::Port& line, FfUser& user) = 0;
   // Nothing is sent before. False: the rules are impossible, and nothing will be.
   virtual bool start(kernel::Time now) = 0;
+  // The supply fails: what it knew is gone, and it neither hears nor sends before the next start.
+  virtual void stop(kernel::Time now) = 0;
   // After what has been submitted in the same priority. False: more data than the priority carries.
   virtual bool submit(const FfRequest& request, kernel::Time now) = 0;
   // The whole buffer at once. False: the station does not publish it, or it is too long.

@@ -10,12 +10,26 @@ constexpr unsigned kKeepActiveSlots = 8;
 
 }  // namespace
 
-FfLas::FfLas(const FfConfiguration& configuration)
-    : FfStation(configuration),
-      live_(kNodeNumbers),
-      misses_(kNodeNumbers),
-      last_probe_(configuration.rules.last_node) {
-  for (const std::uint8_t node : configuration.live) live_[node] = true;
+FfLas::FfLas(const FfConfiguration& configuration) : FfStation(configuration) {
+  begin_anew();
+}
+
+// What it knows of the link before anything happens.
+void FfLas::begin_anew() {
+  las_ = FfLasState::standby;
+  live_.assign(kNodeNumbers, false);
+  misses_.assign(kNodeNumbers, 0);
+  for (const std::uint8_t node : configuration().live) live_[node] = true;
+  last_probe_ = rules().last_node;
+  revision_ = 0;
+  rotation_ = {};
+  to_tell_.clear();
+  ordered_heir_.reset();
+}
+
+void FfLas::stop(kernel::Time now) {
+  FfStation::stop(now);
+  begin_anew();
 }
 
 bool FfLas::start(kernel::Time now) {

@@ -42,6 +42,7 @@ class FfLas : public FfStation {
   explicit FfLas(const FfConfiguration& configuration);
 
   bool start(kernel::Time now) override;
+  void stop(kernel::Time now) override;
   void order_transfer(std::uint8_t node, kernel::Time now) override;
   bool submit(const FfRequest& request, kernel::Time now) override;
 
@@ -97,6 +98,7 @@ class FfLas : public FfStation {
   std::uint8_t awaited() const { return awaited_; }
 
  private:
+  void begin_anew();
   void schedule(kernel::Time now);
   bool compel(kernel::Time now);
   bool distribute_time(kernel::Time now);

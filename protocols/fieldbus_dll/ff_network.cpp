@@ -41,6 +41,7 @@ FfDlpdu word_dlpdu() {
 
 FfNetwork::FfNetwork(const LinkDescription& description, std::uint64_t seed, const FfStations& stations)
     : LinkNetwork(description, rules_of(description).link, seed), rules_(rules_of(description)) {
+  find_addresses();
   for (std::size_t n = 0; n < description.masters.size(); ++n) {
     add(description.masters[n], n + 1, fmt::format("ff_las@{}", n + 1), stations.make_master, true);
   }
@@ -64,13 +65,13 @@ void FfNetwork::add(std::uint8_t node, std::size_t position, const std::string& 
   station.device->wire(seat(*station.device, node, name), *station.user);
 }
 
-FfAddress FfNetwork::address_of_word(std::size_t signal) const {
-  const auto& data = this->description().data;
-  std::uint8_t selector = kFirstSelector;
-  for (std::size_t n = 0; n < signal; ++n) {
-    if (data[n].from == data[signal].from) ++selector;
+void FfNetwork::find_addresses() {
+  std::map<std::uint8_t, std::uint8_t> next_selector;  // by node
+  for (const DataDescription& item : description().data) {
+    const std::uint8_t selector = next_selector.try_emplace(item.from, kFirstSelector).first->second++;
+    signal_of_address_[address_of(item.from, selector)] = addresses_.size();
+    addresses_.push_back(address_of(item.from, selector));
   }
-  return address_of(data[signal].from, selector);
 }
 
 FfConfiguration FfNetwork::configuration_of(std::uint8_t node, bool is_master) const {
@@ -79,15 +80,15 @@ FfConfiguration FfNetwork::configuration_of(std::uint8_t node, bool is_master) c
   configuration.node = node;
   const LinkDescription& link = description();
   for (std::size_t n = 0; n < link.data.size(); ++n) {
-    if (link.data[n].from == node) configuration.published.push_back(address_of_word(n));
-    if (link.data[n].to == node) configuration.subscribed.push_back(address_of_word(n));
+    if (link.data[n].from == node) configuration.published.push_back(addresses_[n]);
+    if (link.data[n].to == node) configuration.subscribed.push_back(addresses_[n]);
   }
   if (!is_master) return configuration;
   configuration.begins_as_scheduler = node == link.masters.front();
   configuration.schedule.macrocycle = static_cast<std::uint32_t>(link.macrocycle / kTick);
   for (std::size_t n = 0; n < link.data.size(); ++n) {
     configuration.schedule.items.push_back(
-        {static_cast<std::uint32_t>(link.data[n].at / kTick), address_of_word(n), Priority::normal});
+        {static_cast<std::uint32_t>(link.data[n].at / kTick), addresses_[n], Priority::normal});
   }
   return configuration;
 }
@@ -127,33 +128,32 @@ std::vector<network::ProtectedFrame> FfNetwork::protected_frames() const {
 }
 
 void FfNetwork::power_up(Time now) {
-  for (Station& station : stations_) {
-    if (!std::exchange(station.has_started, true)) station.device->start(now);
-  }
+  for (Station& station : stations_) station.device->start(now);
+}
+
+void FfNetwork::power_down(Time now) {
+  for (Station& station : stations_) station.device->stop(now);
 }
 
 void FfNetwork::give(std::size_t signal, std::uint16_t word, Time now) {
   const auto station = std::ranges::find(stations_, description().data[signal].from, &Station::node);
-  station->device->write(address_of_word(signal), octets_of_word(word), now);
+  station->device->write(addresses_[signal], octets_of_word(word), now);
 }
 
 void FfNetwork::on_published(const User& user, const FfDlpdu& dlpdu, Time when) {
   const auto station =
       std::ranges::find_if(stations_, [&](const Station& one) { return one.user.get() == &user; });
-  const auto& data = description().data;
-  for (std::size_t n = 0; n < data.size(); ++n) {
-    if (data[n].to != station->node || address_of_word(n) != dlpdu.source) continue;
-    // Of another length it is no word that anybody has sent.
-    const bool is_word = dlpdu.data.size() == kWordOctets;
-    on_got(n, is_word ? static_cast<std::uint16_t>(dlpdu.data[0] << 8 | dlpdu.data[1]) : std::uint16_t{0},
-           when);
-  }
+  const auto found = signal_of_address_.find(dlpdu.source);
+  if (found == signal_of_address_.end() || description().data[found->second].to != station->node) return;
+  // Of another length it is no word that anybody has sent.
+  const bool is_word = dlpdu.data.size() == kWordOctets;
+  on_got(found->second,
+         is_word ? static_cast<std::uint16_t>(dlpdu.data[0] << 8 | dlpdu.data[1]) : std::uint16_t{0}, when);
 }
 
 void FfNetwork::on_driven(const Octets& octets, Time begin, Time end) {
   const auto dlpdu = ff_dlpdu_of(octets, rules_);
   if (!dlpdu) return;
-  const auto& data = description().data;
   if (dlpdu->type == FfType::pt && !description().devices.empty() &&
       dlpdu->node == description().devices.front()) {
     begin_cycle(1, begin);
@@ -161,13 +161,12 @@ void FfNetwork::on_driven(const Octets& octets, Time begin, Time end) {
   if (dlpdu->type != FfType::cd && dlpdu->type != FfType::dt3) return;
   const bool is_call = dlpdu->type == FfType::cd;
   const FfAddress address = is_call ? dlpdu->destination : dlpdu->source;
-  for (std::size_t n = 0; n < data.size(); ++n) {
-    if (address_of_word(n) != address) continue;
-    if (is_call) {
-      on_called(n, begin, end);
-    } else {
-      on_sent(n);
-    }
+  const auto found = signal_of_address_.find(address);
+  if (found == signal_of_address_.end()) return;
+  if (is_call) {
+    on_called(found->second, begin, end);
+  } else {
+    on_sent(found->second);
   }
 }
 

@@ -2,7 +2,9 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
+#include <vector>
 
 #include "protocols/fieldbus_dll/ff_device.hpp"
 #include "protocols/fieldbus_dll/link_network.hpp"
@@ -44,18 +46,17 @@ class FfNetwork final : public LinkNetwork {
     FfConfiguration configuration;
     std::unique_ptr<FfDevice> device;
     std::unique_ptr<User> user;
-    bool has_started = false;
   };
 
   void add(std::uint8_t node, std::size_t position, const std::string& name, const FfStations::Make& make,
            bool is_master);
   FfConfiguration configuration_of(std::uint8_t node, bool is_master) const;
   void on_published(const User& user, const FfDlpdu& dlpdu, kernel::Time when);
-  FfAddress address_of_word(std::size_t signal) const;
+  void find_addresses();
   std::vector<network::CycleKind> kinds() const;
 
   void power_up(kernel::Time now) override;
-  void power_down(kernel::Time) override {}
+  void power_down(kernel::Time now) override;
   void on_driven(const Octets& octets, kernel::Time begin, kernel::Time end) override;
   void give(std::size_t signal, std::uint16_t word, kernel::Time now) override;
   kernel::Duration answer_time() const override;
@@ -63,6 +64,8 @@ class FfNetwork final : public LinkNetwork {
 
   FfRules rules_;
   std::deque<Station> stations_;
+  std::vector<FfAddress> addresses_;  // of the buffers, by signal
+  std::map<FfAddress, std::size_t> signal_of_address_;
 };
 
 }  // namespace fieldproof::fieldbus_dll

@@ -61,6 +61,14 @@ bool FfStation::start(kernel::Time now) {
   return true;
 }
 
+void FfStation::stop(kernel::Time) {
+  enter(FfState::stopped);
+  token_.reset();
+  answer_.reset();
+  to_send_ = {};
+  for (auto& [address, buffer] : buffers_) buffer = {};
+}
+
 bool FfStation::submit(const FfRequest& request, kernel::Time) {
   if (is_too_long(request.priority, request.data.size())) return false;
   to_send_.push(request);

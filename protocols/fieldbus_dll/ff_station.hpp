@@ -34,6 +34,7 @@ class FfStation : public FfDevice {
 
   void wire(segment::Port& line, FfUser& user) override;
   bool start(kernel::Time now) override;
+  void stop(kernel::Time now) override;
   bool submit(const FfRequest& request, kernel::Time now) override;
   bool write(FfAddress address, const Octets& data, kernel::Time now) override;
 

@@ -88,8 +88,11 @@ class IsaDevice : public segment::Station {
   // a CD, or an address that is none; nothing is kept of it.
   virtual bool submit(const IsaRequest& request, kernel::Time now) = 0;
 
-  // Of a link master. The schedule begins now, where the station begins as the scheduler.
-  virtual void start(kernel::Time /*now*/) {}
+  // The supply comes; a station that was never stopped has it. Of a link master: the schedule begins now,
+  // where it begins as the scheduler.
+  virtual void start(kernel::Time now) = 0;
+  // The supply fails: what it knew is gone, and it neither hears nor sends before the next start.
+  virtual void stop(kernel::Time now) = 0;
   // Hands the link to this link master, with a TL, as soon as no token is delegated.
   virtual void order_transfer(std::uint8_t /*node*/, kernel::Time /*now*/) {}
 };

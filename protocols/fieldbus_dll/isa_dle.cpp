@@ -39,6 +39,20 @@ void IsaDle::wire(segment::Port& line, IsaUser& user) {
   user_ = &user;
 }
 
+void IsaDle::start(kernel::Time) {
+  is_stopped_ = false;
+}
+
+void IsaDle::stop(kernel::Time) {
+  is_stopped_ = true;
+  enter(DleState::idle);
+  to_send_ = {};
+  replies_ = {};
+  token_.reset();
+  awaited_.reset();
+  compelled_.reset();
+}
+
 bool IsaDle::submit(const IsaRequest& request, kernel::Time) {
   const bool is_address =
       request.service == IsaService::reply_data ||
@@ -53,6 +67,7 @@ bool IsaDle::submit(const IsaRequest& request, kernel::Time) {
 // ---- the line ----
 
 void IsaDle::receive(segment::PortIndex, const line::Waveform& reception) {
+  if (is_stopped_) return;
   for (const Arrived& arrived : heard_in(reception)) {
     if (const auto dlpdu = understood(arrived.octets)) on_dlpdu(*dlpdu, {arrived.begin, arrived.end});
   }

@@ -31,6 +31,8 @@ class IsaDle : public IsaDevice {
   explicit IsaDle(const IsaConfiguration& configuration);
 
   void wire(segment::Port& line, IsaUser& user) override;
+  void start(kernel::Time now) override;
+  void stop(kernel::Time now) override;
   bool submit(const IsaRequest& request, kernel::Time now) override;
 
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
@@ -128,6 +130,7 @@ class IsaDle : public IsaDevice {
   IsaConfiguration configuration_;
   LineEnd line_;
   IsaUser* user_ = nullptr;
+  bool is_stopped_ = false;
   DleState state_ = DleState::idle;
   Queues to_send_;
   Queues replies_;

@@ -7,10 +7,20 @@ namespace fieldproof::fieldbus_dll {
 IsaLas::IsaLas(const IsaConfiguration& configuration) : IsaDle(configuration) {}
 
 void IsaLas::start(kernel::Time now) {
+  IsaDle::start(now);
   if (!configuration().begins_as_scheduler) return;
   begin_ = now;
   next_ = 0;
   enter_las(LasState::scheduling);
+}
+
+void IsaLas::stop(kernel::Time now) {
+  IsaDle::stop(now);
+  enter_las(LasState::standby);
+  own_not_before_ = kernel::kStart;
+  has_shown_itself_ = true;
+  ordered_heir_.reset();
+  heir_.reset();
 }
 
 void IsaLas::order_transfer(std::uint8_t node, kernel::Time) {

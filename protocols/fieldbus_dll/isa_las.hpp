@@ -29,6 +29,7 @@ class IsaLas : public IsaDle {
   explicit IsaLas(const IsaConfiguration& configuration);
 
   void start(kernel::Time now) override;
+  void stop(kernel::Time now) override;
   void order_transfer(std::uint8_t node, kernel::Time now) override;
   bool submit(const IsaRequest& request, kernel::Time now) override;
 

@@ -83,9 +83,12 @@ std::vector<network::ProtectedFrame> IsaNetwork::protected_frames() const {
 }
 
 void IsaNetwork::power_up(Time now) {
-  for (Station& station : stations_) {
-    if (!std::exchange(station.has_started, true)) station.device->start(now);
-  }
+  for (Station& station : stations_) station.device->start(now);
+}
+
+void IsaNetwork::power_down(Time now) {
+  for (Station& station : stations_) station.device->stop(now);
+  is_waiting_.assign(is_waiting_.size(), false);
 }
 
 // The application submits one word at a time: what waits for a token that was lost goes first.

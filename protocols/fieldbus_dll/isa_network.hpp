@@ -42,7 +42,6 @@ class IsaNetwork final : public LinkNetwork {
     std::uint8_t node = 0;
     std::unique_ptr<IsaDevice> device;
     std::unique_ptr<User> user;
-    bool has_started = false;
   };
 
   void add(std::uint8_t node, std::size_t position, const std::string& name, const IsaStations::Make& make,
@@ -52,7 +51,7 @@ class IsaNetwork final : public LinkNetwork {
   std::vector<network::CycleKind> kinds() const;
 
   void power_up(kernel::Time now) override;
-  void power_down(kernel::Time) override {}
+  void power_down(kernel::Time now) override;
   void on_driven(const Octets& octets, kernel::Time begin, kernel::Time end) override;
   void give(std::size_t signal, std::uint16_t word, kernel::Time now) override;
   kernel::Duration answer_time() const override;

@@ -196,6 +196,7 @@ void LinkNetwork::refresh(std::uint8_t node) {
 
 void LinkNetwork::start() {
   if (!std::exchange(has_tester_, true)) tester_number_ = segment_.attach(*this, "tester");
+  if (is_on_) power_down(segment_.now());
   started_ = segment_.now();
   last_call_.reset();
   got_ = 0;
@@ -213,7 +214,14 @@ void LinkNetwork::start() {
 
 void LinkNetwork::stop() {
   is_on_ = false;
+  last_call_.reset();
   power_down(segment_.now());
+  for (Source& source : sources_) {
+    source.is_called = false;
+    source.closes_at = source.sampled_at = kernel::kNever;
+  }
+  set_wake();
+  for (const Seat& seat : seats_) segment_.refresh(seat.number);
 }
 
 network::State LinkNetwork::state() const {

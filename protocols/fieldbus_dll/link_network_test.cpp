@@ -35,6 +35,24 @@ TEST_P(LinkNetworkTest, EveryWordArrivesInEveryMacrocycle) {
   }
 }
 
+TEST_P(LinkNetworkTest, StartsAgainAfterAStop) {
+  const auto network = make(LinkDescription::built_in(GetParam()));
+  ASSERT_TRUE(network::run_quietly(*network, 3, 5).came_up);
+  network->stop();
+  EXPECT_EQ(network->state(), network::State::stopped) << "at once: nobody has a supply";
+  const kernel::Time off = network->segment().now();
+  network->segment().run_for(kernel::kSecond);
+  EXPECT_EQ(network->state(), network::State::stopped);
+  // With a pause, and where all that runs is switched off and on.
+  for (int n = 0; n < 2; ++n) {
+    const network::QuietRun run = network::run_quietly(*network, 5, 6);
+    ASSERT_TRUE(run.came_up) << n;
+    EXPECT_EQ(run.counts.detected + run.counts.accepted_wrong() + run.counts.missed_outputs, 0U) << n;
+    EXPECT_EQ(run.cycles.size(), 5U) << n;
+  }
+  EXPECT_GT(network->segment().now(), off);
+}
+
 INSTANTIATE_TEST_SUITE_P(Profiles, LinkNetworkTest,
                          testing::Values(LinkProfile::foundation, LinkProfile::isa));
 
