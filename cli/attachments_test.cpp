@@ -383,7 +383,8 @@ TEST_F(Attachments, DeathInARunIsAVerdictWithEvidence) {
 }
 
 class NobodyActs final : public iut::Bench {
-  void transmit(const iut::Transmission&) override { ADD_FAILURE(); }
+  void set_driver(unsigned, bool, kernel::Time) override { ADD_FAILURE(); }
+  void send(unsigned, kernel::Time, std::span<const std::uint16_t>) override { ADD_FAILURE(); }
   void transmit(unsigned, line::Waveform&) override { ADD_FAILURE(); }
   void write(iut::Item, std::uint64_t, kernel::Time) override { ADD_FAILURE(); }
   std::uint64_t read(iut::Item, kernel::Time) override { return 0; }

@@ -8,6 +8,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -111,7 +112,9 @@ class Hostile final : public iut::Device {
   }
 
   void transmit(unsigned port, kernel::Duration on, kernel::Duration start, kernel::Duration off) {
-    bench_->transmit(iut::Transmission{port, now_ + on, now_ + start, now_ + off, {0x155}});
+    bench_->set_driver(port, true, now_ + on);
+    bench_->send(port, now_ + start, std::array<std::uint16_t, 1>{0x155});
+    bench_->set_driver(port, false, now_ + off);
   }
   template <typename Fill>
   static void message(iut::MessageType type, Fill fill) {

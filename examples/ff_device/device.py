@@ -8,7 +8,7 @@ import sys
 
 NEVER = 2**63 - 1
 HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE_OCTETS, RECEIVE_LEVELS, ON_TIME = range(1, 8)
-CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT_OCTETS, TRANSMIT_LEVELS, WRITE = range(129, 136)
+CAPABILITIES, ECHOED, DONE, UNSUPPORTED, OCTETS, TRANSMIT_LEVELS, WRITE = range(129, 136)
 LINE, ACTIVITY, USER = range(3)  # ports
 REFUSED, EVENT = 0, 1  # items
 SUBMIT, WRITE_BUFFER = 1, 2  # what the user asks for
@@ -41,11 +41,11 @@ class Stream:
     def send(self, kind, form="", *values):
         content = struct.pack("<" + form, *values)
         self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
-        if kind not in (TRANSMIT_OCTETS, WRITE):  # behind these comes `done`
+        if kind not in (OCTETS, WRITE):  # behind these comes `done`
             self.sink.flush()
 
     def send_octets(self, port, when, octets):
-        self.send(TRANSMIT_OCTETS, f"BqqqH{len(octets)}H", port, when, when, when, len(octets), *octets)
+        self.send(OCTETS, f"BqH{len(octets)}H", port, when, len(octets), *octets)
 
 
 class Device:
@@ -276,7 +276,7 @@ def serve(stream):
         kind = message[0]
         if kind == HELLO:
             name = b"basic device in Python"
-            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9s", 2, 3, len(name), name,
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9s", 3, 3, len(name), name,
                         1, 12, b"fieldbus_dll", 9, b"ff_device")
             continue
         if kind == ECHO:

@@ -10,7 +10,7 @@ from itertools import groupby
 NEVER = 2**63 - 1
 SECOND = 10**12  # times are picoseconds
 HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE_CHARACTERS, RECEIVE_LEVELS, ON_TIME = range(1, 8)
-CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT_CHARACTERS, TRANSMIT_LEVELS, WRITE = range(129, 136)
+CAPABILITIES, ECHOED, DONE, UNSUPPORTED, CHARACTERS, TRANSMIT_LEVELS, WRITE = range(129, 136)
 LINE, ACTIVITY, USER = range(3)
 SUBMIT, WRITE_BUFFER = 1, 2
 DATA, PUBLISHED = 1, 2
@@ -42,7 +42,7 @@ class Stream:
     def send(self, kind, form="", *values):
         content = struct.pack("<" + form, *values)
         self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
-        if kind not in (WRITE, TRANSMIT_CHARACTERS, TRANSMIT_LEVELS):
+        if kind not in (WRITE, CHARACTERS, TRANSMIT_LEVELS):
             self.sink.flush()
 
 
@@ -151,7 +151,7 @@ class Device:
 
     def tell(self, kind, dlpdu, now):
         told = bytes([kind]) + dlpdu
-        self.stream.send(TRANSMIT_CHARACTERS, f"BqqqH{len(told)}H", USER, now, now, now, len(told), *told)
+        self.stream.send(CHARACTERS, f"BqH{len(told)}H", USER, now, len(told), *told)
 
     # ---- the line ----
 
@@ -334,7 +334,7 @@ def serve(stream):
         kind = message[0]
         if kind == HELLO:
             name = b"device in Python"
-            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9s", 2, LEVELS_UNIT, len(name), name,
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9s", 3, LEVELS_UNIT, len(name), name,
                         1, 12, b"fieldbus_dll", 9, b"ff_device")
         elif kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])

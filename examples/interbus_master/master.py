@@ -10,7 +10,7 @@ from collections import deque
 NEVER = 2**63 - 1
 SECOND = 10**12  # times are picoseconds
 HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE_CHARACTERS, RECEIVE_LEVELS, ON_TIME = range(1, 8)
-CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT_CHARACTERS, TRANSMIT_LEVELS, WRITE = range(129, 136)
+CAPABILITIES, ECHOED, DONE, UNSUPPORTED, CHARACTERS, TRANSMIT_LEVELS, WRITE = range(129, 136)
 LINE, APPLICATION = 0, 1
 START, STOP, ID_CYCLE, OUTPUT_WORD = 1, 2, 3, 4
 OFF, READY, IDENTIFICATION, RUN, LOCATING, BUS_STOP = range(6)
@@ -31,7 +31,7 @@ class Stream:
     def send(self, kind, form="", *values):
         content = struct.pack("<" + form, *values)
         self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
-        if kind not in (WRITE, TRANSMIT_CHARACTERS, TRANSMIT_LEVELS):
+        if kind not in (WRITE, CHARACTERS, TRANSMIT_LEVELS):
             self.sink.flush()
 
 
@@ -516,7 +516,7 @@ def serve(stream, kind_of_master):
         kind = message[0]
         if kind == HELLO:
             name = kind_of_master.name
-            stream.send(CAPABILITIES, f"HBH{len(name)}sHH8sH6s", 2, kind_of_master.unit, len(name), name,
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH8sH6s", 3, kind_of_master.unit, len(name), name,
                         1, 8, b"interbus", 6, b"master")
             continue
         if kind == ECHO:

@@ -6,7 +6,7 @@ What a master does with its cycles is in master.py; here is how it says them and
 import struct
 import sys
 
-from master import LINE, TRANSMIT_CHARACTERS, Frame, Master, Stream, serve
+from master import LINE, CHARACTERS, Frame, Master, Stream, serve
 
 SELECT, CONTROL, DATA = 0x100, 0x200, 0x400  # bits of a telegram, above its octet
 STOP_MISSING = 2  # flag of one that was heard
@@ -42,7 +42,7 @@ class TelegramMaster(Master):
         self.pause_at, self.pause_left = 0, 0
 
     def transmit(self, start, telegram):
-        self.stream.send(TRANSMIT_CHARACTERS, "BqqqHH", LINE, start, start, start, 1, telegram)
+        self.stream.send(CHARACTERS, "BqHH", LINE, start, 1, telegram)
 
     def drive(self, now, telegrams, pause):
         """A cycle and the status telegrams after it."""

@@ -9,7 +9,7 @@ import sys
 NEVER = 2**63 - 1
 SECOND = 10**12  # times are picoseconds
 HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE_TELEGRAMS, RECEIVE_LEVELS, ON_TIME = range(1, 8)
-CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT_TELEGRAMS, TRANSMIT_LEVELS, WRITE, READ = range(129, 137)
+CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TELEGRAMS, TRANSMIT_LEVELS, WRITE, READ = range(129, 137)
 OUTPUT, INPUT, PERIPHERAL_FAULT, RECONFIGURATION, PLUGGED = 0, 0x100, 0x200, 0x201, {2: 0x202, 1: 0x203}
 UPSTREAM, BRANCH, REMOTE = 0, 1, 2
 SELECT, CONTROL, DATA = 0x100, 0x200, 0x400  # bits of a telegram, above its octet
@@ -26,7 +26,7 @@ class Stream:
     def send(self, kind, form="", *values):
         content = struct.pack("<" + form, *values)
         self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
-        if kind not in (TRANSMIT_TELEGRAMS, TRANSMIT_LEVELS, WRITE):  # behind these comes `done`
+        if kind not in (TELEGRAMS, TRANSMIT_LEVELS, WRITE):  # behind these comes `done`
             self.sink.flush()
 
     def read(self, item, when):
@@ -64,7 +64,7 @@ class Slave:
         self.say(port, start, telegram)
 
     def say(self, port, start, telegram):
-        self.stream.send(TRANSMIT_TELEGRAMS, "BqqqHH", port, start, start, start, 1, telegram)
+        self.stream.send(TELEGRAMS, "BqHH", port, start, 1, telegram)
 
     def time_of(self, telegram):
         return (13 if telegram & DATA else 5) * self.bit
@@ -234,7 +234,7 @@ def serve(stream, kind_of_slave):
         kind = message[0]
         if kind == HELLO:
             name = kind_of_slave.name
-            stream.send(CAPABILITIES, f"HBH{len(name)}sHH8sH5s", 2, kind_of_slave.unit, len(name), name,
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH8sH5s", 3, kind_of_slave.unit, len(name), name,
                         1, 8, b"interbus", 5, b"slave")
             continue
         if kind == ECHO:

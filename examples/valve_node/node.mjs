@@ -6,7 +6,8 @@ import { readSync, writeSync } from "node:fs";
 const NEVER = 2n ** 63n - 1n;
 const SECOND = 10n ** 12n; // times are picoseconds; a Number is exact up to 2.5 hours of them only, so BigInt
 const [HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE, ON_TIME] = [1, 2, 3, 4, 5, 7];
-const [CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT, WRITE, READ] = [129, 130, 131, 132, 133, 135, 136];
+const [CAPABILITIES, ECHOED, DONE, UNSUPPORTED, CHARACTERS, WRITE, READ, DRIVER] =
+  [129, 130, 131, 132, 133, 135, 136, 137];
 const VALVES = 0, LIMIT_SWITCHES = 1;
 
 const least = (...times) => times.reduce((a, b) => (a < b ? a : b));
@@ -93,7 +94,9 @@ class Node {
     const characters = octets.map((octet) => u16(ninth | octet));
     this.answer = null;
     this.drivingUntil = start + 6n * this.half + 2n * this.bit;
-    send(TRANSMIT, u8(0), u64(start - this.bit), u64(start), u64(this.drivingUntil), u16(3), ...characters);
+    send(DRIVER, u8(0), u8(1), u64(start - this.bit)); // all of it ahead
+    send(CHARACTERS, u8(0), u64(start), u16(3), ...characters);
+    send(DRIVER, u8(0), u8(0), u64(this.drivingUntil));
   }
 
   endFrame(now) {
@@ -131,7 +134,7 @@ function nodeFor(message, at = 1) {
 for (let node = null; ; ) {
   const message = receive();
   const type = message[0];
-  if (type === HELLO) send(CAPABILITIES, u16(2), u8(1), text("valve node in Node.js"), u16(1), text("valve_bus"), text("node"));
+  if (type === HELLO) send(CAPABILITIES, u16(3), u8(1), text("valve node in Node.js"), u16(1), text("valve_bus"), text("node"));
   else if (type === ECHO) send(ECHOED, message.subarray(1));
   else {
     if (type === CASE_BEGIN) node = nodeFor(message);

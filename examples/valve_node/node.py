@@ -9,7 +9,7 @@ import sys
 NEVER = 2**63 - 1
 SECOND = 10**12  # times are picoseconds
 HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE, ON_TIME = 1, 2, 3, 4, 5, 7
-CAPABILITIES, ECHOED, DONE, UNSUPPORTED, TRANSMIT, WRITE, READ = 129, 130, 131, 132, 133, 135, 136
+CAPABILITIES, ECHOED, DONE, UNSUPPORTED, CHARACTERS, WRITE, READ, DRIVER = 129, 130, 131, 132, 133, 135, 136, 137
 VALVES, LIMIT_SWITCHES = 0, 1
 
 class Stream:
@@ -37,7 +37,7 @@ class Node:
     def power(self, is_on, now):
         self.is_on, self.last_command = is_on, now
         self.frame, self.is_spoilt, self.busy_until = [], False, 0
-        self.answer, self.driving_until = None, 0
+        self.answer, self.steps, self.driving_until = None, [], 0
 
     def receive(self, start, busy_until, data, flags, now):  # a character that is over
         if not self.is_on:
@@ -60,7 +60,8 @@ class Node:
 
     def next_time(self):
         answer = self.answer[0] - self.bit if self.answer else NEVER
-        return min(self.silence_known(), self.lost(), answer) if self.is_on else NEVER
+        step = self.steps[0][0] if self.steps else NEVER
+        return min(self.silence_known(), self.lost(), answer, step) if self.is_on else NEVER
 
     def on_time(self, now):
         if now >= self.silence_known():
@@ -68,9 +69,17 @@ class Node:
         if self.answer and now >= self.answer[0] - self.bit:
             start, octets = max(self.answer[0], now + self.bit), self.answer[1]
             self.answer, self.driving_until = None, start + 6 * self.half + 2 * self.bit
-            ninth = 0x100 if self.settings["characters"] == 0 else 0
-            self.stream.send(TRANSMIT, "BqqqH3H", 0, start - self.bit, start, self.driving_until, 3,
-                             *(ninth | octet for octet in octets))
+            # As firmware does it: driver on, an octet whenever the UART is free, driver off; each at its time.
+            self.stream.send(DRIVER, "BBq", 0, 1, now)
+            self.steps = [(start + 2 * n * self.half, octet) for n, octet in enumerate(octets)]
+            self.steps.append((self.driving_until, None))
+        while self.steps and now >= self.steps[0][0]:
+            octet = self.steps.pop(0)[1]
+            if octet is None:
+                self.stream.send(DRIVER, "BBq", 0, 0, now)
+            else:
+                ninth = 0x100 if self.settings["characters"] == 0 else 0
+                self.stream.send(CHARACTERS, "BqHH", 0, now, 1, ninth | octet)
         if now >= self.lost():
             self.last_command = now
             self.stream.send(WRITE, "HQq", VALVES, 0, now)
@@ -118,7 +127,7 @@ def serve(stream):
         message = stream.receive()
         kind = message[0]
         if kind == HELLO:
-            stream.send(CAPABILITIES, "HBH20sHH9sH4s", 2, 1, 20, b"valve node in Python", 1, 9, b"valve_bus", 4, b"node")
+            stream.send(CAPABILITIES, "HBH20sHH9sH4s", 3, 1, 20, b"valve node in Python", 1, 9, b"valve_bus", 4, b"node")
             continue
         if kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])

@@ -11,7 +11,7 @@
 #include "examples/valve_node/valve_node.h"
 
 enum { HELLO = 1, ECHO, CASE_BEGIN, POWER, RECEIVE, ON_TIME = 7, CASE_END, VALUE };
-enum { CAPABILITIES = 129, ECHOED, DONE, UNSUPPORTED, TRANSMIT, WRITE = 135, READ };
+enum { CAPABILITIES = 129, ECHOED, DONE, UNSUPPORTED, CHARACTERS, WRITE = 135, READ, DRIVER };
 
 static unsigned char *message, *at; /* the last one that came, and how far it has been read */
 static unsigned char out[64], *end; /* the one that goes, and how far it has been written */
@@ -65,12 +65,18 @@ static void send_message(void) {
   fflush(stdout);
 }
 
-static void transmit(void* context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
-                     fieldproof_time driver_off, const unsigned short* characters, unsigned count) {
+static void switch_driver(void* context, unsigned port, int is_on, fieldproof_time at_instant) {
   (void)context;
-  begin_message(TRANSMIT);
-  put(port, 1), put((fieldproof_word)driver_on, 8), put((fieldproof_word)start, 8);
-  put((fieldproof_word)driver_off, 8), put(count, 2);
+  begin_message(DRIVER);
+  put(port, 1), put(is_on != 0, 1), put((fieldproof_word)at_instant, 8);
+  send_message();
+}
+
+static void send_characters(void* context, unsigned port, fieldproof_time start,
+                            const unsigned short* characters, unsigned count) {
+  (void)context;
+  begin_message(CHARACTERS);
+  put(port, 1), put((fieldproof_word)start, 8), put(count, 2);
   for (; count > 0; --count) put(*characters++, 2);
   send_message();
 }
@@ -128,7 +134,7 @@ static void answer(valve_node* node, unsigned type) {
   int is_served = 1, is_on = type == POWER && number(1) != 0;
   if (type == HELLO) {
     begin_message(CAPABILITIES);
-    put(2, 2), put(FIELDPROOF_CHARACTERS, 1), put_text("node");
+    put(3, 2), put(FIELDPROOF_CHARACTERS, 1), put_text("node");
     put(1, 2), put_text("valve_bus"), put_text("node"); /* the one role that it serves */
   } else if (type == ECHO) {
     begin_message(ECHOED);
@@ -148,7 +154,7 @@ int main(int argc, char** argv) {
   static fieldproof_bench bench;
   static valve_node node;
   int n;
-  bench.transmit = transmit, bench.write = write_item, bench.read = read_item;
+  bench.driver = switch_driver, bench.characters = send_characters, bench.write = write_item, bench.read = read_item;
   node.bench = &bench;
   for (n = 0; argc > 1 && n < MUTANTS; ++n)
     if (strcmp(valve_mutant_name((valve_mutant)n), argv[1]) == 0) node.mutant = (valve_mutant)n;

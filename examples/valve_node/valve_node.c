@@ -132,8 +132,10 @@ static void transmit_answer(valve_node* node, fieldproof_time now) {
   node->has_answer = 0;
   node->driving_until =
       start + 6 * node->half + node->bit * (node->mutant == DRIVER_NOT_RELEASED ? 20 : 2);
-  node->bench->transmit(node->bench->context, 0, start - node->bit, start, node->driving_until, characters,
-                        3);
+  /* All of it ahead: it has nothing else to do meanwhile. */
+  node->bench->driver(node->bench->context, 0, 1, start - node->bit);
+  node->bench->characters(node->bench->context, 0, start, characters, 3);
+  node->bench->driver(node->bench->context, 0, 0, node->driving_until);
 }
 
 fieldproof_time valve_node_on_time(valve_node* node, fieldproof_time now) {

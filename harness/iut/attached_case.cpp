@@ -10,7 +10,6 @@
 namespace fieldproof::iut {
 namespace {
 
-constexpr kernel::Duration kLongestDrive = 10 * kernel::kSecond;
 constexpr kernel::Duration kFarthestAhead = 3600 * kernel::kSecond;
 constexpr std::int64_t kMostLines = 3;         // that an implementation drives at a time: those of a slave
 constexpr std::int64_t kMostActs = 1'000'000;  // of a case, beside one for each microsecond
@@ -26,6 +25,11 @@ bool is_within_reach(kernel::Time when) {
 
 void refuse_impossible(const std::string& sentence) {
   throw Misbehaviour(reasons::kImpossible, "the implementation " + sentence);
+}
+
+void Bench::set_driver(unsigned port, bool is_on, kernel::Time) {
+  refuse_impossible(fmt::format("switches the driver of port {} {}; that port has none to be switched", port,
+                                is_on ? "on" : "off"));
 }
 
 std::int64_t setting(const CaseBegin& begin, std::string_view name, std::int64_t absent) {
@@ -119,6 +123,11 @@ void AttachedCase::expect_in_order(kernel::Time when, std::string_view does) {
     refuse_impossible(fmt::format("{} at an instant that lies before the last one", does));
   }
   last->second = when;
+}
+
+void AttachedCase::expect_act(kernel::Time when, std::string_view does) {
+  expect_ahead(when, does);
+  count_act();
 }
 
 void AttachedCase::expect_span(kernel::Time begin, kernel::Time end,

@@ -24,6 +24,8 @@ struct Attachment {
   std::function<void()> on_well_ended{};  // the case has ended as it should
 };
 
+inline constexpr kernel::Duration kLongestDrive = 10 * kernel::kSecond;
+
 [[noreturn]] void refuse_impossible(const std::string& sentence);
 
 // A setting by its name; `absent` where there is none.
@@ -61,6 +63,8 @@ class AttachedCase {
   }
   Capabilities capabilities() const { return attachment_.device->capabilities(); }
   UnitKind unit_kind() const { return attachment_.device->unit_kind(); }
+  // It has done nothing wrong yet.
+  bool is_well() const { return is_well_; }
   bool hears_levels() const { return unit_kind() == UnitKind::levels; }
   kernel::Time now() const { return now_; }
 
@@ -68,6 +72,8 @@ class AttachedCase {
   void expect_supplied() const;
   // `does`: "reads its limit switches".
   void expect_ahead(kernel::Time when, std::string_view does) const;
+  // The same, and it counts as one of the acts of the case.
+  void expect_act(kernel::Time when, std::string_view does);
   // The same for what is not done earlier than the last of its kind.
   void expect_in_order(kernel::Time when, std::string_view does);
   void expect_drive(const line::Waveform& wave);

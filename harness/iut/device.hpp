@@ -44,15 +44,6 @@ struct Character {
   friend bool operator==(const Character&, const Character&) = default;
 };
 
-// Characters that follow each other without a gap at the bit rate of the line.
-struct Transmission {
-  unsigned port = 0;
-  kernel::Time driver_on{};
-  kernel::Time start{};  // of the first start bit
-  kernel::Time driver_off{};
-  std::vector<std::uint16_t> characters;
-};
-
 // A word of the process side, by its number within the role.
 using Item = std::uint16_t;
 
@@ -85,7 +76,8 @@ struct RoleName {
   friend bool operator==(const RoleName&, const RoleName&) = default;
 };
 
-// What an implementation can do while it is called.
+// What an implementation can do while it is called, at instants that are now or later. On each port they come
+// in order of time.
 class Bench {
  public:
   Bench() = default;
@@ -93,7 +85,12 @@ class Bench {
   Bench& operator=(const Bench&) = delete;
   virtual ~Bench() = default;
 
-  virtual void transmit(const Transmission& transmission) = 0;
+  // The driver of a line that has one goes on or off. How long it will be on nobody needs to know. Throws
+  // Misbehaviour for a port without a driver.
+  virtual void set_driver(unsigned port, bool is_on, kernel::Time at);
+  // Characters that follow each other without a gap at the bit rate of the line, the first start bit at
+  // `start`; or telegrams, or the octets of whoever is at that port.
+  virtual void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) = 0;
   virtual void transmit(unsigned port, line::Waveform& wave) = 0;
   virtual void write(Item item, std::uint64_t value, kernel::Time when) = 0;
   virtual std::uint64_t read(Item item, kernel::Time when) = 0;

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::size_t kMostLevelsOfAWave = std::size_t{1} << 28U;
 constexpr std::array<std::string_view, 7> kCallNames = {"begin",    "power", "characters", "levels",
                                                         "activity", "time",  "end"};
@@ -29,7 +29,7 @@ kernel::Time read_time(const config::Value& value) {
 
 std::size_t estimated_octets(const Act& act) {
   if (const auto* drove = std::get_if<DroveLevels>(&act)) return kFixedOctets + drove->wave.levels.size() / 4;
-  if (const auto* sent = std::get_if<Transmission>(&act)) return kFixedOctets + 6 * sent->characters.size();
+  if (const auto* sent = std::get_if<Sent>(&act)) return kFixedOctets + 6 * sent->characters.size();
   if (const auto* done = std::get_if<Misbehaved>(&act)) {
     std::size_t octets = kFixedOctets + 2 * done->sentence.size();
     for (const std::string& line : done->evidence) octets += 2 * line.size() + 4;
@@ -51,9 +51,11 @@ ordered_json to_json(const Misbehaved& done) {
 }
 
 struct ActWriter {
-  ordered_json operator()(const Transmission& sent) const {
-    return {{"characters",
-             {sent.port, ticks(sent.driver_on), ticks(sent.start), ticks(sent.driver_off), sent.characters}}};
+  ordered_json operator()(const SwitchedDriver& driver) const {
+    return {{"driver", {driver.port, driver.is_on, ticks(driver.at)}}};
+  }
+  ordered_json operator()(const Sent& sent) const {
+    return {{"characters", {sent.port, ticks(sent.start), sent.characters}}};
   }
   ordered_json operator()(const DroveLevels& drove) const {
     const line::Waveform& wave = drove.wave;
@@ -129,11 +131,15 @@ Misbehaved read_misbehaved(const config::Value& value) {
   });
 }
 
-Transmission read_transmission(const config::Value& value) {
-  const auto parts = value.as_array(5, 5);
-  Transmission sent{
-      parts[0].as_integer<unsigned>(), read_time(parts[1]), read_time(parts[2]), read_time(parts[3]), {}};
-  for (const config::Value& one : parts[4].as_array(0, 65'536))
+SwitchedDriver read_driver(const config::Value& value) {
+  const auto parts = value.as_array(3, 3);
+  return {parts[0].as_integer<unsigned>(), parts[1].as_bool(), read_time(parts[2])};
+}
+
+Sent read_sent(const config::Value& value) {
+  const auto parts = value.as_array(3, 3);
+  Sent sent{parts[0].as_integer<unsigned>(), read_time(parts[1]), {}};
+  for (const config::Value& one : parts[2].as_array(0, 65'536))
     sent.characters.push_back(one.as_integer<std::uint16_t>());
   return sent;
 }
@@ -164,12 +170,14 @@ Act read_numbers(config::ObjectReader& o, const config::Value& value) {
     };
     return WasUncertain{{within_an_hour(parts[0]), within_an_hour(parts[1])}};
   }
-  config::fail(value, "an act is one of characters, levels, write, read, uncertain, misbehaves and cannot");
+  config::fail(value,
+               "an act is one of driver, characters, levels, write, read, uncertain, misbehaves and cannot");
 }
 
 Act read_act(const config::Value& value) {
   return config::read_object(value, [&](config::ObjectReader& o) -> Act {
-    if (const auto sent = o.optional("characters")) return read_transmission(*sent);
+    if (const auto driver = o.optional("driver")) return read_driver(*driver);
+    if (const auto sent = o.optional("characters")) return read_sent(*sent);
     if (const auto drove = o.optional("levels")) return read_drove(*drove);
     if (const auto done = o.optional("misbehaves")) return read_misbehaved(*done);
     if (const auto could = o.optional("cannot")) return CouldNot{std::string(could->as_string())};

@@ -24,6 +24,16 @@ std::string_view name(CallKind kind);
 
 // ---- what an implementation does within a call ----
 
+struct SwitchedDriver {
+  unsigned port = 0;
+  bool is_on = false;
+  kernel::Time at{};
+};
+struct Sent {
+  unsigned port = 0;
+  kernel::Time start{};
+  std::vector<std::uint16_t> characters{};
+};
 struct DroveLevels {
   unsigned port = 0;
   line::Waveform wave{};
@@ -50,7 +60,8 @@ struct Misbehaved {
 struct CouldNot {
   std::string sentence;
 };
-using Act = std::variant<Transmission, DroveLevels, Wrote, WasRead, WasUncertain, Misbehaved, CouldNot>;
+using Act =
+    std::variant<SwitchedDriver, Sent, DroveLevels, Wrote, WasRead, WasUncertain, Misbehaved, CouldNot>;
 
 struct RecordedCall {
   CallKind kind = CallKind::begin;

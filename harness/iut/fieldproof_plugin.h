@@ -26,7 +26,7 @@
 extern "C" {
 #endif
 
-#define FIELDPROOF_PLUGIN_VERSION 2
+#define FIELDPROOF_PLUGIN_VERSION 3
 
 #if defined(__GNUC__)
 __extension__ typedef long long fieldproof_time;
@@ -80,10 +80,12 @@ typedef struct fieldproof_bench {
   unsigned version; /* FIELDPROOF_PLUGIN_VERSION of the bench */
   unsigned size;    /* of this struct; later versions are longer */
   void* context;
-  /* `count` characters or telegrams without a gap from `start` on, with the driver on around them; a line of
-   * telegrams has no driver, and its instants are not looked at. */
-  void (*transmit)(void* context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
-                   fieldproof_time driver_off, const unsigned short* characters, unsigned count);
+  /* The driver of a line of characters goes on (1) or off (0) at this instant. It may be switched when its
+   * time has come, or ahead; when it will go off nobody needs to know. A line of telegrams has no driver. */
+  void (*driver)(void* context, unsigned port, int is_on, fieldproof_time at);
+  /* `count` characters without a gap from `start` on, while the driver is on; or telegrams. */
+  void (*characters)(void* context, unsigned port, fieldproof_time start, const unsigned short* characters,
+                     unsigned count);
   /* `count` levels, the first in bit 0 of levels[0], each 1/rate seconds long. */
   void (*transmit_levels)(void* context, unsigned port, fieldproof_time start, fieldproof_time rate,
                           const unsigned char* levels, unsigned count);

@@ -169,15 +169,18 @@ void LinePlayer::report() {
     if (const auto* write = std::get_if<Write>(&reports_.front())) {
       bench_->write(write->item, write->value, write->when);
     } else {
-      bench_->transmit(std::get<Transmission>(reports_.front()));
+      const auto& sent = std::get<UartTransmission>(reports_.front());
+      bench_->set_driver(0, true, sent.driver_on);
+      bench_->send(0, sent.start, sent.characters);
+      bench_->set_driver(0, false, sent.driver_off);
     }
   }
 }
 
 // ---- the station ----
 
-void LinePlayer::transmit(const Transmission& transmission) {
-  add(transmission);
+void LinePlayer::send(unsigned, kernel::Time, std::span<const std::uint16_t>) {
+  FIELDPROOF_CHECK(false, "a station on a real line is one of levels");
 }
 
 void LinePlayer::transmit(unsigned, line::Waveform& wave) {
@@ -191,7 +194,7 @@ void LinePlayer::transmit(unsigned, line::Waveform& wave) {
   for (const auto& one : characters) {
     const bool goes_on = is_driving && !blocks_.empty() && follows(one.start, blocks_.back().end);
     if (!goes_on) {
-      blocks_.push_back({{0, driver_on_, one.start, {}, {}}, {}});
+      blocks_.push_back({{driver_on_, one.start, {}, {}}, {}});
       driver_on_ = wave.start;  // what comes after it without a pause has a driver that is on already
     }
     blocks_.back().transmission.characters.push_back(one.character.data);

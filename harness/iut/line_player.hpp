@@ -50,7 +50,7 @@ class LinePlayer final : public Device, private Bench {
  private:
   // Characters without a gap, with the driver around them.
   struct Block {
-    Transmission transmission;
+    UartTransmission transmission;
     kernel::Time end{};  // of the last stop bit
   };
   struct Write {
@@ -58,7 +58,7 @@ class LinePlayer final : public Device, private Bench {
     std::uint64_t value;
     kernel::Time when;
   };
-  using Report = std::variant<Write, Transmission>;
+  using Report = std::variant<Write, UartTransmission>;
 
   bool start(const CaseBegin& begin);
   void set_line(const CaseBegin& begin);
@@ -73,7 +73,7 @@ class LinePlayer final : public Device, private Bench {
   void report();
 
   // ---- the station ----
-  void transmit(const Transmission& transmission) override;
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override;
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(Item item, kernel::Time when) override;

@@ -32,10 +32,11 @@ constexpr std::array kNames = {
     NamedType{MessageType::echoed, "echoed"},
     NamedType{MessageType::done, "done"},
     NamedType{MessageType::unsupported, "unsupported"},
-    NamedType{MessageType::transmit_characters, "transmit characters"},
+    NamedType{MessageType::characters, "characters"},
     NamedType{MessageType::transmit_levels, "transmit levels"},
     NamedType{MessageType::write, "write"},
     NamedType{MessageType::read, "read"},
+    NamedType{MessageType::driver, "driver"},
 };
 
 }  // namespace
@@ -181,24 +182,38 @@ ReceivedCharacters read_reception(MessageReader& reader) {
   return received;
 }
 
-std::span<const std::uint8_t> write_transmission(MessageWriter& writer, const Transmission& transmission) {
-  writer.begin(MessageType::transmit_characters).u8(static_cast<std::uint8_t>(transmission.port));
-  writer.time(transmission.driver_on).time(transmission.start).time(transmission.driver_off);
-  writer.u16(static_cast<std::uint16_t>(transmission.characters.size()));
-  for (const std::uint16_t character : transmission.characters) writer.u16(character);
+std::span<const std::uint8_t> write_driver(MessageWriter& writer, const DriverSwitch& driver) {
+  writer.begin(MessageType::driver).u8(static_cast<std::uint8_t>(driver.port)).u8(driver.is_on ? 1 : 0);
+  return writer.time(driver.at).finish();
+}
+
+DriverSwitch read_driver(MessageReader& reader) {
+  DriverSwitch driver;
+  driver.port = reader.u8();
+  const unsigned on = reader.u8();
+  if (on > 1) throw MessageError(fmt::format("'on' of a driver is {}; there are 0 (off) and 1 (on)", on));
+  driver.is_on = on == 1;
+  driver.at = reader.time();
+  reader.finish();
+  return driver;
+}
+
+std::span<const std::uint8_t> write_characters(MessageWriter& writer, unsigned port, kernel::Time start,
+                                               std::span<const std::uint16_t> characters) {
+  writer.begin(MessageType::characters).u8(static_cast<std::uint8_t>(port)).time(start);
+  writer.u16(static_cast<std::uint16_t>(characters.size()));
+  for (const std::uint16_t character : characters) writer.u16(character);
   return writer.finish();
 }
 
-Transmission read_transmission(MessageReader& reader) {
-  Transmission transmission;
-  transmission.port = reader.u8();
-  transmission.driver_on = reader.time();
-  transmission.start = reader.time();
-  transmission.driver_off = reader.time();
+SentCharacters read_characters(MessageReader& reader) {
+  SentCharacters sent;
+  sent.port = reader.u8();
+  sent.start = reader.time();
   const std::size_t count = reader.u16();
-  for (std::size_t n = 0; n < count; ++n) transmission.characters.push_back(reader.u16());
+  for (std::size_t n = 0; n < count; ++n) sent.characters.push_back(reader.u16());
   reader.finish();
-  return transmission;
+  return sent;
 }
 
 std::span<const std::uint8_t> write_levels(MessageWriter& writer, MessageType type, unsigned port,

@@ -19,7 +19,7 @@
 // Contract: a reader refuses what is no such message with MessageError and never reads past it.
 namespace fieldproof::iut {
 
-inline constexpr std::uint16_t kMessageVersion = 2;
+inline constexpr std::uint16_t kMessageVersion = 3;
 inline constexpr std::size_t kMessageHead = 4;             // octets of the length
 inline constexpr std::size_t kLongestMessage = 1U << 20U;  // octets behind the length
 
@@ -39,13 +39,14 @@ enum class MessageType : std::uint8_t {
   echoed = 130,
   done = 131,
   unsupported = 132,
-  transmit_characters = 133,
+  characters = 133,
   transmit_levels = 134,
   write = 135,
   read = 136,
+  driver = 137,
 };
 
-// "done", "transmit characters"; "type 77".
+// "done", "transmit levels"; "type 77".
 std::string name(MessageType type);
 
 class MessageError : public std::runtime_error {
@@ -130,8 +131,26 @@ struct ReceivedCharacters {
 };
 ReceivedCharacters read_reception(MessageReader& reader);
 
-std::span<const std::uint8_t> write_transmission(MessageWriter& writer, const Transmission& transmission);
-Transmission read_transmission(MessageReader& reader);
+struct DriverSwitch {
+  unsigned port = 0;
+  bool is_on = false;
+  kernel::Time at{};
+
+  friend bool operator==(const DriverSwitch&, const DriverSwitch&) = default;
+};
+std::span<const std::uint8_t> write_driver(MessageWriter& writer, const DriverSwitch& driver);
+DriverSwitch read_driver(MessageReader& reader);
+
+struct SentCharacters {
+  unsigned port = 0;
+  kernel::Time start{};
+  std::vector<std::uint16_t> characters;
+
+  friend bool operator==(const SentCharacters&, const SentCharacters&) = default;
+};
+std::span<const std::uint8_t> write_characters(MessageWriter& writer, unsigned port, kernel::Time start,
+                                               std::span<const std::uint16_t> characters);
+SentCharacters read_characters(MessageReader& reader);
 
 // receive_levels and transmit_levels.
 std::span<const std::uint8_t> write_levels(MessageWriter& writer, MessageType type, unsigned port,

@@ -77,7 +77,8 @@ void MessageDevice::test_itself() {
   }
   // A bench of its own: whoever takes this case has not looked at its name.
   class NoBench final : public Bench {
-    void transmit(const Transmission&) override {}
+    void set_driver(unsigned, bool, kernel::Time) override {}
+    void send(unsigned, kernel::Time, std::span<const std::uint16_t>) override {}
     void transmit(unsigned, line::Waveform&) override {}
     void write(Item, std::uint64_t, kernel::Time) override {}
     std::uint64_t read(Item, kernel::Time) override { return 0; }
@@ -174,9 +175,16 @@ void MessageDevice::serve(MessageReader& reader) {
         fmt::format("'{}' is nothing that an implementation says without a case", name(reader.type())));
   }
   switch (reader.type()) {
-    case MessageType::transmit_characters:
-      bench_->transmit(read_transmission(reader));
+    case MessageType::driver: {
+      const DriverSwitch driver = read_driver(reader);
+      bench_->set_driver(driver.port, driver.is_on, driver.at);
       return;
+    }
+    case MessageType::characters: {
+      const SentCharacters sent = read_characters(reader);
+      bench_->send(sent.port, sent.start, sent.characters);
+      return;
+    }
     case MessageType::transmit_levels: {
       const unsigned port = read_levels(reader, wave_);
       bench_->transmit(port, wave_);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 
+#include <array>
 #include <fstream>
 #include <functional>
 #include <optional>
@@ -32,8 +33,11 @@ const CaseBegin kCase{"valve_bus/node/a/case", 1, {{"bit_rate", 375'000}}};
 // Notes what is done to it.
 class Notes final : public Bench {
  public:
-  void transmit(const Transmission& transmission) override {
-    done.push_back(fmt::format("transmit {}", transmission.characters.size()));
+  void set_driver(unsigned port, bool is_on, kernel::Time) override {
+    done.push_back(fmt::format("driver {} {:d}", port, is_on));
+  }
+  void send(unsigned, kernel::Time, std::span<const std::uint16_t> characters) override {
+    done.push_back(fmt::format("send {}", characters.size()));
   }
   void transmit(unsigned, line::Waveform& wave) override { done.push_back("transmit " + wave.levels.text()); }
   void write(Item item, std::uint64_t value, kernel::Time) override {
@@ -118,7 +122,7 @@ TEST(MessageDeviceHello, OtherVersionIsRefusedWithBothNumbers) {
   Script script;
   script.answers(capabilities_message(1)).stays();
   EXPECT_EQ(refusal_of([&] { device_of(script); }),
-            "exec:script speaks version 1 of the messages; this program speaks version 2");
+            "exec:script speaks version 1 of the messages; this program speaks version 3");
 }
 
 TEST(MessageDeviceHello, UnitThatThereIsNotIsNoMessage) {
@@ -202,7 +206,8 @@ TEST(MessageDeviceCall, ActsUntilItIsDone) {
   wave.levels.append(0b0110, 4);
   Script script = begun();
   script.answers(write_message(0, 77, kernel::kStart))
-      .says(octets_of(write_transmission(writer, {0, {}, {}, {}, {1, 2, 3}})))
+      .says(octets_of(write_driver(writer, {0, true, kernel::kStart})))
+      .says(octets_of(write_characters(writer, 0, kernel::kStart, std::array<std::uint16_t, 3>{1, 2, 3})))
       .says(octets_of(write_levels(writer, MessageType::transmit_levels, 0, wave)))
       .says(done_message(kNext))
       .answers(done_message())
@@ -214,7 +219,7 @@ TEST(MessageDeviceCall, ActsUntilItIsDone) {
   EXPECT_EQ(device.next_time(), kernel::kNever);
   device.set_power(true, kernel::kStart);
   EXPECT_EQ(device.next_time(), kNext);
-  EXPECT_THAT(notes.done, testing::ElementsAre("write 0 77", "transmit 3", "transmit 0110"));
+  EXPECT_THAT(notes.done, testing::ElementsAre("write 0 77", "driver 0 1", "send 3", "transmit 0110"));
   device.end();
   EXPECT_TRUE(device.is_quiet());
 }
@@ -313,8 +318,7 @@ TEST(MessageDeviceCall, ActionsWithoutEndAreAFlood) {
 TEST(MessageDeviceCall, OctetsWithoutEndAreAFlood) {
   MessageWriter writer;
   const std::vector<std::uint16_t> characters(20'000, 0x155);
-  const MessageOctets message =
-      octets_of(write_transmission(writer, {0, kernel::kStart, kernel::kStart, kernel::kStart, characters}));
+  const MessageOctets message = octets_of(write_characters(writer, 0, kernel::kStart, characters));
   const ScriptFolder folder;
   std::ofstream(folder.file("message"))
       .write(reinterpret_cast<const char*>(message.data()), static_cast<std::streamsize>(message.size()));

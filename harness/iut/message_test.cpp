@@ -42,10 +42,12 @@ CaseBegin any_case_begin() {
   return begin;
 }
 
-Transmission any_transmission() {
-  Transmission one{*rc::gen::arbitrary<std::uint8_t>(), any_time(), any_time(), any_time(), {}};
-  one.characters = *rc::gen::arbitrary<std::vector<std::uint16_t>>();
-  return one;
+std::vector<std::uint16_t> any_sent() {
+  return *rc::gen::arbitrary<std::vector<std::uint16_t>>();
+}
+
+DriverSwitch any_driver() {
+  return {*rc::gen::arbitrary<std::uint8_t>(), *rc::gen::arbitrary<bool>(), any_time()};
 }
 
 line::Waveform any_wave() {
@@ -82,12 +84,18 @@ const std::vector<ContentReader>& content_readers() {
          return body_of(write_reception(writer, 0, any_characters(), any_time()));
        },
        [](MessageReader& reader) { read_reception(reader); }},
-      {"transmission",
+      {"characters",
        [] {
          MessageWriter writer;
-         return body_of(write_transmission(writer, any_transmission()));
+         return body_of(write_characters(writer, 3, any_time(), any_sent()));
        },
-       [](MessageReader& reader) { read_transmission(reader); }},
+       [](MessageReader& reader) { read_characters(reader); }},
+      {"driver",
+       [] {
+         MessageWriter writer;
+         return body_of(write_driver(writer, any_driver()));
+       },
+       [](MessageReader& reader) { read_driver(reader); }},
       {"levels",
        [] {
          MessageWriter writer;
@@ -124,18 +132,34 @@ RC_GTEST_PROP(MessageTest, ReceptionComesBack, ()) {
   RC_ASSERT(read.characters == characters);
 }
 
-RC_GTEST_PROP(MessageTest, TransmissionComesBack, ()) {
-  const Transmission sent = any_transmission();
+RC_GTEST_PROP(MessageTest, CharactersComeBack, ()) {
+  const SentCharacters sent{*rc::gen::arbitrary<std::uint8_t>(), any_time(), any_sent()};
   MessageWriter writer;
-  const Octets body = body_of(write_transmission(writer, sent));
+  const Octets body = body_of(write_characters(writer, sent.port, sent.start, sent.characters));
   MessageReader reader(body);
-  RC_ASSERT(reader.type() == MessageType::transmit_characters);
-  const Transmission read = read_transmission(reader);
-  RC_ASSERT(read.port == sent.port);
-  RC_ASSERT(read.driver_on == sent.driver_on);
-  RC_ASSERT(read.start == sent.start);
-  RC_ASSERT(read.driver_off == sent.driver_off);
-  RC_ASSERT(read.characters == sent.characters);
+  RC_ASSERT(reader.type() == MessageType::characters);
+  RC_ASSERT(read_characters(reader) == sent);
+}
+
+RC_GTEST_PROP(MessageTest, DriverComesBack, ()) {
+  const DriverSwitch driver = any_driver();
+  MessageWriter writer;
+  const Octets body = body_of(write_driver(writer, driver));
+  MessageReader reader(body);
+  RC_ASSERT(reader.type() == MessageType::driver);
+  RC_ASSERT(read_driver(reader) == driver);
+}
+
+TEST(MessageTest, DriverThatIsNeitherOnNorOffIsRefused) {
+  MessageWriter writer;
+  const Octets body = body_of(writer.begin(MessageType::driver).u8(0).u8(2).time(kernel::kStart).finish());
+  MessageReader reader(body);
+  try {
+    read_driver(reader);
+    FAIL() << "is taken";
+  } catch (const MessageError& error) {
+    EXPECT_STREQ(error.what(), "'on' of a driver is 2; there are 0 (off) and 1 (on)");
+  }
 }
 
 RC_GTEST_PROP(MessageTest, LevelsComeBackIntoAUsedWave, ()) {
@@ -244,7 +268,7 @@ TEST(MessageTest, MoreSettingsThanARoleHasAreRefused) {
 }
 
 TEST(MessageTest, TypesHaveNames) {
-  EXPECT_EQ(name(MessageType::transmit_characters), "transmit characters");
+  EXPECT_EQ(name(MessageType::characters), "characters");
   EXPECT_EQ(name(static_cast<MessageType>(77)), "type 77");
 }
 

@@ -40,7 +40,9 @@ static fieldproof_time set_power(void* context, int is_on, fieldproof_time now) 
   unsigned n;
   if (!is_on) return FIELDPROOF_NEVER;
   if (strcmp(self->does, "acts") == 0) {
-    bench->transmit(bench->context, 1, now, now + 1, now + 2, characters, 2);
+    bench->driver(bench->context, 1, 1, now);
+    bench->characters(bench->context, 1, now + 1, characters, 2);
+    bench->driver(bench->context, 1, 0, now + 2);
     bench->transmit_levels(bench->context, 2, now, 1000, levels, 9);
     bench->write(bench->context, 3, bench->read(bench->context, 4, now) + 1, now);
   }

@@ -79,7 +79,8 @@ class PluginDevice final : public Device {
     bench_.version = FIELDPROOF_PLUGIN_VERSION;
     bench_.size = sizeof bench_;
     bench_.context = this;
-    bench_.transmit = &on_transmit;
+    bench_.driver = &on_driver;
+    bench_.characters = &on_characters;
     bench_.transmit_levels = &on_transmit_levels;
     bench_.write = &on_write;
     bench_.read = &on_read;
@@ -194,12 +195,18 @@ class PluginDevice final : public Device {
     }
   }
 
-  static void on_transmit(void* context, unsigned port, fieldproof_time driver_on, fieldproof_time start,
-                          fieldproof_time driver_off, const unsigned short* characters, unsigned count) {
+  static void on_driver(void* context, unsigned port, int is_on, fieldproof_time at) {
+    act(context, [&](Bench& bench) { bench.set_driver(port, is_on != 0, time_of(at)); });
+  }
+  static void on_characters(void* context, unsigned port, fieldproof_time start,
+                            const unsigned short* characters, unsigned count) {
     act(context, [&](Bench& bench) {
-      Transmission transmission{port, time_of(driver_on), time_of(start), time_of(driver_off), {}};
-      transmission.characters.assign(characters, characters + count);
-      bench.transmit(transmission);
+      if (count > 0xFFFF) {
+        throw Misbehaviour(reasons::kImpossible,
+                           fmt::format("the implementation sends {} characters at once; there are at most {}",
+                                       count, 0xFFFF));
+      }
+      bench.send(port, time_of(start), {characters, count});
     });
   }
   static void on_transmit_levels(void* context, unsigned port, fieldproof_time start, fieldproof_time rate,

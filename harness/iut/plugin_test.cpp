@@ -22,11 +22,12 @@ constexpr kernel::Time kSupply{kernel::Duration{1000}};
 // Writes down what the library does; a write of 13 is one that the bench refuses.
 class Diary final : public Bench {
  public:
-  void transmit(const Transmission& one) override {
-    lines.push_back(fmt::format("transmits {} {} {} {} {:X}", one.port,
-                                one.driver_on.time_since_epoch().count(),
-                                one.start.time_since_epoch().count(),
-                                one.driver_off.time_since_epoch().count(), one.characters.at(1)));
+  void set_driver(unsigned port, bool is_on, kernel::Time at) override {
+    lines.push_back(fmt::format("driver {} {:d} {}", port, is_on, at.time_since_epoch().count()));
+  }
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override {
+    lines.push_back(
+        fmt::format("sends {} {} {:X}", port, start.time_since_epoch().count(), characters.back()));
   }
   void transmit(unsigned port, line::Waveform& wave) override {
     lines.push_back(fmt::format("drives {} {} {}", port, wave.rate, wave.levels.text()));
@@ -75,8 +76,8 @@ TEST(PluginTest, ActsThroughTheBench) {
   ASSERT_TRUE(device->begin({"odd/case", 1, {{"next", 77}}}, diary));
   EXPECT_EQ(device->next_time(), kernel::Time{kernel::Duration{77}});
   device->set_power(true, kSupply);
-  EXPECT_THAT(diary.lines,
-              ElementsAre("transmits 1 1000 1001 1002 155", "drives 2 1000 010110101", "writes 3 401"));
+  EXPECT_THAT(diary.lines, ElementsAre("driver 1 1 1000", "sends 1 1001 155", "driver 1 0 1002",
+                                       "drives 2 1000 010110101", "writes 3 401"));
 }
 
 TEST(PluginTest, IsToldCharactersWithTheirErrors) {

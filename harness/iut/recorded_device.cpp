@@ -61,9 +61,13 @@ class Recorder final : public Device, private Bench {
     recording_.end_call(number_, device_.next_time());
   }
 
-  void transmit(const Transmission& transmission) override {
-    recording_.add(number_, transmission);
-    bench_->transmit(transmission);
+  void set_driver(unsigned port, bool is_on, kernel::Time at) override {
+    recording_.add(number_, SwitchedDriver{port, is_on, at});
+    bench_->set_driver(port, is_on, at);
+  }
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override {
+    recording_.add(number_, Sent{port, start, {characters.begin(), characters.end()}});
+    bench_->send(port, start, characters);
   }
   void transmit(unsigned port, line::Waveform& wave) override {
     recording_.add(number_, DroveLevels{port, wave});
@@ -134,7 +138,8 @@ class PlayedBack final : public Device {
             recording_.name(), n, number_, name(kind), kernel::describe(at), was));
   }
 
-  void perform(const Transmission& transmission) { bench_->transmit(transmission); }
+  void perform(const SwitchedDriver& driver) { bench_->set_driver(driver.port, driver.is_on, driver.at); }
+  void perform(const Sent& sent) { bench_->send(sent.port, sent.start, sent.characters); }
   void perform(const DroveLevels& drove) {
     line::Waveform wave = drove.wave;
     bench_->transmit(drove.port, wave);

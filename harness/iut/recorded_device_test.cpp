@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -17,10 +18,13 @@ namespace {
 // What a bench meets, in words.
 class NotingBench final : public Bench {
  public:
-  void transmit(const Transmission& sent) override {
-    std::string line = "characters";
-    for (const std::uint16_t one : sent.characters) line += " " + std::to_string(one);
-    note(line, sent.start);
+  void set_driver(unsigned port, bool is_on, kernel::Time when) override {
+    note("driver " + std::to_string(port) + (is_on ? " on" : " off"), when);
+  }
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override {
+    std::string line = "characters " + std::to_string(port);
+    for (const std::uint16_t one : characters) line += " " + std::to_string(one);
+    note(line, start);
   }
   void transmit(unsigned port, line::Waveform& wave) override {
     note("levels " + std::to_string(port) + " " + std::to_string(wave.levels.size()) + " " +
@@ -67,9 +71,9 @@ kernel::Time at(std::int64_t ticks) {
 
 // One thing that an implementation does, drawn.
 void do_something(Bench& bench, unsigned kind, std::uint64_t value, std::int64_t when) {
-  switch (kind % 5) {
+  switch (kind % 6) {
     case 0:
-      return bench.transmit({0, at(when), at(when), at(when + 5), {static_cast<std::uint16_t>(value), 3}});
+      return bench.send(2, at(when), std::array{static_cast<std::uint16_t>(value), std::uint16_t{3}});
     case 1: {
       line::Waveform wave{at(when), 1'000'000, {}};
       wave.levels.append(value, static_cast<unsigned>(1 + value % 64));
@@ -78,6 +82,8 @@ void do_something(Bench& bench, unsigned kind, std::uint64_t value, std::int64_t
     case 2:
       return bench.write(static_cast<Item>(value), value, at(when));
     case 3:
+      return bench.set_driver(static_cast<unsigned>(value % 4), value % 2 == 1, at(when));
+    case 4:
       bench.read(static_cast<Item>(value), at(when));
       return;
     default:

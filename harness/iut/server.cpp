@@ -161,8 +161,11 @@ class Server final : private Bench {
     }
   }
 
-  void transmit(const Transmission& transmission) override {
-    pipe_.send(write_transmission(writer_, transmission));
+  void set_driver(unsigned port, bool is_on, kernel::Time at) override {
+    pipe_.send(write_driver(writer_, {port, is_on, at}));
+  }
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override {
+    pipe_.send(write_characters(writer_, port, start, characters));
   }
   void transmit(unsigned port, line::Waveform& wave) override {
     pipe_.send(write_levels(writer_, MessageType::transmit_levels, port, wave));

@@ -54,14 +54,15 @@ class WritingDevice final : public Device {
   }
   void receive(unsigned port, std::span<const Character> characters, kernel::Time now) override {
     std::string text = fmt::format("characters {} {}", port, ticks(now));
-    Transmission answer{port, now, now, now, {}};
+    std::vector<std::uint16_t> answer;
     for (const Character& one : characters) {
       text += fmt::format(" {} {} {:X} {:d}{:d}", ticks(one.start), ticks(one.busy_until), one.data,
                           one.is_parity_wrong, one.is_stop_missing);
-      answer.characters.push_back(one.data);
+      answer.push_back(one.data);
     }
     lines_.push_back(text);
-    bench_->transmit(answer);
+    bench_->set_driver(port, answer.size() % 2 == 1, now);
+    bench_->send(port, now, answer);
   }
   void receive(unsigned port, const line::Waveform& reception) override {
     lines_.push_back(fmt::format("levels {} {}", port, text_of(reception)));
@@ -86,10 +87,12 @@ class WritingBench final : public Bench {
  public:
   explicit WritingBench(Lines& lines) : lines_(lines) {}
 
-  void transmit(const Transmission& one) override {
-    std::string text = fmt::format("transmits {} {} {} {}", one.port, ticks(one.driver_on), ticks(one.start),
-                                   ticks(one.driver_off));
-    for (const std::uint16_t character : one.characters) text += fmt::format(" {:X}", character);
+  void set_driver(unsigned port, bool is_on, kernel::Time at) override {
+    lines_.push_back(fmt::format("driver {} {:d} {}", port, is_on, ticks(at)));
+  }
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override {
+    std::string text = fmt::format("sends {} {}", port, ticks(start));
+    for (const std::uint16_t character : characters) text += fmt::format(" {:X}", character);
     lines_.push_back(text);
   }
   void transmit(unsigned port, line::Waveform& wave) override {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "harness/iut/device.hpp"
 #include "harness/line/character.hpp"
@@ -27,6 +28,14 @@ struct UartLine {
   }
 };
 
+// Characters without a gap on such a line, and the driver around them.
+struct UartTransmission {
+  kernel::Time driver_on{};
+  kernel::Time start{};  // of the first start bit
+  kernel::Time driver_off{};
+  std::vector<std::uint16_t> characters;
+};
+
 // Of the settings of a case.
 using MakeUartLine = UartLine (*)(const CaseBegin& begin);
 
@@ -35,8 +44,8 @@ inline constexpr std::string_view kClockOrigin = "clock_origin_ns";
 
 // Written by the box: how many octets it has received since the case began; when: the end of the last one.
 inline constexpr Item kReceivedOctets = 0xFF00;
-// Written by the box after each `transmit_characters`: how many octets it has put on the line since the case
-// began; when: the system had taken the last one.
+// Written by the box after each `characters` and the driver around them: how many octets it has put on the
+// line since the case began; when: the system had taken the last one.
 inline constexpr Item kSentOctets = 0xFF01;
 
 }  // namespace fieldproof::iut

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "harness/iut/misbehaviour.hpp"
 
@@ -223,7 +224,7 @@ void WallClockDevice::place_unreported(kernel::Time now) {
 void WallClockDevice::place_reported(kernel::Time now) {
   for (; !reports_.empty() && reports_.front().written != kernel::kNever; reports_.pop_front()) {
     Sent& sent = reports_.front();
-    Transmission& transmission = sent.transmission;
+    UartTransmission& transmission = sent.transmission;
     const auto length = static_cast<std::int64_t>(transmission.characters.size()) * character_;
     Stamp end = arrivals_.empty() ? Stamp{sent.written, sent.written} : arrivals_.front().stamp;
     for (std::uint16_t& character : transmission.characters) {
@@ -249,7 +250,7 @@ void WallClockDevice::place_arrived(kernel::Time now) {
   for (; !arrivals_.empty(); arrivals_.pop_front()) {
     const Arrival& arrival = arrivals_.front();
     const auto length = static_cast<std::int64_t>(arrival.octets.size()) * character_;
-    Transmission transmission;
+    UartTransmission transmission;
     for (const std::uint8_t octet : arrival.octets)
       transmission.characters.push_back(uart_.character_of(octet));
     kernel::Time earliest = arrival.stamp.earliest - attachment_.latency - length;
@@ -265,7 +266,7 @@ void WallClockDevice::place_arrived(kernel::Time now) {
 }
 
 // `transmission` has its instants on the clock of the machine, its start between these two.
-void WallClockDevice::place(Transmission transmission, kernel::Time earliest, kernel::Time latest,
+void WallClockDevice::place(UartTransmission transmission, kernel::Time earliest, kernel::Time latest,
                             kernel::Time now) {
   if (!is_supplied_) return;
   const auto length = static_cast<std::int64_t>(transmission.characters.size()) * character_;
@@ -284,7 +285,9 @@ void WallClockDevice::place(Transmission transmission, kernel::Time earliest, ke
   transmission.driver_off = placed_until_ + std::max(after, kernel::Duration{});
   driven_until_ = transmission.driver_off;
   bench_->set_uncertainty(uncertainty);
-  bench_->transmit(transmission);
+  bench_->set_driver(0, true, transmission.driver_on);
+  bench_->send(0, transmission.start, transmission.characters);
+  bench_->set_driver(0, false, transmission.driver_off);
   set_anchor(anchor_);
 }
 
@@ -295,8 +298,19 @@ void WallClockDevice::write_due(kernel::Time now) {
 
 // ---- what the box reports through the upper channel ----
 
-void WallClockDevice::transmit(const Transmission& transmission) {
-  reports_.push_back({transmission, kernel::kNever});
+void WallClockDevice::set_driver(unsigned, bool is_on, kernel::Time at) {
+  if (is_on) {
+    reported_on_ = at;
+  } else if (!reports_.empty() && reports_.back().written == kernel::kNever) {
+    reports_.back().transmission.driver_off = at;
+  }
+}
+
+// Of a box that does not say when its driver went off it is the end of the characters.
+void WallClockDevice::send(unsigned, kernel::Time start, std::span<const std::uint16_t> characters) {
+  const kernel::Time end = start + static_cast<std::int64_t>(characters.size()) * character_;
+  const kernel::Time driver_on = std::min(std::exchange(reported_on_, kernel::kNever), start);
+  reports_.push_back({{driver_on, start, end, {characters.begin(), characters.end()}}, kernel::kNever});
 }
 
 void WallClockDevice::transmit(unsigned, line::Waveform&) {

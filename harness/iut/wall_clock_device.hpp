@@ -51,7 +51,7 @@ class WallClockDevice final : public Device, private Bench {
     Stamp wall{};
   };
   struct Sent {  // by the box, as it reports through the upper channel
-    Transmission transmission;
+    UartTransmission transmission;
     kernel::Time written{};
   };
   struct Written {  // an item
@@ -80,11 +80,12 @@ class WallClockDevice final : public Device, private Bench {
   void place_reported(kernel::Time now);
   void place_arrived(kernel::Time now);
   void place_unreported(kernel::Time now);
-  void place(Transmission transmission, kernel::Time earliest, kernel::Time latest, kernel::Time now);
+  void place(UartTransmission transmission, kernel::Time earliest, kernel::Time latest, kernel::Time now);
   void write_due(kernel::Time now);
 
   // ---- what the box reports through the upper channel ----
-  void transmit(const Transmission& transmission) override;
+  void set_driver(unsigned port, bool is_on, kernel::Time at) override;
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override;
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(Item item, kernel::Time when) override;
@@ -112,6 +113,7 @@ class WallClockDevice final : public Device, private Bench {
   std::uint64_t reported_ = 0;        // of these, as it reports
   std::uint64_t arrived_before_ = 0;  // the last frame of the tester
   std::deque<Sent> reports_;
+  kernel::Time reported_on_ = kernel::kNever;                 // its driver, as it reported last
   kernel::Time reported_until_{kernel::Duration::min() / 2};  // driver off, as it reported
   std::deque<Written> writes_;
   kernel::Time driven_until_{};                             // as placed

@@ -53,20 +53,20 @@ void AttachedFfDevice::order_transfer(std::uint8_t node, kernel::Time now) {
   link_.ask(octets, now);
 }
 
-void AttachedFfDevice::transmit(const iut::Transmission& transmission) {
-  if (transmission.port != kUserPort) {
-    link_.transmit(transmission);
+void AttachedFfDevice::send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) {
+  if (port != kUserPort) {
+    link_.send(port, start, characters);
     return;
   }
-  attached_.expect_in_order(transmission.start, "reports something to its user");
-  const Octets octets = AttachedLink::told_octets(transmission);
+  attached_.expect_in_order(start, "reports something to its user");
+  const Octets octets = AttachedLink::told_octets(characters);
   const std::uint8_t what = octets.empty() ? std::uint8_t{0} : octets.front();
   const auto dlpdu = octets.empty() ? std::nullopt : ff_dlpdu_of(std::span(octets).subspan(1), rules_);
   if (what == static_cast<std::uint8_t>(FfIndication::data) && dlpdu && dlpdu->type == FfType::dt1) {
-    user_->on_data(*dlpdu, transmission.start);
+    user_->on_data(*dlpdu, start);
   } else if (what == static_cast<std::uint8_t>(FfIndication::published) && dlpdu &&
              dlpdu->type == FfType::dt3) {
-    user_->on_published(*dlpdu, transmission.start);
+    user_->on_published(*dlpdu, start);
   } else {
     iut::refuse_impossible("reports to its user what is neither 01 and a DT1 nor 02 and a DT3");
   }

@@ -47,7 +47,7 @@ class AttachedFfDevice final : public FfDevice, private iut::Bench {
   void end() override { attached_.end(); }
 
  private:
-  void transmit(const iut::Transmission& transmission) override;
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override;
   void transmit(unsigned port, line::Waveform& wave) override { link_.transmit(port, wave); }
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(iut::Item item, kernel::Time when) override;

@@ -14,6 +14,8 @@
 namespace fieldproof::fieldbus_dll {
 namespace {
 
+using Sent = std::vector<std::uint16_t>;
+
 using iut::ActingDevice;
 using kernel::kMillisecond;
 using testing::ElementsAre;
@@ -87,10 +89,6 @@ class AttachedFfDeviceTest : public testing::Test, private FfUser {
     }
     return {};
   }
-  static iut::Transmission at_port(unsigned port, kernel::Time when, std::vector<std::uint16_t> octets) {
-    return {port, when, when, when, std::move(octets)};
-  }
-
   struct Nobody final : segment::Station {
     void receive(segment::PortIndex, const line::Waveform&) override {}
     void on_time(kernel::Time) override {}
@@ -151,7 +149,7 @@ TEST_F(AttachedFfDeviceTest, RequestsOfTheUserAreOctetsAtItsPort) {
 
 TEST_F(AttachedFfDeviceTest, WhatItTellsItsUserArrivesThere) {
   EXPECT_EQ(complaint([](iut::Bench& bench) {
-              bench.transmit(at_port(kUserPort, kAct, {1, 0xD2, 0x44, 0x30, 0x20, 0x01, 0xAA}));
+              bench.send(kUserPort, kAct, Sent{1, 0xD2, 0x44, 0x30, 0x20, 0x01, 0xAA});
               bench.write(kEvent, 0x4400, kAct);
             }),
             "");
@@ -178,7 +176,7 @@ TEST_F(AttachedFfFrames, AreToldAsTheirOctetsAndDrivenFromThem) {
   }
   ASSERT_EQ(told.size(), 6U);
   EXPECT_EQ(told[0], 0x72);
-  EXPECT_EQ(complaint([](iut::Bench& bench) { bench.transmit(at_port(kLinePort, kAct, {0x34, 1, 2})); }), "");
+  EXPECT_EQ(complaint([](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{0x34, 1, 2}); }), "");
   EXPECT_THAT(ear_.starts, ElementsAre(kAct));
 }
 
@@ -220,27 +218,26 @@ INSTANTIATE_TEST_SUITE_P(
         WrongAct{"tells Bh as an event", kLevels, [](iut::Bench& bench) { bench.write(kEvent, 0x0B, kAct); }},
         WrongAct{"reads item 0", kLevels, [](iut::Bench& bench) { bench.read(0, kAct); }},
         WrongAct{"neither 01 and a DT1", kLevels,
-                 [](iut::Bench& bench) { bench.transmit({kUserPort, kAct, kAct, kAct, {1, 0x34}}); }},
+                 [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{1, 0x34}); }},
         WrongAct{"neither 01 and a DT1", kLevels,
-                 [](iut::Bench& bench) { bench.transmit({kUserPort, kAct, kAct, kAct, {}}); }},
+                 [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{}); }},
         WrongAct{"reports no octets to its user", kLevels,
-                 [](iut::Bench& bench) { bench.transmit({kUserPort, kAct, kAct, kAct, {1, 0x100}}); }},
-        WrongAct{"drives port 1", kFrames,
-                 [](iut::Bench& bench) { bench.transmit({1, kAct, kAct, kAct, {1}}); }},
+                 [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{1, 0x100}); }},
+        WrongAct{"drives port 1", kFrames, [](iut::Bench& bench) { bench.send(1, kAct, Sent{1}); }},
         WrongAct{"drives telegrams, having announced levels", kLevels,
-                 [](iut::Bench& bench) { bench.transmit({kLinePort, kAct, kAct, kAct, {1}}); }},
+                 [](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{1}); }},
         WrongAct{"a frame of 0 octets", kFrames,
-                 [](iut::Bench& bench) { bench.transmit({kLinePort, kAct, kAct, kAct, {}}); }},
+                 [](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{}); }},
         WrongAct{"drives 256 as an octet", kFrames,
-                 [](iut::Bench& bench) { bench.transmit({kLinePort, kAct, kAct, kAct, {0x100}}); }},
+                 [](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{0x100}); }},
         WrongAct{"drives a frame at", kFrames,
                  [](iut::Bench& bench) {
                    const kernel::Time past = kAct - kMillisecond;
-                   bench.transmit({kLinePort, past, past, past, {1}});
+                   bench.send(kLinePort, past, Sent{1});
                  }},
         WrongAct{"drives already until", kFrames, [](iut::Bench& bench) {
-                   bench.transmit({kLinePort, kAct, kAct, kAct, {1}});
-                   bench.transmit({kLinePort, kAct, kAct, kAct, {1}});
+                   bench.send(kLinePort, kAct, Sent{1});
+                   bench.send(kLinePort, kAct, Sent{1});
                  }}));
 
 }  // namespace

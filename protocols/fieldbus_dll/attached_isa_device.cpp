@@ -39,18 +39,18 @@ void AttachedIsaDevice::order_transfer(std::uint8_t node, kernel::Time now) {
   link_.ask({static_cast<std::uint8_t>(IsaAsk::order_transfer), node}, now);
 }
 
-void AttachedIsaDevice::transmit(const iut::Transmission& transmission) {
-  if (transmission.port != kUserPort) {
-    link_.transmit(transmission);
+void AttachedIsaDevice::send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) {
+  if (port != kUserPort) {
+    link_.send(port, start, characters);
     return;
   }
-  attached_.expect_in_order(transmission.start, "reports something to its user");
-  const Octets octets = AttachedLink::told_octets(transmission);
+  attached_.expect_in_order(start, "reports something to its user");
+  const Octets octets = AttachedLink::told_octets(characters);
   const auto dlpdu = octets.empty() ? std::nullopt : isa_dlpdu_of(std::span(octets).subspan(1), rules_);
   const bool is_data = dlpdu && (dlpdu->type == IsaType::du || dlpdu->type == IsaType::dt);
   if (!is_data || octets.front() != kIsaData)
     iut::refuse_impossible("reports to its user what is not 01 and a DU or DT");
-  user_->on_data(*dlpdu, transmission.start);
+  user_->on_data(*dlpdu, start);
 }
 
 void AttachedIsaDevice::write(iut::Item item, std::uint64_t value, kernel::Time when) {

@@ -88,7 +88,7 @@ TEST_F(AttachedIsaDeviceTest, RequestsOfTheUserAreOctetsAtItsPort) {
 TEST_F(AttachedIsaDeviceTest, TellsAndAsksItsUser) {
   std::vector<std::uint64_t> answers;
   EXPECT_EQ(complaint([&](iut::Bench& bench) {
-              bench.transmit({kUserPort, kIsaAct, kIsaAct, kIsaAct, {1, 0x33, 0xFF, 0x21, 0x00}});
+              bench.send(kUserPort, kIsaAct, std::vector<std::uint16_t>{1, 0x33, 0xFF, 0x21, 0x00});
               bench.write(kEvent, 0x2200, kIsaAct);
               for (const int priority : {1, 2, 3})
                 answers.push_back(bench.read(static_cast<iut::Item>(kReplyComing + priority), kIsaAct));
@@ -110,7 +110,7 @@ TEST_F(AttachedIsaDeviceTest, AnEventThatIsNoneIsImpossible) {
 
 TEST_F(AttachedIsaDeviceTest, DataThatAreNoneAreImpossible) {
   EXPECT_THAT(complaint([](iut::Bench& bench) {
-                bench.transmit({kUserPort, kIsaAct, kIsaAct, kIsaAct, {1, 0x42, 0x21, 0x10}});
+                bench.send(kUserPort, kIsaAct, std::vector<std::uint16_t>{1, 0x42, 0x21, 0x10});
               }),
               HasSubstr("not 01 and a DU or DT"));
 }

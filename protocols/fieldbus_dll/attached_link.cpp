@@ -104,25 +104,23 @@ kernel::Time AttachedLink::next_time() const {
 
 // ---- what it does ----
 
-void AttachedLink::transmit(const iut::Transmission& transmission) {
+void AttachedLink::send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) {
   attached_.expect_supplied();
-  if (transmission.port != kLinePort) {
-    iut::refuse_impossible(fmt::format("drives port {}; the line is port 0", transmission.port));
-  }
+  if (port != kLinePort) iut::refuse_impossible(fmt::format("drives port {}; the line is port 0", port));
   if (!hears_frames()) iut::refuse_impossible("drives telegrams, having announced levels");
-  const std::size_t count = transmission.characters.size();
+  const std::size_t count = characters.size();
   if (count == 0 || count > kMostFrameOctets) {
     iut::refuse_impossible(
         fmt::format("drives a frame of {} octets; there are 1 to {}", count, kMostFrameOctets));
   }
   Octets octets;
-  for (const std::uint16_t one : transmission.characters) {
+  for (const std::uint16_t one : characters) {
     if (one > 0xFF) iut::refuse_impossible(fmt::format("drives {} as an octet", one));
     octets.push_back(static_cast<std::uint8_t>(one));
   }
   // No sum of an instant that lies further than time reaches.
-  attached_.expect_ahead(transmission.start, "drives a frame");
-  drive(wave_of(octets, transmission.start));
+  attached_.expect_ahead(start, "drives a frame");
+  drive(wave_of(octets, start));
 }
 
 void AttachedLink::transmit(unsigned port, line::Waveform& wave) {
@@ -150,9 +148,9 @@ void AttachedLink::drive_due(kernel::Time now) {
   }
 }
 
-Octets AttachedLink::told_octets(const iut::Transmission& transmission) {
+Octets AttachedLink::told_octets(std::span<const std::uint16_t> characters) {
   Octets octets;
-  for (const std::uint16_t one : transmission.characters) {
+  for (const std::uint16_t one : characters) {
     if (one > 0xFF || octets.size() >= kMostFrameOctets)
       iut::refuse_impossible("reports no octets to its user");
     octets.push_back(static_cast<std::uint8_t>(one));

@@ -51,10 +51,10 @@ class AttachedLink {
   kernel::Time next_time() const;
 
   // What the implementation drives on the line, now or later.
-  void transmit(const iut::Transmission& transmission);
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters);
   void transmit(unsigned port, line::Waveform& wave);
-  // Of a transmission at the user's port: its octets.
-  static Octets told_octets(const iut::Transmission& transmission);
+  // What is sent at the user's port.
+  static Octets told_octets(std::span<const std::uint16_t> characters);
 
  private:
   template <typename Ask>
@@ -106,7 +106,7 @@ class ServedLink : public iut::ServedStation<Station> {
   void refuse(kernel::Time now) { this->bench().write(kRefused, 1, now); }
   void tell_user(const Octets& octets, kernel::Time when) {
     const kernel::Time now = this->not_past(when);
-    this->bench().transmit({kUserPort, now, now, now, {octets.begin(), octets.end()}});
+    this->bench().send(kUserPort, now, std::vector<std::uint16_t>(octets.begin(), octets.end()));
   }
   void tell_event(std::uint64_t kind, std::uint8_t node, kernel::Time when) {
     this->bench().write(kEvent, kind | std::uint64_t{node} << 8, this->not_past(when));

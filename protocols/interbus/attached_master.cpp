@@ -182,9 +182,9 @@ MasterStatus AttachedMaster::status() const {
 
 // ---- what the implementation does ----
 
-void AttachedMaster::transmit(const iut::Transmission& said) {
+void AttachedMaster::send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) {
   if (!front_) iut::refuse_impossible("sends characters; this master has announced levels");
-  drive(said.port, front_->levels_of(said));
+  drive(port, front_->levels_of(start, characters));
 }
 
 void AttachedMaster::transmit(unsigned port, line::Waveform& wave) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -412,12 +413,12 @@ INSTANTIATE_TEST_SUITE_P(
                    bench.transmit(1, wave);
                  }},
         WrongAct{"this master has announced levels",
-                 [](iut::Bench& bench) { bench.transmit({0, kCalledAt, kCalledAt, kCalledAt, {1}}); }}));
+                 [](iut::Bench& bench) { bench.send(0, kCalledAt, std::array<std::uint16_t, 1>{1}); }}));
 
 // ---- a master of ours ----
 
 class NoBench final : public iut::Bench {
-  void transmit(const iut::Transmission&) override {}
+  void send(unsigned, kernel::Time, std::span<const std::uint16_t>) override {}
   void transmit(unsigned, line::Waveform&) override {}
   void write(iut::Item, std::uint64_t, kernel::Time) override {}
   std::uint64_t read(iut::Item, kernel::Time) override { return 0; }

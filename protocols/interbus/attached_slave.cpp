@@ -44,9 +44,9 @@ void AttachedSlave::end() {
   attached_.end();
 }
 
-void AttachedSlave::transmit(const iut::Transmission& said) {
+void AttachedSlave::send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) {
   if (!front_) iut::refuse_impossible("sends characters; this slave has announced levels");
-  drive(said.port, front_->levels_of(said));
+  drive(port, front_->levels_of(start, characters));
 }
 
 void AttachedSlave::transmit(unsigned port, line::Waveform& wave) {

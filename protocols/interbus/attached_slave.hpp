@@ -47,7 +47,7 @@ class AttachedSlave final : public SlaveDevice, private iut::Bench {
  private:
   void tell(unsigned port, std::span<const iut::Character> telegrams, kernel::Time now);
   void drive(unsigned port, line::Waveform& wave);
-  void transmit(const iut::Transmission& transmission) override;
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override;
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(iut::Item item, kernel::Time when) override;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -244,7 +245,7 @@ TEST_F(AttachedSlaveFloods, FastClockIsNone) {
 }
 
 TEST_F(AttachedSlaveTest, CharactersAreImpossible) {
-  EXPECT_THAT(complaint([](iut::Bench& bench) { bench.transmit({0, kNow, kNow, kNow, {1}}); }),
+  EXPECT_THAT(complaint([](iut::Bench& bench) { bench.send(0, kNow, std::array<std::uint16_t, 1>{1}); }),
               HasSubstr("this slave has announced levels"));
 }
 

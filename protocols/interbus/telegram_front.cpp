@@ -37,10 +37,10 @@ void TelegramFront::reset() {
   for (line::TelegramReceiver& receiver : receivers_) receiver.reset();
 }
 
-line::Waveform& TelegramFront::levels_of(const iut::Transmission& said) {
-  said_.start = said.start;
+line::Waveform& TelegramFront::levels_of(kernel::Time start, std::span<const std::uint16_t> characters) {
+  said_.start = start;
   said_.levels.clear();
-  for (const std::uint16_t character : said.characters) {
+  for (const std::uint16_t character : characters) {
     const auto header = static_cast<std::uint8_t>(character >> kTelegramHeaderBit);
     const auto octet = static_cast<std::uint8_t>(character & 0xFF);
     if (character > kMostCharacter) {

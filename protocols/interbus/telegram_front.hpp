@@ -60,7 +60,7 @@ class TelegramFront {
 
   // The levels of what the implementation says. Throws iut::Misbehaviour for what is no telegram; the
   // instants are the caller's to judge. Good until the next call.
-  line::Waveform& levels_of(const iut::Transmission& said);
+  line::Waveform& levels_of(kernel::Time start, std::span<const std::uint16_t> characters);
 
  private:
   void note(const line::Waveform& wave, const line::Telegram& telegram) {

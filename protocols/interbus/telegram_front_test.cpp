@@ -18,6 +18,8 @@ namespace {
 
 using testing::HasSubstr;
 
+using Words = std::vector<std::uint16_t>;
+
 constexpr kernel::Time kSaidAt{20 * kernel::kMillisecond};
 constexpr std::uint16_t kStatus = 0;
 
@@ -37,15 +39,15 @@ RC_GTEST_PROP(TelegramFrontProperty, WhatIsSaidIsHeard, (std::vector<std::uint16
   rules.bit_rate = *rc::gen::element(500'000, 2'000'000);
   rules.telegram.control_level = *rc::gen::arbitrary<bool>();
   rules.telegram.most_significant_first = *rc::gen::arbitrary<bool>();
-  iut::Transmission said{0, kSaidAt, kSaidAt, kSaidAt, {}};
-  for (const std::uint16_t word : words) said.characters.push_back(telegram_of(word));
+  Words said;
+  for (const std::uint16_t word : words) said.push_back(telegram_of(word));
   TelegramFront speaker(rules);
   TelegramFront hearer(rules);
-  const std::vector<iut::Character> heard = heard_of(hearer, speaker.levels_of(said));
-  RC_ASSERT(heard.size() == said.characters.size());
+  const std::vector<iut::Character> heard = heard_of(hearer, speaker.levels_of(kSaidAt, said));
+  RC_ASSERT(heard.size() == said.size());
   kernel::Time start = kSaidAt;
   for (std::size_t n = 0; n < heard.size(); ++n) {
-    RC_ASSERT(heard[n].data == said.characters[n]);
+    RC_ASSERT(heard[n].data == said[n]);
     RC_ASSERT(heard[n].start == start);
     RC_ASSERT(!heard[n].is_stop_missing);
     start = heard[n].busy_until;
@@ -57,7 +59,7 @@ RC_GTEST_PROP(TelegramFrontProperty, AnyWordIsATelegramOrRefused, (std::uint16_t
   TelegramFront front{Rules{}};
   const bool is_telegram = word == telegram_of(word);
   try {
-    front.levels_of({0, kSaidAt, kSaidAt, kSaidAt, {word}});
+    front.levels_of(kSaidAt, Words{word});
     RC_ASSERT(is_telegram);
   } catch (const iut::Misbehaviour& refused) {
     RC_ASSERT(!is_telegram);
@@ -68,9 +70,8 @@ RC_GTEST_PROP(TelegramFrontProperty, AnyWordIsATelegramOrRefused, (std::uint16_t
 TEST(TelegramFront, MissingStopLevelIsAFlagAndALongReceptionComesInParts) {
   const Rules rules;
   TelegramFront front(rules);
-  iut::Transmission said{0, kSaidAt, kSaidAt, kSaidAt, {}};
-  said.characters.assign(TelegramFront::kMostAtOnce + 1, kStatus);
-  line::Waveform wave = TelegramFront(rules).levels_of(said);
+  const Words said(TelegramFront::kMostAtOnce + 1, kStatus);
+  line::Waveform wave = TelegramFront(rules).levels_of(kSaidAt, said);
   wave.levels.set(wave.levels.size() - 1, false);
   std::vector<std::size_t> parts;
   bool is_stop_missing = false;
@@ -85,7 +86,7 @@ TEST(TelegramFront, MissingStopLevelIsAFlagAndALongReceptionComesInParts) {
 TEST(TelegramFront, CutTelegramIsToldWhenItIsOver) {
   const Rules rules;
   TelegramFront front(rules);
-  line::Waveform wave = TelegramFront(rules).levels_of({0, kSaidAt, kSaidAt, kSaidAt, {0x4FF}});
+  line::Waveform wave = TelegramFront(rules).levels_of(kSaidAt, Words{0x4FF});
   wave.levels.resize(6);
   EXPECT_TRUE(heard_of(front, wave).empty());
   const kernel::Time end = kernel::level_time(kSaidAt, line::kDataTelegramLevels, rules.bit_rate);
@@ -147,8 +148,7 @@ class SlaveOfTelegrams : public testing::Test, private segment::Station {
 };
 
 TEST_F(SlaveOfTelegrams, IsToldThemWhenTheReceptionBegins) {
-  line::Waveform wave =
-      TelegramFront(network_.rules).levels_of({0, kSaidAt, kSaidAt, kSaidAt, {0x5A7, kStatus}});
+  line::Waveform wave = TelegramFront(network_.rules).levels_of(kSaidAt, Words{0x5A7, kStatus});
   wave.start = kernel::kStart + kernel::kMillisecond;
   const kernel::Time start = wave.start;
   ring_->out().drive(wave);
@@ -161,36 +161,37 @@ TEST_F(SlaveOfTelegrams, IsToldThemWhenTheReceptionBegins) {
 }
 
 TEST_F(SlaveOfTelegrams, SaysThem) {
-  EXPECT_EQ(complaint([](iut::Bench& bench) { bench.transmit({0, kSaidAt, kSaidAt, kSaidAt, {kStatus}}); }),
-            "");
+  EXPECT_EQ(complaint([](iut::Bench& bench) { bench.send(0, kSaidAt, Words{kStatus}); }), "");
   ASSERT_EQ(returned_.size(), 1U);
   EXPECT_EQ(returned_.front().levels.text(), "00001");
 }
 
 struct Hostile {
   const char* sentence;
-  iut::Transmission said;
+  unsigned port;
+  kernel::Time start;
+  Words said;
 };
 class HostileTelegrams : public SlaveOfTelegrams, public testing::WithParamInterface<Hostile> {};
 
 TEST_P(HostileTelegrams, AreImpossible) {
-  EXPECT_THAT(complaint([](iut::Bench& bench) { bench.transmit(GetParam().said); }),
-              HasSubstr(GetParam().sentence));
+  EXPECT_THAT(
+      complaint([](iut::Bench& bench) { bench.send(GetParam().port, GetParam().start, GetParam().said); }),
+      HasSubstr(GetParam().sentence));
 }
 
 constexpr kernel::Time kPast = kSaidAt - kernel::kMillisecond;
 constexpr kernel::Time kFar{5'000 * kernel::kSecond};
-INSTANTIATE_TEST_SUITE_P(
-    All, HostileTelegrams,
-    testing::Values(Hostile{"one has an octet, SL", {0, kSaidAt, kSaidAt, kSaidAt, {0x0800}}},
-                    Hostile{"says the telegram FFFFh", {0, kSaidAt, kSaidAt, kSaidAt, {0, 0xFFFF}}},
-                    Hostile{"a status telegram with an octet", {0, kSaidAt, kSaidAt, kSaidAt, {0x0301}}},
-                    Hostile{"drives no level", {0, kSaidAt, kSaidAt, kSaidAt, {}}},
-                    Hostile{"drives from", {0, kPast, kPast, kPast, {0}}},
-                    Hostile{"drives from", {0, kFar, kFar, kFar, {0}}},
-                    Hostile{"drives from", {0, kernel::kNever, kernel::kNever, kernel::kNever, {0}}},
-                    Hostile{"drives port 1, where nothing", {1, kSaidAt, kSaidAt, kSaidAt, {0}}},
-                    Hostile{"drives port 255, where nothing", {255, kSaidAt, kSaidAt, kSaidAt, {0}}}));
+INSTANTIATE_TEST_SUITE_P(All, HostileTelegrams,
+                         testing::Values(Hostile{"one has an octet, SL", 0, kSaidAt, {0x0800}},
+                                         Hostile{"says the telegram FFFFh", 0, kSaidAt, {0, 0xFFFF}},
+                                         Hostile{"a status telegram with an octet", 0, kSaidAt, {0x0301}},
+                                         Hostile{"drives no level", 0, kSaidAt, {}},
+                                         Hostile{"drives from", 0, kPast, {0}},
+                                         Hostile{"drives from", 0, kFar, {0}},
+                                         Hostile{"drives from", 0, kernel::kNever, {0}},
+                                         Hostile{"drives port 1, where nothing", 1, kSaidAt, {0}},
+                                         Hostile{"drives port 255, where nothing", 255, kSaidAt, {0}}));
 
 TEST_F(SlaveOfTelegrams, MaySayNoLevels) {
   EXPECT_THAT(complaint([](iut::Bench& bench) {

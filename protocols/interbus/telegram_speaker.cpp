@@ -82,20 +82,20 @@ void TelegramSpeaker::hand_over(unsigned port) {
 // A station that is told a cut telegram late answers as if it had been told in time.
 void TelegramSpeaker::transmit(unsigned port, line::Waveform& wave) {
   line::TelegramReceiver receiver(*code_, heard_.rate);
+  kernel::Time begin{};
   kernel::Time end{};
   const auto say = [&] {
-    if (said_.characters.empty()) return;
-    bench_->transmit(said_);
-    said_.characters.clear();
+    if (!said_.empty()) bench_->send(port, begin, said_);
+    said_.clear();
   };
   const kernel::Duration late = std::max(kernel::Duration{}, now_ - wave.start);
   const auto take = [&](const line::Waveform& levels, const line::Telegram& telegram) {
     const kernel::Time start = levels.time_of(telegram.level) + late;
     const iut::Character one = character_of(telegram, start, heard_.rate);
     if (start != end) say();
-    if (said_.characters.empty()) said_.port = port, said_.start = said_.driver_on = start;
-    said_.characters.push_back(one.data);
-    said_.driver_off = end = one.busy_until;
+    if (said_.empty()) begin = start;
+    said_.push_back(one.data);
+    end = one.busy_until;
   };
   receiver.receive(wave, take);
   receiver.flush(take);

@@ -32,7 +32,9 @@ class TelegramSpeaker final : public iut::Device, private iut::Bench {
   // Whether the telegram can stand in the levels that are collected.
   bool goes_on(const iut::Character& telegram);
 
-  void transmit(const iut::Transmission& transmission) override { bench_->transmit(transmission); }
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override {
+    bench_->send(port, start, characters);
+  }
   void transmit(unsigned port, line::Waveform& wave) override;
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(iut::Item item, kernel::Time when) override;
@@ -43,7 +45,7 @@ class TelegramSpeaker final : public iut::Device, private iut::Bench {
   kernel::Time now_{};
   const line::TelegramCode* code_ = nullptr;
   line::Waveform heard_;
-  iut::Transmission said_;
+  std::vector<std::uint16_t> said_;
 };
 
 }  // namespace fieldproof::interbus

@@ -18,7 +18,7 @@ using kernel::kStart;
 constexpr kernel::Duration kBit = 2 * kMicrosecond;
 
 class NoBench final : public iut::Bench {
-  void transmit(const iut::Transmission&) override {}
+  void send(unsigned, kernel::Time, std::span<const std::uint16_t>) override {}
   void transmit(unsigned, line::Waveform&) override {}
   void write(iut::Item, std::uint64_t, kernel::Time) override {}
   std::uint64_t read(iut::Item, kernel::Time) override { return 0; }

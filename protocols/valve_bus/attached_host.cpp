@@ -42,6 +42,7 @@ void AttachedHost::set_power(bool is_on, kernel::Time now) {
   rules_.bit_rate = rates[dip_ % rates.size()];
   line_.begin(rules_, now);
   attached_.set_power(is_on, now);
+  line_.after_call(now);
 }
 
 void AttachedHost::write(std::span<const std::uint8_t> octets, kernel::Time now) {
@@ -53,6 +54,7 @@ void AttachedHost::write(std::span<const std::uint8_t> octets, kernel::Time now)
     }
     attached_.call(now, [&](iut::Device& device) { device.receive(kPcPort, characters, now); });
   }
+  line_.after_call(now);
 }
 
 HostCounters AttachedHost::counters(std::uint8_t id) const {

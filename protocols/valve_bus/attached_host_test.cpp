@@ -141,8 +141,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongAct{"reads item 1", [](iut::Bench& bench) { bench.read(kResponse, kCalledAt); }},
         WrongAct{"reports something to its PC at",
                  [](iut::Bench& bench) { bench.write(kFifoRoom, 0, kCalledAt - kMillisecond); }},
-        WrongAct{"drives port 1",
-                 [](iut::Bench& bench) { bench.transmit({1, kCalledAt, kCalledAt, kCalledAt, {}}); }}));
+        WrongAct{"drives port 1", [](iut::Bench& bench) { bench.set_driver(1, true, kCalledAt); }}));
 
 }  // namespace
 }  // namespace fieldproof::valve_bus

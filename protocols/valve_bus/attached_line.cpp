@@ -16,7 +16,7 @@ constexpr std::size_t kKnownInstants = 256;
 }  // namespace
 
 AttachedLine::AttachedLine(iut::AttachedCase& attached, const Rules& rules)
-    : attached_(attached), rules_(rules), codec_(rules), transmitter_(rules) {
+    : attached_(attached), rules_(rules), codec_(rules), driver_(attached, rules) {
   if (attached.unit_kind() != iut::UnitKind::telegrams) return;
   throw kernel::Error(
       kernel::ErrorKind::implementation,
@@ -27,8 +27,7 @@ AttachedLine::AttachedLine(iut::AttachedCase& attached, const Rules& rules)
 void AttachedLine::begin(const Rules& rules, kernel::Time now) {
   rules_ = rules;
   codec_ = CharacterCodec(rules);
-  transmitter_ = Transmitter(rules);
-  transmitter_.begin_at(now);
+  driver_.begin(rules, now);
 }
 
 // A UART sends whole characters of its format at its bit rate.
@@ -55,6 +54,7 @@ iut::TimingUncertainty AttachedLine::uncertainty_of(kernel::Time driver_on) cons
 void AttachedLine::receive(segment::PortIndex port, const line::Waveform& reception) {
   if (attached_.hears_levels()) {
     attached_.call(reception.end(), [&](iut::Device& device) { device.receive(port, reception); });
+    after_call(reception.end());
     return;
   }
   characters_.clear();
@@ -70,6 +70,24 @@ void AttachedLine::receive(segment::PortIndex port, const line::Waveform& recept
                    [&](iut::Device& device) { device.receive(port, part, reception.end()); });
     rest = rest.subspan(part.size());
   }
+  after_call(reception.end());
+}
+
+void AttachedLine::on_time(kernel::Time now) {
+  if (attached_.next_time() <= now || !driver_.has_work()) attached_.on_time(now);
+  after_call(now);
+}
+
+void AttachedLine::put(kernel::Time now) {
+  const kernel::Time next_call = attached_.next_time();
+  attached_.call(now, [&](iut::Device&) { driver_.put(*line_, now, next_call); });
+}
+
+void AttachedLine::end() {
+  if (attached_.is_well()) {
+    attached_.call(attached_.now(), [&](iut::Device&) { driver_.expect_no_hanging_driver(); });
+  }
+  attached_.end();
 }
 
 void AttachedLine::expect_port(unsigned port) const {
@@ -77,32 +95,23 @@ void AttachedLine::expect_port(unsigned port) const {
   if (port != 0) iut::refuse_impossible(fmt::format("drives port {}; the line is port 0", port));
 }
 
-void AttachedLine::transmit(const iut::Transmission& transmission) {
-  expect_port(transmission.port);
-  const std::size_t count = transmission.characters.size();
-  if (count > kMostCharacters) iut::refuse_impossible(fmt::format("sends {} characters at once", count));
-  const kernel::Duration length = half_characters(rules_, 2 * static_cast<unsigned>(count));
-  const auto describe = [&] {
-    return fmt::format("drives from {} to {}, with {} of characters from {} on",
-                       kernel::describe(transmission.driver_on), kernel::describe(transmission.driver_off),
-                       kernel::describe(length), kernel::describe(transmission.start));
-  };
-  attached_.expect_span(transmission.driver_on, transmission.start, describe);
-  attached_.expect_drive(transmission.driver_on, transmission.driver_off, describe);
-  if (transmission.start + length > transmission.driver_off + kernel::kNanosecond) {
-    iut::refuse_impossible(describe());
-  }
-  if (uncertainty_ != iut::TimingUncertainty{}) {
-    known_.push_back({transmission.driver_on, uncertainty_});
-    if (known_.size() > kKnownInstants) known_.pop_front();
-  }
-  transmitter_.drive(*line_, transmission);
+void AttachedLine::set_driver(unsigned port, bool is_on, kernel::Time at) {
+  expect_port(port);
+  driver_.set(is_on, at);
+  if (!is_on || uncertainty_ == iut::TimingUncertainty{}) return;
+  known_.push_back({at, uncertainty_});
+  if (known_.size() > kKnownInstants) known_.pop_front();
+}
+
+void AttachedLine::send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) {
+  expect_port(port);
+  driver_.send(start, characters);
 }
 
 void AttachedLine::transmit(unsigned port, line::Waveform& wave) {
   expect_port(port);
   attached_.expect_drive(wave);
-  transmitter_.drive(*line_, wave);
+  driver_.drive(*line_, wave);
 }
 
 }  // namespace fieldproof::valve_bus

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "harness/iut/attached_case.hpp"
 #include "protocols/valve_bus/codec.hpp"
-#include "protocols/valve_bus/transmitter.hpp"
+#include "protocols/valve_bus/line_driver.hpp"
 
 // The line of the valve bus as an implementation outside hears and drives it, whatever its role: port 0, in
 // characters that are over, or in levels.
@@ -21,8 +24,20 @@ class AttachedLine {
   void begin(const Rules& rules, kernel::Time now);
 
   void receive(segment::PortIndex port, const line::Waveform& reception);
+  void on_time(kernel::Time now);
+  kernel::Time next_time() const {
+    return attached_.is_well() ? std::min(attached_.next_time(), driver_.next_time()) : kernel::kNever;
+  }
+  // The implementation has been called: what it has said goes onto the line.
+  void after_call(kernel::Time now) {
+    if (driver_.has_work()) put(now);
+  }
+  // Throws iut::Misbehaviour where its driver is on for no reason.
+  void end();
+
   // What the implementation drives.
-  void transmit(const iut::Transmission& transmission);
+  void set_driver(unsigned port, bool is_on, kernel::Time at);
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters);
   void transmit(unsigned port, line::Waveform& wave);
 
   // Of all that it does from now on; kept with what it drives.
@@ -36,13 +51,14 @@ class AttachedLine {
     iut::TimingUncertainty uncertainty;
   };
 
+  void put(kernel::Time now);
   void expect_exact(const line::Waveform& reception) const;
   void expect_port(unsigned port) const;
 
   iut::AttachedCase& attached_;
   Rules rules_;
   CharacterCodec codec_;
-  Transmitter transmitter_;
+  LineDriver driver_;
   segment::Port* line_ = nullptr;
   std::vector<iut::Character> characters_;
   iut::TimingUncertainty uncertainty_;

@@ -20,6 +20,7 @@ void AttachedNode::wire(segment::Port& line, NodeBoards& boards) {
 void AttachedNode::set_power(bool is_on, kernel::Time now) {
   line_.begin(rules_, now);
   attached_.set_power(is_on, now);
+  line_.after_call(now);
 }
 
 void AttachedNode::write(iut::Item item, std::uint64_t value, kernel::Time when) {

@@ -33,9 +33,9 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   void receive(segment::PortIndex port, const line::Waveform& reception) override {
     line_.receive(port, reception);
   }
-  void on_time(kernel::Time now) override { attached_.on_time(now); }
-  kernel::Time next_time() const override { return attached_.next_time(); }
-  void end() override { attached_.end(); }
+  void on_time(kernel::Time now) override { line_.on_time(now); }
+  kernel::Time next_time() const override { return line_.next_time(); }
+  void end() override { line_.end(); }
   iut::Capabilities capabilities() const override { return attached_.capabilities(); }
   iut::TimingUncertainty uncertainty_of_answer(kernel::Time driver_on) const override {
     return line_.uncertainty_of(driver_on);
@@ -43,7 +43,10 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   iut::TimingUncertainty uncertainty_of_valves() const override { return line_.uncertainty(); }
 
  private:
-  void transmit(const iut::Transmission& transmission) override { line_.transmit(transmission); }
+  void set_driver(unsigned port, bool is_on, kernel::Time at) override { line_.set_driver(port, is_on, at); }
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) override {
+    line_.send(port, start, characters);
+  }
   void transmit(unsigned port, line::Waveform& wave) override { line_.transmit(port, wave); }
   void write(iut::Item item, std::uint64_t value, kernel::Time when) override;
   std::uint64_t read(iut::Item item, kernel::Time when) override;

@@ -4,8 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <chrono>
 #include <functional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/iut/acting_device.hpp"
@@ -120,17 +124,24 @@ TEST_F(AttachedNodeTest, CaseEndsWellUnlessTheDeviceDidWrong) {
   EXPECT_EQ(well_ended_, 1);
 }
 
+// A whole transmission, said ahead.
+void transmit(iut::Bench& bench, kernel::Time on, kernel::Time start, kernel::Time off,
+              const std::vector<std::uint16_t>& characters) {
+  bench.set_driver(0, true, on);
+  bench.send(0, start, characters);
+  bench.set_driver(0, false, off);
+}
+
 // A UART sends octet by octet; each instant is rounded for itself, here down.
 TEST_F(AttachedNodeTest, CharactersOfTheirOwnMessagesDoNotOverlap) {
-  EXPECT_EQ(
-      complaint([](iut::Bench& bench) {
-        const std::int64_t character = 11'000'000'000'000 / 375'000;
-        for (std::int64_t n = 0; n < 9; ++n) {
-          const kernel::Time start = kNow + kernel::Duration{n * 11'000'000'000'000 / 375'000};
-          bench.transmit(iut::Transmission{0, start, start, start + kernel::Duration{character}, {0x155}});
-        }
-      }),
-      "");
+  EXPECT_EQ(complaint([](iut::Bench& bench) {
+              const std::int64_t character = 11'000'000'000'000 / 375'000;
+              for (std::int64_t n = 0; n < 9; ++n) {
+                const kernel::Time start = kNow + kernel::Duration{n * 11'000'000'000'000 / 375'000};
+                transmit(bench, start, start, start + kernel::Duration{character}, {0x155});
+              }
+            }),
+            "");
   ASSERT_EQ(driven_.size(), 9U);
   for (std::size_t n = 1; n < driven_.size(); ++n) {
     EXPECT_GE(driven_[n].start, driven_[n - 1].end());
@@ -172,14 +183,104 @@ TEST_F(AttachedNodeTest, TransmissionHasTheDriverAroundItsCharacters) {
   const kernel::Duration bit = bits(configuration_.rules, 1);
   const kernel::Time start = kNow + 3 * bit;
   const kernel::Time off = start + 2 * character_time(configuration_.rules) + 2 * bit;
-  EXPECT_EQ(
-      complaint([&](iut::Bench& bench) { bench.transmit({0, start - bit, start, off, {0x141, 0x142}}); }),
-      "");
-  ASSERT_EQ(driven_.size(), 4U);  // idle, a character, a character, idle
-  EXPECT_EQ(driven_.front().start, start - bit);
-  EXPECT_EQ(driven_[1].start, start);
-  EXPECT_LE(driven_.back().end() - off, kernel::kNanosecond);
-  EXPECT_LE(off - driven_.back().end(), bit / 16);
+  EXPECT_EQ(complaint([&](iut::Bench& bench) { transmit(bench, start - bit, start, off, {0x141, 0x142}); }),
+            "");
+  ASSERT_EQ(driven_.size(), 2U);  // idle with a character, a character with idle
+  EXPECT_EQ(driven_[0].start, start - bit);
+  EXPECT_EQ(driven_[0].levels.size(), 12U);
+  EXPECT_EQ(driven_[1].levels.size(), 13U);
+  EXPECT_LE(std::chrono::abs(driven_[1].end() - off), kernel::kNanosecond);
+}
+
+// What is on the line, whatever the pieces.
+struct OnTheLine {
+  std::vector<std::pair<kernel::Time, kernel::Time>> driven;  // without a gap
+  std::vector<HeardCharacter> heard;
+};
+
+OnTheLine on_the_line(const std::vector<line::Waveform>& waves, const Rules& rules) {
+  OnTheLine all;
+  CharacterCodec codec(rules);
+  for (const line::Waveform& wave : waves) {
+    const bool follows =
+        !all.driven.empty() && std::chrono::abs(wave.start - all.driven.back().second) <= kernel::kNanosecond;
+    if (!follows) all.driven.emplace_back(wave.start, wave.end());
+    all.driven.back().second = wave.end();
+    codec.hear(wave, [&](const HeardCharacter& one) { all.heard.push_back(one); });
+  }
+  return all;
+}
+
+// A processor that runs: it knows of no step before its time has come, and is told none of the bench's.
+TEST_F(AttachedNodeTest, DriverAndCharactersAreSaidEachAtItsOwnTime) {
+  const kernel::Duration character = character_time(configuration_.rules);
+  const kernel::Duration odd{3'141'592};  // no multiple of a bit
+  const kernel::Time first = kNow + odd;
+  const kernel::Time second = first + character + 2 * odd;
+  const kernel::Time off = second + character + odd;
+  int step = 0;
+  const auto go_on = [&](iut::Bench& bench) {
+    switch (step++) {
+      case 0:
+        bench.set_driver(0, true, kNow);
+        device_.next = first;
+        return;
+      case 1:
+        bench.send(0, first, std::array<std::uint16_t, 1>{0x141});
+        device_.next = second;
+        return;
+      case 2:
+        bench.send(0, second, std::array<std::uint16_t, 1>{0x142});
+        device_.next = off;
+        return;
+      default:
+        bench.set_driver(0, false, off);
+    }
+  };
+  EXPECT_EQ(complaint(go_on), "");
+  EXPECT_EQ(step, 4);
+  const OnTheLine line = on_the_line(driven_, configuration_.rules);
+  ASSERT_EQ(line.driven.size(), 1U);
+  EXPECT_EQ(line.driven[0].first, kNow);
+  EXPECT_LE(std::chrono::abs(line.driven[0].second - off), kernel::kNanosecond);
+  ASSERT_EQ(line.heard.size(), 2U);
+  EXPECT_EQ(line.heard[0].data, 0x141);
+  EXPECT_LE(std::chrono::abs(line.heard[0].start - first), kernel::kNanosecond);
+  EXPECT_LE(std::chrono::abs(line.heard[1].start - second), kernel::kNanosecond);
+  node_->end();
+  EXPECT_EQ(well_ended_, 1);
+}
+
+TEST_F(AttachedNodeTest, DriverThatHangsIsAFindingAfterTheLimitAndAtTheEnd) {
+  EXPECT_EQ(complaint([](iut::Bench& bench) { bench.set_driver(0, true, kNow); }), "");
+  segment_.run_for(9 * kSecond);
+  try {
+    node_->end();
+    ADD_FAILURE() << "is taken for an end";
+  } catch (const iut::Misbehaviour& done) {
+    EXPECT_THAT(done.what(), testing::HasSubstr("has its driver still on at the end of the case"));
+  }
+  EXPECT_EQ(well_ended_, 0);
+}
+
+TEST_F(AttachedNodeTest, DriverIsOnForTenSecondsAtMost) {
+  EXPECT_EQ(complaint([](iut::Bench& bench) { bench.set_driver(0, true, kNow); }), "");
+  EXPECT_THAT([&] { segment_.run_for(11 * kSecond); },
+              testing::ThrowsMessage<iut::Misbehaviour>(testing::HasSubstr("has its driver on since 20 ms")));
+  EXPECT_EQ(node_->next_time(), kNever);
+}
+
+// A case may end while an answer is under way.
+TEST_F(AttachedNodeTest, DriverOfAnAnswerUnderWayIsNoneThatHangs) {
+  device_.at_time = [](iut::Bench& bench) {
+    bench.set_driver(0, true, kNow);
+    bench.send(0, kNow, std::vector<std::uint16_t>(3, 0x155));
+  };
+  device_.next = kNow;
+  attach();
+  segment_.run_until(kNow + 4 * character_time(configuration_.rules));
+  node_->end();
+  EXPECT_EQ(well_ended_, 1);
 }
 
 TEST_F(AttachedNodeTest, WritesAndReadsReachTheBoards) {
@@ -199,7 +300,8 @@ TEST_F(AttachedNodeTest, NothingCanBeDoneWhileTheCaseBegins) {
   line::Waveform wave;
   wave.levels.append(0, 1);
   const std::vector<ActingDevice::Act> acts = {
-      [](iut::Bench& bench) { bench.transmit({0, kStart, kStart, kNow, {1}}); },
+      [](iut::Bench& bench) { bench.set_driver(0, true, kStart); },
+      [](iut::Bench& bench) { bench.send(0, kStart, std::array<std::uint16_t, 1>{1}); },
       [&](iut::Bench& bench) { bench.transmit(0, wave); },
       [](iut::Bench& bench) { bench.write(kValves, 1, kStart); },
       [](iut::Bench& bench) { bench.read(kLimitSwitches, kStart); }};
@@ -218,8 +320,12 @@ std::vector<Impossible> impossible_acts() {
   const kernel::Time soon = kNow + kMillisecond;
   const kernel::Time first{kernel::Duration::min()};
   const std::vector<std::uint16_t> ten(10, 0x100);
-  const auto transmits = [](const iut::Transmission& one) {
-    return [one](iut::Bench& bench) { bench.transmit(one); };
+  const auto drives_at = [](unsigned port, kernel::Time on) {
+    return [=](iut::Bench& bench) { bench.set_driver(port, true, on); };
+  };
+  const auto transmits = [](kernel::Time on, kernel::Time start, kernel::Time off,
+                            const std::vector<std::uint16_t>& characters) {
+    return [=](iut::Bench& bench) { transmit(bench, on, start, off, characters); };
   };
   const auto drives = [](unsigned port, kernel::Time start, std::size_t levels) {
     return [=](iut::Bench& bench) {
@@ -235,16 +341,30 @@ std::vector<Impossible> impossible_acts() {
   const auto reads = [](iut::Item item, kernel::Time when) {
     return [=](iut::Bench& bench) { bench.read(item, when); };
   };
-  return {{"port_1", transmits({1, kNow, kNow, soon, {}})},
-          {"driver_on_behind_start", transmits({0, soon, kNow, soon, {}})},
-          {"driver_off_within_characters", transmits({0, kNow, kNow, kNow + kMicrosecond, ten})},
-          {"drives_11_seconds", transmits({0, kNow, kNow, kNow + 11 * kSecond, {}})},
-          {"5000_characters", transmits({0, kNow, kNow, kNow + kSecond, std::vector<std::uint16_t>(5000)})},
-          {"drives_in_the_past", transmits({0, kNow - kMicrosecond, kNow, soon, {}})},
-          {"drives_never", transmits({0, kNever, kNever, kNever, ten})},
-          {"starts_never", transmits({0, kNow, kNever, kNever, ten})},
-          {"drives_before_all_time", transmits({0, first, first, first, ten})},
-          {"drives_for_all_time", transmits({0, first, kNow, kNever, ten})},
+  return {{"port_1", drives_at(1, kNow)},
+          {"characters_at_port_1",
+           [](iut::Bench& bench) { bench.send(1, kNow, std::array<std::uint16_t, 1>{1}); }},
+          {"driver_on_behind_start", transmits(soon, kNow, soon, ten)},
+          {"characters_without_a_driver", [=](iut::Bench& bench) { bench.send(0, kNow, ten); }},
+          {"characters_behind_the_driver",
+           [=](iut::Bench& bench) {
+             transmit(bench, kNow, kNow, soon, {1});
+             bench.send(0, soon, ten);
+           }},
+          {"characters_into_others",
+           [=](iut::Bench& bench) {
+             bench.set_driver(0, true, kNow);
+             bench.send(0, kNow, ten);
+             bench.send(0, kNow + kMicrosecond, ten);
+           }},
+          {"driver_off_within_characters", transmits(kNow, kNow, kNow + kMicrosecond, ten)},
+          {"drives_11_seconds", transmits(kNow, kNow, kNow + 11 * kSecond, {})},
+          {"5000_characters", transmits(kNow, kNow, kNow + kSecond, std::vector<std::uint16_t>(5000))},
+          {"drives_in_the_past", drives_at(0, kNow - kMicrosecond)},
+          {"drives_never", drives_at(0, kNever)},
+          {"starts_never", transmits(kNow, kNever, kNever, ten)},
+          {"drives_before_all_time", drives_at(0, first)},
+          {"ends_before_all_time", transmits(kNow, kNow, first, {})},
           {"levels_at_port_1", drives(1, kNow, 1)},
           {"no_levels", drives(0, kNow, 0)},
           {"levels_for_11_seconds", drives(0, kNow, 11)},
@@ -277,7 +397,7 @@ INSTANTIATE_TEST_SUITE_P(Impossible, AttachedNodeActs,
 // Keeps what a served node does.
 class KeepingBench final : public iut::Bench {
  public:
-  void transmit(const iut::Transmission&) override {}
+  void send(unsigned, kernel::Time, std::span<const std::uint16_t>) override {}
   void transmit(unsigned, line::Waveform& wave) override { wave.levels.clear(); }
   void write(iut::Item, std::uint64_t value, kernel::Time when) override {
     value_ = value;

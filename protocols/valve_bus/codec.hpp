@@ -145,21 +145,9 @@ class CharacterCodec {
     return end;
   }
 
-  // The same for characters as the line code has them, with a ninth bit of their own.
-  kernel::Time drive_characters(segment::Port& line, std::span<const std::uint16_t> characters,
-                                kernel::Time start) {
-    kernel::Time end = start;
-    for (std::size_t n = 0; n < characters.size(); ++n) {
-      wave_.levels.clear();
-      wave_.rate = rules_.bit_rate;
-      wave_.start = std::max(
-          end,
-          kernel::level_time(start, static_cast<std::int64_t>(n) * code_.levels_per_character(), wave_.rate));
-      code_.append(wave_.levels, characters[n]);
-      end = wave_.end();
-      line.drive(wave_);
-    }
-    return end;
+  // A character as the line code has it, with a ninth bit of its own.
+  void append_character(line::Levels& levels, std::uint16_t character) const {
+    code_.append(levels, character);
   }
 
  private:

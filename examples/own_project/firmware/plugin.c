@@ -39,7 +39,9 @@ static void send(void* self, const uint8_t* octets, int64_t start_ns) {
   const fieldproof_time length = 3 * picoseconds(me->firmware.character) + 1000;
   unsigned short characters[3];
   for (int n = 0; n < 3; ++n) characters[n] = (unsigned short)(me->ninth_bit | octets[n]);
-  me->bench->transmit(me->bench->context, 0, start - me->bit, start, start + length + me->bit, characters, 3);
+  me->bench->driver(me->bench->context, 0, 1, start - me->bit);
+  me->bench->characters(me->bench->context, 0, start, characters, 3);
+  me->bench->driver(me->bench->context, 0, 0, start + length + me->bit);
 }
 
 static void* create(const char* protocol, const char* role, const fieldproof_bench* bench) {
