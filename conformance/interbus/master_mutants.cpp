@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "conformance/interbus/master_seeded_faults.hpp"
+#include "conformance/interbus/master_sequence_seeded_faults.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -40,6 +41,7 @@ struct Row {
   std::string_view label;
   std::string_view description;
   MasterBench::MakeMaster make_master;
+  bool is_for_check = false;
 };
 
 const std::vector<Row>& rows() {
@@ -139,6 +141,20 @@ const std::vector<Row>& rows() {
        make<PausesIn<MasterState::locating>>},
       {"pulse_widths_even", "", "copies pulses of an odd number of cycles one cycle shorter",
        make<PulseWidthsEven>},
+      {"second_mark_accepted", "", "takes a marked status word when the one before was marked, too",
+       make<SecondMarkAccepted>, true},
+      {"stop_one_early_after_restart", "", "once stopped and started, stops the bus one bad cycle too early",
+       make<StopOneEarlyAfterRestart>, true},
+      {"inputs_stale_after_id_cycle", "",
+       "keeps the inputs in the first data cycle after an ID cycle that was asked for",
+       make<InputsStaleAfterIdCycle>, true},
+      {"output_after_error_lost", "", "does not take outputs that are written after a rejected cycle",
+       make<OutputAfterErrorLost>, true},
+      {"first_fault_reported_only", "", "reports the peripheral fault of one station only",
+       make<FirstFaultReportedOnly>, true},
+      {"copy_skipped_after_error", "",
+       "does not run the copy task after the first good cycle after a bad one", make<CopySkippedAfterError>,
+       true},
   };
   return table;
 }
@@ -149,7 +165,8 @@ const std::vector<Mutant>& master_mutants() {
   static const std::vector<Mutant> mutants = [] {
     std::vector<Mutant> all;
     for (const Row& row : rows()) {
-      all.push_back({std::string(row.name), std::string(row.label), "master", std::string(row.description)});
+      all.push_back({std::string(row.name), std::string(row.label), "master", std::string(row.description),
+                     row.is_for_check});
     }
     return all;
   }();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "conformance/case_recorder.hpp"
 #include "conformance/interbus/master_cases.hpp"
 #include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/master_sequence.hpp"
 #include "conformance/interbus/network_bench.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
@@ -299,6 +301,7 @@ class InterbusSuite final : public Suite {
     add(master_cases());
     add(network_cases());
     checks_[blank_sequence_case().test_case.id] = [](Run& run) { run.check(blank_sequence_case()); };
+    checks_[master_sequence_role().test_case.id] = [](Run& run) { run.check(MasterCase{}); };
     for (const auto* list : {&slave_mutants(), &master_mutants(), &network_mutants()}) {
       std::ranges::copy_if(*list, std::back_inserter(mutants_),
                            [&](const Mutant& one) { return !only_left_out_cases_name(one); });
@@ -354,10 +357,17 @@ class InterbusSuite final : public Suite {
   }
 
   std::span<const SequenceRole> sequence_roles() const override {
-    return std::span(&slave_sequence_role(), 1);
+    static const std::array roles{slave_sequence_role(), master_sequence_role()};
+    return roles;
   }
   Outcome run_sequence(const SequenceRole& role, const Sequence& sequence,
                        const Setup& setup) const override {
+    if (role.test_case.role() == "master") {
+      const auto play = [&sequence](MasterBench& bench, CaseJudge& judge) {
+        run_master_sequence(sequence, bench, judge);
+      };
+      return Run(role.test_case, setup, given_).run(MasterCase{role.test_case, play});
+    }
     const auto procedure = [&sequence](SlaveBench& bench, CaseJudge& judge) {
       run_slave_sequence(sequence, bench, judge);
     };
