@@ -41,6 +41,7 @@ void MasterBench::power_up(std::vector<VirtualStation> ring) {
     // What is still on its way arrives; no station of the old ring is driven any more.
     back_->set_connected(false);
     master_->on_cycle_end({});
+    ring_->set_script({});
     run_for(10 * kernel::kMillisecond);
     master_->end();
   }

@@ -1,6 +1,7 @@
 #include "conformance/interbus/master_mutants.hpp"
 
 #include "conformance/interbus/master_seeded_faults.hpp"
+#include "conformance/interbus/master_sequence_seeded_faults.hpp"
 
 namespace fieldproof::conformance {
 
@@ -109,6 +110,20 @@ std::vector<MasterMutants::Row> master_rows() {
        mutant<PausesIn<MasterState::locating>>()},
       {"pulse_widths_even", "", "copies pulses of an odd number of cycles one cycle shorter",
        mutant<PulseWidthsEven>()},
+      {"second_mark_accepted", "", "takes a marked status word when the one before was marked, too",
+       mutant<SecondMarkAccepted>(), true},
+      {"stop_one_early_after_restart", "", "once stopped and started, stops the bus one bad cycle too early",
+       mutant<StopOneEarlyAfterRestart>(), true},
+      {"inputs_stale_after_id_cycle", "",
+       "keeps the inputs in the first data cycle after an ID cycle that was asked for",
+       mutant<InputsStaleAfterIdCycle>(), true},
+      {"output_after_error_lost", "", "does not take outputs that are written after a rejected cycle",
+       mutant<OutputAfterErrorLost>(), true},
+      {"first_fault_reported_only", "", "reports the peripheral fault of one station only",
+       mutant<FirstFaultReportedOnly>(), true},
+      {"copy_skipped_after_error", "",
+       "does not run the copy task after the first good cycle after a bad one",
+       mutant<CopySkippedAfterError>(), true},
   };
 }
 

@@ -44,6 +44,11 @@ struct CycleFaults {
     bool check_fits = false;
   };
   std::vector<Flip> flips;
+  struct LevelFlip {
+    std::size_t telegram;
+    unsigned level;  // of the telegram, its start level is 0
+  };
+  std::vector<LevelFlip> level_flips;
   int longer_bits = 0;  // the register is that much longer, or shorter when negative
   int dropped = -1;
   int duplicated = -1;

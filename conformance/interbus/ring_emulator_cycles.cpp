@@ -182,6 +182,9 @@ void RingEmulator::emit(const line::Telegram& telegram, std::uint8_t octet) {
     if (static_cast<int>(flip.telegram) == index && !flip.check_fits) octet ^= flip.mask;
   }
   levels = code_.levels_of(header, octet);
+  for (const CycleFaults::LevelFlip& flip : faults_.level_flips) {
+    if (static_cast<int>(flip.telegram) == index) levels ^= std::uint64_t{1} << flip.level;
+  }
   if (faults_.stop_missing == index) levels &= ~(std::uint64_t{1} << (line::kDataTelegramLevels - 1));
   if (faults_.flag_flipped == index) levels ^= std::uint64_t{1} << flag_level_;
   if (faults_.header_flipped == index) levels ^= std::uint64_t{1} << (flag_level_ == 1 ? 2 : 1);

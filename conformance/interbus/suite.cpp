@@ -86,11 +86,13 @@ void expect_nothing_else(const MasterCase&, const MasterSetting&, const RunningC
 
 RoleRow master_row() {
   return row_of<interbus::MasterRole, interbus::Master>(
-      kMasters, CaseRole<MasterCase, MasterSetting, CycleDissector>{.name = "master",
-                                                                    .cases = master_cases,
-                                                                    .check = expect_nothing_else,
-                                                                    .pics_items = master_pics_items,
-                                                                    .settings = &interbus::kMasterTable});
+      kMasters, CaseRole<MasterCase, MasterSetting, CycleDissector>{
+                    .name = "master",
+                    .cases = master_cases,
+                    .check = expect_nothing_else,
+                    .pics_items = master_pics_items,
+                    .settings = &interbus::kMasterTable,
+                    .sequences = SequenceRow<MasterCase>{master_sequence_role, run_master_sequence}});
 }
 
 // ---- network ----

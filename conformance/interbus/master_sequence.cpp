@@ -1,0 +1,159 @@
+#include "conformance/interbus/master_sequence.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+
+#include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/master_side.hpp"
+#include "conformance/interbus/master_vocabulary.hpp"
+#include "conformance/interbus/slave_cases.hpp"
+#include "protocols/interbus/master.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+std::string cycle_text(std::span<const std::int64_t> values) {
+  if (values[0] != 0) return fmt::format("ID cycle of {} octets", values[1]);
+  return fmt::format("data cycle of {} octets: {:04X}", values[1], fmt::join(values.subspan(2), " "));
+}
+
+std::string inputs_text(std::span<const std::int64_t> values) {
+  return fmt::format("{}, inputs {:04X}", values[0] != 0 ? "accepted" : "rejected",
+                     fmt::join(values.subspan(1), " "));
+}
+
+std::string report_text(std::span<const std::int64_t> values) {
+  if (values[0] == 0) return "not in run";
+  return fmt::format("run, quality bit {}, messages and place of the last fault {}", values[1],
+                     fmt::join(values.subspan(2), " "));
+}
+
+std::string state_text(std::span<const std::int64_t> values) {
+  const auto state = interbus::name(static_cast<interbus::MasterState>(values[0]));
+  return fmt::format("{}{}{}{}", state, values[1] != 0 ? ", configuration refused" : "",
+                     values.size() > 2 ? ", stations or place of the fault " : "",
+                     fmt::join(values.subspan(2), " "));
+}
+
+constexpr EventKind kCycles{"cycles", "no_data_cycle", "cycle_unasked", "cycle_wrong", cycle_text};
+constexpr EventKind kInputs{"verdicts", "no_data_cycle", "cycle_unasked", "inputs_wrong", inputs_text};
+constexpr EventKind kReports{"reports", "no_data_cycle", "cycle_unasked", "report_wrong", report_text};
+constexpr EventKind kStates{"states", "state_missing", "state_unasked", "state_wrong", state_text};
+
+// As many as a sequence has: the printed window takes a million cycles.
+constexpr unsigned kQualityBadCycles = 3;
+constexpr unsigned kQualityWindow = 20;
+
+class MasterSequenceRun {
+ public:
+  MasterSequenceRun(MasterBench& bench, CaseJudge& judge)
+      : judge_(judge),
+        twin_(make_master("ref"), 1, Volume::quick),
+        sides_{MasterSide(bench, &judge), MasterSide(twin_, nullptr)} {
+    judge.use_decode([&bench] { return bench.ring().describe_last(6); });
+    for (MasterSide& side : sides_) {
+      side.bench().rules().quality_bad_cycles = kQualityBadCycles;
+      side.bench().rules().quality_window_cycles = kQualityWindow;
+    }
+  }
+
+  void run(const Sequence& sequence) {
+    power({.ring = ring_of(0)});
+    for (const SequenceCommand& command : sequence) {
+      for (MasterSide& side : sides_) execute(side, command);
+      compare();
+    }
+    for (MasterSide& side : sides_) side.cycle();
+    compare();
+  }
+
+ private:
+  void power(const MasterScene& scene) {
+    for (MasterSide& side : sides_) side.power(scene);
+    compare();
+  }
+
+  static void execute(MasterSide& side, const SequenceCommand& command) {
+    const auto& numbers = command.numbers;
+    const auto word = [&](std::size_t n) { return static_cast<std::uint16_t>(numbers.at(n)); };
+    const interbus::Rules& rules = side.bench().rules();
+    switch (static_cast<MasterWord>(command.word)) {
+      case MasterWord::cycles:
+      case MasterWord::lost:
+      case MasterWord::bad:
+        return cycles(side, command, numbers[0]);
+      case MasterWord::inputs:
+        return side.offer(word(0), word(1));
+      case MasterWord::outputs:
+        return side.write_all(word(0), word(1));
+      case MasterWord::output:
+        return side.write(word(0), word(1));
+      case MasterWord::identify:
+        return side.request_id_cycle();
+      case MasterWord::messages: {
+        const unsigned bits = ((numbers[1] & 1) != 0 ? rules.message_peripheral_fault : 0U) |
+                              ((numbers[1] & 2) != 0 ? rules.message_reconfiguration : 0U);
+        return side.set_messages(word(0), static_cast<std::uint16_t>(bits));
+      }
+      case MasterWord::cut:
+        return side.cut_before(word(0));
+      case MasterWord::ring:
+        return side.replace_ring(changed_ring(side.bench().ring().stations(), numbers[0], numbers[1]));
+      case MasterWord::stop:
+        return side.stop();
+      case MasterWord::start:
+        return side.start(word(0));
+      case MasterWord::power:
+        return side.power(scene_of(command));
+      case MasterWord::wait:
+        return side.wait(numbers[0] * kernel::kMillisecond);
+      default:
+        return cycles(side, command, 1);
+    }
+  }
+
+  static void cycles(MasterSide& side, const SequenceCommand& command, std::int64_t count) {
+    const auto faults = faults_of(command, side.bench().ring().stations().size());
+    for (std::int64_t n = 0; n < count; ++n) side.cycle(faults);
+  }
+
+  void compare() {
+    MasterSide& iut = sides_[0];
+    MasterSide& twin = sides_[1];
+    compare_events(kStates, iut.states(), std::span(&twin.states(), 1), true, judge_);
+    compare_events(kCycles, iut.cycles(), std::span(&twin.cycles(), 1), true, judge_);
+    compare_events(kInputs, iut.inputs(), std::span(&twin.inputs(), 1), true, judge_);
+    compare_events(kReports, iut.reports(), std::span(&twin.reports(), 1), true, judge_);
+    for (MasterSide& side : sides_) side.clear_observations();
+  }
+
+  CaseJudge& judge_;
+  MasterBench twin_;  // with the reference
+  std::array<MasterSide, 2> sides_;
+};
+
+}  // namespace
+
+const SequenceRole& master_sequence_role() {
+  static const SequenceRole role{
+      {.id = "interbus/master/check/follows_the_reference",
+       .purpose = "check",
+       .requirement =
+           "Whatever comes back and is ordered in whatever order, a master accepts right cycles and no "
+           "others, shows their inputs, sends the outputs of its application, and reports what it finds.",
+       .reference = sources::from_memory("what a master does with a cycle, with its ring and its orders"),
+       .stimulus = "Answers, orders and rings at random, with flipped levels and lost telegrams.",
+       .expected = "What the reference sends and reports when it is answered and ordered the same.",
+       .tags = {},
+       .catches = {}},
+      master_vocabulary()};
+  return role;
+}
+
+void run_master_sequence(const Sequence& sequence, MasterBench& bench, CaseJudge& judge) {
+  MasterSequenceRun(bench, judge).run(sequence);
+}
+
+}  // namespace fieldproof::conformance

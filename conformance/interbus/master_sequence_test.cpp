@@ -1,0 +1,98 @@
+#include "conformance/interbus/master_sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "conformance/interbus/suite.hpp"
+#include "conformance/sequence_check.hpp"
+#include "conformance/sequence_draw.hpp"
+#include "harness/kernel/sanitized.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+const Suite& suite_with_masters() {
+  static const std::unique_ptr<Suite> suite = interbus_suite();
+  return *suite;
+}
+
+SequenceSearch master_search_of(const std::string& uri, std::uint64_t cases) {
+  SequenceSearch one;
+  one.suite = &suite_with_masters();
+  one.role = &master_sequence_role();
+  one.setup.implementations = {{"master", 0, uri}};
+  one.cases = cases;
+  return one;
+}
+
+std::string master_lines(const Sequence& sequence) {
+  std::string text;
+  for (const std::string& line : sequence_lines(sequence, master_sequence_role().vocabulary))
+    text += line + "\n";
+  return text;
+}
+
+std::string master_lines(const SequenceSearchResult& result) {
+  if (!result.found) return "";
+  return result.found->outcome.result.reason + "\n" + master_lines(result.found->smallest);
+}
+
+std::vector<std::string> masters(bool are_for_check) {
+  std::vector<std::string> names;
+  for (const Mutant& mutant : suite_with_masters().mutants()) {
+    if (mutant.role == "master" && mutant.is_for_check == are_for_check) names.push_back(mutant.name);
+  }
+  return names;
+}
+
+TEST(MasterSequence, TheReferenceIsNeverAccused) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    SequenceSearch one = master_search_of("ref", kernel::kIsSanitized ? 200 : 2'000);
+    one.setup.seed = seed;
+    const SequenceSearchResult result = search(one);
+    EXPECT_EQ(result.passed, one.cases) << seed << "\n" << master_lines(result);
+  }
+}
+
+TEST(MasterSequence, FindsEachMasterForCheckWithAtMostFiveCommands) {
+  ASSERT_EQ(masters(true).size(), 6U);
+  for (const std::string& name : masters(true)) {
+    const SequenceSearchResult result = search(master_search_of("mutant:" + name, 5'000));
+    ASSERT_TRUE(result.found) << name;
+    EXPECT_TRUE(result.found->is_confirmed) << name;
+    EXPECT_LE(result.found->smallest.size(), 5U) << name << "\n" << master_lines(result);
+    EXPECT_GE(result.found->smallest.size(), 2U) << name << "\n" << master_lines(result);
+  }
+}
+
+// Else it would be no fault of sequences.
+TEST(MasterSequence, NoSingleCommandTellsThem) {
+  const SequenceSource source(master_sequence_role().vocabulary, 1);
+  std::vector<Sequence> single;
+  for (std::uint64_t n = 0; single.size() < (kernel::kIsSanitized ? 50U : 300U); ++n) {
+    for (const SequenceCommand& command : source.draw(n)) single.push_back({command});
+  }
+  for (const std::string& name : masters(true)) {
+    for (const Sequence& sequence : single) {
+      const Outcome outcome = run_sequence(suite_with_masters(), master_sequence_role(), sequence,
+                                           master_search_of("mutant:" + name, 1).setup);
+      EXPECT_EQ(outcome.result.verdict, judge::Verdict::pass) << name << "\n" << master_lines(sequence);
+    }
+  }
+}
+
+// What a case needs a larger ring, another clock or the time of a cycle for.
+TEST(MasterSequence, FindsWhatTheCatalogueNames) {
+  const std::set<std::string> outside{"counter_saturates", "no_clock_tolerance", "point_limit_ignored",
+                                      "request_taken_as_it_is", "station_limit_ignored"};
+  std::set<std::string> passed;
+  for (const std::string& name : masters(false)) {
+    const std::uint64_t cases = outside.contains(name) ? 100 : 5'000;
+    if (!search(master_search_of("mutant:" + name, cases)).found) passed.insert(name);
+  }
+  EXPECT_EQ(passed, outside);
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance

@@ -1,0 +1,375 @@
+#include "conformance/interbus/master_side.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "protocols/interbus/network.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using interbus::CycleFaults;
+using interbus::MasterState;
+using interbus::MasterStatus;
+using interbus::SeenCycle;
+using interbus::VirtualStation;
+
+// Who looks for a fault waits until all stations are in reset, and begins with a ring that is ready again.
+constexpr kernel::Duration kIdle = 60 * kernel::kMillisecond;
+constexpr int kMostIdles = 20;
+
+std::vector<interbus::FoundStation> found(const std::vector<VirtualStation>& ring) {
+  std::vector<interbus::FoundStation> stations;
+  for (const VirtualStation& one : ring)
+    stations.push_back({one.id_code, one.words, one.before, one.on_branch});
+  return stations;
+}
+
+CycleFaults changed_answer() {
+  CycleFaults faults;
+  faults.flips = {{0, 0x01, false}};
+  return faults;
+}
+
+}  // namespace
+
+MasterSide::MasterSide(MasterBench& bench, CaseJudge* judge) : bench_(bench), judge_(judge) {}
+MasterSide::~MasterSide() = default;
+
+void MasterSide::clear_observations() {
+  for (Observations* all : {&cycles_, &inputs_, &reports_, &states_}) all->clear();
+}
+
+void MasterSide::expect(bool holds, std::string_view reason, std::string_view expected,
+                        std::string_view actual) const {
+  if (judge_ != nullptr) judge_->expect(holds, reason, expected, actual);
+}
+
+// ---- power, start and stop ----
+
+void MasterSide::power(const MasterScene& scene) {
+  interbus::MasterConfiguration& configuration = bench_.configuration();
+  configuration.expected = found(scene.expected);
+  configuration.cycle_time = scene.cycle_time;
+  unsigned words = 0;
+  for (const VirtualStation& one : scene.ring) words += one.words;
+  configuration.copy.clear();
+  if (scene.copies && words > 0) configuration.copy = {{0, words - 1}};
+  disturbed_ = scene.disturbed;
+  is_stopped_ = false;
+  is_ring_right_ = true;
+  armed_.reset();
+  returned_ = std::make_unique<ReturnedLine>(bench_.rules());
+  bench_.set_script([this](const interbus::RingEmulator::CycleInfo&, CycleFaults& f) { on_ring_cycle(f); });
+  bench_.power_up(scene.ring);
+  bench_.tap_arrived(*returned_);
+  await_run();
+  judge_silence();
+}
+
+void MasterSide::on_ring_cycle(CycleFaults& faults) {
+  returned_->begin();
+  if (disturbed_ > 0) {
+    --disturbed_;
+    faults = changed_answer();
+  } else if (armed_) {
+    faults = *std::exchange(armed_, std::nullopt);
+  }
+}
+
+bool MasterSide::is_idle() const {
+  const MasterState state = bench_.status().state;
+  return state == MasterState::off || state == MasterState::bus_stop;
+}
+
+void MasterSide::start(unsigned disturbed) {
+  if (!is_idle()) return;
+  disturbed_ = disturbed;
+  is_stopped_ = false;
+  is_ring_right_ = true;
+  const std::uint64_t before = bench_.ring().cycle_count();
+  bench_.start();
+  await_run();
+  // Before the first cycle it was silent, as it must.
+  bench_.ring().forget_statistics();
+  if (!bench_.ring().has_cycle(before)) return;
+  expect(bench_.ring().cycle(before).is_id_cycle, "restart_without_id_cycle", "an ID cycle first",
+         "a data cycle first");
+}
+
+void MasterSide::await_run() {
+  bench_.run_until([this] { return !is_idle(); }, 10 * kernel::kMillisecond);
+  if (bench_.wait_for_run()) return enter_run();
+  if (is_idle()) settle();
+  note_state(false);
+}
+
+// What the recognition leaves after is not compared: the application asks for an ID cycle, writes all
+// outputs, and looks when both have been on the line.
+void MasterSide::enter_run() {
+  has_rejected_ = false;
+  disturbed_ = 0;
+  write_all(0, 0);
+  bench_.request_id_cycle();
+  bool has_identified = false;
+  unsigned good = 0;
+  for (int n = 0; n < 8 && (!has_identified || good < 2); ++n) {
+    if (!bench_.run_cycle()) break;
+    if (!bench_.finished().is_data) {
+      has_identified = true;
+      good = 0;
+    } else if (bench_.finished().is_accepted) {
+      ++good;
+    }
+  }
+  expect(has_identified && good == 2, "does_not_work_again",
+         "an ID cycle that was asked for and two good data cycles within 8 cycles",
+         has_identified ? "no good data cycles" : "no ID cycle");
+  held_ = image();
+  data_cycles_ = rejected_ = 0;
+  at_entry_ = bench_.status();
+  note_state(false);
+}
+
+void MasterSide::stop() {
+  if (is_stopped_) return;
+  const bool was_running = is_running();
+  is_stopped_ = true;
+  const std::uint64_t before = bench_.ring().cycle_count();
+  bench_.stop();
+  bench_.run_until([this] { return bench_.status().state == MasterState::off; }, kernel::kSecond);
+  bench_.run_for(kernel::kMillisecond);
+  if (was_running && is_ring_right_) {
+    const SeenCycle& last = bench_.ring().last_cycle();
+    bool is_zero = bench_.ring().cycle_count() > before && !last.is_id_cycle;
+    for (unsigned word = 0; word < bench_.ring().word_count(); ++word)
+      is_zero = is_zero && bench_.ring().output(word) == 0;
+    expect(is_zero, "outputs_not_cleared", "a last data cycle with outputs 0", "no such cycle");
+  }
+  const std::uint64_t cycles = bench_.ring().cycle_count();
+  bench_.run_for(kIdle);
+  expect(bench_.ring().cycle_count() == cycles, "not_silent", "no cycle when it is stopped", "cycles");
+  note_state(false);
+}
+
+// Until it has nothing more to do with a bus that it has given up.
+void MasterSide::settle() {
+  for (int n = 0; n < kMostIdles; ++n) {
+    const std::uint64_t before = bench_.ring().cycle_count();
+    bench_.run_for(kIdle);
+    if (bench_.ring().cycle_count() == before && is_idle()) return;
+  }
+}
+
+void MasterSide::wait(kernel::Duration duration) {
+  if (is_running()) return;
+  const std::uint64_t before = bench_.ring().cycle_count();
+  bench_.run_for(duration);
+  if (!is_stopped_) return;
+  expect(bench_.ring().cycle_count() == before, "not_silent", "no cycle when it is stopped", "cycles");
+}
+
+// ---- application and stations ----
+
+void MasterSide::write(unsigned word, std::uint16_t value) {
+  if (!is_running() || !is_ring_right_ || word >= bench_.ring().word_count()) return;
+  unsigned first = 0;
+  for (const VirtualStation& station : bench_.ring().stations()) {
+    const bool is_of_station = word < first + station.words;
+    first += station.words;
+    if (!is_of_station) continue;
+    if (interbus::has_outputs(station.id_code)) bench_.write_output(word, value);
+    return;
+  }
+}
+
+void MasterSide::write_all(std::uint16_t even, std::uint16_t odd) {
+  for (unsigned word = 0; word < bench_.ring().word_count(); ++word) write(word, word % 2 == 0 ? even : odd);
+}
+
+void MasterSide::request_id_cycle() {
+  if (is_running()) bench_.request_id_cycle();
+}
+
+void MasterSide::offer(std::uint16_t even, std::uint16_t odd) {
+  for (unsigned word = 0; word < bench_.ring().word_count(); ++word)
+    bench_.ring().set_input(word, word % 2 == 0 ? even : odd);
+}
+
+void MasterSide::set_messages(std::size_t station, std::uint16_t bits) {
+  bench_.ring().set_messages(station % bench_.ring().stations().size(), bits);
+}
+
+void MasterSide::cut_before(std::size_t station) {
+  if (!is_running()) return;
+  const auto& stations = bench_.ring().stations();
+  bench_.ring().cut_after(stations[station % stations.size()].before);
+  is_ring_right_ = false;
+  for (unsigned n = 0; n < 2 * bench_.rules().stop_after_bad_cycles && is_running(); ++n) cycle();
+  if (!is_running()) bench_.run_until([this] { return bench_.status().has_fault_location; }, kernel::kSecond);
+  note_state(true);
+  bench_.ring().mend();
+}
+
+void MasterSide::replace_ring(std::vector<VirtualStation> ring) {
+  bench_.ring().replace_ring(std::move(ring));
+  is_ring_right_ = false;
+}
+
+// ---- cycles ----
+
+void MasterSide::cycle(const CycleFaults& faults) {
+  if (!is_running()) return;
+  armed_ = faults;
+  if (!run_cycle()) return;
+  if (is_running()) return;
+  armed_.reset();
+  settle();
+  note_state(false);
+}
+
+bool MasterSide::run_cycle() {
+  const bool must_identify = has_rejected_;
+  const bool has_ended = bench_.run_cycle();
+  expect(has_ended, "no_data_cycle", "the master goes on with cycles", "no cycle ends any more");
+  if (!has_ended) return false;
+  expect(!must_identify || !bench_.finished().is_data, "no_id_cycle_after_error",
+         "an ID cycle after a rejected cycle", "a data cycle");
+  has_rejected_ = !bench_.finished().is_accepted;
+  judge_cycle(bench_.ring().last_cycle());
+  note_cycle();
+  judge_counters();
+  return true;
+}
+
+void MasterSide::judge_cycle(const SeenCycle& sent) {
+  if (judge_ == nullptr) return;
+  expect(sent.in_phase, "phase_wrong", "headers as the phase requires", sent.describe());
+  expect(sent.check_good, "check_wrong", "a check that fits what was sent", sent.describe());
+  expect(sent.is_id_cycle != bench_.finished().is_data, "cycle_only_claimed",
+         "a cycle of the kind that it reports", sent.describe());
+  const Arrival arrival = returned_->judge(sent, bench_.finished().end);
+  const bool accepted = bench_.finished().is_accepted;
+  expect(!accepted || arrival != Arrival::wrong, "wrong_cycle_accepted", "a cycle with errors is rejected",
+         "it is accepted");
+  expect(accepted || arrival != Arrival::right, "right_cycle_rejected", "a cycle without errors is accepted",
+         "it is rejected");
+  judge_inputs(sent, arrival);
+  judge_silence();
+}
+
+// The words of the last station came first, those of each station in their order.
+void MasterSide::judge_inputs(const SeenCycle& sent, Arrival arrival) {
+  // Of another ring nobody can say where its words belong.
+  if (!is_ring_right_) {
+    held_ = image();
+    return;
+  }
+  const bool brings = !sent.is_id_cycle && bench_.finished().is_accepted && arrival != Arrival::wrong;
+  std::vector<std::uint16_t> right = held_;
+  if (brings) {
+    const auto places = input_places();
+    for (std::size_t n = 0; n < places.size(); ++n) right[n] = returned_->word(places[n]);
+  }
+  const std::vector<std::uint16_t> seen = image();
+  if (is_running() && seen != right) {
+    judge_->fail(brings ? "new_inputs_missed" : "inputs_not_held",
+                 {{fmt::format("inputs {:04X}h", fmt::join(right, "h "))},
+                  fmt::format("{:04X}h", fmt::join(seen, "h "))});
+  }
+  held_ = seen;
+}
+
+// By input word: where it stands among those that come back.
+std::vector<std::size_t> MasterSide::input_places() const {
+  std::vector<std::size_t> places;
+  std::size_t behind = bench_.ring().word_count();
+  for (const VirtualStation& station : bench_.ring().stations()) {
+    behind -= station.words;
+    for (unsigned word = 0; word < station.words && interbus::has_inputs(station.id_code); ++word)
+      places.push_back(behind + word);
+  }
+  return places;
+}
+
+std::vector<std::uint16_t> MasterSide::image() const {
+  std::vector<std::uint16_t> values;
+  unsigned first = 0;
+  for (const VirtualStation& station : bench_.ring().stations()) {
+    for (unsigned word = 0; word < station.words && interbus::has_inputs(station.id_code); ++word)
+      values.push_back(bench_.master().input(first + word));
+    first += station.words;
+  }
+  return values;
+}
+
+void MasterSide::judge_counters() {
+  if (bench_.finished().is_data) {
+    ++data_cycles_;
+    rejected_ += bench_.finished().is_accepted ? 0U : 1U;
+  }
+  if (judge_ == nullptr || !is_running()) return;
+  const MasterStatus status = bench_.status();
+  judge_->expect_equal(status.data_cycles - at_entry_.data_cycles, data_cycles_, "counter_wrong",
+                       "data cycles");
+  judge_->expect_equal(status.rejected_data_cycles - at_entry_.rejected_data_cycles, rejected_,
+                       "counter_wrong", "rejected data cycles");
+}
+
+void MasterSide::judge_silence() {
+  const kernel::Duration longest = bench_.ring().statistics().longest_silence;
+  bench_.ring().forget_statistics();
+  expect(longest <= bench_.rules().silence_limit, "silence_too_long",
+         fmt::format("a telegram each {}", kernel::describe(bench_.rules().silence_limit)),
+         kernel::describe(longest));
+}
+
+// ---- what is compared ----
+
+void MasterSide::note_cycle() {
+  const SeenCycle& sent = bench_.ring().last_cycle();
+  const kernel::Time when = sent.start;
+  Values cycle{sent.is_id_cycle ? 1 : 0, static_cast<std::int64_t>(sent.transfer_octets)};
+  // Of an ID cycle the acknowledgement is compared, no more: how interfaces are switched is the
+  // recognition's.
+  const std::size_t words = sent.transfer_octets / 2;
+  for (std::size_t n = 0; n < words; ++n) {
+    const auto word = sent.word(2 * n).value_or(0);
+    if (!sent.is_id_cycle) cycle.push_back(word);
+  }
+  cycles_.push_back({cycle, when});
+  const std::vector<std::uint16_t> held = image();
+  Values inputs{bench_.finished().is_accepted ? 1 : 0};
+  inputs.insert(inputs.end(), held.begin(), held.end());
+  inputs_.push_back({inputs, when});
+  const MasterStatus status = bench_.status();
+  const bool is_in_run = status.state == MasterState::run;
+  Values report{is_in_run ? 1 : 0, is_in_run && status.quality_bit ? 1 : 0};
+  if (is_in_run) {
+    report.push_back(static_cast<std::int64_t>(status.peripheral_faults.size()));
+    report.insert(report.end(), status.peripheral_faults.begin(), status.peripheral_faults.end());
+    report.insert(report.end(), status.reconfigurations.begin(), status.reconfigurations.end());
+    report.push_back(status.has_fault_location ? 1 : 0);
+    report.push_back(status.has_fault_location ? status.fault_location.from : 0);
+    report.push_back(status.has_fault_location ? status.fault_location.to : 0);
+  }
+  reports_.push_back({report, when});
+}
+
+void MasterSide::note_state(bool is_located) {
+  const MasterStatus status = bench_.status();
+  Values state{static_cast<std::int64_t>(status.state), status.configuration_error.empty() ? 0 : 1};
+  if (status.state == MasterState::run) {
+    for (const interbus::FoundStation& one : status.stations)
+      state.insert(state.end(), {one.id_code, one.words, one.before, one.on_branch ? 1 : 0});
+  }
+  if (is_located) {
+    state.insert(state.end(),
+                 {status.has_fault_location ? 1 : 0, status.fault_location.from, status.fault_location.to});
+  }
+  states_.push_back({state, bench_.now()});
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "conformance/comparison/observation.hpp"
+#include "conformance/interbus/master_bench.hpp"
+#include "conformance/interbus/returned_line.hpp"
+
+// One of the two benches of a sequence for a master: what the tester does there as ring and as application,
+// and what the master makes of each cycle.
+//
+// What is compared begins in run: how a ring is recognised is the master's choice, its result is not. Between
+// commands the master stands right after a cycle, or has no cycles: it is off, or has given up the bus.
+//
+// Whoever is judged is held to what no master may do, whatever the reference does:
+//   what it sends has the headers of its phase and a check that fits, and begins with an ID cycle
+//   it accepts what came back if, and only if, that is the cycle that it sent
+//   inputs are those of the last accepted data cycle, as a whole
+//   it counts the data cycles, and those that it rejected
+//   an ID cycle follows a rejected cycle
+//   it is never silent for longer than stations wait for a sign of life, unless it has given up the bus
+//   on a ring without faults it runs within the published number of cycles after the last fault
+//   it sends no cycle when it is stopped, and its last one sets the outputs to 0
+namespace fieldproof::conformance {
+
+// What a master finds when its supply comes.
+struct MasterScene {
+  std::vector<interbus::VirtualStation> ring;
+  std::vector<interbus::VirtualStation> expected{};  // empty: any ring is taken
+  bool copies = false;                               // the first input word to the last output word
+  kernel::Duration cycle_time{};
+  unsigned disturbed = 0;  // the first cycles come back changed
+};
+
+class MasterSide {
+ public:
+  // `judge`: of what no master may do; null: it is not judged.
+  MasterSide(MasterBench& bench, CaseJudge* judge);
+  ~MasterSide();
+  MasterSide(const MasterSide&) = delete;
+  MasterSide& operator=(const MasterSide&) = delete;
+
+  const Observations& cycles() const { return cycles_; }
+  const Observations& inputs() const { return inputs_; }
+  const Observations& reports() const { return reports_; }
+  const Observations& states() const { return states_; }
+  void clear_observations();
+  bool is_running() const { return bench_.is_in_run(); }
+  MasterBench& bench() { return bench_; }
+
+  void power(const MasterScene& scene);
+  // Nothing unless it is off or has given up the bus.
+  void start(unsigned disturbed);
+  void stop();
+  // In run, up to the end of the next cycle, which suffers the faults.
+  void cycle(const interbus::CycleFaults& faults = {});
+  // The application; nothing unless it is in run.
+  void write(unsigned word, std::uint16_t value);
+  void write_all(std::uint16_t even, std::uint16_t odd);
+  void request_id_cycle();
+  // The stations.
+  void offer(std::uint16_t even, std::uint16_t odd);
+  void set_messages(std::size_t station, std::uint16_t bits);
+  // The cable in front of the station is cut until the master has given up the bus.
+  void cut_before(std::size_t station);
+  void replace_ring(std::vector<interbus::VirtualStation> ring);
+  void wait(kernel::Duration duration);
+
+ private:
+  using Values = std::vector<std::int64_t>;
+
+  bool is_idle() const;
+  void on_ring_cycle(interbus::CycleFaults& faults);
+  void await_run();
+  void enter_run();
+  void settle();
+  bool run_cycle();
+  void note_cycle();
+  void note_state(bool is_located);
+  void judge_cycle(const interbus::SeenCycle& sent);
+  void judge_inputs(const interbus::SeenCycle& sent, Arrival arrival);
+  void judge_counters();
+  void judge_silence();
+  void expect(bool holds, std::string_view reason, std::string_view expected, std::string_view actual) const;
+  std::vector<std::uint16_t> image() const;
+  std::vector<std::size_t> input_places() const;
+
+  MasterBench& bench_;
+  CaseJudge* judge_;
+  std::unique_ptr<ReturnedLine> returned_;
+  std::optional<interbus::CycleFaults> armed_;
+  unsigned disturbed_ = 0;
+  bool is_stopped_ = false;
+  bool has_rejected_ = false;  // the last cycle
+  bool is_ring_right_ = true;  // the one that it runs on
+  std::vector<std::uint16_t> held_;
+  std::uint64_t data_cycles_ = 0;  // in this run
+  std::uint64_t rejected_ = 0;
+  interbus::MasterStatus at_entry_;
+  Observations cycles_;
+  Observations inputs_;
+  Observations reports_;
+  Observations states_;
+};
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,217 @@
+#include "conformance/interbus/master_vocabulary.hpp"
+
+#include <array>
+#include <utility>
+
+#include "harness/line/telegram.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using interbus::CycleFaults;
+using interbus::VirtualStation;
+
+constexpr std::array<std::int64_t, 4> kCounts{1, 2, 3, 12};
+constexpr std::array<std::int64_t, 6> kBadCounts{1, 2, 1, 8, 9, 10};
+constexpr std::array<std::int64_t, 5> kImageWords{0x0000, 0xFFFF, 0x0001, 0x8000, 0xA55A};
+constexpr std::array<std::int64_t, 6> kShifts{-16, -8, -1, 1, 8, 16};
+constexpr std::array<std::int64_t, 3> kMasks{0x01, 0x80, 0xFF};
+constexpr std::array<std::int64_t, 4> kFirstTelegrams{0, 1, 2, 3};
+constexpr std::array<std::int64_t, 3> kRequests{0, 0, 40};
+constexpr std::array<std::int64_t, 3> kMilliseconds{1, 30, 100};
+constexpr std::array<std::int64_t, 4> kExpectations{0, 1, 1, 2};
+// Of a cycle of the largest ring.
+constexpr unsigned kMostTelegrams = 14;
+constexpr std::int64_t kRings = 6;
+constexpr std::int64_t kMostStations = 4;
+
+SequenceNumber image_word(std::string_view name) {
+  return {name, 0, 0xFFFF, 0, kImageWords};
+}
+SequenceNumber station() {
+  return {"station", 0, kMostStations - 1, 0};
+}
+SequenceNumber telegram() {
+  return {"telegram", 0, kMostTelegrams - 1, 0, kFirstTelegrams};
+}
+SequenceNumber disturbed() {
+  return {"disturbed", 0, 3, 0};
+}
+
+std::vector<SequenceWord> words_of_answers() {
+  return {{.word = "cycles",
+           .meaning = "so many cycles come back as they are",
+           .numbers = {{"count", 1, 30, 1, kCounts}},
+           .weight = 6},
+          {.word = "changed",
+           .meaning = "a cycle comes back with flipped levels and without some telegrams",
+           .units = kMostTelegrams,
+           .weight = 6},
+          {.word = "forged",
+           .meaning = "an octet comes back changed, with a check that fits",
+           .numbers = {telegram(), {"mask", 1, 0xFF, 1, kMasks}},
+           .weight = 3},
+          {.word = "extra",
+           .meaning = "one telegram comes back twice, one is in front of it, or one is after the last",
+           .numbers = {{"kind", 0, 3, 0}, telegram()},
+           .weight = 2},
+          {.word = "marked",
+           .meaning = "a station marks the status word and reports that its check did not fit",
+           .numbers = {station()},
+           .weight = 3},
+          {.word = "shifted",
+           .meaning = "the register is so many bits longer, or shorter",
+           .numbers = {{"bits", -16, 16, 1, kShifts}},
+           .weight = 2},
+          {.word = "lost",
+           .meaning = "so many cycles do not come back, the line holds a level",
+           .numbers = {{"count", 1, 12, 1, kBadCounts}, {"level", 0, 1, 1}},
+           .weight = 3},
+          {.word = "bad",
+           .meaning = "so many cycles come back with one bit changed",
+           .numbers = {{"count", 1, 12, 1, kBadCounts}},
+           .weight = 4}};
+}
+
+std::vector<SequenceWord> words_of_users() {
+  return {{.word = "inputs",
+           .meaning = "the inputs of the stations stand like this",
+           .numbers = {image_word("even"), image_word("odd")},
+           .weight = 5},
+          {.word = "outputs",
+           .meaning = "the application writes all outputs",
+           .numbers = {image_word("even"), image_word("odd")},
+           .weight = 3},
+          {.word = "output",
+           .meaning = "the application writes one output",
+           .numbers = {{"word", 0, 7, 0}, image_word("value")},
+           .weight = 2},
+          {.word = "identify", .meaning = "the application asks for an ID cycle", .weight = 3},
+          {.word = "messages",
+           .meaning = "a station has a peripheral fault (1) and asks to be reconfigured (2)",
+           .numbers = {station(), {"bits", 0, 3, 1}},
+           .weight = 3}};
+}
+
+std::vector<SequenceWord> words_of_rings() {
+  return {{.word = "cut",
+           .meaning = "the cable in front of a station is cut until the bus is given up",
+           .numbers = {station()},
+           .weight = 1},
+          {.word = "ring",
+           .meaning = "another station of the same length, one more, or one less",
+           .numbers = {{"change", 0, 2, 0}, station()},
+           .weight = 1},
+          {.word = "stop", .meaning = "the application stops the bus", .weight = 2},
+          {.word = "start",
+           .meaning = "the application starts the bus; the first cycles come back changed",
+           .numbers = {disturbed()},
+           .weight = 4},
+          {.word = "power",
+           .meaning = "the supply goes and comes, with a ring, and the configuration expects any (0), this "
+                      "or another one (2)",
+           .numbers = {{"ring", 0, kRings - 1, 0},
+                       {"expects", 0, 2, 0, kExpectations},
+                       {"copies", 0, 1, 0},
+                       {"cycle_ms", 0, 40, 0, kRequests, true},
+                       disturbed()},
+           .weight = 2},
+          {.word = "wait",
+           .meaning = "so many milliseconds without cycles",
+           .numbers = {{"ms", 1, 200, 1, kMilliseconds}},
+           .weight = 1}};
+}
+
+}  // namespace
+
+SequenceVocabulary master_vocabulary() {
+  SequenceVocabulary vocabulary{
+      .words = words_of_answers(), .unit = "telegram", .levels_per_unit = line::kDataTelegramLevels};
+  for (auto group : {words_of_users, words_of_rings}) {
+    for (SequenceWord& word : group()) vocabulary.words.push_back(std::move(word));
+  }
+  return vocabulary;
+}
+
+std::vector<VirtualStation> ring_of(std::int64_t number) {
+  switch (number) {
+    case 0:
+      return interbus::line_of(2, 0x0103, 1);
+    case 1:
+      return paper_ring();
+    case 2:
+      return interbus::line_of(1, 0x0203, 2);
+    case 3:
+      return interbus::line_of(4, 0x0103, 1);
+    case 4:
+      return interbus::line_of(1, 0x0603, 8);
+    default:
+      return {{0x0103, 1, -1, false}, {0x0008, 0, 0, false}, {0x01BE, 1, 1, true}, {0x0203, 2, 1, false}};
+  }
+}
+
+std::vector<VirtualStation> changed_ring(std::vector<VirtualStation> ring, std::int64_t change,
+                                         std::int64_t station) {
+  constexpr std::uint16_t kOtherType = 0x0040;
+  const std::size_t place = static_cast<std::size_t>(station) % ring.size();
+  if (change == 0) {
+    ring[place].id_code ^= kOtherType;
+  } else if (change == 1) {
+    ring.push_back({0x0103, 1, static_cast<int>(ring.size()) - 1, false});
+  } else if (ring.size() > 1) {
+    ring.pop_back();
+  }
+  return ring;
+}
+
+MasterScene scene_of(const SequenceCommand& command) {
+  const auto& numbers = command.numbers;
+  MasterScene scene{.ring = ring_of(numbers[0])};
+  if (numbers[1] == 1) scene.expected = scene.ring;
+  if (numbers[1] == 2) scene.expected = ring_of((numbers[0] + 1) % kRings);
+  scene.copies = numbers[2] != 0;
+  scene.cycle_time = numbers[3] * kernel::kMillisecond;
+  scene.disturbed = static_cast<unsigned>(numbers[4]);
+  return scene;
+}
+
+CycleFaults faults_of(const SequenceCommand& command, std::size_t stations) {
+  CycleFaults faults;
+  const auto& numbers = command.numbers;
+  const auto number = [&](std::size_t n) { return static_cast<int>(numbers.at(n)); };
+  switch (static_cast<MasterWord>(command.word)) {
+    case MasterWord::changed:
+      for (const SequenceFault& fault : command.faults) {
+        if (fault.kind == SequenceFaultKind::flip && fault.value < line::kDataTelegramLevels)
+          faults.level_flips.push_back({fault.unit, fault.value});
+        if (fault.kind == SequenceFaultKind::drop) faults.dropped = static_cast<int>(fault.unit);
+      }
+      break;
+    case MasterWord::forged:
+      faults.flips = {{static_cast<std::size_t>(number(0)), static_cast<std::uint8_t>(number(1)), true}};
+      break;
+    case MasterWord::extra:
+      if (number(0) == 0) faults.duplicated = number(1);
+      if (number(0) == 1) faults.inserted = number(1);
+      if (number(0) == 2) faults.trailing_telegram = true;
+      if (number(0) == 3) faults.status_flag_flipped = true;
+      break;
+    case MasterWord::marked:
+      faults.marked_by = number(0) % static_cast<int>(stations);
+      break;
+    case MasterWord::shifted:
+      faults.longer_bits = number(0);
+      break;
+    case MasterWord::lost:
+      faults.stuck = number(1) != 0;
+      break;
+    case MasterWord::bad:
+      faults.flips = {{0, 0x01, false}};
+      break;
+    default:
+      break;
+  }
+  return faults;
+}
+
+}  // namespace fieldproof::conformance

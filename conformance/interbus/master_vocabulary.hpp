@@ -1,0 +1,44 @@
+#pragma once
+
+#include "conformance/interbus/master_side.hpp"
+#include "conformance/sequence.hpp"
+
+// The words of sequences for an INTERBUS master, and what their numbers mean.
+namespace fieldproof::conformance {
+
+// In the order of the vocabulary.
+enum class MasterWord : std::uint8_t {
+  cycles,
+  changed,
+  forged,
+  extra,
+  marked,
+  shifted,
+  lost,
+  bad,
+  inputs,
+  outputs,
+  output,
+  identify,
+  messages,
+  cut,
+  ring,
+  stop,
+  start,
+  power,
+  wait
+};
+
+SequenceVocabulary master_vocabulary();
+
+// The rings that masters find, by number.
+std::vector<interbus::VirtualStation> ring_of(std::int64_t number);
+// The ring with another station of the same length, with one more at its end, or with one less.
+std::vector<interbus::VirtualStation> changed_ring(std::vector<interbus::VirtualStation> ring,
+                                                   std::int64_t change, std::int64_t station);
+// Of a "power" command.
+MasterScene scene_of(const SequenceCommand& command);
+// What the cycle of any other command suffers.
+interbus::CycleFaults faults_of(const SequenceCommand& command, std::size_t stations);
+
+}  // namespace fieldproof::conformance
