@@ -223,7 +223,7 @@ TEST(PluginTest, WhatTheBenchRefusesIsToldBehindTheCall) {
 TEST(PluginTest, FileThatIsNoSuchLibraryIsNamedWithWhatIsWrong) {
   EXPECT_THAT(refusal_to_load("./nothing.so"), HasSubstr("plugin:./nothing.so: cannot be loaded: "));
   EXPECT_THAT(refusal_to_load(ODD_PLUGIN_NO_ENTRY), HasSubstr("does not export 'fieldproof_plugin'"));
-  EXPECT_THAT(refusal_to_load(ODD_PLUGIN_OTHER_VERSION), HasSubstr("is not made for version 2"));
+  EXPECT_THAT(refusal_to_load(ODD_PLUGIN_OTHER_VERSION), HasSubstr("is not made for version 3"));
   EXPECT_THAT(refusal_to_load(ODD_PLUGIN_LEAVES_OUT), HasSubstr("leaves a function out"));
   EXPECT_THAT(refusal_to_load(ODD_PLUGIN, "even"), HasSubstr("does not serve the role 'even/acts'"));
 }

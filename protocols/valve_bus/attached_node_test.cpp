@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <array>
 #include <chrono>
@@ -266,7 +267,8 @@ TEST_F(AttachedNodeTest, DriverThatHangsIsAFindingAfterTheLimitAndAtTheEnd) {
 TEST_F(AttachedNodeTest, DriverIsOnForTenSecondsAtMost) {
   EXPECT_EQ(complaint([](iut::Bench& bench) { bench.set_driver(0, true, kNow); }), "");
   EXPECT_THAT([&] { segment_.run_for(11 * kSecond); },
-              testing::ThrowsMessage<iut::Misbehaviour>(testing::HasSubstr("has its driver on since 20 ms")));
+              testing::ThrowsMessage<iut::Misbehaviour>(
+                  testing::HasSubstr("has its driver on since " + kernel::describe(kNow))));
   EXPECT_EQ(node_->next_time(), kNever);
 }
 
@@ -393,6 +395,115 @@ TEST_P(AttachedNodeActs, ThatNoNodeCanDoIsRefused) {
 INSTANTIATE_TEST_SUITE_P(Impossible, AttachedNodeActs,
                          testing::Range(std::size_t{0}, impossible_acts().size()),
                          [](const auto& one) { return std::string(impossible_acts()[one.param].name); });
+
+// A node of ours that says its driver and its characters instead of its levels.
+class InCharacters final : public iut::Device, private iut::Bench {
+ public:
+  explicit InCharacters(const Rules& rules)
+      : rules_(rules),
+        codec_(rules),
+        node_([](const NodeConfiguration& wanted) { return std::make_unique<Node>(wanted); }) {}
+
+  iut::UnitKind unit_kind() const override { return iut::UnitKind::characters; }
+  bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override {
+    bench_ = &bench;
+    return node_.begin(begin, *this);
+  }
+  void set_power(bool is_on, kernel::Time now) override { node_.set_power(is_on, now); }
+  void receive(unsigned, const line::Waveform&) override { FAIL() << "is reported characters"; }
+  void receive(unsigned port, std::span<const iut::Character> characters, kernel::Time) override {
+    for (const iut::Character& one : characters) {
+      line::Waveform wave{one.start, rules_.bit_rate, {}};
+      codec_.append_character(wave.levels, one.data);
+      node_.receive(port, wave);
+    }
+    say();
+  }
+  void on_time(kernel::Time now) override {
+    node_.on_time(now);
+    say();
+  }
+  kernel::Time next_time() const override { return node_.next_time(); }
+  void end() override { node_.end(); }
+
+ private:
+  void send(unsigned, kernel::Time, std::span<const std::uint16_t>) override { FAIL(); }
+  void transmit(unsigned, line::Waveform& wave) override { driven_.push_back(std::exchange(wave, {})); }
+  void write(iut::Item item, std::uint64_t value, kernel::Time when) override {
+    bench_->write(item, value, when);
+  }
+  std::uint64_t read(iut::Item item, kernel::Time when) override { return bench_->read(item, when); }
+
+  void say() {
+    if (driven_.empty()) return;
+    bench_->set_driver(0, true, driven_.front().start);
+    for (const line::Waveform& wave : driven_) {
+      codec_.hear(wave, [&](const HeardCharacter& one) {
+        bench_->send(0, one.start, std::array<std::uint16_t, 1>{one.data});
+      });
+    }
+    bench_->set_driver(0, false, driven_.back().end());
+    driven_.clear();
+  }
+
+  Rules rules_;
+  CharacterCodec codec_;
+  ServedNode node_;
+  iut::Bench* bench_ = nullptr;
+  std::vector<line::Waveform> driven_;
+};
+
+struct Exchange {
+  std::uint64_t fingerprint = 0;
+  std::uint64_t records = 0;
+  std::uint16_t valves = 0;
+
+  friend bool operator==(const Exchange&, const Exchange&) = default;
+};
+
+Exchange exchange_with(bool in_characters, const NodeConfiguration& configuration,
+                       const std::vector<Command>& commands) {
+  segment::Segment segment;
+  segment::Medium line(segment, "line", segment::ContentionRule::noise, kernel::Random(1));
+  ValveBlock boards;
+  boards.set_input(0, 0xBEEF);
+  std::unique_ptr<NodeDevice> node = std::make_unique<Node>(configuration);
+  if (in_characters) {
+    const auto said = std::make_shared<InCharacters>(configuration.rules);
+    node = std::make_unique<AttachedNode>(iut::Attachment{said.get(), said, {}}, configuration,
+                                          "valve_bus/node/x", 7);
+  }
+  node->wire(line.attach("node/in", segment.attach(*node, "node"), 0, {}), boards);
+  segment::MediumPort& host = line.listen("host", {});
+  node->set_power(true, kStart);
+  CharacterCodec codec(configuration.rules);
+  for (const Command& command : commands) {
+    segment.run_for(20 * kMillisecond);
+    codec.drive(host, octets_of(command), segment.now(), {});
+  }
+  segment.run_for(100 * kMillisecond);
+  node->end();
+  return {segment.trace().fingerprint(), segment.trace().record_count(), boards.valves()};
+}
+
+// To the bit: whatever rounding the rate asks for.
+RC_GTEST_PROP(AttachedNodeProperty, WhoSaysCharactersIsOnTheLineAsWhoDrivesThem, ()) {
+  NodeConfiguration configuration;
+  configuration.address_units = 5;
+  configuration.rules.bit_rate = *rc::gen::inRange<std::int64_t>(9'600, 500'000);
+  configuration.rules.answers_writes = *rc::gen::arbitrary<bool>();
+  configuration.rules.characters = *rc::gen::element(CharacterProfile::eight_bits, Rules{}.characters);
+  std::vector<Command> commands;
+  for (const std::uint16_t data : *rc::gen::arbitrary<std::vector<std::uint16_t>>()) {
+    commands.push_back({5, static_cast<std::uint8_t>(data % 2), static_cast<std::uint8_t>(data >> 8),
+                        static_cast<std::uint8_t>(data)});
+  }
+  commands.push_back({5, 1, 0, 0});
+  const Exchange direct = exchange_with(false, configuration, commands);
+  const Exchange said = exchange_with(true, configuration, commands);
+  RC_ASSERT(direct.records > commands.size() * kCommandOctets);  // it has answered
+  RC_ASSERT(said == direct);
+}
 
 // Keeps what a served node does.
 class KeepingBench final : public iut::Bench {

@@ -137,8 +137,10 @@ void LineDriver::put_character(segment::Port& line) {
   if (before == 0) put_idle(line, act.at);
   wave_.levels.clear();
   wave_.rate = rules_.bit_rate;
-  const bool follows = before > 0 || act.at - driven_until_ <= least_idle();
-  wave_.start = follows ? driven_until_ : act.at;
+  // A gap that is too short to be driven is none; one by rounding stays as it was said.
+  const kernel::Duration gap = act.at - driven_until_;
+  const bool follows = before > 0 || (gap > kRounding && gap <= least_idle());
+  wave_.start = follows ? driven_until_ : std::max(driven_until_, act.at);
   wave_.levels.append_idle(before);
   codec_.append_character(wave_.levels, act.data);
   const bool is_last = acts_.size() > 1 && acts_[1].kind == Kind::off;
