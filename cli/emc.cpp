@@ -159,6 +159,7 @@ class Campaign {
     emc::ImmunityResult result;
     std::vector<EmcPlace> places;
     network::RecoveryLimit recovery;
+    network::AcceptanceRules acceptance;
     std::vector<network::ProtectedFrame> frames;
   };
 
@@ -170,6 +171,7 @@ class Campaign {
         ran.places.push_back({place.name, place.is_exposed, std::string(place.why_not)});
       }
       ran.recovery = network->recovery_limit();
+      ran.acceptance = network->acceptance();
       ran.frames = network->protected_frames();
       ran.result = emc::run_immunity(*network, response, settings);
     } catch (const iut::Misbehaviour& misbehaviour) {
@@ -184,6 +186,7 @@ class Campaign {
   void describe(const Ran& ran) {
     done_.places = ran.places;
     done_.recovery = ran.recovery;
+    done_.acceptance = ran.acceptance;
     for (network::ProtectedFrame frame : ran.frames) {
       if (!ran.result.cycles.empty() && frame.distance == kernel::Duration{}) {
         frame.distance = ran.result.cycles.front().kind.theory;
