@@ -147,8 +147,9 @@ class BurstShrink {
 std::string bit_lines(const FlippedBits& bits) {
   std::string text;
   for (const StruckBit& one : bits) {
-    text += fmt::format("  bit {} of transmission {} from {} on, as {} receives it\n", one.bit,
-                        one.transmission, kernel::describe(one.from), one.receiver);
+    text += fmt::format("  {} {} of transmission {} from {} on, as {} receives it\n",
+                        one.is_level ? "level" : "bit", one.bit, one.transmission, kernel::describe(one.from),
+                        one.receiver);
   }
   return text;
 }

@@ -160,6 +160,7 @@ class Campaign {
     emc::ImmunityResult result;
     std::vector<EmcPlace> places;
     network::RecoveryLimit recovery;
+    network::AcceptanceRules acceptance;
     std::vector<network::ProtectedFrame> frames;
   };
 
@@ -171,6 +172,7 @@ class Campaign {
         ran.places.push_back({place.name, place.is_exposed, std::string(place.why_not)});
       }
       ran.recovery = network->recovery_limit();
+      ran.acceptance = network->acceptance();
       ran.frames = network->protected_frames();
       ran.result = emc::run_immunity(*network, response, settings);
     } catch (const iut::Misbehaviour& misbehaviour) {
@@ -185,6 +187,7 @@ class Campaign {
   void describe(const Ran& ran) {
     done_.places = ran.places;
     done_.recovery = ran.recovery;
+    done_.acceptance = ran.acceptance;
     for (network::ProtectedFrame frame : ran.frames) {
       if (!ran.result.cycles.empty() && frame.distance == kernel::Duration{}) {
         frame.distance = ran.result.cycles.front().kind.theory;

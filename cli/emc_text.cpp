@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "emc/residual/residual_error.hpp"
+#include "harness/field/facts.hpp"
 #include "reports/text_summary.hpp"
 
 namespace fieldproof::cli {
@@ -86,6 +87,7 @@ ordered_json result_json(const emc::ImmunityResult& result) {
   return {{"came_up", result.came_up},
           {"complaint", result.complaint},
           {"criterion", emc::name(result.criterion)},
+          {"decided_by", result.decided_by},
           {"longest_bad_run", result.longest_bad_run},
           {"recovered_by_itself", result.recovered_by_itself},
           {"recovered_after_start", result.recovered_after_start},
@@ -168,6 +170,26 @@ ordered_json places_json(const EmcCampaign& campaign) {
   return places;
 }
 
+ordered_json acceptance_json(const EmcCampaign& campaign) {
+  ordered_json numbers = ordered_json::array();
+  for (const field::Fact& fact : field::facts_of(network::kAcceptanceTable, campaign.acceptance)) {
+    numbers.push_back({{"name", fact.name},
+                       {"value", fact.value},
+                       {"source", fact.source},
+                       {"standing", judge::name(fact.standing)}});
+  }
+  return numbers;
+}
+
+std::string acceptance_text(const EmcCampaign& campaign) {
+  std::string text = "the numbers by which C and D are decided (fieldproof explain network/acceptance):\n";
+  for (const field::Fact& fact : field::facts_of(network::kAcceptanceTable, campaign.acceptance)) {
+    text += fmt::format("  {:<24} {:>12}  [{}] {}\n", fact.name, fact.value, judge::name(fact.standing),
+                        fact.source);
+  }
+  return text;
+}
+
 // What a reader of the results has to know of their standing.
 std::vector<std::string> unverified_of(const EmcCampaign& campaign) {
   if (campaign.has_bursts) return emc::caveats_of(campaign.profile);
@@ -223,6 +245,9 @@ std::string emc_line(const EmcTest& test) {
                   counts.detected - std::min(counts.detected, counts.partly_latched), counts.missed_outputs,
                   result.longest_bad_run, recovery_text(result), result.stops, counts.cleared_outputs,
                   counts.accepted_wrong());
+  if (!result.decided_by.empty()) {
+    line += fmt::format("    {}: {}\n", emc::name(result.criterion), result.decided_by);
+  }
   if (!result.complaint.empty()) line += fmt::format("    {}\n", reports::escaped_line(result.complaint));
   return line;
 }
@@ -281,6 +306,7 @@ std::string emc_summary(const EmcCampaign& campaign) {
     for (const auto criterion : kCriteria) {
       text += fmt::format("{:>9}  {}\n", emc::name(criterion), emc::text_of(criterion));
     }
+    text += acceptance_text(campaign);
   } else {
     text =
         "\nwrong: exchanges in which a wrong word was accepted; chance: of so many or more, where as many "
@@ -335,6 +361,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                                  {"tests", std::move(tests)},
                                  {"channels", std::move(channels)},
                                  {"places", places_json(campaign)},
+                                 {"acceptance", acceptance_json(campaign)},
                                  {"recovery_limit",
                                   {{"exchanges", campaign.recovery.exchanges},
                                    {"exchange", campaign.exchange},

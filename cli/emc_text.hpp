@@ -49,6 +49,7 @@ struct EmcCampaign {
   std::vector<EmcPlace> places;
   std::vector<std::string> channel_caveats;  // of the theory of undetected errors
   network::RecoveryLimit recovery;
+  network::AcceptanceRules acceptance;
   std::string exchange;  // what one is called: "cycle"
   // Of each kind of frame with a check; the first is the one that carries data.
   std::vector<emc::FrameResidual> residuals;

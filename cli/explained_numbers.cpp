@@ -10,6 +10,7 @@
 #include "harness/config/nearest.hpp"
 #include "harness/field/written_table.hpp"
 #include "harness/kernel/error.hpp"
+#include "harness/network/acceptance.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -23,6 +24,7 @@ Tables tables_of(const conformance::Catalogue& catalogue) {
       tables.emplace_back(fmt::format("{}/{}", suite->protocol(), one.name), one.table);
     }
   }
+  tables.emplace_back("network/acceptance", &network::kAcceptanceTable);
   return tables;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -43,17 +44,20 @@ class WatchedChannel final : public fault::Channel {
 
  private:
   void note(const line::Waveform& sent, const line::Waveforms& arrivals, std::size_t first) {
-    for (unsigned bit = 0; middle_of(sent, bit, 8) < sent.end(); ++bit) {
+    const bool is_level = sent.rate > bit_rate_ && sent.rate % bit_rate_ == 0;
+    const std::int64_t rate = is_level ? sent.rate : bit_rate_;
+    for (unsigned bit = 0; middle_of(sent, bit, 8, rate) < sent.end(); ++bit) {
       int others = 0;
       for (const unsigned sixteenth : {7U, 8U, 9U}) {
-        const kernel::Time time = middle_of(sent, bit, sixteenth);
+        const kernel::Time time = middle_of(sent, bit, sixteenth, rate);
         others += level_at(arrivals, first, time) == sent.at(time) ? -1 : 1;
       }
-      if (others > 0) struck_->push_back({receiver_, from_, passed_, bit});
+      if (others > 0) struck_->push_back({receiver_, from_, passed_, bit, is_level});
     }
   }
-  kernel::Time middle_of(const line::Waveform& sent, unsigned bit, unsigned sixteenth) const {
-    return line::Sampling::instant(sent.start, bit, sixteenth, bit_rate_);
+  static kernel::Time middle_of(const line::Waveform& sent, unsigned bit, unsigned sixteenth,
+                                std::int64_t rate) {
+    return line::Sampling::instant(sent.start, bit, sixteenth, rate);
   }
 
   std::unique_ptr<fault::Channel> channel_;
@@ -67,17 +71,19 @@ class WatchedChannel final : public fault::Channel {
 // One disturbance for each that struck, with the bits of each transmission together.
 ordered_json disturbances_of(std::span<const StruckBit> struck) {
   using Bits = std::map<std::uint64_t, std::vector<std::uint64_t>>;
-  std::map<std::pair<kernel::Time, std::string>, Bits> all;
-  for (const StruckBit& one : struck) all[{one.from, one.receiver}][one.transmission].push_back(one.bit);
+  std::map<std::tuple<kernel::Time, std::string, bool>, Bits> all;
+  for (const StruckBit& one : struck)
+    all[{one.from, one.receiver, one.is_level}][one.transmission].push_back(one.bit);
   ordered_json disturbances = ordered_json::array();
   for (const auto& [place, transmissions] : all) {
     ordered_json list = ordered_json::array();
     for (const auto& [transmission, bits] : transmissions) {
-      list.push_back({{"transmission", transmission}, {"bits", bits}});
+      list.push_back({{"transmission", transmission}, {std::get<bool>(place) ? "levels" : "bits", bits}});
     }
-    disturbances.push_back({{"receiver", place.second},
-                            {"from", kernel::describe(place.first - kernel::kStart)},
-                            {"flipped_bits", std::move(list)}});
+    const auto& [from, receiver, is_level] = place;
+    disturbances.push_back({{"receiver", receiver},
+                            {"from", kernel::describe(from - kernel::kStart)},
+                            {is_level ? "flipped_levels" : "flipped_bits", std::move(list)}});
   }
   return disturbances;
 }

@@ -1,8 +1,10 @@
 // Which bits the disturbances of a run struck, and a plan that strikes the same ones without them.
 //
 // Contract: a struck bit is one that a receiver of the declared bit rate, which takes the majority of three
-// samples, hears otherwise than it was sent. What a disturbance does beyond that (a pulse that is no bit to
-// such a receiver) is not kept, so who replays the bits looks whether they do what the disturbance did.
+// samples, hears otherwise than it was sent. Where a sender drives levels that are finer than bits, as
+// Manchester code does, each of them is looked at: half a bit that is wrong breaks the code. What a
+// disturbance does beyond that (a pulse that is no bit to such a receiver) is not kept, so who replays the
+// bits looks whether they do what the disturbance did.
 #pragma once
 
 #include <compare>
@@ -21,7 +23,8 @@ struct StruckBit {
   std::string receiver;
   kernel::Time from;           // of the disturbance
   std::uint64_t transmission;  // to the receiver, from 0 at that instant on
-  std::uint64_t bit;
+  std::uint64_t bit;           // or level of the transmission
+  bool is_level = false;       // of a line whose levels are finer than bits: half bits of Manchester code
 
   friend auto operator<=>(const StruckBit&, const StruckBit&) = default;
 };

@@ -82,6 +82,26 @@ TEST_F(Networks, JudgeTheReferenceOutsideAsInside) {
   }
 }
 
+TEST_F(Networks, SayWhichNumbersDecide) {
+  const Called called = emc({"interbus", "--duration", "100ms"});
+  EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "recovery_cycles");
+  EXPECT_HOLDS(called.out, "Beckhoff BC4000");
+  EXPECT_EQ(json("emc.json").at("acceptance").at(0).at("value"), "5 cycles");
+  expect_valid({"emc.json"}, "emc");
+  EXPECT_HOLDS(call({"explain", "network/acceptance"}).out, "silence_cycles");
+  EXPECT_HOLDS(call({"explain", "limits_waited"}).out, "unverified");
+}
+
+// Each period of such a signal meets the schedule at the same phase: only trains differ.
+TEST_F(Networks, MeasureSignalsInStepWithTheCycle) {
+  for (const char* signal : {"0.5Hz", "0.25Hz"}) {
+    const Called called = call({"measure", "fieldbus_dll", "--signal", signal, "--duration", "200s"});
+    EXPECT_EQ(called.out.find("differs"), std::string::npos) << called.out;
+    EXPECT_HOLDS(called.out, "mean delay, rising edges");
+  }
+}
+
 TEST_F(Networks, RefuseWhatHasNoPlaceInThem) {
   const auto refusal = [&](std::vector<std::string> arguments) {
     const Called called = emc(std::move(arguments));

@@ -1,5 +1,7 @@
 #include "emc/immunity.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <deque>
 #include <optional>
@@ -19,11 +21,6 @@ using network::Exchange;
 using network::State;
 
 constexpr Duration kSlice = 5 * kMillisecond;
-constexpr Duration kPauseBeforeStart = 50 * kMillisecond;
-// Recovery is not waited for beyond so many exchanges and this time, or so many limits of the network.
-constexpr std::uint64_t kMostRecoveryExchanges = 1000;
-constexpr std::int64_t kMostLimits = 10;
-constexpr Duration kLongestRecovery = 5 * kSecond;
 
 // Counts what a channel of any kind does.
 class CountedChannel final : public fault::Channel {
@@ -52,6 +49,7 @@ class Run final : private network::ExchangeWatcher {
   Run(network::Network& network, const LineResponse& response, const ImmunitySettings& settings)
       : network_(network),
         segment_(network.segment()),
+        acceptance_(network.acceptance()),
         random_(settings.seed),
         statistics_(network, random_.split("process data")),
         settings_(settings) {
@@ -130,13 +128,13 @@ class Run final : private network::ExchangeWatcher {
   }
 
   void recover() {
-    const std::uint64_t most = std::max(kMostRecoveryExchanges, static_cast<std::uint64_t>(kMostLimits) *
-                                                                    network_.recovery_limit().exchanges);
+    const std::uint64_t most = std::max<std::uint64_t>(
+        acceptance_.least_exchanges_waited, acceptance_.limits_waited * network_.recovery_limit().exchanges);
     result_.recovered_by_itself = delivers_all(most);
     result_.recovery_exchanges = recovery_exchanges_;
     if (result_.recovered_by_itself || !result_.is_complete) return;
     network_.stop();
-    segment_.run_for(kPauseBeforeStart);
+    segment_.run_for(acceptance_.pause_before_start);
     result_.recovered_after_start = come_up() && delivers_all(most);
   }
 
@@ -145,8 +143,8 @@ class Run final : private network::ExchangeWatcher {
     is_recovering_ = true;
     recovery_exchanges_ = 0;
     statistics_.begin_recovery();
-    const Time end =
-        segment_.now() + std::max(kLongestRecovery, kMostLimits * network_.recovery_limit().time);
+    const Time end = segment_.now() + std::max(acceptance_.least_time_waited,
+                                               acceptance_.limits_waited * network_.recovery_limit().time);
     while (segment_.now() < end && !statistics_.is_recovered() && recovery_exchanges_ < most &&
            !is_stopped()) {
       if (network_.state() == State::stopped || !segment_.step()) break;
@@ -204,16 +202,39 @@ class Run final : private network::ExchangeWatcher {
     result_.criterion = criterion();
   }
 
-  Criterion criterion() const {
-    const bool works_again = result_.recovered_by_itself || result_.recovered_after_start;
-    if (result_.counts.accepted_wrong() > 0 || !works_again) return Criterion::d;
-    if (result_.stops > 0 || !result_.recovered_by_itself) return Criterion::c;
-    if (result_.recovery_exchanges > network_.recovery_limit().exchanges) return Criterion::c;
+  Criterion criterion() {
+    const std::uint64_t limit = network_.recovery_limit().exchanges;
+    const std::uint64_t wrong = result_.counts.accepted_wrong();
+    if (wrong > 0)
+      return because(Criterion::d, fmt::format("{} words were accepted and nobody had sent them", wrong));
+    if (!result_.recovered_by_itself && !result_.recovered_after_start) {
+      return because(Criterion::d, "not all words arrived after a start (least_bring_up, limits_waited)");
+    }
+    if (result_.stops > 0) {
+      return because(Criterion::c, fmt::format("it stopped {} times: no exchange for silence_cycles = {}",
+                                               result_.stops, acceptance_.silence_cycles));
+    }
+    if (!result_.recovered_by_itself) {
+      return because(Criterion::c,
+                     fmt::format("not all words arrived within limits_waited = {} and a start mended it",
+                                 acceptance_.limits_waited));
+    }
+    if (result_.recovery_exchanges > limit) {
+      return because(Criterion::c,
+                     fmt::format("recovery took {} exchanges, and recovery_cycles = {} allow {}",
+                                 result_.recovery_exchanges, acceptance_.recovery_cycles, limit));
+    }
     return result_.longest_bad_run > 0 || result_.counts.retried > 0 ? Criterion::b : Criterion::a;
+  }
+
+  Criterion because(Criterion criterion, std::string why) {
+    result_.decided_by = std::move(why);
+    return criterion;
   }
 
   network::Network& network_;
   segment::Segment& segment_;
+  network::AcceptanceRules acceptance_;
   kernel::Random random_;
   network::ExchangeStatistics statistics_;
   const ImmunitySettings& settings_;

@@ -54,6 +54,7 @@ struct ImmunityResult {
   bool came_up = false;   // on the quiet line; nothing else says anything if not
   std::string complaint;  // where it did not
   Criterion criterion = Criterion::d;
+  std::string decided_by;             // of C and D: which number, in words
   network::ErrorStatistics counts;    // from the first pulse that can come to the end of the recovery
   std::uint64_t longest_bad_run = 0;  // exchanges of either kind that were not served
   // After the last pulse until every signal has been delivered once, that exchange included.

@@ -100,11 +100,16 @@ DisturbanceModel read_burst_model(const Value& value) {
 // bits), and tells the trace which.
 class BitFlips final : public fault::Channel {
  public:
-  BitFlips(const fault::StressPlace& place, std::unique_ptr<fault::Channel> flips)
-      : bit_rate_(place.bit_rate), trace_(place.trace), place_(place.channel), flips_(std::move(flips)) {}
+  enum class Unit { bit, level };  // level: as the sender drives them
+  BitFlips(const fault::StressPlace& place, std::unique_ptr<fault::Channel> flips, Unit unit = Unit::bit)
+      : unit_(unit),
+        bit_rate_(place.bit_rate),
+        trace_(place.trace),
+        place_(place.channel),
+        flips_(std::move(flips)) {}
 
   bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
-    const bool is_finer = sent.rate > bit_rate_ && sent.rate % bit_rate_ == 0;
+    const bool is_finer = unit_ == Unit::bit && sent.rate > bit_rate_ && sent.rate % bit_rate_ == 0;
     const auto levels = static_cast<std::size_t>(is_finer ? sent.rate / bit_rate_ : 1);
     bits_.start = sent.start;
     bits_.rate = is_finer ? bit_rate_ : sent.rate;
@@ -124,11 +129,12 @@ class BitFlips final : public fault::Channel {
       for (std::uint64_t flipped = ~bits.words()[word]; flipped != 0; flipped &= flipped - 1) {
         const std::size_t bit = 64 * word + static_cast<std::size_t>(std::countr_zero(flipped));
         arrival.invert(bit * levels_per_bit, std::min(arrival.size(), (bit + 1) * levels_per_bit));
-        trace_.fault(place_, bits_.time_of(bit), "flipped bit");
+        trace_.fault(place_, bits_.time_of(bit), unit_ == Unit::bit ? "flipped bit" : "flipped level");
       }
     }
   }
 
+  Unit unit_;
   std::int64_t bit_rate_;
   trace::Trace& trace_;
   trace::Channel place_;
@@ -209,12 +215,12 @@ constexpr std::uint64_t kLastBit = 100'000;
 
 using Position = BitListChannel::Position;
 
-std::vector<Position> read_positions(const Value& value) {
+std::vector<Position> read_positions(const Value& value, std::string_view unit) {
   std::vector<Position> positions;
   for (const Value& element : value.as_array(1, kMostListedBits)) {
     config::read_object(element, [&](ObjectReader& object) {
       const auto transmission = object.required("transmission").as_integer<std::uint64_t>();
-      for (const Value& bit : object.required("bits").as_array(1, kMostListedBits)) {
+      for (const Value& bit : object.required(unit).as_array(1, kMostListedBits)) {
         positions.push_back({transmission, bit.as_integer<std::uint64_t>(0, kLastBit)});
         if (positions.size() > kMostListedBits)
           config::fail(bit, "these are too many bits; 10000 make a list");
@@ -228,21 +234,30 @@ std::vector<Position> read_positions(const Value& value) {
   return positions;
 }
 
-Json json_of(const std::vector<Position>& positions) {
+Json json_of(const std::vector<Position>& positions, std::string_view unit) {
   Json json = Json::array();
   for (auto at = positions.begin(); at != positions.end();) {
     Json bits = Json::array();
     const std::uint64_t transmission = at->transmission;
     for (; at != positions.end() && at->transmission == transmission; ++at) bits.push_back(at->bit);
-    json.push_back({{"transmission", transmission}, {"bits", std::move(bits)}});
+    json.push_back({{"transmission", transmission}, {std::string(unit), std::move(bits)}});
   }
   return json;
 }
 
 DisturbanceModel read_flipped_bits(const Value& value) {
-  const auto positions = std::make_shared<const std::vector<Position>>(read_positions(value));
-  return {"flipped_bits", json_of(*positions).dump(), [positions](const fault::StressPlace& place) {
+  const auto positions = std::make_shared<const std::vector<Position>>(read_positions(value, "bits"));
+  return {"flipped_bits", json_of(*positions, "bits").dump(), [positions](const fault::StressPlace& place) {
             return std::make_unique<BitFlips>(place, std::make_unique<BitListChannel>(positions));
+          }};
+}
+
+DisturbanceModel read_flipped_levels(const Value& value) {
+  const auto positions = std::make_shared<const std::vector<Position>>(read_positions(value, "levels"));
+  return {"flipped_levels", json_of(*positions, "levels").dump(),
+          [positions](const fault::StressPlace& place) {
+            return std::make_unique<BitFlips>(place, std::make_unique<BitListChannel>(positions),
+                                              BitFlips::Unit::level);
           }};
 }
 
@@ -252,7 +267,8 @@ const std::vector<fault::DisturbanceKind>& plan_disturbances() {
   static const std::vector<fault::DisturbanceKind> kinds{{"bursts", read_burst_model},
                                                          {"binary_symmetric", read_binary_symmetric},
                                                          {"gilbert_elliott", read_gilbert_elliott},
-                                                         {"flipped_bits", read_flipped_bits}};
+                                                         {"flipped_bits", read_flipped_bits},
+                                                         {"flipped_levels", read_flipped_levels}};
   return kinds;
 }
 

@@ -11,6 +11,7 @@
 //   "gilbert_elliott":  { "to_bad": 1e-5, "to_good": 1e-3, "good_flip": 0, "bad_flip": 0.1 }
 //   "gilbert_elliott":  { "fitted_to": { "level": 3 } }
 //   "flipped_bits":     [ { "transmission": 0, "bits": [5, 6] } ]
+//   "flipped_levels":   [ { "transmission": 0, "levels": [5] } ]      (half bits of Manchester code)
 //
 // Bursts: one generator for all receivers of the disturbance, on from the begin of its window to the end,
 // with the tolerances that it draws. The first burst comes anywhere within a burst period, or `first_burst`

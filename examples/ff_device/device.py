@@ -246,6 +246,10 @@ class Device:
 
     def power(self, is_on, now):
         self.now, s = now, self.s
+        if not is_on:  # what it knew is gone
+            self.buffers = {address: [None, 0] for address in self.buffers}
+            self.queues = {priority: [] for priority in (3, 2, 1)}
+            self.is_live, self.token, self.answer = False, None, None
         least_gap, slot = s["inter_pdu_delay_octets"], s["slot_time_octets"]
         self.is_on = is_on and least_gap <= min(120, (s["response_delay_slots"] - 1) * slot)
         if is_on and not self.is_on:

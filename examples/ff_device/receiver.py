@@ -119,8 +119,12 @@ class Device:
 
     # ---- the user ----
 
-    def power(self, now):
-        """V(MID) leaves room for an answer within V(MRD) x V(ST); else it does not start."""
+    def power(self, is_on, now):
+        """What is switched off has forgotten what it knew. V(MID) leaves room for an answer within V(MRD) x V(ST); else it does not start."""
+        if not is_on:
+            self.state, self.buffers = STOPPED, dict.fromkeys(self.buffers)
+            self.queues = {3: deque(), 2: deque(), 1: deque()}
+            return
         answer = (self.s["response_delay_slots"] - 1) * self.s["slot_time_octets"]
         if self.s["inter_pdu_delay_octets"] > min(120, answer):
             self.refuse(now)
@@ -312,7 +316,7 @@ def case_of(message):
 
 def pass_on(device, kind, message):
     if kind == POWER:
-        device.power(struct.unpack_from("<q", message, 2)[0])
+        device.power(*struct.unpack_from("<?q", message, 1))
     elif kind == RECEIVE_CHARACTERS:
         port, now, count = struct.unpack_from("<xBqH", message)
         data = [struct.unpack_from("<qqH", message, 12 + 19 * n)[2] for n in range(count)]

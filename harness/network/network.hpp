@@ -15,6 +15,7 @@
 #include "harness/line/character.hpp"
 #include "harness/line/telegram.hpp"
 #include "harness/measure/measurement.hpp"
+#include "harness/network/acceptance.hpp"
 #include "harness/segment/receiver.hpp"
 #include "harness/segment/segment.hpp"
 #include "harness/trace/trace.hpp"
@@ -174,6 +175,8 @@ class Network {
 
   virtual std::span<const Place> places() const = 0;
   virtual std::span<const CycleKind> cycles() const = 0;
+  // By which it is decided whether it works.
+  virtual AcceptanceRules acceptance() const { return {}; }
   virtual RecoveryLimit recovery_limit() const = 0;
   virtual ExchangeWords exchange_words() const { return {}; }
   // What a reader of a measurement has to know: options, other closed forms.

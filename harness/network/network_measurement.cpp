@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "harness/kernel/random.hpp"
@@ -34,17 +35,31 @@ double us(std::int64_t picoseconds) {
   return us(static_cast<double>(picoseconds));
 }
 
+// How many different phases the edges of a signal have against the cycle. Within a train each period shifts
+// the phase by the same amount; a period that is a whole number of q-th parts of a cycle comes back to the
+// same q phases, and more edges say nothing new.
+double different_phases(const SignalRecord& record, Duration cycle) {
+  constexpr std::int64_t kPicosecondsTimesMillihertz = 1'000 * kernel::kSecond.count();
+  const std::int64_t shared = std::gcd(kPicosecondsTimesMillihertz, cycle.count());
+  const std::int64_t parts = cycle.count() / shared;
+  const std::int64_t millihertz = record.settings.wave.frequency.millihertz();
+  const std::int64_t times = millihertz / std::gcd(kPicosecondsTimesMillihertz / shared, millihertz);
+  const std::int64_t most = record.settings.periods_per_train;
+  const std::int64_t phases = parts >= most || times >= most ? most : std::min(parts * times, most);
+  return static_cast<double>(record.trains * phases);
+}
+
 // Delays of the edges in front of an interval in which the input must be sampled for the edge to be seen: an
 // edge waits evenly up to a cycle, or up to the end of that interval.
 class DelayRows {
  public:
-  DelayRows(std::string_view edges, Duration least, Duration cycle, Duration interval)
-      : edges_(edges), least_(least), cycle_(cycle), span_(std::min(cycle, interval)) {}
+  DelayRows(std::string_view edges, Duration least, Duration cycle, Duration interval, double phases)
+      : edges_(edges), least_(least), cycle_(cycle), span_(std::min(cycle, interval)), phases_(phases) {}
 
   void append(std::vector<Comparison>& rows, const Distribution& delays) const {
     if (delays.is_empty()) return;
     const double span = us(span_);
-    const double count = static_cast<double>(delays.count());
+    const double count = std::min(phases_, static_cast<double>(delays.count()));
     const double deviation = span / std::sqrt(12.0);
     rows.push_back(row("least delay", us(least_), us(delays.min()), span / count));
     rows.push_back(row("mean delay", us(least_) + span / 2, us(delays.mean()), deviation / std::sqrt(count)));
@@ -68,6 +83,7 @@ class DelayRows {
   Duration least_;
   Duration cycle_;
   Duration span_;
+  double phases_;
 };
 
 // Everything that a comparison of one path needs at hand. An edge waits for the sample, evenly up to a cycle.
@@ -80,7 +96,11 @@ struct PathForms {
         delay_deviation(std::llround(static_cast<double>(cycle.count()) / std::sqrt(12.0))),
         high(wave.high()),
         low(wave.period() - high),
-        width(measure::pulse_width(high, cycle)) {}
+        width(measure::pulse_width(high, cycle)),
+        phases(different_phases(record, cycle)) {}
+
+  // Of so many edges those that tell something new.
+  double telling(std::uint64_t edges) const { return std::min(phases, static_cast<double>(edges)); }
 
   measure::SquareWave wave;
   Duration cycle;
@@ -90,6 +110,7 @@ struct PathForms {
   Duration high;
   Duration low;
   measure::PulseWidth width;
+  double phases;
 };
 
 Comparison of_cycle(const PathForms& theory, std::string quantity, double expected, double measured,
@@ -104,7 +125,7 @@ void append_widths(std::vector<Comparison>& rows, const PathForms& theory, const
   const Distribution& widths = skew.widths.in(Phase::quiet);
   if (widths.is_empty()) return;
   const measure::PulseWidth& width = theory.width;
-  const auto count = static_cast<double>(widths.count());
+  const double count = theory.telling(widths.count());
   const double more = width.probability_of_one_more;
   const double cycle = us(theory.cycle);
   const bool is_lossy = width.cycles == 0;
@@ -116,7 +137,8 @@ void append_widths(std::vector<Comparison>& rows, const PathForms& theory, const
     rows.push_back(of_cycle(theory, "longest pulse", us(width.longer), us(widths.max()), 0));
   }
   if (!is_disturbed) {
-    const double came = count / (count + static_cast<double>(skew.lost_pulses));
+    const auto widths_count = static_cast<double>(widths.count());
+    const double came = widths_count / (widths_count + static_cast<double>(skew.lost_pulses));
     rows.push_back(of_cycle(theory, "mean width of a pulse, lost ones as 0", us(width.mean),
                             us(widths.mean()) * came, cycle * std::sqrt(more * (1 - more) / count)));
   } else if (!is_lossy) {
@@ -137,23 +159,24 @@ void append_duty(std::vector<Comparison>& rows, const PathForms& theory, const m
                   100, "of a period", 0, true});
 }
 
-Comparison share(std::string quantity, double expected, std::uint64_t lost, std::uint64_t all) {
-  const auto count = static_cast<double>(all);
+Comparison share(std::string quantity, double expected, std::uint64_t lost, std::uint64_t all,
+                 double telling) {
   return {std::move(quantity),
           "",
           expected,
-          static_cast<double>(lost) / count,
+          static_cast<double>(lost) / static_cast<double>(all),
           1,
           "of all",
-          std::sqrt(expected * (1 - expected) / count)};
+          std::sqrt(expected * (1 - expected) / telling)};
 }
 
 void append_losses(std::vector<Comparison>& rows, const PathForms& theory, const measure::EdgeSkew& skew) {
-  rows.push_back(share("share of lost pulses", theory.width.lost_probability, skew.lost_pulses, skew.pulses));
+  rows.push_back(share("share of lost pulses", theory.width.lost_probability, skew.lost_pulses, skew.pulses,
+                       theory.telling(skew.pulses)));
   if (skew.pauses == 0) return;
   rows.push_back(share("share of lost pauses",
                        measure::pulse_width(theory.low, theory.cycle).lost_probability, skew.lost_pauses,
-                       skew.pauses));
+                       skew.pauses, theory.telling(skew.pauses)));
 }
 
 void append_phase_lag(std::vector<Comparison>& rows, const PathForms& theory, const measure::EdgeSkew& skew) {
@@ -161,7 +184,7 @@ void append_phase_lag(std::vector<Comparison>& rows, const PathForms& theory, co
   if (delays.is_empty() || theory.width.cycles == 0) return;
   const double degrees_per_us = 360 * theory.wave.frequency.hertz() * 1e-6;
   const double lag = degrees_per_us * us(theory.mean_delay);
-  const double error = us(theory.delay_deviation) / std::sqrt(static_cast<double>(delays.count()));
+  const double error = us(theory.delay_deviation) / std::sqrt(theory.telling(delays.count()));
   rows.push_back({"mean lag of the rising edges", "deg", lag, degrees_per_us * us(delays.mean()), lag,
                   std::string(kOfTheory), degrees_per_us * error});
 }
@@ -264,9 +287,9 @@ std::vector<Comparison> compare_path(const SignalRecord& record, const PathRecor
   const PathForms theory(record, path);
   const measure::EdgeSkew& skew = path.skew;
   std::vector<Comparison> rows;
-  DelayRows("rising edges", theory.least_delay, theory.cycle, theory.high)
+  DelayRows("rising edges", theory.least_delay, theory.cycle, theory.high, theory.phases)
       .append(rows, skew.rise_delays.in(Phase::quiet));
-  DelayRows("falling edges", theory.least_delay, theory.cycle, theory.low)
+  DelayRows("falling edges", theory.least_delay, theory.cycle, theory.low, theory.phases)
       .append(rows, skew.fall_delays.in(Phase::quiet));
   append_phase_lag(rows, theory, skew);
   const bool is_disturbed = record.settings.disturb != nullptr;

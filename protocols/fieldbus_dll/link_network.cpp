@@ -21,15 +21,12 @@ constexpr std::uint8_t kFirstNode = 0x10;
 constexpr std::uint8_t kLastNode = 0xF7;
 constexpr unsigned kMostStations = kLastNode - kFirstNode + 1;
 constexpr std::int64_t kLeadOctets = 80;
-constexpr std::int64_t kMacrocyclesToRecover = 2;
-constexpr std::int64_t kMacrocyclesOfSilence = 2;
 // An item of the schedule is a call, its answer and what is kept free in front of the next one, with the
 // longest frames that carry a word.
 constexpr std::int64_t kItemOctets = 120;
 // A node is found by a probe, one in each circulation of the token; a circulation visits all that are live.
 constexpr std::int64_t kVisitOctets = 60;
 constexpr std::int64_t kProbeOctets = 100;
-constexpr Duration kLeastBringUp = 10 * kernel::kSecond;
 
 LinkRules rules_at(std::int64_t bit_rate) {
   LinkRules rules;
@@ -227,8 +224,9 @@ void LinkNetwork::stop() {
 network::State LinkNetwork::state() const {
   const Time now = segment_.now();
   if (got_ == sources_.size() && last_call_) {
-    return now - *last_call_ > kMacrocyclesOfSilence * description_.macrocycle ? network::State::stopped
-                                                                               : network::State::exchanging;
+    return now - *last_call_ > acceptance().silence_cycles * description_.macrocycle
+               ? network::State::stopped
+               : network::State::exchanging;
   }
   return !is_on_ || now - started_ > bring_up_limit() ? network::State::stopped : network::State::coming_up;
 }
@@ -238,12 +236,13 @@ Duration LinkNetwork::bring_up_limit() const {
   // Twice: the schedule takes its part of the line.
   const Duration circulations =
       stations * stations * octets(rules_, kVisitOctets) / 2 + stations * octets(rules_, kProbeOctets);
-  return kLeastBringUp + 3 * circulations + 4 * description_.macrocycle;
+  return acceptance().least_bring_up + 3 * circulations + 4 * description_.macrocycle;
 }
 
 network::RecoveryLimit LinkNetwork::recovery_limit() const {
-  return {static_cast<std::uint64_t>(kMacrocyclesToRecover) * sources_.size(),
-          kMacrocyclesToRecover * description_.macrocycle, "two macrocycles", judge::Standing::own};
+  const unsigned cycles = acceptance().recovery_cycles;
+  return {cycles * sources_.size(), cycles * description_.macrocycle, "recovery_cycles, each a macrocycle",
+          judge::Standing::own};
 }
 
 network::ExchangeWords LinkNetwork::exchange_words() const {

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "harness/field/facts.hpp"
 #include "protocols/interbus/network.hpp"
 
 namespace fieldproof::interbus {
@@ -15,6 +16,14 @@ namespace {
 
 constexpr std::uint16_t kIdCodeMask = 0x1FFF;
 constexpr unsigned kBitsPerWord = 16;
+
+// " (rule max_stations: Park 2004, ...)".
+std::string source_of(std::string_view name, const Rules& rules) {
+  for (const field::Fact& fact : field::facts_of(kRulesTable, rules)) {
+    if (fact.is_about(name)) return fmt::format(" (rule {}: {})", name, fact.source);
+  }
+  return "";
+}
 
 // Walks the stations in ring order, keeps what later rules need, and stops at the first violation.
 class Checker {
@@ -84,13 +93,14 @@ class Checker {
           fmt::format("\"{}\" is the name of another station too; write a name of its own", station.name));
     }
     if (stations_.size() > rules_.max_stations) {
-      return refuse(place, fmt::format("this is station {} of the ring; at most {} are possible",
-                                       stations_.size(), rules_.max_stations));
+      return refuse(place,
+                    fmt::format("this is station {} of the ring; at most {} are possible{}", stations_.size(),
+                                rules_.max_stations, source_of("max_stations", rules_)));
     }
     points_ += std::size_t{*words} * kBitsPerWord;
     if (points_ > rules_.max_io_points) {
-      refuse(place, fmt::format("up to here the registers have {} bit; at most {} I/O points are possible",
-                                points_, rules_.max_io_points));
+      refuse(place, fmt::format("up to here the registers have {} bit; at most {} I/O points are possible{}",
+                                points_, rules_.max_io_points, source_of("max_io_points", rules_)));
     }
   }
 

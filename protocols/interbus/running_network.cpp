@@ -20,12 +20,8 @@ using kernel::Duration;
 using kernel::kMillisecond;
 using kernel::Time;
 
-// A recognition pauses for the silence in which stations fall into reset and for as long as a master shows
-// status telegrams in front of it: some 50 ms together.
-constexpr Duration kRecognitionPause = 100 * kMillisecond;
 // Recognition adds the stations one by one, each with a few ID cycles through all that are known.
 constexpr std::int64_t kCyclesPerStation = 8;
-constexpr Duration kLeastBringUp = 10 * kernel::kSecond;
 
 std::unique_ptr<MasterDevice> make_master(const RunningStations& stations,
                                           const MasterConfiguration& configuration) {
@@ -141,11 +137,13 @@ void RunningNetwork::stop() {
 
 network::State RunningNetwork::state() const {
   const Time now = segment_.now();
+  const Duration silence = acceptance().silence_cycles * longest_cycle_;
   if (output_.has_data_cycle) {
-    return now - *output_.last_cycle > 2 * longest_cycle_ ? network::State::stopped
-                                                          : network::State::exchanging;
+    return now - *output_.last_cycle > silence ? network::State::stopped : network::State::exchanging;
   }
-  if (now - output_.last_cycle.value_or(started_) > kRecognitionPause + 2 * longest_cycle_ ||
+  // A recognition pauses for the silence in which stations fall into reset and for as long as a master shows
+  // status telegrams in front of it: some 50 ms together.
+  if (now - output_.last_cycle.value_or(started_) > acceptance().least_silence + silence ||
       now - started_ > bring_up_limit()) {
     return network::State::stopped;
   }
@@ -155,12 +153,18 @@ network::State RunningNetwork::state() const {
 Duration RunningNetwork::bring_up_limit() const {
   const auto stations = static_cast<std::int64_t>(ring_.size());
   const Duration id_cycle = frame_time(description_.rules, static_cast<unsigned>(2 * stations));
-  return kLeastBringUp +
+  return acceptance().least_bring_up +
          kCyclesPerStation * stations * (structural_cycle_time(description_) + id_cycle + 2 * kMillisecond);
 }
 
+network::AcceptanceRules RunningNetwork::acceptance() const {
+  network::AcceptanceRules rules;
+  rules.recovery_cycles = description_.rules.published_recovery_cycles;
+  return rules;
+}
+
 network::RecoveryLimit RunningNetwork::recovery_limit() const {
-  const unsigned cycles = description_.rules.published_recovery_cycles;
+  const unsigned cycles = acceptance().recovery_cycles;
   return {cycles, cycles * cycle_time_in_force(description_), "published number of cycles",
           judge::Standing::searched};
 }

@@ -56,6 +56,7 @@ class RunningNetwork final : public network::Network {
 
   std::span<const network::Place> places() const override { return places_; }
   std::span<const network::CycleKind> cycles() const override { return cycles_; }
+  network::AcceptanceRules acceptance() const override;
   network::RecoveryLimit recovery_limit() const override;
   network::ExchangeWords exchange_words() const override {
     return {"data cycles", "ID cycles", "rejected cycles"};

@@ -21,9 +21,6 @@ using network::Outcome;
 constexpr std::size_t kCommandOfPc = 4;  // octets: ID, COMMAND, DATA0, DATA1
 // The PC gives the host so many commands in advance: never a pause between two, and words are fresh.
 constexpr std::size_t kCommandsAhead = 4;
-constexpr std::uint64_t kCyclesToRecover = 2;
-constexpr std::int64_t kCyclesOfSilence = 2;
-constexpr Duration kLeastSilence = 100 * kernel::kMillisecond;
 constexpr std::string_view kAfterRepeater = "it lies after a repeater, on a segment that is not in the clamp";
 
 std::unique_ptr<HostDevice> make_host(const RunningStations& stations,
@@ -45,11 +42,13 @@ RunningNetwork::RunningNetwork(const NetworkDescription& description, std::uint6
       line_(segment_, "line", segment::ContentionRule::noise, random_),
       host_(make_host(stations, {.rules = description.rules, .dip = description.dip})),
       host_number_(segment_.attach(*host_, "host")),
+      host_drives_(*this),
       pc_number_(0) {
   const auto violation = violation_of(description_);
   FIELDPROOF_CHECK(!violation, "a network that runs is one within its limits");
   description_.rules.bit_rate = dip_bit_rates()[description_.dip];
   segment::MediumPort& place = line_.attach("host/in", host_number_, 0, {});
+  place.tap_driven(host_drives_);
   host_->wire(place, *this);
   places_.push_back({.name = place.name(),
                      .receiver = &place,
@@ -60,6 +59,12 @@ RunningNetwork::RunningNetwork(const NetworkDescription& description, std::uint6
   find_signals();
   plan_steps();
   find_cycle();
+}
+
+Rules RunningNetwork::rules_on_line() const {
+  Rules rules = description_.rules;
+  rules.bit_rate = dip_bit_rates()[description_.dip];
+  return rules;
 }
 
 void RunningNetwork::add_node(const NodeDescription& node, const RunningStations& stations) {
@@ -156,7 +161,7 @@ void RunningNetwork::start() {
     seat.device->set_power(true, now);
     segment_.refresh(seat.number);
     seat.is_open = seat.is_read = seat.is_closing = false;
-    seat.retries = 0;
+    seat.reads = 0;
   }
   host_->set_power(false, now);
   host_->set_dip(description_.dip);
@@ -199,17 +204,18 @@ Duration RunningNetwork::longest_queue() const {
 }
 
 Duration RunningNetwork::longest_silence() const {
-  return std::max(kLeastSilence,
-                  kCyclesOfSilence * static_cast<std::int64_t>(seats_.size()) * longest_exchange());
+  const network::AcceptanceRules rules = acceptance();
+  return std::max(rules.least_silence,
+                  rules.silence_cycles * static_cast<std::int64_t>(seats_.size()) * longest_exchange());
 }
 
 Duration RunningNetwork::bring_up_limit() const {
-  return kernel::kSecond + longest_silence();
+  return acceptance().least_bring_up + longest_silence();
 }
 
 network::RecoveryLimit RunningNetwork::recovery_limit() const {
-  const std::uint64_t exchanges = kCyclesToRecover * seats_.size();
-  return {exchanges, static_cast<std::int64_t>(kCyclesToRecover) * cycles_.front().theory, "two poll cycles",
+  const unsigned cycles = acceptance().recovery_cycles;
+  return {cycles * seats_.size(), cycles * cycles_.front().theory, "recovery_cycles, each a poll cycle",
           judge::Standing::own};
 }
 
@@ -286,6 +292,28 @@ void RunningNetwork::end() {
   for (Seat& seat : seats_) seat.device->end();
 }
 
+// ---- the lower tester ----
+
+RunningNetwork::HostDrives::HostDrives(RunningNetwork& network)
+    : network_(network), codec_(network.rules_on_line()), collector_(network.rules_on_line()) {}
+
+// A frame is known to have ended when the next one begins, or when somebody asks.
+void RunningNetwork::HostDrives::on_wave(const line::Waveform& wave) {
+  codec_.hear(wave, [this](const HeardCharacter& character) {
+    if (character.start >= collector_.ends_at()) take_frame();
+    collector_.add(character);
+    if (collector_.frame().count == kCommandOctets) take_frame();
+  });
+}
+
+void RunningNetwork::HostDrives::take_frame() {
+  const auto octets = collector_.frame().whole(kCommandOctets);
+  if (octets && (*octets)[1] == network_.description_.rules.read_command) {
+    if (Seat* const seat = network_.seat_of((*octets)[0])) ++seat->reads;
+  }
+  collector_.clear();
+}
+
 // ---- the PC ----
 
 RunningNetwork::Seat* RunningNetwork::seat_of(std::uint8_t id) {
@@ -340,14 +368,15 @@ void RunningNetwork::close_later(Seat& seat, Outcome outcome) {
 
 void RunningNetwork::close(std::size_t node, Time now) {
   Seat& seat = seats_[node];
-  const std::uint64_t retries = host_->counters(id_of(seat.description)).retries;
+  // What nobody has asked for on the line is no answer, whatever the host reports.
+  if (seat.outcome == Outcome::served && seat.reads == 0) seat.outcome = Outcome::missing;
   const network::Exchange exchange{.end = now,
                                    .kind = network::ExchangeKind::data,
                                    .outcome = seat.outcome,
-                                   .retries = retries - std::min(retries, seat.retries),
+                                   .retries = std::max(seat.reads, 1U) - 1U,
                                    .first_signal = seat.first_signal,
                                    .signal_count = seat.is_written ? 2U : 1U};
-  seat.retries = retries;
+  seat.reads = 0;
   seat.is_open = seat.is_closing = seat.is_read = false;
   seat.outcome = Outcome::served;
   if (watcher_ != nullptr) watcher_->on_exchange(exchange);

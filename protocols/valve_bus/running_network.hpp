@@ -11,6 +11,7 @@
 #include "harness/network/network.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
+#include "protocols/valve_bus/codec.hpp"
 #include "protocols/valve_bus/device.hpp"
 #include "protocols/valve_bus/network.hpp"
 #include "protocols/valve_bus/valve_block.hpp"
@@ -70,6 +71,19 @@ class RunningNetwork final : public network::Network, private HostApplication, p
     void on_wave(const line::Waveform& wave) override { last = wave.start; }
     std::optional<kernel::Time> last{};
   };
+  // Counts on the line how often the host reads each node: that it has tried again is not its own word.
+  class HostDrives final : public segment::Tap {
+   public:
+    explicit HostDrives(RunningNetwork& network);
+    void on_wave(const line::Waveform& wave) override;
+
+   private:
+    void take_frame();
+
+    RunningNetwork& network_;
+    CharacterCodec codec_;
+    FrameCollector collector_;
+  };
   struct Seat {
     NodeDescription description;
     kernel::Duration way{};  // from the host
@@ -86,8 +100,8 @@ class RunningNetwork final : public network::Network, private HostApplication, p
     bool is_read = false;  // its read is queued and not answered
     bool is_closing = false;
     network::Outcome outcome = network::Outcome::served;
-    kernel::Time asked{};       // when the read was queued
-    std::uint64_t retries = 0;  // until the last exchange
+    kernel::Time asked{};  // when the read was queued
+    unsigned reads = 0;    // seen on the line in this exchange
   };
   struct Closing {
     kernel::Time at;
@@ -114,6 +128,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   bool may_ask(const Step& step) const;
   void close_later(Seat& seat, network::Outcome outcome);
   void close(std::size_t node, kernel::Time now);
+  Rules rules_on_line() const;
   kernel::Duration longest_silence() const;
   kernel::Duration longest_exchange() const;
   kernel::Duration longest_queue() const;
@@ -124,6 +139,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   segment::Medium line_;
   std::unique_ptr<HostDevice> host_;
   std::size_t host_number_;
+  HostDrives host_drives_;
   std::deque<Seat> seats_;
   Driven node_drives_;
   std::vector<network::Place> places_;
