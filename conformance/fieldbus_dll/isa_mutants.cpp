@@ -2,6 +2,7 @@
 
 #include "conformance/fieldbus_dll/isa_check_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_frame_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/isa_las_check_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_las_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_reply_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_token_seeded_faults.hpp"
@@ -230,13 +231,35 @@ std::vector<IsaRow> isa_las_rows() {
   };
 }
 
+std::vector<IsaRow> isa_las_check_rows() {
+  using namespace isa_seeded_faults;
+  std::vector<IsaRow> rows{
+      {"item_skipped_after_two_silent", "", "leaves an item out when two holders in a row were silent",
+       IsaTable::station<ItemSkippedAfterTwoSilent>()},
+      {"reclaims_early_after_silence", "",
+       "waits half of V(RR) for a frame when the holder before was silent",
+       IsaTable::station<ReclaimsEarlyAfterSilence>()},
+      {"supervises_long_after_kept", "", "takes tokens back late once a holder has kept one",
+       IsaTable::station<SupervisesLongAfterKept>()},
+      {"second_transfer_ignored", "", "hands over once only", IsaTable::station<SecondTransferIgnored>()},
+      {"yields_once", "", "leaves to a lower address once only", IsaTable::station<YieldsOnce>()},
+      {"first_item_skipped_after_return", "",
+       "begins its schedule with the second item when the link is handed back",
+       IsaTable::station<FirstItemSkippedAfterReturn>()},
+  };
+  for (IsaRow& row : rows) row.is_for_check = true;
+  return rows;
+}
+
 const IsaTable& isa_table() {
   static const IsaTable table = [] {
     IsaTable::Role dle{"isa_dle", {}};
     for (auto group : {isa_token_rows, isa_duration_rows, isa_reply_rows, isa_frame_rows, isa_check_rows}) {
       for (IsaRow& row : group()) dle.rows.push_back(std::move(row));
     }
-    return IsaTable{{std::move(dle), {"isa_las", isa_las_rows()}}};
+    IsaTable::Role las{"isa_las", isa_las_rows()};
+    for (IsaRow& row : isa_las_check_rows()) las.rows.push_back(std::move(row));
+    return IsaTable{{std::move(dle), std::move(las)}};
   }();
   return table;
 }

@@ -10,6 +10,7 @@
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 #include "conformance/fieldbus_dll/ff_sequence.hpp"
 #include "conformance/fieldbus_dll/isa_cases.hpp"
+#include "conformance/fieldbus_dll/isa_las_sequence.hpp"
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
 #include "conformance/fieldbus_dll/isa_sequence_check.hpp"
 #include "harness/fault/plan_file.hpp"
@@ -104,15 +105,19 @@ class FieldbusDllSuite final : public Suite {
   }
 
   std::span<const SequenceRole> sequence_roles() const override {
-    static const std::array roles{isa_dle_sequence_role(), ff_device_sequence_role(), ff_las_sequence_role()};
+    static const std::array roles{isa_dle_sequence_role(), isa_las_sequence_role(), ff_device_sequence_role(),
+                                  ff_las_sequence_role()};
     return roles;
   }
   Outcome run_sequence(const SequenceRole& role, const Sequence& sequence,
                        const Setup& setup) const override {
     if (is_of_isa(role.test_case.role())) {
-      const IsaCase one{role.test_case, [&sequence](IsaBench& bench, CaseJudge& judge) {
-                          run_isa_dle_sequence(sequence, bench, judge);
-                        }};
+      const bool is_las = role.test_case.role() == kIsaLas;
+      const IsaCase one{role.test_case,
+                        [&sequence, is_las](IsaBench& bench, CaseJudge& judge) {
+                          (is_las ? run_isa_las_sequence : run_isa_dle_sequence)(sequence, bench, judge);
+                        },
+                        is_las ? isa_las_sequence_needs() : IsaNeeds{}};
       return run_isa(one, setup);
     }
     const bool is_las = role.test_case.role() == kFfLas;

@@ -12,7 +12,7 @@
 // and what the master makes of each cycle.
 //
 // What is compared begins in run: how a ring is recognised is the master's choice, its result is not. Between
-// commands the master stands right behind a cycle, or has no cycles: it is off, or has given up the bus.
+// commands the master stands right after a cycle, or has no cycles: it is off, or has given up the bus.
 //
 // Whoever is judged is held to what no master may do, whatever the reference does:
 //   what it sends has the headers of its phase and a check that fits, and begins with an ID cycle
@@ -21,7 +21,7 @@
 //   it counts the data cycles, and those that it rejected
 //   an ID cycle follows a rejected cycle
 //   it is never silent for longer than stations wait for a sign of life, unless it has given up the bus
-//   on a ring without faults it runs within the published number of cycles behind the last fault
+//   once it runs, an ID cycle that is asked for and two good data cycles come within 8 cycles
 //   it sends no cycle when it is stopped, and its last one sets the outputs to 0
 namespace fieldproof::conformance {
 
