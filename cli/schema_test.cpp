@@ -273,15 +273,16 @@ TEST_F(Schemas, OfASequence) {
   const std::string id = R"({"do": "id", "faults": [{"fault": "drop", "unit": 3}]})";
   const std::string octets = R"({"do": "octets", "silence": 45, "octets": [1, 255],
                                 "faults": [{"fault": "flip", "unit": 1, "level": 3}]})";
-  expect_alike("cli/sequence.schema.json",
-               {good(sequence(node, wait + "," + octets)), good(sequence("interbus/slave", id)),
-                bad(sequence("interbus/slave", wait)), good(sequence("valve_bus/host", wait)),
-                bad(sequence("interbus/master", wait)), good(sequence(node, "")), bad(sequence(node, id)),
-                bad(sequence(node, R"({"do": "wait", "ms": 0})")),
-                bad(sequence(node, R"({"do": "wait", "ms": 1, "faults": []})")),
-                bad(sequence(node, R"({"do": "octets", "silence": 45, "octets": [256]})")),
-                bad(sequence("interbus/slave", R"({"do": "id", "faults": [{"fault": "drop"}]})"))},
-               [](const fs::path& file) { load_sequence_file(file, catalogue()); });
+  expect_alike(
+      "cli/sequence.schema.json",
+      {good(sequence(node, wait + "," + octets)), good(sequence("interbus/slave", id)),
+       bad(sequence("interbus/slave", wait)), good(sequence("valve_bus/host", wait)),
+       good(sequence("interbus/master", wait)), bad(sequence("interbus/network", wait)),
+       good(sequence(node, "")), bad(sequence(node, id)), bad(sequence(node, R"({"do": "wait", "ms": 0})")),
+       bad(sequence(node, R"({"do": "wait", "ms": 1, "faults": []})")),
+       bad(sequence(node, R"({"do": "octets", "silence": 45, "octets": [256]})")),
+       bad(sequence("interbus/slave", R"({"do": "id", "faults": [{"fault": "drop"}]})"))},
+      [](const fs::path& file) { load_sequence_file(file, catalogue()); });
 }
 
 // A vocabulary that grows without its schema would be refused by editors.

@@ -1,4 +1,6 @@
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
+#include "conformance/fieldbus_dll/isa_las_check_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/mutant_table.hpp"
 
 #include "conformance/fieldbus_dll/isa_check_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_frame_seeded_faults.hpp"
@@ -197,6 +199,26 @@ std::vector<IsaRow> isa_las_rows() {
   };
 }
 
+std::vector<IsaRow> isa_las_check_rows() {
+  using namespace isa_seeded_faults;
+  std::vector<IsaRow> rows{
+      {"item_skipped_after_two_silent", "", "leaves an item out when two holders in a row were silent",
+       mutant<ItemSkippedAfterTwoSilent>()},
+      {"reclaims_early_after_silence", "",
+       "waits half of V(RR) for a frame when the holder before was silent",
+       mutant<ReclaimsEarlyAfterSilence>()},
+      {"supervises_long_after_kept", "", "takes tokens back late once a holder has kept one",
+       mutant<SupervisesLongAfterKept>()},
+      {"second_transfer_ignored", "", "hands over once only", mutant<SecondTransferIgnored>()},
+      {"yields_once", "", "leaves to a lower address once only", mutant<YieldsOnce>()},
+      {"first_item_skipped_after_return", "",
+       "begins its schedule with the second item when the link is handed back",
+       mutant<FirstItemSkippedAfterReturn>()},
+  };
+  for (IsaRow& row : rows) row.is_for_check = true;
+  return rows;
+}
+
 }  // namespace
 
 const IsaMutants& isa_dle_mutants() {
@@ -206,7 +228,7 @@ const IsaMutants& isa_dle_mutants() {
 }
 
 const IsaMutants& isa_las_mutants() {
-  static const IsaMutants table("isa_las", {isa_las_rows});
+  static const IsaMutants table("isa_las", {isa_las_rows, isa_las_check_rows});
   return table;
 }
 

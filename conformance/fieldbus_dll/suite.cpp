@@ -6,6 +6,7 @@
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 #include "conformance/fieldbus_dll/ff_sequence.hpp"
 #include "conformance/fieldbus_dll/isa_cases.hpp"
+#include "conformance/fieldbus_dll/isa_las_sequence.hpp"
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
 #include "conformance/fieldbus_dll/isa_sequence_check.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
@@ -45,7 +46,8 @@ RoleRow isa_las_row() {
       IsaCases{.name = "isa_las",
                .cases = isa_cases,
                .adjust = [](IsaSetting& setting, RunningCase&) { setting.address = 0x10; },
-               .settings = &kIsaTable});
+               .settings = &kIsaTable,
+               .sequences = SequenceRow<IsaCase>{isa_las_sequence_role, run_isa_las_sequence}});
 }
 
 RoleRow ff_device_row() {

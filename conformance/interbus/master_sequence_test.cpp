@@ -88,7 +88,10 @@ TEST(MasterSequence, FindsWhatTheCatalogueNames) {
                                       "request_taken_as_it_is", "station_limit_ignored"};
   std::set<std::string> passed;
   for (const std::string& name : masters(false)) {
-    const std::uint64_t cases = outside.contains(name) ? 100 : 5'000;
+    const bool is_outside = outside.contains(name);
+    // Under sanitizers there is time for those only that nothing finds.
+    if (kernel::kIsSanitized && !is_outside) continue;
+    const std::uint64_t cases = is_outside ? 100 : 5'000;
     if (!search(master_search_of("mutant:" + name, cases)).found) passed.insert(name);
   }
   EXPECT_EQ(passed, outside);

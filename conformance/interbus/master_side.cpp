@@ -106,7 +106,7 @@ void MasterSide::await_run() {
   note_state(false);
 }
 
-// What the recognition leaves after is not compared: the application asks for an ID cycle, writes all
+// What the recognition leaves is not compared: the application asks for an ID cycle, writes all
 // outputs, and looks when both have been on the line.
 void MasterSide::enter_run() {
   has_rejected_ = false;
@@ -285,11 +285,11 @@ void MasterSide::judge_inputs(const SeenCycle& sent, Arrival arrival) {
 // By input word: where it stands among those that come back.
 std::vector<std::size_t> MasterSide::input_places() const {
   std::vector<std::size_t> places;
-  std::size_t behind = bench_.ring().word_count();
+  std::size_t first = bench_.ring().word_count();
   for (const VirtualStation& station : bench_.ring().stations()) {
-    behind -= station.words;
+    first -= station.words;
     for (unsigned word = 0; word < station.words && interbus::has_inputs(station.id_code); ++word)
-      places.push_back(behind + word);
+      places.push_back(first + word);
   }
   return places;
 }

@@ -21,7 +21,7 @@
 //   it counts the data cycles, and those that it rejected
 //   an ID cycle follows a rejected cycle
 //   it is never silent for longer than stations wait for a sign of life, unless it has given up the bus
-//   on a ring without faults it runs within the published number of cycles after the last fault
+//   once it runs, an ID cycle that is asked for and two good data cycles come within 8 cycles
 //   it sends no cycle when it is stopped, and its last one sets the outputs to 0
 namespace fieldproof::conformance {
 
