@@ -1,6 +1,5 @@
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
 #include "conformance/fieldbus_dll/isa_las_check_seeded_faults.hpp"
-#include "conformance/fieldbus_dll/mutant_table.hpp"
 
 #include "conformance/fieldbus_dll/isa_check_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_frame_seeded_faults.hpp"
@@ -201,7 +200,7 @@ std::vector<IsaRow> isa_las_rows() {
 
 std::vector<IsaRow> isa_las_check_rows() {
   using namespace isa_seeded_faults;
-  std::vector<IsaRow> rows{
+  return IsaMutants::for_check({
       {"item_skipped_after_two_silent", "", "leaves an item out when two holders in a row were silent",
        mutant<ItemSkippedAfterTwoSilent>()},
       {"reclaims_early_after_silence", "",
@@ -214,9 +213,7 @@ std::vector<IsaRow> isa_las_check_rows() {
       {"first_item_skipped_after_return", "",
        "begins its schedule with the second item when the link is handed back",
        mutant<FirstItemSkippedAfterReturn>()},
-  };
-  for (IsaRow& row : rows) row.is_for_check = true;
-  return rows;
+  });
 }
 
 }  // namespace

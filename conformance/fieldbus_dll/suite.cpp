@@ -47,7 +47,8 @@ RoleRow isa_las_row() {
                .cases = isa_cases,
                .adjust = [](IsaSetting& setting, RunningCase&) { setting.address = 0x10; },
                .settings = &kIsaTable,
-               .sequences = SequenceRow<IsaCase>{isa_las_sequence_role, run_isa_las_sequence}});
+               .sequences = SequenceRow<IsaCase>{isa_las_sequence_role, run_isa_las_sequence,
+                                                 isa_las_sequence_needs()}});
 }
 
 RoleRow ff_device_row() {

@@ -110,27 +110,33 @@ std::vector<MasterMutants::Row> master_rows() {
        mutant<PausesIn<MasterState::locating>>()},
       {"pulse_widths_even", "", "copies pulses of an odd number of cycles one cycle shorter",
        mutant<PulseWidthsEven>()},
+  };
+}
+
+std::vector<MasterMutants::Row> master_check_rows() {
+  using namespace seeded_faults;
+  return MasterMutants::for_check({
       {"second_mark_accepted", "", "takes a marked status word when the one before was marked, too",
-       mutant<SecondMarkAccepted>(), true},
+       mutant<SecondMarkAccepted>()},
       {"stop_one_early_after_restart", "", "once stopped and started, stops the bus one bad cycle too early",
-       mutant<StopOneEarlyAfterRestart>(), true},
+       mutant<StopOneEarlyAfterRestart>()},
       {"inputs_stale_after_id_cycle", "",
        "keeps the inputs in the first data cycle after an ID cycle that was asked for",
-       mutant<InputsStaleAfterIdCycle>(), true},
+       mutant<InputsStaleAfterIdCycle>()},
       {"output_after_error_lost", "", "does not take outputs that are written after a rejected cycle",
-       mutant<OutputAfterErrorLost>(), true},
+       mutant<OutputAfterErrorLost>()},
       {"first_fault_reported_only", "", "reports the peripheral fault of one station only",
-       mutant<FirstFaultReportedOnly>(), true},
+       mutant<FirstFaultReportedOnly>()},
       {"copy_skipped_after_error", "",
        "does not run the copy task after the first good cycle after a bad one",
-       mutant<CopySkippedAfterError>(), true},
-  };
+       mutant<CopySkippedAfterError>()},
+  });
 }
 
 }  // namespace
 
 const MasterMutants& master_mutants() {
-  static const MasterMutants table("master", {master_rows});
+  static const MasterMutants table("master", {master_rows, master_check_rows});
   return table;
 }
 

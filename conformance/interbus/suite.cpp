@@ -9,6 +9,7 @@
 #include "conformance/bench_role.hpp"
 #include "conformance/interbus/master_cases.hpp"
 #include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/master_sequence.hpp"
 #include "conformance/interbus/network_bench.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
