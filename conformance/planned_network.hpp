@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include "conformance/assigned.hpp"
-#include "conformance/case_devices.hpp"
 #include "conformance/mutant_table.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/network/network.hpp"
