@@ -44,8 +44,17 @@ using Attach =
 
 [[noreturn]] void refuse_outside(const iut::RoleName& role);
 
-// The station that an implementation outside plays. A `Kind` without an Attached has stations of the program
-// only: an implementation outside is refused.
+// A `Kind` without an Attached has stations of the program only: an implementation outside is refused, before
+// it is started.
+template <typename Kind>
+void expect_playable(const std::string& uri) {
+  if constexpr (!requires { typename Kind::Attached; }) {
+    if (uri != kReferenceUri && uri != kOwnUri && !uri.starts_with(kMutantUri))
+      refuse_outside({Kind::protocol, Kind::role});
+  }
+}
+
+// The station that an implementation outside plays.
 template <typename Kind>
 std::unique_ptr<typename Kind::Device> attached_station(iut::Attachment attachment,
                                                         const typename Kind::Configuration& configuration,
@@ -56,4 +65,5 @@ std::unique_ptr<typename Kind::Device> attached_station(iut::Attachment attachme
     refuse_outside({Kind::protocol, Kind::role});
   }
 }
+
 }  // namespace fieldproof::conformance

@@ -17,6 +17,7 @@
 //
 // A role is a `Kind`: the types Device (what the bench wires to), Configuration, Attached (a Device that an
 // iut::Device plays) and Served (an iut::Device that a Device plays), and the names protocol and role.
+// Without Attached and Served it has stations of the program only.
 namespace fieldproof::conformance {
 
 class CaseDevices {
@@ -37,6 +38,7 @@ class CaseDevices {
   std::unique_ptr<typename Kind::Device> make(const std::string& uri,
                                               const typename Kind::Configuration& configuration,
                                               MakeLocal make_local) {
+    expect_playable<Kind>(uri);
     std::optional<iut::Attachment> attachment = outside({Kind::protocol, Kind::role}, uri);
     if constexpr (requires { typename Kind::Served; }) {
       if (!attachment && setup_.as_device) {
