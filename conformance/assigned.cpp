@@ -23,4 +23,12 @@ std::string mutant_of(const std::string& uri, std::string_view what) {
   return uri.substr(kMutantUri.size());
 }
 
+void refuse_outside(const iut::RoleName& role) {
+  throw kernel::Error(
+      kernel::ErrorKind::usage,
+      "'" + role.path() +
+          "' is played by stations of this program only (ref, mutant:NAME, own): the role says "
+          "nothing of how an implementation outside is called");
+}
+
 }  // namespace fieldproof::conformance

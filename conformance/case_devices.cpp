@@ -22,14 +22,6 @@ std::optional<iut::Attachment> CaseDevices::outside(const iut::RoleName& role, c
   }
 }
 
-void refuse_outside(const iut::RoleName& role) {
-  throw kernel::Error(
-      kernel::ErrorKind::usage,
-      "'" + role.path() +
-          "' is played by stations of this program only (ref, mutant:NAME, own): the role says "
-          "nothing of how an implementation outside is called");
-}
-
 void CaseDevices::keep(Outcome& outcome) {
   if (!recording_) return;
   outcome.recording.truncated = outcome.recording.truncated || recording_->is_truncated();

@@ -17,27 +17,9 @@
 //
 // A role is a `Kind`: the types Device (what the bench wires to), Configuration, Attached (a Device that an
 // iut::Device plays) and Served (an iut::Device that a Device plays), and the names protocol and role.
+// Without Attached and Served it has stations of the program only.
 namespace fieldproof::conformance {
 
-// Implementations outside, for any role; nothing for a URI of another kind. Throws kernel::Error for one that
-// cannot be had.
-using Attach =
-    std::function<std::optional<iut::Attachment>(const iut::RoleName& role, const IutRequest& request)>;
-
-[[noreturn]] void refuse_outside(const iut::RoleName& role);
-
-// The station that an implementation outside plays. A `Kind` without an Attached has stations of the program
-// only: an implementation outside is refused.
-template <typename Kind>
-std::unique_ptr<typename Kind::Device> attached_station(iut::Attachment attachment,
-                                                        const typename Kind::Configuration& configuration,
-                                                        const std::string& case_id, std::uint64_t seed) {
-  if constexpr (requires { typename Kind::Attached; }) {
-    return std::make_unique<typename Kind::Attached>(std::move(attachment), configuration, case_id, seed);
-  } else {
-    refuse_outside({Kind::protocol, Kind::role});
-  }
-}
 class CaseDevices {
  public:
   // All must outlive it. Loads the recording that the setup names.
@@ -56,6 +38,7 @@ class CaseDevices {
   std::unique_ptr<typename Kind::Device> make(const std::string& uri,
                                               const typename Kind::Configuration& configuration,
                                               MakeLocal make_local) {
+    expect_playable<Kind>(uri);
     std::optional<iut::Attachment> attachment = outside({Kind::protocol, Kind::role}, uri);
     if constexpr (requires { typename Kind::Served; }) {
       if (!attachment && setup_.as_device) {

@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include "conformance/assigned.hpp"
-#include "conformance/case_devices.hpp"
 #include "conformance/mutant_table.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/network/network.hpp"
@@ -92,6 +91,7 @@ class Seats {
     if (at == uris_.end()) return nullptr;
     const std::string& uri = at->second;
     if (uri.starts_with(kMutantUri)) return mutants.make(mutant_of(uri, "station"), configuration);
+    expect_playable<Kind>(uri);
     return attached_station<Kind>(
         attached_to_network(request_, {Kind::protocol, Kind::role}, uri, case_id_, seed), configuration,
         case_id_, seed);

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "conformance/assigned.hpp"
-#include "conformance/case_devices.hpp"
 #include "harness/fault/disturbance.hpp"
 #include "harness/fault/stress.hpp"
 #include "harness/judge/pics.hpp"
