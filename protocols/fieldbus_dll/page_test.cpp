@@ -57,8 +57,13 @@ TEST(FieldbusDllPage, HasEveryEvent) {
 TEST(FieldbusDllPage, HasTheFramesOfABasicDevice) {
   const FfRules rules;
   const auto on_page = [&](const FfDlpdu& dlpdu) {
-    expect_in_words(fmt::format("`{:02X}`", fmt::join(octets_of(dlpdu, rules), " ")));
+    expect_in_words(fmt::format("{:02X}`", fmt::join(octets_of(dlpdu, rules), " ")));
   };
+  on_page({.type = FfType::dt1,
+           .priority = Priority::normal,
+           .destination = 0x2130,
+           .source = 0x2230,
+           .data = {0x41}});
   on_page({.type = FfType::sr, .is_final = true, .status = FfStatus::unknown_address});
   on_page({.type = FfType::sr, .is_final = true, .status = FfStatus::nothing_written});
   on_page({.type = FfType::dt1,
