@@ -10,19 +10,28 @@
 
 #include "harness/field/written_table.hpp"
 #include "protocols/fieldbus_dll/dlpdu_layout.hpp"
+#include "protocols/fieldbus_dll/ff_device.hpp"
 #include "protocols/fieldbus_dll/ff_settings.hpp"
+#include "protocols/fieldbus_dll/isa_device.hpp"
 #include "protocols/fieldbus_dll/isa_settings.hpp"
 #include "protocols/fieldbus_dll/test_link.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
 
-void expect_on_page(const std::string& text) {
+void expect_in_words(const std::string& text) {
   std::ifstream file(FIELDPROOF_SOURCE_DIR "/protocols/fieldbus_dll/README.md");
   const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  EXPECT_NE(page.find("\n" + text + "\n"), std::string::npos)
-      << "protocols/fieldbus_dll/README.md must have:\n"
-      << text;
+  EXPECT_NE(page.find(text), std::string::npos) << "protocols/fieldbus_dll/README.md must have:\n" << text;
+}
+
+// The beginning of a line.
+void expect_line(const std::string& text) {
+  expect_in_words("\n" + text);
+}
+
+void expect_on_page(const std::string& text) {
+  expect_line(text + "\n");
 }
 
 TEST(FieldbusDllPage, HasEverySettingOfFoundationFieldbus) {
@@ -31,6 +40,37 @@ TEST(FieldbusDllPage, HasEverySettingOfFoundationFieldbus) {
 
 TEST(FieldbusDllPage, HasEverySettingOfIsa) {
   expect_on_page(field::markdown_of(kIsaTable));
+}
+
+template <typename Kind>
+void expect_events(Kind last) {
+  for (unsigned n = 0; n <= static_cast<unsigned>(last); ++n)
+    expect_line(fmt::format("| {} | {} | ", n, text_of(static_cast<Kind>(n))));
+}
+
+TEST(FieldbusDllPage, HasEveryEvent) {
+  expect_events(FfEventKind::left);
+  expect_events(IsaEventKind::scheduler_taken);
+}
+
+// The frames that the words on basic devices name.
+TEST(FieldbusDllPage, HasTheFramesOfABasicDevice) {
+  const FfRules rules;
+  const auto on_page = [&](const FfDlpdu& dlpdu) {
+    expect_in_words(fmt::format("{:02X}`", fmt::join(octets_of(dlpdu, rules), " ")));
+  };
+  on_page({.type = FfType::dt1,
+           .priority = Priority::normal,
+           .destination = 0x2130,
+           .source = 0x2230,
+           .data = {0x41}});
+  on_page({.type = FfType::sr, .is_final = true, .status = FfStatus::unknown_address});
+  on_page({.type = FfType::sr, .is_final = true, .status = FfStatus::nothing_written});
+  on_page({.type = FfType::dt1,
+           .priority = Priority::normal,
+           .destination = address_of(0x21),
+           .source = address_of(0x10),
+           .data = {static_cast<std::uint8_t>(SpduKind::activation)}});
 }
 
 template <typename Dlpdu, typename Rules>
