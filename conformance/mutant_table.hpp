@@ -1,22 +1,23 @@
 #pragma once
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <functional>
+#include <initializer_list>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "conformance/test_case.hpp"
-#include "harness/config/nearest.hpp"
-#include "harness/kernel/error.hpp"
 
 // The mutants of one role: their names, and how each is made. A row makes `Made` from `From`: a device from
 // its configuration, or the parts of a network from the number of its stations.
 namespace fieldproof::conformance {
+
+// Throws kernel::Error(usage) with the nearest of the names that there are.
+[[noreturn]] void refuse_mutant(std::string_view role, std::string_view name,
+                                std::span<const std::string_view> names);
 
 template <typename Made, typename From>
 class MutantTable {
@@ -60,9 +61,7 @@ class MutantTable {
       if (row.name == name) return row.make;
       names.push_back(row.name);
     }
-    throw kernel::Error(kernel::ErrorKind::usage,
-                        fmt::format("there is no mutant {} \"{}\"; near are {}", role_, name,
-                                    fmt::join(config::nearest(name, names, 3), ", ")));
+    refuse_mutant(role_, name, names);
   }
   Made make(std::string_view name, const From& from) const { return maker(name)(from); }
 
