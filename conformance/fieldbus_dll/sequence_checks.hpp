@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <set>
@@ -36,7 +38,7 @@ class SequenceChecks {
   // Each mutant station that is for `check`, confirmed, and with at most so many commands.
   void expect_finds_each(std::size_t count, std::uint64_t cases, std::size_t most_commands) const {
     ASSERT_EQ(for_check().size(), count);
-    for (const std::string& name : for_check()) {
+    for (const std::string& name : fewer_if_slow(for_check())) {
       const SequenceSearchResult result = search(search_of("mutant:" + name, cases));
       ASSERT_TRUE(result.found) << name;
       EXPECT_TRUE(result.found->is_confirmed) << name;
@@ -47,15 +49,17 @@ class SequenceChecks {
 
   // What cases of the catalogue name is found, too, but for what lies outside of the sequences.
   void expect_finds_all_but(const std::set<std::string>& outside, std::uint64_t cases) const {
-    std::set<std::string> passed;
+    std::vector<std::string> catalogue;
     for (const Mutant& one : suite().mutants()) {
-      if (one.role != role_ || one.is_for_check) continue;
-      // Who is outside passes whatever their number.
-      const bool is_outside = outside.contains(one.name);
-      if (!search(search_of("mutant:" + one.name, is_outside ? cases / 10 : cases)).found)
-        passed.insert(one.name);
+      if (one.role == role_ && !one.is_for_check) catalogue.push_back(one.name);
     }
-    EXPECT_EQ(passed, outside);
+    for (const std::string& name : fewer_if_slow(std::move(catalogue))) {
+      // Who is outside passes whatever their number.
+      const bool is_outside = outside.contains(name);
+      const bool is_found =
+          search(search_of("mutant:" + name, is_outside ? cases / 10 : cases)).found.has_value();
+      EXPECT_EQ(is_found, !is_outside) << name;
+    }
   }
 
   void expect_single_commands_pass(std::size_t count) const {
@@ -77,6 +81,15 @@ class SequenceChecks {
   static constexpr std::uint64_t kFixedSeed = 1;
 
   static std::uint64_t fewer_if_slow(std::uint64_t count) { return kernel::kIsSanitized ? count / 5 : count; }
+  // Each fourth of them: what a sanitizer looks for does not depend on who plays.
+  static std::vector<std::string> fewer_if_slow(std::vector<std::string> names) {
+    constexpr std::size_t kEach = 4;
+    for (std::size_t n = 0; kernel::kIsSanitized && n < names.size(); ++n) {
+      const auto first = names.begin() + static_cast<std::ptrdiff_t>(n + 1);
+      names.erase(first, first + std::min<std::ptrdiff_t>(kEach - 1, names.end() - first));
+    }
+    return names;
+  }
 
   static const Suite& suite() {
     static const std::unique_ptr<Suite> one = fieldbus_dll_suite();

@@ -50,7 +50,9 @@ class MasterSequenceRun {
  public:
   MasterSequenceRun(MasterBench& bench, CaseJudge& judge)
       : judge_(judge),
-        twin_(make_master("ref"), 1, Volume::quick),
+        twin_(NoNeeds{},
+              {.make_device = std::make_unique<interbus::Master, const interbus::MasterConfiguration&>,
+               .volume = Volume::quick}),
         sides_{MasterSide(bench, &judge), MasterSide(twin_, nullptr)} {
     judge.use_decode([&bench] { return bench.ring().describe_last(6); });
     for (MasterSide& side : sides_) {

