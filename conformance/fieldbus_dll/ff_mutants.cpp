@@ -170,6 +170,8 @@ std::vector<FfRow> ff_sequence_rows() {
        FfTable::station<WritesBetweenCdsCountOnce>()},
       {"buffers_share_the_count", "", "counts the writes of all its buffers together",
        FfTable::station<BuffersShareTheCount>()},
+      {"count_of_a_later_write", "", "publishes the buffer of one instant with the count of another",
+       FfTable::station<CountOfALaterWrite>()},
   };
   for (FfRow& row : rows) row.is_for_check = true;
   return rows;

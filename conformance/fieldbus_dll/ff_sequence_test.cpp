@@ -17,7 +17,7 @@ TEST(FfDeviceSequence, TheReferenceFollowsTheModel) {
 }
 
 TEST(FfDeviceSequence, FindsEachDeviceForCheckWithFewCommands) {
-  ff_device_checks().expect_finds_each(12, 4'000, 5);
+  ff_device_checks().expect_finds_each(13, 4'000, 5);
 }
 
 // Else it would be no fault of sequences.
