@@ -19,6 +19,21 @@ class NoProbeResponse : public FfStation {
   bool answers_probe() const override { return false; }
 };
 
+// Drives so many DLPDUs and no more.
+class MuteAfter : public FfStation {
+ public:
+  MuteAfter(const FfConfiguration& configuration, unsigned driven)
+      : FfStation(configuration), left_(driven) {}
+
+ private:
+  Time put_on_line(const Octets& octets, Time now) override {
+    if (left_ == 0) return now;
+    --left_;
+    return FfStation::put_on_line(octets, now);
+  }
+  unsigned left_;
+};
+
 class AnswersLate : public FfStation {
   using FfStation::FfStation;
   Duration silence_before_sending() const override { return response_delay(rules().link) + octet_times(1); }

@@ -70,6 +70,7 @@ void wrong_checks_are_seen_whatever_comes(FfBench& bench, CaseJudge& judge) {
   bench.send(told);
   bench.wait(bench.octets(20));
   judge.expect(bench.user().data.size() == 1, "does_not_recover", "a right DT1 is delivered", "it was not");
+  expect_serves(bench, judge);
 }
 
 // After the preamble, of which any part will do, each half bit is turned once.
@@ -144,6 +145,7 @@ void what_comes_is_told_as_it_is(FfBench& bench, CaseJudge& judge) {
     return Mismatch{{fmt::format("{} DT3 are reported", rounds)},
                     fmt::format("{}", bench.user().published.size())};
   });
+  expect_serves(bench, judge);
 }
 
 void frames_are_as_long_as_the_paper_says(FfBench& bench, CaseJudge& judge) {
@@ -207,15 +209,14 @@ void silence_is_kept(FfBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 30); ++n) {
     bench.write(FfBench::kPublished, bench.numbered_data(8));
     for (int i = 0; i < 3; ++i) bench.submit(Priority::normal, bench.numbered_data(10));
+    // judge_driven holds each gap.
     bench.send(bench.pt(Priority::normal, 800));
-    bench.listen();
+    judge.expect(bench.listen().size() >= 3, "frames_missing", "three DT1", "fewer");
     bench.send(bench.cd(FfBench::kPublished));
-    bench.listen();
+    judge.expect(!bench.listen().empty(), "not_published", "a DT3", "silence");
     bench.send({bench.rules().codes.pn, bench.node()});
-    bench.listen();
+    judge.expect(!bench.listen().empty(), "no_probe_response", "a PR", "silence");
   }
-  // judge_driven holds each gap.
-  judge.expect(!bench.driven().empty(), "token_not_returned", "answers", "silence");
 }
 
 }  // namespace

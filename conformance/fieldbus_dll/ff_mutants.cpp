@@ -24,6 +24,8 @@ std::vector<FfRow> ff_token_rows() {
   using namespace ff_seeded_faults;
   return {
       {"no_probe_response", "", "does not answer probes", FfTable::station<NoProbeResponse>()},
+      {"mute_after_activation", "", "drives the answer to its first probe and nothing more",
+       FfTable::station<MuteAfter>(1U)},
       {"answers_late", "", "begins an octet after V(MRD) x V(ST)", FfTable::station<AnswersLate>()},
       {"answers_for_all_nodes", "", "takes everything for its own", FfTable::station<AnswersForAllNodes>()},
       {"live_from_the_start", "", "uses tokens without having been activated",

@@ -127,6 +127,7 @@ void what_is_subscribed_is_delivered(FfBench& bench, CaseJudge& judge) {
                "nothing was");
   judge.expect(published.size() == 1 && published[0].data == data, "other_buffer_delivered",
                "the subscribed buffer alone", fmt::format("{} buffers", published.size()));
+  expect_serves(bench, judge);
 }
 
 }  // namespace

@@ -114,7 +114,8 @@ void ff_nothing_is_sent_behind_the_duration(FfBench& bench, CaseJudge& judge) {
     }
     for (int i = 0; i < 2; ++i) {
       bench.send(bench.pt(Priority::time_available, kAmple));
-      bench.listen();
+      judge.expect(!bench.listen().empty(), "token_not_returned",
+                   fmt::format("under a token of {} octets data, or RT", kAmple), "silence");
     }
   }
 }
