@@ -65,6 +65,12 @@ std::vector<FfRow> ff_token_rows() {
       {"duration_in_bits", "FF-5", "counts the duration in bits", FfTable::station<DurationTimes>(1)},
       {"duration_in_two_octets", "", "counts the duration in pairs of octets",
        FfTable::station<DurationTimes>(16)},
+      {"duration_of_12_bits", "", "does not look at the upper four bits of the duration",
+       FfTable::station<DurationReadAs>(
+           +[](std::uint16_t read) { return static_cast<std::int64_t>(read & 0x0FFFU); })},
+      {"duration_with_sign", "", "takes the highest bit of the duration for its sign",
+       FfTable::station<DurationReadAs>(
+           +[](std::uint16_t read) { return std::int64_t{static_cast<std::int16_t>(read)}; })},
       {"duration_ignored", "", "does not look at the duration", FfTable::station<FfDurationIgnored>()},
       {"duration_from_begin_of_pt", "", "counts the duration from the begin of the PT",
        FfTable::station<DurationFromBeginOfPt>()},
@@ -89,6 +95,8 @@ std::vector<FfRow> ff_publisher_rows() {
       {"publishes_anything", "", "answers a CD for any of its addresses with its buffer",
        FfTable::station<PublishesAnything>()},
       {"subscribed_to_all", "", "delivers what everybody publishes", FfTable::station<SubscribedTo>(true)},
+      {"subscribed_without_link", "", "does not look at the link in the address of a publisher",
+       FfTable::station<SubscribedWithoutLink>()},
       {"subscribed_to_none", "", "delivers nothing of a publisher", FfTable::station<SubscribedTo>(false)},
   };
 }
@@ -141,6 +149,12 @@ std::vector<FfRow> ff_frame_rows() {
       {"tail_ignored", "", "takes a DLPDU with an octet after it", FfTable::station<TailIgnored>()},
       {"two_octets_of_preamble", "", "sends two octets of preamble",
        FfTable::with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 2; })},
+      {"preamble_of_the_usual_link", "", "sends one octet of preamble, whatever its link has",
+       FfTable::with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 1; })},
+      {"codes_of_the_usual_link", "", "knows the usual codes, whatever its link has",
+       FfTable::with_rules<FfStation>([](FfRules& rules) { rules.codes = {}; })},
+      {"deaf_to_long_frames", "", "does not receive frames of more than 128 octets",
+       FfTable::station<DeafToLongFrames>()},
       {"short_silence", "", "begins V(MID) / 2 after what was on the line",
        FfTable::with_rules<FfStation>([](FfRules& rules) { rules.link.inter_pdu_delay_octets /= 2; })},
       {"no_silence_behind_own", "", "begins an octet after its own frames",
