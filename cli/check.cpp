@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "cli/attachments.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
 #include "cli/pics_file.hpp"
@@ -10,6 +11,7 @@
 #include "cli/stored_sequence.hpp"
 #include "cli/verbs.hpp"
 #include "fuzz/search/sequence_search.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
@@ -71,15 +73,30 @@ int keep_found(Session& session, SequenceFile& target, const std::string& path,
   return kDiffers;
 }
 
-std::string fuzzed_text(const fuzz::SequenceFuzzResult& result, const Interruption& interruption) {
+// How the implementation would report its coverage.
+std::string how_to_be_guided(const conformance::Setup& setup) {
+  constexpr std::string_view kCompile = "compiled with -fsanitize-coverage=trace-pc";
+  const std::string uri = setup.implementations.empty() ? "" : setup.implementations.front().uri;
+  if (is_in_process(uri)) return fmt::format("its library is not {}", kCompile);
+  if (is_plugin_uri(uri)) {
+    return fmt::format(
+        "its library runs in a process of its own, where coverage is not seen; write {}?in-process, {}", uri,
+        kCompile);
+  }
+  return fmt::format("that is seen of a library in this process alone: plugin:./library.so?in-process, {}",
+                     kCompile);
+}
+
+std::string fuzzed_text(const fuzz::SequenceFuzzResult& result, const conformance::Setup& setup,
+                        const Interruption& interruption) {
   const std::string why = interruption.reason();
   std::string text =
       fmt::format("{} sequences without a finding; {} of them passed new edges", result.run, result.kept);
   if (!result.has_coverage) {
     text = fmt::format(
-        "{} sequences without a finding; the implementation reports no coverage (compile its plug-in with "
-        "-fsanitize-coverage=trace-pc), so they were drawn as check draws them",
-        result.run);
+        "{} sequences without a finding; the implementation reports no coverage ({}), so they were drawn as "
+        "check draws them",
+        result.run, kernel::escaped_line(how_to_be_guided(setup)));
   }
   if (result.inconclusive > 0) text += fmt::format("; {} are inconclusive", result.inconclusive);
   return text + (why.empty() ? "" : "; " + why) + "\n";
@@ -131,7 +148,7 @@ int fuzz_role(Session& session) {
   const fuzz::SequenceFuzzResult result = fuzz::search(search);
   session.terminal.end_progress();
   if (result.found) return keep_found(session, target, path, *result.found, result.run, interruption);
-  session.terminal.print(fuzzed_text(result, interruption));
+  session.terminal.print(fuzzed_text(result, target.setup, interruption));
   return interruption.signal() != 0 ? kSignalBase + interruption.signal()
                                     : code_of(result.passed, result.inconclusive);
 }

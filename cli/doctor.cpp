@@ -11,6 +11,7 @@
 #include "cli/protocol_entry.hpp"
 #include "cli/serial_pool.hpp"
 #include "cli/verbs.hpp"
+#include "harness/iut/plugin.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/untrusted_text.hpp"
 
@@ -152,7 +153,8 @@ void Doctor::examine(const std::string& uri) {
     examine_line(uri);
   } else if (is_in_process(uri)) {
     const auto device = library_of(uri, role_);
-    say("library", "loaded into this process");
+    say("library", fmt::format("loaded into this process, calls itself '{}'",
+                               iut::own_name_of_plugin(plugin_path(uri))));
   } else {
     const auto pool = pool_of(uri, role_);
     examine_channel(*pool, "implementation");

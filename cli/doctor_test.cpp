@@ -22,8 +22,11 @@ TEST_F(DoctorTest, TellsWhatIsAttached) {
   EXPECT_EQ(process.exit_code, 0) << process.err;
   EXPECT_HOLDS(process.out, "attached, calls itself 'fieldproof ref'");
   EXPECT_HOLDS(process.out, "echo, unknown case");
-  EXPECT_EQ(call({"doctor", "--iut", "plugin:" VALVE_NODE_PLUGIN}).exit_code, 0);
-  EXPECT_EQ(call({"doctor", "--iut", "plugin:" VALVE_NODE_PLUGIN "?in-process"}).exit_code, 0);
+  for (const char* place : {"", "?in-process"}) {
+    const Called library = call({"doctor", "--iut", std::string("plugin:" VALVE_NODE_PLUGIN) + place});
+    EXPECT_EQ(library.exit_code, 0) << library.err;
+    EXPECT_HOLDS(library.out, "calls itself 'valve node in C'");
+  }
   EXPECT_HOLDS(call({"doctor", "--iut", "ref"}).out, "nothing is attached");
 }
 

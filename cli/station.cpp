@@ -10,6 +10,7 @@
 #include "cli/protocol_entry.hpp"
 #include "cli/station_on_line.hpp"
 #include "cli/verbs.hpp"
+#include "harness/iut/plugin.hpp"
 #include "harness/iut/server.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -42,7 +43,7 @@ void play_in_lock_step(const Role& role, const std::string& uri, bool in_telegra
         if (!in_telegrams) return role.serve(uri);
         return role.in_telegrams(role.serve(uri));
       },
-      fmt::format("fieldproof {}", uri));
+      is_plugin ? iut::own_name_of_plugin(plugin_path(uri)) : fmt::format("fieldproof {}", uri));
 }
 
 }  // namespace

@@ -43,6 +43,19 @@ function(fieldproof_odd_plugins test)
   endforeach()
 endfunction()
 
+# fieldproof_counting_libraries(test): libraries that report where they pass, in each way, and their paths for the test.
+function(fieldproof_counting_libraries test)
+  foreach(kind IN ITEMS _COUNTERS _GUARDS _CALLS)
+    string(TOLOWER counting_library${kind} name)
+    add_library(${name} MODULE fuzz/search/counting_library.c)
+    fieldproof_c89(${name})
+    target_compile_definitions(${name} PRIVATE ${kind})
+    add_dependencies(${test} ${name})
+    target_compile_definitions(${test} PRIVATE COUNTING_LIBRARY${kind}="$<TARGET_FILE:${name}>")
+  endforeach()
+  target_compile_options(counting_library_calls PRIVATE -fsanitize-coverage=trace-pc)
+endfunction()
+
 # fieldproof_link_valve_node(target): the node in C within the program, and the path of it as a library.
 function(fieldproof_link_valve_node target)
   add_library(valve_node_objects OBJECT examples/valve_node/valve_node.c)

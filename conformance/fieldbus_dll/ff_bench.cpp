@@ -126,7 +126,9 @@ Octets FfBench::dt1(Priority priority, FfAddress to, FfAddress from, const Octet
 
 Octets FfBench::dt3(FfAddress from, const Octets& data) const {
   constexpr unsigned kFinal = 0x04;
+  constexpr unsigned kLong = 0x08;
   Octets octets{static_cast<std::uint8_t>(control(rules().codes.dt3, Priority::normal) | kFinal)};
+  if (fieldbus_dll::is_long(from)) octets[0] |= kLong;
   append_address(octets, from);
   octets.push_back(1);
   octets.insert(octets.end(), data.begin(), data.end());

@@ -19,6 +19,21 @@ class NoProbeResponse : public FfStation {
   bool answers_probe() const override { return false; }
 };
 
+// Drives so many DLPDUs and no more.
+class MuteAfter : public FfStation {
+ public:
+  MuteAfter(const FfConfiguration& configuration, unsigned driven)
+      : FfStation(configuration), left_(driven) {}
+
+ private:
+  Time put_on_line(const Octets& octets, Time now) override {
+    if (left_ == 0) return now;
+    --left_;
+    return FfStation::put_on_line(octets, now);
+  }
+  unsigned left_;
+};
+
 class AnswersLate : public FfStation {
   using FfStation::FfStation;
   Duration silence_before_sending() const override { return response_delay(rules().link) + octet_times(1); }
@@ -147,6 +162,19 @@ class DurationTimes : public FfStation {
   int bits_;
 };
 
+// What it takes the duration of a token for.
+class DurationReadAs : public FfStation {
+ public:
+  using Read = std::int64_t (*)(std::uint16_t);
+  DurationReadAs(const FfConfiguration& configuration, Read read) : FfStation(configuration), read_(read) {}
+
+ private:
+  Time token_end(const FfDlpdu& pt, const Place& place) const override {
+    return place.end + octet_times(read_(pt.duration));
+  }
+  Read read_;
+};
+
 class FfDurationIgnored : public FfStation {
   using FfStation::FfStation;
   Time token_end(const FfDlpdu&, const Place&) const override { return kernel::kNever; }
@@ -265,7 +293,27 @@ class SubscribedTo : public FfStation {
   bool all_;
 };
 
+class SubscribedWithoutLink : public FfStation {
+  using FfStation::FfStation;
+  void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {
+    FfDlpdu other = dlpdu;
+    for (const FfAddress one : configuration().subscribed) {
+      if (dlpdu.type == FfType::dt3 && (one & 0xFFFF) == (dlpdu.source & 0xFFFF)) other.source = one;
+    }
+    FfStation::on_dlpdu(other, place);
+  }
+};
+
 // ---- frames ----
+
+class DeafToLongFrames : public FfStation {
+  using FfStation::FfStation;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    std::vector<Arrived> all = FfStation::heard_in(reception);
+    std::erase_if(all, [](const Arrived& one) { return one.octets.size() > 128; });
+    return all;
+  }
+};
 
 // Frames whose check this says to be right, besides those whose check is.
 class TakesOtherChecks : public FfStation {

@@ -25,6 +25,13 @@ std::size_t number_of(Priority priority) {
   return static_cast<std::size_t>(priority);
 }
 
+std::string text_of_any(const std::vector<Octets>& all) {
+  std::string text;
+  for (const Octets& one : all)
+    text += fmt::format("{}{:02X}", text.empty() ? "" : ", or ", fmt::join(one, " "));
+  return text;
+}
+
 }  // namespace
 
 FfModel::FfModel(const fieldbus_dll::FfConfiguration& configuration) : configuration_(configuration) {
@@ -48,6 +55,11 @@ bool FfModel::write(FfAddress address, const Octets& data) {
   if (found == buffers_.end() || data.size() > most_data(Priority::urgent)) return false;
   found->second.data = data;
   ++found->second.writes;
+  // The device may have taken the buffer already, or may do so until it begins.
+  if (answer_ && answer_->published == address) {
+    answer_->allowed.push_back(dt3_of(address, answer_->priority));
+    answer_->reason = "published_wrong";
+  }
   return true;
 }
 
@@ -70,7 +82,7 @@ void FfModel::hear_token(Priority least, unsigned duration, Time end) {
 
 void FfModel::hear_probe(Time end) {
   hear_other(true, end);
-  answer_ = Answer{{configuration_.rules.codes.pr, configuration_.node},
+  answer_ = Answer{{{configuration_.rules.codes.pr, configuration_.node}},
                    "dlpdu_wrong",
                    end + response_delay(configuration_.rules.link)};
 }
@@ -80,16 +92,27 @@ void FfModel::hear_cd(FfAddress address, Priority priority, Time end) {
   const auto& codes = configuration_.rules.codes;
   const Time until = end + response_delay(configuration_.rules.link);
   const auto found = buffers_.find(address);
-  if (found == buffers_.end() || found->second.writes == 0) {
-    const std::uint8_t why = found == buffers_.end() ? 0 : 1;
-    answer_ = Answer{{static_cast<std::uint8_t>(codes.sr | kFinalUse), why}, "dlpdu_wrong", until, true};
+  const bool is_its_own = found != buffers_.end();
+  answer_ = Answer{.allowed = {}, .reason = "published_wrong", .until = until, .priority = priority};
+  if (is_its_own) answer_->published = address;
+  if (is_its_own && found->second.writes > 0) {
+    answer_->allowed = {dt3_of(address, priority)};
     return;
   }
-  Octets dt3{static_cast<std::uint8_t>(codes.dt3 | kFinalUse | static_cast<unsigned>(priority)),
-             static_cast<std::uint8_t>(address >> 8), static_cast<std::uint8_t>(address & 0xFFU),
-             static_cast<std::uint8_t>(found->second.writes & 0xFFU)};
-  dt3.insert(dt3.end(), found->second.data.begin(), found->second.data.end());
-  answer_ = Answer{std::move(dt3), "published_wrong", until};
+  const std::uint8_t why = is_its_own ? 1 : 0;
+  answer_->allowed = {{static_cast<std::uint8_t>(codes.sr | kFinalUse), why}};
+  answer_->reason = "dlpdu_wrong";
+  answer_->may_be_left = true;
+}
+
+Octets FfModel::dt3_of(FfAddress address, Priority priority) const {
+  const Buffer& buffer = buffers_.at(address);
+  Octets dt3{
+      static_cast<std::uint8_t>(configuration_.rules.codes.dt3 | kFinalUse | static_cast<unsigned>(priority)),
+      static_cast<std::uint8_t>(address >> 8), static_cast<std::uint8_t>(address & 0xFFU),
+      static_cast<std::uint8_t>(buffer.writes & 0xFFU)};
+  dt3.insert(dt3.end(), buffer.data.begin(), buffer.data.end());
+  return dt3;
 }
 
 // ---- what is said ----
@@ -134,16 +157,18 @@ std::optional<LinkObjection> FfModel::say_answer(const DrivenDlpdu& dlpdu) {
   const Answer answer = *std::exchange(answer_, std::nullopt);
   if (dlpdu.begin > answer.until + kLinkRounding)
     return LinkObjection{"answers_too_late", "it begins within V(MRD) x V(ST), or is not sent"};
-  if (dlpdu.octets == answer.octets) return std::nullopt;
-  Octets without_final = answer.octets;
-  without_final[0] = static_cast<std::uint8_t>(without_final[0] & ~kFinalUse);
-  if (dlpdu.octets == without_final && dlpdu.octet(0) != answer.octets[0]) {
-    answer_ = Answer{{configuration_.rules.codes.rt},
-                     "token_not_returned",
-                     dlpdu.end + response_delay(configuration_.rules.link)};
-    return std::nullopt;
+  for (const Octets& allowed : answer.allowed) {
+    if (dlpdu.octets == allowed) return std::nullopt;
+    Octets without_final = allowed;
+    without_final[0] = static_cast<std::uint8_t>(without_final[0] & ~kFinalUse);
+    if (dlpdu.octets == without_final && dlpdu.octet(0) != allowed[0]) {
+      answer_ = Answer{{{configuration_.rules.codes.rt}},
+                       "token_not_returned",
+                       dlpdu.end + response_delay(configuration_.rules.link)};
+      return std::nullopt;
+    }
   }
-  return LinkObjection{answer.reason, fmt::format("{:02X}", fmt::join(answer.octets, " "))};
+  return LinkObjection{answer.reason, text_of_any(answer.allowed)};
 }
 
 std::optional<LinkObjection> FfModel::say_under_token(const DrivenDlpdu& dlpdu) {
@@ -198,7 +223,7 @@ std::optional<LinkObjection> FfModel::be_silent() {
   const Time slot_later = earliest() + fieldbus_dll::octets(link, link.slot_time_octets);
   if (const auto answer = std::exchange(answer_, std::nullopt)) {
     if (slot_later > answer->until || answer->may_be_left) return std::nullopt;
-    return LinkObjection{"no_answer", fmt::format("{:02X}", fmt::join(answer->octets, " "))};
+    return LinkObjection{"no_answer", text_of_any(answer->allowed)};
   }
   const auto token = std::exchange(token_, std::nullopt);
   if (!token || end_of(1, latest_of_token()) > token->ends) return std::nullopt;

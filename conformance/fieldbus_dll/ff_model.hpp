@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "conformance/fieldbus_dll/driven_dlpdus.hpp"
 #include "conformance/fieldbus_dll/link_objection.hpp"
@@ -19,7 +20,8 @@
 //   within
 //                    the duration; the token is returned by F or by RT as soon as nothing fits any more
 //   CD of its own    DT3 with the buffer as it was written last, and with the number of its writes; else SR
-//                    or nothing; without F an RT after it
+//                    or nothing; without F an RT after it. Where it is written while the answer is due, what
+//                    the answer would have been before each of these writes is right, too, but whole
 //   PN of its own    PR
 //   another DLPDU    an answer that has not begun is not due any more; one of a scheduler takes a token back
 //   anything else    nothing; what is due waits for V(MID) of silence
@@ -58,10 +60,12 @@ class FfModel {
     kernel::Time ends;
   };
   struct Answer {
-    Octets octets;
-    std::string reason;  // when it is another one
+    std::vector<Octets> allowed;  // any of these
+    std::string reason;           // when it is another one
     kernel::Time until;
     bool may_be_left = false;
+    std::optional<fieldbus_dll::FfAddress> published{};  // the buffer that it takes
+    Priority priority = Priority::normal;                // of the CD
   };
   struct Buffer {
     Octets data;
@@ -73,6 +77,7 @@ class FfModel {
   };
 
   void hear_dlpdu(kernel::Time end);
+  Octets dt3_of(fieldbus_dll::FfAddress address, Priority priority) const;
   kernel::Time earliest() const;
   kernel::Time latest_of_token() const;
   std::size_t most_data(Priority priority) const;

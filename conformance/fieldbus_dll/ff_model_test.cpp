@@ -102,6 +102,42 @@ TEST(FfModel, PublishesTheLastWriteWithItsNumber) {
   EXPECT_EQ(reason_in(model.say(said_at(226, {kRt}))), "");
 }
 
+// While the answer to a CD is due, the device takes its buffer when it likes, but as a whole.
+TEST(FfModel, ABufferThatIsWrittenWhileItsAnswerIsDueIsPublishedWholeAsItWasOrIs) {
+  const auto answered = [](const Octets& answer) {
+    FfModel model = model_of_device();
+    EXPECT_TRUE(model.write(0x2120, {1, 1}));
+    model.hear_cd(0x2120, Priority::urgent, octet_at(40));
+    EXPECT_TRUE(model.write(0x2120, {2, 2}) && model.write(0x2120, {3, 3}));
+    return reason_in(model.say(said_at(48, answer)));
+  };
+  EXPECT_EQ(answered({0x57, 0x21, 0x20, 1, 1, 1}), "");
+  EXPECT_EQ(answered({0x57, 0x21, 0x20, 2, 2, 2}), "");
+  EXPECT_EQ(answered({0x57, 0x21, 0x20, 3, 3, 3}), "");
+  EXPECT_EQ(answered({0x57, 0x21, 0x20, 2, 1, 1}), "published_wrong");
+  EXPECT_EQ(answered({0x57, 0x21, 0x20, 3, 3, 2}), "published_wrong");
+  EXPECT_EQ(answered({0x57, 0x21, 0x20, 4, 3, 3}), "published_wrong");
+}
+
+TEST(FfModel, ABufferThatIsWrittenFirstWhileItsAnswerIsDueIsPublishedOrIsNot) {
+  const auto model_of_write_after_cd = [] {
+    FfModel model = model_of_device();
+    model.hear_cd(0x2120, Priority::normal, octet_at(10));
+    EXPECT_TRUE(model.write(0x2120, {7}));
+    return model;
+  };
+  EXPECT_EQ(reason_in(model_of_write_after_cd().say(said_at(18, {0x17, 1}))), "");
+  EXPECT_EQ(reason_in(model_of_write_after_cd().say(said_at(18, {0x56, 0x21, 0x20, 1, 7}))), "");
+  EXPECT_EQ(reason_in(model_of_write_after_cd().say(said_at(18, {0x56, 0x21, 0x20, 0, 7}))),
+            "published_wrong");
+  EXPECT_EQ(reason_in(model_of_write_after_cd().be_silent()), "");
+  // Of the other buffer it says nothing.
+  FfModel model = model_of_write_after_cd();
+  model.hear_cd(0x2121, Priority::normal, octet_at(60));
+  EXPECT_TRUE(model.write(0x2120, {8}));
+  EXPECT_EQ(reason_in(model.say(said_at(68, {0x56, 0x21, 0x20, 2, 8}))), "dlpdu_wrong");
+}
+
 TEST(FfModel, WhatIsHeardTakesBackWhatIsDue) {
   FfModel model = model_of_device();
   model.hear_probe(octet_at(10));

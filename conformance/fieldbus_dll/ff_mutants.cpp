@@ -20,6 +20,8 @@ std::vector<FfRow> ff_token_rows() {
   using namespace ff_seeded_faults;
   return {
       {"no_probe_response", "", "does not answer probes", mutant<NoProbeResponse>()},
+      {"mute_after_activation", "", "drives the answer to its first probe and nothing more",
+       mutant<MuteAfter>(1U)},
       {"answers_late", "", "begins an octet after V(MRD) x V(ST)", mutant<AnswersLate>()},
       {"answers_for_all_nodes", "", "takes everything for its own", mutant<AnswersForAllNodes>()},
       {"live_from_the_start", "", "uses tokens without having been activated", mutant<LiveFromTheStart>()},
@@ -51,6 +53,11 @@ std::vector<FfRow> ff_token_rows() {
       {"queue_lost_with_token", "", "forgets what did not fit", mutant<QueueLostWithToken>()},
       {"duration_in_bits", "FF-5", "counts the duration in bits", mutant<DurationTimes>(1)},
       {"duration_in_two_octets", "", "counts the duration in pairs of octets", mutant<DurationTimes>(16)},
+      {"duration_of_12_bits", "", "does not look at the upper four bits of the duration",
+       mutant<DurationReadAs>(+[](std::uint16_t read) { return static_cast<std::int64_t>(read & 0x0FFFU); })},
+      {"duration_with_sign", "", "takes the highest bit of the duration for its sign",
+       mutant<DurationReadAs>(
+           +[](std::uint16_t read) { return std::int64_t{static_cast<std::int16_t>(read)}; })},
       {"duration_ignored", "", "does not look at the duration", mutant<FfDurationIgnored>()},
       {"duration_from_begin_of_pt", "", "counts the duration from the begin of the PT",
        mutant<DurationFromBeginOfPt>()},
@@ -74,6 +81,8 @@ std::vector<FfRow> ff_publisher_rows() {
       {"publishes_anything", "", "answers a CD for any of its addresses with its buffer",
        mutant<PublishesAnything>()},
       {"subscribed_to_all", "", "delivers what everybody publishes", mutant<SubscribedTo>(true)},
+      {"subscribed_without_link", "", "does not look at the link in the address of a publisher",
+       mutant<SubscribedWithoutLink>()},
       {"subscribed_to_none", "", "delivers nothing of a publisher", mutant<SubscribedTo>(false)},
   };
 }
@@ -126,6 +135,12 @@ std::vector<FfRow> ff_frame_rows() {
       {"tail_ignored", "", "takes a DLPDU with an octet after it", mutant<TailIgnored>()},
       {"two_octets_of_preamble", "", "sends two octets of preamble",
        with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 2; })},
+      {"preamble_of_the_usual_link", "", "sends one octet of preamble, whatever its link has",
+       with_rules<FfStation>([](FfRules& rules) { rules.link.preamble_octets = 1; })},
+      {"codes_of_the_usual_link", "", "knows the usual codes, whatever its link has",
+       with_rules<FfStation>([](FfRules& rules) { rules.codes = {}; })},
+      {"deaf_to_long_frames", "", "does not receive frames of more than 128 octets",
+       mutant<DeafToLongFrames>()},
       {"short_silence", "", "begins V(MID) / 2 after what was on the line",
        with_rules<FfStation>([](FfRules& rules) { rules.link.inter_pdu_delay_octets /= 2; })},
       {"no_silence_behind_own", "", "begins an octet after its own frames", mutant<NoSilenceBehindOwn>()},
@@ -153,6 +168,8 @@ std::vector<FfRow> ff_sequence_rows() {
        mutant<WritesBetweenCdsCountOnce>()},
       {"buffers_share_the_count", "", "counts the writes of all its buffers together",
        mutant<BuffersShareTheCount>()},
+      {"count_of_a_later_write", "", "publishes the buffer of one instant with the count of another",
+       mutant<CountOfALaterWrite>()},
   });
 }
 

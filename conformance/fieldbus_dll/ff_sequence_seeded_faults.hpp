@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -144,6 +145,23 @@ class BuffersShareTheCount : public FfStation {
       dt3.writes = static_cast<std::uint8_t>(dt3.writes + buffer_of(one)->writes);
     return dt3;
   }
+};
+
+// Takes the buffer with the CD and counts its writes when it begins to answer.
+class CountOfALaterWrite : public FfStation {
+  using FfStation::FfStation;
+  Octets written(const FfDlpdu& dlpdu) const override {
+    FfDlpdu other = dlpdu;
+    if (dlpdu.type == FfType::dt3)
+      other.writes = writes_.contains(dlpdu.source) ? writes_.at(dlpdu.source) : 0;
+    return FfStation::written(other);
+  }
+  bool write(FfAddress address, const Octets& data, Time now) override {
+    if (!FfStation::write(address, data, now)) return false;
+    writes_[address] = buffer_of(address)->writes;
+    return true;
+  }
+  std::map<FfAddress, std::uint8_t> writes_;
 };
 
 }  // namespace fieldproof::conformance::ff_seeded_faults

@@ -105,7 +105,8 @@ void nothing_is_sent_behind_the_duration(IsaBench& bench, CaseJudge& judge) {
     // All that is left goes before the next one.
     for (int n = 0; n < 3; ++n) {
       bench.send(bench.es(Priority::time_available, 8'000));
-      bench.listen();
+      judge.expect(!bench.listen().empty(), "token_not_returned", "under a token of 8000 octets data, and EE",
+                   "silence");
     }
   }
 }

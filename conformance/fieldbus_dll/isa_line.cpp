@@ -41,7 +41,7 @@ void all_preambles_are_taken(IsaBench& bench, CaseJudge& judge) {
     // What the station drives itself is held to the half bit after the case.
     bench.submit_unit_data(Priority::normal, bench.numbered_data(10));
     bench.send_half_bits(half_bits_of_frame(with_frame_check(bench.et(Priority::normal)), preamble));
-    bench.listen();
+    judge.expect(!bench.listen().empty(), "token_not_returned", "data, and EE", "silence");
   }
 }
 

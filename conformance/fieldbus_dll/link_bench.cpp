@@ -72,13 +72,13 @@ kernel::Time LinkBench::send_half_bits(line::Levels half_bits) {
 }
 
 kernel::Time LinkBench::send(std::span<const std::uint8_t> octets) {
-  return send_half_bits(half_bits_of_frame(with_frame_check(octets)));
+  return send_half_bits(half_bits_of_frame(with_frame_check(octets), link_.preamble_octets));
 }
 
 kernel::Time LinkBench::send_at(kernel::Time start, std::span<const std::uint8_t> octets) {
   // A station that drives over itself ends a DLPDU while another lasts.
   line::Waveform wave{std::max(start, now()), 2 * link_.bit_rate,
-                      half_bits_of_frame(with_frame_check(octets))};
+                      half_bits_of_frame(with_frame_check(octets), link_.preamble_octets)};
   const kernel::Time end = wave.end();
   tester_->drive(wave);
   return end;

@@ -209,10 +209,12 @@ void status_inside_a_cycle(SlaveBench& bench, CaseJudge& judge) {
 }
 
 // What is judged are the monitors of the bench.
-void transmissions_do_not_overlap(SlaveBench& bench, CaseJudge&) {
+void transmissions_do_not_overlap(SlaveBench& bench, CaseJudge& judge) {
   bench.bring_up();
   for (int n = bench.volume(5, 50); n > 0; --n) {
     bench.data_cycle(bench.random_words());
+    judge.expect(!bench.out().data_telegrams().empty(), "telegram_lost",
+                 "data telegrams leave: there is something that could overlap", "none has left");
     bench.status_telegrams(2);
   }
 }

@@ -98,6 +98,7 @@ SequenceFuzzResult search(const SequenceFuzz& fuzz) {
     const auto sequence = conformance::sequence_of_octets(octets, fuzz.role->vocabulary);
     begin_coverage();
     conformance::Outcome outcome = conformance::run_sequence(*fuzz.suite, *fuzz.role, sequence, fuzz.setup);
+    const std::size_t edges = take_new_coverage();
     const judge::Verdict verdict = outcome.result.verdict;
     if (verdict >= judge::Verdict::fail) {
       result.found = made_smaller(fuzz, sequence, std::move(outcome));
@@ -105,7 +106,6 @@ SequenceFuzzResult search(const SequenceFuzz& fuzz) {
     }
     result.passed += verdict == judge::Verdict::pass ? 1 : 0;
     result.inconclusive += verdict == judge::Verdict::inconclusive ? 1 : 0;
-    const std::size_t edges = take_new_coverage();
     result.edges += edges;
     if (edges > 0 && !octets.empty()) pool.keep(std::move(octets));
   }

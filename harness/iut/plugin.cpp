@@ -7,6 +7,9 @@
 #include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <vector>
 
@@ -53,12 +56,38 @@ struct Plugin {
   const fieldproof_implementation* implementation = nullptr;
 };
 
+// What is wrong with a file that the dynamic linker refuses, and what would be right.
+std::string why_not_loaded(const std::string& path, const std::string& refusal) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    return "there is no such file; write the path of a shared library, from the folder in which the program "
+           "was called";
+  }
+  if (!std::filesystem::is_regular_file(path, ignored))
+    return "this is no file; write the path of a shared library";
+  // The words of the linker lie within those of who called it.
+  constexpr std::string_view kBefore = "dlerror system message: ";
+  const std::size_t begin = refusal.find(kBefore);
+  const std::size_t end = refusal.rfind("): ");
+  const bool has_both = begin != std::string::npos && end != std::string::npos && begin < end;
+  const std::string words =
+      has_both ? refusal.substr(begin + kBefore.size(), end - begin - kBefore.size()) : refusal;
+  return fmt::format(
+      "this is no shared library for this machine that has all that it needs ({}); build it with "
+      "-shared -fPIC, and link what it uses",
+      kernel::escaped_line(words));
+}
+
+std::string own_name_of(const fieldproof_implementation& implementation) {
+  return implementation.name != nullptr ? kernel::escaped_line(implementation.name) : "without a name";
+}
+
 Plugin loaded(const std::string& path) {
   Plugin plugin{.name = "plugin:" + path};
   try {
     plugin.library.load(path, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
   } catch (const std::exception& error) {
-    refuse_library(plugin.name, fmt::format("cannot be loaded: {}", kernel::escaped_line(error.what())));
+    refuse_library(plugin.name, fmt::format("cannot be loaded: {}", why_not_loaded(path, error.what())));
   }
   if (!plugin.library.has("fieldproof_plugin")) {
     refuse_library(plugin.name, "does not export 'fieldproof_plugin'");
@@ -136,7 +165,7 @@ class PluginDevice final : public Device {
     functions_.end(self_);
   }
 
- private:
+  // Throws for a table of functions that cannot be called.
   static const fieldproof_implementation& checked(const Plugin& plugin) {
     if (plugin.implementation == nullptr || plugin.implementation->version != FIELDPROOF_PLUGIN_VERSION) {
       refuse_library(plugin.name, fmt::format("is not made for version {} of fieldproof_plugin.h",
@@ -159,6 +188,7 @@ class PluginDevice final : public Device {
     return it;
   }
 
+ private:
   // In the place of `receive` that a library of levels leaves out. To ask for it in each call takes as long
   // as a tenth of the call.
   static fieldproof_time refuse_characters(void*, unsigned, const fieldproof_character*, unsigned,
@@ -260,11 +290,15 @@ std::unique_ptr<Device> load_plugin(const std::string& path, const std::string& 
   return std::make_unique<PluginDevice>(loaded(path), protocol, role, told);
 }
 
+std::string own_name_of_plugin(const std::string& path) {
+  const Plugin plugin = loaded(path);
+  return own_name_of(PluginDevice::checked(plugin));
+}
+
 std::unique_ptr<Device> make_plugin(const fieldproof_implementation& implementation,
                                     const std::string& protocol, const std::string& role, UnitOffer told) {
-  const char* name = implementation.name != nullptr ? implementation.name : "without a name";
   return std::make_unique<PluginDevice>(
-      Plugin{.name = "plugin " + kernel::escaped_line(name), .implementation = &implementation}, protocol,
+      Plugin{.name = "plugin " + own_name_of(implementation), .implementation = &implementation}, protocol,
       role, told);
 }
 

@@ -22,6 +22,9 @@ enum class UnitOffer : std::uint8_t { in_its_unit, in_characters_too };
 std::unique_ptr<Device> load_plugin(const std::string& path, const std::string& protocol,
                                     const std::string& role, UnitOffer told = UnitOffer::in_its_unit);
 
+// The name that the library reports of itself, escaped. Throws as load_plugin does for a file that is none.
+std::string own_name_of_plugin(const std::string& path);
+
 // The same for an implementation that the program holds itself, as firmware that is compiled into its tests.
 std::unique_ptr<Device> make_plugin(const fieldproof_implementation& implementation,
                                     const std::string& protocol, const std::string& role,
