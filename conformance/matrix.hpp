@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/suite.hpp"
 #include "conformance/test_case.hpp"
 
 namespace fieldproof::conformance {

@@ -31,6 +31,7 @@ class Babbler : public Device {
   void receive(segment::PortIndex, const line::Waveform&) override {}
   void on_time(kernel::Time now) override { next_ = line_.transmit(babble_.octets, now) + silence(); }
   kernel::Time next_time() const override { return next_; }
+  void stop(kernel::Time) override { next_ = kernel::kNever; }
 
  protected:
   fieldbus_dll::LineEnd& line() { return line_; }

@@ -13,6 +13,7 @@
 #include "conformance/matrix.hpp"
 #include "conformance/runner.hpp"
 #include "conformance/stressed_receiver.hpp"
+#include "harness/iut/device_recording.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"

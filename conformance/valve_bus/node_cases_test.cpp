@@ -81,7 +81,7 @@ class DeclaredNodes : public testing::TestWithParam<DeclaredNode> {
       NodeSetting setting;
       setting.volume = Volume::quick;
       setting.pics = GetParam().pics;
-      setting.make_node = &make<Node>;
+      setting.make_device = &make<Node>;
       for (setting.seed = 1; setting.seed <= seeds; ++setting.seed) {
         const judge::CaseResult result = run_on_bench(one, setting);
         EXPECT_EQ(result.verdict, judge::Verdict::pass)
@@ -126,7 +126,7 @@ TEST(NodePower, AWrongFrameIsNoSignOfLife) {
   });
   NodeSetting setting;
   setting.pics = declaring({{"loss_limit", 100 * kernel::kMillisecond}});
-  setting.make_node = &make<KeptAliveByAnyFrame>;
+  setting.make_device = &make<KeptAliveByAnyFrame>;
   EXPECT_EQ(run_on_bench(*one, setting).reason, "valves_hold_without_host");
 }
 
