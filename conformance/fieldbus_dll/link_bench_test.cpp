@@ -58,6 +58,7 @@ class IsaBabbler final : public Babbler<fieldbus_dll::IsaDevice> {
  public:
   using Babbler::Babbler;
   void wire(segment::Port& place, fieldbus_dll::IsaUser&) override { line().wire(place); }
+  void start(kernel::Time) override {}
   bool submit(const fieldbus_dll::IsaRequest&, kernel::Time) override { return true; }
 };
 

@@ -15,6 +15,7 @@
 #include "conformance/stressed_receiver.hpp"
 #include "harness/iut/device_recording.hpp"
 #include "harness/kernel/error.hpp"
+#include "protocols/interbus/attached_slave.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"
 
