@@ -2,6 +2,7 @@
 // over the same kind of stream.
 #include <sys/socket.h>
 #include <unistd.h>
+#include <span>
 
 #include <array>
 #include <memory>
@@ -80,7 +81,7 @@ Batch bare_pipe() {
 }
 
 class NoBench final : public iut::Bench {
-  void transmit(const iut::Transmission&) override {}
+  void send(unsigned, kernel::Time, std::span<const std::uint16_t>) override {}
   void transmit(unsigned, line::Waveform&) override {}
   void write(iut::Item, std::uint64_t, kernel::Time) override {}
   std::uint64_t read(iut::Item, kernel::Time) override { return 0; }

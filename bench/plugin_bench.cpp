@@ -2,6 +2,7 @@
 // library, beside the same node called directly.
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "bench/rows.hpp"
@@ -63,7 +64,7 @@ class DirectDevice final : public iut::Device {
 };
 
 class NoActs final : public iut::Bench {
-  void transmit(const iut::Transmission&) override {}
+  void send(unsigned, kernel::Time, std::span<const std::uint16_t>) override {}
   void transmit(unsigned, line::Waveform&) override {}
   void write(iut::Item, std::uint64_t, kernel::Time) override {}
   std::uint64_t read(iut::Item, kernel::Time) override { return 0; }

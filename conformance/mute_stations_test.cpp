@@ -3,13 +3,17 @@
 // passes waits for nothing, and says nothing about a station that talks.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 
 #include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/suite.hpp"
+#include "conformance/suite.hpp"
+#include "conformance/suite_given.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
@@ -51,7 +55,9 @@ class MutedDevice final : public iut::Device, private iut::Bench {
 
  private:
   // What its user gets goes this way.
-  void transmit(const iut::Transmission& transmission) override { bench_->transmit(transmission); }
+  void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> octets) override {
+    bench_->send(port, start, octets);
+  }
   void transmit(unsigned port, line::Waveform& wave) override {
     if (left_ == 0) return;
     --left_;
@@ -89,9 +95,8 @@ class DeadDevice final : public iut::Device {
 
 using MakeServed = std::unique_ptr<iut::Device> (*)();
 
-template <typename Given>
-Given given_mute(MakeServed make, unsigned driven_before) {
-  Given given;
+SuiteGiven given_mute(MakeServed make, unsigned driven_before) {
+  SuiteGiven given;
   given.attach = [=](const iut::RoleName&, const IutRequest& request) -> std::optional<iut::Attachment> {
     std::shared_ptr<iut::Device> device;
     if (request.uri == kDead) device = std::make_shared<DeadDevice>();
@@ -142,8 +147,8 @@ void expect_all_fail_but(const Suite& suite, const std::string& role, const Pass
 TEST(MuteStations, OfTheFoundationFieldbusPassNothing) {
   // The one that is activated answers a probe before.
   for (const unsigned driven_before : {0U, 1U}) {
-    const auto suite = fieldbus_dll_suite(given_mute<FieldbusDllGiven>(
-        served_reference<fieldbus_dll::FfDeviceRole, fieldbus_dll::FfStation>, driven_before));
+    const auto suite = fieldbus_dll_suite(
+        given_mute(served_reference<fieldbus_dll::FfDeviceRole, fieldbus_dll::FfStation>, driven_before));
     expect_all_fail_but(
         *suite, "ff_device",
         {.are_about_silence = {},
@@ -153,8 +158,8 @@ TEST(MuteStations, OfTheFoundationFieldbusPassNothing) {
 }
 
 TEST(MuteStations, OfTheIsaLinkPassWhatIsAboutReception) {
-  const auto suite = fieldbus_dll_suite(
-      given_mute<FieldbusDllGiven>(served_reference<fieldbus_dll::IsaDleRole, fieldbus_dll::IsaDle>, 0));
+  const auto suite =
+      fieldbus_dll_suite(given_mute(served_reference<fieldbus_dll::IsaDleRole, fieldbus_dll::IsaDle>, 0));
   const std::string delivered = "each DU has to come to its user";
   expect_all_fail_but(*suite, "isa_dle",
                       {.are_about_silence = {},
@@ -164,8 +169,7 @@ TEST(MuteStations, OfTheIsaLinkPassWhatIsAboutReception) {
 }
 
 TEST(MuteStations, OfTheValveBusPassWhatIsAboutWrites) {
-  const auto suite =
-      valve_bus_suite(given_mute<ValveBusGiven>(served_reference<valve_bus::NodeRole, valve_bus::Node>, 0));
+  const auto suite = valve_bus_suite(given_mute(served_reference<valve_bus::NodeRole, valve_bus::Node>, 0));
   const std::string moved = "each write has to move its valves, and is not answered";
   expect_all_fail_but(
       *suite, "node",
@@ -178,8 +182,7 @@ TEST(MuteStations, OfTheValveBusPassWhatIsAboutWrites) {
 }
 
 TEST(MuteStations, OfTheRingPassWhatIsAboutOutputs) {
-  const auto suite =
-      interbus_suite(given_mute<InterbusGiven>(served_reference<interbus::SlaveRole, interbus::Slave>, 0));
+  const auto suite = interbus_suite(given_mute(served_reference<interbus::SlaveRole, interbus::Slave>, 0));
   const std::string latched = "the words of a valid cycle have to come to the outputs";
   expect_all_fail_but(
       *suite, "slave",

@@ -60,8 +60,7 @@ struct Plugin {
 std::string why_not_loaded(const std::string& path, const std::string& refusal) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
-    return "there is no such file; write the path of a shared library, from the folder in which the program "
-           "was called";
+    return "there is no such file; write the path of a shared library";
   }
   if (!std::filesystem::is_regular_file(path, ignored))
     return "this is no file; write the path of a shared library";
@@ -72,10 +71,8 @@ std::string why_not_loaded(const std::string& path, const std::string& refusal) 
   const bool has_both = begin != std::string::npos && end != std::string::npos && begin < end;
   const std::string words =
       has_both ? refusal.substr(begin + kBefore.size(), end - begin - kBefore.size()) : refusal;
-  return fmt::format(
-      "this is no shared library for this machine that has all that it needs ({}); build it with "
-      "-shared -fPIC, and link what it uses",
-      kernel::escaped_line(words));
+  return fmt::format("this is no shared library that can be loaded here ({}); build it with -shared -fPIC",
+                     kernel::escaped_line(words));
 }
 
 std::string own_name_of(const fieldproof_implementation& implementation) {
