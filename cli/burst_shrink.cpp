@@ -154,6 +154,13 @@ std::string bit_lines(const FlippedBits& bits) {
   return text;
 }
 
+int nothing_to_shrink(Session& session, std::string_view reason) {
+  session.terminal.print(
+      fmt::format("the stored case fails with '{}' without any struck bit: there is nothing to shrink\n",
+                  reports::escaped_line(reason)));
+  return kDiffers;
+}
+
 }  // namespace
 
 int shrink_bursts(Session& session, const CaseFile& stored, const std::filesystem::path& file) {
@@ -168,6 +175,7 @@ int shrink_bursts(Session& session, const CaseFile& stored, const std::filesyste
                     judge::name(disturbed.result.verdict)));
     return kDiffers;
   }
+  if (disturbed.struck.empty()) return nothing_to_shrink(session, disturbed.result.reason);
   const Interruption interruption(session.settings.duration("max-time"));
   BurstShrink shrinking(stored, session, disturbed.result.reason, interruption.token());
   const auto smallest = shrinking.run(disturbed.struck);
@@ -184,6 +192,7 @@ int shrink_bursts(Session& session, const CaseFile& stored, const std::filesyste
                     disturbed.struck.size(), reports::escaped_line(disturbed.result.reason)));
     return kDiffers;
   }
+  if (smallest->empty()) return nothing_to_shrink(session, disturbed.result.reason);
   const conformance::CaseRun done = shrinking.run_with(*smallest, plan_file.string());
   write_quiet_case(file, done, stored);
   reports::TextOptions options;

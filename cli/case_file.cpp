@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cli/build_info.hpp"
@@ -23,6 +24,7 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view kSchema = "fieldproof/case/1";
 constexpr const char* kPlayback = "playback.json";
+constexpr const char* kCaseFile = "case.json";
 
 std::string place_of_copy(std::string_view name) {
   return fmt::format("../../{}", name);
@@ -93,6 +95,30 @@ void store_recording(const reports::RunDirectory& directory, const conformance::
 
 std::string path_from(const std::optional<config::Value>& value, const std::filesystem::path& folder) {
   return value ? (folder / value->as_string()).lexically_normal().string() : std::string{};
+}
+
+// A run where one of its cases was meant.
+[[noreturn]] void refuse_folder(const std::filesystem::path& folder) {
+  constexpr std::size_t kMostNamed = 20;
+  std::vector<std::string> cases;
+  const std::filesystem::path all = folder / "cases";
+  if (std::filesystem::is_directory(all)) {
+    for (const auto& one : std::filesystem::directory_iterator(all)) {
+      if (std::filesystem::exists(one.path() / kCaseFile)) cases.push_back((one.path() / kCaseFile).string());
+    }
+  }
+  if (cases.empty()) {
+    throw kernel::Error(
+        kernel::ErrorKind::configuration,
+        fmt::format("{}: a folder, and no run with stored cases; a case is a file", folder.string()));
+  }
+  std::ranges::sort(cases);
+  const std::size_t count = cases.size();
+  cases.resize(std::min(count, kMostNamed));
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format("{}: a folder; a case is a file, here {}{}", folder.string(), fmt::join(cases, ", "),
+                  count > kMostNamed ? fmt::format(" and {} more", count - kMostNamed) : ""));
 }
 
 const conformance::Entry& entry_from(const config::Value& id, const conformance::Catalogue& catalogue) {
@@ -166,7 +192,7 @@ void store_case(const reports::RunDirectory& directory, const conformance::CaseR
   if (recording.devices) directory.write_case(id, kPlayback, recording.devices->text());
   if (!done.outcome.result.log.empty()) directory.write_case(id, "log.txt", done.outcome.result.log);
   // Last, so that a case file never names a file that is not there.
-  directory.write_case(id, "case.json", text_of(case_json(done, run_seed, kept, false)));
+  directory.write_case(id, kCaseFile, text_of(case_json(done, run_seed, kept, false)));
 }
 
 void write_quiet_case(const std::filesystem::path& file, const conformance::CaseRun& done,
@@ -196,6 +222,7 @@ StoredEntry::StoredEntry(const CaseFile& stored, const Session& session) {
 }
 
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue) {
+  if (std::filesystem::is_directory(file)) refuse_folder(file);
   const config::Document document = config::Document::load(file);
   return config::read_object(document.root(), [&](config::ObjectReader& reader) {
     return read_case(reader, std::filesystem::absolute(file).parent_path(), catalogue);

@@ -7,6 +7,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
 #include "cli/pics_file.hpp"
+#include "cli/pics_roles.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/stored_sequence.hpp"
 #include "cli/verbs.hpp"
@@ -29,8 +30,10 @@ SequenceFile target_of(const Session& session) {
   std::tie(target.suite, target.role) = sequence_role_at(session.operands.front(), session.catalogue);
   target.setup.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
   target.setup.limits = limits_from(settings);
-  if (settings.is_set("pics"))
+  if (settings.is_set("pics")) {
     target.setup.pics = load_pics(settings.text("pics"), session.catalogue.pics_items());
+    expect_items_of({role_path(*target.role)}, *target.setup.pics, settings.text("pics"));
+  }
   assign_implementations(session, target);
   target.suite->check(target.role->test_case, target.setup);
   return target;

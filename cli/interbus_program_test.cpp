@@ -55,6 +55,50 @@ TEST_F(OfInterbus, PicsLeavesWhatItDoesNotAnswerAsItIs) {
   EXPECT_HOLDS(real({"list", "interbus/slave/**", "--pics", "pics.json"}).out, "the slave has no outputs");
 }
 
+TEST_F(OfInterbus, PicsItemOfAnotherRoleIsRefused) {
+  write("pics.json", R"({"items": {"loss_limit": "500 ms"}})");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"list", kCase, "--pics", "pics.json"},
+        {"run", kCase, "--iut", "ref", "--pics", "pics.json"},
+        {"check", "interbus/slave", "--cases", "1", "--pics", "pics.json"}}) {
+    const Called called = real(words);
+    EXPECT_EQ(called.exit_code, 65) << words.front();
+    EXPECT_HOLDS(called.err, "\"loss_limit\" is an item of valve_bus/node; judged is interbus/slave");
+  }
+  EXPECT_EQ(real({"list", kCase, "valve_bus/node/**", "--pics", "pics.json"}).exit_code, 0);
+}
+
+TEST_F(OfInterbus, PicsIdCodeIsThatOfTheSlave) {
+  write("pics.json", R"({"items": {"id_code": 1027, "words": 4}})");
+  const std::string chapter = "interbus/slave/id_cycle/**";
+  EXPECT_EQ(real({"run", chapter, "--volume", "quick", "--pics", "pics.json"}).exit_code, 0);
+  write("pics.json", R"({"items": {"id_code": 515, "words": 4}})");
+  const Called refused = real({"run", chapter, "--volume", "quick", "--pics", "pics.json"});
+  EXPECT_EQ(refused.exit_code, 65);
+  EXPECT_HOLDS(refused.err, "4 words; the length code 02h of its ID code 0203h says 2");
+}
+
+TEST_F(OfInterbus, PicsItemsOfARoleHaveTheirDefaults) {
+  const Called slave = real({"list", "pics", "interbus/slave"});
+  EXPECT_HOLDS(slave.out, "words  a whole number from 0 to 256, otherwise 2  ");
+  EXPECT_EQ(slave.out.find("loss_limit"), std::string::npos);
+  EXPECT_HOLDS(real({"list", "pics", "valve_bus/node"}).out, "loss_limit  ");
+  EXPECT_HOLDS(real({"list", "pics", "interbus/slav"}).err, "'interbus/slave'");
+}
+
+TEST_F(OfInterbus, ACaseThatFailsWithoutBurstsHasNothingToShrink) {
+  ASSERT_EQ(judged({"--iut", kMutant, "--out", "a"}).exit_code, 1);
+  const Called folder = real({"replay", "a"});
+  EXPECT_NE(folder.exit_code, 0);
+  const auto at = folder.err.find("a/cases/");
+  ASSERT_NE(at, std::string::npos) << folder.err;
+  const std::string file = folder.err.substr(at, folder.err.find("case.json", at) + 9 - at);
+  const Called shrunk = real({"shrink", file});
+  EXPECT_EQ(shrunk.exit_code, 3);
+  EXPECT_HOLDS(shrunk.out, "there is nothing to shrink");
+  EXPECT_EQ(read(file.substr(0, file.size() - 5) + ".shrunk.json"), "");
+}
+
 TEST_F(OfInterbus, PicsItemsAreListed) {
   EXPECT_HOLDS(real({"list", "pics"}).out, "outputs  true or false  the slave has process data outputs\n");
   EXPECT_HOLDS(real({"list", "pics", "--json"}).out, "\"item\": \"outputs_while_outgoing_bus_is_reset\"");

@@ -15,7 +15,8 @@ namespace {
 
 // Why a case of the run cannot be judged again, or nothing.
 std::string reason_not_judgeable(const CaseFile& stored) {
-  if (stored.playback.empty()) return "no recording of the implementation is stored";
+  if (stored.playback.empty())
+    return "no recording of the implementation is stored: record with --record all";
   if (stored.is_truncated) return "its recording reached the bound";
   return {};
 }
@@ -61,6 +62,8 @@ int judge_again(Session& session) {
   again.identity.selected = again.cases.size();
   session.terminal.print(fmt::format("{} of {} cases were judged again, {} of them otherwise than before\n",
                                      again.cases.size(), stored_run.run.cases.size(), changed));
+  if (again.cases.empty())
+    session.terminal.print("no recording to judge is stored in the run: record with --record all\n");
   ExitRules rules;
   rules.allows_inconclusive = session.settings.is_set("allow-inconclusive");
   rules.differs = changed > 0;

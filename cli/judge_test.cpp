@@ -53,7 +53,8 @@ TEST_F(JudgeTest, WithoutARecordingItSaysWhy) {
                   "none", "--quiet", "--out", "run"})
                 .exit_code,
             1);
-  EXPECT_HOLDS(call({"judge", "run"}).err, "no recording of the implementation is stored");
+  EXPECT_HOLDS(call({"judge", "run"}).err,
+               "no recording of the implementation is stored: record with --record all");
 }
 
 }  // namespace

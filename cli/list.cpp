@@ -6,11 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/pics_file.hpp"
+#include "cli/pics_roles.hpp"
+#include "cli/protocol_entry.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/verbs.hpp"
 #include "reports/text_summary.hpp"
 
-// `fieldproof list`: the cases, or the mutants, the protocols, the items of a PICS.
+// `fieldproof list`: the cases, or the mutants, the protocols, the items of a PICS, of all roles or of one.
 namespace fieldproof::cli {
 namespace {
 
@@ -60,6 +62,39 @@ Row row_of(const judge::PicsItem& item) {
   return row;
 }
 
+std::string answer_text(const judge::Pics::Answer& answer) {
+  const auto text = [](const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, kernel::Duration>) return kernel::describe(value);
+    if constexpr (std::is_same_v<Value, std::string>) return fmt::format("\"{}\"", value);
+    if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, std::int64_t>)
+      return fmt::format("{}", value);
+  };
+  return std::visit(text, answer);
+}
+
+// The items of one role, with what is taken where a PICS does not answer.
+std::vector<Row> pics_rows_of(const Role& role, Terminal& terminal) {
+  std::vector<Row> rows;
+  if (role.pics_items == nullptr) {
+    terminal.log(fmt::format("{} has no items of a PICS", role.path()));
+    return rows;
+  }
+  const judge::Pics declared = role.declared();
+  for (const judge::PicsItem& item : role.pics_items()) {
+    Row row = row_of(item);
+    const auto answer = declared.items().find(item.name);
+    if (answer != declared.items().end()) {
+      const std::string text = answer_text(answer->second);
+      row.json["default"] = text;
+      row.text =
+          fmt::format("{}  {}, otherwise {}  {}", item.name, judge::answers_text(item), text, item.meaning);
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 Row row_of(const conformance::Suite& suite) {
   Row row;
   row.json["protocol"] = suite.protocol();
@@ -91,10 +126,15 @@ std::vector<Row> rows_of(Session& session) {
     for (const judge::PicsItem& item : items) rows.push_back(row_of(item));
     return rows;
   }
+  if (session.operands.size() == 2 && session.operands.front() == "pics")
+    return pics_rows_of(role_named(session.operands.back()), session.terminal);
   conformance::Setup setup;
-  if (session.settings.is_set("pics")) setup.pics = load_pics(session.settings.text("pics"), items);
-  for (const conformance::Entry& entry :
-       shard_of(session.settings, session.catalogue.select(session.operands))) {
+  const std::vector<conformance::Entry> selected = session.catalogue.select(session.operands);
+  if (session.settings.is_set("pics")) {
+    setup.pics = load_pics(session.settings.text("pics"), items);
+    expect_items_of(roles_of(selected), *setup.pics, session.settings.text("pics"));
+  }
+  for (const conformance::Entry& entry : shard_of(session.settings, selected)) {
     rows.push_back(row_of(entry, setup));
   }
   return rows;

@@ -8,10 +8,12 @@
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
 #include "conformance/fieldbus_dll/planned_network.hpp"
 #include "conformance/fieldbus_dll/suite.hpp"
+#include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/master_mutants.hpp"
 #include "conformance/interbus/planned_network.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
+#include "conformance/valve_bus/declarations.hpp"
 #include "conformance/valve_bus/host_mutants.hpp"
 #include "conformance/valve_bus/node_bench.hpp"
 #include "conformance/valve_bus/node_mutants.hpp"
@@ -98,20 +100,41 @@ constexpr Role without_serial(Role role, std::string_view why) {
   return role;
 }
 
+constexpr Role with_pics(Role role, decltype(Role::pics_items) items, decltype(Role::declared) declared) {
+  role.pics_items = items;
+  role.declared = declared;
+  return role;
+}
+
+// As the bench's own network has it.
+judge::Pics declared_usual_slave() {
+  interbus::SlaveConfiguration usual;
+  usual.id_code = 0x0203;
+  usual.words = 2;
+  return conformance::declared_slave(usual);
+}
+
 constexpr auto kInItsUnit = iut::UnitOffer::in_its_unit;
 constexpr auto kCharactersToo = iut::UnitOffer::in_characters_too;
 
 constexpr std::array kInterbusRoles{
-    with_telegrams(row<interbus::SlaveRole, interbus::Slave, &conformance::slave_mutants>(kInItsUnit),
-                   &in_telegrams<3>),
-    with_telegrams(row<interbus::MasterRole, interbus::Master, &conformance::master_mutants>(kCharactersToo),
-                   &in_telegrams<1>),
+    with_pics(
+        with_telegrams(row<interbus::SlaveRole, interbus::Slave, &conformance::slave_mutants>(kInItsUnit),
+                       &in_telegrams<3>),
+        conformance::slave_pics_items, declared_usual_slave),
+    with_pics(with_telegrams(
+                  row<interbus::MasterRole, interbus::Master, &conformance::master_mutants>(kCharactersToo),
+                  &in_telegrams<1>),
+              conformance::master_pics_items, conformance::declared_master),
 };
 constexpr std::array kValveBusRoles{
-    with_uart(row<valve_bus::NodeRole, valve_bus::Node, &conformance::node_mutants>(kInItsUnit), node_uart,
-              kNodeInputs, node_alone),
-    without_serial(row<valve_bus::HostRole, valve_bus::Host, &conformance::host_mutants>(kCharactersToo),
-                   "it begins exchanges by itself, and its cases know no uncertainty of instants"),
+    with_pics(with_uart(row<valve_bus::NodeRole, valve_bus::Node, &conformance::node_mutants>(kInItsUnit),
+                        node_uart, kNodeInputs, node_alone),
+              conformance::node_pics_items, conformance::declared_node),
+    with_pics(
+        without_serial(row<valve_bus::HostRole, valve_bus::Host, &conformance::host_mutants>(kCharactersToo),
+                       "it begins exchanges by itself, and its cases know no uncertainty of instants"),
+        conformance::host_pics_items, conformance::declared_host),
 };
 constexpr std::array kFieldbusDllRoles{
     row<fieldbus_dll::IsaDleRole, fieldbus_dll::IsaDle, &conformance::isa_dle_mutants>(kCharactersToo),

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -13,6 +14,7 @@
 #include "cli/build_info.hpp"
 #include "cli/implementations.hpp"
 #include "cli/pics_file.hpp"
+#include "cli/pics_roles.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
@@ -55,7 +57,10 @@ conformance::Setup setup_from(const Settings& settings, const conformance::Catal
   setup.volume = settings.choice("volume") == 0 ? conformance::Volume::quick : conformance::Volume::full;
   setup.network_file = settings.text("network");
   setup.plan_file = settings.text("faults");
-  if (settings.is_set("pics")) setup.pics = load_pics(settings.text("pics"), catalogue.pics_items());
+  if (settings.is_set("pics")) {
+    setup.pics = load_pics(settings.text("pics"), catalogue.pics_items());
+    expect_items_of(roles_of(selected), *setup.pics, settings.text("pics"));
+  }
   setup.limits = limits_from(settings);
   setup.implementations = parse_implementations(settings.list("iut"), catalogue, selected);
   conformance::check_setup(selected, setup);
@@ -67,6 +72,15 @@ iut::PeerLimits limits_from(const Settings& settings) {
   limits.call = settings.duration("call-limit").value();
   limits.whole_case = settings.duration("case-limit").value();
   return limits;
+}
+
+std::vector<std::string> roles_of(std::span<const conformance::Entry> selected) {
+  std::vector<std::string> roles;
+  for (const conformance::Entry& entry : selected) {
+    std::string path = fmt::format("{}/{}", entry.suite->protocol(), entry.test_case->role());
+    if (std::ranges::find(roles, path) == roles.end()) roles.push_back(std::move(path));
+  }
+  return roles;
 }
 
 unsigned jobs_from(const Settings& settings) {

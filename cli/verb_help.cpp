@@ -90,7 +90,7 @@ constexpr std::array kHelp = {
     VerbHelp{"list", kKnow, {{
         {"list '{role}/**'", "the ids of cases"},
         {"list mutants", "the reference's seeded faults"},
-        {"list pics", "what a PICS may declare"}}}},
+        {"list pics {role}", "what a PICS may declare, and what is taken where it does not"}}}},
     VerbHelp{"explain", kKnow, {{
         {"explain CASE-ID", "what a case requires, by which source, and what it kills"},
         {"explain {role}", "the settings of a role"},

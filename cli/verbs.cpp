@@ -26,7 +26,7 @@ constexpr std::array kVerbs = {
     Verb{"residual", "", 0, 0, "probability that a frame check does not detect a corrupted telegram", &residual},
     Verb{"plan", "NETWORK.json", 1, 1, "the target rotation time of a Foundation Fieldbus that keeps a bound of urgent delays, proven by simulation", &plan},
     Verb{"paper", "[NAME]", 0, 1, "what a paper published, next to what is reproduced of it: interbus, valve_bus, foundation, fieldbus [interbus]", &paper},
-    Verb{"list", "[SELECTOR...|protocols|mutants|pics]", 0, kAny,
+    Verb{"list", "[SELECTOR...|protocols|mutants|pics [ROLE]]", 0, kAny,
          "cases, mutants, protocols or items of a PICS; why a case does not apply", &list},
     Verb{"explain", "CASE-ID|PROTOCOL/ROLE|NUMBER", 1, 1, "of a case: requirement, source, stimulus, expected and what it kills; of a role: its settings; of a number: unit, range and source", &explain},
     Verb{"schema", "[NAME]", 0, 1, "the JSON Schema of a file, or of the settings of a role; without a name, all names", &schema},

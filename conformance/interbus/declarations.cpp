@@ -1,10 +1,12 @@
 #include "conformance/interbus/declarations.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 
 #include "harness/field/pics.hpp"
+#include "harness/kernel/error.hpp"
 #include "protocols/interbus/cycle_fields.hpp"
-#include "protocols/interbus/network.hpp"
 #include "protocols/interbus/slave_settings.hpp"
 
 namespace fieldproof::conformance {
@@ -33,6 +35,8 @@ constexpr auto kSlaveRows = field::rows<SlaveDeclaration>(
         {{}, {}, "a peripheral fault can be reported to the station", kStation}),
     row<&SlaveDeclaration::any_length_code>(
         {{}, {}, "the station can be built with any register length", kStation}),
+    row<&SlaveDeclaration::other_settings>(
+        {{}, {}, "the station can be given another silence limit, frame check and message bits", kStation}),
     row<&SlaveDeclaration::outputs_while_outgoing_bus_is_reset>(
         {{},
          {},
@@ -68,6 +72,31 @@ constexpr auto kMasterRows = field::rows<MasterDeclaration>(
                                               kAfterStop}));
 constexpr auto kMaster = field::table<MasterDeclaration>(kMasterRows);
 
+constexpr std::string_view kIdCode = "id_code";
+constexpr std::string_view kWords = "words";
+constexpr unsigned kPlaceOfLengthCode = 8;
+constexpr unsigned kLastLengthCode = 0x1F;
+constexpr std::uint16_t kBothDirections = 0x03;
+
+[[noreturn]] void refuse(const std::string& sentence) {
+  throw kernel::Error(kernel::ErrorKind::configuration, "the PICS: " + sentence);
+}
+
+unsigned length_code(std::uint16_t id_code) {
+  return id_code >> kPlaceOfLengthCode & kLastLengthCode;
+}
+
+std::uint16_t id_code_for(unsigned words, const interbus::Rules& rules) {
+  const auto code = interbus::length_code_of(words, rules);
+  if (!code) {
+    refuse(
+        fmt::format("no length code says {} words; declare the \"id_code\", too, with an undefined length "
+                    "code in its bits 8 to 12",
+                    words));
+  }
+  return static_cast<std::uint16_t>(*code << kPlaceOfLengthCode | kBothDirections);
+}
+
 }  // namespace
 
 std::vector<judge::PicsItem> slave_pics_items() {
@@ -82,8 +111,45 @@ judge::Pics declared_slave(const SlaveConfiguration& configuration) {
                                      .remote_interface = !configuration.is_local});
 }
 
+void declare_station(interbus::StationDescription& station, const judge::Pics& pics,
+                     const interbus::Rules& rules) {
+  const bool has_words = pics.items().contains(kWords);
+  const auto words = static_cast<unsigned>(pics.number(kWords, 0));
+  if (pics.items().contains(kIdCode)) {
+    station.id_code = static_cast<std::uint16_t>(pics.number(kIdCode, 0));
+  } else if (has_words) {
+    station.id_code = id_code_for(words, rules);
+  }
+  const auto coded = interbus::words_of_id_code(station.id_code, rules);
+  if (has_words && coded && *coded != words) {
+    refuse(fmt::format("{} words; the length code {:02X}h of its ID code {:04X}h says {}", words,
+                       length_code(station.id_code), station.id_code, *coded));
+  }
+  if (!has_words && !coded) {
+    refuse(fmt::format(
+        "the length code {:02X}h of the ID code {:04X}h is not defined; declare the \"words\", too",
+        length_code(station.id_code), station.id_code));
+  }
+  station.words = coded.value_or(words);
+  station.has_branch = pics.supports("has_branch");
+}
+
+void expect_as_declared(const interbus::RingPlace& place, const judge::Pics& pics) {
+  const std::int64_t id_code = place.station->id_code;
+  if (const auto declared = pics.number(kIdCode, id_code); declared != id_code)
+    refuse(fmt::format("the ID code {:04X}h; station \"{}\" of the network has {:04X}h", declared,
+                       place.station->name, id_code));
+  if (const auto declared = pics.number(kWords, place.words); declared != std::int64_t{place.words})
+    refuse(fmt::format("{} words; station \"{}\" of the network has {}", declared, place.station->name,
+                       place.words));
+}
+
 std::vector<judge::PicsItem> master_pics_items() {
   return field::pics_items_of(kMaster);
+}
+
+judge::Pics declared_master() {
+  return field::declared_by(kMaster, MasterDeclaration{});
 }
 
 }  // namespace fieldproof::conformance

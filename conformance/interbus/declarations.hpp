@@ -4,6 +4,7 @@
 
 #include "harness/judge/pics.hpp"
 #include "protocols/interbus/device.hpp"
+#include "protocols/interbus/network.hpp"
 
 // What is declared of a slave and of a master in a PICS.
 namespace fieldproof::conformance {
@@ -18,6 +19,7 @@ struct SlaveDeclaration {
   bool reconfiguration_button = true;
   bool peripheral_fault_input = true;
   bool any_length_code = true;
+  bool other_settings = true;
   OutputsWhileReset outputs_while_outgoing_bus_is_reset = OutputsWhileReset::held;
 };
 
@@ -25,6 +27,12 @@ struct SlaveDeclaration {
 std::vector<judge::PicsItem> slave_pics_items();
 // What a station of the bench declares about itself: an answer to each of these items.
 judge::Pics declared_slave(const interbus::SlaveConfiguration& configuration);
+// Gives a station the ID code, the register length and the second interface that a PICS declares; what is not
+// answered stays. Throws kernel::Error for a length that the length code contradicts.
+void declare_station(interbus::StationDescription& station, const judge::Pics& pics,
+                     const interbus::Rules& rules);
+// Throws kernel::Error for a station that is there and is not as declared.
+void expect_as_declared(const interbus::RingPlace& place, const judge::Pics& pics);
 
 enum class BelowMinimum : std::uint8_t { clipped, refused };
 enum class OutputsAfterBusStop : std::uint8_t { zero, held };
@@ -37,5 +45,6 @@ struct MasterDeclaration {
 };
 
 std::vector<judge::PicsItem> master_pics_items();
+judge::Pics declared_master();
 
 }  // namespace fieldproof::conformance

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "harness/iut/misbehaviour.hpp"
+#include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/interbus/cycle_fields.hpp"
 #include "protocols/interbus/network.hpp"
@@ -37,15 +38,21 @@ interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveS
         fmt::format("there is no slave at position {}: {} {}", setting.position,
                     setting.network ? "the network has" : "a network has at most (max_stations)", available));
   }
-  if (setting.network) return network;
+  const judge::Pics pics = setting.pics.value_or(judge::Pics{});
+  if (setting.network) {
+    expect_as_declared(ring_order(network)[static_cast<std::size_t>(setting.position - 1)], pics);
+    return network;
+  }
   network.name = "slave bench";
+  if (needs.change_rules != nullptr) needs.change_rules(network.rules);
   const int stations = std::max(setting.stations, setting.position);
   for (int position = 1; position <= stations; ++position) {
     const bool is_iut = position == setting.position;
     network.stations.push_back(station(fmt::format("station {}", position),
-                                       is_iut ? needs.id_code.value_or(kTwoWordsBothWays)
-                                              : (position % 2 == 0 ? kTwoWordsBothWays : kOneWordBothWays)));
+                                       is_iut || position % 2 == 0 ? kTwoWordsBothWays : kOneWordBothWays));
     if (!is_iut) continue;
+    declare_station(network.stations.back(), pics, network.rules);
+    if (needs.id_code) network.stations.back().id_code = *needs.id_code;
     if (needs.branch_neighbour) {
       network.stations.back().branch.push_back(station("local neighbour", kOneWordBothWays));
       network.stations.back().branch.back().is_local = true;
@@ -109,6 +116,7 @@ void SlaveBench::find_way() {
     ring_.link_to(position).tap_driven(places[n].on_branch ? branch_ : remote_);
     line_watch_.watch(ring_.link_to(position), segment_.trace());
     neighbour_words_.at(places[n].on_branch ? 1 : 0) = places[n].words;
+    neighbours_.at(places[n].on_branch ? 1 : 0) = position;
   }
 }
 
@@ -278,6 +286,13 @@ void SlaveBench::drive_at_receiver(line::Waveform& wave) {
   const kernel::Time end = wave.end();
   ring_.link_to(position_).drive(wave);
   segment_.run_until(end + settling_);
+}
+
+void SlaveBench::drive_return(bool on_branch, line::Waveform& wave) {
+  const int neighbour = neighbours_.at(on_branch ? 1 : 0);
+  FIELDPROOF_CHECK(neighbour > 0, "a case drives only what its needs have put there");
+  wave.start = now();
+  ring_.link_from(neighbour).drive(wave);
 }
 
 line::Levels SlaveBench::direct_data_cycle(std::span<const std::uint16_t> words, unsigned gap_bits) {

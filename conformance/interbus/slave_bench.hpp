@@ -39,9 +39,10 @@ namespace fieldproof::conformance {
 
 // What a case needs around the IUT.
 struct SlaveNeeds {
-  std::optional<std::uint16_t> id_code;  // absent: any; the bench's own network has 0203h, two words
-  bool remote_neighbour = false;         // a station of one word behind OUT1
-  bool branch_neighbour = false;         // a station of one word behind OUT2
+  std::optional<std::uint16_t> id_code{};            // absent: as declared, or 0203h, two words
+  bool remote_neighbour = false;                     // a station of one word behind OUT1
+  bool branch_neighbour = false;                     // a station of one word behind OUT2
+  void (*change_rules)(interbus::Rules&) = nullptr;  // settings of the case; null: the usual ones
 };
 
 class SlaveBench;
@@ -145,6 +146,8 @@ class SlaveBench final : private segment::Station {
   // Drives the IUT's incoming line itself and runs until it has answered. Clears the views before; the start
   // is set to now. After other stations it may send status telegrams through the ring first.
   void drive_at_receiver(line::Waveform& wave);
+  // Drives the line that comes back from the station after OUT1 or OUT2, now, beside whatever else is driven.
+  void drive_return(bool on_branch, line::Waveform& wave);
   // A whole data cycle as the station in front of the IUT would send it, alone in the ring.
   line::Levels direct_data_cycle(std::span<const std::uint16_t> words, unsigned gap_bits);
 
@@ -193,7 +196,8 @@ class SlaveBench final : private segment::Station {
   interbus::Ring ring_;
   judge::Pics pics_;
   std::array<unsigned, 2> neighbour_words_{};
-  std::vector<OnTheWay> way_;  // stations in front of the IUT, from the master on
+  std::array<int, 2> neighbours_{};  // positions of the stations after OUT1 and OUT2; 0 without one
+  std::vector<OnTheWay> way_;        // stations in front of the IUT, from the master on
   TrainWriter train_;
   SlaveModel model_;
   fault::ScriptedChannel channel_;

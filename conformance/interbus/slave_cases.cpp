@@ -35,6 +35,8 @@ std::optional<std::string> missing_in_network(const SlaveNeeds& needs,
     }
     return false;
   };
+  if (needs.change_rules != nullptr)
+    return "the case has settings of its own, and the network has given ones";
   const interbus::RingPlace& own = places[static_cast<std::size_t>(position - 1)];
   if (needs.id_code && own.station->id_code != *needs.id_code)
     return "the station of the network has another ID code than the case asks for";
@@ -63,8 +65,8 @@ const std::vector<SlaveCase>& slave_cases() {
     std::vector<SlaveCase> all;
     for (auto chapter :
          {slave_power_up_cases, slave_id_cycle_cases, slave_data_cycle_cases, slave_length_code_cases,
-          slave_frame_check_cases, slave_telegram_cases, slave_timing_cases, slave_supervision_cases,
-          slave_interface_cases, slave_message_cases, slave_immunity_cases}) {
+          slave_frame_check_cases, slave_short_cycle_cases, slave_telegram_cases, slave_timing_cases,
+          slave_supervision_cases, slave_interface_cases, slave_message_cases, slave_immunity_cases}) {
       std::vector<SlaveCase> cases_of_chapter = chapter();
       std::move(cases_of_chapter.begin(), cases_of_chapter.end(), std::back_inserter(all));
     }
@@ -109,6 +111,17 @@ Applicability for_item(const std::string& item, const std::string& sentence) {
   return [item, sentence](const judge::Pics& pics) -> std::optional<std::string> {
     if (pics.supports(item)) return std::nullopt;
     return sentence;
+  };
+}
+Applicability for_other_settings() {
+  return for_item("other_settings", "the slave cannot be given other settings than the usual ones");
+}
+Applicability for_all(std::vector<Applicability> each) {
+  return [each = std::move(each)](const judge::Pics& pics) -> std::optional<std::string> {
+    for (const Applicability& one : each) {
+      if (auto sentence = one(pics)) return sentence;
+    }
+    return std::nullopt;
   };
 }
 Applicability for_outputs() {

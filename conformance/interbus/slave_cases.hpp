@@ -10,7 +10,7 @@
 #include "conformance/judging.hpp"
 #include "conformance/test_case.hpp"
 
-// The test cases for an INTERBUS slave, IS-01 to IS-42 of the catalogue of test purposes, and a canary.
+// The test cases for an INTERBUS slave, IS-01 to IS-50 of the catalogue of test purposes, and a canary.
 namespace fieldproof::conformance {
 
 using SlaveCase = BenchCase<SlaveBench, SlaveNeeds>;
@@ -27,6 +27,7 @@ std::vector<SlaveCase> slave_id_cycle_cases();
 std::vector<SlaveCase> slave_data_cycle_cases();
 std::vector<SlaveCase> slave_length_code_cases();
 std::vector<SlaveCase> slave_frame_check_cases();
+std::vector<SlaveCase> slave_short_cycle_cases();
 std::vector<SlaveCase> slave_telegram_cases();
 std::vector<SlaveCase> slave_timing_cases();
 std::vector<SlaveCase> slave_supervision_cases();
@@ -43,6 +44,10 @@ Applicability for_outputs();
 Applicability for_inputs();
 Applicability for_inputs_and_outputs();
 Applicability for_item(const std::string& item, const std::string& sentence);
+// For cases whose needs change the rules.
+Applicability for_other_settings();
+// What each of them applies to.
+Applicability for_all(std::vector<Applicability> each);
 
 namespace sources {
 judge::Reference park(std::string place);  // the paper whose cycle time the project reproduces

@@ -204,6 +204,15 @@ void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<cons
   bench.terminals().forget_changes();
 }
 
+void mark_in_front(SlaveBench& bench, const CyclePlace& cycle) {
+  const auto flips = static_cast<std::uint16_t>(~bench.rules().status_clean & bench.rules().status_marked);
+  bench.channel().on_next();
+  for (unsigned bit = 0; bit < 16; ++bit) {
+    if ((flips << bit & 0x8000) == 0) continue;
+    bench.channel().flip(cycle.level_of(cycle.octets + 2 + bit / 8, bench.train().data_level(bit % 8)));
+  }
+}
+
 std::uint16_t id_register(SlaveBench& bench, CaseJudge& judge) {
   return cycle_that_left(bench, judge, 0).word(0);
 }

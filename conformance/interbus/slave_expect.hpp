@@ -51,6 +51,9 @@ void expect_clean_status(SlaveBench& bench, CaseJudge& judge, const CycleOnLine&
 // the other. `valid_cycle_rejected`, `outputs_changed_before_check`, `outputs_latched_late`. Forgets changes.
 void expect_latched_in_order(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words);
 
+// Lets the status word of a cycle of the train arrive as a station in front of the slave marks it.
+void mark_in_front(SlaveBench& bench, const CyclePlace& cycle);
+
 // The ID register that came back in the last ID cycle.
 std::uint16_t id_register(SlaveBench& bench, CaseJudge& judge);
 

@@ -12,12 +12,6 @@
 namespace fieldproof::conformance {
 namespace {
 
-// Lets the message bits of earlier cycles be read.
-void read_messages(SlaveBench& bench) {
-  bench.id_cycle(bench.interfaces_off());
-  bench.terminals().forget_changes();
-}
-
 void check_leaves_for_what_was_sent(SlaveBench& bench, CaseJudge& judge) {
   bench.bring_up();
   for (unsigned n = 0; n < bench.volume(30U, 1'000U); ++n) {
@@ -212,15 +206,10 @@ void mark_of_others_is_kept(SlaveBench& bench, CaseJudge& judge) {
   bench.bring_up();
   expect_good_cycle(bench, judge, "valid_cycle_rejected");
   const std::uint16_t marked = bench.rules().status_marked;
-  const auto flips = static_cast<std::uint16_t>(~bench.rules().status_clean & marked);
   for (unsigned n = 0; n < bench.volume(3U, 30U); ++n) {
     bench.begin();
     const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
-    bench.channel().on_next();
-    for (unsigned bit = 0; bit < 16; ++bit) {
-      if ((flips << bit & 0x8000) == 0) continue;
-      bench.channel().flip(cycle.level_of(cycle.octets + 2 + bit / 8, bench.train().data_level(bit % 8)));
-    }
+    mark_in_front(bench, cycle);
     bench.send();
     expect_all_telegrams(bench, judge);
     const CycleOnLine out = cycle_that_left(bench, judge, 0);
@@ -230,7 +219,16 @@ void mark_of_others_is_kept(SlaveBench& bench, CaseJudge& judge) {
                       .time = bench.out().start_of(out.telegrams[out.octets + 2])};
     });
     expect_no_change(bench, judge, "marked_cycle_latched", "a station before the slave saw an error");
-    read_messages(bench);
+    bench.id_cycle(bench.interfaces_off());
+    const std::uint16_t message = bench.rules().message_check_error;
+    judge.expect((id_register(bench, judge) & message) == 0, "error_of_others_told", [&] {
+      return Mismatch{
+          .expected = {fmt::format("no message bit {:04X}h: the error lies before the station in front, and "
+                                   "the first station that reports one says where",
+                                   message)},
+          .actual = fmt::format("ID register {:04X}h", id_register(bench, judge))};
+    });
+    bench.terminals().forget_changes();
     expect_good_cycle(bench, judge, "no_recovery");
   }
 }
@@ -369,16 +367,37 @@ void add_cases_of_patterns(std::vector<SlaveCase>& cases) {
         .purpose = "IS-16",
         .requirement =
             "A status word that another station has marked passes marked, and its cycle is not taken "
-            "over even though the slave's own check fits (the slave-local rule).",
+            "over even though the slave's own check fits (the slave-local rule). It is no error of this "
+            "slave: reported as one, it would hide where the error lies.",
         .reference = sources::from_memory("the status word tells later stations and the master"),
-        .details = {details::mark({"mark_of_others_cleared"}), details::status_coding()},
-        .stimulus = "Data cycles whose data and check are right and whose status word arrives marked.",
-        .expected = "The status word leaves marked, no output changes; a clean cycle afterwards is accepted.",
+        .details = {details::mark({"mark_of_others_cleared"}), details::message({"error_of_others_told"}),
+                    details::status_coding()},
+        .stimulus = "Data cycles whose data and check are right and whose status word arrives marked; an ID "
+                    "cycle after each.",
+        .expected = "The status word leaves marked, no output changes, the ID register has no message of a "
+                    "check error; a clean cycle afterwards is accepted.",
         .tags = {"must"},
         .catches = {{"ignores_upstream_status", "marked_cycle_latched"},
-                    {"clears_mark_of_others", "mark_of_others_cleared"}},
+                    {"clears_mark_of_others", "mark_of_others_cleared"},
+                    {"tells_errors_of_others", "error_of_others_told"}},
         .not_applicable = for_every_slave()},
        mark_of_others_is_kept});
+}
+
+SlaveCase final_xor_case() {
+  return {
+      {.id = "interbus/slave/frame_check/another_final_xor_counts",
+       .purpose = "IS-44",
+       .requirement = "The frame check is as the settings of the case say, its final XOR included.",
+       .reference = sources::own("the final XOR of the frame check is a setting"),
+       .details = {details::check_coding()},
+       .stimulus = "As in leaves_for_what_the_slave_itself_sent, with a final XOR of FFFFh.",
+       .expected = "The check that leaves equals the check, computed bit by bit, of the octets that left.",
+       .tags = {"must"},
+       .catches = {{"final_xor_hard_coded", "check_wrong"}},
+       .not_applicable = for_other_settings()},
+      check_leaves_for_what_was_sent,
+      {.change_rules = [](interbus::Rules& rules) { rules.frame_check = "CRC-16/GENIBUS"; }}};
 }
 
 }  // namespace
@@ -387,6 +406,7 @@ std::vector<SlaveCase> slave_frame_check_cases() {
   std::vector<SlaveCase> cases;
   add_cases_of_single_bits(cases);
   add_cases_of_patterns(cases);
+  cases.push_back(final_xor_case());
   return cases;
 }
 

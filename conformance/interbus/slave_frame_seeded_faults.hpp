@@ -89,6 +89,19 @@ class LosesEvery200thCycle : public Slave {
   mutable unsigned cycles_ = 0;
 };
 
+// Takes a cycle for whole that has a telegram too few for its register and the loopback word.
+class TakesACycleOneTelegramShort : public Slave {
+  using Slave::Slave;
+  std::size_t least_octets(std::size_t register_octets) const override {
+    return Slave::least_octets(register_octets) - 1;
+  }
+};
+
+class DoesNotLookAtTheLength : public Slave {
+  using Slave::Slave;
+  std::size_t least_octets(std::size_t) const override { return 0; }
+};
+
 class LocksUpAfterRejectedCycle : public Slave {
   using Slave::Slave;
   bool accepts_cycle(bool own_check_good, bool upstream_clean) const override {
@@ -137,6 +150,20 @@ class LosesTheCycleBehindARejectedOne : public Slave {
 class StopBitNotChecked : public Slave {
   using Slave::Slave;
   bool is_telegram_valid(const line::Telegram&) const override { return true; }
+};
+
+// Marks a cycle with a missing stop level, and reports nothing.
+class TellsNoMissingStop : public Slave {
+  using Slave::Slave;
+  bool is_telegram_valid(const line::Telegram& telegram) const override {
+    if (telegram.is_stop_missing()) is_missing_ = true;
+    return Slave::is_telegram_valid(telegram);
+  }
+  void on_cycle_rejected(kernel::Time when, bool own_error) override {
+    if (!is_missing_) Slave::on_cycle_rejected(when, own_error);
+    is_missing_ = false;
+  }
+  mutable bool is_missing_ = false;
 };
 
 class DoesNotResynchronise : public Slave {

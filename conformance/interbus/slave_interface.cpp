@@ -132,6 +132,14 @@ void reserved_bits_are_ignored(SlaveBench& bench, CaseJudge& judge) {
     bench.data_cycle(words, neighbour_words(bench, false));
     expect_neighbour_in_ring(bench, judge, interface, "reserved_control_bit_obeyed");
     expect_outputs(bench, judge, words, "reserved_control_bit_obeyed");
+    // The bits with a meaning count beside it.
+    const std::string_view ignored = "control_word_with_reserved_bit_ignored";
+    id_cycle_with_neighbour(bench, bench.interfaces_off() | reserved);
+    bench.data_cycle(bench.random_words());
+    expect_closed_here(bench, judge, interface, ignored);
+    bench.id_cycle(interface.on | reserved);
+    bench.data_cycle(bench.random_words(), neighbour_words(bench, false));
+    expect_neighbour_in_ring(bench, judge, interface, ignored);
   }
 }
 
@@ -247,14 +255,15 @@ std::vector<SlaveCase> slave_interface_cases() {
   cases.push_back(
       {{.id = "interbus/slave/interfaces/reserved_control_bits_are_ignored",
         .purpose = "IS-32",
-        .requirement = "Bits of the control word without a meaning are ignored.",
+        .requirement = "Bits of the control word without a meaning are ignored, and only these.",
         .reference = sources::own("the control word's coding; reserved bits are 0"),
-        .stimulus =
-            "ID cycles with each reserved bit of the control word set alone and all of them set, OUT1 on; a "
-            "data cycle after each.",
-        .expected = "OUT1 stays on, and the data cycles are taken over.",
+        .stimulus = "ID cycles with each reserved bit of the control word set alone and all of them set, "
+                    "OUT1 on, off "
+                    "and on again; a data cycle after each.",
+        .expected = "OUT1 stays on, is off, is on again, and the data cycles are taken over.",
         .tags = {"must"},
-        .catches = {{"reserved_control_bit_closes_remote", "reserved_control_bit_obeyed"}},
+        .catches = {{"reserved_control_bit_closes_remote", "reserved_control_bit_obeyed"},
+                    {"ignores_words_with_reserved_bits", "control_word_with_reserved_bit_ignored"}},
         .not_applicable = for_remote},
        reserved_bits_are_ignored,
        remote});

@@ -41,6 +41,15 @@ void has_register_of(SlaveBench& bench, CaseJudge& judge, unsigned words) {
                       .time = bench.out().start_of(out->telegrams[0])};
     });
     const std::span<const std::uint16_t> last{sent.data() + sent.size() - words, words};
+    const std::vector<std::uint8_t> load = bench.data_load();
+    for (std::size_t octet = 0; bench.pics().supports("inputs") && octet < load.size(); ++octet) {
+      judge.expect(out->telegrams[octet].data == load[octet], "register_content_wrong", [&] {
+        return Mismatch{.expected = {fmt::format("{:02X}h, octet {} of input word {}", load[octet], octet % 2,
+                                                 octet / 2)},
+                        .actual = fmt::format("{:02X}h", out->telegrams[octet].data),
+                        .time = bench.out().start_of(out->telegrams[octet])};
+      });
+    }
     if (bench.pics().supports("outputs") && in->octets == 2 + 2 * sent.size())
       expect_outputs(bench, judge, last, "valid_cycle_rejected");
   }
@@ -51,6 +60,9 @@ SlaveCase length_case(const interbus::LengthCode& length) {
   const bool is_binary = length.code == length.words;
   std::vector<MustCatch> catches{{"id_register_in_data_cycle", "register_length_wrong"}};
   if (!is_binary) catches.push_back({"length_code_binary", "register_length_wrong"});
+  constexpr unsigned kRoomOfMutant = 16;
+  if (length.words > kRoomOfMutant)
+    catches.push_back({"loses_input_words_above_16", "register_content_wrong"});
   SlaveCase result{
       {.id = fmt::format("interbus/slave/length_code/code_{:02x}h_is_{}_words", length.code, length.words),
        .purpose = "IS-04",
@@ -65,9 +77,10 @@ SlaveCase length_case(const interbus::LengthCode& length) {
        .stimulus = fmt::format("An ID cycle, then data cycles of {} random words through a slave with the ID "
                                "code {:04X}h.",
                                length.words + 4, id_code),
-       .expected = fmt::format("What comes in leaves again after exactly {} octets, and the outputs show the "
-                               "last {} words.",
-                               2 * length.words, length.words),
+       .expected =
+           fmt::format("The {} input words leave, then what came in, and the outputs show the last {} "
+                       "words.",
+                       length.words, length.words),
        .tags = {"must"},
        .catches = catches,
        .not_applicable =

@@ -188,4 +188,14 @@ class OutputsSetAtPowerUp : public Slave {
   }
 };
 
+// Has room for 16 input words.
+class LosesInputWordsAbove16 : public Slave {
+  using Slave::Slave;
+  void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) override {
+    constexpr std::size_t kRoom = 32;
+    Slave::sample_inputs(when, octets);
+    if (octets.size() > kRoom) std::ranges::fill(octets.subspan(kRoom), std::uint8_t{0});
+  }
+};
+
 }  // namespace fieldproof::conformance::slave_seeded_faults

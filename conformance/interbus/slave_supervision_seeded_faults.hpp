@@ -20,6 +20,27 @@ class SilenceCountsDataOnly : public Slave {
   }
 };
 
+// Takes what comes back from after its outgoing interfaces for a sign of life of the master.
+class KeptAliveByReturns : public Slave {
+  using Slave::Slave;
+  bool is_sign_of_life(segment::PortIndex) const override { return true; }
+};
+
+class ResetLeavesInterfacesOn : public Slave {
+  using Slave::Slave;
+  bool reset_switches_off() const override { return false; }
+};
+
+// Takes no order of a control word that has a bit without a meaning.
+class IgnoresWordsWithReservedBits : public Slave {
+  using Slave::Slave;
+  std::uint16_t control_word(std::uint16_t received) override {
+    if ((received & ~unsigned{heeded_control_bits()}) == 0) last_ = received;
+    return last_;
+  }
+  std::uint16_t last_ = 0;
+};
+
 // Deaf to one order of the control word.
 class IgnoresControlBit : public Slave {
  public:
@@ -80,6 +101,32 @@ class PeripheralFaultMarksDataCycles : public Slave {
 class MessageNeverCleared : public Slave {
   using Slave::Slave;
   void on_id_read(std::uint16_t) override {}
+};
+
+// Clears them by an ID cycle that another station has marked, which the master does not take.
+class MessageClearedByMarkedIdCycle : public Slave {
+  using Slave::Slave;
+  void on_cycle_rejected(kernel::Time when, bool own_error) override {
+    Slave::on_cycle_rejected(when, own_error);
+    if (!own_error && phase() == Phase::id_check) on_id_read(messages());
+  }
+};
+
+// Takes a good data cycle for the end of the error.
+class MessageClearedByDataCycle : public Slave {
+  using Slave::Slave;
+  bool accepts_cycle(bool own_check_good, bool upstream_clean) const override {
+    return is_good_ = Slave::accepts_cycle(own_check_good, upstream_clean);
+  }
+  void on_cycle_end(kernel::Time) override {
+    if (is_good_ && phase() == Phase::data_check) on_id_read(messages());
+  }
+  mutable bool is_good_ = false;
+};
+
+class TellsErrorsOfOthers : public Slave {
+  using Slave::Slave;
+  void on_cycle_rejected(kernel::Time when, bool) override { Slave::on_cycle_rejected(when, true); }
 };
 
 class MessageWithoutError : public Slave {

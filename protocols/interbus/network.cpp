@@ -18,8 +18,8 @@ struct RingWalk {
   void append(const std::vector<StationDescription>& stations, int before, bool on_branch, unsigned level) {
     for (const StationDescription& station : stations) {
       const auto place = static_cast<int>(places.size());
-      places.push_back(
-          {&station, before, on_branch, level, words_of_id_code(station.id_code, rules).value_or(0)});
+      places.push_back({&station, before, on_branch, level,
+                        words_of_id_code(station.id_code, rules).value_or(station.words.value_or(0))});
       append(station.branch, place, true, level + 1);
       before = place;
       on_branch = false;

@@ -26,6 +26,10 @@ struct StationDescription {
   double cable_m = 0;                        // from the station before it; 0 on a local bus
   bool is_local = false;                     // behind a second outgoing interface on logic-level lines
   std::vector<StationDescription> branch{};  // behind the second outgoing interface, in order
+  // What a program says of a station of its own, no file: the register length where the length code says
+  // none, and a second outgoing interface with nothing plugged in.
+  std::optional<unsigned> words{};
+  bool has_branch = false;
 };
 
 // Input word `input_word` of station `from` goes to output word `output_word` of station `to`, after each

@@ -35,7 +35,7 @@ void Ring::add_station(const NetworkDescription& network, const RingPlace& place
                                    .id_code = place.station->id_code,
                                    .words = place.words,
                                    .is_local = place.station->is_local,
-                                   .has_branch = !place.station->branch.empty()};
+                                   .has_branch = place.station->has_branch || !place.station->branch.empty()};
   const int position = static_cast<int>(slaves_.size()) + 1;
   std::unique_ptr<SlaveDevice> device = make_slave ? make_slave(position, configuration) : nullptr;
   if (device == nullptr) device = std::make_unique<Slave>(configuration);

@@ -135,10 +135,13 @@ void Slave::relay_only(segment::PortIndex from, const line::Waveform& reception)
   TelegramRelay& relay = relays_[from];
   segment::Port* port = next_after(from);
   relay.open(port, delay_to(port, from), now_);
+  const bool counts = is_sign_of_life(from);
   receivers_[from].receive(reception, [&](const line::Waveform& wave, const line::Telegram& telegram) {
     relay.put(wave, telegram);
+    if (counts) note_life(wave, telegram);
   });
   relay.close();
+  if (counts) supervise();
 }
 
 void Slave::on_upstream(const line::Waveform& wave, const line::Telegram& telegram) {
@@ -233,8 +236,7 @@ std::uint8_t Slave::on_check(bool id_cycle, const line::Waveform& wave, const li
 void Slave::enter_check(kernel::Time when) {
   if (phase_ == Phase::data_transfer) on_transfer_end(when);
   phase_ = phase_ == Phase::data_transfer ? Phase::data_check : Phase::id_check;
-  // A ring is never shorter than this register and the loopback word, whatever the check of a fragment says.
-  if (!shift_.has_shifted(shift_.held().size() + kLoopbackOctets)) own_error_ = true;
+  if (!shift_.has_shifted(least_octets(shift_.held().size()))) own_error_ = true;
   const auto received = shift_.received_check(check_);
   check_expected_ = check_.check_octets(received);
   check_sent_ = check_.check_octets(check_to_send(received, shift_.sent_check(check_)));
@@ -262,7 +264,7 @@ void Slave::finish_id_cycle(bool good, kernel::Time end) {
   mode_ = Mode::active;
   on_id_read(messages_read_);
   const auto held = shift_.held();
-  apply_control(static_cast<std::uint16_t>(held[0] << 8 | held[1]), end);
+  apply_control(control_word(static_cast<std::uint16_t>(held[0] << 8 | held[1])), end);
 }
 
 void Slave::abandon_cycle(kernel::Time when) {
@@ -328,9 +330,11 @@ void Slave::enter_reset(kernel::Time now) {
   silence_end_ = kernel::kNever;
   mode_ = Mode::reset;
   phase_ = Phase::pause;
-  branch_on_ = remote_on_ = false;
-  forward_branch_on_ = forward_remote_on_ = route_changed_ = false;
-  switch_return_ways();
+  if (reset_switches_off()) {
+    branch_on_ = remote_on_ = false;
+    forward_branch_on_ = forward_remote_on_ = route_changed_ = false;
+    switch_return_ways();
+  }
   is_deaf_ = false;
   on_reset(now);
 }
@@ -348,6 +352,10 @@ line::FrameCheck16::State Slave::check_to_send(line::FrameCheck16::State,
 
 std::uint8_t Slave::status_octet_to_send(std::uint8_t received, std::uint8_t mark, bool own_error) const {
   return own_error ? received | mark : received;
+}
+
+std::size_t Slave::least_octets(std::size_t register_octets) const {
+  return register_octets + kLoopbackOctets;
 }
 
 bool Slave::check_octet_fits(unsigned, std::uint8_t received, std::uint8_t expected) const {

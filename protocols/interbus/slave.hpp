@@ -67,10 +67,14 @@ class Slave : public SlaveDevice {
   virtual bool resynchronises() const { return true; }
   virtual bool status_telegram_shifts() const { return false; }
   virtual kernel::Time sign_of_life(kernel::Time last_telegram, kernel::Time last_data_telegram) const;
+  // Of the telegrams that are heard there.
+  virtual bool is_sign_of_life(segment::PortIndex port) const { return port == kFromUpstream; }
   virtual line::FrameCheck16::State check_preset() const { return check_.start(); }
   virtual line::FrameCheck16::State check_to_send(line::FrameCheck16::State received,
                                                   line::FrameCheck16::State sent) const;
   virtual std::uint8_t status_octet_to_send(std::uint8_t received, std::uint8_t mark, bool own_error) const;
+  // A ring is never shorter than this register and the loopback word, whatever the check of a fragment says.
+  virtual std::size_t least_octets(std::size_t register_octets) const;
   virtual bool check_octet_fits(unsigned n, std::uint8_t received, std::uint8_t expected) const;
   virtual bool accepts_cycle(bool own_check_good, bool upstream_clean) const;
   virtual bool may_drive_outputs(Mode mode) const { return mode == Mode::active; }
@@ -93,6 +97,9 @@ class Slave : public SlaveDevice {
     return !next.is_data() || (next.header & line::kControl) == 0;
   }
   virtual void on_reset(kernel::Time now);
+  virtual bool reset_switches_off() const { return true; }
+  // What takes effect of a control word that was received whole.
+  virtual std::uint16_t control_word(std::uint16_t received) { return received; }
   virtual std::uint16_t heeded_control_bits() const;
 
   // ---- what the decisions act with ----
