@@ -183,16 +183,16 @@ std::vector<SlaveRow> slave_management_rows() {
        with_rules<interbus::Slave>(
            [](Rules& rules) { std::swap(rules.message_reconfiguration, rules.message_peripheral_fault); })},
       {"message_bits_hard_coded", "", "reports by the usual message bits whatever the settings say",
-       with_rules([](Rules& rules) {
+       with_rules<interbus::Slave>([](Rules& rules) {
          rules.message_check_error = Rules{}.message_check_error;
          rules.message_peripheral_fault = Rules{}.message_peripheral_fault;
        })},
       {"tells_errors_of_others", "", "reports a check error when another station has marked the cycle",
-       make<TellsErrorsOfOthers>},
+       mutant<TellsErrorsOfOthers>()},
       {"message_cleared_by_marked_id_cycle", "", "clears its messages by an ID cycle that is marked",
-       make<MessageClearedByMarkedIdCycle>},
+       mutant<MessageClearedByMarkedIdCycle>()},
       {"message_cleared_by_data_cycle", "", "clears the message of a check error by a good data cycle",
-       make<MessageClearedByDataCycle>},
+       mutant<MessageClearedByDataCycle>()},
       {"message_never_cleared", "MS19", "keeps the message of a check error after it was read",
        mutant<MessageNeverCleared>()},
       {"message_without_error", "MS19", "sets the message of a check error by each data cycle",
