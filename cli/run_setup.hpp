@@ -18,7 +18,7 @@ namespace fieldproof::cli {
 conformance::Setup setup_from(const Settings& settings, const conformance::Catalogue& catalogue,
                               std::span<const conformance::Entry> selected);
 
-// Paths of the roles of these cases, "interbus/slave", in their order.
+// Paths of the roles of these cases, PROTOCOL/ROLE, in their order.
 std::vector<std::string> roles_of(std::span<const conformance::Entry> selected);
 
 // Of implementations in other processes: `--call-limit`, `--case-limit`.

@@ -76,7 +76,7 @@ TEST(SlaveDeclarations, AreTheSettingsThatTheDeviceGets) {
   for (const DeclaredSlave& declared : declared_slaves()) {
     SlaveSetting setting = quick_setting(declared.pics);
     std::vector<interbus::SlaveConfiguration> given;
-    setting.make_slave = [&given](const interbus::SlaveConfiguration& of) {
+    setting.make_device = [&given](const interbus::SlaveConfiguration& of) {
       given.push_back(of);
       return std::make_unique<interbus::Slave>(of);
     };
