@@ -230,7 +230,7 @@ TEST_F(Attachments, InterbusSlaveInPythonPassesInTelegrams) {
   const std::string uri = "exec:" + in_quotes(python) + " " + in_quotes(slave);
   // With this seed a disturbed telegram comes half a bit before the one before it is over.
   const Cases cases = judged(uri, "**", {{"FIELDPROOF_SEED", "3"}}, {}, "interbus/slave/");
-  EXPECT_EQ(cases.size(), 60U);
+  EXPECT_EQ(cases.size(), judged("ref", "**", {}, {}, "interbus/slave/").size());
   int not_applicable = 0;
   for (const auto& [id, one] : cases) {
     if (one.verdict == "not-applicable") {

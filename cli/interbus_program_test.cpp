@@ -128,7 +128,7 @@ TEST_F(OfInterbus, PositionIsOneThatANetworkHas) {
 }
 
 TEST_F(OfInterbus, WrongFileIsFoundBeforeAnythingIsStored) {
-  write("plan.json", "{\n\"rules\": 1}");
+  write("faults.json", "{\n\"rules\": 1}");
   write("network.json", "{\"name\": \"n\", \"bit_rate\": \"500 kbit/s\",\n\"stations\": 1}");
   for (const char* option : {"faults", "network"}) {
     const Called called = judged({std::string("--") + option, std::string(option) + ".json"});
