@@ -91,7 +91,7 @@ TEST_F(ExitCode, SixtyFourNamesTheNeighboursOfAnUnmatchedSelector) {
 }
 
 TEST_F(ExitCode, SixtyFiveNamesLineAndPointerOfABadFile) {
-  write("plan.json", "{\n  \"rules\": [\n    1,\n    77\n  ]\n}\n");
+  write("plan.json", "{\n  \"rules\": [\n    {\"effect\": {\"drop\": {}}},\n    77\n  ]\n}\n");
   const Called plan = probe({"run", "probe/**", "--faults", "plan.json"});
   EXPECT_EQ(plan.exit_code, 65);
   EXPECT_HOLDS(plan.err, "plan.json:4: /rules/1: ");

@@ -101,7 +101,7 @@ TEST_F(Interrupted, ByMaxTimeIsInconclusive) {
 }
 
 TEST_F(Interrupted, RunIsResumedAsItWasAlsoFromRelativeFiles) {
-  write("plan.json", "{\"rules\": [3]}");
+  write("plan.json", "{\"rules\": [{\"effect\": {\"drop\": {}}}]}");
   write("pics.json", "{\"items\": {\"x\": true}}");
   EXPECT_EQ(code({"run", "probe/**", "odd/end/fails", "odd/end/warns", "--faults", "plan.json", "--pics",
                   "pics.json", "--strict", "--fail-fast", "--out", "short"}),

@@ -66,14 +66,14 @@ TEST_F(Stored, ReplayTellsWhatDiffers) {
 }
 
 TEST_F(Stored, PlanAndPicsTravelWithTheCase) {
-  write("plan.json", "{\"rules\": [3]}");
+  write("plan.json", "{\"rules\": [{\"effect\": {\"drop\": {}}}]}");
   write("pics.json", "{\"items\": {\"x\": true, \"n\": 4, \"s\": \"zero\"}}");
   EXPECT_EQ(code({"run", "odd/end/fails", "--faults", "plan.json", "--pics", "pics.json", "--out", "a"}), 1);
   fs::remove(folder_ / "plan.json");
   fs::remove(folder_ / "pics.json");
   fs::rename(folder_ / "a", folder_ / "moved");
   EXPECT_EQ(code({"replay", case_file("moved").string()}), 1);
-  EXPECT_EQ(read("moved/plan.json"), "{\"rules\": [3]}");
+  EXPECT_EQ(read("moved/plan.json"), "{\"rules\": [{\"effect\": {\"drop\": {}}}]}");
 }
 
 TEST_F(Stored, RunIsJudgedAgainFromItsRecordings) {

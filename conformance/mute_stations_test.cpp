@@ -188,6 +188,7 @@ TEST(MuteStations, OfTheRingPassWhatIsAboutOutputs) {
       *suite, "slave",
       {.are_about_silence = {{"power_up/is_silent_and_safe", "nothing is sent to it, and it sends nothing"}},
        .are_about_reception = {{"data_cycle/outputs_change_after_the_check_phase", latched},
+                               {"supervision/another_silence_limit_counts", latched},
                                {"supervision/silence_of_26_ms_clears_outputs", latched}}});
 }
 

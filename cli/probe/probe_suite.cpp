@@ -32,14 +32,6 @@ std::string implementation_of(const TestCase& test_case, const Setup& setup) {
   return "ref";
 }
 
-void read_plan(const std::string& file) {
-  if (file.empty()) return;
-  const config::Document document = config::Document::load(file);
-  config::read_object(document.root(), [](config::ObjectReader& reader) {
-    for (const config::Value& rule : reader.required("rules").as_array()) rule.as_integer<int>(0, 9);
-  });
-}
-
 Outcome judged(const Setup& setup, Verdict verdict, const std::string& reason = {}) {
   Outcome outcome;
   outcome.result.verdict = verdict;
@@ -88,7 +80,6 @@ Outcome judged_from_recording(const Setup& setup) {
 SuiteOfFunctions::Function failing_on(const std::string& mutant, std::string reason) {
   return
       [uri = "mutant:" + mutant, reason = std::move(reason)](const TestCase& test_case, const Setup& setup) {
-        read_plan(setup.plan_file);
         const std::string implementation = implementation_of(test_case, setup);
         if (!setup.playback_file.empty()) return judged_from_recording(setup);
         if (implementation == "mutant:unreachable") {

@@ -215,7 +215,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongAct{"nothing is asked of it", kLevels,
                  [](iut::Bench& bench) { bench.write(kRefused, 1, kAct); }},
         WrongAct{"writes item 2", kLevels, [](iut::Bench& bench) { bench.write(2, 0, kAct); }},
-        WrongAct{"tells Bh as an event", kLevels, [](iut::Bench& bench) { bench.write(kEvent, 0x0B, kAct); }},
+        WrongAct{"reports Bh as an event", kLevels, [](iut::Bench& bench) { bench.write(kEvent, 0x0B, kAct); }},
         WrongAct{"reads item 0", kLevels, [](iut::Bench& bench) { bench.read(0, kAct); }},
         WrongAct{"neither 01 and a DT1", kLevels,
                  [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{1, 0x34}); }},
