@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadPlan{"telegram_where_none_are", with_effect("\"insert\": {\"telegram\": {}}"),
                 "2: /rules/0/effect/insert/telegram: ", "\"levels\""},
         BadPlan{"window_backwards", with_when("\"from\": \"2 ms\",\n\"to\": \"2 ms\""),
-                "4: /rules/0/when/to: ", "behind"},
+                "4: /rules/0/when/to: ", "after"},
         BadPlan{"frame_zero", with_when("\"frame_number\": 0"), "3: /rules/0/when/frame_number: ", "from 1"},
         BadPlan{"range_backwards", with_when("\"unit\": {\"from\": 5,\n\"to\": 4}"),
                 "4: /rules/0/when/unit/to: ", "from 5"},
