@@ -10,7 +10,6 @@
 namespace fieldproof::valve_bus {
 namespace {
 
-constexpr std::size_t kMostCharacters = 4096;
 constexpr std::size_t kKnownInstants = 256;
 
 }  // namespace
@@ -65,7 +64,7 @@ void AttachedLine::receive(segment::PortIndex port, const line::Waveform& recept
   if (attached_.capabilities().is_wall_clock) expect_exact(reception);
   // What is no character an asynchronous receiver does not hear.
   for (std::span<const iut::Character> rest(characters_); !rest.empty();) {
-    const auto part = rest.first(std::min(rest.size(), kMostCharacters));
+    const auto part = rest.first(std::min(rest.size(), LineDriver::kMostAtOnce));
     attached_.call(reception.end(),
                    [&](iut::Device& device) { device.receive(port, part, reception.end()); });
     rest = rest.subspan(part.size());

@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::int64_t kFiner = 16;        // levels of idle in a bit: the driver comes and goes between bits
 constexpr std::size_t kMostIdleBits = 64;  // in the waveform of a character
-constexpr std::size_t kMostCharacters = 4096;  // at once
 constexpr kernel::Duration kRounding = kernel::kNanosecond;
 
 using kernel::describe;
@@ -58,7 +57,7 @@ void LineDriver::set(bool is_on, kernel::Time at) {
 
 void LineDriver::send(kernel::Time start, std::span<const std::uint16_t> characters) {
   const std::size_t count = characters.size();
-  if (count > kMostCharacters) iut::refuse_impossible(fmt::format("sends {} characters at once", count));
+  if (count > kMostAtOnce) iut::refuse_impossible(fmt::format("sends {} characters at once", count));
   attached_.expect_ahead(start, "sends characters");
   if (!is_on_) {
     iut::refuse_impossible(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <span>
@@ -25,7 +26,8 @@ namespace fieldproof::valve_bus {
 
 class LineDriver {
  public:
-  static constexpr int kIdleAtEnd = 8;  // characters
+  static constexpr int kIdleAtEnd = 8;              // characters
+  static constexpr std::size_t kMostAtOnce = 4096;  // characters of one message, in either direction
 
   LineDriver(iut::AttachedCase& attached, const Rules& rules)
       : attached_(attached), rules_(rules), codec_(rules) {}
