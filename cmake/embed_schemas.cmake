@@ -64,5 +64,8 @@ function(fieldproof_embed_schemas target top)
     fieldproof_write("${stem}.cpp"
       "#include \"${folder}/embedded_schemas.hpp\"\n\nnamespace ${space} {\n${definitions_${key}}}  // namespace ${space}\n")
     target_sources(${target} PRIVATE "${stem}.cpp")
+    # A schema may be longer than the 65536 characters that a compiler has to take; ours take more.
+    set_source_files_properties("${stem}.cpp" PROPERTIES
+      SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS -Wno-overlength-strings)
   endforeach()
 endfunction()

@@ -13,7 +13,7 @@ namespace fieldproof::emc {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
-constexpr kernel::Duration kStep{100};
+constexpr kernel::Duration kSolverStep{100};
 constexpr double kStepNs = 0.1;
 constexpr double kNetworkPf = 33'000;
 // So many of the longest time constant, after which 0.02 per mille of a disturbance is left.
@@ -260,9 +260,9 @@ WrongOutput LineResponse::wrong_output(double open_circuit_volts, Polarity polar
     const auto follow = [&](double differential_now, double common_mode_now) {
       const bool is_wrong = receiver.decide(differential_now, common_mode_now) != level;
       if (is_wrong && !was_wrong) intervals.push_back({now, now});
-      if (is_wrong) intervals.back().to = now + kStep;
+      if (is_wrong) intervals.back().to = now + kSolverStep;
       was_wrong = is_wrong;
-      now += kStep;
+      now += kSolverStep;
     };
     for (std::size_t n = 0; n < common_mode_.size(); ++n) {
       follow(differential * differential_[n], shielded * common_mode_[n]);
