@@ -211,34 +211,35 @@ constexpr auto kFrames = iut::UnitKind::telegrams;
 
 INSTANTIATE_TEST_SUITE_P(
     All, AttachedFfActs,
-    testing::Values(
-        WrongAct{"nothing is asked of it", kLevels,
-                 [](iut::Bench& bench) { bench.write(kRefused, 1, kAct); }},
-        WrongAct{"writes item 2", kLevels, [](iut::Bench& bench) { bench.write(2, 0, kAct); }},
-        WrongAct{"reports Bh as an event", kLevels, [](iut::Bench& bench) { bench.write(kEvent, 0x0B, kAct); }},
-        WrongAct{"reads item 0", kLevels, [](iut::Bench& bench) { bench.read(0, kAct); }},
-        WrongAct{"neither 01 and a DT1", kLevels,
-                 [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{1, 0x34}); }},
-        WrongAct{"neither 01 and a DT1", kLevels,
-                 [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{}); }},
-        WrongAct{"reports no octets to its user", kLevels,
-                 [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{1, 0x100}); }},
-        WrongAct{"drives port 1", kFrames, [](iut::Bench& bench) { bench.send(1, kAct, Sent{1}); }},
-        WrongAct{"drives telegrams, having announced levels", kLevels,
-                 [](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{1}); }},
-        WrongAct{"a frame of 0 octets", kFrames,
-                 [](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{}); }},
-        WrongAct{"drives 256 as an octet", kFrames,
-                 [](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{0x100}); }},
-        WrongAct{"drives a frame at", kFrames,
-                 [](iut::Bench& bench) {
-                   const kernel::Time past = kAct - kMillisecond;
-                   bench.send(kLinePort, past, Sent{1});
-                 }},
-        WrongAct{"drives already until", kFrames, [](iut::Bench& bench) {
-                   bench.send(kLinePort, kAct, Sent{1});
-                   bench.send(kLinePort, kAct, Sent{1});
-                 }}));
+    testing::Values(WrongAct{"nothing is asked of it", kLevels,
+                             [](iut::Bench& bench) { bench.write(kRefused, 1, kAct); }},
+                    WrongAct{"writes item 2", kLevels, [](iut::Bench& bench) { bench.write(2, 0, kAct); }},
+                    WrongAct{"reports Bh as an event", kLevels,
+                             [](iut::Bench& bench) { bench.write(kEvent, 0x0B, kAct); }},
+                    WrongAct{"reads item 0", kLevels, [](iut::Bench& bench) { bench.read(0, kAct); }},
+                    WrongAct{"neither 01 and a DT1", kLevels,
+                             [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{1, 0x34}); }},
+                    WrongAct{"neither 01 and a DT1", kLevels,
+                             [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{}); }},
+                    WrongAct{"reports no octets to its user", kLevels,
+                             [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{1, 0x100}); }},
+                    WrongAct{"drives port 1", kFrames,
+                             [](iut::Bench& bench) { bench.send(1, kAct, Sent{1}); }},
+                    WrongAct{"drives telegrams, having announced levels", kLevels,
+                             [](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{1}); }},
+                    WrongAct{"a frame of 0 octets", kFrames,
+                             [](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{}); }},
+                    WrongAct{"drives 256 as an octet", kFrames,
+                             [](iut::Bench& bench) { bench.send(kLinePort, kAct, Sent{0x100}); }},
+                    WrongAct{"drives a frame at", kFrames,
+                             [](iut::Bench& bench) {
+                               const kernel::Time past = kAct - kMillisecond;
+                               bench.send(kLinePort, past, Sent{1});
+                             }},
+                    WrongAct{"drives already until", kFrames, [](iut::Bench& bench) {
+                               bench.send(kLinePort, kAct, Sent{1});
+                               bench.send(kLinePort, kAct, Sent{1});
+                             }}));
 
 }  // namespace
 }  // namespace fieldproof::fieldbus_dll
