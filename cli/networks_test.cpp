@@ -114,6 +114,32 @@ TEST_F(Networks, RefuseWhatHasNoPlaceInThem) {
   EXPECT_HOLDS(refusal({"valve_bus", "--latch", "M3"}), "no latch model");
 }
 
+// A torn frame cannot be given to who takes whole ones; that is no error of this program.
+TEST_F(Networks, EndWithASentenceWhereAStationCannotReceiveWhatBurstsMake) {
+  const Called called =
+      emc({"fieldbus_dll", "--iut",
+           "ff_device@1=exec:python3 '" + (kSourceFolder / "examples/ff_device/device.py").string() + "'",
+           "--duration", "1s"});
+  EXPECT_EQ(called.exit_code, 5) << called.out << called.err;
+  EXPECT_HOLDS(called.err, "receives whole frames only");
+}
+
+// A right node that answers earlier than the reference has another cycle time.
+TEST_F(Networks, AreNotFailedForStationsThatAreNotTheReference) {
+  const Called called = call({"measure", "valve_bus", "--iut", "node@2=mutant:turns_round_3_ms_late",
+                              "--signal", "2Hz", "--duration", "5s", "--quiet"});
+  EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "'fieldproof run' judges each station");
+}
+
+// Two edges cannot show how late an edge may be.
+TEST_F(Networks, SayNothingOfFewSamples) {
+  const Called called =
+      call({"measure", "fieldbus_dll", "--signal", "0.437Hz", "--duration", "5s", "--quiet"});
+  EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
+  EXPECT_EQ(called.out.find("differs"), std::string::npos) << called.out;
+}
+
 TEST_F(Networks, NameWhatIsNotExposed) {
   write("long.json", R"({"name": "long", "nodes": 40, "cable": "2 km"})");
   const Called called = emc({"valve_bus", "--network", "long.json", "--duration", "200ms"});

@@ -56,6 +56,12 @@ int run_program(int argc, const char* const* argv, std::span<const ProtocolEntry
     print_log_line(done.what());
     for (const std::string& line : done.evidence()) print_log_line(line);
     return done.exit_code();
+  } catch (const iut::CannotBeDone& what) {
+    // Within a case it makes that not applicable; what ends a whole network is no verdict about the station.
+    const kernel::Error error(kernel::ErrorKind::implementation,
+                              fmt::format("the implementation cannot take part in this: {}", what.what()));
+    print_log_line(error.what());
+    return error.exit_code();
   } catch (const kernel::Error& error) {
     print_log_line(error.what());
     return error.exit_code();

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <set>
 #include <utility>
 
 #include "harness/kernel/random.hpp"
@@ -35,18 +35,30 @@ double us(std::int64_t picoseconds) {
   return us(static_cast<double>(picoseconds));
 }
 
-// How many different phases the edges of a signal have against the cycle. Within a train each period shifts
-// the phase by the same amount; a period that is a whole number of q-th parts of a cycle comes back to the
-// same q phases, and more edges say nothing new.
+// How many different phases the edges of a signal have against the cycle. The trains divide a cycle evenly;
+// within a train each period shifts the phase by the same amount. Edges that fall together, or nearer to each
+// other than that many edges would lie if they were spread evenly, say nothing new.
 double different_phases(const SignalRecord& record, Duration cycle) {
-  constexpr std::int64_t kPicosecondsTimesMillihertz = 1'000 * kernel::kSecond.count();
-  const std::int64_t shared = std::gcd(kPicosecondsTimesMillihertz, cycle.count());
-  const std::int64_t parts = cycle.count() / shared;
-  const std::int64_t millihertz = record.settings.wave.frequency.millihertz();
-  const std::int64_t times = millihertz / std::gcd(kPicosecondsTimesMillihertz / shared, millihertz);
-  const std::int64_t most = record.settings.periods_per_train;
-  const std::int64_t phases = parts >= most || times >= most ? most : std::min(parts * times, most);
-  return static_cast<double>(record.trains * phases);
+  const std::int64_t parts = record.settings.periods_per_train * record.trains;
+  std::set<std::int64_t> taken;
+  for (std::int64_t n = 0; n < record.settings.periods_per_train; ++n) {
+    const Duration phase = n * record.settings.wave.period() % cycle;
+    const double share = static_cast<double>(phase.count()) / static_cast<double>(cycle.count());
+    taken.insert(std::llround(static_cast<double>(parts) * share) % parts);
+  }
+  return static_cast<double>(record.trains) * static_cast<double>(taken.size());
+}
+
+// A third of how far the greatest of so many values may stay below the end of a span over which they are
+// drawn evenly, in one of 370 cases at most: what three standard errors mean for a mean.
+double error_of_extreme(double span, double count) {
+  constexpr double kBeyondThreeErrors = 0.0027;
+  return span * (1 - std::pow(kBeyondThreeErrors, 1 / count)) / 3;
+}
+
+// The usual error of a standard deviation holds for many samples; of few nothing is known.
+double error_of_deviation(double deviation, double count) {
+  return count < kFewSamples ? deviation : deviation / std::sqrt(2 * count);
 }
 
 // Delays of the edges in front of an interval in which the input must be sampled for the edge to be seen: an
@@ -61,11 +73,11 @@ class DelayRows {
     const double span = us(span_);
     const double count = std::min(phases_, static_cast<double>(delays.count()));
     const double deviation = span / std::sqrt(12.0);
-    rows.push_back(row("least delay", us(least_), us(delays.min()), span / count));
+    rows.push_back(row("least delay", us(least_), us(delays.min()), error_of_extreme(span, count)));
     rows.push_back(row("mean delay", us(least_) + span / 2, us(delays.mean()), deviation / std::sqrt(count)));
-    rows.push_back(row("largest delay", us(least_) + span, us(delays.max()), span / count));
+    rows.push_back(row("largest delay", us(least_) + span, us(delays.max()), error_of_extreme(span, count)));
     rows.push_back(row("standard deviation of the delay", deviation, us(delays.standard_deviation()),
-                       deviation / std::sqrt(2 * count)));
+                       error_of_deviation(deviation, count)));
   }
 
  private:
@@ -147,7 +159,9 @@ void append_widths(std::vector<Comparison>& rows, const PathForms& theory, const
   }
   rows.push_back(of_cycle(theory, "standard deviation of the width",
                           is_lossy ? 0 : us(width.standard_deviation), us(widths.standard_deviation()),
-                          is_lossy ? 0 : cycle * std::abs(1 - 2 * more) / (2 * std::sqrt(count))));
+                          is_lossy              ? 0
+                          : count < kFewSamples ? cycle
+                                                : cycle * std::abs(1 - 2 * more) / (2 * std::sqrt(count))));
 }
 
 void append_duty(std::vector<Comparison>& rows, const PathForms& theory, const measure::EdgeSkew& skew) {
