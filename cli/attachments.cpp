@@ -106,8 +106,8 @@ std::string plugin_path(std::string_view uri) {
 }
 
 std::unique_ptr<iut::Device> library_of(const std::string& uri, const iut::RoleName& role) {
-  const iut::UnitOffer told = role_named(role.path()).told;
-  return iut::load_plugin(plugin_path(uri), role.protocol, role.role, told);
+  const iut::UnitOffer units = role_named(role.path()).units;
+  return iut::load_plugin(plugin_path(uri), role.protocol, role.role, units);
 }
 
 std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role,

@@ -22,7 +22,7 @@ namespace fieldproof::cli {
 struct Role {
   std::string_view protocol;
   std::string_view name;
-  iut::UnitOffer told;
+  iut::UnitOffer units;  // what an implementation outside may receive and send
   // The station of `ref` or `mutant:NAME` as an implementation. Throws kernel::Error(usage) for a mutant
   // that is not there.
   std::unique_ptr<iut::Device> (*serve)(const std::string& uri);

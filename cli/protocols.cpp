@@ -78,8 +78,8 @@ std::unique_ptr<iut::Device> in_telegrams(std::unique_ptr<iut::Device> station) 
 // ---- rows ----
 
 template <typename Kind, typename Reference, auto mutants>
-constexpr Role row(iut::UnitOffer told) {
-  return {Kind::protocol, Kind::role, told, &serve<Kind, Reference, mutants>, &in_levels<Kind>};
+constexpr Role row(iut::UnitOffer units) {
+  return {Kind::protocol, Kind::role, units, &serve<Kind, Reference, mutants>, &in_levels<Kind>};
 }
 
 constexpr Role with_telegrams(Role role, decltype(Role::in_telegrams) in_telegrams) {

@@ -1,4 +1,4 @@
-// Subject: the program as its user meets it. What a run leaves after: replayed, judged again, compared.
+// Subject: the program as its user meets it. What a run leaves behind: replayed, judged again, compared.
 #include <gtest/gtest.h>
 
 #include <filesystem>

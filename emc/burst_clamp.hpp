@@ -9,7 +9,7 @@
 #include "harness/measure/phase.hpp"
 #include "harness/network/network.hpp"
 
-// Bursts on an installation: all cables that are exposed lie in the clamp, and one generator is after it.
+// Bursts on an installation: all cables that are exposed lie in the clamp, and one generator drives it.
 namespace fieldproof::emc {
 
 class BurstClamp {

@@ -51,7 +51,7 @@ class DeafBehindFault : public FfStation {
   bool is_deaf_ = false;
 };
 
-// ---- what a token leaves after ----
+// ---- what a token leaves behind ----
 
 template <typename Base>
 class NewestFirst : public Base {
@@ -105,7 +105,7 @@ class SecondOfPriorityLost : public FfStation {
   }
 };
 
-// ---- what a publisher leaves after ----
+// ---- what a publisher leaves behind ----
 
 class TailOfLastWrite : public FfStation {
   using FfStation::FfStation;

@@ -54,7 +54,7 @@ class IsaDeafBehindFault : public IsaDle {
   bool is_deaf_ = false;
 };
 
-// ---- what something leaves after ----
+// ---- what something leaves behind ----
 
 class IsaNewestFirst : public IsaDle {
   using IsaDle::IsaDle;

@@ -41,9 +41,9 @@ std::optional<std::string> missing_in_network(const SlaveNeeds& needs,
   if (needs.id_code && own.station->id_code != *needs.id_code)
     return "the station of the network has another ID code than the case asks for";
   if (needs.remote_neighbour && !has_neighbour(false))
-    return "no station is after the remote-bus interface (OUT1) of the slave";
+    return "nothing is connected to the remote-bus interface (OUT1) of the slave";
   if (needs.branch_neighbour && !has_neighbour(true))
-    return "no station is after the second interface (OUT2) of the slave";
+    return "nothing is connected to the second interface (OUT2) of the slave";
   return std::nullopt;
 }
 

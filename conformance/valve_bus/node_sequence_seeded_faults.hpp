@@ -22,7 +22,7 @@ class RememberingNode : public Node {
   bool is_read(const Command& command) const { return command.command == rules().read_command; }
 };
 
-// ---- what a frame that was refused leaves after ----
+// ---- what a frame that was refused leaves behind ----
 
 class RefusedWriteKept : public RememberingNode {
   using RememberingNode::RememberingNode;
@@ -86,7 +86,7 @@ class LongFrameCostsNext : public RememberingNode {
   bool is_long_ = false;
 };
 
-// ---- what a command leaves after ----
+// ---- what a command leaves behind ----
 
 class ThirdWriteLost : public RememberingNode {
   using RememberingNode::RememberingNode;

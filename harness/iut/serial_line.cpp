@@ -150,7 +150,7 @@ SerialLine SerialLine::at_new_terminal(const std::string& link, const WallClock&
   ::tcsetattr(slave, TCSANOW, &raw);
   for (const int end : {master, slave}) ::fcntl(end, F_SETFD, FD_CLOEXEC);
   ::fcntl(master, F_SETFL, O_NONBLOCK);
-  // One that was killed has left its name after.
+  // One that was killed has left its name behind.
   struct stat before{};
   if (::lstat(link.c_str(), &before) == 0 && S_ISLNK(before.st_mode)) ::unlink(link.c_str());
   if (::symlink(name.data(), link.c_str()) != 0)

@@ -13,7 +13,7 @@
 //   one same_instant    M1: the value that the input will have when the outputs of this frame are latched
 //
 // No station can be built like M1: its inputs travel in the frame at whose end they are taken. It is the
-// bound that is after the published worst case of two cycle times, and here it only works because a signal
+// bound that underlies the published worst case of two cycle times, and here it only works because a signal
 // of the bench is known ahead.
 namespace fieldproof::interbus {
 
