@@ -11,6 +11,7 @@
 #include "cli/probe/mutants_in_c.hpp"
 #include "cli/probe/program_fixture.hpp"
 #include "harness/iut/process.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 // Nodes that play on pseudo terminals, judged in wall-clock time by the real program.
 namespace fieldproof::cli {
@@ -225,7 +226,10 @@ TEST_P(SerialRunsMutants, IsFoundByTheCaseThatNamesIt) {
   for (int attempt = 0; attempt < 3 && (attempt == 0 || found.reason == "timing_in_doubt"); ++attempt) {
     found = judged(uri("exec:" + in_c(name)), {test_case}).at(test_case);
   }
-  EXPECT_EQ(found.reason, reason) << found.verdict << found.findings;
+  // A program under a sanitizer looks at the line too seldom to see 200 us: never a pass, but no verdict
+  // either.
+  const bool is_in_doubt = kernel::kIsSanitized && found.reason == "timing_in_doubt";
+  EXPECT_TRUE(found.reason == reason || is_in_doubt) << found.verdict << found.reason << found.findings;
 }
 
 INSTANTIATE_TEST_SUITE_P(InC, SerialRunsMutants, testing::ValuesIn(kMutantsInC),
