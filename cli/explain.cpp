@@ -53,6 +53,7 @@ int explain(Session& session) {
   }
   field("stimulus", test_case.stimulus);
   field("expected", test_case.expected);
+  if (!test_case.steps.empty()) field("steps", fmt::format("{}", fmt::join(test_case.steps, "\n  ")));
   field("tags", fmt::format("{}", fmt::join(test_case.tags, " ")));
   text += fmt::format("\nmutants that it catches\n{}", catches_text(entry));
   text +=

@@ -12,7 +12,7 @@ reports::PageCatalogue page_catalogue(const conformance::Catalogue& catalogue) {
   for (const conformance::Entry& entry : catalogue.entries()) {
     const conformance::TestCase& test_case = *entry.test_case;
     if (conformance::is_canary(test_case)) continue;
-    reports::CaseStory story{test_case.stimulus, test_case.expected, {}};
+    reports::CaseStory story{test_case.stimulus, test_case.expected, test_case.steps, {}};
     for (const conformance::MustCatch& caught : test_case.catches) {
       story.catches.push_back(fmt::format("{}, with the finding {}", caught.mutant, caught.reason));
     }

@@ -46,7 +46,10 @@ judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting
   }
   judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
     bench.emplace(one.needs, setting);
+    j.use_steps(
+        [&](const std::string& text) { bench->segment().trace().step(bench->segment().now(), text); });
     one.procedure(*bench, j);
+    j.begin_step("");
     judge_end(*bench, j);
   });
   result.seed = setting.seed;

@@ -57,6 +57,7 @@ std::string told(const judge::Finding& finding) {
                              judge::is_verified(finding.reference.standing) ? "" : " (unverified)"));
   line("expected", fmt::format("{}", fmt::join(finding.expected, " | ")));
   line("actual", finding.actual);
+  line("in step", finding.step);
   line("differs at", finding.first_difference);
   for (const std::string& decoded : finding.decode) text += fmt::format("    {}\n", decoded);
   return text;

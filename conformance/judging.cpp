@@ -21,10 +21,16 @@ void CaseJudge::add(judge::Verdict verdict, std::string_view reason, Mismatch si
   } else if (clock_) {
     finding.time = clock_();
   }
+  finding.step = step_;
   finding.first_difference = std::move(sighting.first_difference);
   finding.decode = std::move(sighting.decode);
   if (finding.decode.empty() && decode_) finding.decode = decode_();
   findings_.push_back(std::move(finding));
+}
+
+void CaseJudge::begin_step(const std::string& text) {
+  step_ = text;
+  if (on_step_ && !text.empty()) on_step_(text);
 }
 
 void CaseJudge::fail(std::string_view reason, Mismatch sighting) {

@@ -50,6 +50,13 @@ class CaseJudge {
   // Decode lines for findings that bring none: usually the last cycles of the lower tester.
   void use_decode(std::function<std::vector<std::string>()> decode) { decode_ = std::move(decode); }
 
+  // Is given each step as it begins, to mark it on the time line.
+  void use_steps(std::function<void(const std::string&)> on_step) { on_step_ = std::move(on_step); }
+
+  // What the case does from here on, "2 of 5: the node is polled again"; findings name it. An
+  // empty text: it is through with its steps.
+  void begin_step(const std::string& text);
+
   template <typename Describe>
     requires std::is_invocable_r_v<Mismatch, Describe>
   void expect(bool holds, std::string_view reason, Describe&& describe) {
@@ -85,6 +92,8 @@ class CaseJudge {
   const TestCase& test_case_;
   std::function<kernel::Time()> clock_;
   std::function<std::vector<std::string>()> decode_;
+  std::function<void(const std::string&)> on_step_;
+  std::string step_;
   std::vector<judge::Finding> findings_;
   std::vector<judge::Measurement> measurements_;
 };

@@ -44,9 +44,10 @@ struct TestCase {
   std::string requirement;
   judge::Reference reference;
   std::vector<PartialSource> details{};
-  std::string stimulus;
-  std::string expected;
-  std::vector<std::string> tags;  // "must", "timing", "long", "canary" ...
+  std::string stimulus{};
+  std::string expected{};
+  std::vector<std::string> steps{};  // where the case is a sequence, see conformance/chart.hpp
+  std::vector<std::string> tags;     // "must", "timing", "long", "canary" ...
   std::vector<MustCatch> catches;
   // Roles of implementations that the case judges besides its own: those of the parts of a network.
   std::vector<std::string> parts{};

@@ -34,6 +34,7 @@ Json catalogue_json(const PageCatalogue& catalogue) {
   for (const auto& [id, story] : catalogue.stories) {
     stories[as_utf8(id)] = {{"stimulus", as_utf8(story.stimulus)},
                             {"expected", as_utf8(story.expected)},
+                            {"steps", strings_json(story.steps)},
                             {"catches", strings_json(story.catches)}};
   }
   return {{"suite_version", as_utf8(catalogue.suite_version)}, {"stories", std::move(stories)}};

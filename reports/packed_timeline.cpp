@@ -62,6 +62,9 @@ class Packer {
     packed["windows"] = each("windows", [this](const Json& one) {
       return Json::array({place(one, "kind"), since_begin(one, "from_ps"), since_begin(one, "to_ps")});
     });
+    packed["steps"] = each("steps", [this](const Json& one) {
+      return Json::array({since_begin(one, "time_ps"), place(one, "text")});
+    });
     packed["texts"] = std::move(texts_);
     return packed;
   }
@@ -76,9 +79,10 @@ class Packer {
 
   std::int64_t first_time() const {
     auto first = std::numeric_limits<std::int64_t>::max();
-    for (const auto& [kind, key] : {std::pair("transmissions", "start_ps"), std::pair("faults", "time_ps"),
-                                    std::pair("observations", "time_ps"), std::pair("findings", "time_ps"),
-                                    std::pair("windows", "from_ps"), std::pair("windows", "to_ps")}) {
+    for (const auto& [kind, key] :
+         {std::pair("transmissions", "start_ps"), std::pair("faults", "time_ps"),
+          std::pair("observations", "time_ps"), std::pair("findings", "time_ps"),
+          std::pair("windows", "from_ps"), std::pair("windows", "to_ps"), std::pair("steps", "time_ps")}) {
       for (const Json& one : timeline_.at(kind)) first = std::min(first, time_from(one, key));
     }
     return first == std::numeric_limits<std::int64_t>::max() ? 0 : first;

@@ -47,6 +47,8 @@ TEST(PackedTimeline, SaysTheSame) {
     EXPECT_EQ(text(packed["faults"][n][2]), "flips level 6");
   }
   EXPECT_EQ(text(packed["findings"][0][3]), kHostileName);
+  EXPECT_EQ(text(packed["steps"][0][1]), "1 of 2: the master sends frames");
+  EXPECT_EQ(time_of(packed, packed["steps"][1][0]), stored()["steps"][1]["time_ps"].get<std::string>());
   EXPECT_EQ(time_of(packed, packed["windows"][0][2]), stored()["windows"][0]["to_ps"].get<std::string>());
   EXPECT_LT(packed.dump().size(), stored().dump().size() / 2);
 }
@@ -72,7 +74,7 @@ TEST(PackedTimeline, RefusesATimeThatIsNone) {
 
 TEST(PackedTimeline, OfNothingIsNothing) {
   OrderedJson timeline = stored();
-  for (const char* kind : {"transmissions", "faults", "observations", "findings", "windows"}) {
+  for (const char* kind : {"transmissions", "faults", "observations", "findings", "windows", "steps"}) {
     timeline[kind] = OrderedJson::array();
   }
   const OrderedJson packed = packed_timeline(timeline);

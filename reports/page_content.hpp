@@ -21,6 +21,7 @@ namespace fieldproof::reports {
 struct CaseStory {
   std::string stimulus;
   std::string expected;
+  std::vector<std::string> steps;    // of a case that is a sequence
   std::vector<std::string> catches;  // mutants, with the finding that shows each
 
   friend bool operator==(const CaseStory&, const CaseStory&) = default;

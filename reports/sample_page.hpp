@@ -54,6 +54,8 @@ inline std::string sample_timeline(const std::string& case_id) {
   json["windows"].push_back({{"kind", "burst"},
                              {"from_ps", std::to_string(kBegin + 5 * kFrame)},
                              {"to_ps", std::to_string(kBegin + 30 * kFrame)}});
+  json["steps"] = {{{"time_ps", std::to_string(kBegin)}, {"text", "1 of 2: the master sends frames"}},
+                   {{"time_ps", std::to_string(kBegin + 15 * kFrame)}, {"text", kHostileName}}};
   return json.dump(1);
 }
 
@@ -252,8 +254,10 @@ inline PageContent sample_page() {
   PageContent content;
   content.catalogue.suite_version = sample_run().identity.suite_version;
   for (const judge::CaseResult& result : sample_page_run().stored.run.cases) {
-    content.catalogue.stories[result.id] = {
-        "one bit of a cycle flips", "outputs stay", {"answers_late, late"}};
+    content.catalogue.stories[result.id] = {"one bit of a cycle flips",
+                                            "outputs stay",
+                                            {"1 of 1: expected: outputs stay"},
+                                            {"answers_late, late"}};
   }
   content.runs = {sample_page_run()};
   content.documents = {{"measurement.json", measurement_json(sample_measurement())},

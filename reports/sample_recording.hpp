@@ -55,6 +55,8 @@ inline trace::Recording sample_recording() {
       {0, sample_wave(20, 0b10110110, 8), {sample_wave(20, 0b10101110, 8)}},
       {1, sample_wave(42, 0b10110100, 8), {}},
   };
+  recording.steps = {{kernel::kStart, "1 of 2: the master sends a frame"},
+                     {kernel::kStart + 20 * kernel::kMicrosecond, "2 of 2: expected: it is answered"}};
   return recording;
 }
 

@@ -36,6 +36,7 @@ inline judge::CaseResult sample_failure() {
   finding.expected = {"outputs stay 0x00FF", "outputs go to the declared safe state 0x0000"};
   finding.actual = "outputs became \x1b[31m0xA5FF\x1b[0m";
   finding.time = kernel::kStart + 814'800 * kernel::kNanosecond;
+  finding.step = "3 of 4: expected: the outputs stay";
   finding.first_difference = "output octet 0, bit 5";
   finding.decode = {"levels    0 11111111 1", "telegram  data 0xA5",
                     "cycle     loopback word, 2 octets,\ncheck wrong"};

@@ -70,6 +70,7 @@ std::string one_finding(const Finding& finding, const TextOptions& options) {
   out += list_fields("expected", "  or", finding.expected);
   out += field("actual", finding.actual);
   out += field("time", kernel::describe(finding.time));
+  if (!finding.step.empty()) out += field("in step", finding.step);
   if (!finding.first_difference.empty()) out += field("first difference", finding.first_difference);
   return out + list_fields("decode", "", finding.decode);
 }

@@ -88,6 +88,7 @@ class TimelineWriter {
     json["observations"] = in_order(observations_);
     json["findings"] = findings_json(result);
     json["windows"] = windows_json();
+    json["steps"] = steps_json();
     return json;
   }
 
@@ -160,6 +161,16 @@ class TimelineWriter {
             {{"kind", "burst"}, {"from_ps", ps(faults_[n].time)}, {"to_ps", ps(faults_[end - 1].time)}});
       }
       n = end;
+    }
+    return list;
+  }
+
+  // The last ones, when there are more than a reader could use.
+  Json steps_json() const {
+    Json list = Json::array();
+    const auto& steps = recording_.steps;
+    for (std::size_t n = steps.size() - std::min(steps.size(), kMostOfAKind); n < steps.size(); ++n) {
+      list.push_back({{"time_ps", ps(steps[n].time)}, {"text", as_utf8(steps[n].text)}});
     }
     return list;
   }

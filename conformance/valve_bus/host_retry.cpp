@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "conformance/valve_bus/host_cases.hpp"
-#include "conformance/valve_bus/host_expect.hpp"
+#include "conformance/valve_bus/host_scene.hpp"
 
 // What becomes of a read that is not answered, or wrongly, or too late.
 namespace fieldproof::conformance {
@@ -64,15 +63,6 @@ void a_silent_node_is_polled_three_times(HostBench& bench, CaseJudge& judge) {
   }
 }
 
-void a_response_just_in_time_is_taken(HostBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(3, 100); ++n) {
-    const HostFrame request = order_read(bench, judge, bench.random_id());
-    const Response response{bench.random_octet(), bench.random_octet()};
-    bench.answer(response, times(bench.time_out(), 1 - kTolerance));
-    expect_response(bench, judge, request.command().id, response);
-  }
-}
-
 void a_late_response_is_drained(HostBench& bench, CaseJudge& judge) {
   for (int n = 0; n < bench.volume(3, 100); ++n) {
     const HostFrame first = order_read(bench, judge, bench.random_id());
@@ -95,59 +85,26 @@ void a_late_response_is_drained(HostBench& bench, CaseJudge& judge) {
   }
 }
 
-// One of the ways in which a response can be wrong.
-void answer_wrongly(HostBench& bench, unsigned way) {
-  auto octets = octets_of(Response{bench.random_octet(), bench.random_octet()});
-  if (way % 3 == 0) {
-    octets.back() = static_cast<std::uint8_t>(octets.back() + 1);
-    bench.answer(octets, bench.turnaround_time());
-  } else if (way % 3 == 1) {
-    bench.answer(std::span(octets).first(2), bench.turnaround_time());
-  } else {
-    line::Levels levels;
-    for (const std::uint8_t octet : octets) levels.append(bench.levels_of(octet));
-    levels.flip(bench.levels_of(0).size() - 1);  // the stop bit of the first
-    bench.answer_levels(levels, bench.turnaround_time());
-  }
-}
-
-void the_third_attempt_is_taken(HostBench& bench, CaseJudge& judge) {
-  for (unsigned n = 0; n < bench.volume(6U, 200U); ++n) {
-    const HostFrame first = order_read(bench, judge, bench.random_id());
-    const std::uint8_t id = first.command().id;
-    const auto other = static_cast<std::uint8_t>(id % bench.rules().last_address + 1);
-    const HostCounters before = bench.counters(id);
-    const HostCounters others_before = bench.counters(other);
-    for (unsigned poll = 1; poll < bench.rules().read_attempts; ++poll) {
-      answer_wrongly(bench, n + poll);
-      expect_retry(bench, judge, first);
-    }
-    const Response response{bench.random_octet(), bench.random_octet()};
-    bench.answer(response);
-    expect_response(bench, judge, id, response);
-    judge.expect_equal(bench.counters(id).retries - before.retries, 2U, "counters_wrong", "retries");
-    judge.expect_equal(bench.counters(id).rejected - before.rejected, 2U, "counters_wrong",
-                       "rejected responses");
-    judge.expect(bench.counters(other) == others_before, "counters_wrong",
-                 "the counters of another node stand as they stood", "they have changed");
-  }
-}
-
-void three_wrong_responses_are_an_error(HostBench& bench, CaseJudge& judge) {
-  for (unsigned n = 0; n < bench.volume(3U, 100U); ++n) {
-    const std::uint8_t id = bench.random_id();
-    const Response known = expect_read_served(bench, judge, id);
-    const HostFrame first = order_read(bench, judge, id);
-    answer_wrongly(bench, n);
-    for (unsigned poll = 1; poll < bench.rules().read_attempts; ++poll) {
-      expect_retry(bench, judge, first);
-      answer_wrongly(bench, n + poll);
-    }
-    expect_no_request(bench, judge, 2 * bench.time_out(), "polled_too_often", "three attempts in all");
-    expect_error(bench, judge, {id, HostErrorKind::bad_response}, "wrong_response_told");
-    expect_old(bench, judge, id, known);
-    expect_nothing_told(bench, judge, kernel::kMillisecond, "told_twice", "it has been reported");
-  }
+// One of the ways in which a response can be wrong, another one in each round and attempt.
+HostStep wrong_answer(unsigned attempt) {
+  return stimulus<HostScene>("the node answers with a wrong check, two octets, or a wrong stop bit",
+                             [attempt](HostScene& scene) {
+                               HostBench& bench = scene.bench;
+                               auto octets = octets_of(scene.random_response());
+                               const unsigned way = (scene.round + attempt) % 3;
+                               if (way == 0) {
+                                 octets.back() = static_cast<std::uint8_t>(octets.back() + 1);
+                                 bench.answer(octets, bench.turnaround_time());
+                               } else if (way == 1) {
+                                 bench.answer(std::span(octets).first(2), bench.turnaround_time());
+                               } else {
+                                 line::Levels levels;
+                                 for (const std::uint8_t octet : octets)
+                                   levels.append(bench.levels_of(octet));
+                                 levels.flip(bench.levels_of(0).size() - 1);  // the stop bit of the first
+                                 bench.answer_levels(levels, bench.turnaround_time());
+                               }
+                             });
 }
 
 HostCase silent_node_case(unsigned dip, std::string_view rate, std::vector<MustCatch> catches) {
@@ -170,6 +127,7 @@ HostCase silent_node_case(unsigned dip, std::string_view rate, std::vector<MustC
 }  // namespace
 
 std::vector<HostCase> host_retry_cases() {
+  using namespace host_chart;
   const judge::Reference own = valve_sources::own("time-out and attempts");
   std::vector<HostCase> cases;
   cases.push_back(silent_node_case(0, "375000",
@@ -178,15 +136,18 @@ std::vector<HostCase> host_retry_cases() {
                                     {"time_out_short", "time_out_too_short"},
                                     {"time_out_long", "time_out_too_long"}}));
   cases.push_back(silent_node_case(4, "20833", {{"time_out_fixed", "time_out_too_short"}}));
-  cases.push_back({{.id = "valve_bus/host/retry/response_just_in_time_is_taken",
-                    .purpose = "RH-09",
-                    .requirement = "A response that begins 5 % before the time-out is taken.",
-                    .reference = own,
-                    .stimulus = "Responses at 0.95 times the time-out.",
-                    .expected = "They are reported.",
-                    .tags = {"must", "timing"},
-                    .catches = {{"time_out_short", "response_not_told"}}},
-                   a_response_just_in_time_is_taken});
+  cases.push_back(
+      on_chart({.id = "valve_bus/host/retry/response_just_in_time_is_taken",
+                .purpose = "RH-09",
+                .requirement = "A response that begins 5 % before the time-out is taken.",
+                .reference = own,
+                .tags = {"must", "timing"},
+                .catches = {{"time_out_short", "response_not_told"}}},
+               {{3, 100},
+                {read(),
+                 answer("the node answers rightly at 0.95 times the time-out", right_octets,
+                        [](HostScene& scene) { return times(scene.bench.time_out(), 1 - kTolerance); }),
+                 reported()}}));
   cases.push_back(
       {{.id = "valve_bus/host/retry/late_response_is_drained",
         .purpose = "RH-09",
@@ -198,32 +159,34 @@ std::vector<HostCase> host_retry_cases() {
         .tags = {"must", "timing", "hazard"},
         .catches = {{"takes_late_response", "late_response_told"}, {"late_not_counted", "late_not_counted"}}},
        a_late_response_is_drained});
-  cases.push_back({{.id = "valve_bus/host/retry/third_attempt_is_taken",
-                    .purpose = "RH-16",
-                    .requirement = "After two wrong responses a right one is reported; retries and wrong "
-                                   "responses are counted for this node.",
-                    .reference = own,
-                    .stimulus = "Two responses with a wrong check, a missing octet or a missing stop bit, "
-                                "then a right one.",
-                    .expected = "It is reported; two retries, two rejected; other nodes' counters stand.",
-                    .tags = {"must"},
-                    .catches = {{"two_attempts", "no_retry"},
-                                {"bad_response_not_repeated", "no_retry"},
-                                {"counters_shared", "counters_wrong"}}},
-                   the_third_attempt_is_taken});
   cases.push_back(
-      {{.id = "valve_bus/host/retry/three_wrong_responses_are_an_error",
-        .purpose = "RH-17",
-        .requirement = "After three wrong responses an error is reported to the PC, and what was known "
-                       "of the node, marked as old.",
-        .reference = own,
-        .stimulus = "A right response, then three wrong ones to the next read.",
-        .expected = "Three polls, an error, the old data marked as old.",
-        .tags = {"must"},
-        .catches = {{"old_told_as_new", "old_data_told_as_new"},
-                    {"old_forgotten", "old_data_not_told"},
-                    {"four_attempts", "polled_too_often"}}},
-       three_wrong_responses_are_an_error});
+      on_chart({.id = "valve_bus/host/retry/third_attempt_is_taken",
+                .purpose = "RH-16",
+                .requirement = "After two wrong responses a right one is reported; retries and wrong "
+                               "responses are counted for this node.",
+                .reference = own,
+                .tags = {"must"},
+                .catches = {{"two_attempts", "no_retry"},
+                            {"bad_response_not_repeated", "no_retry"},
+                            {"counters_shared", "counters_wrong"}}},
+               {{6, 200},
+                {read(), wrong_answer(1), polled_again(), wrong_answer(2), polled_again(), response(),
+                 reported(), counted(&HostCounters::retries, 2, "retries"),
+                 counted(&HostCounters::rejected, 2, "rejected responses")}}));
+  cases.push_back(on_chart(
+      {.id = "valve_bus/host/retry/three_wrong_responses_are_an_error",
+       .purpose = "RH-17",
+       .requirement = "After three wrong responses an error is reported to the PC, and what was known "
+                      "of the node, marked as old.",
+       .reference = own,
+       .tags = {"must"},
+       .catches = {{"old_told_as_new", "old_data_told_as_new"},
+                   {"old_forgotten", "old_data_not_told"},
+                   {"four_attempts", "polled_too_often"}}},
+      {{3, 100},
+       {served_read(), read(), wrong_answer(0), polled_again(), wrong_answer(1), polled_again(),
+        wrong_answer(2), not_polled_again(), error(HostErrorKind::bad_response, "wrong_response_told"),
+        old_data(), nothing_reported(kernel::kMillisecond, "told_twice", "it has been reported")}}));
   return cases;
 }
 

@@ -52,6 +52,7 @@ inline rc::Gen<Finding> arbitrary_finding() {
       rc::gen::set(&Finding::requirement, kernel::arbitrary_text()),
       rc::gen::set(&Finding::reference, arbitrary_reference()), rc::gen::set(&Finding::expected, texts),
       rc::gen::set(&Finding::actual, kernel::arbitrary_text()), rc::gen::set(&Finding::time, time),
+      rc::gen::set(&Finding::step, kernel::arbitrary_text()),
       rc::gen::set(&Finding::first_difference, kernel::arbitrary_text()),
       rc::gen::set(&Finding::decode, texts));
 }

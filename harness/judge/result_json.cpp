@@ -37,6 +37,7 @@ Json finding_to_json(const Finding& finding) {
           {"expected", strings_to_json(finding.expected)},
           {"actual", kernel::as_utf8(finding.actual)},
           {"time_ps", fmt::format("{}", finding.time.time_since_epoch().count())},
+          {"step", kernel::as_utf8(finding.step)},
           {"first_difference", kernel::as_utf8(finding.first_difference)},
           {"decode", strings_to_json(finding.decode)}};
 }
@@ -118,6 +119,7 @@ Finding finding_from(const Value& value) {
     finding.expected = texts_from(object.required("expected"));
     finding.actual = text_in(object, "actual");
     finding.time = kernel::Time{kernel::Duration{integer_from<std::int64_t>(object.required("time_ps"), 10)}};
+    finding.step = text_in(object, "step");
     finding.first_difference = text_in(object, "first_difference");
     finding.decode = texts_from(object.required("decode"));
     return finding;

@@ -47,12 +47,20 @@ std::unique_ptr<Teller> PlainDissector::teller() const {
 
 std::vector<std::string> text_lines(const Recording& recording, const Dissector& dissector) {
   std::vector<std::string> lines;
-  lines.reserve(recording.records.size());
+  lines.reserve(recording.records.size() + recording.steps.size());
   const LineWriter writer(dissector);
+  auto step = recording.steps.begin();
+  const auto add_steps_until = [&](kernel::Time time) {
+    for (; step != recording.steps.end() && step->time <= time; ++step) {
+      lines.push_back(fmt::format("{}  step {}", kernel::describe(step->time), step->text));
+    }
+  };
   for (const Record& record : recording.records) {
+    add_steps_until(time_of(record));
     lines.push_back(fmt::format("{}  {}  {}", kernel::describe(time_of(record)),
                                 recording.channels.at(channel_of(record)), std::visit(writer, record)));
   }
+  add_steps_until(kernel::kNever);
   return lines;
 }
 

@@ -60,6 +60,7 @@ class PlainDissector final : public Dissector {
 //   20.130000 ms  slave@1/in  id A55A 0003 | id check 1D0F 0000  [0100…]
 //   20.130000 ms  slave@1/in  fault: flip of level 17
 //
+// and before them the steps that the case has begun by then: "20.000000 ms  step 2 of 5: an ID cycle".
 // Levels are shown for transmissions of at most 400 levels, the rate where it is not that of the bits.
 std::vector<std::string> text_lines(const Recording& recording, const Dissector& dissector);
 

@@ -79,7 +79,7 @@ std::vector<const Fault*> FaultIndex::of(const Change& change) const {
 }
 
 void BoundedRecorder::forget_older() {
-  is_cut_ = is_cut_ || !older_.records.empty();
+  is_cut_ = is_cut_ || !older_.records.empty() || !older_.steps.empty();
   older_ = std::exchange(newer_, {});
 }
 
@@ -140,6 +140,11 @@ void BoundedRecorder::on_changed(Channel receiver, kernel::Time driven_at, const
   part.changes.push_back(std::move(change));
 }
 
+void BoundedRecorder::on_step(kernel::Time time, std::string_view text) {
+  if (newer_.steps.size() >= part_records_) forget_older();
+  newer_.steps.push_back({time, std::string(text)});
+}
+
 Recording BoundedRecorder::take() {
   Recording recording;
   recording.is_cut = std::exchange(is_cut_, false);
@@ -152,6 +157,7 @@ Recording BoundedRecorder::take() {
       recording.records.push_back(std::move(record));
     }
     std::ranges::move(part->changes, std::back_inserter(recording.changes));
+    std::ranges::move(part->steps, std::back_inserter(recording.steps));
     *part = {};
   }
   return recording;

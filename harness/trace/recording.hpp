@@ -58,10 +58,17 @@ struct Change {
 // "levels 17, 18 changed", "lost", "2.000 us late"; one clause, for people.
 std::string describe(const Change& change);
 
+// From here on the case does this.
+struct Step {
+  kernel::Time time{};
+  std::string text;  // "2 of 5: the node is polled again"
+};
+
 struct Recording {
   std::vector<std::string> channels;  // names by number
   std::vector<Record> records;
   std::vector<Change> changes;
+  std::vector<Step> steps{};  // in order of time
   bool is_cut = false;
 };
 
@@ -96,6 +103,7 @@ class BoundedRecorder final : public Recorder {
                       std::uint64_t value) override;
   void on_changed(Channel receiver, kernel::Time driven_at, const line::Waveform& sent,
                   std::span<const line::Waveform> arrivals) override;
+  void on_step(kernel::Time time, std::string_view text) override;
 
   // What was kept; the recorder is empty then. The trace need not be there any more.
   Recording take();
@@ -104,6 +112,7 @@ class BoundedRecorder final : public Recorder {
   struct Part {
     std::vector<Record> records;
     std::vector<Change> changes;
+    std::vector<Step> steps;
     std::size_t levels = 0;
     std::map<std::pair<Channel, kernel::Time>, std::size_t> driven;  // the last transmission of a start
 

@@ -44,6 +44,29 @@ TEST_F(RecordingTest, KeepsRecordsAsTheyWereTold) {
                                       "4.000 us  station  output = 7", "1.000 us  line  fault: flip"}));
 }
 
+TEST_F(RecordingTest, StepsOfTheCaseStandBeforeWhatHappensInThem) {
+  BoundedRecorder recorder(trace);
+  record(recorder);
+  trace.step(kStart, "1 of 2: ask");
+  trace.observe(station, kStart, "output", 7);
+  trace.observe(station, kStart + kMicrosecond, "output", 8);
+  trace.step(kStart + 2 * kMicrosecond, "2 of 2: wait");
+  EXPECT_EQ(text_lines(recorder.take(), PlainDissector()),
+            (std::vector<std::string>{"0 s  step 1 of 2: ask", "0 s  station  output = 7",
+                                      "1.000 us  station  output = 8", "2.000 us  step 2 of 2: wait"}));
+}
+
+TEST_F(RecordingTest, KeepsTheLastStepsOfManyAndSaysSo) {
+  BoundedRecorder recorder(trace, 4);
+  record(recorder);
+  for (int n = 0; n < 9; ++n) trace.step(kStart + n * kMicrosecond, std::to_string(n));
+  const Recording recording = recorder.take();
+  EXPECT_TRUE(recording.is_cut);
+  ASSERT_FALSE(recording.steps.empty());
+  EXPECT_LE(recording.steps.size(), 4U);
+  EXPECT_EQ(recording.steps.back().text, "8");
+}
+
 TEST_F(RecordingTest, ChannelsThatAreAddedLaterHaveTheirNames) {
   BoundedRecorder recorder(trace);
   record(recorder);
@@ -62,6 +85,7 @@ TEST_F(RecordingTest, RecordingCostsTheFingerprintNothing) {
   const line::Waveform sent = wave_of(kStart, 0b0110, 4);
   trace.driven(line, sent);
   trace.changed(line, kStart, sent, {});
+  trace.step(kStart, "1 of 2: ask");
   other.driven(line, sent);
   EXPECT_EQ(trace.fingerprint(), other.fingerprint());
   EXPECT_EQ(trace.record_count(), other.record_count());

@@ -29,6 +29,8 @@ class Recorder {
   // `driven_at`. No record of the trace: it does not enter the fingerprint.
   virtual void on_changed(Channel /*receiver*/, kernel::Time /*driven_at*/, const line::Waveform& /*sent*/,
                           std::span<const line::Waveform> /*arrivals*/) {}
+  // The case begins its next step. No record of the trace either.
+  virtual void on_step(kernel::Time /*time*/, std::string_view /*text*/) {}
 };
 
 // Is told every observation as it is made: how a fault rule waits for one. It changes nothing of the trace.
@@ -55,6 +57,10 @@ class Trace {
   void changed(Channel receiver, kernel::Time driven_at, const line::Waveform& sent,
                std::span<const line::Waveform> arrivals) {
     if (recorder_ != nullptr) recorder_->on_changed(receiver, driven_at, sent, arrivals);
+  }
+  // For the recorder alone; see Recorder::on_step.
+  void step(kernel::Time time, std::string_view text) {
+    if (recorder_ != nullptr) recorder_->on_step(time, text);
   }
 
   std::uint64_t fingerprint() const { return fingerprint_; }

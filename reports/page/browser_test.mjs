@@ -210,7 +210,7 @@ if (withTimeLine) {
     await stage.locator("rect.frame, rect.changed").first().hover({force: true});
     const said = await readout.innerText();
     expect(stored.texts.some((text) => said.includes(text)) || /fault|finding|observation/.test(said), `it says "${said}"`);
-    for (const [kind, mark] of [["faults", "path.fault"], ["findings", "g.finding"], ["observations", "path.observation"]]) {
+    for (const [kind, mark] of [["faults", "path.fault"], ["findings", "g.finding"], ["observations", "path.observation"], ["steps", "g.step"]]) {
       const marks = await stage.locator(mark).count();
       expect(marks <= stored[kind].length && marks > 0 === stored[kind].length > 0, `${marks} marks of ${stored[kind].length} ${kind}`);
     }

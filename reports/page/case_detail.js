@@ -53,6 +53,7 @@ function findingPart(finding, result, at, count) {
           element("code", {}, finding.reason || "no reason code")),
       finding.requirement !== result.requirement ? element("p", {}, finding.requirement) : null,
       definitions([["Source", isSameSource(finding.reference, result.reference) ? "" : sourceText(finding.reference)], ["Time", exactTime(finding.time_ps)],
+        ["Step", finding.step],
         ["First difference", finding.first_difference]]),
       facing(finding.expected, finding.actual), decode);
 }
@@ -82,6 +83,7 @@ function timeLinePart(more) {
 function storyPart(story) {
   if (!story) return null;
   return definitions([["Stimulus", story.stimulus], ["Expected", story.expected],
+    ["Steps", story.steps.length ? lines(story.steps, "") : ""],
     ["Mutants that it catches", story.catches.length ? lines(story.catches, "") : ""]]);
 }
 

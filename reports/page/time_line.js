@@ -11,6 +11,7 @@ const kAxis = 24;
 const kFrame = {top: 27, height: 20};
 const kLetter = 6.3;
 const kMostWords = 400;
+const kAcrossLanes = new Set(["finding", "step"]);
 const kPaper = 700;  // wide until it has a place; the drawing is scaled to its place
 
 export function timeLine(packed) {
@@ -73,7 +74,7 @@ class TimeLine {
 
   legend() {
     const kinds = [["frame", "transmission"], ["changed", "changed by a fault"], ["fault", "fault"],
-      ["observation", "observation"], ["finding", "finding"]];
+      ["observation", "observation"], ["step", "step of the case"], ["finding", "finding"]];
     const keys = kinds.filter(([kind]) => this.model.first(kind))
         .map(([kind, text]) => element("li", {}, sample(kind), text));
     if (this.model.windows.length) keys.push(element("li", {}, sample("window"), "burst"));
@@ -213,7 +214,7 @@ class TimeLine {
     let best = null;
     let least = 7;
     for (const event of this.model.events) {
-      if (event.kind !== "finding" && !this.isInLane(event, y)) continue;
+      if (!kAcrossLanes.has(event.kind) && !this.isInLane(event, y)) continue;
       const distance = Math.max(this.x(event.from) - x, x - this.x(event.to), 0) - event.order * 0.5;
       if (distance < least) [best, least] = [event, distance];
     }
@@ -306,6 +307,10 @@ class TimeLine {
       return drawn("g", {class: `finding${chosen}`}, drawn("line", {x1: x, x2: x, y1: 10, y2: this.height - kAxis}),
           drawn("path", {d: `M${x - 6} 2h12v7l-6 6l-6 -6z`}));
     }
+    if (event.kind === "step") {
+      return drawn("g", {class: `step${chosen}`}, drawn("line", {x1: x, x2: x, y1: 10, y2: this.height - kAxis}),
+          drawn("text", {x: x + 2, y: 10}, event.short));
+    }
     const { top, middle, hasFrames } = this.laneOf(event);
     const below = hasFrames ? top + kFrame.top + kFrame.height + 1 : middle - 4;
     const shape = event.kind === "fault" ? `M${x - 5} ${top + 17}h10l-5 9z` : `M${x} ${below}l4.5 4l-4.5 4l-4.5 -4z`;
@@ -335,7 +340,7 @@ function clipped(text, width) {
 }
 
 function sample(kind) {
-  const marks = {fault: "M2 2h10l-5 9z", finding: "M2 1h10v6l-5 5l-5 -5z", observation: "M7 1l5 5l-5 5l-5 -5z"};
+  const marks = {fault: "M2 2h10l-5 9z", finding: "M2 1h10v6l-5 5l-5 -5z", observation: "M7 1l5 5l-5 5l-5 -5z", step: "M6 0h1v12h-1z"};
   const shape = marks[kind] ? drawn("path", {class: kind, d: marks[kind]})
       : drawn("rect", {class: kind, x: 0.5, y: 1.5, width: 13, height: 9});
   return drawn("svg", {width: 14, height: 12, "aria-hidden": "true", class: "sample"}, shape);

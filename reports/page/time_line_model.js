@@ -19,6 +19,7 @@ function unpacked(packed) {
     findings: packed.findings.map(([time, requirement, expected, actual]) =>
         ({time_ps: at(time), requirement: text(requirement), expected: text(expected), actual: text(actual)})),
     windows: packed.windows.map(([kind, from, to]) => ({kind: text(kind), from_ps: at(from), to_ps: at(to)})),
+    steps: packed.steps.map(([time, words]) => ({time_ps: at(time), text: text(words)})),
   };
 }
 
@@ -57,6 +58,7 @@ export class TimeLineModel {
       ...stored.faults.map((one) => point("fault", 1, one, `fault on ${name(one.channel) || "the line"}: ${one.text}`)),
       ...stored.observations.map((one) =>
           point("observation", 2, one, `${name(one.channel) || "application"}: ${one.what} ${one.value}`)),
+      ...stored.steps.map((one) => ({...point("step", 1, one, `step ${one.text}`), short: one.text.match(/^[\d.]*/)[0]})),
       ...stored.findings.map((one) =>
           point("finding", 3, one, `finding: ${one.actual}; expected: ${one.expected} (${one.requirement})`)),
     ];
@@ -112,6 +114,6 @@ export class TimeLineModel {
 function allTimes(stored) {
   return [
     ...stored.transmissions.flatMap((one) => [one.start_ps, one.end_ps]),
-    ...[...stored.faults, ...stored.observations, ...stored.findings].map((one) => one.time_ps),
+    ...[...stored.faults, ...stored.observations, ...stored.findings, ...stored.steps].map((one) => one.time_ps),
   ].map((text) => BigInt(text));
 }

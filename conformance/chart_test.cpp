@@ -1,0 +1,90 @@
+#include "conformance/chart.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "conformance/judging.hpp"
+
+// Subject: what a chart makes of its steps: a procedure, the sentences of the case, and what findings name.
+namespace fieldproof::conformance {
+namespace {
+
+struct CountingBench {
+  std::vector<std::string> acts{};
+  bool is_full = false;
+
+  unsigned volume(unsigned quick, unsigned full) const { return is_full ? full : quick; }
+};
+
+struct CountingScene {
+  CountingScene(CountingBench& bench_, CaseJudge& judge_, unsigned round_)
+      : bench(bench_), judge(judge_), round(round_) {}
+
+  CountingBench& bench;
+  CaseJudge& judge;
+  unsigned round;
+  std::string asked{};
+};
+
+using CountingCase = BenchCase<CountingBench, NoNeeds>;
+
+ChartStep<CountingScene> ask() {
+  return {"the tester asks", "an answer", [](CountingScene& scene) {
+            scene.bench.acts.push_back("ask " + std::to_string(scene.round) + scene.asked);
+            scene.asked = " again";
+          }};
+}
+
+ChartStep<CountingScene> fail_in(unsigned round) {
+  return expected<CountingScene>("no failure", [round](CountingScene& scene) {
+    scene.judge.expect(scene.round != round, "failed", "no failure", "a failure");
+  });
+}
+
+CountingCase case_of(std::vector<ChartStep<CountingScene>> steps) {
+  TestCase test_case;
+  test_case.id = "a/b/c";
+  return charted<CountingCase>(std::move(test_case), Chart<CountingScene>{{2, 30}, std::move(steps)});
+}
+
+judge::CaseResult run(const CountingCase& one, CountingBench& bench, std::vector<std::string>& steps) {
+  CaseJudge judge(one.test_case);
+  judge.use_steps([&](const std::string& text) { steps.push_back(text); });
+  return judge.run_procedure([&](CaseJudge& j) { one.procedure(bench, j); });
+}
+
+TEST(Chart, RunsItsStepsInOrderWithASceneForEachRound) {
+  CountingBench bench;
+  std::vector<std::string> steps;
+  EXPECT_EQ(run(case_of({ask(), ask()}), bench, steps).verdict, judge::Verdict::pass);
+  EXPECT_EQ(bench.acts, (std::vector<std::string>{"ask 0", "ask 0 again", "ask 1", "ask 1 again"}));
+  bench = {.is_full = true};
+  run(case_of({ask()}), bench, steps);
+  EXPECT_EQ(bench.acts.size(), 30U);
+}
+
+TEST(Chart, MarksEachStepAndAFindingNamesItsOwn) {
+  CountingBench bench;
+  std::vector<std::string> steps;
+  const judge::CaseResult result = run(case_of({ask(), fail_in(1), ask()}), bench, steps);
+  const std::string first = "1 of 3: the tester asks; expected: an answer";
+  const std::string second = "2 of 3: expected: no failure";
+  const std::string third = "3 of 3: the tester asks; expected: an answer";
+  EXPECT_EQ(steps, (std::vector<std::string>{first, second, third, first, second}));
+  ASSERT_EQ(result.findings.size(), 1U);
+  EXPECT_EQ(result.findings[0].step, second);
+}
+
+TEST(Chart, SaysInSentencesWhatIsSentAndWhatMustCome) {
+  const TestCase test_case = case_of({ask(), ask(), fail_in(9)}).test_case;
+  EXPECT_EQ(test_case.stimulus, "The tester asks. All of it 30 times.");
+  EXPECT_EQ(test_case.expected, "An answer; no failure.");
+  EXPECT_EQ(test_case.steps, (std::vector<std::string>{"1 of 3: the tester asks; expected: an answer",
+                                                       "2 of 3: the tester asks; expected: an answer",
+                                                       "3 of 3: expected: no failure"}));
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance
