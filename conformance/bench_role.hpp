@@ -51,11 +51,8 @@ struct CaseRole {
     const Disturbances& disturbances = run_of_case.given().disturbances;
     made.seed = run_of_case.setup().seed;
     made.volume = run_of_case.setup().volume;
-    if constexpr (std::is_pointer_v<decltype(made.stresses)>) {
-      made.stresses = &disturbances.link_stresses;
-    } else {
-      made.stresses = disturbances.stresses;
-    }
+    made.stresses = disturbances.stresses;
+    if constexpr (requires { made.link_stresses; }) made.link_stresses = &disturbances.link_stresses;
     if constexpr (requires { made.pics; }) made.pics = run_of_case.pics();
     if constexpr (requires { made.plan; }) made.plan = run_of_case.plan();
     if (run_of_case.is_recorded()) {

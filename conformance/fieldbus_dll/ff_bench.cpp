@@ -36,14 +36,14 @@ bool FfUpperTester::was_delivered(const Octets& octets) const {
 }
 
 FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
-    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume, setting.stresses),
+    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume,
+                setting.link_stresses),
       configuration_(configuration_of(needs, setting)),
       station_(setting.make_device(configuration_)) {
-  if (setting.make_recorder)
-    segment().trace().set_recorder(setting.make_recorder(segment().trace(), rules()));
+  start_recording(setting, rules());
   station_->wire(attach_station(*station_, setting.plan), user_);
   has_started_ = station_->start(now());
-  refresh_station();
+  refresh_iut();
   if (setting.is_link_master || !needs.is_live) return;
   wait(octets(20));
   send({rules().codes.pn, node()});
@@ -58,19 +58,19 @@ FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
 bool FfBench::submit(Priority priority, const Octets& data, FfAddress to) {
   destinations_.insert(to);
   const bool is_taken = station_->submit({priority, to, data}, now());
-  refresh_station();
+  refresh_iut();
   return is_taken;
 }
 
 bool FfBench::write(FfAddress address, const Octets& data) {
   const bool is_taken = station_->write(address, data, now());
-  refresh_station();
+  refresh_iut();
   return is_taken;
 }
 
 void FfBench::order_transfer(std::uint8_t node) {
   station_->order_transfer(node, now());
-  refresh_station();
+  refresh_iut();
 }
 
 std::vector<DrivenDlpdu> FfBench::serve(kernel::Time until, const Answers& answers) {

@@ -23,18 +23,9 @@ struct FfNeeds {
 };
 
 // Who plays, and how.
-struct FfSetting {
-  using MakeStation =
-      std::function<std::unique_ptr<fieldbus_dll::FfDevice>(const fieldbus_dll::FfConfiguration&)>;
-
-  MakeStation make_device;
+struct FfSetting : PlannedSetting<fieldbus_dll::FfDevice, fieldbus_dll::FfConfiguration> {
   bool is_link_master = false;
-  std::uint64_t seed = 1;
-  Volume volume = Volume::full;
-  fault::Plan plan{};
-  const LinkStresses* stresses = nullptr;  // must outlive the bench
-  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
-  std::function<trace::Recorder*(const trace::Trace&, const fieldbus_dll::FfRules&)> make_recorder;
+  const LinkStresses* link_stresses = nullptr;  // must outlive the bench
 };
 
 // The IUT's user.

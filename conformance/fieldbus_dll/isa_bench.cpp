@@ -23,26 +23,26 @@ bool IsaUpperTester::was_delivered(const Octets& data) const {
 }
 
 IsaBench::IsaBench(const IsaNeeds& needs, const IsaSetting& setting)
-    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume, setting.stresses),
+    : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume,
+                setting.link_stresses),
       configuration_(configuration_of(needs, setting)),
       station_(setting.make_device(configuration_)) {
-  if (setting.make_recorder)
-    segment().trace().set_recorder(setting.make_recorder(segment().trace(), rules()));
+  start_recording(setting, rules());
   station_->wire(attach_station(*station_, setting.plan), user_);
   station_->start(now());
-  refresh_station();
+  refresh_iut();
 }
 
 bool IsaBench::submit(fieldbus_dll::IsaService service, Priority priority, const Octets& data,
                       std::uint8_t destination) {
   const bool is_taken = station_->submit({service, priority, destination, data}, now());
-  refresh_station();
+  refresh_iut();
   return is_taken;
 }
 
 void IsaBench::order_transfer(std::uint8_t node) {
   station_->order_transfer(node, now());
-  refresh_station();
+  refresh_iut();
 }
 
 // ---- DLPDUs of the tester ----

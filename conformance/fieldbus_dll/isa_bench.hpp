@@ -23,18 +23,9 @@ struct IsaNeeds {
 };
 
 // Who plays, and how.
-struct IsaSetting {
-  using MakeStation =
-      std::function<std::unique_ptr<fieldbus_dll::IsaDevice>(const fieldbus_dll::IsaConfiguration&)>;
-
-  MakeStation make_device;
-  std::uint8_t address = 0x21;  // of the IUT
-  std::uint64_t seed = 1;
-  Volume volume = Volume::full;
-  fault::Plan plan{};
-  const LinkStresses* stresses = nullptr;  // must outlive the bench
-  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
-  std::function<trace::Recorder*(const trace::Trace&, const fieldbus_dll::IsaRules&)> make_recorder;
+struct IsaSetting : PlannedSetting<fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration> {
+  std::uint8_t address = 0x21;                  // of the IUT
+  const LinkStresses* link_stresses = nullptr;  // must outlive the bench
 };
 
 // The IUT's user.

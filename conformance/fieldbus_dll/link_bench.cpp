@@ -19,52 +19,38 @@ std::span<const fault::Stress> stresses_at(std::int64_t bit_rate, const LinkStre
 
 LinkBench::LinkBench(const fieldbus_dll::LinkRules& link, std::uint64_t seed, Volume volume,
                      const LinkStresses* stresses)
-    : link_(link),
-      volume_(volume),
-      random_(seed),
-      line_(segment_, "line", segment::ContentionRule::noise, random_),
-      tester_seat_(segment_.attach(*this, "tester")),
+    : LineBench(seed, volume, stresses_at(link.bit_rate, stresses), fieldbus_dll::octets(link, 1)),
+      link_(link),
       driven_(link.bit_rate),
       sent_(link.bit_rate),
-      arrived_(link.bit_rate),
-      stressed_(stresses_at(link.bit_rate, stresses)),
-      line_watch_(octets(1)) {}
+      arrived_(link.bit_rate) {}
 
 segment::MediumPort& LinkBench::attach_station(segment::Station& station, const fault::Plan& plan) {
-  station_seat_ = segment_.attach(station, "station");
-  tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
-  segment::MediumPort& place = line_.attach("station/in", station_seat_, 0, {});
-  place_ = &place;
-  place.sense_activity();
-  place.tap_driven(driven_);
-  place.tap_arrived(ear_);
-  tester_->tap_driven(sent_);
-  line_watch_.watch(place, segment_.trace());
-  if (!plan.empty()) {
-    plan_ = std::make_unique<fault::InstalledPlan>(plan, segment_.trace(), random_.split("plan"));
-    place.set_channel(plan_->channel_for({"station/in", place.trace_channel(), link_.bit_rate}));
-  }
-  return place;
+  attach_iut(station, "station");
+  place().sense_activity();
+  place().tap_driven(driven_);
+  place().tap_arrived(ear_);
+  tester().tap_driven(sent_);
+  watch(place());
+  install(plan, link_.bit_rate);
+  return place();
 }
 
 Octets LinkBench::numbered_data(std::size_t size) {
   ++number_;
   Octets data{static_cast<std::uint8_t>(number_ >> 8), static_cast<std::uint8_t>(number_ & 0xFF)};
-  while (data.size() < size) data.push_back(static_cast<std::uint8_t>(random_.below(256)));
+  while (data.size() < size) data.push_back(random_octet());
   data.resize(size);
   return data;
 }
 
 void LinkBench::run_until(kernel::Time time) {
-  if (time > now()) segment_.run_until(time);
+  if (time > now()) segment().run_until(time);
 }
 
 kernel::Time LinkBench::send_wave(line::Waveform wave) {
   wave.start = now();
-  const kernel::Time end = wave.end();
-  tester_->drive(wave);
-  run_until(end);
-  return end;
+  return drive_to_end(wave);
 }
 
 kernel::Time LinkBench::send_half_bits(line::Levels half_bits) {
@@ -80,16 +66,14 @@ kernel::Time LinkBench::send_at(kernel::Time start, std::span<const std::uint8_t
   line::Waveform wave{std::max(start, now()), 2 * link_.bit_rate,
                       half_bits_of_frame(with_frame_check(octets), link_.preamble_octets)};
   const kernel::Time end = wave.end();
-  tester_->drive(wave);
+  tester().drive(wave);
   return end;
 }
 
 void LinkBench::begin_stress(const fault::Stress& stress, kernel::Duration later) {
-  if (stress_number_ == 0) place_->tap_arrived(arrived_);
-  const kernel::Random random = random_.split("stress").split(stress_number_++);
+  if (!has_been_stressed()) place().tap_arrived(arrived_);
   // The levels of the line are half bits.
-  stressed_.begin(stress, *place_,
-                  {2 * link_.bit_rate, now() + later, random, segment_.trace(), place_->trace_channel()});
+  begin_stress_at(stress, place(), 2 * link_.bit_rate, now() + later);
 }
 
 std::vector<DrivenDlpdu> LinkBench::arrived_unsent() const {

@@ -10,13 +10,7 @@
 #include <vector>
 
 #include "conformance/fieldbus_dll/driven_dlpdus.hpp"
-#include "conformance/line_watch.hpp"
-#include "conformance/stressed_receiver.hpp"
-#include "conformance/test_case.hpp"
-#include "harness/fault/plan.hpp"
-#include "harness/kernel/random.hpp"
-#include "harness/segment/medium.hpp"
-#include "harness/segment/segment.hpp"
+#include "conformance/line_bench.hpp"
 #include "protocols/fieldbus_dll/link_rules.hpp"
 
 // A link with one station under test (IUT) and the lower tester in the place of every other station, whatever
@@ -34,21 +28,13 @@ inline constexpr kernel::Duration kOctetAt31250 = 256 * kernel::kMicrosecond;
 // For lines of a bit rate each; a bench at another rate has none.
 using LinkStresses = std::map<std::int64_t, std::vector<fault::Stress>>;
 
-class LinkBench : private segment::Station {
+class LinkBench : public LineBench {
  public:
   // Who is on the line besides the IUT, and when.
   struct Heard {
     kernel::Time begin;
     kernel::Time end;
   };
-
-  template <typename Count>
-  Count volume(Count quick, Count full) const {
-    return volume_ == Volume::quick ? quick : full;
-  }
-  kernel::Random& random() { return random_; }
-  kernel::Time now() const { return segment_.now(); }
-  segment::Segment& segment() { return segment_; }
 
   // ---- times of the link ----
   const fieldbus_dll::LinkRules& link() const { return link_; }
@@ -78,7 +64,6 @@ class LinkBench : private segment::Station {
   kernel::Time send_at(kernel::Time start, std::initializer_list<std::uint8_t> octets) {
     return send_at(start, std::span(octets.begin(), octets.size()));
   }
-  void wait(kernel::Duration duration) { segment_.run_for(duration); }
   void run_until(kernel::Time time);
 
   // Runs until the IUT begins a DLPDU that has not been taken by `next`; false: it was silent until `limit`.
@@ -100,18 +85,11 @@ class LinkBench : private segment::Station {
   std::span<const Heard> heard() const { return ear_.heard; }
 
   // ---- stress ----
-  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
   // From so much later on, until it is ended.
   void begin_stress(const fault::Stress& stress, kernel::Duration later);
-  void end_stress() { stressed_.end(); }
-  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
   // What has arrived under stress with a check that fits, though nobody sent it: no station can know better.
   std::vector<DrivenDlpdu> arrived_unsent() const;
 
-  std::vector<std::uint64_t> planned_hits() const {
-    return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
-  }
-  const LineWatch& line_watch() const { return line_watch_; }
   // The last DLPDUs of both, in words.
   std::vector<std::string> decode_lines();
 
@@ -123,8 +101,6 @@ class LinkBench : private segment::Station {
 
   // The place of the IUT, which is wired to it.
   segment::MediumPort& attach_station(segment::Station& station, const fault::Plan& plan);
-  // The IUT was told something from outside of the line.
-  void refresh_station() { segment_.refresh(station_seat_); }
 
  private:
   struct Ear final : segment::Tap {
@@ -132,27 +108,11 @@ class LinkBench : private segment::Station {
     std::vector<Heard> heard;
   };
 
-  void receive(segment::PortIndex, const line::Waveform&) override {}
-  void on_time(kernel::Time) override {}
-  kernel::Time next_time() const override { return kernel::kNever; }
-
   fieldbus_dll::LinkRules link_;
-  Volume volume_;
-  kernel::Random random_;
-  segment::Segment segment_;
-  segment::Medium line_;
-  std::size_t tester_seat_;
-  std::size_t station_seat_ = 0;
-  segment::MediumPort* tester_ = nullptr;
-  segment::MediumPort* place_ = nullptr;  // of the IUT
   DrivenDlpdus driven_;
   DrivenDlpdus sent_;
   DrivenDlpdus arrived_;  // under stress, and from the first one on
-  StressedReceiver stressed_;
-  std::uint64_t stress_number_ = 0;
   Ear ear_;
-  LineWatch line_watch_;
-  std::unique_ptr<fault::InstalledPlan> plan_;
   std::uint16_t number_ = 0;
 };
 

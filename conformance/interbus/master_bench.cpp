@@ -22,15 +22,11 @@ std::vector<VirtualStation> paper_ring() {
 }
 
 MasterBench::MasterBench(const NoNeeds&, const MasterSetting& setting)
-    : make_master_(setting.make_device),
-      volume_(setting.volume),
-      pics_(setting.pics.value_or(judge::Pics{})),
-      random_(setting.seed),
-      line_watch_(interbus::shortest_telegram(interbus::Rules{})),
-      stressed_(setting.stresses) {
-  if (setting.make_recorder) {
-    segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules_));
-  }
+    : CaseBench(setting.seed, setting.volume, setting.stresses,
+                interbus::shortest_telegram(interbus::Rules{})),
+      make_master_(setting.make_device),
+      pics_(setting.pics.value_or(judge::Pics{})) {
+  start_recording(setting, rules_);
 }
 
 MasterBench::~MasterBench() = default;
@@ -50,13 +46,13 @@ void MasterBench::power_up(std::vector<VirtualStation> ring) {
   master_ = places_.back().master.get();
   ring_ = places_.back().ring.get();
   const std::string number = places_.size() == 1 ? "" : fmt::format("#{}", places_.size());
-  master_seat_ = segment_.attach(*master_, "master" + number);
-  master_place_ = segment_.trace().add_channel("master" + number);
-  const std::size_t ring_seat = segment_.attach(*ring_, "ring" + number);
-  segment::Link& out = segment_.connect("ring/in" + number, ring_seat, 0, kernel::Duration{});
-  line_watch_.watch(out, segment_.trace());
+  master_seat_ = segment().attach(*master_, "master" + number);
+  master_place_ = segment().trace().add_channel("master" + number);
+  const std::size_t ring_seat = segment().attach(*ring_, "ring" + number);
+  segment::Link& out = segment().connect("ring/in" + number, ring_seat, 0, kernel::Duration{});
+  watch(out);
   master_->wire(out);
-  back_ = &segment_.connect("master/in" + number, master_seat_, 0, kernel::Duration{});
+  back_ = &segment().connect("master/in" + number, master_seat_, 0, kernel::Duration{});
   ring_->wire(*back_);
   ring_->set_script(
       [this](const RingEmulator::CycleInfo& info, CycleFaults& faults) { ask_script(info, faults); });
@@ -70,28 +66,22 @@ void MasterBench::power_up(std::vector<VirtualStation> ring) {
 
 void MasterBench::start() {
   master_->start(now());
-  segment_.refresh(master_seat_);
+  segment().refresh(master_seat_);
 }
 
 void MasterBench::stop() {
   master_->stop(now());
-  segment_.refresh(master_seat_);
-}
-
-void MasterBench::begin_stress(const fault::Stress& stress) {
-  stressed_.begin(stress, *back_,
-                  {rules_.bit_rate, now(), random_.split("stress").split(stress_number_++), segment_.trace(),
-                   back_->trace_channel()});
+  segment().refresh(master_seat_);
 }
 
 void MasterBench::write_output(unsigned word, std::uint16_t value) {
   master_->write_output(word, value, now());
-  segment_.refresh(master_seat_);
+  segment().refresh(master_seat_);
 }
 
 void MasterBench::request_id_cycle() {
   master_->request_id_cycle(now());
-  segment_.refresh(master_seat_);
+  segment().refresh(master_seat_);
 }
 
 void MasterBench::bring_up(CaseJudge& judge, std::vector<VirtualStation> ring) {
@@ -139,15 +129,15 @@ bool MasterBench::run_until(const std::function<bool()>& condition, kernel::Dura
       seen = finished_.count;
       look = now() + 5 * kernel::kMillisecond;
     }
-    if (segment_.scheduler().next() > end) break;
-    segment_.step();
+    if (segment().scheduler().next() > end) break;
+    segment().step();
   }
-  segment_.run_until(end);
+  segment().run_until(end);
   return condition();
 }
 
 void MasterBench::on_cycle_end(kernel::Time now, bool data_cycle, bool accepted) {
-  segment_.trace().observe(master_place_, now, interbus::observed_cycle_end(data_cycle, accepted));
+  segment().trace().observe(master_place_, now, interbus::observed_cycle_end(data_cycle, accepted));
   ++finished_.count;
   if (data_cycle) ++finished_.data_count;
   if (!accepted) ++finished_.rejected_count;
@@ -161,8 +151,8 @@ bool MasterBench::run_cycle() {
   const std::uint64_t before = finished_.count;
   const kernel::Time end = now() + 2 * longest_cycle();
   while (finished_.count == before) {
-    if (segment_.scheduler().next() > end) return false;
-    segment_.step();
+    if (segment().scheduler().next() > end) return false;
+    segment().step();
   }
   id_cycles_in_a_row_ = finished_.is_data ? 0 : id_cycles_in_a_row_ + 1;
   return id_cycles_in_a_row_ <= kMostIdCycles + 8 * ring_->stations().size();

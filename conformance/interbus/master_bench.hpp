@@ -8,14 +8,10 @@
 #include <vector>
 
 #include "conformance/bench_case.hpp"
+#include "conformance/case_bench.hpp"
 #include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/ring_emulator.hpp"
 #include "conformance/judging.hpp"
-#include "conformance/line_watch.hpp"
-#include "conformance/stressed_receiver.hpp"
-#include "harness/judge/pics.hpp"
-#include "harness/kernel/random.hpp"
-#include "harness/segment/segment.hpp"
 #include "protocols/interbus/device.hpp"
 
 // The bench of one case for a master: a segment, the master under test and the ring emulator that is its
@@ -32,37 +28,19 @@
 // Of an item that it does not declare, each answer is admissible.
 namespace fieldproof::conformance {
 
-// Who plays, and how.
-struct MasterSetting {
-  std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)> make_device{};
-  std::uint64_t seed = 1;
-  Volume volume = Volume::full;
-  std::optional<judge::Pics> pics{};
-  std::span<const fault::Stress> stresses{};
-  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
-  std::function<trace::Recorder*(const trace::Trace&, const interbus::Rules&)> make_recorder{};
-};
+using MasterSetting = BenchSetting<interbus::MasterDevice, interbus::MasterConfiguration>;
 
-class MasterBench {
+class MasterBench final : public CaseBench {
  public:
-  using MakeMaster =
-      std::function<std::unique_ptr<interbus::MasterDevice>(const interbus::MasterConfiguration&)>;
+  using MakeMaster = MasterSetting::Make;
 
   MasterBench(const NoNeeds&, const MasterSetting& setting);
   ~MasterBench();
-  MasterBench(const MasterBench&) = delete;
-  MasterBench& operator=(const MasterBench&) = delete;
 
   // What the next power-up uses. The rules also hold for the emulated ring.
   interbus::Rules& rules() { return rules_; }
   interbus::MasterConfiguration& configuration() { return configuration_; }
 
-  // `quick` or `full` repetitions.
-  template <typename Count>
-  Count volume(Count quick, Count full) const {
-    return volume_ == Volume::quick ? quick : full;
-  }
-  kernel::Random& random() { return random_; }
   // Whether the master declares this answer, or none.
   bool may_answer(std::string_view item, std::string_view answer) const {
     return pics_.text(item, answer) == answer;
@@ -80,11 +58,6 @@ class MasterBench {
 
   interbus::MasterDevice& master() { return *master_; }
   interbus::RingEmulator& ring() { return *ring_; }
-  segment::Segment& segment() { return segment_; }
-  kernel::Time now() const { return segment_.now(); }
-
-  // What the master drives.
-  const LineWatch& line_watch() const { return line_watch_; }
 
   // From outside of the segment's run; the master is asked again when it wants to act.
   void start();
@@ -92,7 +65,7 @@ class MasterBench {
   void write_output(unsigned word, std::uint16_t value);
   void request_id_cycle();
 
-  void run_for(kernel::Duration duration) { segment_.run_for(duration); }
+  void run_for(kernel::Duration duration) { wait(duration); }
   // False when the duration has passed without the condition.
   bool run_until(const std::function<bool()>& condition, kernel::Duration at_most);
 
@@ -128,11 +101,8 @@ class MasterBench {
   // Faults of every cycle from now on, until cleared with nothing.
   void set_script(interbus::RingEmulator::Script script) { script_ = std::move(script); }
 
-  // A stress at the master's receiver, from now on; the n-th of a case has the n-th disturbances.
-  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
-  void begin_stress(const fault::Stress& stress);
-  void end_stress() { stressed_.end(); }
-  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
+  // A stress at the master's receiver, from now on.
+  void begin_stress(const fault::Stress& stress) { begin_stress_at(stress, *back_, rules_.bit_rate, now()); }
   // What comes back to the master from now on is shown to the tap as well. For one ring.
   void tap_arrived(segment::Tap& tap) { back_->tap_arrived(tap); }
 
@@ -155,14 +125,10 @@ class MasterBench {
   };
 
   MakeMaster make_master_;
-  Volume volume_;
   judge::Pics pics_;
-  kernel::Random random_;
   interbus::Rules rules_;
   interbus::MasterConfiguration configuration_;
   std::vector<Place> places_;
-  LineWatch line_watch_;
-  segment::Segment segment_;
   interbus::MasterDevice* master_ = nullptr;
   interbus::RingEmulator* ring_ = nullptr;
   segment::Link* back_ = nullptr;
@@ -175,8 +141,6 @@ class MasterBench {
   interbus::RingEmulator::Script script_;
   std::optional<interbus::CycleFaults> armed_;
   std::optional<std::uint64_t> faulted_number_;  // of the data cycle that suffered them
-  StressedReceiver stressed_;
-  std::uint64_t stress_number_ = 0;
 };
 
 // The ring of the cycle-time paper: a coupler, after its second interface 16 inputs and 16 outputs.

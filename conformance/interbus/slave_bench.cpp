@@ -63,12 +63,14 @@ interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveS
 }
 
 SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
-    : network_(slave_network(needs, setting)),
+    : SlaveBench(slave_network(needs, setting), setting) {}
+
+SlaveBench::SlaveBench(interbus::NetworkDescription network, const SlaveSetting& setting)
+    : CaseBench(setting.seed, setting.volume, setting.stresses, interbus::shortest_telegram(network.rules)),
+      network_(std::move(network)),
       position_(setting.position),
-      volume_(setting.volume),
-      random_(setting.seed),
-      seat_(segment_.attach(*this, "tester")),
-      ring_(segment_, network_, seat_,
+      seat_(segment().attach(*this, "tester")),
+      ring_(segment(), network_, seat_,
             [&](int position,
                 const interbus::SlaveConfiguration& configuration) -> std::unique_ptr<interbus::SlaveDevice> {
               if (position != setting.position || !setting.make_device) return nullptr;
@@ -79,17 +81,13 @@ SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
       train_(network_.rules),
       model_(network_.rules),
       channel_(&train_.code()),
-      stressed_(setting.stresses),
-      in_(segment_, train_.code(), network_.rules.bit_rate),
-      out_(segment_, train_.code(), network_.rules.bit_rate),
-      remote_(segment_, train_.code(), network_.rules.bit_rate),
-      branch_(segment_, train_.code(), network_.rules.bit_rate),
-      line_watch_(interbus::shortest_telegram(network_.rules)),
+      in_(segment(), train_.code(), network_.rules.bit_rate),
+      out_(segment(), train_.code(), network_.rules.bit_rate),
+      remote_(segment(), train_.code(), network_.rules.bit_rate),
+      branch_(segment(), train_.code(), network_.rules.bit_rate),
       loopback_word_(network_.rules.loopback_word),
       inputs_(words()) {
-  if (setting.make_recorder) {
-    segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), network_.rules));
-  }
+  start_recording(setting, network_.rules);
   find_way();
   install(setting.plan);
 }
@@ -114,7 +112,7 @@ void SlaveBench::find_way() {
     if (places[n].before != position_ - 1) continue;
     const int position = static_cast<int>(n) + 1;
     ring_.link_to(position).tap_driven(places[n].on_branch ? branch_ : remote_);
-    line_watch_.watch(ring_.link_to(position), segment_.trace());
+    watch(ring_.link_to(position));
     neighbour_words_.at(places[n].on_branch ? 1 : 0) = places[n].words;
     neighbours_.at(places[n].on_branch ? 1 : 0) = position;
   }
@@ -122,15 +120,14 @@ void SlaveBench::find_way() {
 
 void SlaveBench::install(const fault::Plan& plan) {
   channels_.add(channel_);
-  if (!plan.empty()) {
-    plan_ = std::make_unique<fault::InstalledPlan>(plan, segment_.trace(), random_.split("plan"));
-    ring_.install(*plan_);
+  if (fault::InstalledPlan* const made = make_plan(plan)) {
+    ring_.install(*made);
     if (fault::Channel* planned = ring_.link_to(position_).channel()) channels_.add(*planned);
   }
   ring_.link_to(position_).set_channel(plan.empty() ? static_cast<fault::Channel*>(&channel_) : &channels_);
   ring_.link_to(position_).tap_arrived(in_);
   ring_.link_from(position_).tap_driven(out_);
-  line_watch_.watch(ring_.link_from(position_), segment_.trace());
+  watch(ring_.link_from(position_));
   kernel::Duration cables{};
   for (segment::Link* link : ring_.links()) cables += link->delay();
   // What went out comes back after the delays of all stations and cables; a cut telegram ends one later.
@@ -139,9 +136,7 @@ void SlaveBench::install(const fault::Plan& plan) {
 
 void SlaveBench::begin_stress(const fault::Stress& stress) {
   segment::Link& link = ring_.link_to(position_);
-  stressed_.begin(stress, link,
-                  {rules().bit_rate, now(), random_.split("stress").split(stress_number_++), segment_.trace(),
-                   link.trace_channel()});
+  begin_stress_at(stress, link, rules().bit_rate, now());
 }
 
 void SlaveBench::set_inputs(std::span<const std::uint16_t> words) {
@@ -159,12 +154,12 @@ const std::vector<std::uint16_t>& SlaveBench::outputs() {
 
 void SlaveBench::set_bridge(bool on_branch, bool present) {
   ring_.slave(position_).set_next_present(on_branch, present);
-  segment_.refresh(ring_.seat(position_));
+  segment().refresh(ring_.seat(position_));
 }
 
 std::vector<std::uint16_t> SlaveBench::random_words() {
   std::vector<std::uint16_t> drawn(words());
-  for (std::uint16_t& word : drawn) word = static_cast<std::uint16_t>(random_.next());
+  for (std::uint16_t& word : drawn) word = static_cast<std::uint16_t>(random().next());
   return drawn;
 }
 
@@ -248,7 +243,7 @@ void SlaveBench::status_telegrams(std::size_t count) {
 }
 
 void SlaveBench::silence(kernel::Duration duration) {
-  segment_.run_for(duration);
+  segment().run_for(duration);
 }
 
 void SlaveBench::send() {
@@ -259,7 +254,7 @@ void SlaveBench::send() {
   const kernel::Time end = wave.end();
   ring_.out().drive(wave);
   std::swap(wave.levels, train_.levels());
-  segment_.run_until(end + settling_);
+  segment().run_until(end + settling_);
 }
 
 void SlaveBench::clear_views() {
@@ -285,7 +280,7 @@ void SlaveBench::drive_at_receiver(line::Waveform& wave) {
   sent_at_ = wave.start = now();
   const kernel::Time end = wave.end();
   ring_.link_to(position_).drive(wave);
-  segment_.run_until(end + settling_);
+  segment().run_until(end + settling_);
 }
 
 void SlaveBench::drive_return(bool on_branch, line::Waveform& wave) {

@@ -10,18 +10,12 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/case_bench.hpp"
 #include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/slave_line.hpp"
 #include "conformance/interbus/slave_model.hpp"
-#include "conformance/line_watch.hpp"
-#include "conformance/stressed_receiver.hpp"
-#include "conformance/test_case.hpp"
 #include "harness/fault/channel_chain.hpp"
-#include "harness/fault/plan.hpp"
 #include "harness/fault/scripted_channel.hpp"
-#include "harness/judge/pics.hpp"
-#include "harness/kernel/random.hpp"
-#include "harness/segment/segment.hpp"
 #include "protocols/interbus/ring.hpp"
 
 // The bench of one case for a slave: a ring with the implementation under test (IUT) at its position, the
@@ -48,41 +42,23 @@ struct SlaveNeeds {
 class SlaveBench;
 
 // Who plays, and where.
-struct SlaveSetting {
-  using MakeSlave =
-      std::function<std::unique_ptr<interbus::SlaveDevice>(const interbus::SlaveConfiguration&)>;
-
-  MakeSlave make_device;  // null: the reference
+struct SlaveSetting : PlannedSetting<interbus::SlaveDevice, interbus::SlaveConfiguration> {
   int position = 1;
-  int stations = 1;                                     // of the bench's own network, at least `position`
-  std::optional<interbus::NetworkDescription> network;  // instead of the bench's own
-  std::uint64_t seed = 1;
-  Volume volume = Volume::full;
-  std::optional<judge::Pics> pics;            // what is not answered is as the network says about the IUT
-  fault::Plan plan{};                         // declared faults besides those of the case
-  std::span<const fault::Stress> stresses{};  // of the cases that ask for them
-  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
-  std::function<trace::Recorder*(const trace::Trace&, const interbus::Rules&)> make_recorder;
+  int stations = 1;                                       // of the bench's own network, at least `position`
+  std::optional<interbus::NetworkDescription> network{};  // instead of the bench's own
 };
 
 // The network of a case. Throws kernel::Error for a position that the network does not have.
 interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveSetting& setting);
-class SlaveBench final : private segment::Station {
+class SlaveBench final : public CaseBench, private segment::Station {
  public:
   SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting);
 
   const interbus::Rules& rules() const { return network_.rules; }
   const judge::Pics& pics() const { return pics_; }
-  kernel::Random& random() { return random_; }
-  template <typename Count>
-  Count volume(Count quick, Count full) const {
-    return volume_ == Volume::quick ? quick : full;
-  }
   std::uint16_t id_code() const { return ring_.configuration(position_).id_code; }
   unsigned words() const { return ring_.configuration(position_).words; }
-  kernel::Time now() const { return segment_.now(); }
   kernel::Duration bits(std::int64_t count) const { return kernel::levels_duration(count, rules().bit_rate); }
-  segment::Segment& segment() { return segment_; }
   interbus::Ring& ring() { return ring_; }
   int position() const { return position_; }
   // Register length of the station after OUT1 or OUT2; 0 without one.
@@ -131,14 +107,8 @@ class SlaveBench final : private segment::Station {
 
   // ---- faults at the IUT's receiver ----
   fault::ScriptedChannel& channel() { return channel_; }
-  // A stress in place of these, from now on; the n-th of a case has the n-th disturbances.
-  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
+  // A stress in place of these, from now on.
   void begin_stress(const fault::Stress& stress);
-  void end_stress() { stressed_.end(); }
-  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
-  std::vector<std::uint64_t> planned_hits() const {
-    return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
-  }
   // The code word whose last bits are loopback word, register and check: its bit n, as a level of the train.
   // The stations in front of the IUT put their registers before it.
   std::size_t code_word_bits() const { return 8 * (2 + 2 * words() + 2); }
@@ -153,8 +123,6 @@ class SlaveBench final : private segment::Station {
 
   // The case is over. What the IUT does then is still its verdict.
   void finish() { ring_.end(); }
-  // What the IUT drives, on all its lines.
-  const LineWatch& line_watch() const { return line_watch_; }
 
   // ---- views ----
   LineView& in() { return in_; }
@@ -170,6 +138,8 @@ class SlaveBench final : private segment::Station {
   std::vector<std::string> decode_lines();
 
  private:
+  SlaveBench(interbus::NetworkDescription network, const SlaveSetting& setting);
+
   struct OnTheWay {
     int position;
     bool next_on_branch;
@@ -189,9 +159,6 @@ class SlaveBench final : private segment::Station {
 
   interbus::NetworkDescription network_;
   int position_;
-  Volume volume_;
-  kernel::Random random_;
-  segment::Segment segment_;
   std::size_t seat_;
   interbus::Ring ring_;
   judge::Pics pics_;
@@ -201,15 +168,11 @@ class SlaveBench final : private segment::Station {
   TrainWriter train_;
   SlaveModel model_;
   fault::ScriptedChannel channel_;
-  std::unique_ptr<fault::InstalledPlan> plan_;
   fault::ChannelChain channels_;  // at the IUT's receiver: of the case, then of the plan
-  StressedReceiver stressed_;
-  std::uint64_t stress_number_ = 0;
   LineView in_;
   LineView out_;
   LineView remote_;
   LineView branch_;
-  LineWatch line_watch_;
   kernel::Duration settling_{};
   std::uint16_t loopback_word_;
   std::vector<std::uint16_t> inputs_;

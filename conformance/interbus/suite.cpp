@@ -119,7 +119,7 @@ NetworkDescription small_network() {
 
 // Each slave is one of its own, also of an implementation outside.
 NetworkParts parts_of(RunningCase& run, std::size_t stations) {
-  using MakeSlave = SlaveSetting::MakeSlave;
+  using MakeSlave = SlaveSetting::Make;
   NetworkParts parts;
   std::map<int, MakeSlave> slaves;
   for (const Assignment& one : run.setup().implementations) {

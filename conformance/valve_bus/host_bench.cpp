@@ -31,6 +31,12 @@ std::string frame_text(const HostFrame& frame) {
   return text;
 }
 
+// At the highest rate of the switches.
+kernel::Duration shortest_character(const HostNeeds& needs, const judge::Pics& pics) {
+  const valve_bus::Rules rules = host_configuration(needs, pics).rules;
+  return kernel::levels_duration(character_format(rules).half_bits() / 2, valve_bus::dip_bit_rates().front());
+}
+
 }  // namespace
 
 HostConfiguration host_configuration(const HostNeeds& needs, const judge::Pics& pics) {
@@ -60,33 +66,25 @@ std::string text_of(const HostEvent& told) {
 }
 
 HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting)
-    : pics_(setting.pics.value_or(judge::Pics{}).completed_by(declared_host())),
+    : HostBench(needs, setting, setting.pics.value_or(judge::Pics{}).completed_by(declared_host())) {}
+
+HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting, judge::Pics pics)
+    : LineBench(setting.seed, setting.volume, setting.stresses, shortest_character(needs, pics)),
+      pics_(std::move(pics)),
       configuration_(host_configuration(needs, pics_)),
-      volume_(setting.volume),
-      random_(setting.seed),
-      line_(segment_, "line", segment::ContentionRule::noise, random_),
       codec_(rules()),
       host_(host_made(setting, configuration_)),
-      tester_seat_(segment_.attach(*this, "tester")),
-      host_seat_(segment_.attach(*host_, "host")),
       driven_(character_format(rules()), rules().bit_rate),
       arrived_(rules()),
-      line_watch_(kernel::levels_duration(character_format(rules()).half_bits() / 2,
-                                          valve_bus::dip_bit_rates().front())),
-      stressed_(setting.stresses),
       writes_(256) {
-  tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
-  place_ = &line_.attach("host/in", host_seat_, 0, {}, configuration_.receives_own_echo);
+  attach_iut(*host_, "host", {}, configuration_.receives_own_echo);
   adopt_rate(configuration_.dip);
-  if (setting.make_recorder) segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules()));
-  place_->tap_driven(driven_);
-  place_->tap_arrived(arrived_);
-  line_watch_.watch(*place_, segment_.trace());
-  if (!setting.plan.empty()) {
-    plan_ = std::make_unique<fault::InstalledPlan>(setting.plan, segment_.trace(), random_.split("plan"));
-    place_->set_channel(plan_->channel_for({"host/in", place_->trace_channel(), rules().bit_rate}));
-  }
-  host_->wire(*place_, *this);
+  start_recording(setting, rules());
+  place().tap_driven(driven_);
+  place().tap_arrived(arrived_);
+  watch(place());
+  install(setting.plan, rules().bit_rate);
+  host_->wire(place(), *this);
   set_power(true);
   wait(kHostWarmUp);
   clear_observations();
@@ -102,7 +100,7 @@ void HostBench::adopt_rate(unsigned dip) {
 }
 
 std::uint8_t HostBench::random_id() {
-  return static_cast<std::uint8_t>(random_.between(rules().first_address, rules().last_address));
+  return static_cast<std::uint8_t>(random().between(rules().first_address, rules().last_address));
 }
 
 kernel::Duration HostBench::characters(double count) const {
@@ -114,7 +112,7 @@ kernel::Duration HostBench::characters(double count) const {
 
 void HostBench::set_power(bool is_on) {
   host_->set_power(is_on, now());
-  segment_.refresh(host_seat_);
+  refresh_iut();
 }
 
 void HostBench::restart(unsigned dip) {
@@ -130,7 +128,7 @@ void HostBench::restart(unsigned dip) {
 
 void HostBench::write(std::span<const std::uint8_t> octets) {
   host_->write(octets, now());
-  segment_.refresh(host_seat_);
+  refresh_iut();
 }
 
 void HostBench::order(const valve_bus::Command& command) {
@@ -139,9 +137,9 @@ void HostBench::order(const valve_bus::Command& command) {
 
 std::optional<HostEvent> HostBench::next_told(kernel::Duration within) {
   const kernel::Time limit = now() + within;
-  while (told_.empty() && segment_.scheduler().next() <= limit) segment_.step();
+  while (told_.empty() && segment().scheduler().next() <= limit) segment().step();
   if (told_.empty()) {
-    segment_.run_until(limit);
+    segment().run_until(limit);
     return std::nullopt;
   }
   const HostEvent first = told_.front();
@@ -151,15 +149,9 @@ std::optional<HostEvent> HostBench::next_told(kernel::Duration within) {
 
 void HostBench::await(kernel::Duration within) {
   const kernel::Time limit = now() + within;
-  while (told_.empty() && frames_.empty() && driven_.empty() && segment_.scheduler().next() <= limit) {
-    segment_.step();
+  while (told_.empty() && frames_.empty() && driven_.empty() && segment().scheduler().next() <= limit) {
+    segment().step();
   }
-}
-
-void HostBench::begin_stress(const fault::Stress& stress) {
-  stressed_.begin(stress, *place_,
-                  {rules().bit_rate, now(), random_.split("stress").split(stress_number_++), segment_.trace(),
-                   place_->trace_channel()});
 }
 
 void HostBench::on_response(const valve_bus::HostResponse& response, kernel::Time when) {
@@ -176,7 +168,7 @@ void HostBench::on_error(const valve_bus::HostError& error, kernel::Time when) {
 
 bool HostBench::has_driven_by(kernel::Time limit) {
   const std::size_t before = driven_.waves();
-  while (driven_.waves() == before && segment_.scheduler().next() <= limit) segment_.step();
+  while (driven_.waves() == before && segment().scheduler().next() <= limit) segment().step();
   return driven_.waves() > before;
 }
 
@@ -195,14 +187,14 @@ std::optional<HostFrame> HostBench::next_frame(kernel::Duration within) {
   const kernel::Time limit = now() + within;
   if (frames_.empty()) {
     if (driven_.empty() && !has_driven_by(limit)) {
-      segment_.run_until(limit);
+      segment().run_until(limit);
       return std::nullopt;
     }
     collect();
   }
   HostFrame frame = frame_of(std::move(frames_.front()));
   frames_.pop_front();
-  segment_.run_until(std::max(now(), frame.end));
+  segment().run_until(std::max(now(), frame.end));
   note(frame);
   last_end_ = frame.end;
   return frame;
@@ -223,7 +215,7 @@ HostFrame HostBench::frame_of(Transmission sent) {
 
 kernel::Time HostBench::answer(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time) {
   const kernel::Time start = std::max(now(), last_end_ + turnaround_time);
-  const kernel::Time end = codec_.drive(*tester_, octets, start, {});
+  const kernel::Time end = codec_.drive(tester(), octets, start, {});
   said_.push_back({start, end});
   return end;
 }
@@ -234,13 +226,13 @@ void HostBench::answer_levels(const line::Levels& levels, kernel::Duration turna
   wave.rate = rules().bit_rate;
   wave.levels = levels;
   said_.push_back({wave.start, wave.end()});
-  tester_->drive(wave);
+  tester().drive(wave);
 }
 
 kernel::Time HostBench::say(std::span<const std::uint8_t> octets) {
-  const kernel::Time end = codec_.drive(*tester_, octets, now(), {});
+  const kernel::Time end = codec_.drive(tester(), octets, now(), {});
   said_.push_back({now(), end});
-  segment_.run_until(end);
+  segment().run_until(end);
   return end;
 }
 

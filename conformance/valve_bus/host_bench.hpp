@@ -10,17 +10,11 @@
 #include <variant>
 #include <vector>
 
-#include "conformance/line_watch.hpp"
-#include "conformance/stressed_receiver.hpp"
-#include "conformance/test_case.hpp"
+#include "conformance/line_bench.hpp"
 #include "conformance/valve_bus/arrived_frames.hpp"
 #include "conformance/valve_bus/declarations.hpp"
 #include "conformance/valve_bus/driven_line.hpp"
-#include "harness/fault/plan.hpp"
 #include "harness/judge/pics.hpp"
-#include "harness/kernel/random.hpp"
-#include "harness/segment/medium.hpp"
-#include "harness/segment/segment.hpp"
 #include "protocols/valve_bus/codec.hpp"
 #include "protocols/valve_bus/device.hpp"
 
@@ -41,19 +35,8 @@ struct HostNeeds {
   std::optional<bool> verifies_writes{};
 };
 
-// Who plays, and how.
-struct HostSetting {
-  using MakeHost = std::function<std::unique_ptr<valve_bus::HostDevice>(const valve_bus::HostConfiguration&)>;
-
-  MakeHost make_device;  // null: the reference
-  std::uint64_t seed = 1;
-  Volume volume = Volume::full;
-  std::optional<judge::Pics> pics;
-  fault::Plan plan{};
-  std::span<const fault::Stress> stresses{};
-  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
-  std::function<trace::Recorder*(const trace::Trace&, const valve_bus::Rules&)> make_recorder;
-};
+// Without a maker the reference plays.
+using HostSetting = PlannedSetting<valve_bus::HostDevice, valve_bus::HostConfiguration>;
 
 // The configuration of the IUT under these needs; `pics` has an answer to each item.
 valve_bus::HostConfiguration host_configuration(const HostNeeds& needs, const judge::Pics& pics);
@@ -77,22 +60,14 @@ struct HostEvent {
 
 std::string text_of(const HostEvent& told);
 
-class HostBench final : private segment::Station, private valve_bus::HostApplication {
+class HostBench final : public LineBench, private valve_bus::HostApplication {
  public:
   HostBench(const HostNeeds& needs, const HostSetting& setting);
 
   // With the bit rate of the DIP switches as they were at power-up.
   const valve_bus::Rules& rules() const { return configuration_.rules; }
   const judge::Pics& pics() const { return pics_; }
-  kernel::Random& random() { return random_; }
-  std::uint8_t random_octet() { return static_cast<std::uint8_t>(random_.below(256)); }
   std::uint8_t random_id();
-  template <typename Count>
-  Count volume(Count quick, Count full) const {
-    return volume_ == Volume::quick ? quick : full;
-  }
-  kernel::Time now() const { return segment_.now(); }
-  segment::Segment& segment() { return segment_; }
   kernel::Duration bits(std::int64_t count) const { return valve_bus::bits(rules(), count); }
   kernel::Duration characters(double count) const;
   kernel::Duration delimiter() const { return valve_bus::delimiter(rules()); }
@@ -138,7 +113,6 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   // The character as levels, one a bit, in a format that may be another.
   line::Levels levels_of(std::uint8_t octet, valve_bus::CharacterProfile profile) const;
   line::Levels levels_of(std::uint8_t octet) const { return levels_of(octet, rules().characters); }
-  void wait(kernel::Duration duration) { segment_.run_for(duration); }
 
   // What the nodes have been told to do by the frames that were got: to know a refresh.
   void note_write(const valve_bus::Command& command);
@@ -148,33 +122,27 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   std::span<const ArrivedFrame> arrived() const { return arrived_.frames(); }
 
   // ---- stress ----
-  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
-  void begin_stress(const fault::Stress& stress);
-  void end_stress() { stressed_.end(); }
-  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
+  void begin_stress(const fault::Stress& stress) {
+    begin_stress_at(stress, place(), rules().bit_rate, now());
+  }
 
   // Frames and what was told, up to now; what the nodes were told to do is kept.
   void clear_observations();
 
-  std::vector<std::uint64_t> planned_hits() const {
-    return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
-  }
   // The case is over. What the IUT does then is still its verdict.
   void finish() { host_->end(); }
-  const LineWatch& line_watch() const { return line_watch_; }
   // The last frames of the IUT, and what the PC was told, in words.
   std::vector<std::string> decode_lines() const;
 
  private:
+  HostBench(const HostNeeds& needs, const HostSetting& setting, judge::Pics pics);
+
   // What the nodes said, at the IUT.
   struct Span {
     kernel::Time start;
     kernel::Time end;
   };
 
-  void receive(segment::PortIndex, const line::Waveform&) override {}
-  void on_time(kernel::Time) override {}
-  kernel::Time next_time() const override { return kernel::kNever; }
   void on_response(const valve_bus::HostResponse& response, kernel::Time when) override;
   void on_error(const valve_bus::HostError& error, kernel::Time when) override;
 
@@ -187,22 +155,10 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
 
   judge::Pics pics_;
   valve_bus::HostConfiguration configuration_;
-  Volume volume_;
-  kernel::Random random_;
-  segment::Segment segment_;
-  segment::Medium line_;
   valve_bus::CharacterCodec codec_;
   std::unique_ptr<valve_bus::HostDevice> host_;
-  std::size_t tester_seat_;
-  std::size_t host_seat_;
-  segment::MediumPort* tester_ = nullptr;
-  segment::MediumPort* place_ = nullptr;  // of the IUT
   DrivenLine driven_;
   ArrivedFrames arrived_;
-  LineWatch line_watch_;
-  std::unique_ptr<fault::InstalledPlan> plan_;
-  StressedReceiver stressed_;
-  std::uint64_t stress_number_ = 0;
   kernel::Duration observation_timeout_{};
 
   std::deque<Transmission> frames_;  // that the case has not got yet

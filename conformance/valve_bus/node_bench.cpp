@@ -42,42 +42,36 @@ NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& 
 }
 
 NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting)
-    : pics_(setting.pics.value_or(judge::Pics{}).completed_by(declared_node())),
+    : NodeBench(needs, setting, setting.pics.value_or(judge::Pics{}).completed_by(declared_node())) {}
+
+NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting, judge::Pics pics)
+    : LineBench(setting.seed, setting.volume, setting.stresses,
+                valve_bus::bits(node_configuration(needs, pics).rules, 1)),
+      pics_(std::move(pics)),
       configuration_(node_configuration(needs, pics_)),
       distance_(needs.distance),
-      volume_(setting.volume),
-      random_(setting.seed),
-      line_(segment_, "line", segment::ContentionRule::noise, random_),
       codec_(rules()),
       node_(made(setting, configuration_)),
-      tester_seat_(segment_.attach(*this, "tester")),
-      node_seat_(segment_.attach(*node_, "node")),
       driven_(character_format(rules()), rules().bit_rate),
       sent_(character_format(rules()), rules().bit_rate),
-      arrived_(rules()),
-      line_watch_(bits(1)),
-      stressed_(setting.stresses) {
-  tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
-  place_ = &line_.attach("node/in", node_seat_, 0, distance_);
-  if (setting.make_recorder) segment_.trace().set_recorder(setting.make_recorder(segment_.trace(), rules()));
-  place_->tap_driven(driven_);
-  place_->tap_arrived(arrived_);
-  place_->tap_arrived(arrivals_);
-  tester_->tap_driven(sent_);
+      arrived_(rules()) {
+  attach_iut(*node_, "node", distance_);
+  start_recording(setting, rules());
+  place().tap_driven(driven_);
+  place().tap_arrived(arrived_);
+  place().tap_arrived(arrivals_);
+  tester().tap_driven(sent_);
   sent_.keep_last(kSentWaves);
-  line_watch_.watch(*place_, segment_.trace());
-  const trace::Channel valves = segment_.trace().add_channel("node/valves");
+  watch(place());
+  const trace::Channel valves = segment().trace().add_channel("node/valves");
   boards_.on_change([this, valves](const segment::ProcessWords::Change& change) {
-    segment_.trace().observe(valves, change.when, "valves", change.after);
+    segment().trace().observe(valves, change.when, "valves", change.after);
   });
-  if (!setting.plan.empty()) {
-    plan_ = std::make_unique<fault::InstalledPlan>(setting.plan, segment_.trace(), random_.split("plan"));
-    place_->set_channel(plan_->channel_for({"node/in", place_->trace_channel(), rules().bit_rate}));
-  }
+  install(setting.plan, rules().bit_rate);
   // A response begins within the span and takes three characters; a bit of slack shows one that is late.
   settling_ = delimiter() + std::max(turnaround_time_span(rules()), actuation_limit(rules())) +
               characters(8) + 2 * distance_ + 500 * kernel::kMicrosecond;
-  node_->wire(*place_, boards_);
+  node_->wire(place(), boards_);
   if (distance_ > kernel::Duration{}) require(&iut::Capabilities::distance);
   if (!needs.is_powered) return;
   set_power(true);
@@ -123,14 +117,14 @@ void NodeBench::set_power(bool is_on) {
   node_->set_power(is_on, now());
   // Without supply no solenoid is held, whatever the node had driven.
   if (!is_on) boards_.drive_valves(0, now());
-  segment_.refresh(node_seat_);
+  refresh_iut();
 }
 
 kernel::Time NodeBench::send(std::span<const std::uint8_t> octets) {
   if (octets.empty()) return now();
   const auto rate = static_cast<std::int64_t>(std::llround(static_cast<double>(rules().bit_rate) * clock_));
-  const kernel::Time end = codec_.drive(*tester_, octets, now(), {}, rate);
-  segment_.run_until(end);
+  const kernel::Time end = codec_.drive(tester(), octets, now(), {}, rate);
+  segment().run_until(end);
   return end;
 }
 
@@ -150,15 +144,9 @@ kernel::Time NodeBench::read() {
                                  random_octet()});
 }
 
-void NodeBench::wait(kernel::Duration duration) {
-  segment_.run_for(duration);
-}
-
 void NodeBench::drive(line::Waveform& wave) {
   wave.start = now();
-  const kernel::Time end = wave.end();
-  tester_->drive(wave);
-  segment_.run_until(end);
+  drive_to_end(wave);
 }
 
 line::Levels NodeBench::levels_of(std::uint8_t octet) const {
@@ -168,7 +156,7 @@ line::Levels NodeBench::levels_of(std::uint8_t octet) const {
 }
 
 void NodeBench::interject(std::span<const std::uint8_t> octets, kernel::Time start) {
-  codec_.drive(*tester_, octets, start, {});
+  codec_.drive(tester(), octets, start, {});
 }
 
 void NodeBench::wait_after_write() {
@@ -180,12 +168,6 @@ void NodeBench::clear_observations() {
   driven_.clear();
   arrived_.clear();
   boards_.forget_changes();
-}
-
-void NodeBench::begin_stress(const fault::Stress& stress) {
-  stressed_.begin(stress, *place_,
-                  {rules().bit_rate, now(), random_.split("stress").split(stress_number_++), segment_.trace(),
-                   place_->trace_channel()});
 }
 
 std::vector<std::string> NodeBench::decode_lines() {

@@ -10,17 +10,11 @@
 #include <vector>
 
 #include "conformance/comparison/twin_line.hpp"
-#include "conformance/line_watch.hpp"
-#include "conformance/stressed_receiver.hpp"
-#include "conformance/test_case.hpp"
+#include "conformance/line_bench.hpp"
 #include "conformance/valve_bus/arrived_frames.hpp"
 #include "conformance/valve_bus/declarations.hpp"
 #include "conformance/valve_bus/driven_line.hpp"
-#include "harness/fault/plan.hpp"
 #include "harness/judge/pics.hpp"
-#include "harness/kernel/random.hpp"
-#include "harness/segment/medium.hpp"
-#include "harness/segment/segment.hpp"
 #include "protocols/valve_bus/codec.hpp"
 #include "protocols/valve_bus/device.hpp"
 #include "protocols/valve_bus/valve_block.hpp"
@@ -44,19 +38,8 @@ struct NodeNeeds {
   bool is_powered = true;       // when the case begins
 };
 
-// Who plays, and how.
-struct NodeSetting {
-  using MakeNode = std::function<std::unique_ptr<valve_bus::NodeDevice>(const valve_bus::NodeConfiguration&)>;
-
-  MakeNode make_device;  // null: the reference
-  std::uint64_t seed = 1;
-  Volume volume = Volume::full;
-  std::optional<judge::Pics> pics;
-  fault::Plan plan{};
-  std::span<const fault::Stress> stresses{};
-  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
-  std::function<trace::Recorder*(const trace::Trace&, const valve_bus::Rules&)> make_recorder;
-};
+// Without a maker the reference plays.
+using NodeSetting = PlannedSetting<valve_bus::NodeDevice, valve_bus::NodeConfiguration>;
 
 // The configuration of the IUT under these needs; `pics` has an answer to each item.
 valve_bus::NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& pics);
@@ -69,7 +52,7 @@ struct InstantLedger {
   kernel::Duration least_doubt_open{};  // of those in doubt
 };
 
-class NodeBench final : private segment::Station {
+class NodeBench final : public LineBench {
  public:
   using Octets = std::vector<std::uint8_t>;
 
@@ -79,14 +62,6 @@ class NodeBench final : private segment::Station {
   const valve_bus::NodeConfiguration& configuration() const { return configuration_; }
   const judge::Pics& pics() const { return pics_; }
   std::uint8_t address() const;
-  kernel::Random& random() { return random_; }
-  std::uint8_t random_octet() { return static_cast<std::uint8_t>(random_.below(256)); }
-  template <typename Count>
-  Count volume(Count quick, Count full) const {
-    return volume_ == Volume::quick ? quick : full;
-  }
-  kernel::Time now() const { return segment_.now(); }
-  segment::Segment& segment() { return segment_; }
   kernel::Duration bits(std::int64_t count) const { return valve_bus::bits(rules(), count); }
   kernel::Duration characters(double count) const;
   kernel::Duration delimiter() const { return valve_bus::delimiter(rules()); }
@@ -116,8 +91,6 @@ class NodeBench final : private segment::Station {
   // A valid command for the IUT.
   kernel::Time write(std::uint8_t data0, std::uint8_t data1);
   kernel::Time read();
-  // Silence. What has been sent is over by then.
-  void wait(kernel::Duration duration);
   // As long as the IUT may take to act on what it has heard, and to have said it.
   void await_response_window() { wait(settling_); }
   // Silence after a write until the next frame may come: a delimiter, or the whole answer of a node that
@@ -151,47 +124,28 @@ class NodeBench final : private segment::Station {
   PassingTap& arrivals() { return arrivals_; }
 
   // ---- stress ----
-  std::span<const fault::Stress> stresses() const { return stressed_.stresses(); }
-  void begin_stress(const fault::Stress& stress);
-  void end_stress() { stressed_.end(); }
-  std::uint64_t stressed_transmissions() const { return stressed_.changed(); }
-  std::vector<std::uint64_t> planned_hits() const {
-    return plan_ ? plan_->hits_of_parts() : std::vector<std::uint64_t>{};
+  void begin_stress(const fault::Stress& stress) {
+    begin_stress_at(stress, place(), rules().bit_rate, now());
   }
 
   // The case is over. What the IUT does then is still its verdict.
   void finish() { node_->end(); }
-  const LineWatch& line_watch() const { return line_watch_; }
   // The last transmissions of the tester and of the IUT, in words.
   std::vector<std::string> decode_lines();
 
  private:
-  void receive(segment::PortIndex, const line::Waveform&) override {}
-  void on_time(kernel::Time) override {}
-  kernel::Time next_time() const override { return kernel::kNever; }
+  NodeBench(const NodeNeeds& needs, const NodeSetting& setting, judge::Pics pics);
 
   judge::Pics pics_;
   valve_bus::NodeConfiguration configuration_;
   kernel::Duration distance_;
-  Volume volume_;
-  kernel::Random random_;
-  segment::Segment segment_;
-  segment::Medium line_;
   valve_bus::CharacterCodec codec_;
   valve_bus::ValveBlock boards_;
   std::unique_ptr<valve_bus::NodeDevice> node_;
-  std::size_t tester_seat_;
-  std::size_t node_seat_;
-  segment::MediumPort* tester_ = nullptr;
-  segment::MediumPort* place_ = nullptr;  // of the IUT
   DrivenLine driven_;
   DrivenLine sent_;  // by the tester; the last of it
   ArrivedFrames arrived_;
   PassingTap arrivals_;
-  LineWatch line_watch_;
-  std::unique_ptr<fault::InstalledPlan> plan_;
-  StressedReceiver stressed_;
-  std::uint64_t stress_number_ = 0;
   kernel::Duration settling_;
   double clock_ = 1.0;
   InstantLedger instants_;

@@ -11,7 +11,7 @@ namespace {
 
 using namespace conformance;
 
-using PollSetting = BusSetting<Device, Configuration>;
+using PollSetting = PlannedSetting<Device, Configuration>;
 
 struct Dissector : trace::OctetDissector {
   explicit Dissector(const Rules& rules) : OctetDissector(rules.bit_rate) {}

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+
+#include "conformance/case_bench.hpp"
+#include "harness/segment/medium.hpp"
+
+// The bench of one station on a shared line: the implementation under test (IUT) at its place, and the lower
+// tester in the place of all others. A protocol's bench adds the upper side and what the tester can send and
+// expect.
+namespace fieldproof::conformance {
+
+class LineBench : public CaseBench, private segment::Station {
+ protected:
+  // A bit on the line lasts as its rate says; levels of a plan are counted at it.
+  LineBench(std::uint64_t seed, Volume volume, std::span<const fault::Stress> stresses,
+            kernel::Duration shortest_transmission,
+            segment::ContentionRule rule = segment::ContentionRule::noise)
+      : CaseBench(seed, volume, stresses, shortest_transmission),
+        line_(segment(), "line", rule, random()),
+        tester_seat_(segment().attach(*this, "tester")) {}
+  ~LineBench() override = default;
+
+  // `role` names the place: "node".
+  void attach_iut(segment::Station& station, const std::string& role, kernel::Duration distance = {},
+                  bool receives_own_echo = false) {
+    seat_ = segment().attach(station, role);
+    tester_ = &line_.attach("tester/in", tester_seat_, 0, {});
+    place_name_ = role + "/in";
+    place_ = &line_.attach(place_name_, seat_, 0, distance, receives_own_echo);
+  }
+  // Declared faults at the place of the IUT.
+  void install(const fault::Plan& plan, std::int64_t bit_rate) {
+    if (fault::InstalledPlan* const made = make_plan(plan))
+      place_->set_channel(made->channel_for({place_name_, place_->trace_channel(), bit_rate}));
+  }
+  // The IUT was given something from outside of the line.
+  void refresh_iut() { segment().refresh(seat_); }
+
+  segment::MediumPort& place() { return *place_; }
+  segment::MediumPort& tester() { return *tester_; }
+  // The tester drives it, and runs until it is over. Gives that instant.
+  kernel::Time drive_to_end(line::Waveform& wave) {
+    const kernel::Time end = wave.end();
+    tester_->drive(wave);
+    if (end > now()) segment().run_until(end);
+    return end;
+  }
+
+ private:
+  void receive(segment::PortIndex, const line::Waveform&) override {}
+  void on_time(kernel::Time) override {}
+  kernel::Time next_time() const override { return kernel::kNever; }
+
+  segment::Medium line_;
+  std::size_t tester_seat_;
+  std::size_t seat_ = 0;
+  segment::MediumPort* tester_ = nullptr;
+  segment::MediumPort* place_ = nullptr;  // of the IUT
+  std::string place_name_;
+};
+
+}  // namespace fieldproof::conformance
