@@ -1,6 +1,6 @@
 // The failures that whoever runs a suite knows of and lives with for a while: `--baseline FILE`.
 //
-//   { "expected": [ { "case": "valve_bus/node/write/drives_the_valves", "finding": "valves_too_late",
+//   { "expected": [ { "case": "PROTOCOL/ROLE/write/drives_the_valves", "finding": "valves_too_late",
 //                     "reason": "slow driver of board B", "expires": "2027-03-31" } ] }
 //
 // Contract: each entry names one case by its id, why its failure is accepted, and the last day of that; with

@@ -23,10 +23,10 @@ struct SequenceFile {
   StoredEnd end;
 };
 
-// "valve_bus/node" of "valve_bus/node/check/follows_the_model".
+// "PROTOCOL/ROLE" of "PROTOCOL/ROLE/check/follows_the_model".
 std::string role_path(const conformance::SequenceRole& role);
 
-// The suite and the role of "valve_bus/node". Throws kernel::Error(usage) that names the roles that there
+// The suite and the role of "PROTOCOL/ROLE". Throws kernel::Error(usage) that names the roles that there
 // are.
 std::pair<const conformance::Suite*, const conformance::SequenceRole*> sequence_role_at(
     const std::string& path, const conformance::Catalogue& catalogue);

@@ -8,6 +8,7 @@
 #include "cli/options.hpp"
 #include "cli/protocol_entry.hpp"
 #include "harness/kernel/check.hpp"
+#include "papers/catalogue.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -84,7 +85,7 @@ constexpr std::array kHelp = {
         {"plan network.json --seed 2", "another seed of the simulation that proves it"},
         {"help plan", "its options"}}}},
     VerbHelp{"paper", kNetwork, {{
-        {"paper foundation", "published figures, reproduced side by side"},
+        {"paper foundation", "published figures, and what is reproduced of them"},
         {"paper foundation --duration 60s", "a longer experiment"},
         {"paper foundation --json paper.json", "for report"}}}},
     VerbHelp{"list", kKnow, {{
@@ -180,6 +181,12 @@ std::string footer_of(std::string_view verb) {
   std::string text;
   if (find_option("iut", verb) != nullptr)
     text = fmt::format("Implementations (--iut):\n{}\n", find_topic("iut")->text);
+  if (verb == "paper") {
+    text += "Papers (NAME), the first by default:\n";
+    for (const papers::Paper& one : papers::catalogue())
+      text += fmt::format("  {:<12}{}\n", one.name, one.title);
+    text += '\n';
+  }
   text += "Examples:\n";
   for (const Example& one : help_of_verb(verb).examples) {
     text += fmt::format("  fieldproof {}\n      {}\n", command_of(one), one.what);

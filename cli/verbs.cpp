@@ -25,7 +25,7 @@ constexpr std::array kVerbs = {
     Verb{"measure", "PROTOCOL", 1, 1, "cycle time, jitter and skew of a network, with the closed forms they are compared with", &measure_protocol},
     Verb{"residual", "", 0, 0, "probability that a frame check does not detect a corrupted telegram", &residual},
     Verb{"plan", "NETWORK.json", 1, 1, "the target rotation time of a Foundation Fieldbus that keeps a bound of urgent delays, proven by simulation", &plan},
-    Verb{"paper", "[NAME]", 0, 1, "what a paper published, next to what is reproduced of it: interbus, valve_bus, foundation, fieldbus [interbus]", &paper},
+    Verb{"paper", "[NAME]", 0, 1, "what a paper published, next to what is reproduced of it; without a name, the first of them", &paper},
     Verb{"list", "[SELECTOR...|protocols|mutants|pics [ROLE]]", 0, kAny,
          "cases, mutants, protocols or items of a PICS; why a case does not apply", &list},
     Verb{"explain", "CASE-ID|PROTOCOL/ROLE|NUMBER", 1, 1, "of a case: requirement, source, stimulus, expected and what it kills; of a role: its settings; of a number: unit, range and source", &explain},

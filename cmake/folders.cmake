@@ -190,7 +190,7 @@ endfunction()
 # fuzz/x_fuzz.cpp is a target each; the sequence driver is one for each role of ROLES, "name=protocol/role".
 function(fieldproof_fuzz_targets)
   cmake_parse_arguments(arg "" "" "LINK;ROLES" ${ARGN})
-  file(GLOB targets CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/fuzz/*_fuzz.cpp")
+  file(GLOB targets CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/fuzz/*_fuzz.cpp" "${CMAKE_SOURCE_DIR}/fuzz/*/*_fuzz.cpp")
   file(GLOB shared CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/fuzz/*.cpp")
   list(FILTER shared EXCLUDE REGEX "(_fuzz|_test|/replay_main)\\.cpp$")
   # Objects, not an archive: nothing refers to the options of the sanitizers by name.
@@ -212,8 +212,10 @@ function(fieldproof_fuzz_targets)
     string(REPLACE "=" ";" parts "${role}")
     list(GET parts 0 name)
     list(GET parts 1 path)
+    string(REGEX REPLACE "/.*" "" protocol "${path}")
     fieldproof_fuzz_target(${name} "${CMAKE_SOURCE_DIR}/fuzz/roles/sequence_driver.cpp"
-      LINK fieldproof_conformance DEFINE "FIELDPROOF_ROLE=\"${path}\"")
+      LINK fieldproof_conformance DEFINE "FIELDPROOF_ROLE=\"${path}\"" "FIELDPROOF_SUITE=${protocol}_suite"
+        "FIELDPROOF_SUITE_HEADER=\"conformance/${protocol}/suite.hpp\"")
   endforeach()
 endfunction()
 

@@ -27,7 +27,7 @@ struct MutantEntry {
   const Suite* suite = nullptr;
   const Mutant* mutant = nullptr;
 
-  std::string path() const;  // "interbus/slave/crc_preset_zero"
+  std::string path() const;  // "PROTOCOL/ROLE/crc_preset_zero"
 };
 
 class Catalogue {
@@ -48,7 +48,7 @@ class Catalogue {
   const Entry& at(std::string_view id) const;
   const Suite& suite(std::string_view protocol) const;
 
-  // By path ("interbus/slave/crc_preset_zero"), or by the part of the path that is unique ("crc_preset_zero"
+  // By path ("PROTOCOL/ROLE/crc_preset_zero"), or by the part of the path that is unique ("crc_preset_zero"
   // among `among`, or among all when that is empty). Several that fit are an error that names them.
   const MutantEntry& mutant(std::string_view name, std::span<const Entry> among = {}) const;
 

@@ -3,12 +3,12 @@
 //
 //   int main(int argc, char** argv) {
 //     testing::InitGoogleTest(&argc, argv);
-//     static const auto suite = fieldproof::conformance::interbus_suite();
+//     static const auto suite = my_suite();  // of a protocol
 //     fieldproof::conformance::register_with_googletest(*suite, [](const auto&) { return my_setup(); });
 //     return RUN_ALL_TESTS();
 //   }
 //
-// Contract: the case "interbus/slave/data_cycle/x" is the test "interbus.slave.data_cycle" / "x". The seed of
+// Contract: the case "PROTOCOL/ROLE/data_cycle/x" is the test "PROTOCOL.ROLE.data_cycle" / "x". The seed of
 // the setup is the seed of a run: each case derives its own from it, as `fieldproof run` does. pass and warn
 // succeed; not-applicable skips with its reason; everything else fails and prints its findings in full.
 // kernel::Error of the setup fails the test with its sentence. Canaries are not registered. The suite must

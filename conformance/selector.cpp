@@ -77,7 +77,7 @@ Selector parse_one(std::string_view text, const std::string& place) {
   }
   if (text.empty()) {
     refuse(place,
-           "a selector is empty; write a path of case ids such as 'interbus/slave/**', or a tag such as "
+           "a selector is empty; write a path of case ids such as 'PROTOCOL/ROLE/**', or a tag such as "
            "'+must'");
   }
   selector.text = text;

@@ -1,11 +1,11 @@
 // What a person writes to choose test cases.
 //
-//   interbus/slave/**     path glob over ids: `*` any text within a part, `?` one character, `**` any number
+//   PROTOCOL/ROLE/**      path glob over ids: `*` any text within a part, `?` one character, `**` any number
 //   of
 //                         parts (also none); a text without these characters names one case
 //   +must                 every case with the tag
 //   @smoke.txt            the selectors of a file, one per line; `#` starts a comment
-//   !interbus/slave/long* takes away what the selector after it matches
+//   !PROTOCOL/ROLE/long*  takes away what the selector after it matches
 //
 // Contract: cases tagged `canary` must fail, so they are selected only when they are named exactly or by
 // `+canary`, never by a glob. A selector file that cannot be read, that includes itself, is very long or has

@@ -39,7 +39,7 @@ struct PartialSource {
 };
 
 struct TestCase {
-  std::string id;       // "interbus/slave/data_cycle/weight_four_codeword_is_accepted"; never reused
+  std::string id;       // "PROTOCOL/ROLE/data_cycle/weight_four_codeword_is_accepted"; never reused
   std::string purpose;  // the label of the test purpose, "IS-14"
   std::string requirement;
   judge::Reference reference;
@@ -129,7 +129,7 @@ struct Outcome {
 
 // A role that has commands and a model.
 struct SequenceRole {
-  TestCase test_case;  // "valve_bus/node/check/follows_the_model"
+  TestCase test_case;  // "PROTOCOL/ROLE/check/follows_the_model"
   SequenceVocabulary vocabulary;
 };
 

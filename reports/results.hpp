@@ -99,7 +99,7 @@ struct PlannedFault {
 };
 std::vector<PlannedFault> planned_faults(const Run& run);
 
-// The command that runs this case again: "fieldproof run interbus/slave/x --seed 7".
+// The command that runs this case again: "fieldproof run PROTOCOL/ROLE/x --seed 7".
 std::string reproduce_command(const RunIdentity& identity, const std::string& case_id);
 
 // `word` as one word of a POSIX shell, quoted only where it must be.

@@ -1,6 +1,7 @@
 // The fuzz target of every role: octets are a sequence, which runs on the bench of `check` with the reference
 // under test and the comparison of `check`. A finding is one about the reference (or the comparison) and ends
-// the program with the sequence in words. FIELDPROOF_ROLE names the role: "PROTOCOL/ROLE".
+// the program with the sequence in words. FIELDPROOF_ROLE names the role, "PROTOCOL/ROLE", FIELDPROOF_SUITE
+// its suite, which FIELDPROOF_SUITE_HEADER declares.
 //
 // The first octet of an input is the seed of the run.
 
@@ -12,11 +13,9 @@
 #include <span>
 #include <string_view>
 
-#include "conformance/fieldbus_dll/suite.hpp"
-#include "conformance/interbus/suite.hpp"
+#include FIELDPROOF_SUITE_HEADER
 #include "conformance/sequence_check.hpp"
 #include "conformance/sequence_octets.hpp"
-#include "conformance/valve_bus/suite.hpp"
 #include "harness/kernel/check.hpp"
 
 namespace {
@@ -31,14 +30,11 @@ struct Target {
 };
 
 Target target() {
-  for (auto make : {+[] { return valve_bus_suite(); }, +[] { return interbus_suite(); },
-                    +[] { return fieldbus_dll_suite(); }}) {
-    Target one{make()};
-    for (const SequenceRole& role : one.suite->sequence_roles()) {
-      if (role.test_case.id.starts_with(FIELDPROOF_ROLE "/")) one.role = &role;
-    }
-    if (one.role != nullptr) return one;
+  Target one{FIELDPROOF_SUITE()};
+  for (const SequenceRole& role : one.suite->sequence_roles()) {
+    if (role.test_case.id.starts_with(FIELDPROOF_ROLE "/")) one.role = &role;
   }
+  if (one.role != nullptr) return one;
   std::fprintf(stderr, "there are no sequences for " FIELDPROOF_ROLE "\n");
   std::abort();
 }

@@ -3,7 +3,7 @@
  * and freed on the other; no call keeps a pointer behind its return.
  *
  *   cc -O2 -flto -shared -fPIC -fvisibility=hidden -o libnode.so node.c
- *   fieldproof run valve_bus/node/read/is_answered --iut plugin:./libnode.so
+ *   fieldproof run PROTOCOL/ROLE/read/is_answered --iut plugin:./libnode.so
  *
  * The library exports one function, `fieldproof_plugin`; with -fvisibility=hidden it exports nothing else,
  * and calls between its own functions go straight. The bench calls what it returns in this order:
@@ -69,7 +69,7 @@ typedef struct fieldproof_setting {
 } fieldproof_setting;
 
 typedef struct fieldproof_case {
-  const char* id; /* "valve_bus/node/read/is_answered" */
+  const char* id; /* "PROTOCOL/ROLE/read/is_answered" */
   fieldproof_word seed;
   const fieldproof_setting* settings;
   unsigned setting_count;

@@ -20,7 +20,7 @@ class BrokenInvariant : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-// While it lives, failures on this thread carry what `describe` returns, e.g. "case interbus/slave/..., seed
+// While it lives, failures on this thread carry what `describe` returns, e.g. "case PROTOCOL/ROLE/..., seed
 // 7, at 12 us".
 class CheckContext {
  public:
