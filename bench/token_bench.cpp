@@ -10,9 +10,9 @@
 
 #include "bench/rows.hpp"
 #include "harness/kernel/random.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
-#include "protocols/fieldbus_dll/poisson_arrivals.hpp"
-#include "protocols/fieldbus_dll/token_rotation.hpp"
+#include "harness/traffic/milliseconds.hpp"
+#include "harness/traffic/poisson_arrivals.hpp"
+#include "harness/traffic/token_rotation.hpp"
 
 #ifdef FIELDPROOF_HAVE_NS3
 #include <ns3/nstime.h>
@@ -23,19 +23,19 @@
 namespace fieldproof::bench {
 namespace {
 
-using fieldbus_dll::TokenRun;
-using fieldbus_dll::UrgentTraffic;
+using traffic::TokenRun;
+using traffic::UrgentTraffic;
 
-constexpr TokenRun kRun{.seed = 1, .urgent_packets = 50'000, .warm_up_rotations = 100};
+constexpr traffic::TokenRun kRun{.seed = 1, .urgent_packets = 50'000, .warm_up_rotations = 100};
 
-UrgentTraffic traffic_of_the_paper() {
-  return fieldbus_dll::paper_traffic(0.35, 1, 1, 34'816 * kernel::kMicrosecond);
+traffic::UrgentTraffic traffic_of_the_paper() {
+  return traffic::paper_traffic(0.35, 1, 1, 34'816 * kernel::kMicrosecond);
 }
 
 // As one would write it for this case alone: 16 nodes, times as numbers.
 class HandWritten {
  public:
-  explicit HandWritten(const UrgentTraffic& traffic)
+  explicit HandWritten(const traffic::UrgentTraffic& traffic)
       : urgent_length_(traffic.urgent_length.count()),
         available_length_(traffic.available_length.count()),
         overhead_(traffic.empty_rotation.count() / std::int64_t{kNodes}),
@@ -100,7 +100,7 @@ double by_hand() {
 }
 
 double by_scheduler() {
-  return fieldbus_dll::rotate_token(traffic_of_the_paper(), kRun).mean_delay;
+  return traffic::rotate_token(traffic_of_the_paper(), kRun).mean_delay;
 }
 
 #ifdef FIELDPROOF_HAVE_NS3
@@ -111,7 +111,7 @@ enum class Ns3Arrivals { events, drawn_at_visits };
 
 class OnNs3 {
  public:
-  OnNs3(const UrgentTraffic& traffic, const char* queue, Ns3Arrivals arrivals)
+  OnNs3(const traffic::UrgentTraffic& traffic, const char* queue, Ns3Arrivals arrivals)
       : traffic_(traffic), has_events_(arrivals == Ns3Arrivals::events) {
     ns3::ObjectFactory factory;
     factory.SetTypeId(queue);
@@ -167,7 +167,7 @@ class OnNs3 {
       expect();
     }
 
-    fieldbus_dll::PoissonArrivals arrivals_;
+    traffic::PoissonArrivals arrivals_;
     std::deque<kernel::Time> waiting_;
   };
 
@@ -182,7 +182,7 @@ class OnNs3 {
     }
     const kernel::Time arrived = urgent_[at_].take();
     if (rotation_ >= kRun.warm_up_rotations) {
-      sum_ += fieldbus_dll::ms(now() + traffic_.urgent_length - arrived);
+      sum_ += traffic::ms(now() + traffic_.urgent_length - arrived);
       if (++count_ == kRun.urgent_packets) ns3::Simulator::Stop();
     }
     schedule(traffic_.urgent_length, &OnNs3::on_urgent_sent);
@@ -209,7 +209,7 @@ class OnNs3 {
     schedule(transmission + overhead_, &OnNs3::on_token);
   }
 
-  UrgentTraffic traffic_;
+  traffic::UrgentTraffic traffic_;
   bool has_events_;
   kernel::Duration overhead_ = traffic_.empty_rotation / std::int64_t{kNs3Nodes};
   std::vector<Queue> urgent_, available_;

@@ -2,14 +2,14 @@
 # compiler bounds inlining for each source that it sees: joined, a ring of 64 stations took a quarter more time.
 # Everything else is joined and optimized less: that is a third of the time of the release build.
 set(hot_sources
-  "harness/(kernel|line|trace|segment)/"
+  "harness/(kernel|line|trace|segment|traffic)/"
   "harness/fault/(rule|rule_channel|condition|telegram_fields|channel_chain|scripted_channel|arrivals)\\."
   "harness/measure/(distribution|edge_skew)\\."
   "harness/iut/(peer|server|message|plugin|attached_case|[a-z_]*device)\\."
   "protocols/interbus/(ring|slave|latching_slave|master|master_cycles|master_verdict|cycle_frame|cycle_fields)\\."
   "protocols/interbus/(station_timing|telegram_front)\\."
   "protocols/valve_bus/(node|attached_node|attached_line|codec|frame|transmitter)\\."
-  "protocols/fieldbus_dll/(ff_link|ff_las|ff_station|ff_dlpdu|line_end|token_rotation|token_traffic)\\."
+  "protocols/fieldbus_dll/(ff_link|ff_las|ff_station|ff_dlpdu|line_end)\\."
   "emc/residual/(dual_weights|register_cycles|residual_simulation)\\."
   "emc/(burst_channel|effective_time|generator|pulse|sampled_impact|exponential|random_flips|coupling|framing)\\.")
 

@@ -47,7 +47,7 @@ function(fieldproof_install export)
   install(EXPORT ${export} NAMESPACE fieldproof:: DESTINATION "${package_folder}" COMPONENT development)
 endfunction()
 
-set(harness_libraries kernel frame_check line config trace fault segment judge field measure network iut harness)
+set(harness_libraries kernel frame_check line config trace fault segment judge field measure traffic network iut harness)
 list(TRANSFORM harness_libraries PREPEND fieldproof_)
 fieldproof_install(fieldproofTargets ${harness_libraries} ${protocol_libraries}
   fieldproof_conformance fieldproof_fuzz fieldproof_emc fieldproof_reports fieldproof_papers fieldproof_cli fieldproof_plugin)

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "harness/traffic/milliseconds.hpp"
 #include "papers/link_bursts.hpp"
 #include "papers/sections.hpp"
 #include "protocols/fieldbus_dll/control_loop.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
 
 namespace fieldproof::papers {
 namespace {
@@ -44,7 +44,7 @@ std::string told_loop(const ControlLoop& loop) {
 }
 
 double delay_ms(std::int64_t picoseconds) {
-  return fieldbus_dll::ms(kernel::Duration{picoseconds});
+  return traffic::ms(kernel::Duration{picoseconds});
 }
 
 std::string told_hops(const ControlLoop& loop) {
@@ -54,8 +54,7 @@ std::string told_hops(const ControlLoop& loop) {
   };
   return fmt::format("to the controller {}; to the valve {}; loop delay {:.1f} to {:.1f} ms, mean {:.1f} ms",
                      hop(loop.to_controller), hop(loop.to_valve), delay_ms(loop.loop_delay.min()),
-                     delay_ms(loop.loop_delay.max()),
-                     loop.loop_delay.mean() / fieldbus_dll::kPicosecondsPerMs);
+                     delay_ms(loop.loop_delay.max()), loop.loop_delay.mean() / traffic::kPicosecondsPerMs);
 }
 
 PublishedRow loop_row(std::string what, const ControlLoop& loop) {
@@ -111,7 +110,7 @@ std::string told_relationship(std::string_view what, const fieldbus_dll::Relatio
   if (figures.delay.is_empty()) return fmt::format("{}: {} sent, none arrived", what, figures.sent);
   return fmt::format("{} {:.0f} to {:.0f} ms, mean {:.0f} ms ({} of {} missing)", what,
                      delay_ms(figures.delay.min()), delay_ms(figures.delay.max()),
-                     figures.delay.mean() / fieldbus_dll::kPicosecondsPerMs, figures.missing, figures.sent);
+                     figures.delay.mean() / traffic::kPicosecondsPerMs, figures.missing, figures.sent);
 }
 
 PublishedRow operator_row(std::string what, const ControlLoop& loop) {
@@ -120,7 +119,7 @@ PublishedRow operator_row(std::string what, const ControlLoop& loop) {
                       told_relationship("alarms", loop.alarms), told_relationship("trends", loop.trends)),
           fmt::format("{}; the transmitter is without the token for {:.0f} ms at most",
                       loop.requests.arrived > 0 ? told_loop(loop) : "no setpoint has ever come",
-                      fieldbus_dll::ms(loop.longest_without_token)),
+                      traffic::ms(loop.longest_without_token)),
           std::nullopt};
 }
 

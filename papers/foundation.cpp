@@ -8,18 +8,18 @@
 #include <string>
 #include <utility>
 
+#include "harness/traffic/milliseconds.hpp"
+#include "harness/traffic/token_rotation.hpp"
+#include "harness/traffic/urgent_delay.hpp"
 #include "papers/sections.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
-#include "protocols/fieldbus_dll/token_rotation.hpp"
-#include "protocols/fieldbus_dll/urgent_delay.hpp"
 #include "protocols/fieldbus_dll/urgent_experiment.hpp"
 
 namespace fieldproof::papers {
 namespace {
 
-using fieldbus_dll::UrgentTraffic;
 using reports::PublishedRow;
 using reports::PublishedSection;
+using traffic::UrgentTraffic;
 
 constexpr std::array kLoads = {0.2, 0.35, 0.5};
 constexpr std::array kTargets = {16'600, 20'000, 25'000, 30'000, 34'816, 48'680, 60'000};  // TTRT, us
@@ -38,16 +38,16 @@ double octets_ms(unsigned octets) {
 // A traffic, as the model has it and as its queues and rotations go.
 class Studied {
  public:
-  Studied(const UrgentTraffic& traffic, std::uint64_t seed)
+  Studied(const traffic::UrgentTraffic& traffic, std::uint64_t seed)
       : traffic_(traffic),
-        model_(urgent_delay(traffic)),
-        conserving_(urgent_delay(traffic, fieldbus_dll::Balance::flow_conserving)),
-        simulated_(fieldbus_dll::rotate_token(traffic, {.seed = seed})),
-        is_starved_(fieldbus_dll::available_capacity(traffic, seed) <= traffic.available_per_ms) {}
+        model_(traffic::urgent_delay(traffic)),
+        conserving_(traffic::urgent_delay(traffic, traffic::Balance::flow_conserving)),
+        simulated_(traffic::rotate_token(traffic, {.seed = seed})),
+        is_starved_(traffic::available_capacity(traffic, seed) <= traffic.available_per_ms) {}
 
-  const fieldbus_dll::UrgentDelay& model() const { return model_; }
-  const fieldbus_dll::UrgentDelay& conserving() const { return conserving_; }
-  const fieldbus_dll::TokenFigures& simulated() const { return simulated_; }
+  const traffic::UrgentDelay& model() const { return model_; }
+  const traffic::UrgentDelay& conserving() const { return conserving_; }
+  const traffic::TokenFigures& simulated() const { return simulated_; }
   bool is_starved() const { return is_starved_; }
 
   PublishedRow row(std::string what) const { return {std::move(what), "", reproduced(), remark(), agrees()}; }
@@ -76,15 +76,15 @@ class Studied {
   // What must hold whatever the model says: as much leaves as arrives, so a rotation takes R / (1 - U).
   std::optional<bool> agrees() const {
     if (is_starved_) return std::nullopt;
-    const double expected = fieldbus_dll::ms(traffic_.empty_rotation) / (1 - traffic_.load());
+    const double expected = traffic::ms(traffic_.empty_rotation) / (1 - traffic_.load());
     return std::abs(simulated_.mean_rotation - expected) <=
            kFlowTolerance * expected + 3 * simulated_.rotation_error;
   }
 
-  UrgentTraffic traffic_;
-  fieldbus_dll::UrgentDelay model_;
-  fieldbus_dll::UrgentDelay conserving_;
-  fieldbus_dll::TokenFigures simulated_;
+  traffic::UrgentTraffic traffic_;
+  traffic::UrgentDelay model_;
+  traffic::UrgentDelay conserving_;
+  traffic::TokenFigures simulated_;
   bool is_starved_;
 };
 
@@ -110,10 +110,10 @@ class DelayCurves {
 };
 
 // Stations and frames beside the simulation that has neither.
-PublishedRow station_row(std::string what, const UrgentTraffic& traffic, const Settings& settings) {
+PublishedRow station_row(std::string what, const traffic::UrgentTraffic& traffic, const Settings& settings) {
   const auto found = fieldbus_dll::run_urgent_experiment(traffic, settings.duration, settings.seed);
   const Studied studied(traffic, settings.seed);
-  const fieldbus_dll::TokenFigures& wanted = studied.simulated();
+  const traffic::TokenFigures& wanted = studied.simulated();
   PublishedRow row{
       std::move(what), "",
       fmt::format("{:.4f} ms (+- {:.4f}) of {} packets, mean ATRT {:.3f} ms, P1 {:.4f}", found.mean_delay,
@@ -125,7 +125,7 @@ PublishedRow station_row(std::string what, const UrgentTraffic& traffic, const S
     row.remark += "; time-available queues grow, so nothing is compared";
     return row;
   }
-  const double rotation = fieldbus_dll::ms(traffic.empty_rotation) / (1 - traffic.load());
+  const double rotation = traffic::ms(traffic.empty_rotation) / (1 - traffic.load());
   row.agrees = std::abs(found.mean_delay - wanted.mean_delay) <=
                    4 * std::hypot(found.standard_error, wanted.standard_error) + 0.005 * wanted.mean_delay &&
                std::abs(found.mean_rotation - rotation) <= 0.001 * rotation + 4 * found.rotation_error;
@@ -146,7 +146,7 @@ PublishedSection foundation_rotations(const Settings& settings) {
       "that "
       "equals the TTRT counts as too long, as the text says and (14) leaves open.";
   for (const int target : {16'600, 34'816}) {
-    const Studied one(fieldbus_dll::paper_traffic(0.35, 1, 1, microseconds(target)), settings.seed);
+    const Studied one(traffic::paper_traffic(0.35, 1, 1, microseconds(target)), settings.seed);
     section.rows.push_back(
         {fmt::format("TTRT {:.3f} ms: mean ATRT and share of tokens with priority 1", target / 1e3), "",
          fmt::format("{:.3f} ms, {:.4f} simulated", one.simulated().mean_rotation,
@@ -171,7 +171,7 @@ PublishedSection foundation_targets(const Settings& settings) {
   for (const double load : kLoads) {
     DelayCurves curves(fmt::format("Figure 7: delay of urgent data, U = {}", load), "TTRT, ms");
     for (const int target : kTargets) {
-      const Studied one(fieldbus_dll::paper_traffic(load, 1, 1, microseconds(target)), settings.seed);
+      const Studied one(traffic::paper_traffic(load, 1, 1, microseconds(target)), settings.seed);
       section.rows.push_back(one.row(fmt::format("U = {}, TTRT {:.3f} ms", load, target / 1e3)));
       curves.add(target / 1e3, one);
     }
@@ -190,7 +190,7 @@ PublishedSection foundation_shares(const Settings& settings) {
   for (const double load : kLoads) {
     for (const Shares& shares : kShares) {
       section.rows.push_back(
-          Studied(fieldbus_dll::paper_traffic(load, shares.urgent, shares.available, microseconds(48'680)),
+          Studied(traffic::paper_traffic(load, shares.urgent, shares.available, microseconds(48'680)),
                   settings.seed)
               .row(fmt::format("U = {}, lambda0:lambda1 = {}", load, shares.name)));
     }
@@ -205,10 +205,10 @@ PublishedSection foundation_stations(const Settings& settings) {
       "Each frame of scheduler and nodes is on a line of 1 Mbit/s, for {:.0f} s. It agrees where the delay "
       "is within four standard errors and 0.5 % of the simulation without frames, and the rotation within "
       "0.1 % and four standard errors of R / (1 - U).",
-      fieldbus_dll::ms(settings.duration) / 1e3);
+      traffic::ms(settings.duration) / 1e3);
   for (const double load : kLoads) {
     for (const int target : {20'000, 34'816, 48'680}) {
-      const UrgentTraffic traffic = fieldbus_dll::paper_traffic(load, 1, 1, microseconds(target));
+      const traffic::UrgentTraffic traffic = traffic::paper_traffic(load, 1, 1, microseconds(target));
       section.rows.push_back(
           station_row(fmt::format("U = {}, TTRT {:.3f} ms", load, target / 1e3), traffic, settings));
     }
@@ -224,26 +224,26 @@ PublishedSection foundation_lengths(const Settings& settings) {
       "With "
       "that reading they raise it, in the model and in the simulation, because more of them come. With the "
       "rates of the longest packets kept instead, they lower it.";
-  const auto add = [&](std::string what, const UrgentTraffic& traffic) {
+  const auto add = [&](std::string what, const traffic::UrgentTraffic& traffic) {
     section.rows.push_back(Studied(traffic, settings.seed).row(std::move(what)));
   };
   const auto of = [](double load, unsigned urgent_octets, unsigned available_octets) {
-    UrgentTraffic traffic = fieldbus_dll::paper_traffic(load, 1, 1, microseconds(48'680));
+    traffic::UrgentTraffic traffic = traffic::paper_traffic(load, 1, 1, microseconds(48'680));
     traffic.urgent_length = kernel::Duration{static_cast<std::int64_t>(octets_ms(urgent_octets) * 1e9)};
     traffic.available_length = kernel::Duration{static_cast<std::int64_t>(octets_ms(available_octets) * 1e9)};
     return traffic;
   };
   for (const double load : kLoads) {
     for (const unsigned octets : {75U, 139U, 203U, 267U}) {
-      UrgentTraffic traffic = of(load, 75, octets);
-      set_load(traffic, load, 1, 1);
+      traffic::UrgentTraffic traffic = of(load, 75, octets);
+      traffic::set_load(traffic, load, 1, 1);
       add(fmt::format("U = {}, time-available packets of {} octets", load, octets), traffic);
       if (octets == 267) continue;
       add(fmt::format("the same, at the rates of U = {} with 267 octets", load), of(load, 75, octets));
     }
     for (const unsigned octets : {27U, 51U}) {
-      UrgentTraffic traffic = of(load, octets, 267);
-      set_load(traffic, load, 1, 1);
+      traffic::UrgentTraffic traffic = of(load, octets, 267);
+      traffic::set_load(traffic, load, 1, 1);
       add(fmt::format("U = {}, urgent packets of {} octets", load, octets), traffic);
     }
   }

@@ -6,9 +6,9 @@
 
 #include "conformance/fieldbus_dll/ff_cases.hpp"
 #include "conformance/fieldbus_dll/ff_expect.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
-#include "protocols/fieldbus_dll/poisson_arrivals.hpp"
-#include "protocols/fieldbus_dll/token_rotation.hpp"
+#include "harness/traffic/milliseconds.hpp"
+#include "harness/traffic/poisson_arrivals.hpp"
+#include "harness/traffic/token_rotation.hpp"
 
 // The token among the sixteen nodes of the paper: how long a rotation takes, and how often it admits all
 // data.
@@ -58,13 +58,13 @@ class PaperQueue {
   }
 
  private:
-  fieldbus_dll::PoissonArrivals arrivals_;
+  traffic::PoissonArrivals arrivals_;
   std::uint64_t waiting_ = 0;
 };
 
 class PaperNodes {
  public:
-  PaperNodes(FfBench& bench, const fieldbus_dll::UrgentTraffic& traffic) : bench_(bench) {
+  PaperNodes(FfBench& bench, const traffic::UrgentTraffic& traffic) : bench_(bench) {
     for (std::size_t n = 0; n < kPaperNodes; ++n) {
       urgent_.emplace_back(traffic.urgent_per_ms, bench.random().split(2 * n));
       available_.emplace_back(traffic.available_per_ms, bench.random().split(2 * n + 1));
@@ -102,7 +102,7 @@ struct Rotations {
   double share_of_all_data = 0;
 };
 
-Rotations rotate(FfBench& bench, CaseJudge& judge, const fieldbus_dll::UrgentTraffic& traffic,
+Rotations rotate(FfBench& bench, CaseJudge& judge, const traffic::UrgentTraffic& traffic,
                  std::uint64_t circulations) {
   constexpr std::uint64_t kWarmUp = 50;
   PaperNodes nodes(bench, traffic);
@@ -128,19 +128,19 @@ Rotations rotate(FfBench& bench, CaseJudge& judge, const fieldbus_dll::UrgentTra
     nodes.use(*one);
   }
   found.count = circulations;
-  found.mean = fieldbus_dll::ms(last - first) / static_cast<double>(circulations);
+  found.mean = traffic::ms(last - first) / static_cast<double>(circulations);
   found.share_of_all_data = static_cast<double>(with_all_data) / static_cast<double>(circulations);
   return found;
 }
 
 void rotations_are_as_computed(FfBench& bench, CaseJudge& judge) {
-  const auto traffic = fieldbus_dll::paper_traffic(kLoad, 1, 1, bench.rules().target_rotation);
+  const auto traffic = traffic::paper_traffic(kLoad, 1, 1, bench.rules().target_rotation);
   const Rotations found = rotate(bench, judge, traffic, bench.volume<std::uint64_t>(300, 5'000));
   // Every packet that comes is sent, so a rotation takes R / (1 - U) in the mean, whatever is admitted when.
-  const double mean = fieldbus_dll::ms(traffic.empty_rotation) / (1 - kLoad);
+  const double mean = traffic::ms(traffic.empty_rotation) / (1 - kLoad);
   judge.expect_between("mean rotation", "ms", found.mean, 0.97 * mean, 1.03 * mean, "rotation_wrong");
   // Another simulation, without frames.
-  const fieldbus_dll::TokenFigures wanted = rotate_token(traffic, {.seed = 1, .urgent_packets = 100'000});
+  const traffic::TokenFigures wanted = traffic::rotate_token(traffic, {.seed = 1, .urgent_packets = 100'000});
   const double share = wanted.priority_1;
   const double error = std::sqrt(share * (1 - share) / static_cast<double>(found.count));
   const double tolerance = 0.02 + 5 * error;

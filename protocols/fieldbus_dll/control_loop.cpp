@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "harness/kernel/error.hpp"
+#include "harness/traffic/poisson_arrivals.hpp"
 #include "protocols/fieldbus_dll/function_blocks.hpp"
-#include "protocols/fieldbus_dll/poisson_arrivals.hpp"
 #include "protocols/fieldbus_dll/relationships.hpp"
 
 namespace fieldproof::fieldbus_dll {
@@ -333,7 +333,7 @@ class Operation {
 // A node that sends messages to its neighbour.
 struct Talker {
   std::uint8_t node;
-  PoissonArrivals arrivals;
+  traffic::PoissonArrivals arrivals;
   std::uint64_t submitted = 0;
 };
 

@@ -9,7 +9,6 @@
 
 #include "protocols/fieldbus_dll/ff_device.hpp"
 #include "protocols/fieldbus_dll/line_end.hpp"
-#include "protocols/fieldbus_dll/request_queues.hpp"
 
 // The reference basic device of the profile FF-P.
 //
@@ -66,7 +65,7 @@ class FfStation : public FfDevice {
     FfDlpdu dlpdu;
     kernel::Time until;
   };
-  using Queues = RequestQueues<FfRequest>;
+  using Queues = LinkQueues<FfRequest>;
 
   const FfConfiguration& configuration() const { return configuration_; }
   const FfRules& rules() const { return configuration_.rules; }

@@ -6,7 +6,6 @@
 
 #include "protocols/fieldbus_dll/isa_device.hpp"
 #include "protocols/fieldbus_dll/line_end.hpp"
-#include "protocols/fieldbus_dll/request_queues.hpp"
 
 // The reference data link entity of the profile ISA-D.
 //
@@ -55,7 +54,7 @@ class IsaDle : public IsaDevice {
     kernel::Time begin;
     kernel::Time end;
   };
-  using Queues = RequestQueues<IsaRequest>;
+  using Queues = LinkQueues<IsaRequest>;
 
   const IsaConfiguration& configuration() const { return configuration_; }
   const IsaRules& rules() const { return configuration_.rules; }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "harness/kernel/time.hpp"
+#include "harness/traffic/request_queues.hpp"
 
 // The numbers of a link that every profile of the data link has: its rate, its frames, the times that bound
 // who speaks when. Times are octet durations, as the data link counts them.
@@ -13,6 +14,11 @@ namespace fieldproof::fieldbus_dll {
 
 // PP. What is more urgent is the greater.
 enum class Priority : std::uint8_t { time_available = 1, normal = 2, urgent = 3 };
+
+// What waits to be sent.
+template <typename Request>
+using LinkQueues =
+    traffic::RequestQueues<Request, Priority::urgent, Priority::normal, Priority::time_available>;
 
 // Bits of the first octet of a DLPDU.
 inline constexpr unsigned kFinalBit = 0x04;

@@ -4,19 +4,21 @@
 #include <cmath>
 
 #include "harness/kernel/random.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
+#include "harness/traffic/milliseconds.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
+
+using traffic::ms;
 
 constexpr double kHalfWidth95 = 1.96;
 constexpr std::size_t kFewBatches = 20;  // that prove nothing of a standard error
 
 // What no rotation reaches: each queue sends, and so do all items of the macrocycles that it touches.
-kernel::Duration unreachable(const TokenTraffic& traffic) {
+kernel::Duration unreachable(const traffic::TokenTraffic& traffic) {
   kernel::Duration longest = traffic.empty_rotation();
-  for (const TokenNode& node : traffic.nodes) {
-    for (const PacketStream& stream : node.streams) longest += stream.length;
+  for (const traffic::TokenNode& node : traffic.nodes) {
+    for (const traffic::PacketStream& stream : node.streams) longest += stream.length;
   }
   // Each visit and each packet may wait for items; after that many macrocycles all of them had their gap.
   if (!traffic.schedule.empty()) longest += static_cast<int>(traffic.nodes.size() + 1) * traffic.macrocycle;
@@ -24,16 +26,18 @@ kernel::Duration unreachable(const TokenTraffic& traffic) {
 }
 
 // A rotation that equals its target is too long: the first value admits nothing, the last one everything.
-std::vector<kernel::Duration> targets_of(const TokenTraffic& traffic, const TrafficRun& search) {
-  TokenTraffic free = traffic;
+std::vector<kernel::Duration> targets_of(const traffic::TokenTraffic& traffic,
+                                         const traffic::TrafficRun& search) {
+  traffic::TokenTraffic free = traffic;
   free.target = unreachable(traffic);
-  const double longest = pass_token(free, search).longest_rotation;
+  const double longest = traffic::pass_token(free, search).longest_rotation;
   const kernel::Duration shortest = traffic.empty_rotation();
   // Whole microseconds: what is told is what was proven.
   const auto whole = [](kernel::Duration target) {
     return target / kernel::kMicrosecond * kernel::kMicrosecond;
   };
-  const auto range = kernel::Duration{static_cast<std::int64_t>(longest * kPicosecondsPerMs)} - shortest;
+  const auto range =
+      kernel::Duration{static_cast<std::int64_t>(longest * traffic::kPicosecondsPerMs)} - shortest;
   std::vector<kernel::Duration> targets;
   for (unsigned n = 0; n + 1 < kTargets; ++n) {
     targets.push_back(whole(shortest + n * (std::max(range, kernel::Duration::zero()) / (kTargets - 2))));
@@ -49,19 +53,20 @@ bool is_worse(double one, double other, bool is_share) {
 }
 
 // What is held with 95 %: the mean or the share, and what it is off by at most.
-double held(const StreamFigures& urgent, bool is_share, Judges judges) {
+double held(const traffic::StreamFigures& urgent, bool is_share, Judges judges) {
   const bool is_proof = judges == Judges::proof;
   if (is_share) return is_proof ? urgent.least_within : urgent.within;
   return urgent.mean_delay + (is_proof ? kHalfWidth95 * urgent.standard_error : 0);
 }
 
-TargetRun judged(kernel::Duration target, TrafficFigures figures, const DelayBound& bound, Judges judges) {
+TargetRun judged(kernel::Duration target, traffic::TrafficFigures figures, const DelayBound& bound,
+                 Judges judges) {
   TargetRun run{.target = target, .figures = std::move(figures)};
   const bool is_share = bound.share.has_value();
   std::optional<double> worst;
   bool is_met = true;
   for (std::size_t n = 0; n < run.figures.nodes.size(); ++n) {
-    const StreamFigures& urgent = run.figures.nodes[n][kUrgent];
+    const traffic::StreamFigures& urgent = run.figures.nodes[n][traffic::kUrgent];
     if (urgent.arrive_per_ms == 0) continue;
     const double this_one = held(urgent, is_share, judges);
     is_met &= !urgent.is_unstable && urgent.packets > 0;
@@ -81,20 +86,20 @@ TargetRun judged(kernel::Duration target, TrafficFigures figures, const DelayBou
 // Time-available packets that leave all nodes in a millisecond.
 double carried(const TargetRun& run) {
   double sum = 0;
-  for (const auto& node : run.figures.nodes) sum += node[kTimeAvailable].leave_per_ms;
+  for (const auto& node : run.figures.nodes) sum += node[traffic::kTimeAvailable].leave_per_ms;
   return sum;
 }
 
 bool harms_less(const TargetRun& one, const TargetRun& other) {
-  const StreamFigures& a = one.figures.all[kTimeAvailable];
-  const StreamFigures& b = other.figures.all[kTimeAvailable];
+  const traffic::StreamFigures& a = one.figures.all[traffic::kTimeAvailable];
+  const traffic::StreamFigures& b = other.figures.all[traffic::kTimeAvailable];
   if (a.is_unstable != b.is_unstable) return b.is_unstable;
   return a.is_unstable ? carried(one) > carried(other) : a.mean_delay < b.mean_delay;
 }
 
 bool is_tie(const TargetRun& one, const TargetRun& best) {
-  const StreamFigures& a = one.figures.all[kTimeAvailable];
-  const StreamFigures& b = best.figures.all[kTimeAvailable];
+  const traffic::StreamFigures& a = one.figures.all[traffic::kTimeAvailable];
+  const traffic::StreamFigures& b = best.figures.all[traffic::kTimeAvailable];
   if (a.is_unstable || b.is_unstable) return a.is_unstable == b.is_unstable && carried(one) == carried(best);
   return a.mean_delay - b.mean_delay <= b.standard_error;
 }
@@ -125,13 +130,14 @@ std::size_t best_of(const std::vector<TargetRun>& searched, bool is_share) {
 }
 
 bool begins_to_grow(const TargetRun& searched, const TargetRun& longer) {
-  return !searched.figures.all[kTimeAvailable].is_unstable && longer.figures.all[kTimeAvailable].is_unstable;
+  return !searched.figures.all[traffic::kTimeAvailable].is_unstable &&
+         longer.figures.all[traffic::kTimeAvailable].is_unstable;
 }
 
 // Packets that a proof counts: half of what its visits take, if that is less, so that its batches are full.
-std::uint64_t packets_of_proof(const TrafficFigures& searched, const TrafficRun& proof) {
+std::uint64_t packets_of_proof(const traffic::TrafficFigures& searched, const traffic::TrafficRun& proof) {
   double packets = 0;
-  for (const auto& node : searched.nodes) packets += static_cast<double>(node[kUrgent].packets);
+  for (const auto& node : searched.nodes) packets += static_cast<double>(node[traffic::kUrgent].packets);
   const double rotations = static_cast<double>(proof.visits) / static_cast<double>(searched.nodes.size());
   const double most =
       searched.rotations > 0 ? packets / static_cast<double>(searched.rotations) * rotations : 0;
@@ -140,20 +146,20 @@ std::uint64_t packets_of_proof(const TrafficFigures& searched, const TrafficRun&
 
 }  // namespace
 
-TargetPlan plan_target(const TokenTraffic& traffic, const DelayBound& bound, std::uint64_t seed) {
-  TrafficRun search{.urgent_packets = 100'000, .warm_up_rotations = 2'000, .visits = 2'000'000};
+TargetPlan plan_target(const traffic::TokenTraffic& traffic, const DelayBound& bound, std::uint64_t seed) {
+  traffic::TrafficRun search{.urgent_packets = 100'000, .warm_up_rotations = 2'000, .visits = 2'000'000};
   search.seed = kernel::Random(seed).split("search").seed();
   search.bound = bound.at_most;
-  TrafficRun proof{.urgent_packets = 1'000'000, .warm_up_rotations = 10'000, .visits = 20'000'000};
+  traffic::TrafficRun proof{.urgent_packets = 1'000'000, .warm_up_rotations = 10'000, .visits = 20'000'000};
   proof.seed = kernel::Random(seed).split("proof").seed();
   proof.bound = bound.at_most;
 
   check(traffic);
   TargetPlan plan;
-  TokenTraffic tried = traffic;
+  traffic::TokenTraffic tried = traffic;
   for (const kernel::Duration target : targets_of(traffic, search)) {
     tried.target = target;
-    plan.searched.push_back(judged(target, pass_token(tried, search), bound, Judges::search));
+    plan.searched.push_back(judged(target, traffic::pass_token(tried, search), bound, Judges::search));
   }
   plan.best = best_of(plan.searched, bound.share.has_value());
   const TargetRun* last = nullptr;
@@ -163,9 +169,9 @@ TargetPlan plan_target(const TokenTraffic& traffic, const DelayBound& bound, std
     if (last != nullptr && last->figures.mean_rotation == candidate->figures.mean_rotation) continue;
     last = candidate;
     tried.target = candidate->target;
-    TrafficRun longer = proof;
+    traffic::TrafficRun longer = proof;
     longer.urgent_packets = packets_of_proof(candidate->figures, proof);
-    plan.tried.push_back(judged(tried.target, pass_token(tried, longer), bound, Judges::proof));
+    plan.tried.push_back(judged(tried.target, traffic::pass_token(tried, longer), bound, Judges::proof));
     plan.is_proven = plan.tried.back().meets_bound && !begins_to_grow(*candidate, plan.tried.back());
     if (plan.is_proven) break;
   }

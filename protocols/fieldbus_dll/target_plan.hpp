@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "protocols/fieldbus_dll/token_traffic.hpp"
+#include "harness/traffic/token_traffic.hpp"
 
 // The target rotation time (TTRT) that keeps a bound of urgent delays with the least harm to time-available
 // data.
@@ -27,7 +27,7 @@ struct DelayBound {
 
 struct TargetRun {
   kernel::Duration target{};
-  TrafficFigures figures;
+  traffic::TrafficFigures figures;
   std::size_t worst_node = 0;  // of urgent packets
   double reached = 0;          // by it: mean delay in ms, or share within the bound
   double error = 0;            // 95 % half width of it; 0 in a search
@@ -47,6 +47,6 @@ inline constexpr std::uint64_t kFewPackets = 100;  // of a node, that prove noth
 inline constexpr unsigned kMostProofs = 4;
 
 // Throws as `pass_token` does. `traffic.target` is not read.
-TargetPlan plan_target(const TokenTraffic& traffic, const DelayBound& bound, std::uint64_t seed);
+TargetPlan plan_target(const traffic::TokenTraffic& traffic, const DelayBound& bound, std::uint64_t seed);
 
 }  // namespace fieldproof::fieldbus_dll

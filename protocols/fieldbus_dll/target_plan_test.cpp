@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "protocols/fieldbus_dll/milliseconds.hpp"
+#include "harness/traffic/milliseconds.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
@@ -11,12 +11,12 @@ using kernel::kMicrosecond;
 using kernel::kMillisecond;
 
 // Eight equal nodes with much time-available data.
-TokenTraffic planned_traffic(double available_per_ms) {
-  TokenTraffic traffic;
-  TokenNode node;
+traffic::TokenTraffic planned_traffic(double available_per_ms) {
+  traffic::TokenTraffic traffic;
+  traffic::TokenNode node;
   node.overhead = 1 * kMillisecond;
-  node.streams[kUrgent] = {0.01, 600 * kMicrosecond};
-  node.streams[kTimeAvailable] = {available_per_ms, 2 * kMillisecond};
+  node.streams[traffic::kUrgent] = {0.01, 600 * kMicrosecond};
+  node.streams[traffic::kTimeAvailable] = {available_per_ms, 2 * kMillisecond};
   traffic.nodes.assign(8, node);
   return traffic;
 }
@@ -27,20 +27,20 @@ TEST(TargetPlan, AWideBoundTakesTheTargetThatAdmitsAll) {
   EXPECT_EQ(plan.searched.size(), kTargets);
   for (const TargetRun& run : plan.searched) EXPECT_EQ(run.target % kMicrosecond, kernel::Duration{});
   EXPECT_EQ(plan.tried.back().target, plan.searched.back().target);
-  EXPECT_EQ(plan.tried.back().figures.admitted_to[kTimeAvailable], 1);
+  EXPECT_EQ(plan.tried.back().figures.admitted_to[traffic::kTimeAvailable], 1);
   EXPECT_GT(plan.tried.back().error, 0);
 }
 
 // More time-available data than the token carries: only a short target keeps them from urgent packets.
 TEST(TargetPlan, ATightBoundCostsTimeAvailableData) {
-  const TokenTraffic traffic = planned_traffic(0.2);
+  const traffic::TokenTraffic traffic = planned_traffic(0.2);
   const TargetPlan wide = plan_target(traffic, {.at_most = 200 * kMillisecond}, 1);
   const TargetPlan tight = plan_target(traffic, {.at_most = 9 * kMillisecond}, 1);
   ASSERT_TRUE(wide.is_proven);
   ASSERT_TRUE(tight.is_proven);
   EXPECT_LT(tight.tried.back().target, wide.tried.back().target);
   EXPECT_LE(tight.tried.back().reached + tight.tried.back().error, 9);
-  EXPECT_TRUE(wide.tried.back().figures.nodes[0][kTimeAvailable].is_unstable);
+  EXPECT_TRUE(wide.tried.back().figures.nodes[0][traffic::kTimeAvailable].is_unstable);
 }
 
 TEST(TargetPlan, WhatCannotBeMetIsNotProvenAndTheBestIsTold) {
@@ -62,8 +62,8 @@ TEST(TargetPlan, AShareIsProvenWithItsConfidence) {
 
 // Packets so rare that the visits of the token end the simulation still have an error to their mean.
 TEST(TargetPlan, RarePacketsAreProvenWithAnErrorOfTheirOwn) {
-  TokenTraffic traffic = planned_traffic(0);
-  for (TokenNode& node : traffic.nodes) node.streams[kUrgent].per_ms = 2e-4;
+  traffic::TokenTraffic traffic = planned_traffic(0);
+  for (traffic::TokenNode& node : traffic.nodes) node.streams[traffic::kUrgent].per_ms = 2e-4;
   const TargetPlan plan = plan_target(traffic, {.at_most = 20 * kMillisecond}, 1);
   ASSERT_TRUE(plan.is_proven);
   EXPECT_GT(plan.tried.back().error, 0);
@@ -71,16 +71,16 @@ TEST(TargetPlan, RarePacketsAreProvenWithAnErrorOfTheirOwn) {
 
 // What no rotation admits has no delay, and is not harmed least for that.
 TEST(TargetPlan, AShortTargetDoesNotStarveRareTimeAvailableData) {
-  TokenTraffic traffic = planned_traffic(2e-6);
+  traffic::TokenTraffic traffic = planned_traffic(2e-6);
   const TargetPlan plan = plan_target(traffic, {.at_most = 200 * kMillisecond}, 1);
-  EXPECT_TRUE(plan.searched.front().figures.all[kTimeAvailable].is_unstable);
+  EXPECT_TRUE(plan.searched.front().figures.all[traffic::kTimeAvailable].is_unstable);
   ASSERT_TRUE(plan.is_proven);
-  EXPECT_GT(plan.tried.back().figures.all[kTimeAvailable].packets, 0U);
+  EXPECT_GT(plan.tried.back().figures.all[traffic::kTimeAvailable].packets, 0U);
 }
 
 TEST(TargetPlan, ANodeWithFewPacketsDoesNotProveAShareByHavingNoMiss) {
-  TokenTraffic traffic = planned_traffic(0.01);
-  traffic.nodes[3].streams[kUrgent].per_ms = 1e-5;
+  traffic::TokenTraffic traffic = planned_traffic(0.01);
+  traffic.nodes[3].streams[traffic::kUrgent].per_ms = 1e-5;
   const DelayBound bound{.at_most = 40 * kMillisecond, .share = 0.9999};
   const TargetPlan plan = plan_target(traffic, bound, 1);
   EXPECT_FALSE(plan.is_proven);
@@ -89,9 +89,9 @@ TEST(TargetPlan, ANodeWithFewPacketsDoesNotProveAShareByHavingNoMiss) {
 
 // 628 packets in a second where 625 can go.
 TEST(TargetPlan, UrgentQueuesThatGrowSlowlyAreNotAPlan) {
-  TokenTraffic traffic = planned_traffic(0);
+  traffic::TokenTraffic traffic = planned_traffic(0);
   traffic.nodes.resize(1);
-  traffic.nodes[0].streams[kUrgent].per_ms = 0.628;
+  traffic.nodes[0].streams[traffic::kUrgent].per_ms = 0.628;
   const TargetPlan plan = plan_target(traffic, {.at_most = 10 * kernel::kSecond}, 1);
   EXPECT_FALSE(plan.is_proven);
 }

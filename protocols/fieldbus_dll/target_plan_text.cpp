@@ -7,12 +7,14 @@
 
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/untrusted_text.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
+#include "harness/traffic/milliseconds.hpp"
+#include "harness/traffic/urgent_delay.hpp"
 #include "protocols/fieldbus_dll/token_network.hpp"
-#include "protocols/fieldbus_dll/urgent_delay.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
+
+using traffic::ms;
 
 std::string text_of_bound(const DelayBound& bound) {
   const double limit = ms(bound.at_most);
@@ -35,7 +37,7 @@ std::string searched_text(const TargetPlan& plan, const DelayBound& bound) {
   std::string text = fmt::format("\n{:>12}  {:>12}  {:>16}  {}\n", "TTRT ms",
                                  bound.share ? "within %" : "mean ms", "time-avail. ms", "bound");
   for (const TargetRun& run : plan.searched) {
-    const auto& rest = run.figures.all[kTimeAvailable];
+    const auto& rest = run.figures.all[traffic::kTimeAvailable];
     text += fmt::format(
         "{:>12.3f}  {:>12.4f}  {:>16}  {}\n", ms(run.target), bound.share ? 100 * run.reached : run.reached,
         rest.is_unstable ? "unstable" : fmt::format("{:.3f}", rest.mean_delay), met_text(run));
@@ -45,9 +47,9 @@ std::string searched_text(const TargetPlan& plan, const DelayBound& bound) {
 
 std::string priorities_text(const TargetRun& run) {
   std::string text;
-  for (unsigned p = 0; p < kTokenPriorities; ++p) {
+  for (unsigned p = 0; p < traffic::kTokenPriorities; ++p) {
     const auto& all = run.figures.all[p];
-    const char* const name = name_of(static_cast<TokenPriority>(p));
+    const char* const name = name_of(static_cast<traffic::TokenPriority>(p));
     if (!all.is_unstable && all.packets > 0) {
       text += fmt::format("  {:<15} mean {:.4f} ms (+- {:.4f}), largest {:.3f} ms, {} packets\n", name,
                           all.mean_delay, 1.96 * all.standard_error, all.largest_delay, all.packets);
@@ -65,36 +67,36 @@ std::string priorities_text(const TargetRun& run) {
                             run.figures.rotations);
 }
 
-bool has_model(const TokenTraffic& traffic) {
+bool has_model(const traffic::TokenTraffic& traffic) {
   const auto& first = traffic.nodes.front();
-  const bool has_its_rule = traffic.rule == TokenRule::all_or_urgent;
+  const bool has_its_rule = traffic.rule == traffic::TokenRule::all_or_urgent;
   return has_its_rule && traffic.schedule.empty() &&
          std::ranges::all_of(traffic.nodes, [&](const auto& node) {
-           if (node.overhead != first.overhead || node.streams[kNormal].per_ms > 0) return false;
+           if (node.overhead != first.overhead || node.streams[traffic::kNormal].per_ms > 0) return false;
            return std::ranges::equal(node.streams, first.streams, [](const auto& a, const auto& b) {
              return a.per_ms == b.per_ms && a.length == b.length;
            });
          });
 }
 
-std::string model_text(const TokenTraffic& traffic, kernel::Duration target) {
+std::string model_text(const traffic::TokenTraffic& traffic, kernel::Duration target) {
   if (!has_model(traffic))
     return "  model           none: it has equal nodes, two priorities, tokens for all or urgent data, no "
            "schedule\n";
   const auto& streams = traffic.nodes.front().streams;
-  UrgentTraffic equal;
-  const auto& available = streams[kTimeAvailable];
+  traffic::UrgentTraffic equal;
+  const auto& available = streams[traffic::kTimeAvailable];
   equal.urgent_queues = equal.available_queues = static_cast<unsigned>(traffic.nodes.size());
-  equal.urgent_length = streams[kUrgent].length;
-  equal.urgent_per_ms = streams[kUrgent].per_ms;
+  equal.urgent_length = streams[traffic::kUrgent].length;
+  equal.urgent_per_ms = streams[traffic::kUrgent].per_ms;
   // Without packets their length is of no matter, and has to be one.
   equal.available_length = available.per_ms > 0 ? available.length : equal.urgent_length;
   equal.available_per_ms = available.per_ms;
   equal.empty_rotation = traffic.empty_rotation();
   equal.target_rotation = target;
-  UrgentDelay model;
+  traffic::UrgentDelay model;
   try {
-    model = urgent_delay(equal);
+    model = traffic::urgent_delay(equal);
   } catch (const kernel::Error& error) {
     return fmt::format("  model           none: {}\n", error.what());
   }

@@ -14,45 +14,49 @@ using config::Value;
 constexpr std::size_t kLimitOfText = 1 << 20;
 constexpr std::int64_t kOctetBits = 8;
 
-PacketStream stream_from(const Value& value, std::int64_t bit_rate) {
+traffic::PacketStream stream_from(const Value& value, std::int64_t bit_rate) {
   return config::read_object(value, [&](ObjectReader& o) {
-    PacketStream stream;
+    traffic::PacketStream stream;
     const Value octets = o.required("octets");
     stream.length = kernel::levels_duration(octets.as_integer<std::int64_t>(1, 1'000) * kOctetBits, bit_rate);
-    if (stream.length > kLongestTokenTime) config::fail(octets, "this takes more than 1 s on the line");
+    if (stream.length > traffic::kLongestTokenTime)
+      config::fail(octets, "this takes more than 1 s on the line");
     const Value rate = o.required("per_s");
-    stream.per_ms = rate.as_number(0, kMostPerMs * 1e3) / 1e3;
-    if (stream.per_ms > 0 && stream.per_ms < kLeastPerMs) {
+    stream.per_ms = rate.as_number(0, traffic::kMostPerMs * 1e3) / 1e3;
+    if (stream.per_ms > 0 && stream.per_ms < traffic::kLeastPerMs) {
       config::fail(rate, "so rare packets are not simulated; write 0, or 0.001 or more");
     }
     return stream;
   });
 }
 
-void add_nodes(const Value& value, std::int64_t bit_rate, TokenTraffic& traffic) {
+void add_nodes(const Value& value, std::int64_t bit_rate, traffic::TokenTraffic& traffic) {
   config::read_object(value, [&](ObjectReader& o) {
-    TokenNode node;
-    node.overhead = o.required("overhead").as_duration(kernel::kNanosecond, kLongestTokenTime);
-    if (const auto urgent = o.optional("urgent")) node.streams[kUrgent] = stream_from(*urgent, bit_rate);
-    if (const auto normal = o.optional("normal")) node.streams[kNormal] = stream_from(*normal, bit_rate);
+    traffic::TokenNode node;
+    node.overhead = o.required("overhead").as_duration(kernel::kNanosecond, traffic::kLongestTokenTime);
+    if (const auto urgent = o.optional("urgent"))
+      node.streams[traffic::kUrgent] = stream_from(*urgent, bit_rate);
+    if (const auto normal = o.optional("normal"))
+      node.streams[traffic::kNormal] = stream_from(*normal, bit_rate);
     if (const auto rest = o.optional("time_available")) {
-      node.streams[kTimeAvailable] = stream_from(*rest, bit_rate);
+      node.streams[traffic::kTimeAvailable] = stream_from(*rest, bit_rate);
     }
     const auto count = o.optional("count");
-    const std::size_t nodes = count ? count->as_integer<std::size_t>(1, kMostTokenNodes) : 1;
-    if (traffic.nodes.size() + nodes > kMostTokenNodes) {
-      config::fail(value, fmt::format("these are more than {} nodes together", kMostTokenNodes));
+    const std::size_t nodes = count ? count->as_integer<std::size_t>(1, traffic::kMostTokenNodes) : 1;
+    if (traffic.nodes.size() + nodes > traffic::kMostTokenNodes) {
+      config::fail(value, fmt::format("these are more than {} nodes together", traffic::kMostTokenNodes));
     }
     traffic.nodes.insert(traffic.nodes.end(), nodes, node);
   });
 }
 
-void read_schedule(const Value& value, TokenTraffic& traffic) {
+void read_schedule(const Value& value, traffic::TokenTraffic& traffic) {
   config::read_object(value, [&](ObjectReader& o) {
-    traffic.macrocycle = o.required("macrocycle").as_duration(kernel::kMicrosecond, kLongestMacrocycle);
-    for (const Value& item : o.required("items").as_array(1, kMostScheduledItems)) {
+    traffic.macrocycle =
+        o.required("macrocycle").as_duration(kernel::kMicrosecond, traffic::kLongestMacrocycle);
+    for (const Value& item : o.required("items").as_array(1, traffic::kMostScheduledItems)) {
       traffic.schedule.push_back(config::read_object(item, [&](ObjectReader& i) {
-        return ScheduledItem{
+        return traffic::ScheduledItem{
             .offset = i.required("offset").as_duration({}, traffic.macrocycle),
             .length = i.required("length").as_duration(kernel::kNanosecond, traffic.macrocycle)};
       }));
@@ -81,14 +85,16 @@ TokenNetwork TokenNetwork::read(const config::Document& document) {
     network.name = o.required("name").as_string();
     const std::int64_t bit_rate = o.required("bit_rate").as_bit_rate(1'000, 100'000'000);
     const Value nodes = o.required("nodes");
-    for (const Value& node : nodes.as_array(1, kMostTokenNodes)) add_nodes(node, bit_rate, network.traffic);
+    for (const Value& node : nodes.as_array(1, traffic::kMostTokenNodes))
+      add_nodes(node, bit_rate, network.traffic);
     bool has_urgent = false;
-    for (const TokenNode& node : network.traffic.nodes) has_urgent |= node.streams[kUrgent].per_ms > 0;
+    for (const traffic::TokenNode& node : network.traffic.nodes)
+      has_urgent |= node.streams[traffic::kUrgent].per_ms > 0;
     if (!has_urgent)
       config::fail(nodes, "no node has urgent packets; one needs \"urgent\" with a rate over 0");
     if (const auto rule = o.optional("rule")) {
-      network.traffic.rule = rule->as_choice<TokenRule>(
-          {{"one_step", TokenRule::one_step}, {"all_or_urgent", TokenRule::all_or_urgent}});
+      network.traffic.rule = rule->as_choice<traffic::TokenRule>(
+          {{"one_step", traffic::TokenRule::one_step}, {"all_or_urgent", traffic::TokenRule::all_or_urgent}});
     }
     if (const auto schedule = o.optional("schedule")) {
       read_schedule(*schedule, network.traffic);

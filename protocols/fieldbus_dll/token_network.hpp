@@ -11,7 +11,7 @@ namespace fieldproof::fieldbus_dll {
 
 struct TokenNetwork {
   std::string name;
-  TokenTraffic traffic;  // without a target
+  traffic::TokenTraffic traffic;  // without a target
   DelayBound bound;
 
   // Throw kernel::Error(configuration), which says where and what would be right.

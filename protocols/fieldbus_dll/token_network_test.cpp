@@ -34,8 +34,8 @@ std::string refusal(const std::string& text) {
 TEST(TokenNetwork, ReadsNodesAndBound) {
   const TokenNetwork network = read_network(network_text(kGoodNode));
   ASSERT_EQ(network.traffic.nodes.size(), 3U);
-  EXPECT_EQ(network.traffic.nodes[2].streams[kUrgent].length, 600 * kernel::kMicrosecond);
-  EXPECT_DOUBLE_EQ(network.traffic.nodes[2].streams[kUrgent].per_ms, 0.008);
+  EXPECT_EQ(network.traffic.nodes[2].streams[traffic::kUrgent].length, 600 * kernel::kMicrosecond);
+  EXPECT_DOUBLE_EQ(network.traffic.nodes[2].streams[traffic::kUrgent].per_ms, 0.008);
   EXPECT_EQ(network.bound.at_most, 20 * kernel::kMillisecond);
   EXPECT_EQ(network.bound.share, 0.99);
 }

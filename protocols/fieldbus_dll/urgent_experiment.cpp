@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "harness/kernel/error.hpp"
-#include "protocols/fieldbus_dll/batch_means.hpp"
+#include "harness/traffic/batch_means.hpp"
+#include "harness/traffic/poisson_arrivals.hpp"
 #include "protocols/fieldbus_dll/ff_link.hpp"
-#include "protocols/fieldbus_dll/poisson_arrivals.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
+
+using traffic::ms;
 
 constexpr std::uint8_t kFirstNode = 0x11;
 // Queues begin empty, and those near what the token carries are long in filling.
@@ -25,7 +27,7 @@ constexpr std::size_t kAvailableData = 267 - 11 - kSilence;
 
 // PT and RT of 10 and 7 octets with silences make a visit of 119 octets; 16 of them and a probe of 8, which
 // nobody answers for V(MRD) x V(ST) = 88, make 2000 octets: 16 ms.
-FfRules rules_of(const UrgentTraffic& traffic) {
+FfRules rules_of(const traffic::UrgentTraffic& traffic) {
   FfRules rules;
   rules.link.bit_rate = 1'000'000;
   rules.link.preamble_octets = 2;
@@ -39,9 +41,9 @@ FfRules rules_of(const UrgentTraffic& traffic) {
   return rules;
 }
 
-void check_experiment(const UrgentTraffic& traffic, kernel::Duration duration) {
+void check_experiment(const traffic::UrgentTraffic& traffic, kernel::Duration duration) {
   check(traffic);
-  const UrgentTraffic paper = paper_traffic(0.1, 1, 1, traffic.target_rotation);
+  const traffic::UrgentTraffic paper = traffic::paper_traffic(0.1, 1, 1, traffic.target_rotation);
   if (traffic.urgent_queues != paper.urgent_queues || traffic.available_queues != paper.available_queues ||
       traffic.urgent_length != paper.urgent_length || traffic.available_length != paper.available_length ||
       traffic.empty_rotation != paper.empty_rotation) {
@@ -79,7 +81,7 @@ class PacketQueue {
   std::size_t size() const { return waiting_.size(); }
 
  private:
-  PoissonArrivals arrivals_;
+  traffic::PoissonArrivals arrivals_;
   std::deque<kernel::Time> waiting_;
   bool is_given_ = false;
 };
@@ -91,7 +93,7 @@ std::uint64_t batch_of(double values) {
 
 class Experiment {
  public:
-  Experiment(const UrgentTraffic& traffic, kernel::Duration duration, std::uint64_t seed)
+  Experiment(const traffic::UrgentTraffic& traffic, kernel::Duration duration, std::uint64_t seed)
       : duration_(duration),
         rules_(rules_of(traffic)),
         link_(rules_, kernel::Random(seed).split("link")),
@@ -174,15 +176,15 @@ class Experiment {
   std::vector<PacketQueue> available_;
   bool counts_ = false;
   kernel::Time rotation_began_ = kernel::kStart;
-  BatchMeans delays_;
-  BatchMeans rotations_;
+  traffic::BatchMeans delays_;
+  traffic::BatchMeans rotations_;
   std::uint64_t with_all_data_ = 0;
   ExperimentFigures found_;
 };
 
 }  // namespace
 
-ExperimentFigures run_urgent_experiment(const UrgentTraffic& traffic, kernel::Duration duration,
+ExperimentFigures run_urgent_experiment(const traffic::UrgentTraffic& traffic, kernel::Duration duration,
                                         std::uint64_t seed) {
   check_experiment(traffic, duration);
   return Experiment(traffic, duration, seed).run();

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "protocols/fieldbus_dll/urgent_delay.hpp"
+#include "harness/traffic/urgent_delay.hpp"
 
 // The experiment of Hong and Son as real stations on a simulated line: a scheduler and 16 nodes of FF-P at
 // 1 Mbit/s, frame by frame. Each node has a queue of urgent and one of time-available packets, and gives its
@@ -30,7 +30,7 @@ struct ExperimentFigures {
 // For so long in virtual time, after three seconds in which nodes become live and queues fill. Rates
 // and TTRT are those of the traffic, which otherwise must be `paper_traffic`; else, and for less than a
 // second or more than a day, kernel::Error(configuration).
-ExperimentFigures run_urgent_experiment(const UrgentTraffic& traffic, kernel::Duration duration,
+ExperimentFigures run_urgent_experiment(const traffic::UrgentTraffic& traffic, kernel::Duration duration,
                                         std::uint64_t seed);
 
 }  // namespace fieldproof::fieldbus_dll

@@ -7,19 +7,19 @@
 
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/sanitized.hpp"
-#include "protocols/fieldbus_dll/token_rotation.hpp"
+#include "harness/traffic/token_rotation.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
 
 constexpr kernel::Duration kLong = (kernel::kIsSanitized ? 5 : 40) * kernel::kSecond;
 
-UrgentTraffic traffic_of(double load, int target_us) {
-  return paper_traffic(load, 1, 1, target_us * kernel::kMicrosecond);
+traffic::UrgentTraffic traffic_of(double load, int target_us) {
+  return traffic::paper_traffic(load, 1, 1, target_us * kernel::kMicrosecond);
 }
 
 TEST(UrgentExperimentTest, ARotationWithoutPacketsIsThatOfThePaper) {
-  UrgentTraffic traffic = traffic_of(0.2, 34'816);
+  traffic::UrgentTraffic traffic = traffic_of(0.2, 34'816);
   traffic.urgent_per_ms = 0;
   traffic.available_per_ms = 0;
   const ExperimentFigures found = run_urgent_experiment(traffic, kernel::kSecond, 1);
@@ -31,9 +31,10 @@ TEST(UrgentExperimentTest, ARotationWithoutPacketsIsThatOfThePaper) {
 // Frames on a line and the simulation that has none agree within what chance allows.
 TEST(UrgentExperimentTest, AgreesWithTheSimulationWithoutFrames) {
   for (const auto& [load, target] : {std::pair{0.2, 20'000}, {0.35, 34'816}, {0.5, 48'680}}) {
-    const UrgentTraffic traffic = traffic_of(load, target);
+    const traffic::UrgentTraffic traffic = traffic_of(load, target);
     const ExperimentFigures found = run_urgent_experiment(traffic, kLong, 1);
-    const TokenFigures wanted = rotate_token(traffic, {.seed = 2, .urgent_packets = 300'000});
+    const traffic::TokenFigures wanted =
+        traffic::rotate_token(traffic, {.seed = 2, .urgent_packets = 300'000});
     EXPECT_NEAR(found.mean_delay, wanted.mean_delay,
                 4 * std::hypot(found.standard_error, wanted.standard_error) + 0.005 * wanted.mean_delay)
         << load;
@@ -44,7 +45,7 @@ TEST(UrgentExperimentTest, AgreesWithTheSimulationWithoutFrames) {
 
 // A rotation that takes the target to the digit withdraws time-available data: 16.6 ms is one urgent packet.
 TEST(UrgentExperimentTest, ARotationThatEqualsItsTargetIsTooLong) {
-  UrgentTraffic traffic = traffic_of(0.35, 16'600);
+  traffic::UrgentTraffic traffic = traffic_of(0.35, 16'600);
   traffic.available_per_ms = 0;
   traffic.urgent_per_ms = 0.01;
   const double at = run_urgent_experiment(traffic, 5 * kernel::kSecond, 1).priority_1;
@@ -54,7 +55,7 @@ TEST(UrgentExperimentTest, ARotationThatEqualsItsTargetIsTooLong) {
 }
 
 TEST(UrgentExperimentTest, RefusesWhatIsNotThePapersLink) {
-  UrgentTraffic traffic = traffic_of(0.2, 34'816);
+  traffic::UrgentTraffic traffic = traffic_of(0.2, 34'816);
   EXPECT_THROW(run_urgent_experiment(traffic, kernel::kMillisecond, 1), kernel::Error);
   EXPECT_THROW(run_urgent_experiment(traffic_of(1, 34'816), kernel::kSecond, 1), kernel::Error);
   traffic.urgent_queues = 15;

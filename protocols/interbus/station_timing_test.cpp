@@ -13,7 +13,7 @@ namespace {
 
 using kernel::Duration;
 
-NetworkDescription example(const char* file) {
+NetworkDescription network_of(const char* file) {
   return NetworkDescription::load(std::filesystem::path(FIELDPROOF_SOURCE_DIR) / "examples" / file);
 }
 
@@ -50,13 +50,13 @@ void expect_instants(const NetworkDescription& network) {
 }
 
 TEST(StationTimingTest, StationsSampleAndLatchWhenTheTheorySays) {
-  expect_instants(example("paper.json"));
-  expect_instants(example("paper_printed_reading.json"));
-  expect_instants(example("mixed_line.json"));
+  expect_instants(network_of("paper.json"));
+  expect_instants(network_of("paper_printed_reading.json"));
+  expect_instants(network_of("mixed_line.json"));
 }
 
 TEST(StationTimingTest, AlsoWithOtherDelays) {
-  NetworkDescription network = example("mixed_line.json");
+  NetworkDescription network = network_of("mixed_line.json");
   network.rules.local_delay_half_bits = 1;
   network.rules.return_delay_half_bits = 5;
   network.rules.cable_delay_ps_per_m = 7'000;
@@ -65,8 +65,8 @@ TEST(StationTimingTest, AlsoWithOtherDelays) {
 
 TEST(StationTimingTest, ThePaperNetworkLatchesBehindTenTelegrams) {
   // 9 telegrams with 17 whole bits of gap between them, and one telegram more: 147 bit of 2 us.
-  EXPECT_EQ(sample_to_latch(example("paper.json")), 294 * kernel::kMicrosecond);
-  EXPECT_EQ(sample_to_latch(example("paper_printed_reading.json")), 294 * kernel::kMicrosecond);
+  EXPECT_EQ(sample_to_latch(network_of("paper.json")), 294 * kernel::kMicrosecond);
+  EXPECT_EQ(sample_to_latch(network_of("paper_printed_reading.json")), 294 * kernel::kMicrosecond);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 
-using Words = std::vector<std::uint16_t>;
+using TelegramWords = std::vector<std::uint16_t>;
 
 constexpr kernel::Time kSaidAt{20 * kernel::kMillisecond};
 constexpr std::uint16_t kStatus = 0;
@@ -39,7 +39,7 @@ RC_GTEST_PROP(TelegramFrontProperty, WhatIsSaidIsHeard, (std::vector<std::uint16
   rules.bit_rate = *rc::gen::element(500'000, 2'000'000);
   rules.telegram.control_level = *rc::gen::arbitrary<bool>();
   rules.telegram.most_significant_first = *rc::gen::arbitrary<bool>();
-  Words said;
+  TelegramWords said;
   for (const std::uint16_t word : words) said.push_back(telegram_of(word));
   TelegramFront speaker(rules);
   TelegramFront hearer(rules);
@@ -59,7 +59,7 @@ RC_GTEST_PROP(TelegramFrontProperty, AnyWordIsATelegramOrRefused, (std::uint16_t
   TelegramFront front{Rules{}};
   const bool is_telegram = word == telegram_of(word);
   try {
-    front.levels_of(kSaidAt, Words{word});
+    front.levels_of(kSaidAt, TelegramWords{word});
     RC_ASSERT(is_telegram);
   } catch (const iut::Misbehaviour& refused) {
     RC_ASSERT(!is_telegram);
@@ -70,7 +70,7 @@ RC_GTEST_PROP(TelegramFrontProperty, AnyWordIsATelegramOrRefused, (std::uint16_t
 TEST(TelegramFront, MissingStopLevelIsAFlagAndALongReceptionComesInParts) {
   const Rules rules;
   TelegramFront front(rules);
-  const Words said(TelegramFront::kMostAtOnce + 1, kStatus);
+  const TelegramWords said(TelegramFront::kMostAtOnce + 1, kStatus);
   line::Waveform wave = TelegramFront(rules).levels_of(kSaidAt, said);
   wave.levels.set(wave.levels.size() - 1, false);
   std::vector<std::size_t> parts;
@@ -86,7 +86,7 @@ TEST(TelegramFront, MissingStopLevelIsAFlagAndALongReceptionComesInParts) {
 TEST(TelegramFront, CutTelegramIsToldWhenItIsOver) {
   const Rules rules;
   TelegramFront front(rules);
-  line::Waveform wave = TelegramFront(rules).levels_of(kSaidAt, Words{0x4FF});
+  line::Waveform wave = TelegramFront(rules).levels_of(kSaidAt, TelegramWords{0x4FF});
   wave.levels.resize(6);
   EXPECT_TRUE(heard_of(front, wave).empty());
   const kernel::Time end = kernel::level_time(kSaidAt, line::kDataTelegramLevels, rules.bit_rate);
@@ -148,7 +148,7 @@ class SlaveOfTelegrams : public testing::Test, private segment::Station {
 };
 
 TEST_F(SlaveOfTelegrams, IsToldThemWhenTheReceptionBegins) {
-  line::Waveform wave = TelegramFront(network_.rules).levels_of(kSaidAt, Words{0x5A7, kStatus});
+  line::Waveform wave = TelegramFront(network_.rules).levels_of(kSaidAt, TelegramWords{0x5A7, kStatus});
   wave.start = kernel::kStart + kernel::kMillisecond;
   const kernel::Time start = wave.start;
   ring_->out().drive(wave);
@@ -161,7 +161,7 @@ TEST_F(SlaveOfTelegrams, IsToldThemWhenTheReceptionBegins) {
 }
 
 TEST_F(SlaveOfTelegrams, SaysThem) {
-  EXPECT_EQ(complaint([](iut::Bench& bench) { bench.send(0, kSaidAt, Words{kStatus}); }), "");
+  EXPECT_EQ(complaint([](iut::Bench& bench) { bench.send(0, kSaidAt, TelegramWords{kStatus}); }), "");
   ASSERT_EQ(returned_.size(), 1U);
   EXPECT_EQ(returned_.front().levels.text(), "00001");
 }
@@ -170,7 +170,7 @@ struct Hostile {
   const char* sentence;
   unsigned port;
   kernel::Time start;
-  Words said;
+  TelegramWords said;
 };
 class HostileTelegrams : public SlaveOfTelegrams, public testing::WithParamInterface<Hostile> {};
 

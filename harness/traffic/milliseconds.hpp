@@ -3,7 +3,7 @@
 #include "harness/kernel/time.hpp"
 
 // The unit of the paper's delays and rates.
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 
 inline constexpr double kPicosecondsPerMs = 1e9;
 
@@ -11,4 +11,4 @@ inline double ms(kernel::Duration duration) {
   return static_cast<double>(duration.count()) / kPicosecondsPerMs;
 }
 
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

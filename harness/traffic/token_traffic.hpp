@@ -18,7 +18,7 @@
 // Without a schedule as much leaves as arrives while all queues are stable, so a mean rotation takes
 // R / (1 - U). With one no closed form holds, because the idle time before items depends on what is
 // waiting: with the measured share W of it a mean rotation takes R / (1 - U - Us - W).
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 
 inline constexpr unsigned kTokenPriorities = 3;
 enum TokenPriority : unsigned { kUrgent, kNormal, kTimeAvailable };
@@ -109,4 +109,4 @@ void check(const TokenTraffic& traffic);
 // Throws as `check` does; also for a run that counts fewer than 100 urgent packets.
 TrafficFigures pass_token(const TokenTraffic& traffic, const TrafficRun& run);
 
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

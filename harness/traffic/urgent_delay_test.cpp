@@ -1,4 +1,4 @@
-#include "protocols/fieldbus_dll/urgent_delay.hpp"
+#include "harness/traffic/urgent_delay.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "harness/kernel/error.hpp"
 
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 namespace {
 
 using kernel::kMicrosecond;
@@ -237,4 +237,4 @@ TEST(UrgentDelayLimits, WhatIsNoTrafficIsRefused) {
 }
 
 }  // namespace
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

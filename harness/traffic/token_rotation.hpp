@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "protocols/fieldbus_dll/urgent_delay.hpp"
+#include "harness/traffic/urgent_delay.hpp"
 
 // The rules of the token that `urgent_delay` is a model of, as they are: a simulation of queues and rotations
 // on the scheduler of virtual time, without frames and levels.
@@ -11,7 +11,7 @@
 // then; while the token has priority 1, one time-available packet goes that has arrived by the end of that. A
 // rotation that took the target rotation time or more gives the next one priority 0, any other one
 // priority 1; so has the first. A delay is from the arrival to the end of the transmission.
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 
 struct TokenRun {
   std::uint64_t seed = 1;
@@ -46,4 +46,4 @@ TokenFigures rotate_token(const UrgentTraffic& traffic, const TokenRun& run);
 // more arrive grows without end.
 double available_capacity(const UrgentTraffic& traffic, std::uint64_t seed);
 
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

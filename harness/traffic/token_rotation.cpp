@@ -1,4 +1,4 @@
-#include "protocols/fieldbus_dll/token_rotation.hpp"
+#include "harness/traffic/token_rotation.hpp"
 
 #include <algorithm>
 #include <deque>
@@ -7,11 +7,11 @@
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/scheduler.hpp"
-#include "protocols/fieldbus_dll/batch_means.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
-#include "protocols/fieldbus_dll/poisson_arrivals.hpp"
+#include "harness/traffic/batch_means.hpp"
+#include "harness/traffic/milliseconds.hpp"
+#include "harness/traffic/poisson_arrivals.hpp"
 
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 namespace {
 
 constexpr std::uint64_t kRotationsOfBatch = 1'000;
@@ -175,4 +175,4 @@ double available_capacity(const UrgentTraffic& traffic, std::uint64_t seed) {
       .available_per_ms;
 }
 
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

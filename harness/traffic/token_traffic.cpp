@@ -1,4 +1,4 @@
-#include "protocols/fieldbus_dll/token_traffic.hpp"
+#include "harness/traffic/token_traffic.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/random.hpp"
-#include "protocols/fieldbus_dll/batch_means.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
-#include "protocols/fieldbus_dll/poisson_arrivals.hpp"
+#include "harness/traffic/batch_means.hpp"
+#include "harness/traffic/milliseconds.hpp"
+#include "harness/traffic/poisson_arrivals.hpp"
 
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 namespace {
 
 constexpr std::uint64_t kTrafficBatches = 100;
@@ -409,4 +409,4 @@ TrafficFigures pass_token(const TokenTraffic& traffic, const TrafficRun& run) {
   return TokenPath(traffic, run).rotate();
 }
 
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

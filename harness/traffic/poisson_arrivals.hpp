@@ -4,10 +4,10 @@
 
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/time.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
+#include "harness/traffic/milliseconds.hpp"
 
 // Instants at which packets come, independent of each other.
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 
 class PoissonArrivals {
  public:
@@ -31,4 +31,4 @@ class PoissonArrivals {
   kernel::Time next_ = kernel::kStart;
 };
 
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

@@ -1,4 +1,4 @@
-#include "protocols/fieldbus_dll/token_rotation.hpp"
+#include "harness/traffic/token_rotation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/sanitized.hpp"
 
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 namespace {
 
 using kernel::kMicrosecond;
@@ -90,4 +90,4 @@ TEST(TokenRotation, WithoutUrgentPacketsIsRefused) {
 }
 
 }  // namespace
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

@@ -1,12 +1,12 @@
-#include "protocols/fieldbus_dll/token_traffic.hpp"
+#include "harness/traffic/token_traffic.hpp"
 
 #include <gtest/gtest.h>
 
 #include "harness/kernel/error.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
-#include "protocols/fieldbus_dll/token_rotation.hpp"
+#include "harness/traffic/milliseconds.hpp"
+#include "harness/traffic/token_rotation.hpp"
 
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 namespace {
 
 using kernel::kMicrosecond;
@@ -155,4 +155,4 @@ TEST(TokenTraffic, WhatCannotBeSimulatedIsRefused) {
 }
 
 }  // namespace
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

@@ -18,7 +18,7 @@
 //   (14)  an atom at the TTRT belongs to ATRT >= TTRT, as the text says: mu sums what is below
 //   (26)  begins with n = 1 and leaves out the packet that finds nobody; `delay_as_printed` does so
 // Times are whole picoseconds, because ATRT and TTRT are compared for equality; means are milliseconds.
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 
 // Packets arrive in each queue as a Poisson stream; a queue is as long as it needs to be.
 struct UrgentTraffic {
@@ -89,4 +89,4 @@ UrgentDelay urgent_delay(const UrgentTraffic& traffic, Balance balance = Balance
 // Throws as `urgent_delay` does.
 void check(const UrgentTraffic& traffic);
 
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

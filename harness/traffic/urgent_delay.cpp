@@ -1,4 +1,4 @@
-#include "protocols/fieldbus_dll/urgent_delay.hpp"
+#include "harness/traffic/urgent_delay.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <numeric>
 
 #include "harness/kernel/error.hpp"
-#include "protocols/fieldbus_dll/milliseconds.hpp"
+#include "harness/traffic/milliseconds.hpp"
 
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 namespace {
 
 constexpr double kNegligible = 1e-18;  // of a probability
@@ -292,4 +292,4 @@ UrgentDelay urgent_delay(const UrgentTraffic& traffic, Balance balance) {
   return it;
 }
 
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic

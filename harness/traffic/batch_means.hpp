@@ -7,7 +7,7 @@
 #include <vector>
 
 // A mean of values that depend on each other, and how far it may be off.
-namespace fieldproof::fieldbus_dll {
+namespace fieldproof::traffic {
 
 // The standard error is that of the means of successive batches of `batch` values, which is 1 or more.
 class BatchMeans {
@@ -54,4 +54,4 @@ class BatchMeans {
   std::vector<double> means_;
 };
 
-}  // namespace fieldproof::fieldbus_dll
+}  // namespace fieldproof::traffic
