@@ -46,6 +46,20 @@ std::string case_path(const Session& session, const SequenceFile& target) {
   return fmt::format("{}-{}.case.json", name, target.setup.seed);
 }
 
+constexpr std::string_view kDroveNothing =
+    "; the implementation drove nothing in any of them, which shows nothing: take more sequences";
+
+template <typename Result>
+bool is_silent(const Result& result) {
+  return result.passed > 0 && result.silent == result.passed;
+}
+
+template <typename Result>
+int code_of(const Result& result) {
+  if (result.passed == 0) return kNothingJudged;
+  return result.inconclusive > 0 || is_silent(result) ? kInconclusive : kAllAsExpected;
+}
+
 std::string passed_text(const conformance::SequenceSearchResult& result, std::uint64_t cases,
                         const Interruption& interruption) {
   const std::string why = interruption.reason();
@@ -54,12 +68,8 @@ std::string passed_text(const conformance::SequenceSearchResult& result, std::ui
   if (result.not_applicable > 0)
     text += fmt::format("; {} ask for what cannot be done to it", result.not_applicable);
   if (result.inconclusive > 0) text += fmt::format("; {} are inconclusive", result.inconclusive);
+  if (is_silent(result)) text += kDroveNothing;
   return text + (why.empty() ? "" : "; " + why) + "\n";
-}
-
-int code_of(std::uint64_t passed, std::uint64_t inconclusive) {
-  if (passed == 0) return kNothingJudged;
-  return inconclusive > 0 ? kInconclusive : kAllAsExpected;
 }
 
 // Stores and prints what was found after so many sequences.
@@ -102,6 +112,7 @@ std::string fuzzed_text(const fuzz::SequenceFuzzResult& result, const conformanc
         result.run, kernel::escaped_line(how_to_be_guided(setup)));
   }
   if (result.inconclusive > 0) text += fmt::format("; {} are inconclusive", result.inconclusive);
+  if (is_silent(result)) text += kDroveNothing;
   return text + (why.empty() ? "" : "; " + why) + "\n";
 }
 
@@ -125,8 +136,7 @@ int check(Session& session) {
   session.terminal.end_progress();
   if (!result.found) {
     session.terminal.print(passed_text(result, search.cases, interruption));
-    return interruption.signal() != 0 ? kSignalBase + interruption.signal()
-                                      : code_of(result.passed, result.inconclusive);
+    return interruption.signal() != 0 ? kSignalBase + interruption.signal() : code_of(result);
   }
   return keep_found(session, target, path, *result.found, result.run, interruption);
 }
@@ -152,8 +162,7 @@ int fuzz_role(Session& session) {
   session.terminal.end_progress();
   if (result.found) return keep_found(session, target, path, *result.found, result.run, interruption);
   session.terminal.print(fuzzed_text(result, target.setup, interruption));
-  return interruption.signal() != 0 ? kSignalBase + interruption.signal()
-                                    : code_of(result.passed, result.inconclusive);
+  return interruption.signal() != 0 ? kSignalBase + interruption.signal() : code_of(result);
 }
 
 }  // namespace fieldproof::cli

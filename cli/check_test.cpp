@@ -77,6 +77,24 @@ TEST_F(Check, RefusesWhatItCannotServe) {
   EXPECT_HOLDS(bad.err, "bad.json");
 }
 
+// The reference would be judged in the place of what plays another role.
+TEST_F(Check, RefusesWhatPlaysAnotherRole) {
+  for (const std::string verb : {"check", "fuzz"}) {
+    const Called other = call({verb, "valve_bus/node", "--iut", "host=exec:./nobody", "--cases", "5"});
+    EXPECT_EQ(other.exit_code, kUsage) << other.out;
+    EXPECT_HOLDS(other.err, "write node=exec:./nobody");
+  }
+  call({"check", "valve_bus/node", "--iut", "mutant:check_is_sum", "--case", "found.json"});
+  EXPECT_EQ(call({"replay", "found.json", "--iut", "host=exec:./nobody"}).exit_code, kUsage);
+}
+
+TEST_F(Check, AgreesWithNobodyWhoDroveNothing) {
+  // Nothing in this sequence is answered.
+  const Called silent = call({"check", "valve_bus/node", "--cases", "1", "--seed", "1"});
+  EXPECT_EQ(silent.exit_code, kInconclusive) << silent.out;
+  EXPECT_HOLDS(silent.out, "drove nothing in any of them");
+}
+
 TEST_F(Check, ShrinksAStoredSequence) {
   write("long.json", R"({"schema": "fieldproof/sequence/1", "role": "valve_bus/node", "seed": "1",
     "implementations": [{"role": "node", "position": 0, "uri": "mutant:read_answers_write"}],

@@ -113,6 +113,30 @@ TEST_F(EmcVerb, AChannelOnWhichNothingComesThroughShowsNothing) {
   EXPECT_EQ(dead.exit_code, 1) << dead.out;
 }
 
+// Without a closed form of whole exchanges the code word of the frame is the bound.
+TEST_F(EmcVerb, ANodeWithoutABlockCheckIsFoundOnAChannelOfTheTextbooks) {
+  const auto on_channel = [&](const std::string& iut) {
+    return ProgramFixture::call(
+        {"emc", "valve_bus", "--channel", "bsc:0.001", "--duration", "30s", "--quiet", "--iut", iut});
+  };
+  EXPECT_EQ(on_channel("node@3=ref").exit_code, 0);
+  const Called unchecked = on_channel("node@3=mutant:write_not_checked");
+  EXPECT_EQ(unchecked.exit_code, 1) << unchecked.out << unchecked.err;
+}
+
+TEST_F(EmcVerb, WhereNoBurstMetAReceiverNothingIsShown) {
+  const Called called = call({"--test-levels", "4", "--duration", "1ms"});
+  EXPECT_EQ(called.exit_code, 2) << called.out;
+  EXPECT_HOLDS(called.out, "no burst met a receiver: this shows nothing");
+}
+
+TEST_F(EmcVerb, ACampaignThatEndsEarlySaysSo) {
+  const Called called = call({"--duration", "30s", "--max-time", "1ms", "--json", "short.json"});
+  EXPECT_NE(called.exit_code, 0);
+  EXPECT_FALSE(json("short.json").at("is_complete").get<bool>());
+  expect_valid({"short.json"}, "emc");
+}
+
 TEST_F(EmcVerb, WhatIsTypedWinsOverAChannelInAFile) {
   write("channel.json", R"({"channel": "bsc:0.001"})");
   const Called typed = call({"--config", "channel.json", "--test-levels", "1", "--quiet"});

@@ -133,7 +133,7 @@ std::string channel_line(const EmcTest& test) {
   const std::string line =
       fmt::format("{} {:>9} {:>10} {:>10} {:>8} {:>6} {:>6}", where, counts.sent, counts.corrupted,
                   counts.detected, test.result.longest_bad_run, test.result.stops, counts.wrong_exchanges);
-  if (test.undetected.empty()) return line + fmt::format(" {:>12} {:>8}\n", "-", "-");
+  if (!test.has_theory()) return line + fmt::format(" {:>12} {:>8}\n", "-", "-");
   return line + fmt::format(" {:>12.3g} {:>8.3g}\n", test.expected_wrong(), test.chance_of_count());
 }
 
@@ -198,7 +198,13 @@ std::vector<std::string> unverified_of(const EmcCampaign& campaign) {
 
 }  // namespace
 
+void EmcTest::bound_by(const std::vector<network::ProtectedFrame>& frames) {
+  for (const network::ProtectedFrame& frame : frames)
+    undetected_share = std::max(undetected_share, emc::undetected_share_at(frame, flip_probability));
+}
+
 double EmcTest::expected_wrong() const {
+  if (undetected.empty()) return static_cast<double>(result.counts.corrupted) * undetected_share;
   double any = 0;
   for (const UndetectedPart& part : undetected) any += part.probability;
   return static_cast<double>(result.counts.sent * result.receivers) * any;
@@ -249,6 +255,8 @@ std::string emc_line(const EmcTest& test) {
     line += fmt::format("    {}: {}\n", emc::name(result.criterion), result.decided_by);
   }
   if (!result.complaint.empty()) line += fmt::format("    {}\n", reports::escaped_line(result.complaint));
+  if (result.complaint.empty() && (result.receivers == 0 || !result.had_a_burst))
+    line += "    no burst met a receiver: this shows nothing\n";
   return line;
 }
 
@@ -283,7 +291,8 @@ std::string places_text(const EmcCampaign& campaign) {
   std::string text;
   std::size_t exposed = 0;
   for (const EmcPlace& place : campaign.places) exposed += place.is_exposed ? 1 : 0;
-  text += fmt::format("{} of {} receivers are exposed to the bursts\n", exposed, campaign.places.size());
+  text += fmt::format("{} of {} receivers are {}\n", exposed, campaign.places.size(),
+                      campaign.has_bursts ? "exposed to the bursts" : "disturbed by the channel");
   constexpr std::size_t kMostNamed = 8;
   std::size_t named = 0;
   for (const EmcPlace& place : campaign.places) {
@@ -357,6 +366,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                                  {"unverified", unverified_of(campaign)},
                                  {"criteria", std::move(criteria)},
                                  {"seed", std::to_string(campaign.seed)},
+                                 {"is_complete", campaign.is_complete},
                                  {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
                                  {"tests", std::move(tests)},
                                  {"channels", std::move(channels)},

@@ -22,6 +22,11 @@ struct EmcTest {
   emc::ImmunityResult result;
 
   bool has_bursts() const { return flip_probability == 0; }
+  // Where there is no closed form of exchanges: the share of corrupted frames that their check lets pass at
+  // this rate, of the kind of frame that lets pass most.
+  double undetected_share = 0;
+  void bound_by(const std::vector<network::ProtectedFrame>& frames);
+  bool has_theory() const { return !undetected.empty() || undetected_share > 0; }
   // Exchanges that receivers may accept wrong on such a channel: no more come on average.
   double expected_wrong() const;
   // Of so many wrong exchanges as were counted, or more, if that is true.
@@ -46,6 +51,7 @@ struct EmcCampaign {
   std::uint64_t seed = 0;
   kernel::Duration duration{};
   std::vector<EmcTest> tests;
+  bool is_complete = true;  // false: it ended before all tests were made
   std::vector<EmcPlace> places;
   std::vector<std::string> channel_caveats;  // of the theory of undetected errors
   network::RecoveryLimit recovery;

@@ -159,7 +159,7 @@ std::vector<Assignment> in_served_roles(const std::string& text, const Assignmen
   std::vector<Assignment> implementations;
   for (const iut::RoleName& role : served_among(assignment.uri, judged))
     implementations.push_back({role.role, assignment.position, assignment.uri});
-  if (implementations.empty()) {
+  if (implementations.empty() && !judged.empty()) {
     std::vector<std::string> paths;
     for (const iut::RoleName& role : judged) paths.push_back(role.path());
     refuse(text, fmt::format("it serves none of the roles that the selected cases judge: {}",

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/case_file.hpp"
@@ -38,9 +39,16 @@ int judge_again(Session& session) {
   session.terminal.print(reports::run_header(stored_run.run.identity, stored_run.manifest));
   reports::Run again{stored_run.run.identity, {}};
   std::size_t changed = 0;
+  std::size_t missing = 0;  // failed, and nothing is stored of them
   for (const judge::CaseResult& before : stored_run.run.cases) {
     const std::filesystem::path file = directory.case_directory(before.id) / "case.json";
-    if (!std::filesystem::exists(file)) continue;
+    if (!std::filesystem::exists(file)) {
+      if (before.verdict != judge::Verdict::fail) continue;
+      session.terminal.log(fmt::format("{} failed in the run, and nothing of it is stored: '{}' is not there",
+                                       reports::escaped_line(before.id), file.string()));
+      ++missing;
+      continue;
+    }
     CaseFile stored = load_case(file, session.catalogue);
     if (const std::string why = reason_not_judgeable(stored); !why.empty()) {
       session.terminal.log(fmt::format("{} is not judged again: {}", before.id, why));
@@ -64,10 +72,19 @@ int judge_again(Session& session) {
                                      again.cases.size(), stored_run.run.cases.size(), changed));
   if (again.cases.empty())
     session.terminal.print("no recording to judge is stored in the run: record with --record all\n");
+  const std::size_t selected = stored_run.run.identity.selected;
+  const std::size_t never = selected - std::min(selected, stored_run.run.cases.size());
+  if (never > 0) {
+    session.terminal.print(fmt::format(
+        "{} of the {} selected cases have no result: the run did not end, or not all of it is here\n", never,
+        selected));
+  }
   ExitRules rules;
   rules.allows_inconclusive = session.settings.is_set("allow-inconclusive");
   rules.differs = changed > 0;
-  return exit_code(again, rules);
+  const int code = exit_code(again, rules);
+  const bool is_open = missing > 0 || (never > 0 && !rules.allows_inconclusive);
+  return code == kAllAsExpected && is_open ? kInconclusive : code;
 }
 
 }  // namespace fieldproof::cli

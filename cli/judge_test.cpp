@@ -1,9 +1,11 @@
 // Subject: cli/judge.cpp
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "cli/probe/program_fixture.hpp"
+#include "reports/run_directory.hpp"
 
 // A stored run is judged again without the implementation, in every role and by every kind of attachment.
 namespace fieldproof::cli {
@@ -46,6 +48,28 @@ TEST_F(JudgeTest, ImplementationsOutside) {
   // One that ends at once.
   expect_same_verdicts("valve_bus/node/read/**", "node=" + station + "valve_bus/node mutant:answers_twice",
                        1);
+}
+
+TEST_F(JudgeTest, ACaseMayLastLongerThanAnHour) {
+  write("pics.json", R"({"items": {"loss_limit": "3600 s"}})");
+  const Called run = call({"run", "valve_bus/node/power/valves_hold_without_a_host", "--pics", "pics.json",
+                           "--volume", "quick", "--quiet"});
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+}
+
+TEST_F(JudgeTest, WhatIsMissingIsNoPass) {
+  const std::string failed = "valve_bus/node/read/is_answered";
+  ASSERT_EQ(call({"run", failed, "valve_bus/node/write/drives_the_valves", "--iut", "mutant:answers_twice",
+                  "--record", "all", "--quiet", "--out", "run"})
+                .exit_code,
+            1);
+  std::filesystem::remove_all(folder_ / "run" / "cases" / reports::case_directory_name(failed));
+  const Called again = call({"judge", "run"});
+  EXPECT_EQ(again.exit_code, 2) << again.out;
+  EXPECT_HOLDS(again.err, failed + " failed in the run, and nothing of it is stored");
+  call({"run", "valve_bus/node/**", "--volume", "quick", "--record", "all", "--quiet", "--max-time", "1ms",
+        "--jobs", "1", "--out", "short"});
+  EXPECT_NE(call({"judge", "short"}).exit_code, 0);
 }
 
 TEST_F(JudgeTest, WithoutARecordingItSaysWhy) {

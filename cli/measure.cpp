@@ -4,11 +4,14 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/burst_options.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/interruption.hpp"
 #include "cli/networks.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/stored_document.hpp"
@@ -94,7 +97,7 @@ class BurstsWhileMeasuring {
   emc::BurstClamp clamp_;
 };
 
-measure::Measurement measured_by(Session& session) {
+measure::Measurement measured_by(Session& session, std::stop_token stop) {
   const ProtocolEntry& row = network_entry_of(session, "measure");
   const std::unique_ptr<conformance::PlannedNetwork> planned = plan_network(session, row);
   network::MeasurementSettings settings = measurement_from(session);
@@ -104,6 +107,7 @@ measure::Measurement measured_by(Session& session) {
   } else if (session.settings.origin("profile") == Origin::command_line) {
     session.settings.refuse("profile", "a profile is one of bursts; say which with --bursts");
   }
+  settings.stop = std::move(stop);
   settings.on_progress = [&](std::size_t done) { session.terminal.progress(done); };
   session.terminal.print(
       simulation_header(session, settings.seed, session.settings.text("network"), row.network.own_network));
@@ -124,9 +128,13 @@ bool has_other_stations(const Settings& settings) {
 }  // namespace
 
 int measure_protocol(Session& session) {
-  const measure::Measurement measured = measured_by(session);
+  const Interruption interruption(session.settings.duration("max-time"));
+  const measure::Measurement measured = measured_by(session, interruption.token());
   session.terminal.print(reports::measurement_text(measured));
   write_document(session, "measure", reports::measurement_json(measured));
+  if (!interruption.reason().empty()) session.terminal.log(interruption.reason());
+  if (interruption.signal() != 0) return kSignalBase + interruption.signal();
+  if (measured.series.empty()) return kNothingJudged;
   int code = code_of(measure::agreement(measured));
   if (code == kFailed && has_other_stations(session.settings)) {
     session.terminal.print(

@@ -85,6 +85,14 @@ TEST_F(MeasureVerb, RefusesWhatItCannotMeasure) {
 }
 
 // The theory holds between bursts, and edges during a burst are later.
+TEST_F(MeasureVerb, EndsWithTheSignalsThatAreThrough) {
+  const Called called =
+      call({"measure", "interbus", "--duration", "1h", "--max-time", "300ms", "--json", "short.json"});
+  EXPECT_EQ(called.exit_code, 4) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "the measurement was ended before");
+  EXPECT_HOLDS(called.err, "--max-time");
+}
+
 TEST_F(MeasureVerb, TellsQuietBurstAndRecoveryApart) {
   const Called called = call({"measure", "interbus", "--signal", "50Hz", "--bursts", "2", "--duration", "30s",
                               "--json", "bursts.json"});

@@ -42,6 +42,13 @@ void assign_implementations(const Session& session, SequenceFile& file) {
   const std::vector<std::string> cases_of_role{role_path(*file.role) + "/**"};
   file.setup.implementations = parse_implementations(session.settings.list("iut"), session.catalogue,
                                                      session.catalogue.select(cases_of_role));
+  const std::string role = file.role->test_case.role();
+  for (const conformance::Assignment& one : file.setup.implementations) {
+    if (one.role.empty() || one.role == role) continue;
+    session.settings.refuse(
+        "iut", fmt::format("'{}={}' plays another role than {}, whose sequences these are; write {}={}",
+                           one.role, one.uri, role_path(*file.role), role, one.uri));
+  }
 }
 
 std::string sequence_text(const Session& session, const SequenceFile& file, const judge::CaseResult& result,
@@ -55,8 +62,9 @@ std::string sequence_text(const Session& session, const SequenceFile& file, cons
 void keep_sequence(Session& session, SequenceFile file, const judge::CaseResult& result,
                    const std::string& path) {
   file.end = end_of(result);
-  reports::write_text_file(path, sequence_file_text(file));
+  // What was found is said first: the disk may be full.
   session.terminal.print(sequence_text(session, file, result, replay_command(path)));
+  reports::write_text_file(path, sequence_file_text(file));
 }
 
 std::string shrunk_text(const conformance::Sequence& before, const conformance::Sequence& after,

@@ -55,6 +55,7 @@ judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting
   result.seed = setting.seed;
   if (!bench) return result;
   result.fingerprint = bench->segment().trace().fingerprint();
+  result.has_driven = bench->line_watch().has_seen();
   result.virtual_time = bench->segment().now() - kernel::kStart;
   if constexpr (requires { bench->planned_hits(); }) result.planned_hits = bench->planned_hits();
   return result;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -16,6 +18,10 @@ LineWatch::LineWatch(kernel::Duration shortest_transmission) {
 
 segment::LineMonitor& LineWatch::add(const std::string& line, trace::Trace& trace, trace::Channel place) {
   return places_.emplace_back(Place{line, segment::LineMonitor(rules_, trace, place)}).monitor;
+}
+
+bool LineWatch::has_seen() const {
+  return std::ranges::any_of(places_, [](const Place& place) { return place.monitor.has_seen(); });
 }
 
 void LineWatch::judge(CaseJudge& judge) const {

@@ -28,6 +28,8 @@ class LineWatch {
   // Fails the case at the first violation, with `transmissions_overlap` or `station_babbles`. For the end of
   // a procedure.
   void judge(CaseJudge& judge) const;
+  // Whether anything was driven at all.
+  bool has_seen() const;
 
  private:
   struct Place {

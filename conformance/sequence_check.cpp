@@ -71,7 +71,9 @@ SequenceSearchResult search(const SequenceSearch& search) {
     const Sequence drawn = source.draw(result.run);
     const Outcome outcome = run_sequence(suite, role, drawn, search.setup);
     if (!has_failed(outcome)) {
-      result.passed += outcome.result.verdict == judge::Verdict::pass ? 1 : 0;
+      const bool has_passed = outcome.result.verdict == judge::Verdict::pass;
+      result.passed += has_passed ? 1 : 0;
+      result.silent += has_passed && !outcome.result.has_driven ? 1 : 0;
       result.not_applicable += outcome.result.verdict == judge::Verdict::not_applicable ? 1 : 0;
       result.inconclusive += outcome.result.verdict == judge::Verdict::inconclusive ? 1 : 0;
       continue;

@@ -34,7 +34,8 @@ struct SequenceFound {
 
 struct SequenceSearchResult {
   std::uint64_t run = 0;             // sequences in front of what was found
-  std::uint64_t passed = 0;          // of these: the model agrees
+  std::uint64_t passed = 0;          // of these: the reference agrees
+  std::uint64_t silent = 0;          // of those that passed: the implementation drove nothing
   std::uint64_t not_applicable = 0;  // what they ask for cannot be done to this implementation
   std::uint64_t inconclusive = 0;
   std::optional<SequenceFound> found{};

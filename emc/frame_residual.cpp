@@ -50,6 +50,10 @@ FrameResidual frame_residual(const network::ProtectedFrame& frame) {
   return residual;
 }
 
+double undetected_share_at(const network::ProtectedFrame& frame, double ber) {
+  return undetected_share_of_corrupted(dual_weights_of(frame), ber);
+}
+
 // The incomplete gamma function is the sum of the distribution's upper tail.
 double chance_of_at_least(std::uint64_t counted, double expected) {
   if (counted == 0) return 1;

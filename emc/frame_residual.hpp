@@ -24,6 +24,9 @@ struct FrameResidual {
 // Of widths up to 16 bits: takes milliseconds.
 FrameResidual frame_residual(const network::ProtectedFrame& frame);
 
+// The share of corrupted frames that pass where each bit flips with this chance, exact.
+double undetected_share_at(const network::ProtectedFrame& frame, double ber);
+
 // How well a count goes with a theory: the probability of so many events or more where `expected` come on
 // average (Poisson). A small one refutes that no more are to be expected.
 double chance_of_at_least(std::uint64_t counted, double expected);

@@ -63,7 +63,8 @@ class Run final : private network::ExchangeWatcher {
     result_.came_up = true;
     // What was not served while stations were still being found is no error.
     bad_run_ = result_.longest_bad_run = 0;
-    off_ = segment_.now() + settings_.duration;
+    on_ = segment_.now();
+    off_ = on_ + settings_.duration;
     couple(response);
     statistics_.begin();
     suffer();
@@ -199,6 +200,7 @@ class Run final : private network::ExchangeWatcher {
       ++result_.receivers;
       result_.line += one;
     });
+    result_.had_a_burst = !clamp_ || clamp_->phase_during(on_, off_) == measure::Phase::burst;
     result_.criterion = criterion();
   }
 
@@ -240,6 +242,7 @@ class Run final : private network::ExchangeWatcher {
   const ImmunitySettings& settings_;
   std::optional<BurstClamp> clamp_;
   std::deque<CountedChannel> counted_;
+  Time on_{};
   Time off_{};
   bool is_exchanging_ = false;  // a served exchange of data since the last start, seen on the line as well
   bool is_recovering_ = false;

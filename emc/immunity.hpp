@@ -64,7 +64,8 @@ struct ImmunityResult {
   std::uint64_t stops = 0;             // each was followed by a new start
   bool poor_quality = false;           // was reported by its controller at any time
   std::uint64_t receivers = 0;         // that were disturbed
-  BurstStatistics line;                // sums over them; of a textbook's channel only the transmissions
+  bool had_a_burst = false;  // one at least came while they were; a textbook's channel is always there
+  BurstStatistics line;      // sums over them; of a textbook's channel only the transmissions
   std::vector<CycleTimes> cycles;
 };
 

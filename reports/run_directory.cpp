@@ -61,6 +61,13 @@ fs::path part_of(const fs::path& path) {
   return beside;
 }
 
+// A device or a pipe: it is written to, and not replaced by a file.
+bool is_special(const fs::path& path) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
 // Answers why it could not be done: the run is there all the same.
 std::string point_latest_at(const fs::path& parent, const fs::path& run) {
   const fs::path beside = parent / fmt::format(".latest.{}", ::getpid());
@@ -97,15 +104,26 @@ std::string read_text_file(const fs::path& path) {
 
 void check_writable(const fs::path& path) {
   std::error_code failure;
+  if (is_special(path)) return;
   if (fs::is_directory(path, failure)) refuse(path, "the file cannot be written: it is a folder");
   write_text_file(part_of(path), "");
   fs::remove(part_of(path), failure);
 }
 
-void write_text_file(const fs::path& path, std::string_view content) {
-  if (path.has_parent_path()) create_folders(path.parent_path());
-  const fs::path beside = part_of(path);
+void write_text_file(const fs::path& named, std::string_view content) {
+  if (named.has_parent_path()) create_folders(named.parent_path());
   std::error_code failure;
+  if (is_special(named)) {
+    std::ofstream file(named, std::ios::binary | std::ios::app);
+    file.write(content.data(), static_cast<std::streamsize>(content.size()));
+    file.flush();
+    if (!file) refuse(named, fmt::format("the file cannot be written: {}", std::strerror(errno)));
+    return;
+  }
+  // What a link leads to is written, and the link stays.
+  const fs::path linked = fs::is_symlink(named, failure) ? fs::weakly_canonical(named, failure) : named;
+  const fs::path& path = linked.empty() ? named : linked;
+  const fs::path beside = part_of(path);
   {
     std::ofstream file(beside, std::ios::binary | std::ios::trunc);
     file.write(content.data(), static_cast<std::streamsize>(content.size()));

@@ -1,7 +1,10 @@
 #include "reports/run_directory.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "harness/judge/journal.hpp"
 #include "harness/kernel/arbitrary_text.hpp"
@@ -75,6 +78,26 @@ TEST(RunDirectory, RefusesWhatIsNoRun) {
             here + "/none: the file cannot be read: No such file or directory");
   EXPECT_EQ(refusal_of([&] { read_text_file(folder.path()); }),
             here + ": the file cannot be read: it is a folder; name a file in it");
+}
+
+TEST(WrittenFile, ALinkStaysAndAPipeIsWrittenTo) {
+  const TemporaryFolder folder;
+  const fs::path target = folder.path() / "target.json";
+  const fs::path link = folder.path() / "link.json";
+  write_text_file(target, "before");
+  fs::create_symlink("target.json", link);
+  write_text_file(link, "after");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_text_file(target), "after");
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  check_writable(pipe);
+  write_text_file(pipe, "through");
+  char octets[16] = {};
+  EXPECT_EQ(::read(reader, octets, sizeof octets), 7);
+  ::close(reader);
+  EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
 TEST(RunDirectory, KeepsCasesApart) {

@@ -94,6 +94,7 @@ inline nlohmann::ordered_json sample_emc() {
       {"unverified", {"The coupling is not calibrated.", "clamp_pf has no verified source."}},
       {"criteria", Json::array()},
       {"seed", "7"},
+      {"is_complete", true},
       {"duration_s", 3.0},
       {"tests", Json::array()},
       {"places",

@@ -104,7 +104,9 @@ SequenceFuzzResult search(const SequenceFuzz& fuzz) {
       result.found = made_smaller(fuzz, sequence, std::move(outcome));
       break;
     }
-    result.passed += verdict == judge::Verdict::pass ? 1 : 0;
+    const bool has_passed = verdict == judge::Verdict::pass;
+    result.passed += has_passed ? 1 : 0;
+    result.silent += has_passed && !outcome.result.has_driven ? 1 : 0;
     result.inconclusive += verdict == judge::Verdict::inconclusive ? 1 : 0;
     result.edges += edges;
     if (edges > 0 && !octets.empty()) pool.keep(std::move(octets));

@@ -24,6 +24,7 @@ struct SequenceFuzz {
 struct SequenceFuzzResult {
   std::uint64_t run = 0;  // without a finding
   std::uint64_t passed = 0;
+  std::uint64_t silent = 0;  // of those that passed: the implementation drove nothing
   std::uint64_t inconclusive = 0;
   std::size_t kept = 0;   // inputs that passed new edges
   std::size_t edges = 0;  // passed by all of them, by class of count

@@ -17,10 +17,6 @@ constexpr std::int64_t kMostLevels = 100'000'000;  // the same, beside one for e
 // Who asks for kMostActions calls within this stands still: they are a nanosecond apart on average.
 constexpr kernel::Duration kStandstill = kMostActions * kernel::kNanosecond;
 
-bool is_within_reach(kernel::Time when) {
-  return when.time_since_epoch() <= kFarthestAhead;
-}
-
 }  // namespace
 
 void refuse_impossible(const std::string& sentence) {
@@ -98,6 +94,10 @@ void AttachedCase::end() {
 void AttachedCase::expect_supplied() const {
   if (!has_begun_) refuse_impossible("acts while the case begins; it has no supply yet");
   if (!is_supplied_) refuse_impossible("acts without supply");
+}
+
+bool AttachedCase::is_within_reach(kernel::Time when) const {
+  return when <= now_ + kFarthestAhead;
 }
 
 void AttachedCase::expect_ahead(kernel::Time when, std::string_view does) const {

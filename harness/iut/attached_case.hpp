@@ -82,6 +82,7 @@ class AttachedCase {
   void expect_span(kernel::Time begin, kernel::Time end, const std::function<std::string()>& describe) const;
 
  private:
+  bool is_within_reach(kernel::Time when) const;
   void expect_time_to_pass() const;
   void count_act();
 

@@ -50,8 +50,11 @@ struct CaseResult {
   std::uint64_t fingerprint = 0;  // of the whole trace
   kernel::Duration virtual_time{};
   std::uint64_t wall_time_us = 0;  // the only field that differs between two equal runs
-  std::string log;                 // of the implementation, bounded
-  std::string purpose{};           // label of the test purpose, "IS-14"; may be empty
+  // Whether the implementation has driven its line at all. Not stored: for a search, in which a mute one
+  // would agree with everything.
+  bool has_driven = true;
+  std::string log;        // of the implementation, bounded
+  std::string purpose{};  // label of the test purpose, "IS-14"; may be empty
   // Who runs the suite knows of this failure, for this reason and until that day; empty: nobody does.
   std::string expected_because{};
 };

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "harness/kernel/random.hpp"
 #include "harness/measure/cyclic_copy.hpp"
+#include "harness/segment/stop.hpp"
 
 namespace fieldproof::network {
 namespace {
@@ -316,6 +318,25 @@ std::vector<Comparison> compare_path(const SignalRecord& record, const PathRecor
   return rows;
 }
 
+namespace {
+
+std::optional<SignalRecord> record_until_stopped(Network& network, const measure::SquareWave& wave,
+                                                 const MeasurementSettings& settings) {
+  if (settings.stop.stop_requested()) return std::nullopt;
+  const segment::StopScope scope(settings.stop);
+  try {
+    return record_signal(network, {.wave = wave,
+                                   .duration = settings.duration,
+                                   .seed = settings.seed,
+                                   .disturb = settings.disturb,
+                                   .phase_during = settings.phase_during});
+  } catch (const segment::Interrupted&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
 measure::Measurement measure_network(const MakeNetwork& make, const MeasurementSettings& settings) {
   measure::Measurement measurement;
   measurement.protocol = settings.protocol;
@@ -333,11 +354,16 @@ measure::Measurement measure_network(const MakeNetwork& make, const MeasurementS
                                     settings.conditions.end());
       words = network->exchange_words();
     }
-    const SignalRecord record = record_signal(*network, {.wave = settings.signals[n],
-                                                         .duration = settings.duration,
-                                                         .seed = settings.seed,
-                                                         .disturb = settings.disturb,
-                                                         .phase_during = settings.phase_during});
+    const std::optional<SignalRecord> recorded =
+        record_until_stopped(*network, settings.signals[n], settings);
+    if (!recorded) {
+      measurement.is_complete = false;
+      measurement.conditions.push_back(
+          {"not measured", fmt::format("{} and what follows it: the measurement was ended before",
+                                       measure::describe(settings.signals[n].frequency))});
+      break;
+    }
+    const SignalRecord& record = *recorded;
     cycles.add(record);
     if (record.has_stopped) {
       measurement.is_complete = false;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct MeasurementSettings {
   measure::PhaseDuring phase_during{};
   std::vector<measure::Condition> conditions{};
   std::function<void(std::size_t done)> on_progress{};  // after each signal
+  // A stop ends it with the signals that are through: it is not complete then.
+  std::stop_token stop{};
 };
 
 using MakeNetwork = std::function<std::unique_ptr<Network>(std::uint64_t seed)>;

@@ -63,6 +63,7 @@ class LineMonitor final : public Tap, public ContentionWatcher {
   // The first kKept violations, in the order in which they were seen.
   const std::vector<Violation>& violations() const { return violations_; }
   std::uint64_t count() const { return count_; }
+  bool has_seen() const { return has_heard_; }
 
  private:
   kernel::Time end_of(const line::Waveform& wave);

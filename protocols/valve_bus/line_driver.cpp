@@ -64,6 +64,12 @@ void LineDriver::send(kernel::Time start, std::span<const std::uint16_t> charact
         fmt::format("sends characters at {} without its driver, which is off", describe(start)));
   }
   expect_later(start, "sends characters");
+  const unsigned bits = character_format(rules_).data_bits;
+  for (const std::uint16_t one : characters) {
+    if (one >> bits != 0)
+      iut::refuse_impossible(
+          fmt::format("sends the character {:#x}; characters here have {} bits", one, bits));
+  }
   const kernel::Time end = start + length_of(count);
   attached_.expect_drive(start, end, [&] {
     return fmt::format("sends {} characters from {} to {}", count, describe(start), describe(end));

@@ -114,6 +114,7 @@ function campaign({ name, content }) {
           ["A receiver can be wrong from", `${number(content.threshold_volts, 3)} V on`]] : []),
         ["Seed", content.seed], ["Each test", `${number(content.duration_s)} s`]]),
       documentCommand(content, name),
+      content.is_complete ? null : notice("The campaign ended before all of its tests were made: what is not here was not tested."),
       content.unverified.length ? notice(element("strong", {}, "Unverified and uncalibrated"),
           element("ul", {}, content.unverified.map((text) => element("li", {}, text)))) : null,
       hasBursts ? [heatMap(content.tests), criteriaPart(content)] : null, totalPart(content),
