@@ -87,6 +87,15 @@ class HostBench final : private segment::Station, private valve_bus::HostApplica
   kernel::Random& random() { return random_; }
   std::uint8_t random_octet() { return static_cast<std::uint8_t>(random_.below(256)); }
   std::uint8_t random_id();
+  valve_bus::Response random_response() { return {random_octet(), random_octet()}; }
+  valve_bus::Command read_of(unsigned id, std::uint8_t data0 = 0, std::uint8_t data1 = 0) const {
+    return {static_cast<std::uint8_t>(id), static_cast<std::uint8_t>(rules().read_command), data0, data1};
+  }
+  // With random data.
+  valve_bus::Command write_to(unsigned id) {
+    const auto [data0, data1] = random_response();
+    return {static_cast<std::uint8_t>(id), static_cast<std::uint8_t>(rules().write_command), data0, data1};
+  }
   template <typename Count>
   Count volume(Count quick, Count full) const {
     return volume_ == Volume::quick ? quick : full;
