@@ -39,22 +39,21 @@ void hold_low(HostScene& scene, std::size_t breaks, std::size_t characters = 1) 
 }
 
 HostStep low_characters() {
-  return stimulus<HostScene>("the line is low for three characters, as three and as one break",
-                             [](HostScene& scene) {
-                               scene.octets.assign(3, 0);
-                               scene.round == 0 ? hold_low(scene, 3) : hold_low(scene, 1, 3);
-                             });
+  return stimulus("the line is low for three characters, as three and as one break", [](HostScene& scene) {
+    scene.octets.assign(3, 0);
+    scene.round == 0 ? hold_low(scene, 3) : hold_low(scene, 1, 3);
+  });
 }
 
 HostStep stuck_low() {
-  return stimulus<HostScene>("the line stays low, longer than all attempts take", [](HostScene& scene) {
+  return stimulus("the line stays low, longer than all attempts take", [](HostScene& scene) {
     const auto count = 3 * scene.bench.observation_timeout() / scene.bench.characters(1);
     hold_low(scene, static_cast<std::size_t>(count));
   });
 }
 
 HostStep read_fails() {
-  return expected<HostScene>("the PC gets an error", [](HostScene& scene) {
+  return expected("the PC gets an error", [](HostScene& scene) {
     const auto told = scene.bench.next_told(2 * scene.bench.observation_timeout());
     scene.judge.expect(told.has_value(), "waits_for_ever", "an error is reported to the PC",
                        "nothing was reported");
@@ -64,13 +63,12 @@ HostStep read_fails() {
 }
 
 HostStep released() {
-  return stimulus<HostScene>("the line is released", [](HostScene& scene) {
-    scene.bench.wait(2 * scene.bench.observation_timeout());
-  });
+  return stimulus("the line is released",
+                  [](HostScene& scene) { scene.bench.wait(2 * scene.bench.observation_timeout()); });
 }
 
 HostStep stuck_high() {
-  return stimulus<HostScene>("the line is driven high", [](HostScene& scene) {
+  return stimulus("the line is driven high", [](HostScene& scene) {
     const kernel::Duration length = scene.bench.observation_timeout();
     line::Levels high;
     high.append_idle(static_cast<std::size_t>(kernel::levels_within(length, scene.bench.rules().bit_rate)));
@@ -79,7 +77,7 @@ HostStep stuck_high() {
 }
 
 HostStep noise() {
-  return stimulus<HostScene>(
+  return stimulus(
       "one to four octets come between two reads, where they are three a valid response",
       [](HostScene& scene) {
         HostBench& bench = scene.bench;

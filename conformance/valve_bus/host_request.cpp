@@ -23,16 +23,16 @@ void expect_refused_order(HostScene& scene, HostErrorKind kind, std::string_view
 }
 
 HostStep a_command_for_each_id() {
-  return stimulus<HostScene>("the PC orders a read and a write for the IDs 0 to 255, one in each round",
-                             [](HostScene& scene) {
-                               const auto& rules = scene.bench.rules();
-                               order_command(scene, scene.round / 2,
-                                             scene.round % 2 == 0 ? rules.read_command : rules.write_command);
-                             });
+  return stimulus("the PC orders a read and a write for the IDs 0 to 255, one in each round",
+                  [](HostScene& scene) {
+                    const auto& rules = scene.bench.rules();
+                    order_command(scene, scene.round / 2,
+                                  scene.round % 2 == 0 ? rules.read_command : rules.write_command);
+                  });
 }
 
 HostStep sent_for_ids_1_to_99() {
-  return expected<HostScene>(
+  return expected(
       "it is sent for the IDs 1 to 99, and the read is served; for others nothing is sent, and the PC gets "
       "an error: ID refused",
       [](HostScene& scene) {

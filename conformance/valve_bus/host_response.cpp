@@ -183,9 +183,9 @@ std::vector<HostCase> cases_of_characters() {
                             {"response_gaps_of_one_character", "short_gap_refused"}}},
                {{2 * kGaps.size(), 2 * kGaps.size()},
                 {read(),
-                 stimulus<HostScene>("the node answers with a gap of 0.5 to 3.4 characters in front of the "
-                                     "second or the third octet",
-                                     answer_with_a_gap),
+                 stimulus("the node answers with a gap of 0.5 to 3.4 characters in front of the "
+                          "second or the third octet",
+                          answer_with_a_gap),
                  taken_if(
                      "up to 1.4 characters", [](const HostScene& scene) { return gap_of(scene) < 1.5; },
                      "short_gap_refused", "long_gap_taken", "1.6 characters or more are too many")}}),

@@ -22,7 +22,7 @@ kernel::Duration latest_retry(const HostBench& bench) {
 
 // The node is polled again as long after the last poll as the time-out is.
 HostStep polled_again_in_time() {
-  return expected<HostScene>(
+  return expected(
       "the host polls the node again after the time-out, within 5 %, where it knows of a start bit when its "
       "character is over",
       [](HostScene& scene) {
@@ -37,24 +37,23 @@ HostStep polled_again_in_time() {
 }
 
 HostStep error_in_time() {
-  return expected<HostScene>(
-      "after the last time-out the PC gets an error: no response", [](HostScene& scene) {
-        const kernel::Time limit = scene.poll.end + latest_retry(scene.bench);
-        const auto told = scene.bench.next_told(scene.bench.observation_timeout());
-        scene.judge.expect(told && told->when <= limit, "error_late", [&] {
-          return Mismatch{{fmt::format("an error at {} at the latest", kernel::describe(limit))},
-                          told ? text_of(*told) : std::string("nothing was reported")};
-        });
-        const auto* error = std::get_if<valve_bus::HostError>(&told->what);
-        scene.judge.expect(
-            error != nullptr && *error == valve_bus::HostError{scene.id, HostErrorKind::no_response},
-            "error_wrong", fmt::format("an error of {:02X}: no response", scene.id), text_of(*told));
-      });
+  return expected("after the last time-out the PC gets an error: no response", [](HostScene& scene) {
+    const kernel::Time limit = scene.poll.end + latest_retry(scene.bench);
+    const auto told = scene.bench.next_told(scene.bench.observation_timeout());
+    scene.judge.expect(told && told->when <= limit, "error_late", [&] {
+      return Mismatch{{fmt::format("an error at {} at the latest", kernel::describe(limit))},
+                      told ? text_of(*told) : std::string("nothing was reported")};
+    });
+    const auto* error = std::get_if<valve_bus::HostError>(&told->what);
+    scene.judge.expect(
+        error != nullptr && *error == valve_bus::HostError{scene.id, HostErrorKind::no_response},
+        "error_wrong", fmt::format("an error of {:02X}: no response", scene.id), text_of(*told));
+  });
 }
 
 // The other node is read next.
 HostStep late_response() {
-  return stimulus<HostScene>(
+  return stimulus(
       "the node answers 1.05 times the time-out after the last poll, with a read of another node waiting",
       [](HostScene& scene) {
         scene.bench.order(scene.bench.read_of(scene.other));
@@ -63,7 +62,7 @@ HostStep late_response() {
 }
 
 HostStep other_polled() {
-  return expected<HostScene>("the host polls the other node", [](HostScene& scene) {
+  return expected("the host polls the other node", [](HostScene& scene) {
     expect_old_if_known(scene.bench, scene.judge, scene.id);
     expect_request(scene.bench, scene.judge, scene.bench.read_of(scene.other));
   });
@@ -79,24 +78,23 @@ HostStep other_served() {
 
 // One of the ways in which a response can be wrong, another one in each round and attempt.
 HostStep wrong_answer(unsigned attempt) {
-  return stimulus<HostScene>("the node answers with a wrong check, two octets, or a wrong stop bit",
-                             [attempt](HostScene& scene) {
-                               HostBench& bench = scene.bench;
-                               auto octets = octets_of(bench.random_response());
-                               const unsigned way = (scene.round + attempt) % 3;
-                               if (way == 0) {
-                                 octets.back() = static_cast<std::uint8_t>(octets.back() + 1);
-                                 bench.answer(octets, bench.turnaround_time());
-                               } else if (way == 1) {
-                                 bench.answer(std::span(octets).first(2), bench.turnaround_time());
-                               } else {
-                                 line::Levels levels;
-                                 for (const std::uint8_t octet : octets)
-                                   levels.append(bench.levels_of(octet));
-                                 levels.flip(bench.levels_of(0).size() - 1);  // the stop bit of the first
-                                 bench.answer_levels(levels, bench.turnaround_time());
-                               }
-                             });
+  return stimulus("the node answers with a wrong check, two octets, or a wrong stop bit",
+                  [attempt](HostScene& scene) {
+                    HostBench& bench = scene.bench;
+                    auto octets = octets_of(bench.random_response());
+                    const unsigned way = (scene.round + attempt) % 3;
+                    if (way == 0) {
+                      octets.back() = static_cast<std::uint8_t>(octets.back() + 1);
+                      bench.answer(octets, bench.turnaround_time());
+                    } else if (way == 1) {
+                      bench.answer(std::span(octets).first(2), bench.turnaround_time());
+                    } else {
+                      line::Levels levels;
+                      for (const std::uint8_t octet : octets) levels.append(bench.levels_of(octet));
+                      levels.flip(bench.levels_of(0).size() - 1);  // the stop bit of the first
+                      bench.answer_levels(levels, bench.turnaround_time());
+                    }
+                  });
 }
 
 HostCase silent_node_case(unsigned dip, std::string_view rate, std::vector<MustCatch> catches) {
@@ -111,7 +109,7 @@ HostCase silent_node_case(unsigned dip, std::string_view rate, std::vector<MustC
        .catches = std::move(catches),
        .not_applicable = for_host_with("dip_can_be_set", "the bench cannot set the bit rate of the host")},
       {{2, 50},
-       {read(), stimulus<HostScene>(fmt::format("no node answers, at {} bit/s", rate), [](HostScene&) {}),
+       {read(), stimulus(fmt::format("no node answers, at {} bit/s", rate), [](HostScene&) {}),
         polled_again_in_time(), polled_again_in_time(), not_polled_again(), error_in_time(),
         counted(&HostCounters::timeouts, 3, "time-outs"),
         nothing_reported(kernel::kMillisecond, "data_of_silence_told", "nothing was known")}},

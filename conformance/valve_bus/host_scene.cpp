@@ -84,8 +84,8 @@ HostStep served_read() {
 }
 
 HostStep powered_up_at_each_position() {
-  return stimulus<HostScene>("power goes off and comes with the DIP switches in each position in turn",
-                             [](HostScene& scene) { scene.bench.restart(dip_of(scene)); });
+  return stimulus("power goes off and comes with the DIP switches in each position in turn",
+                  [](HostScene& scene) { scene.bench.restart(dip_of(scene)); });
 }
 
 unsigned dip_positions() {
@@ -101,84 +101,81 @@ HostStep response() {
 }
 
 HostStep answer(std::string text, MakeOctets octets, MakeTime after) {
-  return stimulus<HostScene>(
-      std::move(text), [octets = std::move(octets), after = std::move(after)](HostScene& scene) {
-        scene.answer(octets(scene), after ? after(scene) : scene.bench.turnaround_time());
-      });
+  return stimulus(std::move(text), [octets = std::move(octets), after = std::move(after)](HostScene& scene) {
+    scene.answer(octets(scene), after ? after(scene) : scene.bench.turnaround_time());
+  });
 }
 
 HostStep answer_levels(std::string text, std::function<line::Levels(HostScene&)> levels) {
-  return stimulus<HostScene>(std::move(text), [levels = std::move(levels)](HostScene& scene) {
+  return stimulus(std::move(text), [levels = std::move(levels)](HostScene& scene) {
     scene.octets = right_octets(scene);
     scene.bench.answer_levels(levels(scene), scene.bench.turnaround_time());
   });
 }
 
 HostStep reported() {
-  return expected<HostScene>("the PC gets its data", [](HostScene& scene) {
+  return expected("the PC gets its data", [](HostScene& scene) {
     expect_response(scene.bench, scene.judge, scene.id, data_of(scene));
   });
 }
 
 HostStep taken(std::string reason) {
-  return expected<HostScene>("the PC gets the data in it", [reason = std::move(reason)](HostScene& scene) {
+  return expected("the PC gets the data in it", [reason = std::move(reason)](HostScene& scene) {
     expect_response(scene.bench, scene.judge, scene.id, data_of(scene), scene.reporting_time(), reason);
   });
 }
 
 HostStep refused(std::string reason, std::string why_not) {
-  return expected<HostScene>(
-      fmt::format("nothing is reported: {}; the node is polled again and served", why_not),
-      [reason = std::move(reason), why_not](HostScene& scene) {
-        scene.expect_nothing_reported(reason,
-                                      fmt::format("{}: {:02X}", why_not, fmt::join(scene.octets, " ")));
-        expect_retry(scene.bench, scene.judge, scene.request);
-        scene.answer(right_octets(scene));
-        expect_response(scene.bench, scene.judge, scene.id, data_of(scene));
-      });
+  return expected(fmt::format("nothing is reported: {}; the node is polled again and served", why_not),
+                  [reason = std::move(reason), why_not](HostScene& scene) {
+                    scene.expect_nothing_reported(
+                        reason, fmt::format("{}: {:02X}", why_not, fmt::join(scene.octets, " ")));
+                    expect_retry(scene.bench, scene.judge, scene.request);
+                    scene.answer(right_octets(scene));
+                    expect_response(scene.bench, scene.judge, scene.id, data_of(scene));
+                  });
 }
 
 HostStep taken_if(std::string text, std::function<bool(const HostScene&)> is_taken,
                   std::string refused_reason, std::string taken_reason, std::string why_not) {
   const HostStep one = taken(std::move(refused_reason));
   const HostStep other = refused(std::move(taken_reason), std::move(why_not));
-  return expected<HostScene>(fmt::format("{} {}, else {}", text, one.expected, other.expected),
-                             [one = one.run, other = other.run, is_taken = std::move(is_taken)](
-                                 HostScene& scene) { is_taken(scene) ? one(scene) : other(scene); });
+  return expected(fmt::format("{} {}, else {}", text, one.expected, other.expected),
+                  [one = one.run, other = other.run, is_taken = std::move(is_taken)](HostScene& scene) {
+                    is_taken(scene) ? one(scene) : other(scene);
+                  });
 }
 
 HostStep polled_again() {
-  return expected<HostScene>("the host polls the node again", [](HostScene& scene) {
+  return expected("the host polls the node again", [](HostScene& scene) {
     scene.poll = expect_retry(scene.bench, scene.judge, scene.request);
   });
 }
 
 HostStep not_polled_again() {
-  return expected<HostScene>("no further poll", [](HostScene& scene) {
+  return expected("no further poll", [](HostScene& scene) {
     expect_no_request(scene.bench, scene.judge, 2 * scene.bench.time_out(), "polled_too_often",
                       fmt::format("{} attempts in all", scene.bench.rules().read_attempts));
   });
 }
 
 HostStep error(HostErrorKind kind, std::string reason_for_data) {
-  return expected<HostScene>(fmt::format("the PC gets an error: {}", describe(kind)),
-                             [kind, reason = std::move(reason_for_data)](HostScene& scene) {
-                               expect_error(scene.bench, scene.judge, {scene.command.id, kind}, reason);
-                             });
+  return expected(fmt::format("the PC gets an error: {}", describe(kind)),
+                  [kind, reason = std::move(reason_for_data)](HostScene& scene) {
+                    expect_error(scene.bench, scene.judge, {scene.command.id, kind}, reason);
+                  });
 }
 
 HostStep old_data() {
-  return expected<HostScene>("the PC gets what was known, marked as old", [](HostScene& scene) {
-    expect_old(scene.bench, scene.judge, scene.id, scene.known);
-  });
+  return expected("the PC gets what was known, marked as old",
+                  [](HostScene& scene) { expect_old(scene.bench, scene.judge, scene.id, scene.known); });
 }
 
 HostStep nothing_reported(MakeTime within, std::string reason, std::string why_not) {
-  return expected<HostScene>(
-      fmt::format("nothing is reported: {}", why_not),
-      [within = std::move(within), reason = std::move(reason), why_not](HostScene& scene) {
-        expect_nothing_told(scene.bench, scene.judge, within(scene), reason, why_not);
-      });
+  return expected(fmt::format("nothing is reported: {}", why_not),
+                  [within = std::move(within), reason = std::move(reason), why_not](HostScene& scene) {
+                    expect_nothing_told(scene.bench, scene.judge, within(scene), reason, why_not);
+                  });
 }
 
 HostStep nothing_reported(kernel::Duration within, std::string reason, std::string why_not) {
@@ -190,20 +187,19 @@ HostStep nothing_reported(std::string reason, std::string why_not) {
 }
 
 HostStep recovers() {
-  return expected<HostScene>("then a read is served",
-                             [](HostScene& scene) { expect_host_recovers(scene.bench, scene.judge); });
+  return expected("then a read is served",
+                  [](HostScene& scene) { expect_host_recovers(scene.bench, scene.judge); });
 }
 
 HostStep counted(std::uint64_t HostCounters::* counter, unsigned count, std::string what,
                  std::string reason) {
-  return expected<HostScene>(
-      fmt::format("{} {} counted", count, what),
-      [counter, count, what, reason = std::move(reason)](HostScene& scene) {
-        scene.judge.expect_equal(scene.bench.counters(scene.id).*counter - scene.counters.*counter, count,
-                                 reason, what);
-        scene.judge.expect(scene.bench.counters(scene.other) == scene.others, "counters_wrong",
-                           "the counters of another node stand as they stood", "they have changed");
-      });
+  return expected(fmt::format("{} counted: {}", what, count), [counter, count, what,
+                                                               reason = std::move(reason)](HostScene& scene) {
+    scene.judge.expect_equal(scene.bench.counters(scene.id).*counter - scene.counters.*counter, count, reason,
+                             what);
+    scene.judge.expect(scene.bench.counters(scene.other) == scene.others, "counters_wrong",
+                       "the counters of another node stand as they stood", "they have changed");
+  });
 }
 
 }  // namespace host_chart

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "conformance/chart.hpp"
@@ -50,6 +51,14 @@ using HostChart = Chart<HostScene>;
 
 inline HostCase on_chart(TestCase test_case, HostChart chart, HostNeeds needs = {}) {
   return charted<HostCase>(std::move(test_case), std::move(chart), std::move(needs));
+}
+
+// What one chart alone does, or requires.
+inline HostStep stimulus(std::string text, std::function<void(HostScene&)> run) {
+  return {std::move(text), {}, std::move(run)};
+}
+inline HostStep expected(std::string text, std::function<void(HostScene&)> run) {
+  return {{}, std::move(text), std::move(run)};
 }
 
 namespace host_chart {

@@ -28,7 +28,7 @@ HostStep two_writes_apart() {
 }
 
 HostStep not_written_again() {
-  return expected<HostScene>("it is not sent again before 0.8 times the refresh", [](HostScene& scene) {
+  return expected("it is not sent again before 0.8 times the refresh", [](HostScene& scene) {
     const kernel::Duration since = scene.bench.now() - scene.request.start;
     const auto again = scene.bench.next_frame(scene.bench.rules().refresh * 8 / 10 - since);
     scene.judge.expect(!again, "write_repeated", [&] {
@@ -39,7 +39,7 @@ HostStep not_written_again() {
 }
 
 HostStep four_commands_at_once() {
-  return stimulus<HostScene>("the PC orders two reads, a write and a read at once", [](HostScene& scene) {
+  return stimulus("the PC orders two reads, a write and a read at once", [](HostScene& scene) {
     const Command read = scene.bench.read_of(scene.id);
     scene.command = scene.bench.write_to(9);
     for (const Command& command : {read, read, scene.command, read}) scene.bench.order(command);
@@ -47,8 +47,8 @@ HostStep four_commands_at_once() {
 }
 
 HostStep write_is_next() {
-  return expected<HostScene>("the host sends the write, at least 38.5 bits after what was on the line",
-                             [](HostScene& scene) { scene.expect_sent(); });
+  return expected("the host sends the write, at least 38.5 bits after what was on the line",
+                  [](HostScene& scene) { scene.expect_sent(); });
 }
 
 HostStep read_is_next() {
@@ -65,18 +65,18 @@ HostStep read_is_next() {
 }
 
 HostStep driver_measured() {
-  return expected<HostScene>("its driver is on at least a bit before it and off at most two bits after it",
-                             [](HostScene& scene) {
-                               const HostFrame& frame = scene.request;
-                               scene.judge.measure("driver on before the start bit", "us",
-                                                   in_microseconds(frame.start - frame.sent.driver_on));
-                               scene.judge.measure("driver on after the stop bit", "us",
-                                                   in_microseconds(frame.sent.driver_off - frame.end));
-                             });
+  return expected("its driver is on at least a bit before it and off at most two bits after it",
+                  [](HostScene& scene) {
+                    const HostFrame& frame = scene.request;
+                    scene.judge.measure("driver on before the start bit", "us",
+                                        in_microseconds(frame.start - frame.sent.driver_on));
+                    scene.judge.measure("driver on after the stop bit", "us",
+                                        in_microseconds(frame.sent.driver_off - frame.end));
+                  });
 }
 
 HostStep driver_stays_off() {
-  return expected<HostScene>("the driver stays off for 20 ms", [](HostScene& scene) {
+  return expected("the driver stays off for 20 ms", [](HostScene& scene) {
     const auto unasked = scene.bench.next_frame(20 * kernel::kMillisecond);
     scene.judge.expect(!unasked, "drives_without_need", "nothing is sent when nothing is to do",
                        "it drove the line");
