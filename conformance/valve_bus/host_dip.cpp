@@ -61,8 +61,7 @@ std::vector<HostCase> host_dip_cases() {
   using namespace host_chart;
   const auto with_switches = [](const judge::Pics& pics) {
     const auto why_not = for_plain_writes()(pics);
-    return why_not ? why_not
-                   : for_host_with("dip_can_be_set", "the bench cannot turn the host's DIP switches")(pics);
+    return why_not ? why_not : for_settable_dip()(pics);
   };
   return {
       on_chart(

@@ -23,6 +23,14 @@ const HostResponse* response_told(const std::optional<HostEvent>& told) {
   return told ? std::get_if<HostResponse>(&told->what) : nullptr;
 }
 
+auto data_sighting(const HostResponse& wanted, const std::optional<HostEvent>& told) {
+  return [wanted, &told] {
+    return Mismatch{{fmt::format("the PC gets the data of {:02X}{}: {:02X} {:02X}", wanted.id,
+                                 wanted.is_old ? ", as old" : "", wanted.data0, wanted.data1)},
+                    told_text(told)};
+  };
+}
+
 auto duration_sighting(std::string_view expected, kernel::Duration actual, kernel::Time when) {
   return
       [expected, actual, when] { return Mismatch{{std::string(expected)}, kernel::describe(actual), when}; };
@@ -124,11 +132,7 @@ void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id, const 
                      kernel::Duration within, std::string_view missing_reason) {
   const auto told = bench.next_told(within);
   const HostResponse* seen = response_told(told);
-  const auto sighting = [&] {
-    return Mismatch{
-        {fmt::format("the PC gets the data of {:02X}: {:02X} {:02X}", id, response.data0, response.data1)},
-        told_text(told)};
-  };
+  const auto sighting = data_sighting({id, response.data0, response.data1}, told);
   judge.expect(seen != nullptr, missing_reason, sighting);
   judge.expect(seen->id == id && Response{seen->data0, seen->data1} == response, "response_wrong", sighting);
   judge.expect(!seen->is_old, "told_as_old", sighting);
@@ -147,11 +151,7 @@ void expect_error(HostBench& bench, CaseJudge& judge, const HostError& error, st
 void expect_old(HostBench& bench, CaseJudge& judge, std::uint8_t id, const Response& response) {
   const auto told = bench.next_told(bench.observation_timeout());
   const HostResponse* seen = response_told(told);
-  const auto sighting = [&] {
-    return Mismatch{{fmt::format("the PC gets the data of {:02X}, as old: {:02X} {:02X}", id, response.data0,
-                                 response.data1)},
-                    told_text(told)};
-  };
+  const auto sighting = data_sighting({id, response.data0, response.data1, true}, told);
   judge.expect(seen != nullptr, "old_data_not_told", sighting);
   judge.expect(seen->id == id && Response{seen->data0, seen->data1} == response, "old_data_wrong", sighting);
   judge.expect(seen->is_old, "old_data_told_as_new", sighting);

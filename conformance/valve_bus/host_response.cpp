@@ -1,7 +1,6 @@
 #include <array>
 
 #include "conformance/valve_bus/bit_pairs.hpp"
-#include "conformance/valve_bus/characters_item.hpp"
 #include "conformance/valve_bus/host_scene.hpp"
 
 // What is a response, and what the PC is told of it.
@@ -145,8 +144,8 @@ std::vector<HostCase> cases_of_octets() {
                 .reference = silence_ends_a_frame(),
                 .tags = {"must", "timing"},
                 .catches = {{"takes_early_response", "early_response_told"}},
-                .not_applicable =
-                    for_host_without("takes_early_responses", "the host takes responses that come at once")},
+                .not_applicable = for_item("takes_early_responses", false, declared_host(),
+                                           "the host takes responses that come at once")},
                {{6, 150},
                 {read(),
                  answer("the node answers rightly 2, 5 or 10 bits after the request", right_octets,

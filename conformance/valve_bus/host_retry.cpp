@@ -80,20 +80,13 @@ HostStep other_served() {
 HostStep wrong_answer(unsigned attempt) {
   return stimulus("the node answers with a wrong check, two octets, or a wrong stop bit",
                   [attempt](HostScene& scene) {
-                    HostBench& bench = scene.bench;
-                    auto octets = octets_of(bench.random_response());
+                    scene.octets = host_chart::right_octets(scene);
                     const unsigned way = (scene.round + attempt) % 3;
-                    if (way == 0) {
-                      octets.back() = static_cast<std::uint8_t>(octets.back() + 1);
-                      bench.answer(octets, bench.turnaround_time());
-                    } else if (way == 1) {
-                      bench.answer(std::span(octets).first(2), bench.turnaround_time());
-                    } else {
-                      line::Levels levels;
-                      for (const std::uint8_t octet : octets) levels.append(bench.levels_of(octet));
-                      levels.flip(bench.levels_of(0).size() - 1);  // the stop bit of the first
-                      bench.answer_levels(levels, bench.turnaround_time());
-                    }
+                    if (way == 0) ++scene.octets.back();
+                    if (way == 1) scene.octets.pop_back();
+                    line::Levels levels = scene.levels(scene.bench.rules().characters);
+                    if (way == 2) levels.flip(scene.bench.levels_of(0).size() - 1);  // the first stop bit
+                    scene.bench.answer_levels(levels, scene.bench.turnaround_time());
                   });
 }
 
@@ -107,7 +100,7 @@ HostCase silent_node_case(unsigned dip, std::string_view rate, std::vector<MustC
        .reference = valve_sources::own("time-out and attempts"),
        .tags = {"must", "timing"},
        .catches = std::move(catches),
-       .not_applicable = for_host_with("dip_can_be_set", "the bench cannot set the bit rate of the host")},
+       .not_applicable = for_settable_dip()},
       {{2, 50},
        {read(), stimulus(fmt::format("no node answers, at {} bit/s", rate), [](HostScene&) {}),
         polled_again_in_time(), polled_again_in_time(), not_polled_again(), error_in_time(),

@@ -151,8 +151,7 @@ std::vector<HostCase> host_timing_cases() {
            .reference = valve_sources::own("turnaround and time-out"),
            .tags = {"must", "timing"},
            .catches = {{"time_out_fixed", "response_not_told"}},
-           .not_applicable =
-               for_host_with("dip_can_be_set", "the bench cannot set the bit rate of the host")},
+           .not_applicable = for_settable_dip()},
           {{dip_positions(), 20 * dip_positions()},
            {powered_up_at_each_position(), read(),
             answer("the node answers rightly 2 ms after the delimiter, where that is longer two characters "

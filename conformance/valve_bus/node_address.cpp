@@ -8,21 +8,17 @@
 namespace fieldproof::conformance {
 namespace {
 
-std::vector<std::uint8_t> frame_for(unsigned id, unsigned command) {
-  const auto octets = octets_of(
-      valve_bus::Command{static_cast<std::uint8_t>(id), static_cast<std::uint8_t>(command), 0xFF, 0xFF});
-  return {octets.begin(), octets.end()};
-}
+using MakeId = std::function<unsigned(const NodeScene&)>;
 
-NodeStep read_for(std::string text, std::function<unsigned(const NodeScene&)> id) {
+NodeStep read_for(std::string text, MakeId id) {
   return node_chart::sent(std::move(text), [id = std::move(id)](NodeScene& scene) {
-    return frame_for(id(scene), scene.bench.rules().read_command);
+    return scene.command(id(scene), scene.bench.rules().read_command, 0xFF, 0xFF);
   });
 }
 
-NodeStep write_for(std::string text, std::function<unsigned(const NodeScene&)> id) {
+NodeStep write_for(std::string text, MakeId id) {
   return node_chart::sent(std::move(text), [id = std::move(id)](NodeScene& scene) {
-    return frame_for(id(scene), scene.bench.rules().write_command);
+    return scene.command(id(scene), scene.bench.rules().write_command, 0xFF, 0xFF);
   });
 }
 
@@ -43,8 +39,8 @@ void expect_answer_to_own_id(NodeScene& scene) {
 }
 
 const auto& with_settable_switches() {
-  static const auto applies =
-      for_node_with("address_switches_can_be_set", "the bench cannot set the address of the node");
+  static const auto applies = for_item("address_switches_can_be_set", true, declared_node(),
+                                       "the bench cannot set the address of the node");
   return applies;
 }
 
@@ -107,7 +103,9 @@ std::vector<NodeCase> node_address_cases() {
                 .catches = {{"any_command_reads", "acts_on_undefined_command"}}},
                {{254, 254},
                 {sent("the commands 2 to 255 for the node's ID in turn, with a right check",
-                      [](NodeScene& scene) { return frame_for(scene.bench.address(), 2 + scene.round); }),
+                      [](NodeScene& scene) {
+                        return scene.command(scene.bench.address(), 2 + scene.round, 0xFF, 0xFF);
+                      }),
                  ignored("acts_on_undefined_command", "the command is none"), serves()}}),
   };
 }

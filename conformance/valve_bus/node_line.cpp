@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 
-#include "conformance/valve_bus/characters_item.hpp"
 #include "conformance/valve_bus/node_scene.hpp"
 
 // What a line does to characters: wrong bits, breaks, glitches, noise, and others that talk at once.

@@ -63,8 +63,8 @@ void expect_power_up(NodeScene& scene) {
 }  // namespace
 
 std::vector<NodeCase> node_power_cases() {
-  const auto with_switched_power =
-      for_node_with("power_can_be_switched", "the bench cannot switch the supply of the node");
+  const auto with_switched_power = for_item("power_can_be_switched", true, declared_node(),
+                                            "the bench cannot switch the supply of the node");
   using namespace node_chart;
   constexpr unsigned kPlaces = valve_bus::kCommandOctets + 1;
   return {

@@ -9,10 +9,7 @@ namespace {
 // 256 of the 65536 pairs of octets, spread over them.
 std::vector<std::uint8_t> read_with_data(NodeScene& scene) {
   const unsigned pair = 4'099 * scene.round;
-  const auto octets = octets_of(
-      valve_bus::Command{scene.bench.address(), static_cast<std::uint8_t>(scene.bench.rules().read_command),
-                         static_cast<std::uint8_t>(pair), static_cast<std::uint8_t>(pair >> 8)});
-  return {octets.begin(), octets.end()};
+  return scene.command(scene.bench.address(), scene.bench.rules().read_command, pair, pair >> 8);
 }
 
 void set_one_switch(NodeScene& scene) {

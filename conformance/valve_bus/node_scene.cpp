@@ -6,11 +6,6 @@
 namespace fieldproof::conformance {
 namespace {
 
-std::vector<std::uint8_t> octets_in(const valve_bus::Command& command) {
-  const auto octets = octets_of(command);
-  return {octets.begin(), octets.end()};
-}
-
 // Why what was sent is none: "its check does not fit: 05 00 12 34 00".
 std::string why(const NodeScene& scene, const std::string& why_not) {
   return scene.frame.empty() ? why_not : fmt::format("{}: {:02X}", why_not, fmt::join(scene.frame, " "));
@@ -39,14 +34,16 @@ void NodeScene::set_switches(std::uint16_t made) {
   bench.boards().set_input(0, made);
 }
 
-std::vector<std::uint8_t> NodeScene::command(unsigned number) {
-  const std::uint8_t data0 = bench.random_octet();
-  return octets_in({bench.address(), static_cast<std::uint8_t>(number), data0, bench.random_octet()});
+std::vector<std::uint8_t> NodeScene::command(unsigned id, unsigned number, unsigned data0,
+                                             unsigned data1) const {
+  const auto octet = [](unsigned value) { return static_cast<std::uint8_t>(value); };
+  const auto octets = octets_of(valve_bus::Command{octet(id), octet(number), octet(data0), octet(data1)});
+  return {octets.begin(), octets.end()};
 }
 
-std::vector<std::uint8_t> NodeScene::write(unsigned data0, unsigned data1) const {
-  return octets_in({bench.address(), static_cast<std::uint8_t>(bench.rules().write_command),
-                    static_cast<std::uint8_t>(data0), static_cast<std::uint8_t>(data1)});
+std::vector<std::uint8_t> NodeScene::command(unsigned number) {
+  const std::uint8_t data0 = bench.random_octet();
+  return command(bench.address(), number, data0, bench.random_octet());
 }
 
 std::vector<std::uint8_t> NodeScene::moving_write() const {

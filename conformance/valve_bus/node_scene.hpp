@@ -32,9 +32,12 @@ struct NodeScene {
   // The same after something that the case is about, too.
   void send_next(std::vector<std::uint8_t> octets);
   void set_switches(std::uint16_t made);
+  std::vector<std::uint8_t> command(unsigned id, unsigned number, unsigned data0, unsigned data1) const;
   // For the node, with random data.
   std::vector<std::uint8_t> command(unsigned number);
-  std::vector<std::uint8_t> write(unsigned data0, unsigned data1) const;
+  std::vector<std::uint8_t> write(unsigned data0, unsigned data1) const {
+    return command(bench.address(), bench.rules().write_command, data0, data1);
+  }
   // Of all valves.
   std::vector<std::uint8_t> moving_write() const;
   // The valves that the frame drives, which is a write.
