@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "conformance/bus_bench.hpp"
 #include "conformance/line_watch.hpp"
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
@@ -41,19 +42,7 @@ struct HostNeeds {
   std::optional<bool> verifies_writes{};
 };
 
-// Who plays, and how.
-struct HostSetting {
-  using MakeHost = std::function<std::unique_ptr<valve_bus::HostDevice>(const valve_bus::HostConfiguration&)>;
-
-  MakeHost make_device;  // null: the reference
-  std::uint64_t seed = 1;
-  Volume volume = Volume::full;
-  std::optional<judge::Pics> pics;
-  fault::Plan plan{};
-  std::span<const fault::Stress> stresses{};
-  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
-  std::function<trace::Recorder*(const trace::Trace&, const valve_bus::Rules&)> make_recorder;
-};
+using HostSetting = BusSetting<valve_bus::HostDevice, valve_bus::HostConfiguration>;
 
 // The configuration of the IUT under these needs; `pics` has an answer to each item.
 valve_bus::HostConfiguration host_configuration(const HostNeeds& needs, const judge::Pics& pics);

@@ -9,16 +9,11 @@ namespace fieldproof::conformance {
 namespace {
 
 // ID ^ COMMAND = DATA0 makes a response of the first three octets of a read.
-HostStep read_like_a_response() {
-  return {
-      "the PC orders a read of which the first three octets are a valid response, which the host receives "
-      "while it drives",
-      "the host sends it", [](HostScene& scene) {
-        HostBench& bench = scene.bench;
-        const auto check = static_cast<std::uint8_t>(scene.id ^ bench.rules().read_command);
-        scene.order(bench.read_of(scene.id, check, bench.random_octet()));
-        scene.expect_sent();
-      }};
+void order_read_like_a_response(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  const auto check = static_cast<std::uint8_t>(scene.id ^ bench.rules().read_command);
+  scene.order(bench.read_of(scene.id, check, bench.random_octet()));
+  scene.expect_sent();
 }
 
 kernel::Duration ordinary_time(HostScene& scene) {
@@ -38,56 +33,42 @@ void hold_low(HostScene& scene, std::size_t breaks, std::size_t characters = 1) 
   }
 }
 
-HostStep low_characters() {
-  return stimulus("the line is low for three characters, as three and as one break", [](HostScene& scene) {
-    scene.octets.assign(3, 0);
-    scene.round == 0 ? hold_low(scene, 3) : hold_low(scene, 1, 3);
-  });
+void hold_low_for_three_characters(HostScene& scene) {
+  scene.octets.assign(3, 0);
+  scene.round == 0 ? hold_low(scene, 3) : hold_low(scene, 1, 3);
 }
 
-HostStep stuck_low() {
-  return stimulus("the line stays low, longer than all attempts take", [](HostScene& scene) {
-    const auto count = 3 * scene.bench.observation_timeout() / scene.bench.characters(1);
-    hold_low(scene, static_cast<std::size_t>(count));
-  });
+void keep_low(HostScene& scene) {
+  const auto count = 3 * scene.bench.observation_timeout() / scene.bench.characters(1);
+  hold_low(scene, static_cast<std::size_t>(count));
 }
 
-HostStep read_fails() {
-  return expected("the PC gets an error", [](HostScene& scene) {
-    const auto told = scene.bench.next_told(2 * scene.bench.observation_timeout());
-    scene.judge.expect(told.has_value(), "waits_for_ever", "an error is reported to the PC",
-                       "nothing was reported");
-    scene.judge.expect(std::holds_alternative<valve_bus::HostError>(told->what), "low_line_told",
-                       fmt::format("an error of {:02X}", scene.id), text_of(*told));
-  });
+void expect_read_fails(HostScene& scene) {
+  const auto told = scene.bench.next_told(2 * scene.bench.observation_timeout());
+  scene.judge.expect(told.has_value(), "waits_for_ever", "an error is reported to the PC",
+                     "nothing was reported");
+  scene.judge.expect(std::holds_alternative<valve_bus::HostError>(told->what), "low_line_told",
+                     fmt::format("an error of {:02X}", scene.id), text_of(*told));
 }
 
-HostStep released() {
-  return stimulus("the line is released",
-                  [](HostScene& scene) { scene.bench.wait(2 * scene.bench.observation_timeout()); });
+void release(HostScene& scene) {
+  scene.bench.wait(2 * scene.bench.observation_timeout());
 }
 
-HostStep stuck_high() {
-  return stimulus("the line is driven high", [](HostScene& scene) {
-    const kernel::Duration length = scene.bench.observation_timeout();
-    line::Levels high;
-    high.append_idle(static_cast<std::size_t>(kernel::levels_within(length, scene.bench.rules().bit_rate)));
-    scene.bench.answer_levels(high, scene.bench.bits(4));
-  });
+void keep_high(HostScene& scene) {
+  const kernel::Duration length = scene.bench.observation_timeout();
+  line::Levels high;
+  high.append_idle(static_cast<std::size_t>(kernel::levels_within(length, scene.bench.rules().bit_rate)));
+  scene.bench.answer_levels(high, scene.bench.bits(4));
 }
 
-HostStep noise() {
-  return stimulus(
-      "one to four octets come between two reads, where they are three a valid response",
-      [](HostScene& scene) {
-        HostBench& bench = scene.bench;
-        bench.wait(bench.characters(5) + bench.bits(static_cast<std::int64_t>(bench.random().below(100))));
-        scene.octets.resize(1 + scene.round % 4);
-        std::ranges::generate(scene.octets, [&] { return bench.random_octet(); });
-        if (scene.octets.size() == valve_bus::kResponseOctets)
-          scene.octets[2] = scene.octets[0] ^ scene.octets[1];
-        bench.say(scene.octets);
-      });
+void say_between_reads(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  bench.wait(bench.characters(5) + bench.bits(static_cast<std::int64_t>(bench.random().below(100))));
+  scene.octets.resize(1 + scene.round % 4);
+  std::ranges::generate(scene.octets, [&] { return bench.random_octet(); });
+  if (scene.octets.size() == valve_bus::kResponseOctets) scene.octets[2] = scene.octets[0] ^ scene.octets[1];
+  bench.say(scene.octets);
 }
 
 // After a valid response as long as it takes to be reported; else the next read may come at once.
@@ -101,17 +82,20 @@ kernel::Duration time_to_report_noise(HostScene& scene) {
 std::vector<HostCase> host_line_cases() {
   using namespace host_chart;
   return {
-      on_chart(
-          {.id = "valve_bus/host/line/echo_is_no_response",
-           .purpose = "RH-13",
-           .requirement = "A host that receives its own echo does not take it for a response.",
-           .reference = valve_sources::calculated("ID ^ COMMAND = DATA0 is a valid response"),
-           .tags = {"must", "hazard"},
-           .catches = {{"echo_taken_as_response", "echo_told"}}},
-          {{5, 200},
-           {read_like_a_response(), nothing_reported(ordinary_time, "echo_told", "no node has answered yet"),
-            answer("the node answers rightly", right_octets, after_ordinary_time), reported()}},
-          {.receives_own_echo = true}),
+      on_chart({.id = "valve_bus/host/line/echo_is_no_response",
+                .purpose = "RH-13",
+                .requirement = "A host that receives its own echo does not take it for a response.",
+                .reference = valve_sources::calculated("ID ^ COMMAND = DATA0 is a valid response"),
+                .tags = {"must", "hazard"},
+                .catches = {{"echo_taken_as_response", "echo_told"}}},
+               {{5, 200},
+                {{"the PC orders a read of which the first three octets are a valid response, which the host "
+                  "receives while it drives",
+                  "the host sends it", order_read_like_a_response},
+                 nothing_reported(ordinary_time, "echo_told", "no node has answered yet"),
+                 answer("the node answers rightly", right_octets, after_ordinary_time),
+                 reported()}},
+               {.receives_own_echo = true}),
       on_chart({.id = "valve_bus/host/line/low_characters_are_no_response",
                 .purpose = "RH-14",
                 .requirement = "A line that is low as long as a response is none, although three octets "
@@ -119,7 +103,11 @@ std::vector<HostCase> host_line_cases() {
                 .reference = valve_sources::own("the stop bit is looked at"),
                 .tags = {"must", "hazard"},
                 .catches = {{"stop_bits_not_looked_at", "low_line_told"}}},
-               {{2, 2}, {read(), low_characters(), refused("low_line_told", "a low line has no stop bits")}}),
+               {{2, 2},
+                {read(),
+                 stimulus("the line is low for three characters, as three and as one break",
+                          hold_low_for_three_characters),
+                 refused("low_line_told", "a low line has no stop bits")}}),
       on_chart({.id = "valve_bus/host/line/stuck_low_line_is_an_error",
                 .purpose = "RH-14",
                 .requirement = "A line that stays low ends a read in an error, and the host serves again "
@@ -128,9 +116,10 @@ std::vector<HostCase> host_line_cases() {
                 .tags = {"must"},
                 .catches = {{"waits_for_silence", "waits_for_ever"}}},
                {{1, 1},
-                {read(), stuck_low(), read_fails(),
+                {read(), stimulus("the line stays low, longer than all attempts take", keep_low),
+                 expected("the PC gets an error", expect_read_fails),
                  nothing_reported(kernel::kMillisecond, "low_line_told", "nothing was known of the node"),
-                 released(), recovers()}}),
+                 stimulus("the line is released", release), recovers()}}),
       on_chart({.id = "valve_bus/host/line/stuck_high_line_is_a_time_out",
                 .purpose = "RH-15",
                 .requirement = "A line that stays high is no response.",
@@ -138,7 +127,8 @@ std::vector<HostCase> host_line_cases() {
                 .tags = {"must"},
                 .catches = {{"silence_told_as_data", "high_line_told"}}},
                {{1, 1},
-                {read(), stuck_high(), error(valve_bus::HostErrorKind::no_response, "high_line_told"),
+                {read(), stimulus("the line is driven high", keep_high),
+                 error(valve_bus::HostErrorKind::no_response, "high_line_told"),
                  nothing_reported(kernel::kMillisecond, "high_line_told", "nothing was known of the node"),
                  recovers()}}),
       on_chart({.id = "valve_bus/host/line/noise_between_polls_is_drained",
@@ -150,7 +140,9 @@ std::vector<HostCase> host_line_cases() {
                 .catches = {{"keeps_stray_octets", "response_not_told"},
                             {"stray_told_as_response", "noise_told"}}},
                {{8, 300},
-                {served_read(), noise(),
+                {served_read(),
+                 stimulus("one to four octets come between two reads, where they are three a valid response",
+                          say_between_reads),
                  nothing_reported(time_to_report_noise, "noise_told", "nothing was asked"), served_read()}}),
   };
 }

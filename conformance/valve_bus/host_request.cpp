@@ -22,39 +22,27 @@ void expect_refused_order(HostScene& scene, HostErrorKind kind, std::string_view
   expect_error(scene.bench, scene.judge, {scene.command.id, kind});
 }
 
-HostStep a_command_for_each_id() {
-  return stimulus("the PC orders a read and a write for the IDs 0 to 255, one in each round",
-                  [](HostScene& scene) {
-                    const auto& rules = scene.bench.rules();
-                    order_command(scene, scene.round / 2,
-                                  scene.round % 2 == 0 ? rules.read_command : rules.write_command);
-                  });
+void order_for_each_id(HostScene& scene) {
+  const auto& rules = scene.bench.rules();
+  order_command(scene, scene.round / 2, scene.round % 2 == 0 ? rules.read_command : rules.write_command);
 }
 
-HostStep sent_for_ids_1_to_99() {
-  return expected(
-      "it is sent for the IDs 1 to 99, and the read is served; for others nothing is sent, and the PC gets "
-      "an error: ID refused",
-      [](HostScene& scene) {
-        const auto& rules = scene.bench.rules();
-        scene.id = scene.command.id;
-        if (scene.id < rules.first_address || scene.id > rules.last_address) {
-          expect_refused_order(scene, HostErrorKind::refused_id, "refused_id_sent");
-          return;
-        }
-        scene.expect_sent();
-        if (scene.command.command == rules.write_command) return;
-        host_chart::response().run(scene);
-        host_chart::reported().run(scene);
-      });
+void expect_sent_for_ids_1_to_99(HostScene& scene) {
+  const auto& rules = scene.bench.rules();
+  scene.id = scene.command.id;
+  if (scene.id < rules.first_address || scene.id > rules.last_address) {
+    expect_refused_order(scene, HostErrorKind::refused_id, "refused_id_sent");
+    return;
+  }
+  scene.expect_sent();
+  if (scene.command.command == rules.write_command) return;
+  host_chart::response().run(scene);
+  host_chart::reported().run(scene);
 }
 
-HostStep an_undefined_command() {
-  return {"the PC orders the commands 2 to 255, one in each round",
-          "nothing is sent, and the PC gets an error: command refused", [](HostScene& scene) {
-            order_command(scene, scene.id, 2 + scene.round);
-            expect_refused_order(scene, HostErrorKind::refused_command, "undefined_command_sent");
-          }};
+void order_undefined_command(HostScene& scene) {
+  order_command(scene, scene.id, 2 + scene.round);
+  expect_refused_order(scene, HostErrorKind::refused_command, "undefined_command_sent");
 }
 
 }  // namespace
@@ -93,14 +81,22 @@ std::vector<HostCase> host_request_cases() {
                             {"refuses_id_99", "no_request"},
                             {"refuses_silently", "error_not_told"}},
                 .not_applicable = for_plain_writes()},
-               {{512, 512}, {a_command_for_each_id(), sent_for_ids_1_to_99()}}),
+               {{512, 512},
+                {stimulus("the PC orders a read and a write for the IDs 0 to 255, one in each round",
+                          order_for_each_id),
+                 expected("it is sent for the IDs 1 to 99, and the read is served; for others nothing is "
+                          "sent, and the PC gets an error: ID refused",
+                          expect_sent_for_ids_1_to_99)}}),
       on_chart({.id = "valve_bus/host/request/undefined_commands_are_refused",
                 .purpose = "RH-04",
                 .requirement = "Commands 2 to 255 are refused, and this is reported to the PC.",
                 .reference = valve_sources::own("only commands 0 and 1 are defined"),
                 .tags = {"must"},
                 .catches = {{"sends_any_command", "undefined_command_sent"}}},
-               {{254, 254}, {an_undefined_command(), served_read()}}),
+               {{254, 254},
+                {{"the PC orders the commands 2 to 255, one in each round",
+                  "nothing is sent, and the PC gets an error: command refused", order_undefined_command},
+                 served_read()}}),
   };
 }
 

@@ -1,4 +1,8 @@
+#include <algorithm>
 #include <array>
+#include <iterator>
+#include <span>
+#include <vector>
 
 #include "conformance/valve_bus/bit_pairs.hpp"
 #include "conformance/valve_bus/host_scene.hpp"
@@ -52,15 +56,15 @@ Octets of_other_length(HostScene& scene) {
   return octets;
 }
 
-constexpr std::array kGaps{0.5, 1.0, 1.4, 1.6, 2.0, 3.0, 3.4};
+constexpr std::array kResponseGaps{0.5, 1.0, 1.4, 1.6, 2.0, 3.0, 3.4};
 
 double gap_of(const HostScene& scene) {
-  return kGaps.at(scene.round % kGaps.size());
+  return kResponseGaps.at(scene.round % kResponseGaps.size());
 }
 
 void answer_with_a_gap(HostScene& scene) {
   const HostBench& bench = scene.bench;
-  const std::size_t at = 1 + scene.round / kGaps.size();
+  const std::size_t at = 1 + scene.round / kResponseGaps.size();
   const auto begin = static_cast<double>(at) + gap_of(scene);
   scene.octets = host_chart::right_octets(scene);
   const std::span<const std::uint8_t> all(scene.octets);
@@ -180,7 +184,7 @@ std::vector<HostCase> cases_of_characters() {
                 .tags = {"must", "timing"},
                 .catches = {{"response_gaps_of_three_characters", "long_gap_taken"},
                             {"response_gaps_of_one_character", "short_gap_refused"}}},
-               {{2 * kGaps.size(), 2 * kGaps.size()},
+               {{2 * kResponseGaps.size(), 2 * kResponseGaps.size()},
                 {read(),
                  stimulus("the node answers with a gap of 0.5 to 3.4 characters in front of the "
                           "second or the third octet",

@@ -36,44 +36,33 @@ HostStep polled_again_in_time() {
       });
 }
 
-HostStep error_in_time() {
-  return expected("after the last time-out the PC gets an error: no response", [](HostScene& scene) {
-    const kernel::Time limit = scene.poll.end + latest_retry(scene.bench);
-    const auto told = scene.bench.next_told(scene.bench.observation_timeout());
-    scene.judge.expect(told && told->when <= limit, "error_late", [&] {
-      return Mismatch{{fmt::format("an error at {} at the latest", kernel::describe(limit))},
-                      told ? text_of(*told) : std::string("nothing was reported")};
-    });
-    const auto* error = std::get_if<valve_bus::HostError>(&told->what);
-    scene.judge.expect(
-        error != nullptr && *error == valve_bus::HostError{scene.id, HostErrorKind::no_response},
-        "error_wrong", fmt::format("an error of {:02X}: no response", scene.id), text_of(*told));
+void expect_error_in_time(HostScene& scene) {
+  const kernel::Time limit = scene.poll.end + latest_retry(scene.bench);
+  const auto told = scene.bench.next_told(scene.bench.observation_timeout());
+  scene.judge.expect(told && told->when <= limit, "error_late", [&] {
+    return Mismatch{{fmt::format("an error at {} at the latest", kernel::describe(limit))},
+                    told ? text_of(*told) : std::string("nothing was reported")};
   });
+  const auto* error = std::get_if<valve_bus::HostError>(&told->what);
+  scene.judge.expect(error != nullptr && *error == valve_bus::HostError{scene.id, HostErrorKind::no_response},
+                     "error_wrong", fmt::format("an error of {:02X}: no response", scene.id), text_of(*told));
 }
 
 // The other node is read next.
-HostStep late_response() {
-  return stimulus(
-      "the node answers 1.05 times the time-out after the last poll, with a read of another node waiting",
-      [](HostScene& scene) {
-        scene.bench.order(scene.bench.read_of(scene.other));
-        scene.answer(host_chart::right_octets(scene), times(scene.bench.time_out(), 1 + kTolerance));
-      });
+void answer_late(HostScene& scene) {
+  scene.bench.order(scene.bench.read_of(scene.other));
+  scene.answer(host_chart::right_octets(scene), times(scene.bench.time_out(), 1 + kTolerance));
 }
 
-HostStep other_polled() {
-  return expected("the host polls the other node", [](HostScene& scene) {
-    expect_old_if_known(scene.bench, scene.judge, scene.id);
-    expect_request(scene.bench, scene.judge, scene.bench.read_of(scene.other));
-  });
+void expect_other_polled(HostScene& scene) {
+  expect_old_if_known(scene.bench, scene.judge, scene.id);
+  expect_request(scene.bench, scene.judge, scene.bench.read_of(scene.other));
 }
 
-HostStep other_served() {
-  return {"the other node answers rightly", "the PC gets its data", [](HostScene& scene) {
-            const valve_bus::Response response = scene.bench.random_response();
-            scene.bench.answer(response, scene.bench.turnaround_time() + scene.bench.bits(1));
-            expect_response(scene.bench, scene.judge, scene.other, response);
-          }};
+void serve_other(HostScene& scene) {
+  const valve_bus::Response response = scene.bench.random_response();
+  scene.bench.answer(response, scene.bench.turnaround_time() + scene.bench.bits(1));
+  expect_response(scene.bench, scene.judge, scene.other, response);
 }
 
 // One of the ways in which a response can be wrong, another one in each round and attempt.
@@ -103,7 +92,8 @@ HostCase silent_node_case(unsigned dip, std::string_view rate, std::vector<MustC
        .not_applicable = for_settable_dip()},
       {{2, 50},
        {read(), stimulus(fmt::format("no node answers, at {} bit/s", rate), [](HostScene&) {}),
-        polled_again_in_time(), polled_again_in_time(), not_polled_again(), error_in_time(),
+        polled_again_in_time(), polled_again_in_time(), not_polled_again(),
+        expected("after the last time-out the PC gets an error: no response", expect_error_in_time),
         counted(&HostCounters::timeouts, 3, "time-outs"),
         nothing_reported(kernel::kMillisecond, "data_of_silence_told", "nothing was known")}},
       {.dip = dip});
@@ -142,11 +132,18 @@ std::vector<HostCase> host_retry_cases() {
                 .catches = {{"takes_late_response", "late_response_told"},
                             {"late_not_counted", "late_not_counted"}}},
                {{3, 100},
-                {read(), polled_again(), polled_again(), late_response(),
-                 error(HostErrorKind::no_response, "late_response_told"), other_polled(),
+                {read(),
+                 polled_again(),
+                 polled_again(),
+                 stimulus("the node answers 1.05 times the time-out after the last poll, with a read of "
+                          "another node waiting",
+                          answer_late),
+                 error(HostErrorKind::no_response, "late_response_told"),
+                 expected("the host polls the other node", expect_other_polled),
                  nothing_reported([](HostScene& scene) { return scene.bench.turnaround_time(); },
                                   "late_response_told", "the other node has not answered yet"),
-                 counted(&HostCounters::late, 1, "late responses", "late_not_counted"), other_served()}}),
+                 counted(&HostCounters::late, 1, "late responses", "late_not_counted"),
+                 {"the other node answers rightly", "the PC gets its data", serve_other}}}),
 
       on_chart({.id = "valve_bus/host/retry/third_attempt_is_taken",
                 .purpose = "RH-16",

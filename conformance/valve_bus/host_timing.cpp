@@ -8,42 +8,35 @@ namespace {
 
 using valve_bus::Command;
 
-HostStep two_writes_apart() {
-  return {"the PC orders two writes at once, to different nodes",
-          "the second begins at least a delimiter and 1 ms after the first", [](HostScene& scene) {
-            HostBench& bench = scene.bench;
-            const Command first = bench.write_to(1 + scene.round % 3);
-            const Command second = bench.write_to(4 + scene.round % 3);
-            bench.order(first);
-            bench.order(second);
-            const kernel::Time end = expect_request(bench, scene.judge, first).end;
-            const kernel::Time start = expect_request(bench, scene.judge, second).start;
-            const kernel::Duration least = bench.delimiter() + bench.rules().write_distance;
-            scene.judge.expect(start - end + kernel::kNanosecond >= least, "write_distance_too_short", [&] {
-              return Mismatch{{fmt::format("{} or more after a write", kernel::describe(least))},
-                              kernel::describe(start - end),
-                              start};
-            });
-          }};
-}
-
-HostStep not_written_again() {
-  return expected("it is not sent again before 0.8 times the refresh", [](HostScene& scene) {
-    const kernel::Duration since = scene.bench.now() - scene.request.start;
-    const auto again = scene.bench.next_frame(scene.bench.rules().refresh * 8 / 10 - since);
-    scene.judge.expect(!again, "write_repeated", [&] {
-      return Mismatch{
-          {"a write is not answered and not repeated before its refresh"}, "it was sent again", again->start};
-    });
+void expect_two_writes_apart(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  const Command first = bench.write_to(1 + scene.round % 3);
+  const Command second = bench.write_to(4 + scene.round % 3);
+  bench.order(first);
+  bench.order(second);
+  const kernel::Time end = expect_request(bench, scene.judge, first).end;
+  const kernel::Time start = expect_request(bench, scene.judge, second).start;
+  const kernel::Duration least = bench.delimiter() + bench.rules().write_distance;
+  scene.judge.expect(start - end + kernel::kNanosecond >= least, "write_distance_too_short", [&] {
+    return Mismatch{{fmt::format("{} or more after a write", kernel::describe(least))},
+                    kernel::describe(start - end),
+                    start};
   });
 }
 
-HostStep four_commands_at_once() {
-  return stimulus("the PC orders two reads, a write and a read at once", [](HostScene& scene) {
-    const Command read = scene.bench.read_of(scene.id);
-    scene.command = scene.bench.write_to(9);
-    for (const Command& command : {read, read, scene.command, read}) scene.bench.order(command);
+void expect_not_written_again(HostScene& scene) {
+  const kernel::Duration since = scene.bench.now() - scene.request.start;
+  const auto again = scene.bench.next_frame(scene.bench.rules().refresh * 8 / 10 - since);
+  scene.judge.expect(!again, "write_repeated", [&] {
+    return Mismatch{
+        {"a write is not answered and not repeated before its refresh"}, "it was sent again", again->start};
   });
+}
+
+void order_four_commands(HostScene& scene) {
+  const Command read = scene.bench.read_of(scene.id);
+  scene.command = scene.bench.write_to(9);
+  for (const Command& command : {read, read, scene.command, read}) scene.bench.order(command);
 }
 
 HostStep write_is_next() {
@@ -64,23 +57,18 @@ HostStep read_is_next() {
           }};
 }
 
-HostStep driver_measured() {
-  return expected("its driver is on at least a bit before it and off at most two bits after it",
-                  [](HostScene& scene) {
-                    const HostFrame& frame = scene.request;
-                    scene.judge.measure("driver on before the start bit", "us",
-                                        in_microseconds(frame.start - frame.sent.driver_on));
-                    scene.judge.measure("driver on after the stop bit", "us",
-                                        in_microseconds(frame.sent.driver_off - frame.end));
-                  });
+void measure_driver_of_host(HostScene& scene) {
+  const HostFrame& frame = scene.request;
+  scene.judge.measure("driver on before the start bit", "us",
+                      in_microseconds(frame.start - frame.sent.driver_on));
+  scene.judge.measure("driver on after the stop bit", "us",
+                      in_microseconds(frame.sent.driver_off - frame.end));
 }
 
-HostStep driver_stays_off() {
-  return expected("the driver stays off for 20 ms", [](HostScene& scene) {
-    const auto unasked = scene.bench.next_frame(20 * kernel::kMillisecond);
-    scene.judge.expect(!unasked, "drives_without_need", "nothing is sent when nothing is to do",
-                       "it drove the line");
-  });
+void expect_driver_off_for_20_ms(HostScene& scene) {
+  const auto unasked = scene.bench.next_frame(20 * kernel::kMillisecond);
+  scene.judge.expect(!unasked, "drives_without_need", "nothing is sent when nothing is to do",
+                     "it drove the line");
 }
 
 kernel::Duration latest_far_response(HostScene& scene) {
@@ -92,26 +80,30 @@ kernel::Duration latest_far_response(HostScene& scene) {
 std::vector<HostCase> host_timing_cases() {
   using namespace host_chart;
   return {
-      on_chart({.id = "valve_bus/host/timing/write_is_left_alone",
-                .purpose = "RH-18",
-                .requirement = "After a write the line is left alone for a delimiter and 1 ms: the time "
-                               "of the node.",
-                .reference = valve_sources::own("a delimiter and 1 ms after a write"),
-                .tags = {"must", "timing"},
-                .catches = {{"write_distance_missing", "write_distance_too_short"}},
-                .not_applicable = for_plain_writes()},
-               {{3, 100}, {two_writes_apart()}}),
-      on_chart({.id = "valve_bus/host/timing/write_is_not_answered",
-                .purpose = "RH-18",
-                .requirement = "A write has no response: the host does not wait for one and does not "
-                               "repeat the write but by its refresh.",
-                .reference = valve_sources::paper("a node answers requests for data only"),
-                .tags = {"must", "timing"},
-                .catches = {{"write_waits_for_answer", "write_repeated"}},
-                .not_applicable = for_plain_writes()},
-               {{1, 1},
-                {write(), not_written_again(),
-                 nothing_reported(kernel::Duration{}, "write_told", "a write has no response")}}),
+      on_chart(
+          {.id = "valve_bus/host/timing/write_is_left_alone",
+           .purpose = "RH-18",
+           .requirement = "After a write the line is left alone for a delimiter and 1 ms: the time "
+                          "of the node.",
+           .reference = valve_sources::own("a delimiter and 1 ms after a write"),
+           .tags = {"must", "timing"},
+           .catches = {{"write_distance_missing", "write_distance_too_short"}},
+           .not_applicable = for_plain_writes()},
+          {{3, 100},
+           {{"the PC orders two writes at once, to different nodes",
+             "the second begins at least a delimiter and 1 ms after the first", expect_two_writes_apart}}}),
+      on_chart(
+          {.id = "valve_bus/host/timing/write_is_not_answered",
+           .purpose = "RH-18",
+           .requirement = "A write has no response: the host does not wait for one and does not "
+                          "repeat the write but by its refresh.",
+           .reference = valve_sources::paper("a node answers requests for data only"),
+           .tags = {"must", "timing"},
+           .catches = {{"write_waits_for_answer", "write_repeated"}},
+           .not_applicable = for_plain_writes()},
+          {{1, 1},
+           {write(), expected("it is not sent again before 0.8 times the refresh", expect_not_written_again),
+            nothing_reported(kernel::Duration{}, "write_told", "a write has no response")}}),
       on_chart({.id = "valve_bus/host/timing/unasked_octets_are_drained",
                 .purpose = "RH-18",
                 .requirement = "What comes after a write is nobody's response: it is drained.",
@@ -132,7 +124,8 @@ std::vector<HostCase> host_timing_cases() {
                             {"delimiter_of_two_silent_characters", "no_delimiter"}},
                 .not_applicable = for_plain_writes()},
                {{10, 500},
-                {four_commands_at_once(), read_is_next(), read_is_next(), write_is_next(), read_is_next()}}),
+                {stimulus("the PC orders two reads, a write and a read at once", order_four_commands),
+                 read_is_next(), read_is_next(), write_is_next(), read_is_next()}}),
       on_chart({.id = "valve_bus/host/timing/driver_is_on_for_requests_only",
                 .purpose = "RH-27",
                 .requirement = "The driver comes on at least a bit before a request, stays on until its "
@@ -142,7 +135,12 @@ std::vector<HostCase> host_timing_cases() {
                 .catches = {{"driver_on_with_start_bit", "driver_on_late"},
                             {"driver_cuts_stop_bit", "driver_released_early"},
                             {"driver_stays_on", "driver_not_released"}}},
-               {{5, 200}, {read(), driver_measured(), response(), reported(), driver_stays_off()}}),
+               {{5, 200},
+                {read(),
+                 expected("its driver is on at least a bit before it and off at most two bits after it",
+                          measure_driver_of_host),
+                 response(), reported(),
+                 expected("the driver stays off for 20 ms", expect_driver_off_for_20_ms)}}),
       on_chart(
           {.id = "valve_bus/host/timing/latest_response_is_taken_at_all_rates",
            .purpose = "RH-30",

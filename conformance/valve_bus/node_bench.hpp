@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/bus_bench.hpp"
 #include "conformance/comparison/twin_line.hpp"
 #include "conformance/line_watch.hpp"
 #include "conformance/stressed_receiver.hpp"
@@ -44,19 +45,7 @@ struct NodeNeeds {
   bool is_powered = true;       // when the case begins
 };
 
-// Who plays, and how.
-struct NodeSetting {
-  using MakeNode = std::function<std::unique_ptr<valve_bus::NodeDevice>(const valve_bus::NodeConfiguration&)>;
-
-  MakeNode make_device;  // null: the reference
-  std::uint64_t seed = 1;
-  Volume volume = Volume::full;
-  std::optional<judge::Pics> pics;
-  fault::Plan plan{};
-  std::span<const fault::Stress> stresses{};
-  // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
-  std::function<trace::Recorder*(const trace::Trace&, const valve_bus::Rules&)> make_recorder;
-};
+using NodeSetting = BusSetting<valve_bus::NodeDevice, valve_bus::NodeConfiguration>;
 
 // The configuration of the IUT under these needs; `pics` has an answer to each item.
 valve_bus::NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& pics);

@@ -10,12 +10,12 @@ namespace {
 
 using Frame = std::vector<std::uint8_t>;
 
-constexpr unsigned kFrameBits = 8 * valve_bus::kCommandOctets;
+constexpr unsigned kCommandBits = 8 * valve_bus::kCommandOctets;
 
 Frame wrong_bit(NodeScene& scene) {
   const auto& rules = scene.bench.rules();
-  Frame frame = scene.command(scene.round < kFrameBits ? rules.write_command : rules.read_command);
-  invert(frame, scene.round % kFrameBits);
+  Frame frame = scene.command(scene.round < kCommandBits ? rules.write_command : rules.read_command);
+  invert(frame, scene.round % kCommandBits);
   return frame;
 }
 
@@ -87,7 +87,7 @@ std::vector<NodeCase> node_check_cases() {
                 .catches = {{"read_not_checked", "acts_on_wrong_check"},
                             {"write_not_checked", "acts_on_wrong_check"},
                             {"valves_off_on_wrong_check", "acts_on_wrong_check"}}},
-               {{2 * kFrameBits, 2 * kFrameBits},
+               {{2 * kCommandBits, 2 * kCommandBits},
                 {valves_on(), sent("a write, then a read, with each of its 40 bits wrong in turn", wrong_bit),
                  ignored("acts_on_wrong_check", "one bit is wrong"), serves()}}),
       on_chart(
