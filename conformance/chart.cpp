@@ -2,14 +2,18 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cctype>
 
 namespace fieldproof::conformance::chart {
 
 std::string sentence(const std::vector<std::string>& clauses, const Rounds& rounds) {
   std::vector<std::string> said;
-  for (const std::string& clause : clauses) {
-    if (said.empty() || said.back() != clause) said.push_back(clause);
+  for (auto clause = clauses.begin(); clause != clauses.end();) {
+    const auto next = std::find_if(clause, clauses.end(), [&](const auto& each) { return each != *clause; });
+    const auto count = next - clause;
+    said.push_back(count > 1 ? fmt::format("{}, {} times", *clause, count) : *clause);
+    clause = next;
   }
   if (said.empty()) return {};
   std::string text = fmt::format("{}.", fmt::join(said, "; "));

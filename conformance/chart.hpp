@@ -50,7 +50,7 @@ struct Chart {
 
 namespace chart {
 
-// "The PC orders a read; the node answers." Equal texts that follow each other are said once.
+// "The PC orders a read; the node answers, 2 times." Equal texts that follow each other are said once.
 std::string sentence(const std::vector<std::string>& clauses, const Rounds& rounds);
 // "2 of 5: the node answers; expected: the host reports it"
 std::string line_of(std::size_t number, std::size_t count, const std::string& stimulus,

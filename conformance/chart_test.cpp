@@ -79,8 +79,8 @@ TEST(Chart, MarksEachStepAndAFindingNamesItsOwn) {
 
 TEST(Chart, SaysInSentencesWhatIsSentAndWhatMustCome) {
   const TestCase test_case = case_of({ask(), ask(), fail_in(9)}).test_case;
-  EXPECT_EQ(test_case.stimulus, "The tester asks. All of it 30 times.");
-  EXPECT_EQ(test_case.expected, "An answer; no failure.");
+  EXPECT_EQ(test_case.stimulus, "The tester asks, 2 times. All of it 30 times.");
+  EXPECT_EQ(test_case.expected, "An answer, 2 times; no failure.");
   EXPECT_EQ(test_case.steps, (std::vector<std::string>{"1 of 3: the tester asks; expected: an answer",
                                                        "2 of 3: the tester asks; expected: an answer",
                                                        "3 of 3: expected: no failure"}));

@@ -63,6 +63,7 @@ class CaptureFixture : public ProgramFixture {
     std::ifstream lines(file);
     for (std::string line; std::getline(lines, line);) {
       const std::size_t channel = line.find("  ") + 2;
+      if (line.compare(channel, 5, "step ") == 0) continue;  // of a case that is a chart; on no channel
       const std::size_t text = line.find("  ", channel);
       all.push_back({line.substr(channel, text - channel), line.substr(text + 2)});
     }

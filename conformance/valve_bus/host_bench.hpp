@@ -68,6 +68,15 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   const valve_bus::Rules& rules() const { return configuration_.rules; }
   const judge::Pics& pics() const { return pics_; }
   std::uint8_t random_id();
+  valve_bus::Response random_response() { return {random_octet(), random_octet()}; }
+  valve_bus::Command read_of(unsigned id, std::uint8_t data0 = 0, std::uint8_t data1 = 0) const {
+    return {static_cast<std::uint8_t>(id), static_cast<std::uint8_t>(rules().read_command), data0, data1};
+  }
+  // With random data.
+  valve_bus::Command write_to(unsigned id) {
+    const auto [data0, data1] = random_response();
+    return {static_cast<std::uint8_t>(id), static_cast<std::uint8_t>(rules().write_command), data0, data1};
+  }
   kernel::Duration bits(std::int64_t count) const { return valve_bus::bits(rules(), count); }
   kernel::Duration characters(double count) const;
   kernel::Duration delimiter() const { return valve_bus::delimiter(rules()); }

@@ -32,26 +32,11 @@ const std::vector<HostCase>& host_cases() {
   return cases;
 }
 
-std::function<std::optional<std::string>(const judge::Pics&)> for_host_with(std::string item,
-                                                                            std::string sentence) {
-  return [item = std::move(item),
-          sentence = std::move(sentence)](const judge::Pics& pics) -> std::optional<std::string> {
-    // What is not answered is as the bench's own host is.
-    if (pics.completed_by(declared_host()).supports(item)) return std::nullopt;
-    return sentence;
-  };
+Applicability for_settable_dip() {
+  return for_item("dip_can_be_set", true, declared_host(), "the bench cannot turn the host's DIP switches");
 }
 
-std::function<std::optional<std::string>(const judge::Pics&)> for_host_without(std::string item,
-                                                                               std::string sentence) {
-  return [item = std::move(item),
-          sentence = std::move(sentence)](const judge::Pics& pics) -> std::optional<std::string> {
-    if (!pics.completed_by(declared_host()).supports(item)) return std::nullopt;
-    return sentence;
-  };
-}
-
-std::function<std::optional<std::string>(const judge::Pics&)> for_plain_writes() {
+Applicability for_plain_writes() {
   return [](const judge::Pics& pics) -> std::optional<std::string> {
     if (pics.supports("answers_writes")) return "the host waits for an acknowledge after each write";
     if (pics.supports("verifies_writes")) return "the host sends a read after each write";

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "conformance/bench_case.hpp"
+#include "conformance/valve_bus/applicability.hpp"
 #include "conformance/valve_bus/host_bench.hpp"
 #include "conformance/valve_bus/sources.hpp"
 
@@ -28,13 +26,9 @@ std::vector<HostCase> host_cycle_cases();
 std::vector<HostCase> host_dip_cases();
 std::vector<HostCase> host_immunity_cases();
 
-// Applies only to a host of which the PICS says so, or says the contrary.
-std::function<std::optional<std::string>(const judge::Pics&)> for_host_with(std::string item,
-                                                                            std::string sentence);
-std::function<std::optional<std::string>(const judge::Pics&)> for_host_without(std::string item,
-                                                                               std::string sentence);
-
+// Applies only to a host whose switches the bench can set.
+Applicability for_settable_dip();
 // Applies only to a host that sends a write and does not look after it.
-std::function<std::optional<std::string>(const judge::Pics&)> for_plain_writes();
+Applicability for_plain_writes();
 
 }  // namespace fieldproof::conformance

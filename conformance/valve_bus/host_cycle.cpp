@@ -6,22 +6,15 @@
 #include <optional>
 #include <span>
 
-#include "conformance/valve_bus/host_cases.hpp"
-#include "conformance/valve_bus/host_expect.hpp"
+#include "conformance/valve_bus/host_scene.hpp"
 
 // What goes round: refreshes of writes, polls of many nodes; and the options that make writes safer.
 namespace fieldproof::conformance {
 namespace {
 
 using valve_bus::Command;
-using valve_bus::HostError;
 using valve_bus::HostErrorKind;
 using valve_bus::Response;
-
-Command write_to(HostBench& bench, std::uint8_t id) {
-  return {id, static_cast<std::uint8_t>(bench.rules().write_command), bench.random_octet(),
-          bench.random_octet()};
-}
 
 // The newest write of a node, and when it was last on the line.
 struct Refreshed {
@@ -59,7 +52,7 @@ void expect_refresh(HostBench& bench, CaseJudge& judge, RefreshedNodes& nodes, c
 }
 
 void order_new_write(HostBench& bench, CaseJudge& judge, RefreshedNodes& nodes, std::uint8_t id) {
-  Command write = write_to(bench, id);
+  Command write = bench.write_to(id);
   // Other data than before.
   if (nodes.contains(id)) write.data0 = static_cast<std::uint8_t>(~nodes[id].command.data0);
   bench.order(write);
@@ -91,51 +84,47 @@ void writes_are_refreshed(HostBench& bench, CaseJudge& judge) {
 // ---- polls ----
 
 void order_reads(HostBench& bench, unsigned last_id) {
-  for (unsigned id = 1; id <= last_id; ++id) {
-    bench.order({static_cast<std::uint8_t>(id), static_cast<std::uint8_t>(bench.rules().read_command), 0, 0});
-  }
+  for (unsigned id = 1; id <= last_id; ++id) bench.order(bench.read_of(id));
 }
 
-Command read_of(const HostBench& bench, unsigned id) {
-  return {static_cast<std::uint8_t>(id), static_cast<std::uint8_t>(bench.rules().read_command), 0, 0};
+void answer_poll(HostBench& bench, CaseJudge& judge, unsigned id) {
+  const Response response = bench.random_response();
+  bench.answer(response);
+  expect_response(bench, judge, static_cast<std::uint8_t>(id), response);
 }
 
 // From the first request to where the last response has been told. Node `dead` does not answer; 0 is none.
-kernel::Duration polled_all(HostBench& bench, CaseJudge& judge, unsigned dead) {
+kernel::Duration polled_all(HostBench& bench, CaseJudge& judge, std::uint8_t dead) {
   const unsigned nodes = bench.rules().last_address;
-  const auto dead_id = static_cast<std::uint8_t>(dead);
   order_reads(bench, nodes);
   kernel::Time begin{};
   for (unsigned id = 1; id <= nodes; ++id) {
-    const HostFrame frame = expect_request(bench, judge, read_of(bench, id));
+    const HostFrame frame = expect_request(bench, judge, bench.read_of(id));
     if (id == 1) begin = frame.start;
-    if (id == dead) {
-      for (unsigned poll = 1; poll < bench.rules().read_attempts; ++poll) expect_retry(bench, judge, frame);
-      expect_error(bench, judge, {dead_id, HostErrorKind::no_response});
-      expect_old_if_known(bench, judge, dead_id);
+    if (id != dead) {
+      answer_poll(bench, judge, id);
       continue;
     }
-    const Response response{bench.random_octet(), bench.random_octet()};
-    bench.answer(response);
-    expect_response(bench, judge, static_cast<std::uint8_t>(id), response);
+    for (unsigned poll = 1; poll < bench.rules().read_attempts; ++poll) expect_retry(bench, judge, frame);
+    expect_error(bench, judge, {dead, HostErrorKind::no_response});
+    expect_old_if_known(bench, judge, dead);
   }
   return bench.now() - begin;
 }
 
-void a_dead_node_costs_three_time_outs(HostBench& bench, CaseJudge& judge) {
+void expect_cycles_of_99_nodes(HostScene& scene) {
+  HostBench& bench = scene.bench;
   const auto& rules = bench.rules();
   const kernel::Duration attempt =
       bench.time_out() * 105 / 100 + character_notice(rules) + bench.characters(5) + bench.bits(3);
-  for (int n = 0; n < bench.volume(1, 20); ++n) {
-    const kernel::Duration whole = polled_all(bench, judge, 0);
-    // The last one would take its time for late responses after the cycle.
-    const auto dead = static_cast<unsigned>(bench.random().between(1, rules.last_address - 1));
-    const kernel::Duration with_dead = polled_all(bench, judge, dead);
-    judge.measure("cycle of 99 nodes", "us", in_microseconds(whole));
-    judge.expect_between("longer by a dead node", "us", in_microseconds(with_dead - whole), 0,
-                         in_microseconds(static_cast<int>(rules.read_attempts) * attempt),
-                         "cycle_grows_too_much");
-  }
+  const kernel::Duration whole = polled_all(bench, scene.judge, 0);
+  // The last one would take its time for late responses after the cycle.
+  const auto dead = static_cast<std::uint8_t>(bench.random().between(1, rules.last_address - 1));
+  const kernel::Duration with_dead = polled_all(bench, scene.judge, dead);
+  scene.judge.measure("cycle of 99 nodes", "us", in_microseconds(whole));
+  scene.judge.expect_between("longer by a dead node", "us", in_microseconds(with_dead - whole), 0,
+                             in_microseconds(static_cast<int>(rules.read_attempts) * attempt),
+                             "cycle_grows_too_much");
 }
 
 void polls_do_not_jitter(HostBench& bench, CaseJudge& judge) {
@@ -148,15 +137,13 @@ void polls_do_not_jitter(HostBench& bench, CaseJudge& judge) {
   for (int cycle = 0; cycle < cycles; ++cycle) {
     order_reads(bench, kNodes);  // the next one, before this one is over
     for (unsigned id = 1; id <= kNodes; ++id) {
-      const HostFrame frame = expect_request(bench, judge, read_of(bench, id));
+      const HostFrame frame = expect_request(bench, judge, bench.read_of(id));
       if (id == 1 && cycle > 0) {
         shortest = std::min(shortest, frame.start - before);
         longest = std::max(longest, frame.start - before);
       }
       if (id == 1) before = frame.start;
-      const Response response{bench.random_octet(), bench.random_octet()};
-      bench.answer(response);
-      expect_response(bench, judge, static_cast<std::uint8_t>(id), response);
+      answer_poll(bench, judge, id);
     }
   }
   judge.measure("shortest period", "us", in_microseconds(shortest));
@@ -166,70 +153,49 @@ void polls_do_not_jitter(HostBench& bench, CaseJudge& judge) {
 
 // ---- options ----
 
-HostFrame expect_written(HostBench& bench, CaseJudge& judge, std::uint8_t id) {
-  const Command write = write_to(bench, id);
-  bench.order(write);
-  return expect_request(bench, judge, write);
-}
-
 // The next frame that is no refresh.
-HostFrame behind_refreshes(HostBench& bench, CaseJudge& judge, std::string_view missing_reason) {
+Command next_command(HostBench& bench, CaseJudge& judge, std::string_view missing_reason) {
   const kernel::Time limit = bench.now() + bench.observation_timeout();
   for (;;) {
-    auto frame = bench.next_frame(std::max(kernel::Duration{}, limit - bench.now()));
+    const auto frame = bench.next_frame(std::max(kernel::Duration{}, limit - bench.now()));
     judge.expect(frame.has_value(), missing_reason, "it sends what is due", "nothing was sent");
     expect_form(bench, judge, *frame);
-    if (!bench.is_refresh(frame->command())) return *std::move(frame);
+    if (!bench.is_refresh(frame->command())) return frame->command();
   }
 }
 
-void a_write_is_verified(HostBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(4, 100); ++n) {
-    const std::uint8_t id = static_cast<std::uint8_t>(1 + n % 3);
-    const Command write = expect_written(bench, judge, id).command();
-    const HostFrame read = behind_refreshes(bench, judge, "no_verification");
-    judge.expect(read.command().id == id && read.command().command == bench.rules().read_command,
-                 "no_verification", "a read of the node that was written to",
-                 text_of_command(read.command()));
-    const bool is_right = n % 2 == 0;
-    const auto data1 = static_cast<std::uint8_t>(is_right ? write.data1 : write.data1 ^ 1U);
-    bench.answer({write.data0, data1});
-    if (is_right) {
-      expect_nothing_told(bench, judge, bench.characters(14) + kernel::kMillisecond, "right_readback_told",
-                          "the node has what was written");
-    } else {
-      expect_error(bench, judge, {id, HostErrorKind::readback_mismatch});
-    }
-  }
+void expect_written_node_read(HostScene& scene) {
+  const Command read = next_command(scene.bench, scene.judge, "no_verification");
+  scene.judge.expect(read.id == scene.command.id && read.command == scene.bench.rules().read_command,
+                     "no_verification", "a read of the node that was written to", text_of_command(read));
 }
 
-void a_write_is_acknowledged(HostBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(2, 50); ++n) {
-    // Refreshes want to be acknowledged as well: each round begins without any.
-    bench.restart(static_cast<unsigned>(bench.pics().number("dip", 0)));
-    const std::uint8_t id = bench.random_id();
-    const HostFrame first = expect_written(bench, judge, id);
-    bench.answer(Response{first.command().data0, first.command().data1});
-    expect_nothing_told(bench, judge, bench.characters(14) + kernel::kMillisecond, "acknowledge_told",
-                        "the write was acknowledged");
-    const HostFrame second = expect_written(bench, judge, id);
-    for (unsigned attempt = 1; attempt < bench.rules().read_attempts; ++attempt) {
-      const auto again = bench.next_frame(bench.time_out() * 2);
-      judge.expect(again.has_value(), "no_retry", "a write that is not acknowledged is sent again",
-                   "it was not");
-      expect_form(bench, judge, *again);
-      judge.expect(again->command() == second.command(), "no_retry", text_of_command(second.command()),
-                   text_of_command(again->command()));
-    }
-    expect_error(bench, judge, {id, HostErrorKind::not_acknowledged});
-  }
+// What was written, as the node would give it: but for one bit of DATA1 when it is wrong.
+host_chart::MakeOctets written_data(bool is_right) {
+  return [is_right](HostScene& scene) {
+    const auto data1 = static_cast<std::uint8_t>(scene.command.data1 ^ (is_right ? 0U : 1U));
+    const auto octets = octets_of(Response{scene.command.data0, data1});
+    return std::vector<std::uint8_t>(octets.begin(), octets.end());
+  };
+}
+
+void expect_write_repeated(HostScene& scene) {
+  const auto again = scene.bench.next_frame(scene.bench.time_out() * 2);
+  scene.judge.expect(again.has_value(), "no_retry", "a write that is not acknowledged is sent again",
+                     "it was not");
+  expect_form(scene.bench, scene.judge, *again);
+  scene.judge.expect(again->command() == scene.command, "no_retry", text_of_command(scene.command),
+                     text_of_command(again->command()));
 }
 
 }  // namespace
 
 std::vector<HostCase> host_cycle_cases() {
-  std::vector<HostCase> cases;
-  cases.push_back(
+  using namespace host_chart;
+  const HostStep read_back =
+      expected("the host reads the node that was written to", expect_written_node_read);
+  const HostStep sent_again = expected("the host sends the write again", expect_write_repeated);
+  return {
       {{.id = "valve_bus/host/cycle/writes_are_refreshed",
         .purpose = "RH-20",
         .requirement = "The last write of each node is sent again every 50 ms, within 10 %, with "
@@ -242,50 +208,60 @@ std::vector<HostCase> host_cycle_cases() {
                     {"refreshes_each_100_ms", "refresh_period_wrong"},
                     {"never_refreshes", "no_refresh"}},
         .not_applicable = for_plain_writes()},
-       writes_are_refreshed});
-  cases.push_back({{.id = "valve_bus/host/cycle/dead_node_costs_three_time_outs",
-                    .purpose = "RH-32",
-                    .requirement = "A node that does not answer makes a cycle longer by its attempts and "
-                                   "their time-outs only; the others are served.",
-                    .reference = valve_sources::own("time-out and attempts"),
-                    .stimulus = "Reads of 99 nodes; the same with one that does not answer.",
-                    .expected = "98 responses and an error; at most three frames and time-outs longer.",
-                    .tags = {"must", "timing"},
-                    .catches = {{"waits_long_behind_errors", "cycle_grows_too_much"}}},
-                   a_dead_node_costs_three_time_outs});
-  cases.push_back({{.id = "valve_bus/host/cycle/polls_do_not_jitter",
-                    .purpose = "RH-33",
-                    .requirement = "With equal responses the period of a poll changes by at most 1 %.",
-                    .reference = valve_sources::derived("one master, no collisions"),
-                    .details = {{valve_sources::own("1 %"), {"period_jitters"}}},
-                    .stimulus = "Reads of 20 nodes again and again, all answered equally fast.",
-                    .expected = "The longest period is at most 1 % longer than the shortest.",
-                    .tags = {"must", "timing"},
-                    .catches = {{"requests_late_in_turns", "period_jitters"}}},
-                   polls_do_not_jitter});
-  cases.push_back({{.id = "valve_bus/host/cycle/write_is_verified",
-                    .purpose = "RH-31",
-                    .requirement = "With the option, a read after each write must give what was written; "
-                                   "else this is reported to the PC.",
-                    .reference = valve_sources::own("verification by a read"),
-                    .stimulus = "Writes; the reads after them answered rightly and wrongly.",
-                    .expected = "An error for each that is answered otherwise, nothing for the others.",
-                    .tags = {"must", "option"},
-                    .catches = {{"verification_not_compared", "error_not_told"}}},
-                   a_write_is_verified,
-                   {.acknowledged_writes = false, .verifies_writes = true}});
-  cases.push_back({{.id = "valve_bus/host/cycle/write_is_acknowledged",
-                    .purpose = "RH-18",
-                    .requirement = "With the option, a write that is not acknowledged is sent three times in "
-                                   "all; then an error is reported to the PC.",
-                    .reference = valve_sources::own("option: nodes acknowledge writes"),
-                    .stimulus = "A write that is acknowledged, and one that is not.",
-                    .expected = "Nothing for the first; the second three times, and an error.",
-                    .tags = {"must", "option"},
-                    .catches = {{"acknowledge_not_awaited", "no_retry"}}},
-                   a_write_is_acknowledged,
-                   {.acknowledged_writes = true, .verifies_writes = false}});
-  return cases;
+       writes_are_refreshed},
+      on_chart({.id = "valve_bus/host/cycle/dead_node_costs_three_time_outs",
+                .purpose = "RH-32",
+                .requirement = "A node that does not answer makes a cycle longer by its attempts and "
+                               "their time-outs only; the others are served.",
+                .reference = valve_sources::own("time-out and attempts"),
+                .tags = {"must", "timing"},
+                .catches = {{"waits_long_behind_errors", "cycle_grows_too_much"}}},
+               {{1, 20},
+                {{"the PC orders reads of 99 nodes, which all answer, and again with one that does not",
+                  "98 responses and an error; the cycle is at most three frames and time-outs longer",
+                  expect_cycles_of_99_nodes}}}),
+      {{.id = "valve_bus/host/cycle/polls_do_not_jitter",
+        .purpose = "RH-33",
+        .requirement = "With equal responses the period of a poll changes by at most 1 %.",
+        .reference = valve_sources::derived("one master, no collisions"),
+        .details = {{valve_sources::own("1 %"), {"period_jitters"}}},
+        .stimulus = "Reads of 20 nodes again and again, all answered equally fast.",
+        .expected = "The longest period is at most 1 % longer than the shortest.",
+        .tags = {"must", "timing"},
+        .catches = {{"requests_late_in_turns", "period_jitters"}}},
+       polls_do_not_jitter},
+      on_chart({.id = "valve_bus/host/cycle/write_is_verified",
+                .purpose = "RH-31",
+                .requirement = "With the option, a read after each write must give what was written; "
+                               "else this is reported to the PC.",
+                .reference = valve_sources::own("verification by a read"),
+                .tags = {"must", "option"},
+                .catches = {{"verification_not_compared", "error_not_told"}}},
+               {{2, 50},
+                {write(), read_back, answer("the node answers with what was written", written_data(true)),
+                 nothing_reported("right_readback_told", "the node has what was written"), write(), read_back,
+                 answer("the node answers with one bit changed", written_data(false)),
+                 error(HostErrorKind::readback_mismatch)}},
+               {.acknowledged_writes = false, .verifies_writes = true}),
+      on_chart({.id = "valve_bus/host/cycle/write_is_acknowledged",
+                .purpose = "RH-18",
+                .requirement = "With the option, a write that is not acknowledged is sent three times in "
+                               "all; then an error is reported to the PC.",
+                .reference = valve_sources::own("option: nodes acknowledge writes"),
+                .tags = {"must", "option"},
+                .catches = {{"acknowledge_not_awaited", "no_retry"}}},
+               {{2, 50},
+                {// Refreshes want to be acknowledged as well: each round begins without any.
+                 stimulus("power goes off and comes",
+                          [](HostScene& scene) {
+                            scene.bench.restart(static_cast<unsigned>(scene.bench.pics().number("dip", 0)));
+                          }),
+                 write(), answer("the node acknowledges it", written_data(true)),
+                 nothing_reported("acknowledge_told", "the write was acknowledged"), write(),
+                 stimulus("no node acknowledges it", [](HostScene&) {}), sent_again, sent_again,
+                 error(HostErrorKind::not_acknowledged)}},
+               {.acknowledged_writes = true, .verifies_writes = false}),
+  };
 }
 
 }  // namespace fieldproof::conformance

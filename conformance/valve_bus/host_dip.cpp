@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
-#include "conformance/valve_bus/host_cases.hpp"
-#include "conformance/valve_bus/host_expect.hpp"
+#include "conformance/valve_bus/host_scene.hpp"
 
 // The switches that say the bit rate.
 namespace fieldproof::conformance {
@@ -34,68 +34,71 @@ double measured_bit_rate(const HostBench& bench) {
   return 1e12 / *middle;
 }
 
-void expect_bit_rate(HostBench& bench, CaseJudge& judge, unsigned dip, std::string_view reason) {
-  const auto wanted = static_cast<double>(valve_bus::dip_bit_rates()[dip]);
-  bench.order(changing_write(bench));
-  const auto frame = bench.next_frame(bench.observation_timeout());
-  judge.expect(frame.has_value(), "no_request", "the write is sent", "nothing was sent");
-  judge.expect_between(fmt::format("bit rate at position {}", dip), "bit/s", measured_bit_rate(bench),
-                       wanted * 0.995, wanted * 1.005, reason);
-  bench.note_write(changing_write(bench));
+HostStep bit_rate_of(std::string text, std::function<unsigned(const HostScene&)> dip, std::string reason) {
+  return {"the PC orders a write of alternating bits", std::move(text),
+          [dip = std::move(dip), reason = std::move(reason)](HostScene& scene) {
+            const auto wanted = static_cast<double>(valve_bus::dip_bit_rates()[dip(scene)]);
+            scene.bench.order(changing_write(scene.bench));
+            const auto frame = scene.bench.next_frame(scene.bench.observation_timeout());
+            scene.judge.expect(frame.has_value(), "no_request", "the write is sent", "nothing was sent");
+            scene.judge.expect_between(fmt::format("bit rate at position {}", dip(scene)), "bit/s",
+                                       measured_bit_rate(scene.bench), wanted * 0.995, wanted * 1.005,
+                                       reason);
+            scene.bench.note_write(changing_write(scene.bench));
+          }};
 }
 
-void each_position_is_a_bit_rate(HostBench& bench, CaseJudge& judge) {
-  for (unsigned dip = 0; dip < valve_bus::dip_bit_rates().size(); ++dip) {
-    bench.restart(dip);
-    expect_bit_rate(bench, judge, dip, "bit_rate_wrong");
-    expect_read_served(bench, judge, bench.random_id());
-  }
-}
-
-void switches_are_read_at_power_up(HostBench& bench, CaseJudge& judge) {
-  bench.restart(1);
-  for (const unsigned turned_to : {2U, 0U, 5U}) {
-    bench.set_dip(turned_to);
-    expect_bit_rate(bench, judge, 1, "dip_effective_at_once");
-    expect_read_served(bench, judge, bench.random_id());
-  }
-  bench.restart(2);
-  expect_bit_rate(bench, judge, 2, "dip_not_read_at_power_up");
+// At power-up, and to what they are turned in operation.
+constexpr unsigned kBefore = 1;
+unsigned turned_to(const HostScene& scene) {
+  constexpr std::array kTurnedTo{2U, 0U, 5U};
+  return kTurnedTo.at(scene.round);
 }
 
 }  // namespace
 
 std::vector<HostCase> host_dip_cases() {
+  using namespace host_chart;
   const auto with_switches = [](const judge::Pics& pics) {
     const auto why_not = for_plain_writes()(pics);
-    return why_not ? why_not
-                   : for_host_with("dip_can_be_set", "the bench cannot turn the host's DIP switches")(pics);
+    return why_not ? why_not : for_settable_dip()(pics);
   };
-  std::vector<HostCase> cases;
-  cases.push_back(
-      {{.id = "valve_bus/host/dip/each_position_is_a_bit_rate",
-        .purpose = "RH-25",
-        .requirement = "Each position of the DIP switches is a bit rate of the table, within "
-                       "0.5 %.",
-        .reference = valve_sources::own("what timers at 12 MHz make"),
-        .stimulus = "A write of alternating bits and a read at each position.",
-        .expected = "The bit rate of the table; the read is served.",
-        .tags = {"must", "timing"},
-        .catches = {{"dip_off_by_one", "bit_rate_wrong"}, {"clock_off_by_one_percent", "bit_rate_wrong"}},
-        .not_applicable = with_switches},
-       each_position_is_a_bit_rate});
-  cases.push_back({{.id = "valve_bus/host/dip/switches_are_read_at_power_up",
-                    .purpose = "RH-26",
-                    .requirement = "DIP switches that are turned in operation have an effect after the next "
-                                   "power-up only.",
-                    .reference = valve_sources::own("switches are read at power-up"),
-                    .stimulus = "The switches are turned, a write and a read; then power goes and comes.",
-                    .expected = "The bit rate stays as it was, and is the new one after power-up.",
-                    .tags = {"must"},
-                    .catches = {{"dip_read_in_operation", "dip_effective_at_once"}},
-                    .not_applicable = with_switches},
-                   switches_are_read_at_power_up});
-  return cases;
+  return {
+      on_chart(
+          {.id = "valve_bus/host/dip/each_position_is_a_bit_rate",
+           .purpose = "RH-25",
+           .requirement = "Each position of the DIP switches is a bit rate of the table, within "
+                          "0.5 %.",
+           .reference = valve_sources::own("what timers at 12 MHz make"),
+           .tags = {"must", "timing"},
+           .catches = {{"dip_off_by_one", "bit_rate_wrong"}, {"clock_off_by_one_percent", "bit_rate_wrong"}},
+           .not_applicable = with_switches},
+          {{dip_positions(), dip_positions()},
+           {powered_up_at_each_position(),
+            bit_rate_of("it is sent at the bit rate of the table", dip_of, "bit_rate_wrong"),
+            served_read()}}),
+      on_chart({.id = "valve_bus/host/dip/switches_are_read_at_power_up",
+                .purpose = "RH-26",
+                .requirement = "DIP switches that are turned in operation have an effect after the next "
+                               "power-up only.",
+                .reference = valve_sources::own("switches are read at power-up"),
+                .tags = {"must"},
+                .catches = {{"dip_read_in_operation", "dip_effective_at_once"}},
+                .not_applicable = with_switches},
+               {{3, 3},
+                {stimulus("power goes off and comes at position 1, and the DIP switches are turned",
+                          [](HostScene& scene) {
+                            scene.bench.restart(kBefore);
+                            scene.bench.set_dip(turned_to(scene));
+                          }),
+                 bit_rate_of(
+                     "it is sent at the bit rate of position 1", [](const HostScene&) { return kBefore; },
+                     "dip_effective_at_once"),
+                 served_read(),
+                 stimulus("power goes off and comes",
+                          [](HostScene& scene) { scene.bench.restart(turned_to(scene)); }),
+                 bit_rate_of("it is sent at the new bit rate", turned_to, "dip_not_read_at_power_up")}}),
+  };
 }
 
 }  // namespace fieldproof::conformance

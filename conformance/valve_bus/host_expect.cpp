@@ -23,6 +23,14 @@ const HostResponse* response_told(const std::optional<HostEvent>& told) {
   return told ? std::get_if<HostResponse>(&told->what) : nullptr;
 }
 
+auto data_sighting(const HostResponse& wanted, const std::optional<HostEvent>& told) {
+  return [wanted, &told] {
+    return Mismatch{{fmt::format("the PC gets the data of {:02X}{}: {:02X} {:02X}", wanted.id,
+                                 wanted.is_old ? ", as old" : "", wanted.data0, wanted.data1)},
+                    told_text(told)};
+  };
+}
+
 auto duration_sighting(std::string_view expected, kernel::Duration actual, kernel::Time when) {
   return
       [expected, actual, when] { return Mismatch{{std::string(expected)}, kernel::describe(actual), when}; };
@@ -98,8 +106,8 @@ HostFrame expect_request(HostBench& bench, CaseJudge& judge, const Command& comm
 }
 
 HostFrame order_read(HostBench& bench, CaseJudge& judge, std::uint8_t id) {
-  const Command read{id, static_cast<std::uint8_t>(bench.rules().read_command), bench.random_octet(),
-                     bench.random_octet()};
+  const auto [data0, data1] = bench.random_response();
+  const Command read = bench.read_of(id, data0, data1);
   bench.order(read);
   return expect_request(bench, judge, read);
 }
@@ -117,14 +125,15 @@ void expect_no_request(HostBench& bench, CaseJudge& judge, kernel::Duration dura
 }
 
 void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id, const Response& response) {
-  const auto told = bench.next_told(bench.observation_timeout());
+  expect_response(bench, judge, id, response, bench.observation_timeout(), "response_not_told");
+}
+
+void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id, const Response& response,
+                     kernel::Duration within, std::string_view missing_reason) {
+  const auto told = bench.next_told(within);
   const HostResponse* seen = response_told(told);
-  const auto sighting = [&] {
-    return Mismatch{
-        {fmt::format("the PC gets the data of {:02X}: {:02X} {:02X}", id, response.data0, response.data1)},
-        told_text(told)};
-  };
-  judge.expect(seen != nullptr, "response_not_told", sighting);
+  const auto sighting = data_sighting({id, response.data0, response.data1}, told);
+  judge.expect(seen != nullptr, missing_reason, sighting);
   judge.expect(seen->id == id && Response{seen->data0, seen->data1} == response, "response_wrong", sighting);
   judge.expect(!seen->is_old, "told_as_old", sighting);
 }
@@ -142,11 +151,7 @@ void expect_error(HostBench& bench, CaseJudge& judge, const HostError& error, st
 void expect_old(HostBench& bench, CaseJudge& judge, std::uint8_t id, const Response& response) {
   const auto told = bench.next_told(bench.observation_timeout());
   const HostResponse* seen = response_told(told);
-  const auto sighting = [&] {
-    return Mismatch{{fmt::format("the PC gets the data of {:02X}, as old: {:02X} {:02X}", id, response.data0,
-                                 response.data1)},
-                    told_text(told)};
-  };
+  const auto sighting = data_sighting({id, response.data0, response.data1, true}, told);
   judge.expect(seen != nullptr, "old_data_not_told", sighting);
   judge.expect(seen->id == id && Response{seen->data0, seen->data1} == response, "old_data_wrong", sighting);
   judge.expect(seen->is_old, "old_data_told_as_new", sighting);
@@ -175,7 +180,7 @@ HostFrame expect_retry(HostBench& bench, CaseJudge& judge, const HostFrame& firs
 
 Response expect_read_served(HostBench& bench, CaseJudge& judge, std::uint8_t id) {
   order_read(bench, judge, id);
-  const Response response{bench.random_octet(), bench.random_octet()};
+  const Response response = bench.random_response();
   bench.answer(response);
   expect_response(bench, judge, id, response);
   return response;
@@ -185,10 +190,10 @@ void expect_host_recovers(HostBench& bench, CaseJudge& judge) {
   constexpr std::string_view kReason = "does_not_recover";
   bench.wait(bench.observation_timeout());
   bench.clear_observations();
-  const Command read{bench.random_id(), static_cast<std::uint8_t>(bench.rules().read_command), 0, 0};
+  const Command read = bench.read_of(bench.random_id());
   bench.order(read);
   expect_request(bench, judge, read, kReason);
-  const Response response{bench.random_octet(), bench.random_octet()};
+  const Response response = bench.random_response();
   bench.answer(response);
   const auto told = bench.next_told(bench.observation_timeout());
   const HostResponse wanted{read.id, response.data0, response.data1};

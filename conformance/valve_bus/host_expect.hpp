@@ -32,6 +32,9 @@ void expect_no_request(HostBench& bench, CaseJudge& judge, kernel::Duration dura
 // The PC is told this, fresh, as the next thing: `response_not_told`, `response_wrong`, `told_as_old`.
 void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id,
                      const valve_bus::Response& response);
+// The same within a time, in a case that is about what is a response.
+void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id, const valve_bus::Response& response,
+                     kernel::Duration within, std::string_view missing_reason);
 // An error as the next thing: `error_not_told`, `error_wrong`; data instead of it have the reason
 // `told_data`.
 void expect_error(HostBench& bench, CaseJudge& judge, const valve_bus::HostError& error,

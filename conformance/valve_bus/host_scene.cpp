@@ -1,12 +1,22 @@
 #include "conformance/valve_bus/host_scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace fieldproof::conformance {
 
 using valve_bus::HostCounters;
 using valve_bus::HostErrorKind;
-using valve_bus::Response;
+
+namespace {
+
+constexpr unsigned kWritten = 5;  // nodes that are written to
+
+valve_bus::Response data_of(const HostScene& scene) {
+  return {scene.octets.at(0), scene.octets.at(1)};
+}
+
+}  // namespace
 
 HostScene::HostScene(HostBench& bench_, CaseJudge& judge_, unsigned round_)
     : bench(bench_),
@@ -15,42 +25,57 @@ HostScene::HostScene(HostBench& bench_, CaseJudge& judge_, unsigned round_)
       id(bench.random_id()),
       other(static_cast<std::uint8_t>(id % bench.rules().last_address + 1)) {}
 
-Response HostScene::random_response() {
-  return {bench.random_octet(), bench.random_octet()};
+void HostScene::order(const valve_bus::Command& ordered) {
+  command = ordered;
+  bench.order(ordered);
+}
+
+void HostScene::expect_sent() {
+  request = expect_request(bench, judge, command);
+  poll = request;
+}
+
+void HostScene::answer(std::vector<std::uint8_t> given, kernel::Duration after) {
+  octets = std::move(given);
+  bench.answer(octets, after);
+}
+
+line::Levels HostScene::levels(valve_bus::CharacterProfile profile) const {
+  line::Levels all;
+  for (const std::uint8_t octet : octets) all.append(bench.levels_of(octet, profile));
+  return all;
+}
+
+kernel::Duration HostScene::reporting_time() const {
+  return bench.characters(11 + static_cast<double>(octets.size())) + kernel::kMillisecond;
+}
+
+void HostScene::expect_nothing_reported(std::string_view reason, const std::string& why_not) {
+  expect_nothing_told(bench, judge, reporting_time(), reason, why_not);
 }
 
 namespace host_chart {
-namespace {
-
-// In which a response that began at an ordinary time has been reported, if it is.
-kernel::Duration reporting_time(const HostScene& scene) {
-  return scene.bench.characters(14) + kernel::kMillisecond;
-}
-
-void order(HostScene& scene) {
-  scene.counters = scene.bench.counters(scene.id);
-  scene.others = scene.bench.counters(scene.other);
-  scene.request = order_read(scene.bench, scene.judge, scene.id);
-}
-
-void give(HostScene& scene, std::vector<std::uint8_t> octets, kernel::Duration after) {
-  scene.octets = std::move(octets);
-  scene.bench.answer(scene.octets, after);
-}
-
-void give_right_response(HostScene& scene) {
-  give(scene, right_octets(scene), scene.bench.turnaround_time());
-}
-
-}  // namespace
 
 std::vector<std::uint8_t> right_octets(HostScene& scene) {
-  const auto octets = octets_of(scene.random_response());
+  const auto octets = octets_of(scene.bench.random_response());
   return {octets.begin(), octets.end()};
 }
 
 HostStep read() {
-  return {"the PC orders a read of a node", "the host sends it", order};
+  return {"the PC orders a read of a node", "the host sends it", [](HostScene& scene) {
+            scene.counters = scene.bench.counters(scene.id);
+            scene.others = scene.bench.counters(scene.other);
+            const auto [data0, data1] = scene.bench.random_response();
+            scene.order(scene.bench.read_of(scene.id, data0, data1));
+            scene.expect_sent();
+          }};
+}
+
+HostStep write() {
+  return {"the PC orders a write to a node", "the host sends it", [](HostScene& scene) {
+            scene.order(scene.bench.write_to(1 + (scene.round + scene.writes++) % kWritten));
+            scene.expect_sent();
+          }};
 }
 
 HostStep served_read() {
@@ -58,90 +83,123 @@ HostStep served_read() {
           [](HostScene& scene) { scene.known = expect_read_served(scene.bench, scene.judge, scene.id); }};
 }
 
+HostStep powered_up_at_each_position() {
+  return stimulus("power goes off and comes with the DIP switches in each position in turn",
+                  [](HostScene& scene) { scene.bench.restart(dip_of(scene)); });
+}
+
+unsigned dip_positions() {
+  return static_cast<unsigned>(valve_bus::dip_bit_rates().size());
+}
+
+unsigned dip_of(const HostScene& scene) {
+  return scene.round % dip_positions();
+}
+
 HostStep response() {
-  return stimulus<HostScene>("the node answers rightly", give_right_response);
+  return answer("the node answers rightly", right_octets);
 }
 
 HostStep answer(std::string text, MakeOctets octets, MakeTime after) {
-  return stimulus<HostScene>(
-      std::move(text), [octets = std::move(octets), after = std::move(after)](HostScene& scene) {
-        give(scene, octets(scene), after ? after(scene) : scene.bench.turnaround_time());
-      });
+  return stimulus(std::move(text), [octets = std::move(octets), after = std::move(after)](HostScene& scene) {
+    scene.answer(octets(scene), after ? after(scene) : scene.bench.turnaround_time());
+  });
+}
+
+HostStep answer_levels(std::string text, std::function<line::Levels(HostScene&)> levels) {
+  return stimulus(std::move(text), [levels = std::move(levels)](HostScene& scene) {
+    scene.octets = right_octets(scene);
+    scene.bench.answer_levels(levels(scene), scene.bench.turnaround_time());
+  });
 }
 
 HostStep reported() {
-  return expected<HostScene>("the PC gets its data", [](HostScene& scene) {
-    expect_response(scene.bench, scene.judge, scene.id, scene.response());
+  return expected("the PC gets its data", [](HostScene& scene) {
+    expect_response(scene.bench, scene.judge, scene.id, data_of(scene));
   });
 }
 
 HostStep taken(std::string reason) {
-  return expected<HostScene>("the PC gets the data in it", [reason = std::move(reason)](HostScene& scene) {
-    const auto told = scene.bench.next_told(reporting_time(scene));
-    const Response data = scene.response();
-    const auto mismatch = [&] {
-      return Mismatch{
-          {fmt::format("the PC gets the data of {:02X}: {:02X} {:02X}", scene.id, data.data0, data.data1)},
-          told ? text_of(*told) : "nothing"};
-    };
-    scene.judge.expect(told.has_value(), reason, mismatch);
-    const auto* seen = std::get_if<valve_bus::HostResponse>(&told->what);
-    scene.judge.expect(seen != nullptr && *seen == valve_bus::HostResponse{scene.id, data.data0, data.data1},
-                       "response_wrong", mismatch);
+  return expected("the PC gets the data in it", [reason = std::move(reason)](HostScene& scene) {
+    expect_response(scene.bench, scene.judge, scene.id, data_of(scene), scene.reporting_time(), reason);
   });
 }
 
 HostStep refused(std::string reason, std::string why_not) {
-  return expected<HostScene>("nothing is reported; the node is polled again and served",
-                             [reason = std::move(reason), why_not = std::move(why_not)](HostScene& scene) {
-                               expect_nothing_told(scene.bench, scene.judge, reporting_time(scene), reason,
-                                                   why_not);
-                               expect_retry(scene.bench, scene.judge, scene.request);
-                               give_right_response(scene);
-                               expect_response(scene.bench, scene.judge, scene.id, scene.response());
-                             });
+  return expected(fmt::format("nothing is reported: {}; the node is polled again and served", why_not),
+                  [reason = std::move(reason), why_not](HostScene& scene) {
+                    scene.expect_nothing_reported(
+                        reason, fmt::format("{}: {:02X}", why_not, fmt::join(scene.octets, " ")));
+                    expect_retry(scene.bench, scene.judge, scene.request);
+                    scene.answer(right_octets(scene));
+                    expect_response(scene.bench, scene.judge, scene.id, data_of(scene));
+                  });
+}
+
+HostStep taken_if(std::string text, std::function<bool(const HostScene&)> is_taken,
+                  std::string refused_reason, std::string taken_reason, std::string why_not) {
+  const HostStep one = taken(std::move(refused_reason));
+  const HostStep other = refused(std::move(taken_reason), std::move(why_not));
+  return expected(fmt::format("{} {}, else {}", text, one.expected, other.expected),
+                  [one = one.run, other = other.run, is_taken = std::move(is_taken)](HostScene& scene) {
+                    is_taken(scene) ? one(scene) : other(scene);
+                  });
 }
 
 HostStep polled_again() {
-  return expected<HostScene>("the host polls the node again",
-                             [](HostScene& scene) { expect_retry(scene.bench, scene.judge, scene.request); });
+  return expected("the host polls the node again", [](HostScene& scene) {
+    scene.poll = expect_retry(scene.bench, scene.judge, scene.request);
+  });
 }
 
 HostStep not_polled_again() {
-  return expected<HostScene>("no further poll", [](HostScene& scene) {
+  return expected("no further poll", [](HostScene& scene) {
     expect_no_request(scene.bench, scene.judge, 2 * scene.bench.time_out(), "polled_too_often",
                       fmt::format("{} attempts in all", scene.bench.rules().read_attempts));
   });
 }
 
 HostStep error(HostErrorKind kind, std::string reason_for_data) {
-  return expected<HostScene>(fmt::format("the PC gets an error: {}", describe(kind)),
-                             [kind, reason = std::move(reason_for_data)](HostScene& scene) {
-                               expect_error(scene.bench, scene.judge, {scene.id, kind}, reason);
-                             });
+  return expected(fmt::format("the PC gets an error: {}", describe(kind)),
+                  [kind, reason = std::move(reason_for_data)](HostScene& scene) {
+                    expect_error(scene.bench, scene.judge, {scene.command.id, kind}, reason);
+                  });
 }
 
 HostStep old_data() {
-  return expected<HostScene>("the PC gets what was known, marked as old", [](HostScene& scene) {
-    expect_old(scene.bench, scene.judge, scene.id, scene.known);
-  });
+  return expected("the PC gets what was known, marked as old",
+                  [](HostScene& scene) { expect_old(scene.bench, scene.judge, scene.id, scene.known); });
+}
+
+HostStep nothing_reported(MakeTime within, std::string reason, std::string why_not) {
+  return expected(fmt::format("nothing is reported: {}", why_not),
+                  [within = std::move(within), reason = std::move(reason), why_not](HostScene& scene) {
+                    expect_nothing_told(scene.bench, scene.judge, within(scene), reason, why_not);
+                  });
 }
 
 HostStep nothing_reported(kernel::Duration within, std::string reason, std::string why_not) {
-  return expected<HostScene>("nothing more is reported", [within, reason = std::move(reason),
-                                                          why_not = std::move(why_not)](HostScene& scene) {
-    expect_nothing_told(scene.bench, scene.judge, within, reason, why_not);
-  });
+  return nothing_reported([within](HostScene&) { return within; }, std::move(reason), std::move(why_not));
 }
 
-HostStep counted(std::uint64_t HostCounters::* counter, unsigned count, std::string what) {
-  return expected<HostScene>(
-      fmt::format("{} {} counted", count, what), [counter, count, what](HostScene& scene) {
-        scene.judge.expect_equal(scene.bench.counters(scene.id).*counter - scene.counters.*counter, count,
-                                 "counters_wrong", what);
-        scene.judge.expect(scene.bench.counters(scene.other) == scene.others, "counters_wrong",
-                           "the counters of another node stand as they stood", "they have changed");
-      });
+HostStep nothing_reported(std::string reason, std::string why_not) {
+  return nothing_reported(&HostScene::reporting_time, std::move(reason), std::move(why_not));
+}
+
+HostStep recovers() {
+  return expected("then a read is served",
+                  [](HostScene& scene) { expect_host_recovers(scene.bench, scene.judge); });
+}
+
+HostStep counted(std::uint64_t HostCounters::* counter, unsigned count, std::string what,
+                 std::string reason) {
+  return expected(fmt::format("{} counted: {}", what, count), [counter, count, what,
+                                                               reason = std::move(reason)](HostScene& scene) {
+    scene.judge.expect_equal(scene.bench.counters(scene.id).*counter - scene.counters.*counter, count, reason,
+                             what);
+    scene.judge.expect(scene.bench.counters(scene.other) == scene.others, "counters_wrong",
+                       "the counters of another node stand as they stood", "they have changed");
+  });
 }
 
 }  // namespace host_chart

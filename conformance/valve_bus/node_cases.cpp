@@ -1,8 +1,6 @@
 #include "conformance/valve_bus/node_cases.hpp"
 
 #include <array>
-#include <optional>
-#include <utility>
 
 namespace fieldproof::conformance {
 namespace {
@@ -52,16 +50,6 @@ const std::vector<NodeCase>& node_cases() {
     return all;
   }();
   return cases;
-}
-
-std::function<std::optional<std::string>(const judge::Pics&)> for_node_with(std::string item,
-                                                                            std::string sentence) {
-  return [item = std::move(item),
-          sentence = std::move(sentence)](const judge::Pics& pics) -> std::optional<std::string> {
-    // What is not answered is as the bench's own node is.
-    if (pics.completed_by(declared_node()).supports(item)) return std::nullopt;
-    return sentence;
-  };
 }
 
 }  // namespace fieldproof::conformance

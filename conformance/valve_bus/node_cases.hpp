@@ -1,10 +1,9 @@
 #pragma once
 
-#include <functional>
-#include <string>
 #include <vector>
 
 #include "conformance/bench_case.hpp"
+#include "conformance/valve_bus/applicability.hpp"
 #include "conformance/valve_bus/node_bench.hpp"
 #include "conformance/valve_bus/sources.hpp"
 
@@ -30,9 +29,5 @@ std::vector<NodeCase> node_line_cases();
 std::vector<NodeCase> node_power_cases();
 std::vector<NodeCase> node_immunity_cases();
 std::vector<NodeCase> node_resonance_cases();
-
-// Applies only to a node of which the PICS says so.
-std::function<std::optional<std::string>(const judge::Pics&)> for_node_with(std::string item,
-                                                                            std::string sentence);
 
 }  // namespace fieldproof::conformance

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/valve_bus/characters_item.hpp"
 #include "conformance/valve_bus/node_cases.hpp"
 #include "conformance/valve_bus/node_expect.hpp"
 
