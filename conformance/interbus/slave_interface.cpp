@@ -208,8 +208,6 @@ void bridge_counts_in_id_cycles_only(SlaveBench& bench, CaseJudge& judge) {
 std::vector<SlaveCase> slave_interface_cases() {
   const SlaveNeeds remote{.id_code = {}, .remote_neighbour = true, .branch_neighbour = false};
   const SlaveNeeds branch{.id_code = {}, .remote_neighbour = false, .branch_neighbour = true};
-  const Applicability for_remote =
-      for_item("remote_interface", "the slave has no outgoing remote-bus interface (OUT1)");
   std::vector<SlaveCase> cases;
   cases.push_back(
       {{.id = "interbus/slave/interfaces/remote_interface_follows_its_control_bit",
@@ -229,7 +227,7 @@ std::vector<SlaveCase> slave_interface_cases() {
         .tags = {"must"},
         .catches = {{"remote_interface_stays_open", "interface_not_closed"},
                     {"interface_switches_inside_cycle", "interface_switched_inside_cycle"}},
-        .not_applicable = for_remote},
+        .not_applicable = for_remote()},
        remote_interface,
        remote});
   cases.push_back(
@@ -264,7 +262,7 @@ std::vector<SlaveCase> slave_interface_cases() {
         .tags = {"must"},
         .catches = {{"reserved_control_bit_closes_remote", "reserved_control_bit_obeyed"},
                     {"ignores_words_with_reserved_bits", "control_word_with_reserved_bit_ignored"}},
-        .not_applicable = for_remote},
+        .not_applicable = for_remote()},
        reserved_bits_are_ignored,
        remote});
   cases.push_back(
@@ -281,7 +279,7 @@ std::vector<SlaveCase> slave_interface_cases() {
         .tags = {"must", "timing"},
         .catches = {{"ignores_outgoing_reset", "downstream_not_silent"},
                     {"outgoing_reset_clears_outputs", "outputs_not_as_declared"}},
-        .not_applicable = for_remote},
+        .not_applicable = for_remote()},
        outgoing_bus_is_reset,
        remote});
   cases.push_back(
@@ -299,7 +297,7 @@ std::vector<SlaveCase> slave_interface_cases() {
         .tags = {"must"},
         .catches = {{"switches_with_the_bridge", "ring_changed_without_id_cycle"},
                     {"ignores_the_bridge", "bridge_not_followed"}},
-        .not_applicable = for_remote},
+        .not_applicable = for_remote()},
        bridge_counts_in_id_cycles_only,
        remote});
   return cases;

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/chart.hpp"
+#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_expect.hpp"
+
+// The words of charts for a slave: what arrives at its receiver, and what has to come of it. The reason codes
+// are those of slave_expect.hpp, where a word is given none.
+namespace fieldproof::conformance {
+
+// What the steps of one round share.
+struct SlaveScene {
+  SlaveScene(SlaveBench& bench_, CaseJudge& judge_, unsigned round_)
+      : bench(bench_), judge(judge_), round(round_) {}
+
+  SlaveBench& bench;
+  CaseJudge& judge;
+  unsigned round;                      // from 0
+  std::vector<std::uint16_t> words{};  // of the last data cycle without a fault
+  std::string fault{};                 // of the last one with a fault
+  kernel::Time last{};                 // end of the last telegram before a silence
+};
+
+using SlaveStep = ChartStep<SlaveScene>;
+using SlaveChart = Chart<SlaveScene>;
+
+inline SlaveCase on_chart(TestCase test_case, SlaveChart chart, SlaveNeeds needs = {}) {
+  return charted<SlaveCase>(std::move(test_case), std::move(chart), std::move(needs));
+}
+
+namespace slave_chart {
+
+using RuleBits = std::uint16_t interbus::Rules::*;
+
+SlaveStep identified(const std::string& whom = "the slave");
+SlaveStep data_cycle();
+// Of words that differ from the outputs; it is taken over, or the reason is this one.
+SlaveStep good_cycle(std::string reason);
+SlaveStep status_telegrams(std::size_t count);
+SlaveStep silence(std::string text, kernel::Duration (*of)(const interbus::Rules&));
+
+// A data cycle of which one level arrives flipped; all its words differ from the outputs.
+using MakeLevel = std::function<std::size_t(SlaveScene&, const CyclePlace&)>;
+SlaveStep flipped(std::string text, MakeLevel level);
+SlaveStep flipped_bit();  // of loopback word, process data and check, at random
+// The walk over the telegrams of a data cycle, `last` of them not; and the one that has the turn.
+Walk<SlaveScene> each_telegram(std::string text, std::size_t last, std::size_t times = 1);
+std::size_t telegram_in_turn(const SlaveScene& scene, const CyclePlace& cycle, std::size_t last);
+
+SlaveStep shown(std::string reason = "valid_cycle_rejected");
+// The register left, then what came in, with a right check and status word.
+SlaveStep answered();
+SlaveStep unchanged(std::string reason, std::string why_not);
+SlaveStep all_safe();
+SlaveStep rejected();
+// The fault has changed no output, but where what arrived is by chance a right cycle.
+SlaveStep not_taken_over();
+
+// An ID cycle brings this message and no other; none for null.
+SlaveStep message(RuleBits bit, std::string reason, std::string why);
+// An ID cycle says of a check error what it should, whatever else it says.
+SlaveStep check_error(bool is_reported, std::string reason, std::string why);
+
+}  // namespace slave_chart
+}  // namespace fieldproof::conformance
