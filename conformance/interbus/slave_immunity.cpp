@@ -3,49 +3,32 @@
 #include <algorithm>
 
 #include "conformance/interbus/slave_arrivals.hpp"
-#include "conformance/interbus/slave_cases.hpp"
-#include "conformance/interbus/slave_expect.hpp"
+#include "conformance/interbus/slave_scene.hpp"
 #include "harness/kernel/check.hpp"
 
 // IS-40 and IS-42: outputs while cycles are rejected, under random faults, and under stresses of the line.
 namespace fieldproof::conformance {
 namespace {
 
-void expect_outputs_held(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words) {
-  expect_outputs(bench, judge, words, "output_changed_by_rejected_cycle");
+void expect_outputs_held(SlaveScene& scene) {
+  const std::vector<std::uint16_t>& words = scene.words;
+  expect_outputs(scene.bench, scene.judge, words, "output_changed_by_rejected_cycle");
   // A change that was taken back is a glitch; one of up to a microsecond is not seen by anything connected.
-  const auto& changes = bench.changes();
+  const auto& changes = scene.bench.changes();
   for (std::size_t n = 0; n < changes.size(); ++n) {
     const auto back = std::find_if(
         changes.begin() + static_cast<std::ptrdiff_t>(n) + 1, changes.end(),
         [&](const auto& later) { return later.word == changes[n].word && later.after == changes[n].before; });
     const bool is_short = back != changes.end() && back->when - changes[n].when <= 1 * kernel::kMicrosecond;
     if (is_short || changes[n].before != words[changes[n].word]) continue;
-    judge.fail("output_glitch",
-               {.expected = {"outputs hold their value; a mutant of up to 1 us is not counted"},
-                .actual = back == changes.end()
-                              ? fmt::format("word {} went to {:04X}h", changes[n].word, changes[n].after)
-                              : fmt::format("word {} was {:04X}h for {}", changes[n].word, changes[n].after,
-                                            kernel::describe(back->when - changes[n].when)),
-                .time = changes[n].when});
-  }
-}
-
-void rejected_cycle_between_good_ones(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
-  for (unsigned round = 0; round < bench.volume(10U, 500U); ++round) {
-    std::vector<std::uint16_t> words = bench.random_words();
-    for (std::uint16_t& word : words) word |= 0x0101;
-    bench.data_cycle(words);
-    expect_outputs(bench, judge, words, "valid_cycle_rejected");
-    bench.terminals().forget_changes();
-    bench.begin();
-    const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
-    const auto bit = static_cast<std::size_t>(bench.random().below(bench.code_word_bits()));
-    bench.channel().on_next().flip(bench.code_word_level(cycle, bit));
-    bench.send();
-    expect_outputs_held(bench, judge, words);
-    expect_good_cycle(bench, judge, "no_recovery");
+    scene.judge.fail(
+        "output_glitch",
+        {.expected = {"outputs hold their value; a mutant of up to 1 us is not counted"},
+         .actual = back == changes.end()
+                       ? fmt::format("word {} went to {:04X}h", changes[n].word, changes[n].after)
+                       : fmt::format("word {} was {:04X}h for {}", changes[n].word, changes[n].after,
+                                     kernel::describe(back->when - changes[n].when)),
+         .time = changes[n].when});
   }
 }
 
@@ -193,27 +176,37 @@ void random_faults(SlaveBench& bench, CaseJudge& judge) {
   judge.measure("clean cycles lost after the faults", "", faults.longest_recovery);
 }
 
+SlaveCase held_case() {
+  using namespace slave_chart;
+  const SlaveStep set_words =
+      stimulus<SlaveScene>("a valid data cycle without an octet of 0", [](SlaveScene& scene) {
+        scene.words = scene.bench.random_words();
+        for (std::uint16_t& word : scene.words) word |= 0x0101;
+        scene.bench.data_cycle(scene.words);
+      });
+  return on_chart(
+      {.id = "interbus/slave/immunity/rejected_cycle_leaves_outputs_alone",
+       .purpose = "IS-40",
+       .requirement =
+           "While a cycle is rejected, the outputs hold the words of the last valid one, without a "
+           "glitch longer than 1 us.",
+       .reference = sources::from_memory("the previous data stay valid when a cycle is rejected"),
+       .details = {details::status_coding()},
+       .tags = {"must"},
+       .catches = {{"clears_outputs_on_rejected_cycle", "output_changed_by_rejected_cycle"},
+                   {"glitches_outputs_on_rejected_cycle", "output_glitch"}},
+       .not_applicable = for_outputs()},
+      {.rounds = {10, 500},
+       .steps = {set_words, shown(), flipped_bit(),
+                 expected<SlaveScene>("no output leaves its value for more than 1 us", expect_outputs_held),
+                 good_cycle("no_recovery")},
+       .first = {identified()}});
+}
+
 }  // namespace
 
 std::vector<SlaveCase> slave_immunity_cases() {
-  std::vector<SlaveCase> cases;
-  cases.push_back(
-      {{.id = "interbus/slave/immunity/rejected_cycle_leaves_outputs_alone",
-        .purpose = "IS-40",
-        .requirement =
-            "While a cycle is rejected, the outputs hold the words of the last valid one, without a "
-            "glitch longer than 1 us.",
-        .reference = sources::from_memory("the previous data stay valid when a cycle is rejected"),
-        .details = {details::status_coding()},
-        .stimulus =
-            "A valid data cycle, one with a bit flipped at the slave's receiver, a valid one; again and "
-            "again with other words.",
-        .expected = "No output leaves its value between the valid cycles for more than 1 us.",
-        .tags = {"must"},
-        .catches = {{"clears_outputs_on_rejected_cycle", "output_changed_by_rejected_cycle"},
-                    {"glitches_outputs_on_rejected_cycle", "output_glitch"}},
-        .not_applicable = for_outputs()},
-       rejected_cycle_between_good_ones});
+  std::vector<SlaveCase> cases{held_case()};
   cases.push_back(
       {{.id = "interbus/slave/immunity/random_faults_latch_no_wrong_value",
         .purpose = "IS-42",

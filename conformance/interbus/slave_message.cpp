@@ -155,16 +155,11 @@ std::vector<SlaveCase> cases_of_check_errors() {
            .tags = {"must"},
            .catches = {{"tells_no_missing_stop", "message_missing"},
                        {"stop_bit_not_checked", "message_missing"}}},
-          {.steps = {flipped("a data cycle in which its stop bit arrives as 0",
-                             [](SlaveScene& scene, const CyclePlace& cycle) {
-                               return cycle.level_of(telegram_in_turn(scene, cycle, 0),
-                                                     TrainWriter::kStopLevel);
-                             }),
-                     status_telegrams(2),
+          {.steps = {stop_bit_missing(), status_telegrams(2),
                      message(kCheckError, "message_missing", "a telegram of it had no stop bit"),
                      none_once_read()},
            .first = {identified()},
-           .walk = each_telegram("each telegram", 0)}),
+           .walk = each_telegram("each telegram of a data cycle", 0)}),
       on_chart(
           {.id = "interbus/slave/messages/other_message_bits_count",
            .purpose = "IS-47",

@@ -5,13 +5,6 @@
 namespace fieldproof::conformance::slave_chart {
 namespace {
 
-// Each bit of each word, so that nothing that is taken over is missed.
-std::vector<std::uint16_t> inverted_outputs(SlaveBench& bench) {
-  std::vector<std::uint16_t> words = bench.outputs();
-  for (std::uint16_t& word : words) word = static_cast<std::uint16_t>(~word);
-  return words;
-}
-
 std::uint16_t messages_of(SlaveScene& scene) {
   const interbus::Rules& rules = scene.bench.rules();
   scene.bench.id_cycle(scene.bench.interfaces_off());
@@ -31,7 +24,18 @@ void expect_messages(SlaveScene& scene, bool holds, std::uint16_t found, std::st
   });
 }
 
+std::string name_of(RuleBits bit) {
+  if (bit == &interbus::Rules::message_check_error) return "a check error";
+  return bit == &interbus::Rules::message_peripheral_fault ? "a peripheral fault" : "reconfiguration";
+}
+
 }  // namespace
+
+std::vector<std::uint16_t> inverted_outputs(SlaveBench& bench) {
+  std::vector<std::uint16_t> words = bench.outputs();
+  for (std::uint16_t& word : words) word = static_cast<std::uint16_t>(~word);
+  return words;
+}
 
 SlaveStep identified(const std::string& whom) {
   return stimulus<SlaveScene>("ID cycles identify " + whom,
@@ -84,6 +88,13 @@ SlaveStep flipped_bit() {
                    SlaveBench& bench = scene.bench;
                    return bench.code_word_level(
                        cycle, static_cast<std::size_t>(bench.random().below(bench.code_word_bits())));
+                 });
+}
+
+SlaveStep stop_bit_missing() {
+  return flipped("a data cycle in which its stop bit arrives as 0",
+                 [](SlaveScene& scene, const CyclePlace& cycle) {
+                   return cycle.level_of(telegram_in_turn(scene, cycle, 0), TrainWriter::kStopLevel);
                  });
 }
 
@@ -146,7 +157,8 @@ SlaveStep not_taken_over() {
 
 SlaveStep message(RuleBits bit, std::string reason, std::string why) {
   std::string expected =
-      bit == nullptr ? "no message in the ID register" : "its message bit in the ID register and no other";
+      bit == nullptr ? "no message in the ID register"
+                     : fmt::format("the message bit of {} in the ID register and no other", name_of(bit));
   return {"an ID cycle", std::move(expected),
           [bit, reason = std::move(reason), why = std::move(why)](SlaveScene& scene) {
             const std::uint16_t required = bit == nullptr ? 0 : scene.bench.rules().*bit;

@@ -36,6 +36,9 @@ inline SlaveCase on_chart(TestCase test_case, SlaveChart chart, SlaveNeeds needs
 
 namespace slave_chart {
 
+// Each bit of each word, so that nothing that is taken over is missed.
+std::vector<std::uint16_t> inverted_outputs(SlaveBench& bench);
+
 using RuleBits = std::uint16_t interbus::Rules::*;
 
 SlaveStep identified(const std::string& whom = "the slave");
@@ -49,6 +52,8 @@ SlaveStep silence(std::string text, kernel::Duration (*of)(const interbus::Rules
 using MakeLevel = std::function<std::size_t(SlaveScene&, const CyclePlace&)>;
 SlaveStep flipped(std::string text, MakeLevel level);
 SlaveStep flipped_bit();  // of loopback word, process data and check, at random
+// Of the telegram that has the turn, as for a walk over all of them.
+SlaveStep stop_bit_missing();
 // The walk over the telegrams of a data cycle, `last` of them not; and the one that has the turn.
 Walk<SlaveScene> each_telegram(std::string text, std::size_t last, std::size_t times = 1);
 std::size_t telegram_in_turn(const SlaveScene& scene, const CyclePlace& cycle, std::size_t last);
