@@ -83,6 +83,10 @@ class MasterBench {
   segment::Segment& segment() { return segment_; }
   kernel::Time now() const { return segment_.now(); }
 
+  // The last cycles of the ring.
+  std::vector<std::string> decode_lines() const {
+    return ring_ == nullptr ? std::vector<std::string>{} : ring_->describe_last(6);
+  }
   // What the master drives.
   const LineWatch& line_watch() const { return line_watch_; }
 
