@@ -127,59 +127,54 @@ void refuse_undefined_lengths(MasterBench& bench, CaseJudge& judge) {
   }
 }
 
-MasterCase length_codes_case() {
-  TestCase test_case =
-      master_test("identification/length_codes_are_decoded", "IM-05",
-                  "The length code is read by its table, not as a binary number; an undefined one is refused",
-                  {"Schneider 890USE196, table of length codes", "ID code", Standing::searched}, {"must"},
-                  {{"length_code_binary", "length_code_misread"}});
-  test_case.details = {{{"literature from memory", "length code 14h", Standing::memory},
-                        {std::string(kCodeFromMemoryMisread)}}};
-  return on_chart(std::move(test_case),
-                  {.steps = {step("power up with a station with each length code of whole words",
-                                  "the length of the ring is that of the table", decode_lengths),
-                             step("power up with a station with each of the codes 18h to 1Fh",
-                                  "a configuration error and no run", refuse_undefined_lengths)}});
-}
-
 }  // namespace
 
 std::vector<MasterCase> master_identification_cases() {
   return {
-      on_chart(
-          master_test("identification/first_cycle_is_an_id_cycle", "IM-02",
-                      "A master begins with an ID cycle; every cycle begins with the loopback word, and SL "
-                      "and CR tell cycle and phase",
-                      {"Beckhoff BC4000 documentation; Buesing/Meyer, Practical Guide", "ID cycle; SL and CR",
-                       Standing::searched},
-                      {"must"},
-                      {{"id_cycle_without_select", "first_cycle_no_id_cycle"},
-                       {"select_dropped_in_check", "phase_bits_wrong"}}),
+      master_case(
+          "identification/first_cycle_is_an_id_cycle", "IM-02",
+          "A master begins with an ID cycle; every cycle begins with the loopback word, and SL and CR tell "
+          "cycle and phase",
+          {"Beckhoff BC4000 documentation; Buesing/Meyer, Practical Guide", "ID cycle; SL and CR",
+           Standing::searched},
+          {"must"},
+          {{"id_cycle_without_select", "first_cycle_no_id_cycle"},
+           {"select_dropped_in_check", "phase_bits_wrong"}},
           {.steps = {step("power up with one station on the ring",
                           "an ID cycle first, which begins with the loopback word", begin_with_id_cycle),
                      step("", "headers constant within each phase, data cycles with the loopback word first",
                           expect_data_cycles)}}),
-      on_chart(
-          master_test("identification/configuration_equals_ring", "IM-03",
-                      "The master finds every station of the ring with ID code, length and place",
-                      {"literature from memory", "topology recognition", Standing::memory}, {"must"},
-                      {{"branches_not_searched", "configuration_differs"}}),
+      master_case(
+          "identification/configuration_equals_ring", "IM-03",
+          "The master finds every station of the ring with ID code, length and place",
+          {"literature from memory", "topology recognition", Standing::memory}, {"must"},
+          {{"branches_not_searched", "configuration_differs"}},
           {.steps = {{"power up",
                       "the list of stations is that of the ring; without a station it stays ready",
                       expect_found}},
            .walk = {"rings of 0, 1, 2, 10, 64 and 512 stations, and a tree with branches",
                     [](RingScene& scene) { return scene.bench.volume<std::size_t>(5, rings().size()); }}}),
-      on_chart(
-          master_test(
-              "identification/limits_are_refused", "IM-04",
-              "More than 512 stations or 4096 I/O points are refused",
-              {"Park 2004, section 2; Schneider INTERBUS manual", "limits", Standing::seed}, {"must"},
-              {{"station_limit_ignored", "limit_not_refused"}, {"point_limit_ignored", "limit_not_refused"}}),
+      master_case(
+          "identification/limits_are_refused", "IM-04",
+          "More than 512 stations or 4096 I/O points are refused",
+          {"Park 2004, section 2; Schneider INTERBUS manual", "limits", Standing::seed}, {"must"},
+          {{"station_limit_ignored", "limit_not_refused"}, {"point_limit_ignored", "limit_not_refused"}},
           {.steps = {step("power up with one station too much", "a configuration error and no run",
                           refuse_stations),
                      step("power up with as many I/O points as allowed, then with a word more",
                           "it runs; then a configuration error and no run", refuse_points)}}),
-      length_codes_case()};
+      resting_also_on(
+          {{"literature from memory", "length code 14h", Standing::memory},
+           {std::string(kCodeFromMemoryMisread)}},
+          master_case(
+              "identification/length_codes_are_decoded", "IM-05",
+              "The length code is read by its table, not as a binary number; an undefined one is refused",
+              {"Schneider 890USE196, table of length codes", "ID code", Standing::searched}, {"must"},
+              {{"length_code_binary", "length_code_misread"}},
+              {.steps = {step("power up with a station with each length code of whole words",
+                              "the length of the ring is that of the table", decode_lengths),
+                         step("power up with a station with each of the codes 18h to 1Fh",
+                              "a configuration error and no run", refuse_undefined_lengths)}}))};
 }
 
 }  // namespace fieldproof::conformance

@@ -33,15 +33,13 @@ void run_with_outputs(MasterBench& bench, CaseJudge& judge) {
 }
 
 MasterStep leaves_run(std::string reason) {
-  return expected<RingScene>(
-      "the master leaves run within the declared number of cycles",
-      [reason = std::move(reason)](RingScene& scene) {
-        const unsigned most = scene.bench.rules().stop_after_bad_cycles;
-        for (unsigned n = 0; n < most && scene.bench.is_in_run(); ++n) scene.bench.run_cycle();
-        scene.judge.expect(!scene.bench.is_in_run(), reason, [&] {
-          return Mismatch{{fmt::format("the master leaves run within {} cycles", most)}, "it is in run"};
-        });
-      });
+  const auto leave_run = [reason = std::move(reason)](RingScene& scene) {
+    const unsigned most = scene.bench.rules().stop_after_bad_cycles;
+    for (unsigned n = 0; n < most && scene.bench.is_in_run(); ++n) scene.bench.run_cycle();
+    scene.judge.expect(!scene.bench.is_in_run(), reason,
+                       fmt::format("the master leaves run within {} cycles", most), "it is in run");
+  };
+  return {"", "the master leaves run within the declared number of cycles", leave_run};
 }
 
 // Between station round - 1 + `more` and the next one.
@@ -53,14 +51,12 @@ MasterStep fault_located(int more) {
                     500 * kernel::kMillisecond);
     const int from = static_cast<int>(scene.round) - 1 + more;
     const auto status = bench.status();
-    scene.judge.expect(status.has_fault_location && status.fault_location == FaultLocation{from, from + 1},
-                       "fault_not_located", [&] {
-                         return Mismatch{{fmt::format("fault between {} and {}", from, from + 1)},
-                                         status.has_fault_location
-                                             ? fmt::format("between {} and {}", status.fault_location.from,
-                                                           status.fault_location.to)
-                                             : "no location"};
-                       });
+    scene.judge.expect(
+        status.has_fault_location && status.fault_location == FaultLocation{from, from + 1},
+        "fault_not_located", fmt::format("fault between {} and {}", from, from + 1),
+        status.has_fault_location
+            ? fmt::format("between {} and {}", status.fault_location.from, status.fault_location.to)
+            : "no location");
   });
 }
 
@@ -94,42 +90,41 @@ Ring with_another_station(unsigned round) {
 }
 
 MasterStep id_cycle_asked_for() {
-  return stimulus<RingScene>("the application asks for an ID cycle",
-                             [](RingScene& scene) { scene.bench.request_id_cycle(); });
+  return step("the application asks for an ID cycle", "",
+              [](MasterBench& bench, CaseJudge&) { bench.request_id_cycle(); });
 }
 
 using StationList = const std::vector<int> interbus::MasterStatus::*;
 
+// The first station, one in the middle and the last one.
+std::size_t station_in_turn(const RingScene& scene) {
+  return scene.round == 0 ? 0 : scene.round + 1;
+}
+
 MasterChart message_chart(std::uint16_t interbus::Rules::* bit, StationList list, std::string reason) {
-  // The first station, one in the middle and the last one.
-  const auto station = [](const RingScene& scene) { return scene.round + (scene.round > 0 ? 1U : 0U); };
-  const auto set_bit = [bit, station](bool is_set) {
-    return stimulus<RingScene>(is_set ? "its message bit is set" : "the bit is cleared",
-                               [bit, station, is_set](RingScene& scene) {
-                                 scene.bench.ring().set_messages(
-                                     station(scene), is_set ? scene.bench.rules().*bit : std::uint16_t{0});
-                               });
+  const auto set_bit = [bit](RingScene& scene) {
+    scene.bench.ring().set_messages(station_in_turn(scene), scene.bench.rules().*bit);
   };
-  return {.steps = {set_bit(true), data_cycles(3),
-                    expected<RingScene>("nothing is reported without an ID cycle",
-                                        [list](RingScene& scene) {
-                                          scene.judge.expect((scene.bench.status().*list).empty(),
-                                                             "message_in_data_cycle",
-                                                             "a message bit is visible in ID cycles only",
-                                                             "it is reported without one");
-                                        }),
-                    id_cycle_asked_for(), data_cycles(2),
-                    expected<RingScene>("the station is reported, the bus stays in run",
-                                        [list, station, reason = std::move(reason)](RingScene& scene) {
-                                          const int number = static_cast<int>(station(scene));
-                                          scene.judge.expect(scene.bench.is_in_run(), "message_stops_bus",
-                                                             "the bus stays in run", "it does not");
-                                          scene.judge.expect(
-                                              scene.bench.status().*list == std::vector<int>{number}, reason,
-                                              fmt::format("station {} is reported", number),
-                                              "it is not, or others are");
-                                        }),
-                    set_bit(false), id_cycle_asked_for(), data_cycles(2)},
+  const auto clear_bit = [](RingScene& scene) { scene.bench.ring().set_messages(station_in_turn(scene), 0); };
+  const auto expect_none = [list](RingScene& scene) {
+    scene.judge.expect((scene.bench.status().*list).empty(), "message_in_data_cycle",
+                       "a message bit is visible in ID cycles only", "it is reported without one");
+  };
+  const auto expect_station = [list, reason = std::move(reason)](RingScene& scene) {
+    const auto station = static_cast<int>(station_in_turn(scene));
+    scene.judge.expect(scene.bench.is_in_run(), "message_stops_bus", "the bus stays in run", "it does not");
+    scene.judge.expect(scene.bench.status().*list == std::vector<int>{station}, reason,
+                       fmt::format("station {} is reported", station), "it is not, or others are");
+  };
+  return {.steps = {{"its message bit is set", "", set_bit},
+                    data_cycles(3),
+                    {"", "nothing is reported without an ID cycle", expect_none},
+                    id_cycle_asked_for(),
+                    data_cycles(2),
+                    {"", "the station is reported, the bus stays in run", expect_station},
+                    {"the bit is cleared", "", clear_bit},
+                    id_cycle_asked_for(),
+                    data_cycles(2)},
           .first = {in_run("four stations", plain_line(4))},
           .walk = each("each of the first, the third and the last station", 3)};
 }
@@ -146,12 +141,10 @@ std::vector<MasterCase> master_ring_change_cases() {
                                   "", Standing::searched};
   const std::string error = "a configuration error is reported";
   return {
-      on_chart(
-          master_test(
-              "ring_change/cut_ring_is_located", "IM-17",
-              "When the ring is cut the bus stops, the outputs are as declared and the master finds the "
-              "place",
-              stopped, {"must"}, {{"fault_not_searched", "fault_not_located"}}),
+      master_case(
+          "ring_change/cut_ring_is_located", "IM-17",
+          "When the ring is cut the bus stops, the outputs are as declared and the master finds the place",
+          stopped, {"must"}, {{"fault_not_searched", "fault_not_located"}},
           {.steps = {step("the master runs on 8 stations with outputs that are set", "", run_with_outputs),
                      stimulus<RingScene>("the cable is cut",
                                          [](RingScene& scene) {
@@ -163,50 +156,50 @@ std::vector<MasterCase> master_ring_change_cases() {
                     [](RingScene& scene) {
                       return static_cast<std::size_t>(stations_to_cut(scene.bench));
                     }}}),
-      on_chart(master_test("ring_change/added_station_is_reported", "IM-28",
-                           "A station that is added in run is a configuration error", compared, {"must"},
-                           {{"changed_ring_ignored", "changed_ring_not_reported"}}),
-               {.steps = {three_stations(),
-                          replaced("a fourth station is added", [](unsigned) { return plain_line(4); }),
-                          leaves_run("changed_ring_not_reported"),
-                          configuration_error(error, "changed_ring_not_reported"),
-                          expected<RingScene>("the old configuration stays",
-                                              [](RingScene& scene) {
-                                                scene.judge.expect_equal(scene.bench.status().stations.size(),
-                                                                         kStations, "silently_remapped",
-                                                                         "stations of the configuration");
-                                              })}}),
-      on_chart(
-          master_test("ring_change/removed_station_is_located", "IM-29",
-                      "A station that is removed in run is reported with its place", stopped, {"must"},
-                      {{"changed_ring_ignored", "removed_station_not_reported"}}),
+      master_case("ring_change/added_station_is_reported", "IM-28",
+                  "A station that is added in run is a configuration error", compared, {"must"},
+                  {{"changed_ring_ignored", "changed_ring_not_reported"}},
+                  {.steps = {three_stations(),
+                             replaced("a fourth station is added", [](unsigned) { return plain_line(4); }),
+                             leaves_run("changed_ring_not_reported"),
+                             configuration_error(error, "changed_ring_not_reported"),
+                             expected<RingScene>("the old configuration stays",
+                                                 [](RingScene& scene) {
+                                                   scene.judge.expect_equal(
+                                                       scene.bench.status().stations.size(), kStations,
+                                                       "silently_remapped", "stations of the configuration");
+                                                 })}}),
+      master_case(
+          "ring_change/removed_station_is_located", "IM-29",
+          "A station that is removed in run is reported with its place", stopped, {"must"},
+          {{"changed_ring_ignored", "removed_station_not_reported"}},
           {.steps = {three_stations(),
                      replaced("the others are removed", [](unsigned round) { return plain_line(round + 1); }),
                      leaves_run("removed_station_not_reported"),
                      configuration_error(error, "removed_station_not_reported"), fault_located(1)},
            .walk = each("each of one and two stations that stay", kStations - 1)}),
-      on_chart(master_test("ring_change/replaced_station_is_detected", "IM-30",
-                           "A station of the same length but another type is detected", compared, {"must"},
-                           {{"id_type_ignored", "replaced_station_not_detected"}}),
-               {.steps = {three_stations(),
-                          replaced("it has another ID code of the same length", with_another_station),
-                          data_cycles(3), id_cycle_asked_for(),
-                          stimulus<RingScene>("3 cycles",
-                                              [](RingScene& scene) {
-                                                for (int n = 0; n < 3; ++n) scene.bench.run_cycle();
-                                              }),
-                          configuration_error(error, "replaced_station_not_detected")},
-                .walk = each("each station", kStations)}),
-      on_chart(master_test("ring_change/peripheral_fault_is_reported", "IM-31",
-                           "A peripheral fault is reported and leaves the bus in run", kMessages, {"must"},
-                           {{"peripheral_fault_not_reported", "peripheral_fault_missed"}}),
-               message_chart(&interbus::Rules::message_peripheral_fault,
-                             &interbus::MasterStatus::peripheral_faults, "peripheral_fault_missed")),
-      on_chart(master_test("ring_change/reconfiguration_request_is_reported", "IM-32",
-                           "A reconfiguration request is reported", kMessages, {"must"},
-                           {{"reconfiguration_not_reported", "reconfiguration_missed"}}),
-               message_chart(&interbus::Rules::message_reconfiguration,
-                             &interbus::MasterStatus::reconfigurations, "reconfiguration_missed"))};
+      master_case("ring_change/replaced_station_is_detected", "IM-30",
+                  "A station of the same length but another type is detected", compared, {"must"},
+                  {{"id_type_ignored", "replaced_station_not_detected"}},
+                  {.steps = {three_stations(),
+                             replaced("it has another ID code of the same length", with_another_station),
+                             data_cycles(3), id_cycle_asked_for(),
+                             stimulus<RingScene>("3 cycles",
+                                                 [](RingScene& scene) {
+                                                   for (int n = 0; n < 3; ++n) scene.bench.run_cycle();
+                                                 }),
+                             configuration_error(error, "replaced_station_not_detected")},
+                   .walk = each("each station", kStations)}),
+      master_case("ring_change/peripheral_fault_is_reported", "IM-31",
+                  "A peripheral fault is reported and leaves the bus in run", kMessages, {"must"},
+                  {{"peripheral_fault_not_reported", "peripheral_fault_missed"}},
+                  message_chart(&interbus::Rules::message_peripheral_fault,
+                                &interbus::MasterStatus::peripheral_faults, "peripheral_fault_missed")),
+      master_case("ring_change/reconfiguration_request_is_reported", "IM-32",
+                  "A reconfiguration request is reported", kMessages, {"must"},
+                  {{"reconfiguration_not_reported", "reconfiguration_missed"}},
+                  message_chart(&interbus::Rules::message_reconfiguration,
+                                &interbus::MasterStatus::reconfigurations, "reconfiguration_missed"))};
 }
 
 }  // namespace fieldproof::conformance

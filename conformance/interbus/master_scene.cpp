@@ -7,9 +7,9 @@ namespace fieldproof::conformance {
 
 using interbus::CycleFaults;
 
-TestCase master_test(std::string_view id, std::string_view purpose, std::string_view requirement,
-                     judge::Reference reference, std::vector<std::string> tags,
-                     std::vector<MustCatch> catches) {
+MasterCase master_case(std::string_view id, std::string_view purpose, std::string_view requirement,
+                       judge::Reference reference, std::vector<std::string> tags,
+                       std::vector<MustCatch> catches, MasterChart chart) {
   TestCase test_case;
   test_case.id = fmt::format("interbus/master/{}", id);
   test_case.purpose = purpose;
@@ -17,7 +17,12 @@ TestCase master_test(std::string_view id, std::string_view purpose, std::string_
   test_case.reference = std::move(reference);
   test_case.tags = std::move(tags);
   test_case.catches = std::move(catches);
-  return test_case;
+  return charted<MasterCase>(std::move(test_case), std::move(chart));
+}
+
+MasterCase resting_also_on(PartialSource detail, MasterCase one) {
+  one.test_case.details.push_back(std::move(detail));
+  return one;
 }
 
 namespace master_chart {

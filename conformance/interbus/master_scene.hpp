@@ -27,13 +27,10 @@ using MasterStep = ChartStep<RingScene>;
 using MasterChart = Chart<RingScene>;
 
 // The id is what comes after "interbus/master/".
-TestCase master_test(std::string_view id, std::string_view purpose, std::string_view requirement,
-                     judge::Reference reference, std::vector<std::string> tags,
-                     std::vector<MustCatch> catches);
-
-inline MasterCase on_chart(TestCase test_case, MasterChart chart) {
-  return charted<MasterCase>(std::move(test_case), std::move(chart));
-}
+MasterCase master_case(std::string_view id, std::string_view purpose, std::string_view requirement,
+                       judge::Reference reference, std::vector<std::string> tags,
+                       std::vector<MustCatch> catches, MasterChart chart);
+MasterCase resting_also_on(PartialSource detail, MasterCase one);
 
 namespace master_chart {
 
@@ -41,7 +38,7 @@ using Ring = std::vector<interbus::VirtualStation>;
 using Prepare = void (*)(MasterBench&);
 inline constexpr std::uint16_t kOneWord = 0x0103;  // the ID code of a station with inputs and outputs
 
-// A step that needs bench and judge only.
+// A step that needs bench and judge only: also loops, statistics and long runs, which stay code.
 using Procedure = void (*)(MasterBench&, CaseJudge&);
 inline MasterStep step(std::string text, std::string outcome, Procedure run) {
   return {std::move(text), std::move(outcome), [run](RingScene& scene) { run(scene.bench, scene.judge); }};

@@ -16,6 +16,7 @@ namespace fieldproof::conformance {
 
 namespace {
 
+using namespace master_chart;
 using judge::Standing;
 
 constexpr unsigned kInputWord = 0;
@@ -136,10 +137,9 @@ void expect_widths(RingScene& scene) {
   });
   bench.run_data_cycles(judge, static_cast<std::uint64_t>(2 * units * static_cast<double>(pulses)) + 8);
   bench.ring().on_outputs(nullptr);  // this ring stays in the segment when the next one takes over
-  judge.expect(strange == 0, "width_outside_set", [&] {
-    return Mismatch{{fmt::format("pulses of {} or {} T_c at {} Hz", least, least + 1, hertz)},
-                    fmt::format("a pulse of {:.3f} T_c", strange)};
-  });
+  judge.expect(strange == 0, "width_outside_set",
+               fmt::format("pulses of {} or {} T_c at {} Hz", least, least + 1, hertz),
+               fmt::format("a pulse of {:.3f} T_c", strange));
   judge.expect(count >= static_cast<double>(pulses) - 2, "pulses_lost", "every pulse", "fewer pulses");
   const double mean = sum / count;
   const double part = units - least;
@@ -180,34 +180,33 @@ void lost_pulses(MasterBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<MasterCase> master_skew_cases() {
-  const auto test = [](std::string_view id, std::string_view purpose, std::string_view requirement,
-                       std::vector<MustCatch> catches) {
+  const auto skew_case = [](std::string_view id, std::string_view purpose, std::string_view requirement,
+                            std::vector<MustCatch> catches, MasterChart chart) {
     const judge::Reference model{"Park 2004, section 3; computed",
                                  "inputs at the start, outputs at the end of a frame", Standing::calc};
-    return master_test(id, purpose, requirement, model, {"timing", "long"}, std::move(catches));
+    return master_case(id, purpose, requirement, model, {"timing", "long"}, std::move(catches),
+                       std::move(chart));
   };
-  TestCase edges =
-      test("skew/edge_delay_follows_the_model", "IM-24",
-           "From an input edge to the copied output pass between one and two cycle times and the frame "
-           "time",
-           {{"copied_one_cycle_late", "delay_outside_model"}});
-  edges.stimulus = "edges spread over the cycle";
-  edges.expected = "least, mean and largest delay within 2 % of the cycle time of the model";
-  TestCase lost =
-      test("skew/pulses_shorter_than_a_cycle_are_lost_by_the_model", "IM-26",
-           "A pulse is lost when no sample falls into it", {{"copies_every_second_cycle", "pulse_loss_off"}});
-  lost.stimulus = "a square wave of 700 Hz at 0.814 ms";
-  lost.expected = "0.1225 of the pulses lost, within 0.01";
   return {
-      {std::move(edges), edge_delay},
-      on_chart(test("skew/square_wave_widths_follow_the_model", "IM-25",
-                    "A copied pulse is a whole number of cycle times long, one of the two next to its length",
-                    {{"copies_every_second_cycle", "width_outside_set"},
-                     {"pulse_widths_even", "width_spread_off"}}),
-               {.steps = {{"a square wave at 0.814 ms",
-                           "the two widths, mean and standard deviation of the model", expect_widths}},
-                .walk = master_chart::each("each of 50, 150 and 200 Hz", 3)}),
-      {std::move(lost), lost_pulses}};
+      skew_case(
+          "skew/edge_delay_follows_the_model", "IM-24",
+          "From an input edge to the copied output pass between one and two cycle times and the frame time",
+          {{"copied_one_cycle_late", "delay_outside_model"}},
+          {.steps = {step("edges spread over the cycle",
+                          "least, mean and largest delay within 2 % of the cycle time of the model",
+                          edge_delay)}}),
+      skew_case(
+          "skew/square_wave_widths_follow_the_model", "IM-25",
+          "A copied pulse is a whole number of cycle times long, one of the two next to its length",
+          {{"copies_every_second_cycle", "width_outside_set"}, {"pulse_widths_even", "width_spread_off"}},
+          {.steps = {{"a square wave at 0.814 ms", "the two widths, mean and standard deviation of the model",
+                      expect_widths}},
+           .walk = each("each of 50, 150 and 200 Hz", 3)}),
+      skew_case("skew/pulses_shorter_than_a_cycle_are_lost_by_the_model", "IM-26",
+                "A pulse is lost when no sample falls into it",
+                {{"copies_every_second_cycle", "pulse_loss_off"}},
+                {.steps = {step("a square wave of 700 Hz at 0.814 ms",
+                                "0.1225 of the pulses lost, within 0.01", lost_pulses)}})};
 }
 
 }  // namespace fieldproof::conformance

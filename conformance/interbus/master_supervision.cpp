@@ -20,11 +20,9 @@ void expect_no_silence(MasterBench& bench, CaseJudge& judge, std::string_view st
   const kernel::Duration limit = bench.rules().silence_limit;
   const kernel::Duration longest =
       std::max(bench.ring().statistics().longest_silence, bench.ring().silence_until(bench.now()));
-  judge.expect(longest <= limit, "silence_too_long", [&] {
-    return Mismatch{
-        {fmt::format("never more than {} without a telegram in {}", kernel::describe(limit), state)},
-        kernel::describe(longest)};
-  });
+  judge.expect(longest <= limit, "silence_too_long",
+               fmt::format("never more than {} without a telegram in {}", kernel::describe(limit), state),
+               kernel::describe(longest));
 }
 
 void wait_on_open_ring(MasterBench& bench, CaseJudge& judge) {
@@ -60,13 +58,15 @@ void search_fills_pauses(MasterBench& bench, CaseJudge& judge) {
   expect_no_silence(bench, judge, "locating");
 }
 
+void request_long_cycles(MasterBench& bench) {
+  bench.configuration().cycle_time = 40 * kernel::kMillisecond;
+}
+
 MasterChart pauses_chart() {
   const std::string filled = "never a silence above 25 ms";
   return {
       .steps = {step("power up on an open ring", "telegrams within 1 s, " + filled, wait_on_open_ring),
-                step("power up on a closed ring", filled, identify_ring), in_run([](MasterBench& bench) {
-                  bench.configuration().cycle_time = 40 * kernel::kMillisecond;
-                }),
+                step("power up on a closed ring", filled, identify_ring), in_run(request_long_cycles),
                 step("130 ms with a cycle time of 40 ms", filled, run_with_long_cycles),
                 step("a cut cable", "as long as the master looks for it, " + filled, search_fills_pauses)}};
 }
@@ -162,12 +162,9 @@ MasterStep bad_cycles(unsigned fewer, std::string text, std::string outcome, boo
           }};
 }
 
-MasterStep good_again() {
-  return {"2 good data cycles", "they are accepted", [](RingScene& scene) {
-            scene.bench.run_data_cycles(scene.judge, 2);
-            scene.judge.expect(scene.bench.finished().is_accepted, "stop_at_wrong_count", "good cycles again",
-                               "none");
-          }};
+void good_again(MasterBench& bench, CaseJudge& judge) {
+  bench.run_data_cycles(judge, 2);
+  judge.expect(bench.finished().is_accepted, "stop_at_wrong_count", "good cycles again", "none");
 }
 
 // ---- stop command ----
@@ -218,50 +215,49 @@ std::vector<MasterCase> master_supervision_cases() {
   const judge::Reference quality{"literature from memory", "20 bad of a million data cycles",
                                  Standing::memory};
   return {
-      on_chart(master_test(
-                   "supervision/status_telegrams_fill_every_pause", "IM-01",
-                   "Status telegrams fill every pause; only when it stops is a master silent for more than "
-                   "25 ms",
-                   {"Phoenix Contact UK, operation and maintenance", "status telegrams", Standing::searched},
-                   {"must", "timing"},
-                   {{"silent_in_long_pauses", "silence_too_long"},
-                    {"pauses_in_identification", "silence_too_long"},
-                    {"pauses_in_locating", "silence_too_long"}}),
-               pauses_chart()),
-      on_chart(master_test("supervision/quality_bit_at_twenty_in_a_million", "IM-18",
-                           "The quality bit is set at 20 rejected data cycles among a million, not at 19",
-                           quality, {"long"},
-                           {{"quality_window_too_short", "quality_bit_missing"},
-                            {"quality_bit_early", "quality_bit_early"}}),
-               {.steps = {fast_ring(shorten_window),
-                          step("single bad cycles, such that the window of a million holds 19",
-                               "no quality bit", spoil_below_limit),
-                          step("one more", "the quality bit; the bus runs on", spoil_one_more)}}),
-      on_chart(master_test("supervision/error_counters_are_exact", "IM-18",
-                           "Every rejected cycle is counted, once", quality, {"long"},
-                           {{"counter_saturates", "counter_wrong"}}),
-               {.steps = {fast_ring(), step("every second data cycle spoilt, 70 000 of them",
-                                            "the counters equal what was done on the line", count_spoilt)}}),
-      on_chart(master_test("supervision/bus_stop_after_bad_cycles_in_a_row", "IM-19",
-                           "The bus stops after the declared number of bad cycles in a row, not before",
-                           {"this project", "10 bad cycles, parameter 3 to 100", Standing::own}, {},
-                           {{"stop_one_late", "stop_at_wrong_count"}}),
-               {.steps = {in_run(), data_cycles(2),
-                          bad_cycles(1, "9 bad cycles in a row", "the bus runs on", true), good_again(),
-                          bad_cycles(0, "10 bad cycles in a row", "the bus stops", false)}}),
-      on_chart(master_test("supervision/bad_and_good_in_turn_never_stop", "IM-20",
-                           "A good data cycle clears the count of bad ones in a row",
-                           {"this project", "10 bad cycles in a row", Standing::own}, {"long"},
-                           {{"consecutive_never_cleared", "stopped_without_cause"}}),
-               {.steps = {fast_ring(), step("bad and good data cycles in turn, 100 000",
-                                            "no stop; half of them counted", spoil_in_turn)}}),
-      on_chart(
-          master_test("supervision/stop_clears_outputs_and_restart_identifies", "IM-39",
-                      "A stop sets the outputs to 0, then the line is silent or carries status telegrams, as "
-                      "declared; a restart begins with an ID cycle",
-                      {"literature from memory", "stop and start", Standing::memory}, {"must"},
-                      {{"stop_keeps_outputs", "outputs_not_cleared"},
-                       {"restart_without_id_cycle", "restart_without_id_cycle"}}),
+      master_case(
+          "supervision/status_telegrams_fill_every_pause", "IM-01",
+          "Status telegrams fill every pause; only when it stops is a master silent for more than 25 ms",
+          {"Phoenix Contact UK, operation and maintenance", "status telegrams", Standing::searched},
+          {"must", "timing"},
+          {{"silent_in_long_pauses", "silence_too_long"},
+           {"pauses_in_identification", "silence_too_long"},
+           {"pauses_in_locating", "silence_too_long"}},
+          pauses_chart()),
+      master_case(
+          "supervision/quality_bit_at_twenty_in_a_million", "IM-18",
+          "The quality bit is set at 20 rejected data cycles among a million, not at 19", quality, {"long"},
+          {{"quality_window_too_short", "quality_bit_missing"}, {"quality_bit_early", "quality_bit_early"}},
+          {.steps = {fast_ring(shorten_window),
+                     step("single bad cycles, such that the window of a million holds 19", "no quality bit",
+                          spoil_below_limit),
+                     step("one more", "the quality bit; the bus runs on", spoil_one_more)}}),
+      master_case(
+          "supervision/error_counters_are_exact", "IM-18", "Every rejected cycle is counted, once", quality,
+          {"long"}, {{"counter_saturates", "counter_wrong"}},
+          {.steps = {fast_ring(), step("every second data cycle spoilt, 70 000 of them",
+                                       "the counters equal what was done on the line", count_spoilt)}}),
+      master_case("supervision/bus_stop_after_bad_cycles_in_a_row", "IM-19",
+                  "The bus stops after the declared number of bad cycles in a row, not before",
+                  {"this project", "10 bad cycles, parameter 3 to 100", Standing::own}, {},
+                  {{"stop_one_late", "stop_at_wrong_count"}},
+                  {.steps = {in_run(), data_cycles(2),
+                             bad_cycles(1, "9 bad cycles in a row", "the bus runs on", true),
+                             step("2 good data cycles", "they are accepted", good_again),
+                             bad_cycles(0, "10 bad cycles in a row", "the bus stops", false)}}),
+      master_case("supervision/bad_and_good_in_turn_never_stop", "IM-20",
+                  "A good data cycle clears the count of bad ones in a row",
+                  {"this project", "10 bad cycles in a row", Standing::own}, {"long"},
+                  {{"consecutive_never_cleared", "stopped_without_cause"}},
+                  {.steps = {fast_ring(), step("bad and good data cycles in turn, 100 000",
+                                               "no stop; half of them counted", spoil_in_turn)}}),
+      master_case(
+          "supervision/stop_clears_outputs_and_restart_identifies", "IM-39",
+          "A stop sets the outputs to 0, then the line is silent or carries status telegrams, as declared; a "
+          "restart begins with an ID cycle",
+          {"literature from memory", "stop and start", Standing::memory}, {"must"},
+          {{"stop_keeps_outputs", "outputs_not_cleared"},
+           {"restart_without_id_cycle", "restart_without_id_cycle"}},
           {.steps = {in_run(), step("the application writes an output", "it is sent", set_outputs),
                      step("stop", "a last data cycle with outputs 0", stop),
                      step("60 ms", "no cycles; silence or status telegrams without a gap, as declared",

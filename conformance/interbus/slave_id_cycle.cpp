@@ -6,6 +6,8 @@
 namespace fieldproof::conformance {
 namespace {
 
+using namespace slave_chart;
+
 void return_id_code(SlaveScene& scene) {
   constexpr std::uint16_t kMessages = 0xE000;
   SlaveBench& bench = scene.bench;
@@ -24,23 +26,20 @@ void return_id_code(SlaveScene& scene) {
 }  // namespace
 
 std::vector<SlaveCase> slave_id_cycle_cases() {
-  return {on_chart(
-      {.id = "interbus/slave/id_cycle/returns_its_id_code_and_then_the_loopback_word",
-       .purpose = "IS-03",
-       .requirement = "In an ID cycle the 16-bit ID register of the slave is in the ring: its own ID code "
-                      "leaves first, bits 0 to 12 as declared, and after it everything that came in.",
-       .reference = sources::park("section 2.2: identification cycle and loopback word"),
-       .details = details::answer(),
-       .tags = {"must"},
-       .catches = {{"id_octets_swapped", "id_code_wrong"},
-                   {"loopback_word_changed_in_id_cycle", "passed_octet_changed"}}},
+  return {slave_case(
+      "id_cycle/returns_its_id_code_and_then_the_loopback_word", "IS-03",
+      "In an ID cycle the 16-bit ID register of the slave is in the ring: its own ID code leaves first, bits "
+      "0 to 12 as declared, and after it everything that came in.",
+      sources::park("section 2.2: identification cycle and loopback word"),
+      {{"id_octets_swapped", "id_code_wrong"}, {"loopback_word_changed_in_id_cycle", "passed_octet_changed"}},
       {.rounds = {4, 4},
-       .steps = {{"an ID cycle with a control word for the slave and a loopback word that differs from "
-                  "cycle to cycle",
-                  "the first 16 bits that leave are the ID code; then the loopback word unchanged, the "
-                  "check of what left and a clean status word",
+       .steps = {{"an ID cycle with a control word for the slave and a loopback word that differs from cycle "
+                  "to cycle",
+                  "the first 16 bits that leave are the ID code; then the loopback word unchanged, the check "
+                  "of what left and a clean status word",
                   return_id_code}},
-       .first = {slave_chart::identified()}})};
+       .first = {identified()}},
+      {.details = details::answer()})};
 }
 
 }  // namespace fieldproof::conformance

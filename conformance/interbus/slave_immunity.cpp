@@ -10,6 +10,8 @@
 namespace fieldproof::conformance {
 namespace {
 
+using namespace slave_chart;
+
 void expect_outputs_held(SlaveScene& scene) {
   const std::vector<std::uint16_t>& words = scene.words;
   expect_outputs(scene.bench, scene.judge, words, "output_changed_by_rejected_cycle");
@@ -151,7 +153,6 @@ void stressed_cycle(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arrivals
 
 void stresses(SlaveBench& bench, CaseJudge& judge) {
   FIELDPROOF_CHECK(!bench.stresses().empty(), "a case under stresses has some");
-  bench.bring_up();
   SlaveArrivals arrivals(bench);
   unsigned longest_recovery = 0;
   for (const fault::Stress& stress : bench.stresses()) {
@@ -168,7 +169,6 @@ void stresses(SlaveBench& bench, CaseJudge& judge) {
 }
 
 void random_faults(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
   SlaveArrivals arrivals(bench);
   Faults faults;
   for (const double chance : {0.001, 0.01, 0.05}) faults_of_chance(bench, judge, arrivals, chance, faults);
@@ -177,87 +177,76 @@ void random_faults(SlaveBench& bench, CaseJudge& judge) {
 }
 
 SlaveCase held_case() {
-  using namespace slave_chart;
   const SlaveStep set_words =
       stimulus<SlaveScene>("a valid data cycle without an octet of 0", [](SlaveScene& scene) {
         scene.words = scene.bench.random_words();
         for (std::uint16_t& word : scene.words) word |= 0x0101;
         scene.bench.data_cycle(scene.words);
       });
-  return on_chart(
-      {.id = "interbus/slave/immunity/rejected_cycle_leaves_outputs_alone",
-       .purpose = "IS-40",
-       .requirement =
-           "While a cycle is rejected, the outputs hold the words of the last valid one, without a "
-           "glitch longer than 1 us.",
-       .reference = sources::from_memory("the previous data stay valid when a cycle is rejected"),
-       .details = {details::status_coding()},
-       .tags = {"must"},
-       .catches = {{"clears_outputs_on_rejected_cycle", "output_changed_by_rejected_cycle"},
-                   {"glitches_outputs_on_rejected_cycle", "output_glitch"}},
-       .not_applicable = for_outputs()},
+  return slave_case(
+      "immunity/rejected_cycle_leaves_outputs_alone", "IS-40",
+      "While a cycle is rejected, the outputs hold the words of the last valid one, without a glitch longer "
+      "than 1 us.",
+      sources::from_memory("the previous data stay valid when a cycle is rejected"),
+      {{"clears_outputs_on_rejected_cycle", "output_changed_by_rejected_cycle"},
+       {"glitches_outputs_on_rejected_cycle", "output_glitch"}},
       {.rounds = {10, 500},
        .steps = {set_words, shown(), flipped_bit(),
                  expected<SlaveScene>("no output leaves its value for more than 1 us", expect_outputs_held),
                  good_cycle("no_recovery")},
-       .first = {identified()}});
+       .first = {identified()}},
+      {.details = {details::status_coding()}, .only_for = for_outputs()});
 }
 
 }  // namespace
 
 std::vector<SlaveCase> slave_immunity_cases() {
-  std::vector<SlaveCase> cases{held_case()};
-  cases.push_back(
-      {{.id = "interbus/slave/immunity/random_faults_latch_no_wrong_value",
-        .purpose = "IS-42",
-        .requirement =
-            "Whatever strikes the slave's receiver, outputs change only by a cycle whose check fits, and "
-            "after the faults clean cycles are accepted again within the published five. Judged here "
-            "under independent random flips, by the next case under bursts.",
-        .reference = {"Beckhoff BC4000 documentation",
-                      "five cycle times until valid data are exchanged again", judge::Standing::searched},
-        .details = {details::status_coding(),
-                    {sources::own("within 20 % of what the tester's own receiver rejects, or two cycles"),
-                     {"rejects_other_than_what_arrived_broken"}}},
-        .stimulus =
-            "Data cycles between status telegrams, each level flipped with a chance of 0.1, 1 and 5 % at "
-            "the slave's receiver; every 16 cycles the faults pause.",
-        .expected =
-            "After each cycle the outputs show the words before it, or the words that arrived when these "
-            "have a right check, and as many cycles are rejected as arrive broken, within 20 % or two "
-            "cycles; in the pauses one of five clean cycles is taken over.",
-        .tags = {"must", "long"},
-        .catches = {{"latches_in_spite_of_own_error", "wrong_value_latched"},
-                    {"locks_up_after_rejected_cycle", "no_recovery"},
-                    {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"},
-                    {"loses_the_cycle_behind_a_rejected_one", "rejects_other_than_what_arrived_broken"}},
-        .not_applicable = for_outputs()},
-       random_faults});
-  cases.push_back(
-      {{.id = "interbus/slave/immunity/bursts_latch_no_wrong_value",
-        .purpose = "IS-42",
-        .requirement =
-            "Under bursts at the slave's receiver, outputs change only by a cycle whose check fits, and "
-            "after each burst clean cycles are accepted again within the published five.",
-        .reference = {"Beckhoff BC4000 documentation",
-                      "five cycle times until valid data are exchanged again", judge::Standing::searched},
-        .details = {details::status_coding(),
-                    {sources::own(
-                         "what a level of IEC 61000-4-4 does at a receiver is an uncalibrated model"),
-                     {"wrong_value_latched"}}},
-        .stimulus =
-            "Data cycles between status telegrams, while single bursts of IEC 61000-4-4 couple into the "
-            "slave's incoming line: levels 4 and 3, 5 and 100 kHz, both polarities.",
-        .expected =
-            "After each cycle the outputs show the words before it, or those of the cycle; after each "
-            "burst one of five clean cycles is taken over.",
-        .tags = {"must", std::string(kStressTag)},
-        .catches = {{"latches_in_spite_of_own_error", "wrong_value_latched"},
-                    {"locks_up_after_rejected_cycle", "no_recovery"},
-                    {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"}},
-        .not_applicable = for_outputs()},
-       stresses});
-  return cases;
+  return {
+      held_case(),
+      slave_case(
+          "immunity/random_faults_latch_no_wrong_value", "IS-42",
+          "Whatever strikes the slave's receiver, outputs change only by a cycle whose check fits, and after "
+          "the faults clean cycles are accepted again within the published five. Judged here under "
+          "independent random flips, by the next case under bursts.",
+          {"Beckhoff BC4000 documentation", "five cycle times until valid data are exchanged again",
+           judge::Standing::searched},
+          {{"latches_in_spite_of_own_error", "wrong_value_latched"},
+           {"locks_up_after_rejected_cycle", "no_recovery"},
+           {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"},
+           {"loses_the_cycle_behind_a_rejected_one", "rejects_other_than_what_arrived_broken"}},
+          {.steps = {identified(),
+                     step("data cycles between status telegrams, each level flipped with a chance of 0.1, 1 "
+                          "and 5 % at the slave's receiver; every 16 cycles the faults pause",
+                          "after each cycle the outputs show the words before it, or the words that arrived "
+                          "when these have a right check, and as many cycles are rejected as arrive broken, "
+                          "within 20 % or two cycles; in the pauses one of five clean cycles is taken over",
+                          random_faults)}},
+          {.details = {details::status_coding(),
+                       {sources::own("within 20 % of what the tester's own receiver rejects, or two cycles"),
+                        {"rejects_other_than_what_arrived_broken"}}},
+           .tags = {"long"},
+           .only_for = for_outputs()}),
+      slave_case(
+          "immunity/bursts_latch_no_wrong_value", "IS-42",
+          "Under bursts at the slave's receiver, outputs change only by a cycle whose check fits, and after "
+          "each burst clean cycles are accepted again within the published five.",
+          {"Beckhoff BC4000 documentation", "five cycle times until valid data are exchanged again",
+           judge::Standing::searched},
+          {{"latches_in_spite_of_own_error", "wrong_value_latched"},
+           {"locks_up_after_rejected_cycle", "no_recovery"},
+           {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"}},
+          {.steps = {identified(),
+                     step("data cycles between status telegrams, while single bursts of IEC 61000-4-4 couple "
+                          "into the slave's incoming line: levels 4 and 3, 5 and 100 kHz, both polarities",
+                          "after each cycle the outputs show the words before it, or those of the cycle; "
+                          "after each burst one of five clean cycles is taken over",
+                          stresses)}},
+          {.details = {details::status_coding(),
+                       {sources::own(
+                            "what a level of IEC 61000-4-4 does at a receiver is an uncalibrated model"),
+                        {"wrong_value_latched"}}},
+           .tags = {std::string(kStressTag)},
+           .only_for = for_outputs()})};
 }
 
 }  // namespace fieldproof::conformance

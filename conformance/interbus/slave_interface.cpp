@@ -58,10 +58,9 @@ void expect_through(SlaveScene& scene, const Outgoing& out, std::string_view rea
   const std::size_t arrived = scene.bench.in().data_telegrams().size();
   const std::size_t went = (scene.bench.*out.line)().data_telegrams().size();
   const std::size_t returned = scene.bench.out().data_telegrams().size();
-  scene.judge.expect(went == arrived && returned == arrived, reason, [&] {
-    return Mismatch{.expected = {fmt::format("{} telegrams go out on {} and come back", arrived, out.name)},
-                    .actual = fmt::format("{} went out on {}, {} came back", went, out.name, returned)};
-  });
+  scene.judge.expect(went == arrived && returned == arrived, reason,
+                     fmt::format("{} telegrams go out on {} and come back", arrived, out.name),
+                     fmt::format("{} went out on {}, {} came back", went, out.name, returned));
 }
 
 void expect_closed(SlaveScene& scene, const Outgoing& out, std::string_view reason) {
@@ -73,10 +72,9 @@ void expect_closed(SlaveScene& scene, const Outgoing& out, std::string_view reas
   });
   const std::size_t arrived = scene.bench.in().data_telegrams().size();
   const std::size_t returned = scene.bench.out().data_telegrams().size();
-  scene.judge.expect(arrived == returned, reason, [&] {
-    return Mismatch{.expected = {fmt::format("all {} telegrams return from the slave itself", arrived)},
-                    .actual = fmt::format("{} returned", returned)};
-  });
+  scene.judge.expect(arrived == returned, reason,
+                     fmt::format("all {} telegrams return from the slave itself", arrived),
+                     fmt::format("{} returned", returned));
 }
 
 // The whole cycle goes out and comes back; or nothing goes out, and the ring is closed in this slave.
@@ -120,10 +118,9 @@ SlaveStep register_after_that_of_the_station(bool is_branch) {
         const CycleOnLine out = cycle_that_left(bench, scene.judge, 0);
         for (std::size_t n = 0; n < load.size(); ++n) {
           const std::uint8_t seen = out.telegrams[2 * bench.neighbour_words(is_branch) + n].data;
-          scene.judge.expect(seen == load[n], "register_content_wrong", [&] {
-            return Mismatch{.expected = {fmt::format("{:02X}h, input octet {} of the slave", load[n], n)},
-                            .actual = fmt::format("{:02X}h", seen)};
-          });
+          scene.judge.expect(seen == load[n], "register_content_wrong",
+                             fmt::format("{:02X}h, input octet {} of the slave", load[n], n),
+                             fmt::format("{:02X}h", seen));
         }
       });
 }
@@ -171,25 +168,21 @@ SlaveChart reserved_bits_chart() {
                [](SlaveScene& scene) { return reserved_bits(scene.bench.rules()).size(); }}};
 }
 
-SlaveStep silent_for_the_limit() {
-  return {"for 25 ms status telegrams and ID cycles that ask for OUT1", "nothing leaves on OUT1",
-          [](SlaveScene& scene) {
-            SlaveBench& bench = scene.bench;
-            LineView& out1 = bench.remote();
-            const kernel::Time from =
-                out1.telegrams().empty() ? bench.now() : out1.end_of(out1.telegrams().back());
-            while (bench.now() + bench.bits(600) < from + bench.rules().silence_limit) {
-              bench.status_telegrams(40);
-              scene.judge.expect(out1.waves().empty(), "downstream_not_silent", [&] {
-                return Mismatch{.expected = {fmt::format("nothing leaves on OUT1 for {}",
-                                                         kernel::describe(bench.rules().silence_limit))},
-                                .actual = "status telegrams left",
-                                .time = out1.waves().front().start};
-              });
-              bench.id_cycle(bench.rules().*kOut1.on);
-              expect_closed(scene, kOut1, "downstream_not_silent");
-            }
-          }};
+void silent_for_the_limit(SlaveScene& scene) {
+  SlaveBench& bench = scene.bench;
+  LineView& out1 = bench.remote();
+  const kernel::Time from = out1.telegrams().empty() ? bench.now() : out1.end_of(out1.telegrams().back());
+  while (bench.now() + bench.bits(600) < from + bench.rules().silence_limit) {
+    bench.status_telegrams(40);
+    scene.judge.expect(out1.waves().empty(), "downstream_not_silent", [&] {
+      return Mismatch{.expected = {fmt::format("nothing leaves on OUT1 for {}",
+                                               kernel::describe(bench.rules().silence_limit))},
+                      .actual = "status telegrams left",
+                      .time = out1.waves().front().start};
+    });
+    bench.id_cycle(bench.rules().*kOut1.on);
+    expect_closed(scene, kOut1, "downstream_not_silent");
+  }
 }
 
 SlaveChart reset_chart() {
@@ -202,12 +195,19 @@ SlaveChart reset_chart() {
     expect_outputs(scene.bench, scene.judge, scene.words, "outputs_not_as_declared");
   });
   return {
-      .steps = {identified(), ordered_on(kOut1), left_on(kOut1),
-                through(kOut1, data(), "interface_not_opened"), shown(),
-                sent(id("with the reset bit", reset), true), silent_for_the_limit(), outputs_as_declared,
+      .steps = {identified(),
+                ordered_on(kOut1),
+                left_on(kOut1),
+                through(kOut1, data(), "interface_not_opened"),
+                shown(),
+                sent(id("with the reset bit", reset), true),
+                {"for 25 ms status telegrams and ID cycles that ask for OUT1", "nothing leaves on OUT1",
+                 silent_for_the_limit},
+                outputs_as_declared,
                 // The ID cycles ended up to 4 ms before the limit; stations may take a millisecond more.
                 silence("8 ms of silence", [](const interbus::Rules&) { return 8 * kernel::kMillisecond; }),
-                sent(id("that switches OUT1 on", on(kOut1)), false), left_on(kOut1)}};
+                sent(id("that switches OUT1 on", on(kOut1)), false),
+                left_on(kOut1)}};
 }
 
 SlaveChart bridge_chart() {
@@ -228,43 +228,31 @@ SlaveChart bridge_chart() {
 const SlaveNeeds kStationAfterOut1{.id_code = {}, .remote_neighbour = true, .branch_neighbour = false};
 
 std::vector<SlaveCase> cases_of_control_bits() {
-  return {
-      on_chart(
-          {.id = "interbus/slave/interfaces/remote_interface_follows_its_control_bit",
-           .purpose = "IS-30",
-           .requirement =
-               "The control word of an ID cycle switches the outgoing remote bus (OUT1) at the end of that "
-               "cycle. Off, the ring is closed in this slave and has its registers only; on, the station "
-               "behind it is in the ring.",
-           .reference = sources::from_memory("outgoing remote bus on and off; the coding is this project's"),
-           .details = details::answer(),
-           .tags = {"must"},
-           .catches = {{"remote_interface_stays_open", "interface_not_closed"},
-                       {"interface_switches_inside_cycle", "interface_switched_inside_cycle"}},
-           .not_applicable = for_remote()},
-          control_bit_chart(kOut1), kStationAfterOut1),
-      on_chart(
-          {.id = "interbus/slave/interfaces/branch_interface_follows_its_control_bit",
-           .purpose = "IS-31",
-           .requirement =
-               "The control word of an ID cycle switches the second outgoing interface (OUT2) at the end of "
-               "that cycle: the stations after it are added to the ring or removed.",
-           .reference = sources::from_memory("local bus on and off; the coding is this project's"),
-           .details = details::answer(),
-           .tags = {"must"},
-           .catches = {{"branch_interface_stays_open", "interface_not_closed"},
-                       {"interface_switches_inside_cycle", "interface_switched_inside_cycle"}},
-           .not_applicable = for_item("has_branch", "the slave has no second outgoing interface (OUT2)")},
-          control_bit_chart(kOut2), {.id_code = {}, .remote_neighbour = false, .branch_neighbour = true}),
-      on_chart({.id = "interbus/slave/interfaces/reserved_control_bits_are_ignored",
-                .purpose = "IS-32",
-                .requirement = "Bits of the control word without a meaning are ignored, and only these.",
-                .reference = sources::own("the control word's coding; reserved bits are 0"),
-                .tags = {"must"},
-                .catches = {{"reserved_control_bit_closes_remote", "reserved_control_bit_obeyed"},
-                            {"ignores_words_with_reserved_bits", "control_word_with_reserved_bit_ignored"}},
-                .not_applicable = for_remote()},
-               reserved_bits_chart(), kStationAfterOut1)};
+  return {slave_case("interfaces/remote_interface_follows_its_control_bit", "IS-30",
+                     "The control word of an ID cycle switches the outgoing remote bus (OUT1) at the end of "
+                     "that cycle. Off, the ring is closed in this slave and has its registers only; on, the "
+                     "station behind it is in the ring.",
+                     sources::from_memory("outgoing remote bus on and off; the coding is this project's"),
+                     {{"remote_interface_stays_open", "interface_not_closed"},
+                      {"interface_switches_inside_cycle", "interface_switched_inside_cycle"}},
+                     control_bit_chart(kOut1),
+                     {.details = details::answer(), .only_for = for_remote(), .needs = kStationAfterOut1}),
+          slave_case("interfaces/branch_interface_follows_its_control_bit", "IS-31",
+                     "The control word of an ID cycle switches the second outgoing interface (OUT2) at the "
+                     "end of that cycle: the stations after it are added to the ring or removed.",
+                     sources::from_memory("local bus on and off; the coding is this project's"),
+                     {{"branch_interface_stays_open", "interface_not_closed"},
+                      {"interface_switches_inside_cycle", "interface_switched_inside_cycle"}},
+                     control_bit_chart(kOut2),
+                     {.details = details::answer(),
+                      .only_for = for_item("has_branch", "the slave has no second outgoing interface (OUT2)"),
+                      .needs = {.id_code = {}, .remote_neighbour = false, .branch_neighbour = true}}),
+          slave_case("interfaces/reserved_control_bits_are_ignored", "IS-32",
+                     "Bits of the control word without a meaning are ignored, and only these.",
+                     sources::own("the control word's coding; reserved bits are 0"),
+                     {{"reserved_control_bit_closes_remote", "reserved_control_bit_obeyed"},
+                      {"ignores_words_with_reserved_bits", "control_word_with_reserved_bit_ignored"}},
+                     reserved_bits_chart(), {.only_for = for_remote(), .needs = kStationAfterOut1})};
 }
 
 }  // namespace
@@ -272,30 +260,20 @@ std::vector<SlaveCase> cases_of_control_bits() {
 std::vector<SlaveCase> slave_interface_cases() {
   return joined(
       {cases_of_control_bits(),
-       {on_chart(
-            {.id = "interbus/slave/interfaces/reset_bit_silences_the_outgoing_bus",
-             .purpose = "IS-33",
-             .requirement =
-                 "The reset bit of the control word makes the outgoing bus silent for at least 25 ms, so "
-                 "that every station after the slave resets. The slave's own outputs do what it declares.",
-             .reference = sources::from_memory("reset of the outgoing bus; the coding is this project's"),
-             .tags = {"must", "timing"},
-             .catches = {{"ignores_outgoing_reset", "downstream_not_silent"},
-                         {"outgoing_reset_clears_outputs", "outputs_not_as_declared"}},
-             .not_applicable = for_remote()},
-            reset_chart(), kStationAfterOut1),
-        on_chart(
-            {.id = "interbus/slave/interfaces/bridge_counts_in_id_cycles_only",
-             .purpose = "IS-36",
-             .requirement =
-                 "The bridge in the outgoing plug tells that a next device is there. Opened or closed while "
-                 "data cycles run, it changes the ring only at the end of the next ID cycle.",
-             .reference = sources::from_memory("meaning of the bridge between pins 5 and 9"),
-             .tags = {"must"},
-             .catches = {{"switches_with_the_bridge", "ring_changed_without_id_cycle"},
-                         {"ignores_the_bridge", "bridge_not_followed"}},
-             .not_applicable = for_remote()},
-            bridge_chart(), kStationAfterOut1)}});
+       {slave_case("interfaces/reset_bit_silences_the_outgoing_bus", "IS-33",
+                   "The reset bit of the control word makes the outgoing bus silent for at least 25 ms, so "
+                   "that every station after the slave resets. The slave's own outputs do what it declares.",
+                   sources::from_memory("reset of the outgoing bus; the coding is this project's"),
+                   {{"ignores_outgoing_reset", "downstream_not_silent"},
+                    {"outgoing_reset_clears_outputs", "outputs_not_as_declared"}},
+                   reset_chart(), {.tags = {"timing"}, .only_for = for_remote(), .needs = kStationAfterOut1}),
+        slave_case("interfaces/bridge_counts_in_id_cycles_only", "IS-36",
+                   "The bridge in the outgoing plug tells that a next device is there. Opened or closed "
+                   "while data cycles run, it changes the ring only at the end of the next ID cycle.",
+                   sources::from_memory("meaning of the bridge between pins 5 and 9"),
+                   {{"switches_with_the_bridge", "ring_changed_without_id_cycle"},
+                    {"ignores_the_bridge", "bridge_not_followed"}},
+                   bridge_chart(), {.only_for = for_remote(), .needs = kStationAfterOut1})}});
 }
 
 }  // namespace fieldproof::conformance

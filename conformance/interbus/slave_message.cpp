@@ -63,117 +63,98 @@ void set_reconfiguration(interbus::TerminalBlock& terminals, bool is_on) {
 
 SlaveChart once_chart() {
   return {.rounds = {2, 20},
-          .steps = {good_cycle("valid_cycle_rejected"),
-                    no_message("message_without_error", "no cycle was rejected"), flipped_bit(), rejected(),
-                    flipped_bit(), rejected(),
+          .steps = {good_cycle(), no_message("message_without_error", "no cycle was rejected"), flipped_bit(),
+                    rejected(), flipped_bit(), rejected(),
                     message(kCheckError, "message_missing", "two cycles were rejected"), none_once_read(),
-                    flipped_bit(), good_cycle("valid_cycle_rejected"),
+                    flipped_bit(), good_cycle(),
                     message(kCheckError, "message_cleared_unread",
                             "a cycle was rejected; the good data cycle after it does not read the message")},
           .first = {identified()}};
 }
 
 // A station in front has marked it: the master does not take what it brings back.
-SlaveStep marked_id_cycle() {
-  return stimulus<SlaveScene>("two ID cycles whose status word arrives marked", [](SlaveScene& scene) {
-    SlaveBench& bench = scene.bench;
-    for (unsigned n = 0; n < 2; ++n) {
-      bench.begin();
-      mark_in_front(bench, bench.append_id_cycle(bench.interfaces_off()));
-      bench.send();
-    }
-  });
+void marked_id_cycle(SlaveBench& bench, CaseJudge&) {
+  for (unsigned n = 0; n < 2; ++n) {
+    bench.begin();
+    mark_in_front(bench, bench.append_id_cycle(bench.interfaces_off()));
+    bench.send();
+  }
 }
 
 std::vector<SlaveCase> cases_of_conditions() {
   const judge::Reference visible = sources::from_memory("messages become visible only in an ID cycle");
   return {
-      on_chart({.id = "interbus/slave/messages/peripheral_fault_shows_in_the_next_id_cycle",
-                .purpose = "IS-34",
-                .requirement = "A fault at the periphery is reported by its message bit in the next ID cycle "
-                               "and by nothing else: data cycles go on undisturbed.",
-                .reference = visible,
-                .details = details::answer(),
-                .tags = {"must"},
-                .catches = {{"peripheral_fault_not_told", "peripheral_fault_not_told"},
-                            {"peripheral_fault_marks_data_cycles", "data_cycle_disturbed"}},
-                .not_applicable =
-                    for_item("peripheral_fault_input", "the slave has no peripheral fault to report")},
-               condition_chart("the fault input is set", "the fault input is cleared", set_peripheral_fault,
-                               &Rules::message_peripheral_fault, "peripheral_fault_not_told")),
-      on_chart(
-          {.id = "interbus/slave/messages/reconfiguration_button_shows_in_the_next_id_cycle",
-           .purpose = "IS-35",
-           .requirement =
-               "A request for reconfiguration is reported by its own message bit in the next ID cycle.",
-           .reference = visible,
-           .details = details::answer(),
-           .tags = {"must"},
-           .catches = {{"messages_confused", "reconfiguration_not_told"}},
-           .not_applicable = for_item("reconfiguration_button", "the slave has no reconfiguration button")},
+      slave_case(
+          "messages/peripheral_fault_shows_in_the_next_id_cycle", "IS-34",
+          "A fault at the periphery is reported by its message bit in the next ID cycle and by nothing else: "
+          "data cycles go on undisturbed.",
+          visible,
+          {{"peripheral_fault_not_told", "peripheral_fault_not_told"},
+           {"peripheral_fault_marks_data_cycles", "data_cycle_disturbed"}},
+          condition_chart("the fault input is set", "the fault input is cleared", set_peripheral_fault,
+                          &Rules::message_peripheral_fault, "peripheral_fault_not_told"),
+          {.details = details::answer(),
+           .only_for = for_item("peripheral_fault_input", "the slave has no peripheral fault to report")}),
+      slave_case(
+          "messages/reconfiguration_button_shows_in_the_next_id_cycle", "IS-35",
+          "A request for reconfiguration is reported by its own message bit in the next ID cycle.", visible,
+          {{"messages_confused", "reconfiguration_not_told"}},
           condition_chart("the button is pressed", "the button is released", set_reconfiguration,
-                          &Rules::message_reconfiguration, "reconfiguration_not_told"))};
+                          &Rules::message_reconfiguration, "reconfiguration_not_told"),
+          {.details = details::answer(),
+           .only_for = for_item("reconfiguration_button", "the slave has no reconfiguration button")})};
 }
 
 std::vector<SlaveCase> cases_of_check_errors() {
   return {
-      on_chart(
-          {.id = "interbus/slave/messages/check_error_is_told_once",
-           .purpose = "IS-41",
-           .requirement = "The message of a check error stands in the ID register from the first rejected "
-                          "cycle until an ID cycle has read it, and only then.",
-           .reference = sources::from_memory("dynamic messages in bits 13 to 15, read in the next ID cycle"),
-           .details = {details::mark(), details::message({"message_missing", "message_cleared_unread"}),
-                       details::status_coding()},
-           .tags = {"must"},
-           .catches = {{"message_never_cleared", "message_not_cleared"},
-                       {"message_without_error", "message_without_error"},
-                       {"message_cleared_by_data_cycle", "message_cleared_unread"},
-                       {"does_not_mark_status", "error_not_marked"},
-                       {"tells_no_check_error", "message_missing"}}},
-          once_chart()),
-      on_chart({.id = "interbus/slave/messages/marked_id_cycle_leaves_the_message",
-                .purpose = "IS-45",
-                .requirement = "Only a good ID cycle clears the message of a check error: what one with a "
-                               "marked status word brings back, the master does not take.",
-                .reference = sources::own("messages are cleared by having been read by a good ID cycle"),
-                .tags = {"must"},
-                .catches = {{"message_cleared_by_marked_id_cycle", "message_cleared_unread"}}},
-               {.rounds = {3, 20},
-                .steps = {flipped_bit(), marked_id_cycle(),
-                          message(kCheckError, "message_cleared_unread",
-                                  "a cycle was rejected, and both ID cycles after it were marked"),
-                          none_once_read()},
-                .first = {identified()}}),
-      on_chart(
-          {.id = "interbus/slave/messages/missing_stop_bit_is_told",
-           .purpose = "IS-46",
-           .requirement = "A missing stop bit in a data telegram is an error of its cycle: the message of "
-                          "a check error stands in the next ID cycle.",
-           .reference = sources::own("errors besides the check set the check error message"),
-           .details = {details::message()},
-           .tags = {"must"},
-           .catches = {{"tells_no_missing_stop", "message_missing"},
-                       {"stop_bit_not_checked", "message_missing"}}},
-          {.steps = {stop_bit_missing(), status_telegrams(2),
-                     message(kCheckError, "message_missing", "a telegram of it had no stop bit"),
-                     none_once_read()},
-           .first = {identified()},
-           .walk = each_telegram("each telegram of a data cycle", 0)}),
-      on_chart(
-          {.id = "interbus/slave/messages/other_message_bits_count",
-           .purpose = "IS-47",
-           .requirement = "The bits of the messages are those that the settings of the case say: those of "
-                          "a check error and of a peripheral fault are exchanged.",
-           .reference = sources::own("the message bits are settings"),
-           .details = {details::mark(), details::message({"message_missing"})},
-           .tags = {"must"},
-           .catches = {{"message_bits_hard_coded", "message_missing"},
-                       {"does_not_mark_status", "error_not_marked"}},
-           .not_applicable = for_other_settings()},
-          once_chart(), {.change_rules = [](Rules& rules) {
-            std::swap(rules.message_check_error, rules.message_peripheral_fault);
-          }})};
+      slave_case(
+          "messages/check_error_is_told_once", "IS-41",
+          "The message of a check error stands in the ID register from the first rejected cycle until an ID "
+          "cycle has read it, and only then.",
+          sources::from_memory("dynamic messages in bits 13 to 15, read in the next ID cycle"),
+          {{"message_never_cleared", "message_not_cleared"},
+           {"message_without_error", "message_without_error"},
+           {"message_cleared_by_data_cycle", "message_cleared_unread"},
+           {"does_not_mark_status", "error_not_marked"},
+           {"tells_no_check_error", "message_missing"}},
+          once_chart(),
+          {.details = {details::mark(), details::message({"message_missing", "message_cleared_unread"}),
+                       details::status_coding()}}),
+      slave_case("messages/marked_id_cycle_leaves_the_message", "IS-45",
+                 "Only a good ID cycle clears the message of a check error: what one with a marked status "
+                 "word brings back, the master does not take.",
+                 sources::own("messages are cleared by having been read by a good ID cycle"),
+                 {{"message_cleared_by_marked_id_cycle", "message_cleared_unread"}},
+                 {.rounds = {3, 20},
+                  .steps = {flipped_bit(),
+                            step("two ID cycles whose status word arrives marked", "", marked_id_cycle),
+                            message(kCheckError, "message_cleared_unread",
+                                    "a cycle was rejected, and both ID cycles after it were marked"),
+                            none_once_read()},
+                  .first = {identified()}}),
+      slave_case("messages/missing_stop_bit_is_told", "IS-46",
+                 "A missing stop bit in a data telegram is an error of its cycle: the message of a check "
+                 "error stands in the next ID cycle.",
+                 sources::own("errors besides the check set the check error message"),
+                 {{"tells_no_missing_stop", "message_missing"}, {"stop_bit_not_checked", "message_missing"}},
+                 {.steps = {stop_bit_missing(), status_telegrams(2),
+                            message(kCheckError, "message_missing", "a telegram of it had no stop bit"),
+                            none_once_read()},
+                  .first = {identified()},
+                  .walk = each_telegram("each telegram of a data cycle", 0)},
+                 {.details = {details::message()}}),
+      slave_case(
+          "messages/other_message_bits_count", "IS-47",
+          "The bits of the messages are those that the settings of the case say: those of a check error and "
+          "of a peripheral fault are exchanged.",
+          sources::own("the message bits are settings"),
+          {{"message_bits_hard_coded", "message_missing"}, {"does_not_mark_status", "error_not_marked"}},
+          once_chart(),
+          {.details = {details::mark(), details::message({"message_missing"})},
+           .only_for = for_other_settings(),
+           .needs = {.change_rules = [](Rules& rules) {
+             std::swap(rules.message_check_error, rules.message_peripheral_fault);
+           }}})};
 }
 
 }  // namespace

@@ -6,17 +6,15 @@ namespace {
 
 using namespace slave_chart;
 
-SlaveStep no_data_telegram() {
-  return expected<SlaveScene>("no data telegram leaves on any interface", [](SlaveScene& scene) {
-    for (LineView* view : {&scene.bench.out(), &scene.bench.remote(), &scene.bench.branch()}) {
-      scene.judge.expect(view->data_telegrams().empty(), "data_telegram_without_cause", [&] {
-        const SeenTelegram& first = view->data_telegrams().front();
-        return Mismatch{.expected = {"no data telegram as long as none arrives"},
-                        .actual = describe(*view, first, kernel::kStart),
-                        .time = view->start_of(first)};
-      });
-    }
-  });
+void no_data_telegram(SlaveBench& bench, CaseJudge& judge) {
+  for (LineView* view : {&bench.out(), &bench.remote(), &bench.branch()}) {
+    judge.expect(view->data_telegrams().empty(), "data_telegram_without_cause", [&] {
+      const SeenTelegram& first = view->data_telegrams().front();
+      return Mismatch{.expected = {"no data telegram as long as none arrives"},
+                      .actual = describe(*view, first, kernel::kStart),
+                      .time = view->start_of(first)};
+    });
+  }
 }
 
 SlaveStep second_of_status_telegrams() {
@@ -41,33 +39,28 @@ SlaveStep second_of_status_telegrams() {
 }  // namespace
 
 std::vector<SlaveCase> slave_power_up_cases() {
-  return {
-      on_chart(
-          {.id = "interbus/slave/power_up/is_silent_and_safe",
-           .purpose = "IS-01",
-           .requirement = "After power-up, before it has received anything, a slave holds its outputs in the "
-                          "safe state (0) and sends no data telegram.",
-           .reference = sources::own("safe state after power-up"),
-           .tags = {"must"},
-           .catches = {{"sends_data_at_power_up", "data_telegram_without_cause"},
-                       {"outputs_set_at_power_up", "output_not_safe_at_power_up"}}},
-          {.steps = {silence("power is switched on; for 100 ms nothing is sent to the slave",
-                             [](const interbus::Rules&) { return 100 * kernel::kMillisecond; }),
-                     no_data_telegram(),
-                     unchanged("output_not_safe_at_power_up", "nothing was received since power-up")}}),
-      on_chart(
-          {.id = "interbus/slave/power_up/status_telegrams_pass_without_effect",
-           .purpose = "IS-02",
-           .requirement = "Status telegrams fill the pauses. A slave passes each of them on, shifts nothing, "
-                          "leaves its outputs as they are, and takes them for a sign of life.",
-           .reference = sources::phoenix_maintenance("status telegrams in every pause"),
-           .details = {details::status_coding()},
-           .tags = {"must"},
-           .catches = {{"swallows_status_telegrams", "status_telegram_lost"},
-                       {"select_bit_in_status_telegrams", "status_telegram_changed"},
-                       {"silence_counts_data_only", "output_changed_by_status_telegram"}}},
-          {.steps = {second_of_status_telegrams(), identified(), good_cycle("valid_cycle_rejected"),
-                     second_of_status_telegrams(), good_cycle("cycle_after_status_telegrams_rejected")}})};
+  return {slave_case(
+              "power_up/is_silent_and_safe", "IS-01",
+              "After power-up, before it has received anything, a slave holds its outputs in the safe state "
+              "(0) and sends no data telegram.",
+              sources::own("safe state after power-up"),
+              {{"sends_data_at_power_up", "data_telegram_without_cause"},
+               {"outputs_set_at_power_up", "output_not_safe_at_power_up"}},
+              {.steps = {silence("power is switched on; for 100 ms nothing is sent to the slave",
+                                 [](const interbus::Rules&) { return 100 * kernel::kMillisecond; }),
+                         step("", "no data telegram leaves on any interface", no_data_telegram),
+                         unchanged("output_not_safe_at_power_up", "nothing was received since power-up")}}),
+          slave_case(
+              "power_up/status_telegrams_pass_without_effect", "IS-02",
+              "Status telegrams fill the pauses. A slave passes each of them on, shifts nothing, leaves its "
+              "outputs as they are, and takes them for a sign of life.",
+              sources::phoenix_maintenance("status telegrams in every pause"),
+              {{"swallows_status_telegrams", "status_telegram_lost"},
+               {"select_bit_in_status_telegrams", "status_telegram_changed"},
+               {"silence_counts_data_only", "output_changed_by_status_telegram"}},
+              {.steps = {second_of_status_telegrams(), identified(), good_cycle(),
+                         second_of_status_telegrams(), good_cycle("cycle_after_status_telegrams_rejected")}},
+              {.details = {details::status_coding()}})};
 }
 
 }  // namespace fieldproof::conformance

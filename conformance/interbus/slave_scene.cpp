@@ -2,7 +2,25 @@
 
 #include <fmt/format.h>
 
-namespace fieldproof::conformance::slave_chart {
+namespace fieldproof::conformance {
+
+SlaveCase slave_case(std::string_view id, std::string_view purpose, std::string_view requirement,
+                     judge::Reference reference, std::vector<MustCatch> catches, SlaveChart chart,
+                     SlaveExtras extras) {
+  TestCase test_case;
+  test_case.id = fmt::format("interbus/slave/{}", id);
+  test_case.purpose = purpose;
+  test_case.requirement = requirement;
+  test_case.reference = std::move(reference);
+  test_case.details = std::move(extras.details);
+  test_case.tags = std::move(extras.tags);
+  test_case.tags.insert(test_case.tags.begin(), "must");
+  test_case.catches = std::move(catches);
+  test_case.not_applicable = std::move(extras.only_for);
+  return charted<SlaveCase>(std::move(test_case), std::move(chart), extras.needs);
+}
+
+namespace slave_chart {
 namespace {
 
 std::uint16_t messages_of(SlaveScene& scene) {
@@ -180,4 +198,5 @@ SlaveStep check_error(bool is_reported, std::string reason, std::string why) {
           }};
 }
 
-}  // namespace fieldproof::conformance::slave_chart
+}  // namespace slave_chart
+}  // namespace fieldproof::conformance

@@ -30,9 +30,18 @@ struct SlaveScene {
 using SlaveStep = ChartStep<SlaveScene>;
 using SlaveChart = Chart<SlaveScene>;
 
-inline SlaveCase on_chart(TestCase test_case, SlaveChart chart, SlaveNeeds needs = {}) {
-  return charted<SlaveCase>(std::move(test_case), std::move(chart), std::move(needs));
-}
+// What not every case has.
+struct SlaveExtras {
+  std::vector<PartialSource> details{};
+  std::vector<std::string> tags{};  // besides "must", which each has
+  Applicability only_for{};
+  SlaveNeeds needs{};
+};
+
+// The id is what comes after "interbus/slave/".
+SlaveCase slave_case(std::string_view id, std::string_view purpose, std::string_view requirement,
+                     judge::Reference reference, std::vector<MustCatch> catches, SlaveChart chart,
+                     SlaveExtras extras = {});
 
 namespace slave_chart {
 
@@ -41,10 +50,15 @@ std::vector<std::uint16_t> inverted_outputs(SlaveBench& bench);
 
 using RuleBits = std::uint16_t interbus::Rules::*;
 
+// A step that needs bench and judge only: also loops, statistics and long trains, which stay code.
+inline SlaveStep step(std::string text, std::string outcome, void (*run)(SlaveBench&, CaseJudge&)) {
+  return {std::move(text), std::move(outcome), [run](SlaveScene& scene) { run(scene.bench, scene.judge); }};
+}
+
 SlaveStep identified(const std::string& whom = "the slave");
 SlaveStep data_cycle();
 // Of words that differ from the outputs; it is taken over, or the reason is this one.
-SlaveStep good_cycle(std::string reason);
+SlaveStep good_cycle(std::string reason = "valid_cycle_rejected");
 SlaveStep status_telegrams(std::size_t count);
 SlaveStep silence(std::string text, kernel::Duration (*of)(const interbus::Rules&));
 

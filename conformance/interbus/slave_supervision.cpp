@@ -49,14 +49,12 @@ SlaveStep alive_with_out1() {
       }};
 }
 
-SlaveStep short_silence() {
-  return {"24.0 ms of silence", "no output changes", [](SlaveScene& scene) {
-            const interbus::Rules& rules = scene.bench.rules();
-            const kernel::Duration silence = rules.silence_limit - rules.silence_tolerance;
-            scene.bench.segment().run_until(scene.last + silence);
-            expect_no_change(scene.bench, scene.judge, "outputs_lost_before_limit",
-                             fmt::format("the line was silent for {} only", kernel::describe(silence)));
-          }};
+void short_silence(SlaveScene& scene) {
+  const interbus::Rules& rules = scene.bench.rules();
+  const kernel::Duration silence = rules.silence_limit - rules.silence_tolerance;
+  scene.bench.segment().run_until(scene.last + silence);
+  expect_no_change(scene.bench, scene.judge, "outputs_lost_before_limit",
+                   fmt::format("the line was silent for {} only", kernel::describe(silence)));
 }
 
 SlaveStep reset_by_silence(std::string_view least, std::string_view most) {
@@ -99,121 +97,107 @@ SlaveStep cycles_without_identification(std::string since) {
           }};
 }
 
-SlaveStep cycles_that_end_here() {
-  return {"three valid data cycles", "they return from the slave itself, nothing leaves on OUT1",
-          [](SlaveScene& scene) {
-            LineView& remote = scene.bench.remote();
-            for (unsigned n = 0; n < 3; ++n) {
-              drive_data_cycle(scene.bench);
-              scene.judge.expect(remote.waves().empty(), "interfaces_on_after_reset", [&] {
-                return Mismatch{.expected = {"nothing leaves on OUT1: no ID cycle has been since the reset"},
-                                .actual = fmt::format("{} telegrams left on OUT1", remote.telegrams().size()),
-                                .time = remote.waves().front().start};
-              });
-              expect_all_telegrams(scene.bench, scene.judge);
-            }
-          }};
+void cycles_that_end_here(SlaveBench& bench, CaseJudge& judge) {
+  LineView& remote = bench.remote();
+  for (unsigned n = 0; n < 3; ++n) {
+    drive_data_cycle(bench);
+    judge.expect(remote.waves().empty(), "interfaces_on_after_reset", [&] {
+      return Mismatch{.expected = {"nothing leaves on OUT1: no ID cycle has been since the reset"},
+                      .actual = fmt::format("{} telegrams left on OUT1", remote.telegrams().size()),
+                      .time = remote.waves().front().start};
+    });
+    expect_all_telegrams(bench, judge);
+  }
 }
 
-SlaveStep returns_only() {
-  return stimulus<SlaveScene>(
-      "26 ms of silence from the master's side, while status telegrams come back from OUT1 each millisecond",
-      [](SlaveScene& scene) {
-        SlaveBench& bench = scene.bench;
-        const kernel::Time latest = scene.last + latest_reset(bench.rules());
-        while (bench.now() + kernel::kMillisecond < latest) {
-          TrainWriter writer(bench.rules());
-          writer.status(3);
-          line::Waveform wave{bench.now(), bench.rules().bit_rate, writer.levels()};
-          bench.drive_return(false, wave);
-          bench.silence(kernel::kMillisecond);
-        }
-        bench.segment().run_until(latest);
-      });
+void returns_only(SlaveScene& scene) {
+  SlaveBench& bench = scene.bench;
+  const kernel::Time latest = scene.last + latest_reset(bench.rules());
+  while (bench.now() + kernel::kMillisecond < latest) {
+    TrainWriter writer(bench.rules());
+    writer.status(3);
+    line::Waveform wave{bench.now(), bench.rules().bit_rate, writer.levels()};
+    bench.drive_return(false, wave);
+    bench.silence(kernel::kMillisecond);
+  }
+  bench.segment().run_until(latest);
 }
 
 std::vector<SlaveCase> cases_of_out1() {
   const SlaveNeeds station_after_out1{.id_code = {}, .remote_neighbour = true};
   return {
-      on_chart(
-          {.id = "interbus/slave/supervision/reset_switches_the_interfaces_off",
-           .purpose = "IS-48",
-           .requirement =
-               "A reset switches the outgoing interfaces off, as at power-up, until an ID cycle switches "
-               "them on.",
-           .reference = sources::own("a reset is outputs 0 and interfaces off"),
-           .tags = {"must"},
-           .catches = {{"reset_leaves_interfaces_on", "interfaces_on_after_reset"}},
-           .not_applicable = for_remote()},
+      slave_case(
+          "supervision/reset_switches_the_interfaces_off", "IS-48",
+          "A reset switches the outgoing interfaces off, as at power-up, until an ID cycle switches them on.",
+          sources::own("a reset is outputs 0 and interfaces off"),
+          {{"reset_leaves_interfaces_on", "interfaces_on_after_reset"}},
           {{2, 10},
            {identified(), alive_with_out1(), silence("26 ms of silence", latest_reset),
-            cycles_that_end_here()}},
-          station_after_out1),
-      on_chart({.id = "interbus/slave/supervision/returns_are_no_sign_of_life",
-                .purpose = "IS-49",
-                .requirement = "Supervised is the line from the master: what comes back from after an "
-                               "outgoing interface is no sign of life.",
-                .reference = sources::own("silence is that of port 0"),
-                .tags = {"must", "timing"},
-                .catches = {{"kept_alive_by_returns", "outputs_not_safe_after_limit"}},
-                .not_applicable = for_all({for_outputs(), for_remote()})},
-               {.steps = {identified(), alive_with_out1(), returns_only(), all_safe()}}, station_after_out1)};
+            step("three valid data cycles", "they return from the slave itself, nothing leaves on OUT1",
+                 cycles_that_end_here)}},
+          {.only_for = for_remote(), .needs = station_after_out1}),
+      slave_case("supervision/returns_are_no_sign_of_life", "IS-49",
+                 "Supervised is the line from the master: what comes back from after an outgoing interface "
+                 "is no sign of life.",
+                 sources::own("silence is that of port 0"),
+                 {{"kept_alive_by_returns", "outputs_not_safe_after_limit"}},
+                 {.steps = {identified(),
+                            alive_with_out1(),
+                            {"26 ms of silence from the master's side, while status telegrams come back from "
+                             "OUT1 each millisecond",
+                             "", returns_only},
+                            all_safe()}},
+                 {.tags = {"timing"},
+                  .only_for = for_all({for_outputs(), for_remote()}),
+                  .needs = station_after_out1})};
 }
 
 SlaveCase other_limit_case() {
-  return on_chart(
-      {.id = "interbus/slave/supervision/another_silence_limit_counts",
-       .purpose = "IS-50",
-       .requirement = "The limit of the silence is the one that the settings of the case say: 10 ms.",
-       .reference = sources::own("the silence limit is a setting"),
-       .tags = {"must", "timing"},
-       .catches = {{"silence_limit_hard_coded", "outputs_not_safe_after_limit"}},
-       .not_applicable = for_all({for_outputs(), for_other_settings()})},
-      {.steps = {identified(), alive(), reset_by_silence("10.0 ms", "11.0 ms")}},
-      {.change_rules = [](interbus::Rules& rules) { rules.silence_limit = 10 * kernel::kMillisecond; }});
+  return slave_case("supervision/another_silence_limit_counts", "IS-50",
+                    "The limit of the silence is the one that the settings of the case say: 10 ms.",
+                    sources::own("the silence limit is a setting"),
+                    {{"silence_limit_hard_coded", "outputs_not_safe_after_limit"}},
+                    {.steps = {identified(), alive(), reset_by_silence("10.0 ms", "11.0 ms")}},
+                    {.tags = {"timing"},
+                     .only_for = for_all({for_outputs(), for_other_settings()}),
+                     .needs = {.change_rules = [](interbus::Rules& rules) {
+                       rules.silence_limit = 10 * kernel::kMillisecond;
+                     }}});
 }
 
 std::vector<SlaveCase> cases_of_outputs() {
   const judge::Reference away = sources::phoenix_maintenance("status telegrams away for more than 25 ms");
-  return {
-      on_chart({.id = "interbus/slave/supervision/silence_of_24_ms_holds_outputs",
-                .purpose = "IS-27",
-                .requirement = "Silence shorter than the supervision time of 25 ms changes nothing: outputs "
-                               "hold, and the cycle after it is a normal one.",
-                .reference = away,
-                .details = {details::status_coding()},
-                .tags = {"must", "timing"},
-                .catches = {{"silence_limit_20_ms", "outputs_lost_before_limit"}},
-                .not_applicable = for_outputs()},
-               {.steps = {identified(), alive(), short_silence(),
-                          good_cycle("cycle_after_short_silence_rejected")}}),
-      on_chart({.id = "interbus/slave/supervision/silence_of_26_ms_clears_outputs",
-                .purpose = "IS-28",
-                .requirement =
-                    "When telegrams stay away for more than 25 ms, the slave takes the interruption for a "
-                    "reset and its outputs go to the safe state. The tolerance of 1 ms is this project's.",
-                .reference = away,
-                .details = {{sources::own("the tolerance of 1 ms"), {"outputs_not_safe_after_limit"}}},
-                .tags = {"must", "timing"},
-                .catches = {{"silence_limit_250_ms", "outputs_not_safe_after_limit"},
-                            {"safe_state_500_ms_late", "outputs_not_safe_after_limit"},
-                            {"silence_limit_20_ms", "outputs_lost_before_limit"}},
-                .not_applicable = for_outputs()},
-               {.steps = {identified(), alive(), reset_by_silence("25.0 ms", "26.0 ms")}}),
-      on_chart(
-          {.id = "interbus/slave/supervision/outputs_stay_safe_until_an_id_cycle",
-           .purpose = "IS-29",
-           .requirement = "After power-up and after a reset, outputs stay in the safe state until an ID "
-                          "cycle has shown the master what is in the ring.",
-           .reference = sources::own("data cycles count only after identification"),
-           .details = {details::status_coding()},
-           .tags = {"must"},
-           .catches = {{"outputs_without_identification", "outputs_driven_before_identification"}},
-           .not_applicable = for_outputs()},
-          {.rounds = {2, 10},
-           .steps = {identified(), alive(), silence("26 ms of silence", latest_reset), all_safe(),
-                     cycles_without_identification("the silence"), identified(), good_cycle("no_recovery")},
-           .first = {cycles_without_identification("power-up")}})};
+  return {slave_case("supervision/silence_of_24_ms_holds_outputs", "IS-27",
+                     "Silence shorter than the supervision time of 25 ms changes nothing: outputs hold, and "
+                     "the cycle after it is a normal one.",
+                     away, {{"silence_limit_20_ms", "outputs_lost_before_limit"}},
+                     {.steps = {identified(),
+                                alive(),
+                                {"24.0 ms of silence", "no output changes", short_silence},
+                                good_cycle("cycle_after_short_silence_rejected")}},
+                     {.details = {details::status_coding()}, .tags = {"timing"}, .only_for = for_outputs()}),
+          slave_case("supervision/silence_of_26_ms_clears_outputs", "IS-28",
+                     "When telegrams stay away for more than 25 ms, the slave takes the interruption for a "
+                     "reset and its outputs go to the safe state. The tolerance of 1 ms is this project's.",
+                     away,
+                     {{"silence_limit_250_ms", "outputs_not_safe_after_limit"},
+                      {"safe_state_500_ms_late", "outputs_not_safe_after_limit"},
+                      {"silence_limit_20_ms", "outputs_lost_before_limit"}},
+                     {.steps = {identified(), alive(), reset_by_silence("25.0 ms", "26.0 ms")}},
+                     {.details = {{sources::own("the tolerance of 1 ms"), {"outputs_not_safe_after_limit"}}},
+                      .tags = {"timing"},
+                      .only_for = for_outputs()}),
+          slave_case("supervision/outputs_stay_safe_until_an_id_cycle", "IS-29",
+                     "After power-up and after a reset, outputs stay in the safe state until an ID cycle has "
+                     "shown the master what is in the ring.",
+                     sources::own("data cycles count only after identification"),
+                     {{"outputs_without_identification", "outputs_driven_before_identification"}},
+                     {.rounds = {2, 10},
+                      .steps = {identified(), alive(), silence("26 ms of silence", latest_reset), all_safe(),
+                                cycles_without_identification("the silence"), identified(),
+                                good_cycle("no_recovery")},
+                      .first = {cycles_without_identification("power-up")}},
+                     {.details = {details::status_coding()}, .only_for = for_outputs()})};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 using namespace slave_chart;
 
 std::vector<SlaveStep> start() {
-  return {identified(), good_cycle("valid_cycle_rejected")};
+  return {identified(), good_cycle()};
 }
 
 using LevelOf = unsigned (*)(const TrainWriter&);
@@ -59,24 +59,18 @@ unsigned control_level(const SlaveScene& scene) {
 
 // One telegram late: the slave takes the first check telegram for data and cannot know better. What it does
 // is recorded; only that it goes on is required.
-SlaveStep late_check_phases() {
-  return {
-      "100 data cycles in which the CR bit of the first check telegram is cleared at the slave's receiver, "
-      "a valid one after each",
-      "the valid ones are taken over; whether a late check phase changed outputs is recorded",
-      [](SlaveScene& scene) {
-        const SlaveStep late = flipped("", [](SlaveScene& s, const CyclePlace& cycle) {
-          return cycle.level_of(cycle.octets, control_level(s));
-        });
-        unsigned changed = 0;
-        for (unsigned n = scene.bench.volume(4U, 100U); n > 0; --n) {
-          late.run(scene);
-          if (!scene.bench.changes().empty()) ++changed;
-          scene.bench.status_telegrams(2);
-          expect_good_cycle(scene.bench, scene.judge, "no_recovery");
-        }
-        scene.judge.measure("cycles with a late check phase that changed outputs", "of the rounds", changed);
-      }};
+void late_check_phases(SlaveScene& scene) {
+  const SlaveStep late = flipped("", [](SlaveScene& s, const CyclePlace& cycle) {
+    return cycle.level_of(cycle.octets, control_level(s));
+  });
+  unsigned changed = 0;
+  for (unsigned n = scene.bench.volume(4U, 100U); n > 0; --n) {
+    late.run(scene);
+    if (!scene.bench.changes().empty()) ++changed;
+    scene.bench.status_telegrams(2);
+    expect_good_cycle(scene.bench, scene.judge, "no_recovery");
+  }
+  scene.judge.measure("cycles with a late check phase that changed outputs", "of the rounds", changed);
 }
 
 constexpr std::size_t kGlitchLevelsPerBit = 20;
@@ -180,133 +174,106 @@ void leave_something(SlaveScene& scene) {
 
 std::vector<SlaveCase> cases_of_headers() {
   return {
-      on_chart({.id = "interbus/slave/telegram/flipped_select_bit_rejects_the_cycle",
-                .purpose = "IS-17",
-                .requirement = "The select bit (SL) of a telegram is not inside the frame check. A telegram "
-                               "whose SL says ID cycle inside the data phase breaks the data cycle, which "
-                               "must not be taken over.",
-                .reference = sources::practical_guide("SL is FALSE while the data phase runs"),
-                .details = {details::status_coding()},
-                .tags = {"must"},
-                .catches = {{"ignores_select_inside_a_cycle", "output_changed_by_rejected_cycle"}},
-                .not_applicable = for_outputs()},
-               flipped_in_turn("SL bit", header<line::HeaderLevel::select>, 4)),
-      on_chart(
-          {.id = "interbus/slave/telegram/early_check_phase_rejects_the_cycle",
-           .purpose = "IS-18",
-           .requirement =
-               "A check phase that begins one telegram early makes the slave compare other octets than the "
-               "check: the cycle must not be taken over, except where they fit by chance (one cycle in 256, "
-               "whose last data octet equals the first check octet of those before it). One that begins late "
-               "shifts the data, which the slave cannot see; the master sees it.",
-           .reference = sources::practical_guide("CR is TRUE in the check phase"),
-           .details = {details::status_coding()},
-           .tags = {"must"},
-           .catches = {{"latches_at_end_of_data_phase", "output_changed_by_rejected_cycle"},
-                       {"locks_up_after_rejected_cycle", "no_recovery"}},
-           .not_applicable = for_outputs()},
+      slave_case("telegram/flipped_select_bit_rejects_the_cycle", "IS-17",
+                 "The select bit (SL) of a telegram is not inside the frame check. A telegram whose SL says "
+                 "ID cycle inside the data phase breaks the data cycle, which must not be taken over.",
+                 sources::practical_guide("SL is FALSE while the data phase runs"),
+                 {{"ignores_select_inside_a_cycle", "output_changed_by_rejected_cycle"}},
+                 flipped_in_turn("SL bit", header<line::HeaderLevel::select>, 4),
+                 {.details = {details::status_coding()}, .only_for = for_outputs()}),
+      slave_case(
+          "telegram/early_check_phase_rejects_the_cycle", "IS-18",
+          "A check phase that begins one telegram early makes the slave compare other octets than the check: "
+          "the cycle must not be taken over, except where they fit by chance (one cycle in 256, whose last "
+          "data octet equals the first check octet of those before it). One that begins late shifts the "
+          "data, which the slave cannot see; the master sees it.",
+          sources::practical_guide("CR is TRUE in the check phase"),
+          {{"latches_at_end_of_data_phase", "output_changed_by_rejected_cycle"},
+           {"locks_up_after_rejected_cycle", "no_recovery"}},
           {.rounds = {4, 100},
-           .steps = without_effect(
-               flipped("a data cycle in which the CR bit of the last data telegram is set at the slave's "
-                       "receiver",
-                       [](SlaveScene& scene, const CyclePlace& cycle) {
-                         return cycle.level_of(cycle.octets - 1, control_level(scene));
-                       }),
-               "no_recovery"),
-           .first = {identified(), good_cycle("valid_cycle_rejected"), late_check_phases()}}),
-      on_chart({.id = "interbus/slave/telegram/flipped_flag_rejects_the_cycle",
-                .purpose = "IS-19",
-                .requirement =
-                    "The flag bit (FL) is not inside the frame check. A data telegram that arrives as a "
-                    "status telegram makes the ring eight bits short and leaves data levels that may look "
-                    "like other telegrams: the cycle must not be taken over.",
-                .reference = sources::derived("five header bits, outside the checksum"),
-                .details = {details::status_coding()},
-                .tags = {"must"},
-                .catches = {{"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"},
-                            {"locks_up_after_rejected_cycle", "no_recovery"}},
-                .not_applicable = for_outputs()},
-               flipped_in_turn("FL bit", header<line::HeaderLevel::flag>, 0)),
-      on_chart(
-          {.id = "interbus/slave/telegram/missing_stop_bit_rejects_the_cycle",
-           .purpose = "IS-20",
-           .requirement =
-               "A telegram without its stop bit is broken, whatever its octet says: its cycle is not "
-               "taken over. The receiver finds the telegrams after it again within two status telegrams.",
-           .reference = sources::own("resynchronisation within two status telegrams"),
-           .details = {details::status_coding()},
-           .tags = {"must"},
-           .catches = {{"stop_bit_not_checked", "output_changed_by_rejected_cycle"},
-                       {"does_not_resynchronise", "no_resynchronisation"}},
-           .not_applicable = for_outputs()},
-          missing_stop_chart())};
+           .steps = without_effect(flipped("a data cycle in which the CR bit of the last data telegram is "
+                                           "set at the slave's receiver",
+                                           [](SlaveScene& scene, const CyclePlace& cycle) {
+                                             return cycle.level_of(cycle.octets - 1, control_level(scene));
+                                           }),
+                                   "no_recovery"),
+           .first = {identified(),
+                     good_cycle(),
+                     {"100 data cycles in which the CR bit of the first check telegram is cleared at the "
+                      "slave's receiver, a valid one after each",
+                      "the valid ones are taken over; whether a late check phase changed outputs is recorded",
+                      late_check_phases}}},
+          {.details = {details::status_coding()}, .only_for = for_outputs()}),
+      slave_case("telegram/flipped_flag_rejects_the_cycle", "IS-19",
+                 "The flag bit (FL) is not inside the frame check. A data telegram that arrives as a status "
+                 "telegram makes the ring eight bits short and leaves data levels that may look like other "
+                 "telegrams: the cycle must not be taken over.",
+                 sources::derived("five header bits, outside the checksum"),
+                 {{"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"},
+                  {"locks_up_after_rejected_cycle", "no_recovery"}},
+                 flipped_in_turn("FL bit", header<line::HeaderLevel::flag>, 0),
+                 {.details = {details::status_coding()}, .only_for = for_outputs()}),
+      slave_case("telegram/missing_stop_bit_rejects_the_cycle", "IS-20",
+                 "A telegram without its stop bit is broken, whatever its octet says: its cycle is not taken "
+                 "over. The receiver finds the telegrams after it again within two status telegrams.",
+                 sources::own("resynchronisation within two status telegrams"),
+                 {{"stop_bit_not_checked", "output_changed_by_rejected_cycle"},
+                  {"does_not_resynchronise", "no_resynchronisation"}},
+                 missing_stop_chart(), {.details = {details::status_coding()}, .only_for = for_outputs()})};
 }
 
 std::vector<SlaveCase> cases_of_the_line() {
   return {
-      on_chart({.id = "interbus/slave/telegram/short_glitch_is_ignored",
-                .purpose = "IS-21",
-                .requirement = "A start bit is validated in its middle: a low pulse of less than half a bit "
-                               "on the idle line is no telegram.",
-                .reference = sources::own("receiver samples in the middle of the bit, majority of three"),
-                .details = {details::status_coding()},
-                .tags = {"must"},
-                .catches = {{"start_bit_not_validated", "glitch_taken_for_telegram"}}},
-               {{14, 350},
-                {{"a low pulse of 0.10 to 0.40 bit on the idle line at the slave's receiver, 1 to 14 bits of "
-                  "idle line and a valid data cycle",
-                  "nothing leaves but the cycle", drive_short_glitch},
-                 cycle_after_glitch()},
-                start()}),
-      on_chart(
-          {.id = "interbus/slave/telegram/long_glitch_costs_no_cycle",
-           .purpose = "IS-22",
-           .requirement =
-               "A low pulse that passes for a start bit makes one false telegram. It has no effect, and "
-               "a telegram that begins after its 13 bits is received.",
-           .reference = sources::own("a false telegram outside of a cycle is discarded"),
-           .details = {details::status_coding()},
-           .tags = {"must"},
-           .catches = {{"stray_telegram_spoils_next_cycle", "cycle_after_glitch_rejected"}}},
-          {{10, 200},
-           {stimulus<SlaveScene>("a low pulse of 0.60 bit on the idle line at the slave's receiver, 13 bits "
-                                 "of idle line or more and a valid data cycle",
-                                 drive_long_glitch),
-            cycle_after_glitch()},
-           start()}),
-      on_chart({.id = "interbus/slave/telegram/status_telegrams_inside_a_cycle_have_no_effect",
-                .purpose = "IS-26",
-                .requirement =
-                    "Status telegrams between the data telegrams of a cycle fill pauses of the master; they "
-                    "shift nothing and do not enter the frame check.",
-                .reference = sources::phoenix_maintenance("status telegrams in every pause"),
-                .details = details::answer(),
-                .tags = {"must"},
-                .catches = {{"status_telegram_shifts", "register_content_wrong"}}},
-               {{6, 150},
-                {stimulus<SlaveScene>(
-                     "a valid data cycle with 1, 2 or 5 status telegrams after each data telegram",
-                     send_status_inside),
-                 answered(), shown(),
-                 expected<SlaveScene>(
-                     "the status telegrams leave as they came",
-                     [](SlaveScene& scene) { expect_status_telegrams(scene.bench, scene.judge); })},
-                start()}),
-      on_chart(
-          {.id = "interbus/slave/telegram/transmissions_do_not_overlap",
-           .purpose = "monitor",
-           .requirement =
-               "A slave begins a transmission when the one before it has left, on each of its lines. The "
-               "monitors of these lines judge every other case too.",
-           .reference = sources::derived("one telegram after the other on a segment"),
-           .tags = {"must"},
-           .catches = {{"drives_over_itself", "transmissions_overlap"}}},
-          {{5, 50},
-           {data_cycle(),
-            expected<SlaveScene>("data telegrams leave, and the monitors of the lines see no overlap",
-                                 leave_something),
-            status_telegrams(2)},
-           {identified()}})};
+      slave_case("telegram/short_glitch_is_ignored", "IS-21",
+                 "A start bit is validated in its middle: a low pulse of less than half a bit on the idle "
+                 "line is no telegram.",
+                 sources::own("receiver samples in the middle of the bit, majority of three"),
+                 {{"start_bit_not_validated", "glitch_taken_for_telegram"}},
+                 {{14, 350},
+                  {{"a low pulse of 0.10 to 0.40 bit on the idle line at the slave's receiver, 1 to 14 bits "
+                    "of idle line and a valid data cycle",
+                    "nothing leaves but the cycle", drive_short_glitch},
+                   cycle_after_glitch()},
+                  start()},
+                 {.details = {details::status_coding()}}),
+      slave_case("telegram/long_glitch_costs_no_cycle", "IS-22",
+                 "A low pulse that passes for a start bit makes one false telegram. It has no effect, and a "
+                 "telegram that begins after its 13 bits is received.",
+                 sources::own("a false telegram outside of a cycle is discarded"),
+                 {{"stray_telegram_spoils_next_cycle", "cycle_after_glitch_rejected"}},
+                 {{10, 200},
+                  {stimulus<SlaveScene>("a low pulse of 0.60 bit on the idle line at the slave's receiver, "
+                                        "13 bits of idle line or more and a valid data cycle",
+                                        drive_long_glitch),
+                   cycle_after_glitch()},
+                  start()},
+                 {.details = {details::status_coding()}}),
+      slave_case("telegram/status_telegrams_inside_a_cycle_have_no_effect", "IS-26",
+                 "Status telegrams between the data telegrams of a cycle fill pauses of the master; they "
+                 "shift nothing and do not enter the frame check.",
+                 sources::phoenix_maintenance("status telegrams in every pause"),
+                 {{"status_telegram_shifts", "register_content_wrong"}},
+                 {{6, 150},
+                  {stimulus<SlaveScene>(
+                       "a valid data cycle with 1, 2 or 5 status telegrams after each data telegram",
+                       send_status_inside),
+                   answered(), shown(),
+                   expected<SlaveScene>(
+                       "the status telegrams leave as they came",
+                       [](SlaveScene& scene) { expect_status_telegrams(scene.bench, scene.judge); })},
+                  start()},
+                 {.details = details::answer()}),
+      slave_case("telegram/transmissions_do_not_overlap", "monitor",
+                 "A slave begins a transmission when the one before it has left, on each of its lines. The "
+                 "monitors of these lines judge every other case too.",
+                 sources::derived("one telegram after the other on a segment"),
+                 {{"drives_over_itself", "transmissions_overlap"}},
+                 {{5, 50},
+                  {data_cycle(),
+                   expected<SlaveScene>("data telegrams leave, and the monitors of the lines see no overlap",
+                                        leave_something),
+                   status_telegrams(2)},
+                  {identified()}})};
 }
 
 }  // namespace

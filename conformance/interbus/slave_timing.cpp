@@ -17,13 +17,6 @@ std::vector<std::uint16_t> alternating(const SlaveBench& bench, bool begin_with_
   return std::vector<std::uint16_t>(bench.words(), begin_with_one ? 0xAAAA : 0x5555);
 }
 
-// Whether a data cycle left with a clean status word.
-bool left_clean(SlaveBench& bench) {
-  FoundCycle cycle;
-  find_last_cycle(bench.out().data_telegrams(), cycle);
-  return cycle.is_found && cycle.status == bench.rules().status_clean;
-}
-
 // Whether a waveform that carries a data cycle was accepted: outputs and status word.
 bool is_accepted(SlaveBench& bench, line::Waveform wave, std::span<const std::uint16_t> words) {
   bench.drive_at_receiver(wave);
@@ -54,10 +47,9 @@ bool accepts_rate(SlaveBench& bench, double percent) {
 void accept_rates_within_limit(SlaveScene& scene) {
   scene.bench.require_line_interface();
   for (const double percent : {0.1, -0.1, 1.0, -1.0}) {
-    scene.judge.expect(accepts_rate(scene.bench, percent), "rate_within_limit_rejected", [&] {
-      return Mismatch{.expected = {fmt::format("cycles at {:+.1f} % of the bit rate are accepted", percent)},
-                      .actual = "one was rejected"};
-    });
+    scene.judge.expect(accepts_rate(scene.bench, percent), "rate_within_limit_rejected",
+                       fmt::format("cycles at {:+.1f} % of the bit rate are accepted", percent),
+                       "one was rejected");
   }
 }
 
@@ -68,10 +60,9 @@ void reject_rates_beyond_limit(SlaveScene& scene) {
     const std::vector<std::uint16_t> words = alternating(scene.bench, n % 2 == 0);
     line::Waveform wave = cycle_at_rate(scene.bench, percent, words);
     scene.bench.drive_at_receiver(wave);
-    scene.judge.expect(!left_clean(scene.bench), "rate_beyond_limit_accepted", [&] {
-      return Mismatch{.expected = {fmt::format("cycles at {:+.1f} % of the bit rate are rejected", percent)},
-                      .actual = "one left with a clean status word"};
-    });
+    scene.judge.expect(!left_clean(scene.bench), "rate_beyond_limit_accepted",
+                       fmt::format("cycles at {:+.1f} % of the bit rate are rejected", percent),
+                       "one left with a clean status word");
     expect_no_change(scene.bench, scene.judge, "output_changed_by_rejected_cycle",
                      fmt::format("the cycle came at {:+.1f} % of the bit rate", percent));
   }
@@ -124,26 +115,20 @@ void accept_jitter(SlaveScene& scene) {
                      });
 }
 
-SlaveStep cycle_with_gaps() {
-  return {"a valid data cycle with 0, 1, 2, 13 or 100 bits of idle line between telegrams",
-          "all telegrams pass", [](SlaveScene& scene) {
-            constexpr std::array kGaps{0U, 1U, 2U, 13U, 100U};
-            const unsigned gap = kGaps.at(scene.round % kGaps.size());
-            scene.bench.train().set_gap(gap);
-            data_cycle().run(scene);
-            const std::size_t left = scene.bench.out().data_telegrams().size();
-            const std::size_t arrived = scene.bench.in().data_telegrams().size();
-            scene.judge.expect(left == arrived, "gap_rejected", [&] {
-              return Mismatch{.expected = {fmt::format("all telegrams pass, {} bits apart", gap)},
-                              .actual = fmt::format("{} of {} passed", left, arrived)};
-            });
-          }};
+void cycle_with_gaps(SlaveScene& scene) {
+  constexpr std::array kGaps{0U, 1U, 2U, 13U, 100U};
+  const unsigned gap = kGaps.at(scene.round % kGaps.size());
+  scene.bench.train().set_gap(gap);
+  data_cycle().run(scene);
+  const std::size_t left = scene.bench.out().data_telegrams().size();
+  const std::size_t arrived = scene.bench.in().data_telegrams().size();
+  scene.judge.expect(left == arrived, "gap_rejected", fmt::format("all telegrams pass, {} bits apart", gap),
+                     fmt::format("{} of {} passed", left, arrived));
 }
 
 // ---- delay ----
 
 void delay_is_constant(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
   kernel::Duration least = kernel::Duration::max();
   kernel::Duration most{};
   for (unsigned n = 0; n < bench.volume(40U, 1'000U); ++n) {
@@ -192,7 +177,6 @@ double worst_edge(SlaveBench& bench) {
 
 void pulses_are_retimed(SlaveBench& bench, CaseJudge& judge) {
   bench.require_line_interface();
-  bench.bring_up();
   double worst = 0;
   for (unsigned n = 0; n < bench.volume(8U, 100U); ++n) {
     // Low pulses 15 % of a bit longer, or shorter: rising edges late, or early.
@@ -210,85 +194,76 @@ void pulses_are_retimed(SlaveBench& bench, CaseJudge& judge) {
 }
 
 std::vector<SlaveCase> charted_timing_cases() {
-  return {on_chart(
-              {.id = "interbus/slave/timing/bit_rate_within_one_percent_is_accepted",
-               .purpose = "IS-23",
-               .requirement =
-                   "A receiver that starts its clock at the edge of each start bit reads telegrams whose bit "
-                   "rate differs by up to 1 % from its own. At 6 % the thirteenth bit is sampled in its "
-                   "neighbour: such cycles must not pass.",
-               .reference = sources::own("limits of 1 % and 6 %; the geometry of thirteen bits is computed"),
-               .details = {details::status_coding()},
-               .tags = {"must", "timing"},
-               .catches = {{"clock_too_fast", "rate_within_limit_rejected"},
-                           {"follows_any_rate", "rate_beyond_limit_accepted"},
-                           {"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"}},
-               .not_applicable = for_outputs()},
-              {.steps = {identified(),
-                         good_cycle("valid_cycle_rejected"),
-                         {"data cycles with alternating bits at +-0.1 and +-1 % of the bit rate",
-                          "every one is accepted", accept_rates_within_limit},
-                         {"such cycles at +-6 %", "no output changes, no status word leaves clean",
-                          reject_rates_beyond_limit},
-                         {"such cycles in steps of 0.5 % between", "how far it reads is recorded",
-                          measure_accepted_rates},
-                         status_telegrams(2),
-                         good_cycle("no_recovery")}}),
-          on_chart({.id = "interbus/slave/timing/edge_jitter_is_accepted",
-                    .purpose = "IS-24",
-                    .requirement =
-                        "Edges that lie within 15 % of a bit of their place are read as if they were at it.",
-                    .reference = sources::own("15 % of a bit"),
-                    .tags = {"must", "timing"},
-                    .catches = {{"clock_too_fast", "jitter_rejected"}}},
-                   {{40, 400},
-                    {{"a data cycle, each edge moved at random by up to 15 % of a bit to either side",
-                      "it is accepted and its words are at the outputs", accept_jitter}},
-                    {identified()}}),
-          on_chart({.id = "interbus/slave/timing/gaps_between_telegrams_are_accepted",
-                    .purpose = "IS-25",
-                    .requirement =
-                        "The idle time between the telegrams of a cycle is the master's affair: none, a "
-                        "few bits or many.",
-                    .reference = sources::derived("the factor 1.15 of the cycle time"),
-                    .details = details::answer(),
-                    .tags = {"must"},
-                    .catches = {{"needs_idle_between_telegrams", "gap_rejected"}}},
-                   {{10, 250}, {cycle_with_gaps(), answered(), shown("gap_rejected")}, {identified()}})};
+  return {
+      slave_case("timing/bit_rate_within_one_percent_is_accepted", "IS-23",
+                 "A receiver that starts its clock at the edge of each start bit reads telegrams whose bit "
+                 "rate differs by up to 1 % from its own. At 6 % the thirteenth bit is sampled in its "
+                 "neighbour: such cycles must not pass.",
+                 sources::own("limits of 1 % and 6 %; the geometry of thirteen bits is computed"),
+                 {{"clock_too_fast", "rate_within_limit_rejected"},
+                  {"follows_any_rate", "rate_beyond_limit_accepted"},
+                  {"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"}},
+                 {.steps = {identified(),
+                            good_cycle(),
+                            {"data cycles with alternating bits at +-0.1 and +-1 % of the bit rate",
+                             "every one is accepted", accept_rates_within_limit},
+                            {"such cycles at +-6 %", "no output changes, no status word leaves clean",
+                             reject_rates_beyond_limit},
+                            {"such cycles in steps of 0.5 % between", "how far it reads is recorded",
+                             measure_accepted_rates},
+                            status_telegrams(2),
+                            good_cycle("no_recovery")}},
+                 {.details = {details::status_coding()}, .tags = {"timing"}, .only_for = for_outputs()}),
+      slave_case("timing/edge_jitter_is_accepted", "IS-24",
+                 "Edges that lie within 15 % of a bit of their place are read as if they were at it.",
+                 sources::own("15 % of a bit"), {{"clock_too_fast", "jitter_rejected"}},
+                 {{40, 400},
+                  {{"a data cycle, each edge moved at random by up to 15 % of a bit to either side",
+                    "it is accepted and its words are at the outputs", accept_jitter}},
+                  {identified()}},
+                 {.tags = {"timing"}}),
+      slave_case(
+          "timing/gaps_between_telegrams_are_accepted", "IS-25",
+          "The idle time between the telegrams of a cycle is the master's affair: none, a few bits or many.",
+          sources::derived("the factor 1.15 of the cycle time"),
+          {{"needs_idle_between_telegrams", "gap_rejected"}},
+          {{10, 250},
+           {{"a valid data cycle with 0, 1, 2, 13 or 100 bits of idle line between telegrams",
+             "all telegrams pass", cycle_with_gaps},
+            answered(),
+            shown("gap_rejected")},
+           {identified()}},
+          {.details = details::answer()})};
 }
 
 }  // namespace
 
 std::vector<SlaveCase> slave_timing_cases() {
-  std::vector<SlaveCase> cases = charted_timing_cases();
-  cases.push_back(
-      {{.id = "interbus/slave/timing/delay_is_constant_and_at_most_three_bits",
-        .purpose = "IS-37",
-        .requirement =
-            "A telegram leaves the last slave of the ring a constant time after it began to arrive, at "
-            "most three bits: the cycle-time formula counts 3 bits for a station, both ways.",
-        .reference = sources::park("section 2.2: the term 3 m of the cycle time"),
-        .stimulus = "Status telegrams and data cycles at random instants.",
-        .expected = "Every telegram leaves after the same delay, at most three bits; the delay is recorded.",
-        .tags = {"must", "timing"},
-        .catches = {{"delays_four_bits", "delay_above_limit"}, {"delay_varies", "delay_not_constant"}}},
-       delay_is_constant});
-  cases.push_back(
-      {{.id = "interbus/slave/timing/pulses_leave_retimed",
-        .purpose = "IS-38",
-        .requirement =
-            "A slave regenerates: what arrives with pulses 15 % of a bit too long or too short leaves "
-            "with edges within 3 % of a bit of their place.",
-        .reference = sources::own("15 % and 3 % of a bit"),
-        .stimulus = "Data cycles whose low pulses are all 15 % of a bit longer, then shorter, at the slave's "
-                    "receiver.",
-        .expected =
-            "The cycles are accepted, and every edge that leaves lies within 3 % of a bit of the grid "
-            "of its telegram.",
-        .tags = {"must", "timing"},
-        .catches = {{"does_not_retime", "output_not_retimed"}}},
-       pulses_are_retimed});
-  return cases;
+  return joined(
+      {charted_timing_cases(),
+       {slave_case(
+            "timing/delay_is_constant_and_at_most_three_bits", "IS-37",
+            "A telegram leaves the last slave of the ring a constant time after it began to arrive, at most "
+            "three bits: the cycle-time formula counts 3 bits for a station, both ways.",
+            sources::park("section 2.2: the term 3 m of the cycle time"),
+            {{"delays_four_bits", "delay_above_limit"}, {"delay_varies", "delay_not_constant"}},
+            {.steps =
+                 {identified(),
+                  step(
+                      "status telegrams and data cycles at random instants",
+                      "every telegram leaves after the same delay, at most three bits; the delay is recorded",
+                      delay_is_constant)}},
+            {.tags = {"timing"}}),
+        slave_case("timing/pulses_leave_retimed", "IS-38",
+                   "A slave regenerates: what arrives with pulses 15 % of a bit too long or too short leaves "
+                   "with edges within 3 % of a bit of their place.",
+                   sources::own("15 % and 3 % of a bit"), {{"does_not_retime", "output_not_retimed"}},
+                   {.steps = {identified(), step("data cycles whose low pulses are all 15 % of a bit longer, "
+                                                 "then shorter, at the slave's receiver",
+                                                 "the cycles are accepted, and every edge that leaves lies "
+                                                 "within 3 % of a bit of the grid of its telegram",
+                                                 pulses_are_retimed)}},
+                   {.tags = {"timing"}})}});
 }
 
 }  // namespace fieldproof::conformance
