@@ -42,8 +42,10 @@ std::string sentence(const std::vector<std::string>& first, const std::vector<st
     all.insert(all.end(), clauses.begin(), clauses.end());
     return capitalised(joined(all));
   }
-  if (first.empty()) return fmt::format("{} All of it {}.", capitalised(joined(clauses)), repeated);
-  return fmt::format("{} Then, {}: {}", capitalised(joined(first)), repeated, joined(clauses));
+  if (!first.empty())
+    return fmt::format("{} Then, {}: {}", capitalised(joined(first)), repeated, joined(clauses));
+  if (over.empty()) return fmt::format("{} All of it {}.", capitalised(joined(clauses)), repeated);
+  return fmt::format("{}: {}", capitalised(repeated), joined(clauses));
 }
 
 std::string line_of(std::size_t number, std::size_t count, const std::string& stimulus,
