@@ -1,5 +1,6 @@
 #include "conformance/interbus/slave_cases.hpp"
 
+#include <array>
 #include <utility>
 
 namespace fieldproof::conformance {
@@ -54,11 +55,15 @@ judge::CaseResult not_applicable(const TestCase& test_case, std::string sentence
 }  // namespace
 
 const std::vector<SlaveCase>& slave_cases() {
-  static const std::vector<SlaveCase> cases =
-      joined({slave_power_up_cases(), slave_id_cycle_cases(), slave_data_cycle_cases(),
-              slave_length_code_cases(), slave_frame_check_cases(), slave_short_cycle_cases(),
-              slave_telegram_cases(), slave_timing_cases(), slave_supervision_cases(),
-              slave_interface_cases(), slave_message_cases(), slave_immunity_cases(), {canary()}});
+  static const std::vector<SlaveCase> cases = [] {
+    static constexpr std::array kChapters{
+        slave_power_up_cases,    slave_id_cycle_cases,    slave_data_cycle_cases, slave_length_code_cases,
+        slave_frame_check_cases, slave_short_cycle_cases, slave_telegram_cases,   slave_timing_cases,
+        slave_supervision_cases, slave_interface_cases,   slave_message_cases,    slave_immunity_cases};
+    auto all = cases_of<SlaveCase>(kChapters, {});
+    all.push_back(canary());
+    return all;
+  }();
   return cases;
 }
 

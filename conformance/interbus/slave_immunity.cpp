@@ -201,6 +201,9 @@ SlaveCase held_case() {
 }  // namespace
 
 std::vector<SlaveCase> slave_immunity_cases() {
+  const judge::Reference recovery{"Beckhoff BC4000 documentation",
+                                  "five cycle times until valid data are exchanged again",
+                                  judge::Standing::searched};
   return {
       held_case(),
       slave_case(
@@ -208,8 +211,7 @@ std::vector<SlaveCase> slave_immunity_cases() {
           "Whatever strikes the slave's receiver, outputs change only by a cycle whose check fits, and after "
           "the faults clean cycles are accepted again within the published five. Judged here under "
           "independent random flips, by the next case under bursts.",
-          {"Beckhoff BC4000 documentation", "five cycle times until valid data are exchanged again",
-           judge::Standing::searched},
+          recovery,
           {{"latches_in_spite_of_own_error", "wrong_value_latched"},
            {"locks_up_after_rejected_cycle", "no_recovery"},
            {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"},
@@ -230,8 +232,7 @@ std::vector<SlaveCase> slave_immunity_cases() {
           "immunity/bursts_latch_no_wrong_value", "IS-42",
           "Under bursts at the slave's receiver, outputs change only by a cycle whose check fits, and after "
           "each burst clean cycles are accepted again within the published five.",
-          {"Beckhoff BC4000 documentation", "five cycle times until valid data are exchanged again",
-           judge::Standing::searched},
+          recovery,
           {{"latches_in_spite_of_own_error", "wrong_value_latched"},
            {"locks_up_after_rejected_cycle", "no_recovery"},
            {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"}},
