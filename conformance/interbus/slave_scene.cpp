@@ -34,11 +34,11 @@ void expect_messages(SlaveScene& scene, bool holds, std::uint16_t found, std::st
                      std::string expected) {
   scene.judge.expect(holds, reason, [&] {
     LineView& out = scene.bench.out();
-    return Mismatch{
-        .expected = {std::move(expected)},
-        .actual = fmt::format("message bits {:04X}h", found),
-        .time = out.start_of(out.data_telegrams()[0]),
-        .first_difference = scene.fault.empty() ? "bits 13 to 15 of the ID register" : scene.fault};
+    return Mismatch{.expected = {std::move(expected)},
+                    .actual = fmt::format("message bits {:04X}h", found),
+                    .time = out.start_of(out.data_telegrams()[0]),
+                    .first_difference = "bits 13 to 15 of the ID register" +
+                                        (scene.fault.empty() ? "" : ", after: " + scene.fault)};
   });
 }
 
