@@ -86,5 +86,34 @@ TEST(Chart, SaysInSentencesWhatIsSentAndWhatMustCome) {
                                                        "3 of 3: expected: no failure"}));
 }
 
+Chart<CountingScene> walking_chart(std::size_t count) {
+  Chart<CountingScene> chart{{2, 30}, {ask()}};
+  chart.first = {stimulus<CountingScene>("the tester comes", [](CountingScene& scene) {
+    scene.bench.acts.push_back("come");
+    scene.asked = " at first";
+  })};
+  chart.walk = {"each door", [count](CountingScene&) { return count; }};
+  return chart;
+}
+
+TEST(Chart, ComesOnceAndWalksOverAListInEachRound) {
+  CountingBench bench;
+  std::vector<std::string> steps;
+  run(charted<CountingCase>(TestCase{}, walking_chart(2)), bench, steps);
+  EXPECT_EQ(bench.acts, (std::vector<std::string>{"come", "ask 0 at first", "ask 1", "ask 2", "ask 3"}));
+  EXPECT_EQ(steps[0], "1 of 2: the tester comes");
+  EXPECT_EQ(steps[4], "2 of 2: the tester asks; expected: an answer");
+  bench.acts.clear();
+  run(charted<CountingCase>(TestCase{}, walking_chart(0)), bench, steps);
+  EXPECT_EQ(bench.acts, std::vector<std::string>{"come"});
+}
+
+TEST(Chart, SaysWhatComesOnceAndWhatItWalksOver) {
+  EXPECT_EQ(charted<CountingCase>(TestCase{}, walking_chart(2)).test_case.stimulus,
+            "The tester comes. Then, for each door, 30 times: the tester asks.");
+  EXPECT_EQ(chart::sentence({}, {"the tester asks"}, {}, "each door"), "For each door: the tester asks.");
+  EXPECT_EQ(chart::sentence({"the tester comes"}, {}, {2, 30}, {}), "The tester comes.");
+}
+
 }  // namespace
 }  // namespace fieldproof::conformance

@@ -4,69 +4,53 @@
 #include <algorithm>
 #include <utility>
 
-#include "conformance/interbus/master_cases.hpp"
+#include "conformance/interbus/master_scene.hpp"
 
 namespace fieldproof::conformance {
 
 namespace {
 
+using namespace master_chart;
 using interbus::CycleFaults;
 using judge::Standing;
-using CycleInfo = interbus::RingEmulator::CycleInfo;
 
-void spoil(CycleFaults& faults) {
-  faults.flips = {{0, 0x01, false}};
-}
-
-// The ring offers other inputs in a cycle that is spoilt; gives what the application saw right after it.
-std::uint16_t seen_behind_bad_cycle(MasterBench& bench, CaseJudge& judge, std::uint16_t offered) {
-  bench.ring().set_input(0, offered);
-  bench.set_script([](const CycleInfo& info, CycleFaults& faults) {
-    if (!info.is_id_cycle) spoil(faults);
+// Random, and told from 0; the ring offers the opposite from then on.
+MasterStep held_inputs() {
+  return stimulus<RingScene>("2 data cycles", [](RingScene& scene) {
+    scene.held = static_cast<std::uint16_t>(scene.bench.random().next() | 0x0100);
+    scene.bench.ring().set_input(0, scene.held);
+    scene.bench.run_data_cycles(scene.judge, 2);
+    scene.bench.ring().set_input(0, static_cast<std::uint16_t>(~scene.held));
   });
-  do {
-    judge.expect(bench.run_cycle(), "no_data_cycle", "cycles go on", "no cycle ends");
-  } while (!bench.finished().is_data);
-  bench.set_script({});
-  return bench.master().input(0);
 }
 
-void rejected_inputs(MasterBench& bench, CaseJudge& judge) {
-  bench.bring_up(judge, paper_ring());
-  for (int n = bench.volume(10, 1000); n > 0; --n) {
-    const auto good = static_cast<std::uint16_t>(bench.random().next() | 0x0100);
-    bench.ring().set_input(0, good);
-    bench.run_data_cycles(judge, 2);
-    const auto offered = static_cast<std::uint16_t>(~good);
-    const std::uint16_t seen = seen_behind_bad_cycle(bench, judge, offered);
-    judge.expect(seen == good, seen == 0 ? "inputs_not_held" : "rejected_inputs_seen", [&] {
-      return Mismatch{{fmt::format("the inputs before the bad cycle, {:04X}h", good)},
-                      fmt::format("{:04X}h", seen)};
-    });
-    bench.run_data_cycles(judge, 1);
-  }
+MasterStep spoilt_cycle(std::string reason) {
+  return {"a spoilt data cycle in which the ring offers other inputs",
+          "the application sees the inputs of the cycle before",
+          [reason = std::move(reason)](RingScene& scene) {
+            scene.bench.set_script([](const auto& info, CycleFaults& faults) {
+              if (!info.is_id_cycle) spoil(faults);
+            });
+            do {
+              expect_next_cycle(scene.bench, scene.judge);
+            } while (!scene.bench.finished().is_data);
+            scene.bench.set_script({});
+            const std::uint16_t seen = scene.bench.master().input(0);
+            scene.judge.expect(seen == scene.held, seen == 0 ? "inputs_not_held" : reason,
+                               fmt::format("the inputs before the bad cycle, {:04X}h", scene.held),
+                               fmt::format("{:04X}h", seen));
+          }};
 }
 
-void inputs_hold(MasterBench& bench, CaseJudge& judge) {
-  bench.bring_up(judge, paper_ring());
-  constexpr std::uint16_t kHeld = 0x1234;
-  constexpr std::uint16_t kNew = 0x4321;
-  bench.ring().set_input(0, kHeld);
-  bench.run_data_cycles(judge, 2);
-  for (int n = 0; n < 5; ++n) {
-    const std::uint16_t seen = seen_behind_bad_cycle(bench, judge, kNew);
-    judge.expect(seen == kHeld, "inputs_not_held", [&] {
-      return Mismatch{{fmt::format("{:04X}h through bad cycle {}", kHeld, n + 1)},
-                      fmt::format("{:04X}h", seen)};
-    });
-  }
+void held_up_to_new(RingScene& scene) {
+  MasterBench& bench = scene.bench;
   while (!(bench.finished().is_data && bench.finished().is_accepted)) {
-    judge.expect(bench.master().input(0) == kHeld, "inputs_not_held", "held up to the first good cycle",
-                 "changed before");
-    judge.expect(bench.run_cycle(), "no_data_cycle", "cycles go on", "no cycle ends");
+    scene.judge.expect(bench.master().input(0) == scene.held, "inputs_not_held",
+                       "held up to the first good cycle", "changed before");
+    expect_next_cycle(bench, scene.judge);
   }
-  judge.expect(bench.master().input(0) == kNew, "new_inputs_missed", "the inputs of the first good cycle",
-               "older inputs");
+  scene.judge.expect(bench.master().input(0) == static_cast<std::uint16_t>(~scene.held), "new_inputs_missed",
+                     "the inputs of the first good cycle", "older inputs");
 }
 
 // The writings of an application that sets all words to the number of the writing, and what the ring latched
@@ -101,7 +85,6 @@ class Writings {
 };
 
 void whole_outputs(MasterBench& bench, CaseJudge& judge) {
-  bench.bring_up(judge, interbus::line_of(4, 0x0203, 2));
   const auto words = static_cast<unsigned>(bench.ring().word_count());
   const kernel::Duration cycle = bench.status().cycle_time;
   Writings writings(2 * cycle, bench.now());
@@ -130,40 +113,39 @@ void whole_outputs(MasterBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<MasterCase> master_application_cases() {
-  std::vector<MasterCase> cases;
-  const auto add = [&cases](std::string_view words, std::string_view purpose, std::string_view requirement,
-                            judge::Reference reference, std::string_view stimulus, std::string_view expected,
-                            std::vector<std::string> tags, std::vector<MustCatch> catches, auto procedure) {
-    TestCase test_case;
-    test_case.id = fmt::format("interbus/master/application/{}", words);
-    test_case.purpose = purpose;
-    test_case.requirement = requirement;
-    test_case.reference = std::move(reference);
-    test_case.stimulus = stimulus;
-    test_case.expected = expected;
-    test_case.tags = std::move(tags);
-    test_case.catches = std::move(catches);
-    cases.push_back({std::move(test_case), procedure});
-  };
   const judge::Reference held{"literature from memory", "inputs of a rejected cycle are discarded",
                               Standing::memory};
-  add("inputs_of_a_rejected_cycle_are_discarded", "IM-21",
-      "The application never sees inputs of a rejected cycle", held,
-      "a spoilt cycle in which the ring offers other inputs", "the inputs of the cycle before", {"must"},
-      {{"inputs_taken_before_check", "rejected_inputs_seen"}, {"inputs_zeroed_on_error", "inputs_not_held"}},
-      rejected_inputs);
-  add("inputs_hold_through_bad_cycles", "IM-22", "Inputs hold through bad cycles up to the first good one",
-      held, "5 spoilt data cycles in a row", "held, then the new inputs", {"must"},
-      {{"inputs_zeroed_on_error", "inputs_not_held"}}, inputs_hold);
-  add("outputs_change_as_a_whole", "IM-23",
-      "A set of outputs that the application writes goes out whole, with the next cycle",
-      {"Phoenix Contact UK; literature from memory", "consistency of the process image", Standing::memory},
-      "all words written at random instants of the cycle", "no mixture of two sets, none later", {"must"},
-      {{"outputs_torn", "outputs_torn"},
-       {"outputs_one_cycle_late", "outputs_late"},
-       {"silent_after_first_data_cycle", "outputs_not_sent"}},
-      whole_outputs);
-  return cases;
+  const MasterStep spoilt = spoilt_cycle("inputs_not_held");
+  return {
+      master_case(
+          "application/inputs_of_a_rejected_cycle_are_discarded", "IM-21",
+          "The application never sees inputs of a rejected cycle", held, {"must"},
+          {{"inputs_taken_before_check", "rejected_inputs_seen"},
+           {"inputs_zeroed_on_error", "inputs_not_held"}},
+          {{10, 1000}, {held_inputs(), spoilt_cycle("rejected_inputs_seen"), data_cycles(1)}, {in_run()}}),
+      master_case("application/inputs_hold_through_bad_cycles", "IM-22",
+                  "Inputs hold through 5 bad cycles up to the first good one", held, {"must"},
+                  {{"inputs_zeroed_on_error", "inputs_not_held"}},
+                  {.steps = {in_run(),
+                             held_inputs(),
+                             spoilt,
+                             spoilt,
+                             spoilt,
+                             spoilt,
+                             spoilt,
+                             {"good cycles", "held up to the first good data cycle, then the new inputs",
+                              held_up_to_new}}}),
+      master_case("application/outputs_change_as_a_whole", "IM-23",
+                  "A set of outputs that the application writes goes out whole, with the next cycle",
+                  {"Phoenix Contact UK; literature from memory", "consistency of the process image",
+                   Standing::memory},
+                  {"must"},
+                  {{"outputs_torn", "outputs_torn"},
+                   {"outputs_one_cycle_late", "outputs_late"},
+                   {"silent_after_first_data_cycle", "outputs_not_sent"}},
+                  {.steps = {in_run("four stations", interbus::line_of(4, 0x0203, 2)),
+                             step("the application writes all words at random instants of the cycle",
+                                  "no mixture of two sets, none later", whole_outputs)}})};
 }
 
 }  // namespace fieldproof::conformance

@@ -86,8 +86,6 @@ void MasterBench::request_id_cycle() {
 
 void MasterBench::bring_up(CaseJudge& judge, std::vector<VirtualStation> ring) {
   power_up(std::move(ring));
-  judge.use_clock([this] { return now(); });
-  judge.use_decode([this] { return ring_->describe_last(6); });
   judge.expect(wait_for_run(), "not_in_run", [this] {
     return Mismatch{{"the master recognises the ring and runs"},
                     fmt::format("state {}, {} stations found, error \"{}\"", static_cast<int>(status().state),

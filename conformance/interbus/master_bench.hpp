@@ -58,6 +58,10 @@ class MasterBench final : public CaseBench {
 
   interbus::MasterDevice& master() { return *master_; }
   interbus::RingEmulator& ring() { return *ring_; }
+  // The last cycles of the ring.
+  std::vector<std::string> decode_lines() const {
+    return ring_ == nullptr ? std::vector<std::string>{} : ring_->describe_last(6);
+  }
 
   // From outside of the segment's run; the master is asked again when it wants to act.
   void start();

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "conformance/interbus/master_cases.hpp"
+#include "conformance/interbus/master_scene.hpp"
 #include "conformance/interbus/slave_model.hpp"
 #include "harness/kernel/check.hpp"
 
@@ -14,6 +14,7 @@ namespace fieldproof::conformance {
 
 namespace {
 
+using namespace master_chart;
 using interbus::CycleFaults;
 using judge::Standing;
 using CycleInfo = interbus::RingEmulator::CycleInfo;
@@ -137,11 +138,6 @@ class WatchedInputs {
   std::uint16_t held_ = 0;
 };
 
-void bring_up_fast_ring(MasterBench& bench, CaseJudge& judge) {
-  bench.rules().software_time = 10 * kernel::kMicrosecond;
-  bench.bring_up(judge, paper_ring());
-}
-
 void judge_run(MasterBench& bench, CaseJudge& judge, const Ledger& ledger, bool goes_on) {
   judge.expect(goes_on, "no_data_cycle", "the master goes on with cycles", "no cycle ends any more");
   judge.expect(bench.is_in_run(), "stopped_without_cause", "the bus runs on after the faults",
@@ -155,7 +151,6 @@ void judge_run(MasterBench& bench, CaseJudge& judge, const Ledger& ledger, bool 
 }
 
 void random_faults(MasterBench& bench, CaseJudge& judge) {
-  bring_up_fast_ring(bench, judge);
   WatchedInputs inputs(bench);
   bench.run_data_cycles(judge, 1);
   inputs.begin();
@@ -281,7 +276,6 @@ class StressedRun {
 
 void stresses(MasterBench& bench, CaseJudge& judge) {
   FIELDPROOF_CHECK(!bench.stresses().empty(), "a case under stresses has some");
-  bring_up_fast_ring(bench, judge);
   StressedRun run(bench);
   run.begin(judge);
   for (const fault::Stress& stress : bench.stresses()) {
@@ -306,43 +300,40 @@ std::vector<MasterCase> master_immunity_cases() {
   const judge::Reference recovery{"Beckhoff BC4000 documentation; check theory",
                                   "5 cycle times after an error; up to 3 bit errors found",
                                   Standing::searched};
-  TestCase random;
-  random.id = "interbus/master/application/no_wrong_input_under_random_faults";
-  random.purpose = "IM-40";
-  random.requirement =
-      "No input of a disturbed cycle reaches the application, and valid data come again within 5 cycles";
-  random.reference = recovery;
-  random.stimulus = "bursts of up to 6 cycles with declared random faults on the return line, 1e6 cycles";
-  random.expected = "no wrong input; at most 5 cycles to valid data";
-  random.tags = {"must", "long", "declared_faults"};
-  random.catches = {{"own_check_ignored", "wrong_inputs_accepted"},
-                    {"inputs_taken_before_check", "wrong_inputs_accepted"},
-                    {"silent_after_error", "no_data_cycle"},
-                    {"id_cycles_for_ever_after_error", "recovery_too_slow"}};
-
-  TestCase bursts = random;
-  bursts.catches = {{"own_check_ignored", "wrong_inputs_accepted"},
-                    {"inputs_taken_before_check", "wrong_inputs_accepted"},
-                    {"silent_after_error", "no_data_cycle"},
-                    {"id_cycles_for_ever_after_error", "no_data_cycle"}};
-  bursts.id = "interbus/master/immunity/no_wrong_input_under_bursts";
-  bursts.requirement =
-      "No input of a cycle that a burst disturbed reaches the application, and valid data come again within "
-      "5 "
-      "cycles, or after a start where the bus had to stop";
-  bursts.details = {
-      {{"this project", "what a level of IEC 61000-4-4 does at a receiver is an uncalibrated model",
-        Standing::own},
-       {"wrong_inputs_accepted"}}};
-  bursts.stimulus =
-      "single bursts of IEC 61000-4-4 that couple into the return line: levels 4 and 3, 5 and 100 kHz, both "
-      "polarities";
-  bursts.expected =
-      "no wrong input, but of a cycle that arrived wrong with a right check; at most 5 cycles to valid data; "
-      "no "
-      "stop of the bus before ten bad cycles in a row";
-  bursts.tags = {"must", std::string(kStressTag)};
-  return {{random, random_faults}, {bursts, stresses}};
+  const MasterStep fast =
+      in_run([](MasterBench& bench) { bench.rules().software_time = 10 * kernel::kMicrosecond; });
+  return {
+      master_case(
+          "application/no_wrong_input_under_random_faults", "IM-40",
+          "No input of a disturbed cycle reaches the application, and valid data come again within 5 cycles",
+          recovery, {"must", "long", "declared_faults"},
+          {{"own_check_ignored", "wrong_inputs_accepted"},
+           {"inputs_taken_before_check", "wrong_inputs_accepted"},
+           {"silent_after_error", "no_data_cycle"},
+           {"id_cycles_for_ever_after_error", "recovery_too_slow"}},
+          {.steps =
+               {fast,
+                step("bursts of up to 6 cycles with declared random faults on the return line, 1e6 cycles",
+                     "no wrong input; at most 5 cycles to valid data", random_faults)}}),
+      resting_also_on(
+          {{"this project", "what a level of IEC 61000-4-4 does at a receiver is an uncalibrated model",
+            Standing::own},
+           {"wrong_inputs_accepted"}},
+          master_case(
+              "immunity/no_wrong_input_under_bursts", "IM-40",
+              "No input of a cycle that a burst disturbed reaches the application, and valid data come again "
+              "within 5 cycles, or after a start where the bus had to stop",
+              recovery, {"must", std::string(kStressTag)},
+              {{"own_check_ignored", "wrong_inputs_accepted"},
+               {"inputs_taken_before_check", "wrong_inputs_accepted"},
+               {"silent_after_error", "no_data_cycle"},
+               {"id_cycles_for_ever_after_error", "no_data_cycle"}},
+              {.steps = {fast,
+                         step("single bursts of IEC 61000-4-4 that couple into the return line: levels 4 and "
+                              "3, 5 and 100 kHz, both polarities",
+                              "no wrong input, but of a cycle that arrived wrong with a right check; at most "
+                              "5 cycles to valid data; no stop of the bus before ten bad cycles in a row",
+                              stresses)}}))};
 }
 
 }  // namespace fieldproof::conformance

@@ -6,15 +6,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
-#include "conformance/interbus/master_cases.hpp"
+#include "conformance/interbus/master_scene.hpp"
 
 namespace fieldproof::conformance {
 
 namespace {
 
+using namespace master_chart;
 using judge::Standing;
 
 constexpr unsigned kInputWord = 0;
@@ -107,7 +109,12 @@ SquareWave apply_square_wave(MasterBench& bench, std::int64_t hertz) {
 
 constexpr std::int64_t kSlowPhaseHertz = 200;
 
-void expect_widths(MasterBench& bench, CaseJudge& judge, std::int64_t hertz, std::uint64_t pulses) {
+void expect_widths(RingScene& scene) {
+  constexpr std::array<std::int64_t, 3> kHertz{50, 150, kSlowPhaseHertz};
+  MasterBench& bench = scene.bench;
+  CaseJudge& judge = scene.judge;
+  const std::int64_t hertz = kHertz.at(scene.round);
+  const auto pulses = bench.volume<std::uint64_t>(40, 400);
   bring_up_copying(bench, judge);
   const SquareWave wave = apply_square_wave(bench, hertz);
   const double units = ratio(wave.period / 2, kPaperCycle);
@@ -130,10 +137,9 @@ void expect_widths(MasterBench& bench, CaseJudge& judge, std::int64_t hertz, std
   });
   bench.run_data_cycles(judge, static_cast<std::uint64_t>(2 * units * static_cast<double>(pulses)) + 8);
   bench.ring().on_outputs(nullptr);  // this ring stays in the segment when the next one takes over
-  judge.expect(strange == 0, "width_outside_set", [&] {
-    return Mismatch{{fmt::format("pulses of {} or {} T_c at {} Hz", least, least + 1, hertz)},
-                    fmt::format("a pulse of {:.3f} T_c", strange)};
-  });
+  judge.expect(strange == 0, "width_outside_set",
+               fmt::format("pulses of {} or {} T_c at {} Hz", least, least + 1, hertz),
+               fmt::format("a pulse of {:.3f} T_c", strange));
   judge.expect(count >= static_cast<double>(pulses) - 2, "pulses_lost", "every pulse", "fewer pulses");
   const double mean = sum / count;
   const double part = units - least;
@@ -147,12 +153,6 @@ void expect_widths(MasterBench& bench, CaseJudge& judge, std::int64_t hertz, std
   }
   judge.expect_between(fmt::format("mean width at {} Hz", hertz), "T_c", mean, units - slack, units + slack,
                        "width_outside_set");
-}
-
-void square_waves(MasterBench& bench, CaseJudge& judge) {
-  const auto pulses = bench.volume<std::uint64_t>(40, 400);
-  for (const std::int64_t hertz : {std::int64_t{50}, std::int64_t{150}, kSlowPhaseHertz})
-    expect_widths(bench, judge, hertz, pulses);
 }
 
 void lost_pulses(MasterBench& bench, CaseJudge& judge) {
@@ -180,38 +180,33 @@ void lost_pulses(MasterBench& bench, CaseJudge& judge) {
 }  // namespace
 
 std::vector<MasterCase> master_skew_cases() {
-  std::vector<MasterCase> cases;
-  const auto add = [&cases](std::string_view words, std::string_view purpose, std::string_view requirement,
-                            std::string_view stimulus, std::string_view expected,
-                            std::vector<MustCatch> catches, auto procedure) {
-    TestCase test_case;
-    test_case.id = fmt::format("interbus/master/skew/{}", words);
-    test_case.purpose = purpose;
-    test_case.requirement = requirement;
-    test_case.reference = {"Park 2004, section 3; computed",
-                           "inputs at the start, outputs at the end of a frame", Standing::calc};
-    test_case.stimulus = stimulus;
-    test_case.expected = expected;
-    test_case.tags = {"timing", "long"};
-    test_case.catches = std::move(catches);
-    cases.push_back({std::move(test_case), procedure});
+  const auto skew_case = [](std::string_view id, std::string_view purpose, std::string_view requirement,
+                            std::vector<MustCatch> catches, MasterChart chart) {
+    const judge::Reference model{"Park 2004, section 3; computed",
+                                 "inputs at the start, outputs at the end of a frame", Standing::calc};
+    return master_case(id, purpose, requirement, model, {"timing", "long"}, std::move(catches),
+                       std::move(chart));
   };
-  add("edge_delay_follows_the_model", "IM-24",
-      "From an input edge to the copied output pass between one and two cycle times and the frame time",
-      "edges spread over the cycle",
-      "least, mean and largest delay within 2 % of the cycle time of the model",
-      {{"copied_one_cycle_late", "delay_outside_model"}}, edge_delay);
-  add("square_wave_widths_follow_the_model", "IM-25",
-      "A copied pulse is a whole number of cycle times long, one of the two next to its length",
-      "square waves of 50, 150 and 200 Hz at 0.814 ms",
-      "the two widths, mean and standard deviation of the model",
-      {{"copies_every_second_cycle", "width_outside_set"}, {"pulse_widths_even", "width_spread_off"}},
-      square_waves);
-  add("pulses_shorter_than_a_cycle_are_lost_by_the_model", "IM-26",
-      "A pulse is lost when no sample falls into it", "a square wave of 700 Hz at 0.814 ms",
-      "0.1225 of the pulses lost, within 0.01", {{"copies_every_second_cycle", "pulse_loss_off"}},
-      lost_pulses);
-  return cases;
+  return {
+      skew_case(
+          "skew/edge_delay_follows_the_model", "IM-24",
+          "From an input edge to the copied output pass between one and two cycle times and the frame time",
+          {{"copied_one_cycle_late", "delay_outside_model"}},
+          {.steps = {step("edges spread over the cycle",
+                          "least, mean and largest delay within 2 % of the cycle time of the model",
+                          edge_delay)}}),
+      skew_case(
+          "skew/square_wave_widths_follow_the_model", "IM-25",
+          "A copied pulse is a whole number of cycle times long, one of the two next to its length",
+          {{"copies_every_second_cycle", "width_outside_set"}, {"pulse_widths_even", "width_spread_off"}},
+          {.steps = {{"a square wave at 0.814 ms", "the two widths, mean and standard deviation of the model",
+                      expect_widths}},
+           .walk = each("each of 50, 150 and 200 Hz", 3)}),
+      skew_case("skew/pulses_shorter_than_a_cycle_are_lost_by_the_model", "IM-26",
+                "A pulse is lost when no sample falls into it",
+                {{"copies_every_second_cycle", "pulse_loss_off"}},
+                {.steps = {step("a square wave of 700 Hz at 0.814 ms",
+                                "0.1225 of the pulses lost, within 0.01", lost_pulses)}})};
 }
 
 }  // namespace fieldproof::conformance

@@ -1,15 +1,17 @@
 // Chapter timing: the cycle time and the telegrams of a cycle (IM-08, IM-09, IM-27, IM-36 to IM-38).
 #include <fmt/format.h>
 
+#include <array>
 #include <utility>
 
-#include "conformance/interbus/master_cases.hpp"
+#include "conformance/interbus/master_scene.hpp"
 #include "protocols/interbus/cycle_frame.hpp"
 
 namespace fieldproof::conformance {
 
 namespace {
 
+using namespace master_chart;
 using interbus::SeenCycle;
 using judge::Standing;
 
@@ -31,33 +33,34 @@ double measured_us(MasterBench& bench, CaseJudge& judge, std::uint64_t cycles) {
   return in_us(bench.ring().statistics().longest_cycle);
 }
 
-void expect_cycle_time(MasterBench& bench, CaseJudge& judge, std::size_t stations, unsigned words,
-                       std::uint8_t code) {
-  bench.bring_up(judge, interbus::line_of(stations, static_cast<std::uint16_t>(code << 8 | 3), words));
+struct RingOfWords {
+  std::size_t stations;
+  unsigned words;
+  std::uint8_t length_code;
+  unsigned end_telegrams = 0;
+};
+
+// The first ones take 755.0 us and 814.8 us. After them 1, 4, 16 and 64 stations of one and of four words.
+RingOfWords timed_ring(unsigned n) {
+  constexpr std::array<RingOfWords, 4> kFirst{{{1, 2, 2}, {1, 2, 2, 2}, {12, 0, 0}, {2, 8, 6}}};
+  if (n < kFirst.size()) return kFirst.at(n);
+  const std::uint8_t words = n % 2 == 0 ? 1 : 4;
+  return {std::size_t{1} << 2 * ((n - kFirst.size()) / 2), words, words};
+}
+
+void expect_cycle_time(RingScene& scene) {
+  MasterBench& bench = scene.bench;
+  const auto& [stations, words, code, end_telegrams] = timed_ring(scene.round);
+  bench.rules().end_telegrams = end_telegrams;
+  bench.bring_up(scene.judge, interbus::line_of(stations, static_cast<std::uint16_t>(code << 8 | 3), words));
   const double octets = 2.0 * words * static_cast<double>(stations);
-  const double formula =
-      formula_us(6 + octets + bench.rules().end_telegrams, static_cast<double>(stations), 450);
-  judge.expect_between(fmt::format("cycle time, n = {}, m = {}", octets, stations), "us",
-                       measured_us(bench, judge, 4), formula * (1 - kTolerance), formula * (1 + kTolerance),
-                       "cycle_time_off");
+  const double formula = formula_us(6 + octets + end_telegrams, static_cast<double>(stations), 450);
+  scene.judge.expect_between(fmt::format("cycle time, n = {}, m = {}", octets, stations), "us",
+                             measured_us(bench, scene.judge, 4), formula * (1 - kTolerance),
+                             formula * (1 + kTolerance), "cycle_time_off");
 }
 
-void cycle_time(MasterBench& bench, CaseJudge& judge) {
-  expect_cycle_time(bench, judge, 1, 2, 0x02);  // 755.0 us
-  bench.rules().end_telegrams = 2;
-  expect_cycle_time(bench, judge, 1, 2, 0x02);  // 814.8 us
-  bench.rules().end_telegrams = 0;
-  expect_cycle_time(bench, judge, 12, 0, 0x00);
-  expect_cycle_time(bench, judge, 2, 8, 0x06);
-  if (bench.volume(0, 1) == 0) return;
-  for (const std::size_t stations : {1U, 4U, 16U, 64U}) {
-    expect_cycle_time(bench, judge, stations, 1, 0x01);
-    expect_cycle_time(bench, judge, stations, 4, 0x04);
-  }
-}
-
-void jitter(MasterBench& bench, CaseJudge& judge) {
-  bench.bring_up(judge, paper_ring());
+void expect_no_jitter(MasterBench& bench, CaseJudge& judge) {
   bench.ring().forget_statistics();
   bench.run_data_cycles(judge, bench.volume<std::uint64_t>(20, 100'000));
   const auto& seen = bench.ring().statistics();
@@ -67,11 +70,10 @@ void jitter(MasterBench& bench, CaseJudge& judge) {
 
 constexpr std::string_view kBelowMinimum = "request_below_minimum";
 
-void requested_time(MasterBench& bench, CaseJudge& judge) {
+void request_too_short(MasterBench& bench, CaseJudge& judge) {
   bench.configuration().cycle_time = 400 * kernel::kMicrosecond;
   const double shortest = formula_us(10, 1, 450);
   bench.power_up(interbus::line_of(1, 0x0203, 2));
-  judge.use_decode([&bench] { return bench.ring().describe_last(6); });
   if (bench.wait_for_run()) {
     judge.expect_between("cycle time with a request of 400 us", "us", measured_us(bench, judge, 4),
                          shortest * (1 - kTolerance), shortest * (1 + kTolerance), "cycle_below_minimum");
@@ -83,6 +85,9 @@ void requested_time(MasterBench& bench, CaseJudge& judge) {
     judge.expect(bench.may_answer(kBelowMinimum, "refused"), "request_not_clipped",
                  "as declared, the request is clipped", "it is refused");
   }
+}
+
+void request_possible(MasterBench& bench, CaseJudge& judge) {
   bench.configuration().cycle_time = kernel::kMillisecond;
   bench.bring_up(judge, interbus::line_of(1, 0x0203, 2));
   judge.expect_between("cycle time with a request of 1 ms", "us", measured_us(bench, judge, 4),
@@ -94,7 +99,6 @@ void long_ring(MasterBench& bench, CaseJudge& judge) {
   const double cable_us = 128;
   bench.power_up(interbus::line_of(stations, 0x0003, 0));
   bench.ring().set_extra_delay(128 * kernel::kMicrosecond);
-  judge.use_decode([&bench] { return bench.ring().describe_last(6); });
   judge.expect(bench.wait_for_run(), "long_ring_not_in_run", "the master runs with the longest ring",
                "it does not");
   const double formula = formula_us(6, static_cast<double>(stations), 450) + cable_us;
@@ -104,24 +108,21 @@ void long_ring(MasterBench& bench, CaseJudge& judge) {
                "cycles are rejected");
 }
 
-void clock_tolerance(MasterBench& bench, CaseJudge& judge) {
-  for (const int per_mille : {-10, 10}) {
-    bench.bring_up(judge, interbus::line_of(4, 0x0603, 8));
-    bench.ring().set_rate_error(per_mille);
-    const std::uint64_t before = bench.status().rejected_cycles;
-    for (std::uint64_t n = bench.volume<std::uint64_t>(5, 500); n > 0; --n) {
-      bench.ring().set_input(0, static_cast<std::uint16_t>(bench.random().next()));
-      judge.expect(bench.run_cycle(), "no_data_cycle", "cycles go on", "no cycle ends");
-    }
-    judge.expect(bench.status().rejected_cycles == before, "clock_tolerance", [&] {
-      return Mismatch{{fmt::format("a return line at {:+} per mille is received", per_mille)},
-                      "cycles are rejected"};
-    });
+void receive_rate(RingScene& scene) {
+  MasterBench& bench = scene.bench;
+  const int per_mille = scene.round == 0 ? -10 : 10;
+  bench.ring().set_rate_error(per_mille);
+  const std::uint64_t before = bench.status().rejected_cycles;
+  for (std::uint64_t n = bench.volume<std::uint64_t>(5, 500); n > 0; --n) {
+    bench.ring().set_input(0, static_cast<std::uint16_t>(bench.random().next()));
+    expect_next_cycle(bench, scene.judge);
   }
+  scene.judge.expect(bench.status().rejected_cycles == before, "clock_tolerance",
+                     fmt::format("a return line at {:+} per mille is received", per_mille),
+                     "cycles are rejected");
 }
 
-void telegram_pitch(MasterBench& bench, CaseJudge& judge) {
-  bench.bring_up(judge, interbus::line_of(4, 0x0603, 8));
+void expect_pitch(MasterBench& bench, CaseJudge& judge) {
   bench.run_data_cycles(judge, 1);  // the one before may just have begun
   const SeenCycle& seen = bench.ring().last_cycle();
   const kernel::Duration bit = kernel::levels_duration(1, bench.rules().bit_rate);
@@ -136,67 +137,74 @@ void telegram_pitch(MasterBench& bench, CaseJudge& judge) {
                "no silence above 25 ms", "a longer one");
 }
 
-// What is judged is the monitor of the bench.
-void transmissions_do_not_overlap(MasterBench& bench, CaseJudge& judge) {
-  bench.bring_up(judge, paper_ring());
-  bench.run_data_cycles(judge, bench.volume<std::uint64_t>(10, 1000));
+MasterStep run_on_64_octets() {
+  return in_run("a ring with 64 user octets", interbus::line_of(4, 0x0603, 8));
+}
+
+std::vector<MasterCase> cases_of_the_cycle_time() {
+  // The factor of 1.15 is printed with 8 + n telegrams; with 6 + n it is not.
+  const judge::Reference formula{"Park 2004, section 2.2; Phoenix Contact manuals from memory",
+                                 "cycle-time formula; 6 + n telegrams in it", Standing::memory};
+  return {
+      master_case(
+          "timing/cycle_time_equals_the_formula", "IM-08",
+          "The cycle time is that of the formula, with the count of telegrams that is selected", formula,
+          {"must", "timing"}, {{"cycle_time_without_ring_delay", "cycle_time_off"}},
+          {.steps = {{"data cycles", "755.0 us, 814.8 us and the others within 2 %", expect_cycle_time}},
+           .walk = {"rings of several lengths, with 6 + n and with 8 + n telegrams",
+                    [](RingScene& scene) { return scene.bench.volume<std::size_t>(4, 12); }}}),
+      master_case(
+          "timing/request_below_the_minimum_is_clipped", "IM-27",
+          "A requested cycle time below the shortest possible is not taken: clipped or refused, as declared",
+          {"Park 2004, section 3", "the tool accepts only values above the minimum", Standing::seed},
+          {"timing"}, {{"request_taken_as_it_is", "cycle_below_minimum"}},
+          {.steps = {step("a request of 400 us where 755 us are needed", "755 us or a configuration error",
+                          request_too_short),
+                     step("a request of 1 ms", "1 ms", request_possible)}}),
+      master_case("timing/longest_ring_works", "IM-36",
+                  "The delay of the longest ring is waited for, and is part of the cycle time", formula,
+                  {"timing", "long"},
+                  {{"cycle_time_without_ring_delay", "cycle_time_off"},
+                   {"first_cycles_rejected", "long_ring_rejected"}},
+                  {.steps = {step("512 stations with 3 bit each and 128 us of cable",
+                                  "no cycle rejected; cycle time by the formula", long_ring)}})};
 }
 
 }  // namespace
 
 std::vector<MasterCase> master_timing_cases() {
-  std::vector<MasterCase> cases;
-  const auto add = [&cases](std::string_view words, std::string_view purpose, std::string_view requirement,
-                            judge::Reference reference, std::string_view stimulus, std::string_view expected,
-                            std::vector<std::string> tags, std::vector<MustCatch> catches, auto procedure) {
-    TestCase test_case;
-    test_case.id = fmt::format("interbus/master/timing/{}", words);
-    test_case.purpose = purpose;
-    test_case.requirement = requirement;
-    test_case.reference = std::move(reference);
-    test_case.stimulus = stimulus;
-    test_case.expected = expected;
-    test_case.tags = std::move(tags);
-    test_case.catches = std::move(catches);
-    cases.push_back({std::move(test_case), procedure});
-  };
-  // The factor of 1.15 is printed with 8 + n telegrams; with 6 + n it is not.
-  const judge::Reference formula{"Park 2004, section 2.2; Phoenix Contact manuals from memory",
-                                 "cycle-time formula; 6 + n telegrams in it", Standing::memory};
-  add("cycle_time_equals_the_formula", "IM-08",
-      "The cycle time is that of the formula, with the count of telegrams that is selected", formula,
-      "rings of several lengths, with 6 + n and with 8 + n telegrams",
-      "755.0 us, 814.8 us and the others within 2 %", {"must", "timing"},
-      {{"cycle_time_without_ring_delay", "cycle_time_off"}}, cycle_time);
-  add("cycles_start_without_jitter", "IM-09", "Cycles start at equal distances",
-      {"this project", "at most 1 % of the cycle time", Standing::own}, "1e5 data cycles without errors",
-      "peak-to-peak jitter at most 1 % of the cycle time", {"timing", "long"},
-      {{"cycle_start_wanders", "jitter"}}, jitter);
-  add("request_below_the_minimum_is_clipped", "IM-27",
-      "A requested cycle time below the shortest possible is not taken: clipped or refused, as declared",
-      {"Park 2004, section 3", "the tool accepts only values above the minimum", Standing::seed},
-      "requests of 400 us and 1 ms where 755 us are needed", "755 us or a configuration error; 1 ms",
-      {"timing"}, {{"request_taken_as_it_is", "cycle_below_minimum"}}, requested_time);
-  add("longest_ring_works", "IM-36",
-      "The delay of the longest ring is waited for, and is part of the cycle time", formula,
-      "512 stations with 3 bit each and 128 us of cable", "no cycle rejected; cycle time by the formula",
-      {"timing", "long"},
-      {{"cycle_time_without_ring_delay", "cycle_time_off"}, {"first_cycles_rejected", "long_ring_rejected"}},
-      long_ring);
-  add("return_clock_within_one_percent_is_received", "IM-37", "Stations with their own clocks are received",
-      {"this project", "+-1 %", Standing::own}, "a return line 1 % slower and 1 % faster",
-      "no cycle rejected", {"timing"}, {{"no_clock_tolerance", "clock_tolerance"}}, clock_tolerance);
-  add("telegrams_have_their_gap", "IM-38", "The mean pitch of the telegrams of a cycle is 1.15 times 13 bit",
-      {"this project; Park 2004, section 2.2", "a gap after each telegram, for the factor of 1.15",
-       Standing::own},
-      "a data cycle with 64 user octets", "14.95 bit within 5 %", {"timing"},
-      {{"telegrams_without_gap", "pitch_off"}}, telegram_pitch);
-  add("transmissions_do_not_overlap", "monitor",
-      "A master begins a transmission when the one before it has left",
+  std::vector<MasterCase> cases = cases_of_the_cycle_time();
+  cases.push_back(master_case(
+      "timing/cycles_start_without_jitter", "IM-09", "Cycles start at equal distances",
+      {"this project", "at most 1 % of the cycle time", Standing::own}, {"timing", "long"},
+      {{"cycle_start_wanders", "jitter"}},
+      {.steps = {in_run(), step("100 000 data cycles", "peak-to-peak jitter at most 1 % of the cycle time",
+                                expect_no_jitter)}}));
+  cases.push_back(master_case(
+      "timing/return_clock_within_one_percent_is_received", "IM-37",
+      "Stations with their own clocks are received", {"this project", "+-1 %", Standing::own}, {"timing"},
+      {{"no_clock_tolerance", "clock_tolerance"}},
+      {.steps = {run_on_64_octets(),
+                 {"500 cycles from a return line of that clock", "no cycle rejected", receive_rate}},
+       .walk = each("1 % slower and 1 % faster", 2)}));
+  cases.push_back(
+      master_case("timing/telegrams_have_their_gap", "IM-38",
+                  "The mean pitch of the telegrams of a cycle is 1.15 times 13 bit",
+                  {"this project; Park 2004, section 2.2",
+                   "a gap after each telegram, for the factor of 1.15", Standing::own},
+                  {"timing"}, {{"telegrams_without_gap", "pitch_off"}},
+                  {.steps = {run_on_64_octets(),
+                             step("a data cycle", "a mean pitch of 14.95 bit within 5 %", expect_pitch)}}));
+  cases.push_back(master_case(
+      "timing/transmissions_do_not_overlap", "monitor",
+      "A master begins a transmission when the one before it has left; the monitor of its line judges every "
+      "other case too",
       {"follows from Park 2004", "one telegram after the other on a segment", Standing::derived},
-      "recognition, then data cycles",
-      "the monitor of the master's line sees no overlap; it judges every other case too", {"must", "timing"},
-      {{"drives_over_itself", "transmissions_overlap"}}, transmissions_do_not_overlap);
+      {"must", "timing"}, {{"drives_over_itself", "transmissions_overlap"}},
+      {.steps = {in_run(), step("1000 data cycles", "the monitor of the master's line sees no overlap",
+                                [](MasterBench& bench, CaseJudge& judge) {
+                                  bench.run_data_cycles(judge, bench.volume<std::uint64_t>(10, 1000));
+                                })}}));
   return cases;
 }
 

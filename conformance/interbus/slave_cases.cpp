@@ -1,22 +1,16 @@
 #include "conformance/interbus/slave_cases.hpp"
 
-#include <iterator>
+#include <array>
 #include <utility>
 
 namespace fieldproof::conformance {
 namespace {
 
 SlaveCase canary() {
-  TestCase test_case;
-  test_case.id = "interbus/slave/canary/a_failure_is_seen";
-  test_case.purpose = "canary";
-  test_case.requirement = "a failure of this suite is seen";
-  test_case.reference = sources::own("rules of the suite");
-  test_case.stimulus = "An ID cycle and a valid data cycle with random words.";
-  test_case.expected =
-      "The verdict is fail: the case asks for a returned loopback word that differs from the one sent.";
-  test_case.tags = {"canary"};
-  return {test_case, [](SlaveBench& bench, CaseJudge& judge) {
+  return {canary_of("interbus/slave", sources::own("rules of the suite"),
+                    "An ID cycle and a valid data cycle with random words.",
+                    "the case asks for a returned loopback word that differs from the one sent."),
+          [](SlaveBench& bench, CaseJudge& judge) {
             bench.bring_up();
             bench.data_cycle(bench.random_words());
             const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), 0);
@@ -62,14 +56,11 @@ judge::CaseResult not_applicable(const TestCase& test_case, std::string sentence
 
 const std::vector<SlaveCase>& slave_cases() {
   static const std::vector<SlaveCase> cases = [] {
-    std::vector<SlaveCase> all;
-    for (auto chapter :
-         {slave_power_up_cases, slave_id_cycle_cases, slave_data_cycle_cases, slave_length_code_cases,
-          slave_frame_check_cases, slave_short_cycle_cases, slave_telegram_cases, slave_timing_cases,
-          slave_supervision_cases, slave_interface_cases, slave_message_cases, slave_immunity_cases}) {
-      std::vector<SlaveCase> cases_of_chapter = chapter();
-      std::move(cases_of_chapter.begin(), cases_of_chapter.end(), std::back_inserter(all));
-    }
+    static constexpr std::array kChapters{
+        slave_power_up_cases,    slave_id_cycle_cases,    slave_data_cycle_cases, slave_length_code_cases,
+        slave_frame_check_cases, slave_short_cycle_cases, slave_telegram_cases,   slave_timing_cases,
+        slave_supervision_cases, slave_interface_cases,   slave_message_cases,    slave_immunity_cases};
+    auto all = cases_of<SlaveCase>(kChapters, {});
     all.push_back(canary());
     return all;
   }();
@@ -82,31 +73,22 @@ judge::CaseResult run_slave_case(const SlaveCase& slave_case, const SlaveSetting
     if (auto sentence = missing_in_network(slave_case.needs, *setting.network, setting.position))
       return not_applicable(test_case, *sentence);
   }
-  // Made within the procedure: what an implementation does when it is powered is its verdict, too.
-  std::optional<SlaveBench> bench;
   std::optional<std::string> reason_not_runnable;
-  CaseJudge judge(test_case);
-  judge.use_clock([&] { return bench ? bench->now() : kernel::kStart; });
-  judge.use_decode([&] { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
-  judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
-    bench.emplace(slave_case.needs, setting);
-    if (test_case.not_applicable) reason_not_runnable = test_case.not_applicable(bench->pics());
-    if (!reason_not_runnable) slave_case.procedure(*bench, j);
-    bench->line_watch().judge(j);
-    bench->finish();
-  });
-  if (reason_not_runnable) return not_applicable(test_case, *reason_not_runnable);
-  result.seed = setting.seed;
-  if (!bench) return result;
-  result.fingerprint = bench->segment().trace().fingerprint();
-  result.virtual_time = bench->now() - kernel::kStart;
-  result.planned_hits = bench->planned_hits();
-  return result;
+  SlaveCase asked = slave_case;
+  asked.procedure = [&](SlaveBench& bench, CaseJudge& judge) {
+    if (test_case.not_applicable) reason_not_runnable = test_case.not_applicable(bench.pics());
+    if (!reason_not_runnable) slave_case.procedure(bench, judge);
+  };
+  judge::CaseResult result = run_on_bench(asked, setting);
+  return reason_not_runnable ? not_applicable(test_case, *reason_not_runnable) : result;
 }
 
-Applicability for_every_slave() {
-  return nullptr;
+std::vector<SlaveCase> joined(const std::vector<std::vector<SlaveCase>>& parts) {
+  std::vector<SlaveCase> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
+
 Applicability for_item(const std::string& item, const std::string& sentence) {
   return [item, sentence](const judge::Pics& pics) -> std::optional<std::string> {
     if (pics.supports(item)) return std::nullopt;
@@ -130,11 +112,8 @@ Applicability for_outputs() {
 Applicability for_inputs() {
   return for_item("inputs", "the slave has no inputs");
 }
-Applicability for_inputs_and_outputs() {
-  return [](const judge::Pics& pics) -> std::optional<std::string> {
-    if (pics.supports("outputs") && pics.supports("inputs")) return std::nullopt;
-    return "the slave does not have both inputs and outputs";
-  };
+Applicability for_remote() {
+  return for_item("remote_interface", "the slave has no outgoing remote-bus interface (OUT1)");
 }
 
 namespace sources {

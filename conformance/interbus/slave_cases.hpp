@@ -37,12 +37,13 @@ std::vector<SlaveCase> slave_immunity_cases();
 
 // ---- what chapters share ----
 
+std::vector<SlaveCase> joined(const std::vector<std::vector<SlaveCase>>& parts);
+
 using Applicability = std::function<std::optional<std::string>(const judge::Pics&)>;
-Applicability for_every_slave();
-// With outputs, with inputs, with both; or with a PICS item, `sentence` says why it does not apply without.
+// With outputs, with inputs, with OUT1; or with a PICS item, `sentence` says why it does not apply without.
 Applicability for_outputs();
 Applicability for_inputs();
-Applicability for_inputs_and_outputs();
+Applicability for_remote();
 Applicability for_item(const std::string& item, const std::string& sentence);
 // For cases whose needs change the rules.
 Applicability for_other_settings();

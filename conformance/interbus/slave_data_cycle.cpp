@@ -1,5 +1,4 @@
-#include "conformance/interbus/slave_cases.hpp"
-#include "conformance/interbus/slave_expect.hpp"
+#include "conformance/interbus/slave_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -10,8 +9,9 @@
 namespace fieldproof::conformance {
 namespace {
 
+using namespace slave_chart;
+
 void outputs_change_after_the_check(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
   kernel::Duration latest{};
   for (unsigned n = 0; n < bench.volume(20U, 200U); ++n) {
     const std::vector<std::uint16_t> words = bench.random_words();
@@ -35,11 +35,20 @@ std::uint16_t jumping(kernel::Time when, std::uint64_t seed) {
 }
 
 // A clock at the terminals: tells when it was looked at, in microseconds.
-std::uint16_t clock_word(kernel::Time when) {
+std::uint16_t clock_word(kernel::Time when, std::uint64_t = 0) {
   return static_cast<std::uint16_t>(when.time_since_epoch().count() / 1'000'000 & 0xFFFF);
 }
 
-void check_snapshots(SlaveBench& bench, CaseJudge& judge) {
+void set_signals(SlaveBench& bench, std::uint16_t (*signal)(kernel::Time, std::uint64_t),
+                 std::uint64_t seed) {
+  for (unsigned word = 0; word < bench.words(); ++word)
+    bench.terminals().set_signal(word, [=](kernel::Time when) { return signal(when, seed); });
+}
+
+void check_snapshots(SlaveScene& scene) {
+  SlaveBench& bench = scene.bench;
+  CaseJudge& judge = scene.judge;
+  set_signals(bench, jumping, bench.random().next());
   constexpr unsigned kTrain = 32;
   const std::vector<std::uint16_t> nothing(bench.words());
   const unsigned cycles = bench.volume(800U, 100'000U);
@@ -85,7 +94,10 @@ SampleInstants sample_instants(SlaveBench& bench, CaseJudge& judge) {
   return instants;
 }
 
-void check_sample_instant(SlaveBench& bench, CaseJudge& judge) {
+void check_sample_instant(SlaveScene& scene) {
+  SlaveBench& bench = scene.bench;
+  CaseJudge& judge = scene.judge;
+  set_signals(bench, clock_word, 0);
   SampleInstants all;
   for (unsigned n = 0; n < bench.volume(40U, 1'000U); ++n) {
     bench.silence(bench.bits(static_cast<std::int64_t>(bench.random().below(300))));
@@ -107,17 +119,6 @@ void check_sample_instant(SlaveBench& bench, CaseJudge& judge) {
                        "sample_instant_not_constant");
 }
 
-void inputs_are_a_snapshot(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
-  const std::uint64_t seed = bench.random().next();
-  for (unsigned word = 0; word < bench.words(); ++word)
-    bench.terminals().set_signal(word, [seed](kernel::Time when) { return jumping(when, seed); });
-  check_snapshots(bench, judge);
-  for (unsigned word = 0; word < bench.words(); ++word)
-    bench.terminals().set_signal(word, [](kernel::Time when) { return clock_word(when); });
-  check_sample_instant(bench, judge);
-}
-
 // ---- loopback words ----
 
 std::vector<std::uint16_t> loopback_words(SlaveBench& bench) {
@@ -137,7 +138,6 @@ std::vector<std::uint16_t> loopback_words(SlaveBench& bench) {
 
 void loopback_word_returns_unchanged(SlaveBench& bench, CaseJudge& judge) {
   constexpr std::size_t kTrain = 64;
-  bench.bring_up();
   bench.set_inputs(bench.random_words());
   const std::vector<std::uint8_t> load = bench.data_load();
   const std::vector<std::uint16_t> sent = bench.random_words();
@@ -165,30 +165,28 @@ std::uint16_t prbs15(std::uint16_t word) {
   return word;
 }
 
-std::vector<std::uint16_t> patterns(unsigned random_count) {
+std::vector<std::uint16_t> patterns() {
   std::vector<std::uint16_t> list = {0x0000, 0xFFFF, 0x0000, 0x00FF, 0xFF00, 0x5555, 0xAAAA};
   for (unsigned bit = 0; bit < 16; ++bit) list.push_back(static_cast<std::uint16_t>(1U << bit));
   for (unsigned bit = 0; bit < 16; ++bit) list.push_back(static_cast<std::uint16_t>(~(1U << bit)));
   std::uint16_t word = 1;
-  for (unsigned n = 0; n < random_count; ++n) list.push_back(word = prbs15(word));
+  for (unsigned n = 0; n < 32'767; ++n) list.push_back(word = prbs15(word));
   return list;
 }
 
-void process_data_is_exact(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
-  std::vector<std::uint16_t> outputs(bench.words());
+// Outputs from the begin of the list on, inputs from the end of what this volume takes of it.
+void exchange_patterns(SlaveScene& scene) {
+  static const std::vector<std::uint16_t> list = patterns();
+  SlaveBench& bench = scene.bench;
+  const std::size_t count = bench.volume<std::size_t>(339, list.size());
   std::vector<std::uint16_t> inputs(bench.words());
-  const std::vector<std::uint16_t> list = patterns(bench.volume(300U, 32'767U));
-  for (std::size_t n = 0; n < list.size(); ++n) {
-    for (unsigned word = 0; word < bench.words(); ++word) {
-      outputs[word] = list[(n + word) % list.size()];
-      inputs[word] = list[list.size() - 1 - (n + 5 * word) % list.size()];
-    }
-    bench.set_inputs(inputs);
-    bench.data_cycle(outputs);
-    expect_answer(bench, judge, 0, bench.data_load());
-    expect_outputs(bench, judge, outputs, "output_word_wrong");
+  scene.words.resize(bench.words());
+  for (unsigned word = 0; word < bench.words(); ++word) {
+    scene.words[word] = list[(scene.round + word) % count];
+    inputs[word] = list[count - 1 - (scene.round + 5 * word) % count];
   }
+  bench.set_inputs(inputs);
+  bench.data_cycle(scene.words);
 }
 
 // ---- endurance ----
@@ -196,7 +194,6 @@ void process_data_is_exact(SlaveBench& bench, CaseJudge& judge) {
 void cycles_back_to_back(SlaveBench& bench, CaseJudge& judge) {
   constexpr unsigned kTrain = 64;
   const unsigned words = bench.words();
-  bench.bring_up();
   bench.train().set_gap(0);
   std::vector<std::uint16_t> sent(std::size_t{kTrain} * words);
   for (unsigned done = 0; done < bench.volume(1'024U, 1'000'000U); done += kTrain) {
@@ -213,93 +210,84 @@ void cycles_back_to_back(SlaveBench& bench, CaseJudge& judge) {
   }
 }
 
+SlaveCase snapshot_case() {
+  return slave_case(
+      "data_cycle/inputs_are_one_snapshot", "IS-06",
+      "The inputs that a cycle carries are sampled at one instant, which has a fixed place in the cycle.",
+      sources::own("sampling at the start of the cycle"),
+      {{"tears_inputs", "input_word_torn"},
+       {"tears_between_input_words", "input_words_not_of_one_instant"},
+       {"falls_silent_after_820_cycles", "telegram_lost"},
+       {"samples_with_previous_cycle", "sample_instant_not_constant"}},
+      {.steps = {identified(),
+                 {"100 000 data cycles while all inputs jump between 0000h and FFFFh at instants unrelated "
+                  "to the cycle",
+                  "a returned word is 0000h or FFFFh, never a mixture", check_snapshots},
+                 {"1 000 data cycles with a clock at the inputs",
+                  "the instant that the clock shows is the same in all words, but for a tick of 1 us, and "
+                  "stays at its place in the cycle within one bit to either side",
+                  check_sample_instant}}},
+      {.tags = {"timing"}, .only_for = for_inputs()});
+}
+
+SlaveCase process_data_case() {
+  return slave_case(
+      "data_cycle/process_data_is_exact", "IS-08",
+      "Outputs show exactly the words of the cycle, and the cycle carries exactly the words at the inputs, "
+      "in both cases with the octets in order.",
+      sources::park("section 2.2: full duplex exchange of process data"),
+      {{"output_octets_swapped", "output_word_wrong"},
+       {"latches_5_ms_late", "output_word_wrong"},
+       {"input_bit_stuck", "register_content_wrong"}},
+      {.rounds = {339, 32'806},
+       .steps = {stimulus<SlaveScene>(
+                     "a valid data cycle with the next of walking ones and zeros, 0000h, FFFFh and a "
+                     "pseudo-random sequence of 32 767 words, other words in each direction",
+                     exchange_patterns),
+                 answered(), shown("output_word_wrong")},
+       .first = {identified()}},
+      {.details = details::answer(), .only_for = for_all({for_outputs(), for_inputs()})});
+}
+
 }  // namespace
 
 std::vector<SlaveCase> slave_data_cycle_cases() {
-  std::vector<SlaveCase> cases;
-  cases.push_back(
-      {{.id = "interbus/slave/data_cycle/outputs_change_after_the_check_phase",
-        .purpose = "IS-05",
-        .requirement = "The outputs take over the words of a valid data cycle at the end of its check phase: "
-                       "not before, and within 50 us after its last check telegram.",
-        .reference =
-            sources::own("the limit of 50 us; that data count only after the check: Practical Guide"),
-        .stimulus = "Valid data cycles with random words.",
-        .expected =
-            "Each output changes between the last bit of the last check telegram and 50 us after that "
-            "telegram's end, to the words of the cycle.",
-        .tags = {"must", "timing"},
-        .catches = {{"latches_at_end_of_data_phase", "outputs_changed_before_check"},
-                    {"latches_late", "outputs_latched_late"},
-                    {"latches_5_ms_late", "outputs_latched_late"}},
-        .not_applicable = for_outputs()},
-       outputs_change_after_the_check});
-  cases.push_back(
-      {{.id = "interbus/slave/data_cycle/inputs_are_one_snapshot",
-        .purpose = "IS-06",
-        .requirement =
-            "The inputs that a cycle carries are sampled at one instant, which has a fixed place in "
-            "the cycle.",
-        .reference = sources::own("sampling at the start of the cycle"),
-        .stimulus = "All inputs jump between 0000h and FFFFh at instants unrelated to the cycle, for 100 000 "
-                    "cycles; then the inputs carry a clock.",
-        .expected = "A returned word is 0000h or FFFFh, never a mixture; the instant that the clock tells "
-                    "is the same in all words, but for a tick of 1 us, and stays at its place in the cycle "
-                    "within one bit to either side.",
-        .tags = {"must", "timing"},
-        .catches = {{"tears_inputs", "input_word_torn"},
-                    {"tears_between_input_words", "input_words_not_of_one_instant"},
-                    {"falls_silent_after_820_cycles", "telegram_lost"},
-                    {"samples_with_previous_cycle", "sample_instant_not_constant"}},
-        .not_applicable = for_inputs()},
-       inputs_are_a_snapshot});
-  cases.push_back(
-      {{.id = "interbus/slave/data_cycle/loopback_word_returns_unchanged",
-        .purpose = "IS-07",
-        .requirement = "The loopback word is data for a slave: whatever its value, it passes unchanged after "
-                       "the slave's own register.",
-        .reference = sources::park("section 2.2: the cycle ends when the loopback word has returned"),
-        .details = details::answer(),
-        .stimulus = "Valid data cycles with each of the 65 536 loopback words.",
-        .expected =
-            "Each loopback word leaves as it came, with the register in front of it and a right check.",
-        .tags = {"must"},
-        .catches = {{"loopback_word_of_ones_changed", "passed_octet_changed"}},
-        .not_applicable = for_every_slave()},
-       loopback_word_returns_unchanged});
-  cases.push_back(
-      {{.id = "interbus/slave/data_cycle/process_data_is_exact",
-        .purpose = "IS-08",
-        .requirement = "Outputs show exactly the words of the cycle, and the cycle carries exactly the words "
-                       "at the inputs, in both cases with the octets in order.",
-        .reference = sources::park("section 2.2: full duplex exchange of process data"),
-        .details = details::answer(),
-        .stimulus =
-            "Valid data cycles with walking ones and zeros, 0000h, FFFFh and a pseudo-random sequence "
-            "of 32 767 words, other words in each direction.",
-        .expected = "Outputs and returned inputs equal the words that were sent and set.",
-        .tags = {"must"},
-        .catches = {{"output_octets_swapped", "output_word_wrong"},
-                    {"latches_5_ms_late", "output_word_wrong"},
-                    {"input_bit_stuck", "register_content_wrong"}},
-        .not_applicable = for_inputs_and_outputs()},
-       process_data_is_exact});
-  cases.push_back(
-      {{.id = "interbus/slave/data_cycle/cycles_back_to_back_are_all_accepted",
-        .purpose = "IS-39",
-        .requirement = "Cycles that follow each other without any pause are each accepted and answered.",
-        .reference = sources::derived("one cycle is independent of the one before it"),
-        .details = details::answer(),
-        .stimulus = "1 000 000 valid data cycles with pseudo-random words, no idle bit between telegrams or "
-                    "cycles.",
-        .expected =
-            "No cycle is rejected or answered wrongly, and the outputs show each cycle's words in turn.",
-        .tags = {"must", "long"},
-        .catches = {{"loses_every_200th_cycle", "valid_cycle_rejected"},
-                    {"check_not_reset_between_cycles", "check_wrong"}},
-        .not_applicable = for_every_slave()},
-       cycles_back_to_back});
-  return cases;
+  return {
+      snapshot_case(), process_data_case(),
+      slave_case(
+          "data_cycle/outputs_change_after_the_check_phase", "IS-05",
+          "The outputs take over the words of a valid data cycle at the end of its check phase: not before, "
+          "and within 50 us after its last check telegram.",
+          sources::own("the limit of 50 us; that data count only after the check: Practical Guide"),
+          {{"latches_at_end_of_data_phase", "outputs_changed_before_check"},
+           {"latches_late", "outputs_latched_late"},
+           {"latches_5_ms_late", "outputs_latched_late"}},
+          {.steps = {identified(), step("valid data cycles with random words",
+                                        "each output changes between the last bit of the last check telegram "
+                                        "and 50 us after that telegram's end, to the words of the cycle",
+                                        outputs_change_after_the_check)}},
+          {.tags = {"timing"}, .only_for = for_outputs()}),
+      slave_case("data_cycle/loopback_word_returns_unchanged", "IS-07",
+                 "The loopback word is data for a slave: whatever its value, it passes unchanged after the "
+                 "slave's own register.",
+                 sources::park("section 2.2: the cycle ends when the loopback word has returned"),
+                 {{"loopback_word_of_ones_changed", "passed_octet_changed"}},
+                 {.steps = {identified(), step("valid data cycles with each of the 65 536 loopback words",
+                                               "each loopback word leaves as it came, with the register in "
+                                               "front of it and a right check",
+                                               loopback_word_returns_unchanged)}},
+                 {.details = details::answer()}),
+      slave_case("data_cycle/cycles_back_to_back_are_all_accepted", "IS-39",
+                 "Cycles that follow each other without any pause are each accepted and answered.",
+                 sources::derived("one cycle is independent of the one before it"),
+                 {{"loses_every_200th_cycle", "valid_cycle_rejected"},
+                  {"check_not_reset_between_cycles", "check_wrong"}},
+                 {.steps = {identified(), step("1 000 000 valid data cycles with pseudo-random words, no "
+                                               "idle bit between telegrams or cycles",
+                                               "no cycle is rejected or answered wrongly, and the outputs "
+                                               "show each cycle's words in turn",
+                                               cycles_back_to_back)}},
+                 {.details = details::answer(), .tags = {"long"}})};
 }
 
 }  // namespace fieldproof::conformance

@@ -20,6 +20,9 @@ std::string text_of(std::span<const std::uint16_t> words);
 // clean. Faults in headers can, by chance, leave such a cycle of other octets.
 bool is_right_data_cycle(SlaveBench& bench, const FoundCycle& found);
 
+// Whether a cycle left since the views were cleared, and the last one with a clean status word.
+bool left_clean(SlaveBench& bench);
+
 // As many data telegrams left as arrived; `telegram_lost`, `telegram_added`.
 void expect_all_telegrams(SlaveBench& bench, CaseJudge& judge);
 
@@ -38,8 +41,6 @@ void expect_outputs(SlaveBench& bench, CaseJudge& judge, std::span<const std::ui
                     std::string_view reason);
 // No output has changed since the changes were last forgotten.
 void expect_no_change(SlaveBench& bench, CaseJudge& judge, std::string_view reason, std::string_view why_not);
-// The status word of cycle n left marked: `error_not_marked`.
-void expect_marked(SlaveBench& bench, CaseJudge& judge, std::size_t n);
 // Cycle n was rejected: left marked, no output has changed (`output_changed_by_rejected_cycle`).
 void expect_rejected(SlaveBench& bench, CaseJudge& judge, std::size_t n);
 // Sends a clean cycle with words that differ from the outputs in each bit of one word, and requires its

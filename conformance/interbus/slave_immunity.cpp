@@ -3,49 +3,34 @@
 #include <algorithm>
 
 #include "conformance/interbus/slave_arrivals.hpp"
-#include "conformance/interbus/slave_cases.hpp"
-#include "conformance/interbus/slave_expect.hpp"
+#include "conformance/interbus/slave_scene.hpp"
 #include "harness/kernel/check.hpp"
 
 // IS-40 and IS-42: outputs while cycles are rejected, under random faults, and under stresses of the line.
 namespace fieldproof::conformance {
 namespace {
 
-void expect_outputs_held(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words) {
-  expect_outputs(bench, judge, words, "output_changed_by_rejected_cycle");
+using namespace slave_chart;
+
+void expect_outputs_held(SlaveScene& scene) {
+  const std::vector<std::uint16_t>& words = scene.words;
+  expect_outputs(scene.bench, scene.judge, words, "output_changed_by_rejected_cycle");
   // A change that was taken back is a glitch; one of up to a microsecond is not seen by anything connected.
-  const auto& changes = bench.changes();
+  const auto& changes = scene.bench.changes();
   for (std::size_t n = 0; n < changes.size(); ++n) {
     const auto back = std::find_if(
         changes.begin() + static_cast<std::ptrdiff_t>(n) + 1, changes.end(),
         [&](const auto& later) { return later.word == changes[n].word && later.after == changes[n].before; });
     const bool is_short = back != changes.end() && back->when - changes[n].when <= 1 * kernel::kMicrosecond;
     if (is_short || changes[n].before != words[changes[n].word]) continue;
-    judge.fail("output_glitch",
-               {.expected = {"outputs hold their value; a mutant of up to 1 us is not counted"},
-                .actual = back == changes.end()
-                              ? fmt::format("word {} went to {:04X}h", changes[n].word, changes[n].after)
-                              : fmt::format("word {} was {:04X}h for {}", changes[n].word, changes[n].after,
-                                            kernel::describe(back->when - changes[n].when)),
-                .time = changes[n].when});
-  }
-}
-
-void rejected_cycle_between_good_ones(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
-  for (unsigned round = 0; round < bench.volume(10U, 500U); ++round) {
-    std::vector<std::uint16_t> words = bench.random_words();
-    for (std::uint16_t& word : words) word |= 0x0101;
-    bench.data_cycle(words);
-    expect_outputs(bench, judge, words, "valid_cycle_rejected");
-    bench.terminals().forget_changes();
-    bench.begin();
-    const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
-    const auto bit = static_cast<std::size_t>(bench.random().below(bench.code_word_bits()));
-    bench.channel().on_next().flip(bench.code_word_level(cycle, bit));
-    bench.send();
-    expect_outputs_held(bench, judge, words);
-    expect_good_cycle(bench, judge, "no_recovery");
+    scene.judge.fail(
+        "output_glitch",
+        {.expected = {"outputs hold their value; a mutant of up to 1 us is not counted"},
+         .actual = back == changes.end()
+                       ? fmt::format("word {} went to {:04X}h", changes[n].word, changes[n].after)
+                       : fmt::format("word {} was {:04X}h for {}", changes[n].word, changes[n].after,
+                                     kernel::describe(back->when - changes[n].when)),
+         .time = changes[n].when});
   }
 }
 
@@ -168,7 +153,6 @@ void stressed_cycle(SlaveBench& bench, CaseJudge& judge, SlaveArrivals& arrivals
 
 void stresses(SlaveBench& bench, CaseJudge& judge) {
   FIELDPROOF_CHECK(!bench.stresses().empty(), "a case under stresses has some");
-  bench.bring_up();
   SlaveArrivals arrivals(bench);
   unsigned longest_recovery = 0;
   for (const fault::Stress& stress : bench.stresses()) {
@@ -185,7 +169,6 @@ void stresses(SlaveBench& bench, CaseJudge& judge) {
 }
 
 void random_faults(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
   SlaveArrivals arrivals(bench);
   Faults faults;
   for (const double chance : {0.001, 0.01, 0.05}) faults_of_chance(bench, judge, arrivals, chance, faults);
@@ -193,78 +176,78 @@ void random_faults(SlaveBench& bench, CaseJudge& judge) {
   judge.measure("clean cycles lost after the faults", "", faults.longest_recovery);
 }
 
+SlaveCase held_case() {
+  const SlaveStep set_words =
+      stimulus<SlaveScene>("a valid data cycle without an octet of 0", [](SlaveScene& scene) {
+        scene.words = scene.bench.random_words();
+        for (std::uint16_t& word : scene.words) word |= 0x0101;
+        scene.bench.data_cycle(scene.words);
+      });
+  return slave_case(
+      "immunity/rejected_cycle_leaves_outputs_alone", "IS-40",
+      "While a cycle is rejected, the outputs hold the words of the last valid one, without a glitch longer "
+      "than 1 us.",
+      sources::from_memory("the previous data stay valid when a cycle is rejected"),
+      {{"clears_outputs_on_rejected_cycle", "output_changed_by_rejected_cycle"},
+       {"glitches_outputs_on_rejected_cycle", "output_glitch"}},
+      {.rounds = {10, 500},
+       .steps = {set_words, shown(), flipped_bit(),
+                 expected<SlaveScene>("no output leaves its value for more than 1 us", expect_outputs_held),
+                 good_cycle("no_recovery")},
+       .first = {identified()}},
+      {.details = {details::status_coding()}, .only_for = for_outputs()});
+}
+
 }  // namespace
 
 std::vector<SlaveCase> slave_immunity_cases() {
-  std::vector<SlaveCase> cases;
-  cases.push_back(
-      {{.id = "interbus/slave/immunity/rejected_cycle_leaves_outputs_alone",
-        .purpose = "IS-40",
-        .requirement =
-            "While a cycle is rejected, the outputs hold the words of the last valid one, without a "
-            "glitch longer than 1 us.",
-        .reference = sources::from_memory("the previous data stay valid when a cycle is rejected"),
-        .details = {details::status_coding()},
-        .stimulus =
-            "A valid data cycle, one with a bit flipped at the slave's receiver, a valid one; again and "
-            "again with other words.",
-        .expected = "No output leaves its value between the valid cycles for more than 1 us.",
-        .tags = {"must"},
-        .catches = {{"clears_outputs_on_rejected_cycle", "output_changed_by_rejected_cycle"},
-                    {"glitches_outputs_on_rejected_cycle", "output_glitch"}},
-        .not_applicable = for_outputs()},
-       rejected_cycle_between_good_ones});
-  cases.push_back(
-      {{.id = "interbus/slave/immunity/random_faults_latch_no_wrong_value",
-        .purpose = "IS-42",
-        .requirement =
-            "Whatever strikes the slave's receiver, outputs change only by a cycle whose check fits, and "
-            "after the faults clean cycles are accepted again within the published five. Judged here "
-            "under independent random flips, by the next case under bursts.",
-        .reference = {"Beckhoff BC4000 documentation",
-                      "five cycle times until valid data are exchanged again", judge::Standing::searched},
-        .details = {details::status_coding(),
-                    {sources::own("within 20 % of what the tester's own receiver rejects, or two cycles"),
-                     {"rejects_other_than_what_arrived_broken"}}},
-        .stimulus =
-            "Data cycles between status telegrams, each level flipped with a chance of 0.1, 1 and 5 % at "
-            "the slave's receiver; every 16 cycles the faults pause.",
-        .expected =
-            "After each cycle the outputs show the words before it, or the words that arrived when these "
-            "have a right check, and as many cycles are rejected as arrive broken, within 20 % or two "
-            "cycles; in the pauses one of five clean cycles is taken over.",
-        .tags = {"must", "long"},
-        .catches = {{"latches_in_spite_of_own_error", "wrong_value_latched"},
-                    {"locks_up_after_rejected_cycle", "no_recovery"},
-                    {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"},
-                    {"loses_the_cycle_behind_a_rejected_one", "rejects_other_than_what_arrived_broken"}},
-        .not_applicable = for_outputs()},
-       random_faults});
-  cases.push_back(
-      {{.id = "interbus/slave/immunity/bursts_latch_no_wrong_value",
-        .purpose = "IS-42",
-        .requirement =
-            "Under bursts at the slave's receiver, outputs change only by a cycle whose check fits, and "
-            "after each burst clean cycles are accepted again within the published five.",
-        .reference = {"Beckhoff BC4000 documentation",
-                      "five cycle times until valid data are exchanged again", judge::Standing::searched},
-        .details = {details::status_coding(),
-                    {sources::own(
-                         "what a level of IEC 61000-4-4 does at a receiver is an uncalibrated model"),
-                     {"wrong_value_latched"}}},
-        .stimulus =
-            "Data cycles between status telegrams, while single bursts of IEC 61000-4-4 couple into the "
-            "slave's incoming line: levels 4 and 3, 5 and 100 kHz, both polarities.",
-        .expected =
-            "After each cycle the outputs show the words before it, or those of the cycle; after each "
-            "burst one of five clean cycles is taken over.",
-        .tags = {"must", std::string(kStressTag)},
-        .catches = {{"latches_in_spite_of_own_error", "wrong_value_latched"},
-                    {"locks_up_after_rejected_cycle", "no_recovery"},
-                    {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"}},
-        .not_applicable = for_outputs()},
-       stresses});
-  return cases;
+  const judge::Reference recovery{"Beckhoff BC4000 documentation",
+                                  "five cycle times until valid data are exchanged again",
+                                  judge::Standing::searched};
+  return {
+      held_case(),
+      slave_case(
+          "immunity/random_faults_latch_no_wrong_value", "IS-42",
+          "Whatever strikes the slave's receiver, outputs change only by a cycle whose check fits, and after "
+          "the faults clean cycles are accepted again within the published five. Judged here under "
+          "independent random flips, by the next case under bursts.",
+          recovery,
+          {{"latches_in_spite_of_own_error", "wrong_value_latched"},
+           {"locks_up_after_rejected_cycle", "no_recovery"},
+           {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"},
+           {"loses_the_cycle_behind_a_rejected_one", "rejects_other_than_what_arrived_broken"}},
+          {.steps = {identified(),
+                     step("data cycles between status telegrams, each level flipped with a chance of 0.1, 1 "
+                          "and 5 % at the slave's receiver; every 16 cycles the faults pause",
+                          "after each cycle the outputs show the words before it, or the words that arrived "
+                          "when these have a right check, and as many cycles are rejected as arrive broken, "
+                          "within 20 % or two cycles; in the pauses one of five clean cycles is taken over",
+                          random_faults)}},
+          {.details = {details::status_coding(),
+                       {sources::own("within 20 % of what the tester's own receiver rejects, or two cycles"),
+                        {"rejects_other_than_what_arrived_broken"}}},
+           .tags = {"long"},
+           .only_for = for_outputs()}),
+      slave_case(
+          "immunity/bursts_latch_no_wrong_value", "IS-42",
+          "Under bursts at the slave's receiver, outputs change only by a cycle whose check fits, and after "
+          "each burst clean cycles are accepted again within the published five.",
+          recovery,
+          {{"latches_in_spite_of_own_error", "wrong_value_latched"},
+           {"locks_up_after_rejected_cycle", "no_recovery"},
+           {"waits_for_id_cycle_after_rejected_cycle", "no_recovery"}},
+          {.steps = {identified(),
+                     step("data cycles between status telegrams, while single bursts of IEC 61000-4-4 couple "
+                          "into the slave's incoming line: levels 4 and 3, 5 and 100 kHz, both polarities",
+                          "after each cycle the outputs show the words before it, or those of the cycle; "
+                          "after each burst one of five clean cycles is taken over",
+                          stresses)}},
+          {.details = {details::status_coding(),
+                       {sources::own(
+                            "what a level of IEC 61000-4-4 does at a receiver is an uncalibrated model"),
+                        {"wrong_value_latched"}}},
+           .tags = {std::string(kStressTag)},
+           .only_for = for_outputs()})};
 }
 
 }  // namespace fieldproof::conformance

@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "conformance/interbus/slave_cases.hpp"
-#include "conformance/interbus/slave_expect.hpp"
+#include "conformance/interbus/slave_scene.hpp"
 
 // IS-43: cycles that are shorter than the register and the loopback word, with their right check.
 namespace fieldproof::conformance {
@@ -30,13 +29,11 @@ FoundCycle drive_random_octets(SlaveBench& bench, bool is_id_cycle, std::size_t 
 void reject_short_cycle(SlaveBench& bench, CaseJudge& judge, bool is_id_cycle, std::size_t octets) {
   const FoundCycle left = drive_random_octets(bench, is_id_cycle, octets);
   const std::uint16_t marked = bench.rules().status_marked;
-  judge.expect(left.is_found && (left.status & marked) == marked, "short_cycle_accepted", [&] {
-    return Mismatch{
-        .expected = {fmt::format("{} cycle of {} octets leaves marked: the register and the loopback word "
-                                 "do not fit in",
-                                 is_id_cycle ? "an ID" : "a data", octets)},
-        .actual = left.is_found ? fmt::format("status word {:04X}h", left.status) : "no whole cycle left"};
-  });
+  judge.expect(
+      left.is_found && (left.status & marked) == marked, "short_cycle_accepted",
+      fmt::format("{} cycle of {} octets leaves marked: the register and the loopback word do not fit in",
+                  is_id_cycle ? "an ID" : "a data", octets),
+      left.is_found ? fmt::format("status word {:04X}h", left.status) : "no whole cycle left");
   expect_no_change(bench, judge, "output_changed_by_rejected_cycle",
                    fmt::format("a cycle of {} octets is too short", octets));
 }
@@ -52,53 +49,54 @@ std::vector<std::size_t> short_lengths(SlaveBench& bench, std::size_t least) {
   return lengths;
 }
 
-void short_cycles_are_rejected(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
-  expect_good_cycle(bench, judge, "valid_cycle_rejected");
-  const std::size_t least = 2 * bench.words() + kLoopbackOctets;
-  for (const std::size_t octets : short_lengths(bench, least))
-    reject_short_cycle(bench, judge, false, octets);
-  bench.id_cycle(bench.interfaces_off());
-  const std::uint16_t message = bench.rules().message_check_error;
-  judge.expect((id_register(bench, judge) & message) != 0, "message_missing", [&] {
-    return Mismatch{.expected = {fmt::format("message bit {:04X}h: cycles were too short", message)},
-                    .actual = fmt::format("ID register {:04X}h", id_register(bench, judge))};
-  });
+std::size_t least_octets(const SlaveScene& scene) {
+  return 2 * scene.bench.words() + kLoopbackOctets;
+}
+
+void reject_short_data_cycles(SlaveScene& scene) {
+  for (const std::size_t octets : short_lengths(scene.bench, least_octets(scene)))
+    reject_short_cycle(scene.bench, scene.judge, false, octets);
+}
+
+void reject_short_id_cycles(SlaveScene& scene) {
   for (std::size_t octets = 1; octets < kIdRegisterOctets + kLoopbackOctets; ++octets)
-    reject_short_cycle(bench, judge, true, octets);
-  bench.terminals().forget_changes();
-  // The shortest one that there is.
-  const FoundCycle left = drive_random_octets(bench, false, least);
-  judge.expect(left.is_found && left.status == bench.rules().status_clean, "valid_cycle_rejected",
-               "a cycle of register and loopback word is accepted", "its status word did not leave clean");
-  const std::span<const SeenTelegram> in = bench.in().data_telegrams();
-  if (in.size() >= least)
-    expect_outputs(bench, judge, words_held(in.first(least), bench.words()), "valid_cycle_rejected");
+    reject_short_cycle(scene.bench, scene.judge, true, octets);
+}
+
+void accept_shortest_data_cycle(SlaveScene& scene) {
+  const std::size_t least = least_octets(scene);
+  drive_random_octets(scene.bench, false, least);
+  scene.judge.expect(left_clean(scene.bench), "valid_cycle_rejected",
+                     "a cycle of register and loopback word is accepted",
+                     "its status word did not leave clean");
+  const std::span<const SeenTelegram> in = scene.bench.in().data_telegrams();
+  if (in.size() < least) return;
+  expect_outputs(scene.bench, scene.judge, words_held(in.first(least), scene.bench.words()),
+                 "valid_cycle_rejected");
 }
 
 }  // namespace
 
 std::vector<SlaveCase> slave_short_cycle_cases() {
-  std::vector<SlaveCase> cases;
-  cases.push_back(
-      {{.id = "interbus/slave/frame_check/cycle_shorter_than_the_register_is_rejected",
-        .purpose = "IS-43",
-        .requirement = "A ring is never shorter than a slave's register and the loopback word: a cycle with "
-                       "fewer octets is an error, however well its check fits.",
-        .reference = sources::own("fewer telegrams than register and loopback word are an error"),
-        .details = {details::message()},
-        .stimulus =
-            "Data and ID cycles of 1 octet up to one less than register and loopback word have, random, "
-            "with their right check; an ID cycle; a data cycle of exactly the register and two octets.",
-        .expected = "The short ones leave marked, change no output and set the message of a check error; the "
-                    "last one is accepted.",
-        .tags = {"must"},
-        .catches = {{"takes_a_cycle_one_telegram_short", "short_cycle_accepted"},
-                    {"does_not_look_at_the_length", "short_cycle_accepted"},
-                    {"tells_no_check_error", "message_missing"}},
-        .not_applicable = for_every_slave()},
-       short_cycles_are_rejected});
-  return cases;
+  using namespace slave_chart;
+  const std::string right =
+      "of 1 octet up to one less than register and loopback word have, random, with their right check";
+  return {slave_case(
+      "frame_check/cycle_shorter_than_the_register_is_rejected", "IS-43",
+      "A ring is never shorter than a slave's register and the loopback word: a cycle with fewer octets is "
+      "an error, however well its check fits.",
+      sources::own("fewer telegrams than register and loopback word are an error"),
+      {{"takes_a_cycle_one_telegram_short", "short_cycle_accepted"},
+       {"does_not_look_at_the_length", "short_cycle_accepted"},
+       {"tells_no_check_error", "message_missing"}},
+      {.steps = {identified(),
+                 good_cycle(),
+                 {"data cycles " + right, "they leave marked, no output changes", reject_short_data_cycles},
+                 check_error(true, "message_missing", "cycles were too short"),
+                 {"ID cycles " + right, "they leave marked, no output changes", reject_short_id_cycles},
+                 {"a data cycle of exactly register and loopback word", "it is accepted",
+                  accept_shortest_data_cycle}}},
+      {.details = {details::message()}})};
 }
 
 }  // namespace fieldproof::conformance

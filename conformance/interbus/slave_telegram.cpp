@@ -1,125 +1,109 @@
 #include <fmt/format.h>
 
-#include "conformance/interbus/slave_cases.hpp"
-#include "conformance/interbus/slave_expect.hpp"
+#include <array>
+
+#include "conformance/interbus/slave_scene.hpp"
 
 // IS-17 to IS-22 and IS-26: headers, stop bits, glitches and status telegrams inside a cycle.
 namespace fieldproof::conformance {
 namespace {
 
-// Sends a data cycle whose telegram k arrives with one level flipped; then requires that no output changed
-// and that the next clean cycle is accepted.
-void reject_flipped_level(SlaveBench& bench, CaseJudge& judge, std::size_t k, unsigned level,
-                          std::string_view recovery_reason, unsigned status_between = 2) {
-  bench.begin();
-  std::vector<std::uint16_t> words = bench.random_words();
-  for (unsigned word = 0; word < bench.words(); ++word)
-    words[word] = static_cast<std::uint16_t>(~bench.outputs()[word]);
-  const CyclePlace& cycle = bench.append_data_cycle(words);
-  bench.channel().on_next().flip(cycle.level_of(k, level));
-  bench.send();
-  // One early check phase in 256, and few other faults in headers, leave a cycle whose check fits by chance:
-  // no slave can know, so it is not judged.
-  FoundCycle arrived;
-  find_last_cycle(bench.in().data_telegrams(), arrived);
-  if (!is_right_data_cycle(bench, arrived)) {
-    expect_no_change(bench, judge, "output_changed_by_rejected_cycle",
-                     fmt::format("telegram {} of the cycle arrived with level {} flipped", k, level));
-  }
-  bench.terminals().forget_changes();
-  bench.status_telegrams(status_between);
-  expect_good_cycle(bench, judge, recovery_reason);
+using namespace slave_chart;
+
+std::vector<SlaveStep> start() {
+  return {identified(), good_cycle()};
 }
 
-std::size_t transfer_telegrams(SlaveBench& bench) {
-  bench.begin();
-  return bench.append_data_cycle(bench.random_words()).octets;
+using LevelOf = unsigned (*)(const TrainWriter&);
+
+template <line::HeaderLevel kWhich>
+unsigned header(const TrainWriter& train) {
+  return train.header_level(kWhich);
 }
 
-void flip_everywhere(SlaveBench& bench, CaseJudge& judge, line::HeaderLevel which, std::size_t telegrams) {
-  const unsigned level = bench.train().header_level(which);
-  for (unsigned round = 0; round < bench.volume(1U, 20U); ++round) {
-    for (std::size_t k = 0; k < telegrams; ++k) reject_flipped_level(bench, judge, k, level, "no_recovery");
-  }
+// A cycle with a fault has no effect, and the next one is taken over.
+std::vector<SlaveStep> without_effect(SlaveStep fault, std::string reason_of_recovery) {
+  return {std::move(fault), not_taken_over(), status_telegrams(2), good_cycle(std::move(reason_of_recovery))};
 }
 
-void start(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
-  expect_good_cycle(bench, judge, "valid_cycle_rejected");
+// Of each telegram but the last ones.
+SlaveChart flipped_in_turn(std::string_view what, LevelOf level, std::size_t last) {
+  return {.rounds = {1, 20},
+          .steps = without_effect(
+              flipped(fmt::format("a data cycle in which its {} is flipped at the slave's receiver", what),
+                      [level, last](SlaveScene& scene, const CyclePlace& cycle) {
+                        return cycle.level_of(telegram_in_turn(scene, cycle, last),
+                                              level(scene.bench.train()));
+                      }),
+              "no_recovery"),
+          .first = start(),
+          .walk = each_telegram(
+              last == 0 ? "each telegram of data and check phase" : "each telegram of the data phase", last)};
 }
 
-void select_flipped(SlaveBench& bench, CaseJudge& judge) {
-  start(bench, judge);
-  flip_everywhere(bench, judge, line::HeaderLevel::select, transfer_telegrams(bench));
+SlaveChart missing_stop_chart() {
+  constexpr std::array kGaps{2U, 0U, 13U};
+  const Walk<SlaveScene> walk =
+      each_telegram("each telegram, with gaps of 2, 0 and 13 bits between telegrams", 0, kGaps.size());
+  std::vector<SlaveStep> steps = without_effect(stop_bit_missing(), "no_resynchronisation");
+  steps[0].run = [flip = steps[0].run, count = walk.count, gaps = kGaps](SlaveScene& scene) {
+    scene.bench.train().set_gap(gaps.at(scene.round * gaps.size() / count(scene)));
+    flip(scene);
+  };
+  return {.steps = std::move(steps), .first = start(), .walk = walk};
 }
 
-void flag_flipped(SlaveBench& bench, CaseJudge& judge) {
-  start(bench, judge);
-  flip_everywhere(bench, judge, line::HeaderLevel::flag, transfer_telegrams(bench) + 4);
+unsigned control_level(const SlaveScene& scene) {
+  return scene.bench.train().header_level(line::HeaderLevel::control);
 }
 
-void check_phase_early_or_late(SlaveBench& bench, CaseJudge& judge) {
-  start(bench, judge);
-  const std::size_t transfer = transfer_telegrams(bench);
-  const unsigned level = bench.train().header_level(line::HeaderLevel::control);
-  for (unsigned round = 0; round < bench.volume(4U, 100U); ++round)
-    reject_flipped_level(bench, judge, transfer - 1, level, "no_recovery");
-  // One telegram late: the slave takes the first check telegram for data and cannot know better. What it does
-  // is told; only that it goes on is required.
+// One telegram late: the slave takes the first check telegram for data and cannot know better. What it does
+// is recorded; only that it goes on is required.
+void late_check_phases(SlaveScene& scene) {
+  const SlaveStep late = flipped("", [](SlaveScene& s, const CyclePlace& cycle) {
+    return cycle.level_of(cycle.octets, control_level(s));
+  });
   unsigned changed = 0;
-  const unsigned rounds = bench.volume(4U, 100U);
-  for (unsigned round = 0; round < rounds; ++round) {
-    bench.begin();
-    const CyclePlace& cycle = bench.append_data_cycle(bench.random_words());
-    bench.channel().on_next().flip(cycle.level_of(transfer, level));
-    bench.send();
-    if (!bench.changes().empty()) ++changed;
-    bench.status_telegrams(2);
-    expect_good_cycle(bench, judge, "no_recovery");
+  for (unsigned n = scene.bench.volume(4U, 100U); n > 0; --n) {
+    late.run(scene);
+    if (!scene.bench.changes().empty()) ++changed;
+    scene.bench.status_telegrams(2);
+    expect_good_cycle(scene.bench, scene.judge, "no_recovery");
   }
-  judge.measure("cycles with a late check phase that changed outputs", "of the rounds", changed);
+  scene.judge.measure("cycles with a late check phase that changed outputs", "of the rounds", changed);
 }
 
-void stop_level_missing(SlaveBench& bench, CaseJudge& judge) {
-  start(bench, judge);
-  const std::size_t telegrams = transfer_telegrams(bench) + 4;
-  for (const unsigned gap : {2U, 0U, 13U}) {
-    for (std::size_t k = 0; k < telegrams; ++k) {
-      bench.train().set_gap(gap);
-      reject_flipped_level(bench, judge, k, TrainWriter::kStopLevel, "no_resynchronisation");
-    }
-  }
-  bench.train().set_gap(2);
-}
-
-// ---- glitches on the idle line ----
-
-constexpr unsigned kGlitchLevelsPerBit = 20;
+constexpr std::size_t kGlitchLevelsPerBit = 20;
 
 // One low pulse on the idle line, idle line after it, then a data cycle, all in one waveform; pulse and idle
 // line in twentieths of a bit.
-void drive_glitch_and_cycle(SlaveBench& bench, std::size_t low, std::size_t idle,
-                            std::span<const std::uint16_t> words) {
+void drive_glitch_and_cycle(SlaveScene& scene, std::size_t low, std::size_t idle) {
+  SlaveBench& bench = scene.bench;
+  scene.fault = fmt::format("low pulse of {}/20 of a bit with {}/20 bits of idle line after", low, idle);
+  scene.words = inverted_outputs(bench);
   line::Waveform wave{bench.now(), bench.rules().bit_rate * std::int64_t{kGlitchLevelsPerBit}, {}};
   wave.levels.append_idle(4 * kGlitchLevelsPerBit);
   wave.levels.append_fill(false, low);
   wave.levels.append_idle(idle);
-  const line::Levels cycle = bench.direct_data_cycle(words, 2);
+  const line::Levels cycle = bench.direct_data_cycle(scene.words, 2);
   for (std::size_t n = 0; n < cycle.size(); ++n) wave.levels.append_fill(cycle[n], kGlitchLevelsPerBit);
   wave.levels.append_idle(4 * kGlitchLevelsPerBit);
   bench.drive_at_receiver(wave);
 }
 
-std::vector<std::uint16_t> other_words(SlaveBench& bench) {
-  std::vector<std::uint16_t> words = bench.random_words();
-  for (unsigned word = 0; word < words.size(); ++word)
-    words[word] = static_cast<std::uint16_t>(~bench.outputs()[word]);
-  return words;
+// 0.6 of a bit is a start bit. The least idle line that is allowed for, a bit more, then anything.
+void drive_long_glitch(SlaveScene& scene) {
+  constexpr std::size_t kLeast = std::size_t{line::kDataTelegramLevels} * kGlitchLevelsPerBit;
+  const std::size_t more =
+      scene.round < 20 ? scene.round : scene.bench.random().below(40 * kGlitchLevelsPerBit);
+  drive_glitch_and_cycle(scene, 12, kLeast + more);
 }
 
 // The cycle after the glitch left and was taken over, and nothing before it was.
-void expect_cycle_behind_glitch(SlaveBench& bench, CaseJudge& judge, std::span<const std::uint16_t> words,
-                                const std::string& glitch) {
+void expect_cycle_after_glitch(SlaveScene& scene) {
+  SlaveBench& bench = scene.bench;
+  CaseJudge& judge = scene.judge;
+  const std::string& glitch = scene.fault;
   FoundCycle arrived;
   FoundCycle left;
   find_last_cycle(bench.in().data_telegrams(), arrived);
@@ -137,233 +121,165 @@ void expect_cycle_behind_glitch(SlaveBench& bench, CaseJudge& judge, std::span<c
                       .first_difference = glitch};
     });
   }
-  expect_outputs(bench, judge, words, "cycle_after_glitch_rejected");
+  expect_outputs(bench, judge, scene.words, "cycle_after_glitch_rejected");
   judge.expect(left.status == bench.rules().status_clean, "status_word_wrong",
                "an accepted cycle leaves with a clean status word",
                fmt::format("status word {:04X}h after the {}", left.status, glitch));
   bench.terminals().forget_changes();
 }
 
-void expect_nothing_before_the_cycle(SlaveBench& bench, CaseJudge& judge, const std::string& glitch) {
-  const std::span<const SeenTelegram> out = bench.out().telegrams();
-  const bool is_first = out.empty() || bench.in().telegrams().empty() ||
-                        bench.out().start_of(out[0]) >= bench.in().start_of(bench.in().telegrams()[0]);
-  judge.expect(is_first && out.size() <= bench.in().telegrams().size(), "glitch_taken_for_telegram", [&] {
-    return Mismatch{.expected = {"nothing leaves but the cycle"},
-                    .actual = describe(bench.out(), out[0], bench.in().start_of(bench.in().telegrams()[0])) +
-                              ", reckoned from the cycle",
-                    .time = bench.out().start_of(out[0]),
-                    .first_difference = glitch};
-  });
+void expect_nothing_before_the_cycle(SlaveScene& scene) {
+  LineView& in = scene.bench.in();
+  LineView& out = scene.bench.out();
+  const bool is_first = out.telegrams().empty() || in.telegrams().empty() ||
+                        out.start_of(out.telegrams()[0]) >= in.start_of(in.telegrams()[0]);
+  scene.judge.expect(
+      is_first && out.telegrams().size() <= in.telegrams().size(), "glitch_taken_for_telegram", [&] {
+        const SeenTelegram& first = out.telegrams()[0];
+        return Mismatch{
+            .expected = {"nothing leaves but the cycle"},
+            .actual = describe(out, first, in.start_of(in.telegrams()[0])) + ", reckoned from the cycle",
+            .time = out.start_of(first),
+            .first_difference = scene.fault};
+      });
 }
 
-void short_glitch_is_ignored(SlaveBench& bench, CaseJudge& judge) {
-  bench.require_line_interface();
-  start(bench, judge);
-  unsigned idle = 14;  // bits, down to 1 and again
-  for (unsigned round = 0; round < bench.volume(2U, 50U); ++round) {
-    for (unsigned low = 2; low <= 8; ++low, idle = idle > 1 ? idle - 1 : 14) {
-      const std::string glitch =
-          fmt::format("low pulse of {}/20 of a bit with {} bits of idle line after", low, idle);
-      const std::vector<std::uint16_t> words = other_words(bench);
-      drive_glitch_and_cycle(bench, low, std::size_t{idle} * kGlitchLevelsPerBit, words);
-      expect_nothing_before_the_cycle(bench, judge, glitch);
-      expect_cycle_behind_glitch(bench, judge, words, glitch);
-    }
-  }
+void drive_short_glitch(SlaveScene& scene) {
+  scene.bench.require_line_interface();
+  drive_glitch_and_cycle(scene, 2 + scene.round % 7, (14 - scene.round % 14) * kGlitchLevelsPerBit);
+  expect_nothing_before_the_cycle(scene);
 }
 
-void long_glitch_costs_no_cycle(SlaveBench& bench, CaseJudge& judge) {
-  start(bench, judge);
-  constexpr std::size_t kLeast = std::size_t{line::kDataTelegramLevels} * kGlitchLevelsPerBit;
-  for (unsigned round = 0; round < bench.volume(10U, 200U); ++round) {
-    // 0.6 of a bit is a start bit. The least idle line that is allowed for, a bit more, then anything.
-    const std::size_t more =
-        round < 20 ? round : static_cast<std::size_t>(bench.random().below(40 * kGlitchLevelsPerBit));
-    const std::vector<std::uint16_t> words = other_words(bench);
-    drive_glitch_and_cycle(bench, 12, kLeast + more, words);
-    expect_cycle_behind_glitch(
-        bench, judge, words,
-        fmt::format("low pulse of 12/20 of a bit with {}/20 bits of idle line after", kLeast + more));
-  }
+SlaveStep cycle_after_glitch() {
+  return expected<SlaveScene>("the cycle is taken over, no output changes before its check phase",
+                              expect_cycle_after_glitch);
 }
 
-// ---- status telegrams inside a cycle ----
-
-void status_inside_a_cycle(SlaveBench& bench, CaseJudge& judge) {
-  start(bench, judge);
-  for (const unsigned between : {1U, 2U, 5U}) {
-    for (unsigned round = 0; round < bench.volume(2U, 50U); ++round) {
-      bench.set_inputs(bench.random_words());
-      const std::vector<std::uint16_t> words = bench.random_words();
-      bench.begin();
-      bench.train().set_status_between(between);
-      bench.append_data_cycle(words);
-      bench.train().set_status_between(0);
-      bench.send();
-      expect_answer(bench, judge, 0, bench.data_load());
-      expect_outputs(bench, judge, words, "valid_cycle_rejected");
-      expect_status_telegrams(bench, judge);
-    }
-  }
+void send_status_inside(SlaveScene& scene) {
+  constexpr std::array kBetween{1U, 2U, 5U};
+  SlaveBench& bench = scene.bench;
+  bench.set_inputs(bench.random_words());
+  scene.words = bench.random_words();
+  bench.begin();
+  bench.train().set_status_between(kBetween.at(scene.round % kBetween.size()));
+  bench.append_data_cycle(scene.words);
+  bench.train().set_status_between(0);
+  bench.send();
 }
 
-// What is judged are the monitors of the bench.
-void transmissions_do_not_overlap(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
-  for (int n = bench.volume(5, 50); n > 0; --n) {
-    bench.data_cycle(bench.random_words());
-    judge.expect(!bench.out().data_telegrams().empty(), "telegram_lost",
-                 "data telegrams leave: there is something that could overlap", "none has left");
-    bench.status_telegrams(2);
-  }
+void leave_something(SlaveScene& scene) {
+  scene.judge.expect(!scene.bench.out().data_telegrams().empty(), "telegram_lost",
+                     "data telegrams leave: there is something that could overlap", "none has left");
 }
 
-void add_cases_of_wrong_bits(std::vector<SlaveCase>& cases) {
-  cases.push_back(
-      {{.id = "interbus/slave/telegram/flipped_select_bit_rejects_the_cycle",
-        .purpose = "IS-17",
-        .requirement =
-            "The select bit (SL) of a telegram is not inside the frame check. A telegram whose SL says "
-            "ID cycle inside the data phase breaks the data cycle, which must not be taken over.",
-        .reference = sources::practical_guide("SL is FALSE while the data phase runs"),
-        .details = {details::status_coding()},
-        .stimulus =
-            "Data cycles in which the SL bit of one telegram of the data phase is flipped at the slave's "
-            "receiver, each telegram in turn; two status telegrams, then a clean cycle.",
-        .expected = "No output changes; the clean cycle is accepted.",
-        .tags = {"must"},
-        .catches = {{"ignores_select_inside_a_cycle", "output_changed_by_rejected_cycle"}},
-        .not_applicable = for_outputs()},
-       select_flipped});
-  cases.push_back(
-      {{.id = "interbus/slave/telegram/early_check_phase_rejects_the_cycle",
-        .purpose = "IS-18",
-        .requirement =
-            "A check phase that begins one telegram early makes the slave compare other octets than "
-            "the check: the cycle must not be taken over, except where they fit by chance (one cycle "
-            "in 256, whose last data octet equals the first check octet of those before it). One that "
-            "begins late shifts the data, which the slave cannot see; the master sees it.",
-        .reference = sources::practical_guide("CR is TRUE in the check phase"),
-        .details = {details::status_coding()},
-        .stimulus =
-            "Data cycles in which the CR bit of the last data telegram is set at the slave's receiver; "
-            "then cycles in which that of the first check telegram is cleared. A clean cycle after each.",
-        .expected = "No output changes by an early check phase that does not fit; the clean cycles are "
-                    "accepted. Whether a late "
-                    "check phase changed outputs is recorded.",
-        .tags = {"must"},
-        .catches = {{"latches_at_end_of_data_phase", "output_changed_by_rejected_cycle"},
-                    {"locks_up_after_rejected_cycle", "no_recovery"}},
-        .not_applicable = for_outputs()},
-       check_phase_early_or_late});
-  cases.push_back(
-      {{.id = "interbus/slave/telegram/flipped_flag_rejects_the_cycle",
-        .purpose = "IS-19",
-        .requirement =
-            "The flag bit (FL) is not inside the frame check. A data telegram that arrives as a status "
-            "telegram makes the ring eight bits short and leaves data levels that may look like other "
-            "telegrams: the cycle must not be taken over.",
-        .reference = sources::derived("five header bits, outside the checksum"),
-        .details = {details::status_coding()},
-        .stimulus =
-            "Data cycles in which the FL bit of one telegram is flipped at the slave's receiver, each "
-            "telegram of data and check phase in turn; two status telegrams, then a clean cycle.",
-        .expected = "No output changes; the clean cycle is accepted.",
-        .tags = {"must"},
-        .catches = {{"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"},
-                    {"locks_up_after_rejected_cycle", "no_recovery"}},
-        .not_applicable = for_outputs()},
-       flag_flipped});
-  cases.push_back(
-      {{.id = "interbus/slave/telegram/missing_stop_bit_rejects_the_cycle",
-        .purpose = "IS-20",
-        .requirement =
-            "A telegram without its stop bit is broken, whatever its octet says: its cycle is not taken "
-            "over. The receiver finds the telegrams after it again within two status telegrams.",
-        .reference = sources::own("resynchronisation within two status telegrams"),
-        .details = {details::status_coding()},
-        .stimulus =
-            "Data cycles in which the stop bit of one telegram arrives as 0, each telegram in turn, with "
-            "gaps of 2, 0 and 13 bits; two status telegrams, then a clean cycle.",
-        .expected = "No output changes; the clean cycle is accepted.",
-        .tags = {"must"},
-        .catches = {{"stop_bit_not_checked", "output_changed_by_rejected_cycle"},
-                    {"does_not_resynchronise", "no_resynchronisation"}},
-        .not_applicable = for_outputs()},
-       stop_level_missing});
+std::vector<SlaveCase> cases_of_headers() {
+  return {
+      slave_case("telegram/flipped_select_bit_rejects_the_cycle", "IS-17",
+                 "The select bit (SL) of a telegram is not inside the frame check. A telegram whose SL says "
+                 "ID cycle inside the data phase breaks the data cycle, which must not be taken over.",
+                 sources::practical_guide("SL is FALSE while the data phase runs"),
+                 {{"ignores_select_inside_a_cycle", "output_changed_by_rejected_cycle"}},
+                 flipped_in_turn("SL bit", header<line::HeaderLevel::select>, 4),
+                 {.details = {details::status_coding()}, .only_for = for_outputs()}),
+      slave_case(
+          "telegram/early_check_phase_rejects_the_cycle", "IS-18",
+          "A check phase that begins one telegram early makes the slave compare other octets than the check: "
+          "the cycle must not be taken over, except where they fit by chance (one cycle in 256, whose last "
+          "data octet equals the first check octet of those before it). One that begins late shifts the "
+          "data, which the slave cannot see; the master sees it.",
+          sources::practical_guide("CR is TRUE in the check phase"),
+          {{"latches_at_end_of_data_phase", "output_changed_by_rejected_cycle"},
+           {"locks_up_after_rejected_cycle", "no_recovery"}},
+          {.rounds = {4, 100},
+           .steps = without_effect(flipped("a data cycle in which the CR bit of the last data telegram is "
+                                           "set at the slave's receiver",
+                                           [](SlaveScene& scene, const CyclePlace& cycle) {
+                                             return cycle.level_of(cycle.octets - 1, control_level(scene));
+                                           }),
+                                   "no_recovery"),
+           .first = {identified(),
+                     good_cycle(),
+                     {"100 data cycles in which the CR bit of the first check telegram is cleared at the "
+                      "slave's receiver, a valid one after each",
+                      "the valid ones are taken over; whether a late check phase changed outputs is recorded",
+                      late_check_phases}}},
+          {.details = {details::status_coding()}, .only_for = for_outputs()}),
+      slave_case("telegram/flipped_flag_rejects_the_cycle", "IS-19",
+                 "The flag bit (FL) is not inside the frame check. A data telegram that arrives as a status "
+                 "telegram makes the ring eight bits short and leaves data levels that may look like other "
+                 "telegrams: the cycle must not be taken over.",
+                 sources::derived("five header bits, outside the checksum"),
+                 {{"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"},
+                  {"locks_up_after_rejected_cycle", "no_recovery"}},
+                 flipped_in_turn("FL bit", header<line::HeaderLevel::flag>, 0),
+                 {.details = {details::status_coding()}, .only_for = for_outputs()}),
+      slave_case("telegram/missing_stop_bit_rejects_the_cycle", "IS-20",
+                 "A telegram without its stop bit is broken, whatever its octet says: its cycle is not taken "
+                 "over. The receiver finds the telegrams after it again within two status telegrams.",
+                 sources::own("resynchronisation within two status telegrams"),
+                 {{"stop_bit_not_checked", "output_changed_by_rejected_cycle"},
+                  {"does_not_resynchronise", "no_resynchronisation"}},
+                 missing_stop_chart(), {.details = {details::status_coding()}, .only_for = for_outputs()})};
 }
 
-void add_cases_of_the_line(std::vector<SlaveCase>& cases) {
-  cases.push_back(
-      {{.id = "interbus/slave/telegram/short_glitch_is_ignored",
-        .purpose = "IS-21",
-        .requirement =
-            "A start bit is validated in its middle: a low pulse of less than half a bit on the idle "
-            "line is no telegram.",
-        .reference = sources::own("receiver samples in the middle of the bit, majority of three"),
-        .details = {details::status_coding()},
-        .stimulus =
-            "Low pulses of 0.10 to 0.40 bit on the idle line at the slave's receiver, with 1 to 14 bits of "
-            "idle line after them; then a clean cycle.",
-        .expected = "Nothing leaves but the clean cycle, which is accepted; no output changes before it.",
-        .tags = {"must"},
-        .catches = {{"start_bit_not_validated", "glitch_taken_for_telegram"}},
-        .not_applicable = for_every_slave()},
-       short_glitch_is_ignored});
-  cases.push_back(
-      {{.id = "interbus/slave/telegram/long_glitch_costs_no_cycle",
-        .purpose = "IS-22",
-        .requirement =
-            "A low pulse that passes for a start bit makes one false telegram. It has no effect, and a "
-            "telegram that begins after its 13 bits is received.",
-        .reference = sources::own("a false telegram outside of a cycle is discarded"),
-        .details = {details::status_coding()},
-        .stimulus =
-            "Low pulses of 0.60 bit on the idle line at the slave's receiver, 13 bits of idle line and "
-            "more, then a clean cycle.",
-        .expected = "No output changes by the pulse, and the clean cycle is accepted.",
-        .tags = {"must"},
-        .catches = {{"stray_telegram_spoils_next_cycle", "cycle_after_glitch_rejected"}},
-        .not_applicable = for_every_slave()},
-       long_glitch_costs_no_cycle});
-  cases.push_back(
-      {{.id = "interbus/slave/telegram/status_telegrams_inside_a_cycle_have_no_effect",
-        .purpose = "IS-26",
-        .requirement =
-            "Status telegrams between the data telegrams of a cycle fill pauses of the master; they "
-            "shift nothing and do not enter the frame check.",
-        .reference = sources::phoenix_maintenance("status telegrams in every pause"),
-        .details = details::answer(),
-        .stimulus = "Valid data cycles with 1, 2 and 5 status telegrams after each data telegram.",
-        .expected =
-            "The data telegrams leave as without them, the status telegrams leave, the outputs take over "
-            "the words.",
-        .tags = {"must"},
-        .catches = {{"status_telegram_shifts", "register_content_wrong"}},
-        .not_applicable = for_every_slave()},
-       status_inside_a_cycle});
-  cases.push_back(
-      {{.id = "interbus/slave/telegram/transmissions_do_not_overlap",
-        .purpose = "monitor",
-        .requirement = "A slave begins a transmission when the one before it has left, on each of its lines.",
-        .reference = sources::derived("one telegram after the other on a segment"),
-        .stimulus = "An ID cycle, then data cycles with status telegrams between them.",
-        .expected = "The monitors of the lines that the slave drives see no overlap. They judge every other "
-                    "case too.",
-        .tags = {"must"},
-        .catches = {{"drives_over_itself", "transmissions_overlap"}},
-        .not_applicable = for_every_slave()},
-       transmissions_do_not_overlap});
+std::vector<SlaveCase> cases_of_the_line() {
+  return {
+      slave_case("telegram/short_glitch_is_ignored", "IS-21",
+                 "A start bit is validated in its middle: a low pulse of less than half a bit on the idle "
+                 "line is no telegram.",
+                 sources::own("receiver samples in the middle of the bit, majority of three"),
+                 {{"start_bit_not_validated", "glitch_taken_for_telegram"}},
+                 {{14, 350},
+                  {{"a low pulse of 0.10 to 0.40 bit on the idle line at the slave's receiver, 1 to 14 bits "
+                    "of idle line and a valid data cycle",
+                    "nothing leaves but the cycle", drive_short_glitch},
+                   cycle_after_glitch()},
+                  start()},
+                 {.details = {details::status_coding()}}),
+      slave_case("telegram/long_glitch_costs_no_cycle", "IS-22",
+                 "A low pulse that passes for a start bit makes one false telegram. It has no effect, and a "
+                 "telegram that begins after its 13 bits is received.",
+                 sources::own("a false telegram outside of a cycle is discarded"),
+                 {{"stray_telegram_spoils_next_cycle", "cycle_after_glitch_rejected"}},
+                 {{10, 200},
+                  {stimulus<SlaveScene>("a low pulse of 0.60 bit on the idle line at the slave's receiver, "
+                                        "13 bits of idle line or more and a valid data cycle",
+                                        drive_long_glitch),
+                   cycle_after_glitch()},
+                  start()},
+                 {.details = {details::status_coding()}}),
+      slave_case("telegram/status_telegrams_inside_a_cycle_have_no_effect", "IS-26",
+                 "Status telegrams between the data telegrams of a cycle fill pauses of the master; they "
+                 "shift nothing and do not enter the frame check.",
+                 sources::phoenix_maintenance("status telegrams in every pause"),
+                 {{"status_telegram_shifts", "register_content_wrong"}},
+                 {{6, 150},
+                  {stimulus<SlaveScene>(
+                       "a valid data cycle with 1, 2 or 5 status telegrams after each data telegram",
+                       send_status_inside),
+                   answered(), shown(),
+                   expected<SlaveScene>(
+                       "the status telegrams leave as they came",
+                       [](SlaveScene& scene) { expect_status_telegrams(scene.bench, scene.judge); })},
+                  start()},
+                 {.details = details::answer()}),
+      slave_case("telegram/transmissions_do_not_overlap", "monitor",
+                 "A slave begins a transmission when the one before it has left, on each of its lines. The "
+                 "monitors of these lines judge every other case too.",
+                 sources::derived("one telegram after the other on a segment"),
+                 {{"drives_over_itself", "transmissions_overlap"}},
+                 {{5, 50},
+                  {data_cycle(),
+                   expected<SlaveScene>("data telegrams leave, and the monitors of the lines see no overlap",
+                                        leave_something),
+                   status_telegrams(2)},
+                  {identified()}})};
 }
 
 }  // namespace
 
 std::vector<SlaveCase> slave_telegram_cases() {
-  std::vector<SlaveCase> cases;
-  add_cases_of_wrong_bits(cases);
-  add_cases_of_the_line(cases);
-  return cases;
+  return joined({cases_of_headers(), cases_of_the_line()});
 }
 
 }  // namespace fieldproof::conformance

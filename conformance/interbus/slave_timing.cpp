@@ -1,25 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "conformance/interbus/slave_cases.hpp"
-#include "conformance/interbus/slave_expect.hpp"
+#include "conformance/interbus/slave_scene.hpp"
 
 // IS-23 to IS-25, IS-37 and IS-38: bit rate, jitter, gaps, delay and retiming.
 namespace fieldproof::conformance {
 namespace {
 
+using namespace slave_chart;
+
 // Words whose bits alternate: a sample that slips by one bit always shows.
 std::vector<std::uint16_t> alternating(const SlaveBench& bench, bool begin_with_one) {
   return std::vector<std::uint16_t>(bench.words(), begin_with_one ? 0xAAAA : 0x5555);
-}
-
-// Whether a data cycle left with a clean status word.
-bool left_clean(SlaveBench& bench) {
-  FoundCycle cycle;
-  find_last_cycle(bench.out().data_telegrams(), cycle);
-  return cycle.is_found && cycle.status == bench.rules().status_clean;
 }
 
 // Whether a waveform that carries a data cycle was accepted: outputs and status word.
@@ -49,40 +44,37 @@ bool accepts_rate(SlaveBench& bench, double percent) {
   return accepted == kRounds;
 }
 
+void accept_rates_within_limit(SlaveScene& scene) {
+  scene.bench.require_line_interface();
+  for (const double percent : {0.1, -0.1, 1.0, -1.0}) {
+    scene.judge.expect(accepts_rate(scene.bench, percent), "rate_within_limit_rejected",
+                       fmt::format("cycles at {:+.1f} % of the bit rate are accepted", percent),
+                       "one was rejected");
+  }
+}
+
 // None of the cycles has an effect: whatever the slave reads, its check does not fit.
-void expect_rate_rejected(SlaveBench& bench, CaseJudge& judge, double percent) {
-  for (unsigned round = 0; round < kRounds; ++round) {
-    const std::vector<std::uint16_t> words = alternating(bench, round % 2 == 0);
-    line::Waveform wave = cycle_at_rate(bench, percent, words);
-    bench.drive_at_receiver(wave);
-    judge.expect(!left_clean(bench), "rate_beyond_limit_accepted", [&] {
-      return Mismatch{.expected = {fmt::format("cycles at {:+.1f} % of the bit rate are rejected", percent)},
-                      .actual = "one left with a clean status word"};
-    });
-    expect_no_change(bench, judge, "output_changed_by_rejected_cycle",
+void reject_rates_beyond_limit(SlaveScene& scene) {
+  for (unsigned n = 0; n < 2 * kRounds; ++n) {
+    const double percent = n < kRounds ? 6.0 : -6.0;
+    const std::vector<std::uint16_t> words = alternating(scene.bench, n % 2 == 0);
+    line::Waveform wave = cycle_at_rate(scene.bench, percent, words);
+    scene.bench.drive_at_receiver(wave);
+    scene.judge.expect(!left_clean(scene.bench), "rate_beyond_limit_accepted",
+                       fmt::format("cycles at {:+.1f} % of the bit rate are rejected", percent),
+                       "one left with a clean status word");
+    expect_no_change(scene.bench, scene.judge, "output_changed_by_rejected_cycle",
                      fmt::format("the cycle came at {:+.1f} % of the bit rate", percent));
   }
 }
 
-void bit_rate_tolerance(SlaveBench& bench, CaseJudge& judge) {
-  bench.require_line_interface();
-  bench.bring_up();
-  expect_good_cycle(bench, judge, "valid_cycle_rejected");
-  for (const double percent : {0.1, -0.1, 1.0, -1.0}) {
-    judge.expect(accepts_rate(bench, percent), "rate_within_limit_rejected", [&] {
-      return Mismatch{.expected = {fmt::format("cycles at {:+.1f} % of the bit rate are accepted", percent)},
-                      .actual = "one was rejected"};
-    });
-  }
-  for (const double percent : {6.0, -6.0}) expect_rate_rejected(bench, judge, percent);
-  // Between the limits nothing is required; what the receiver stands is told.
+// Between the limits nothing is required; what the receiver stands is recorded.
+void measure_accepted_rates(SlaveScene& scene) {
   for (const double sign : {1.0, -1.0}) {
     double most = 1;
-    while (most < 5.5 && accepts_rate(bench, sign * (most + 0.5))) most += 0.5;
-    judge.measure(sign > 0 ? "accepted above the bit rate" : "accepted below the bit rate", "%", most);
+    while (most < 5.5 && accepts_rate(scene.bench, sign * (most + 0.5))) most += 0.5;
+    scene.judge.measure(sign > 0 ? "accepted above the bit rate" : "accepted below the bit rate", "%", most);
   }
-  bench.status_telegrams(2);
-  expect_good_cycle(bench, judge, "no_recovery");
 }
 
 // ---- edges ----
@@ -105,51 +97,38 @@ line::Levels with_moved_edges(const line::Levels& levels, Shift&& shift) {
   return moved;
 }
 
-void edge_jitter(SlaveBench& bench, CaseJudge& judge) {
+void accept_jitter(SlaveScene& scene) {
+  SlaveBench& bench = scene.bench;
   bench.require_line_interface();
-  bench.bring_up();
-  for (unsigned n = 0; n < bench.volume(40U, 400U); ++n) {
-    const std::vector<std::uint16_t> words =
-        n % 2 == 0 ? alternating(bench, n % 4 == 0) : bench.random_words();
-    const line::Levels levels = with_moved_edges(bench.direct_data_cycle(words, 2), [&](bool) {
-      // At the limits more often than between them.
-      const std::int64_t drawn = bench.random().between(-5, 5);
-      return std::clamp<std::int64_t>(drawn, -3, 3);
-    });
-    judge.expect(is_accepted(bench, {bench.now(), bench.rules().bit_rate * kPerBit, levels}, words),
-                 "jitter_rejected", [&] {
-                   return Mismatch{.expected = {"a cycle whose edges lie within 15 % of a bit is accepted"},
-                                   .actual = "it was rejected",
-                                   .first_difference = fmt::format("jittered cycle {}", n)};
-                 });
-  }
+  const std::vector<std::uint16_t> words =
+      scene.round % 2 == 0 ? alternating(bench, scene.round % 4 == 0) : bench.random_words();
+  const line::Levels levels = with_moved_edges(bench.direct_data_cycle(words, 2), [&](bool) {
+    // At the limits more often than between them.
+    return std::clamp<std::int64_t>(bench.random().between(-5, 5), -3, 3);
+  });
+  scene.judge.expect(is_accepted(bench, {bench.now(), bench.rules().bit_rate * kPerBit, levels}, words),
+                     "jitter_rejected", [&] {
+                       return Mismatch{
+                           .expected = {"a cycle whose edges lie within 15 % of a bit is accepted"},
+                           .actual = "it was rejected",
+                           .first_difference = fmt::format("jittered cycle {}", scene.round)};
+                     });
 }
 
-void gaps_between_telegrams(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
-  for (unsigned round = 0; round < bench.volume(2U, 50U); ++round) {
-    for (const unsigned gap : {0U, 1U, 2U, 13U, 100U}) {
-      const std::vector<std::uint16_t> words = bench.random_words();
-      bench.set_inputs(bench.random_words());
-      bench.train().set_gap(gap);
-      bench.data_cycle(words);
-      judge.expect(
-          bench.out().data_telegrams().size() == bench.in().data_telegrams().size(), "gap_rejected", [&] {
-            return Mismatch{.expected = {fmt::format("all telegrams pass, {} bits apart", gap)},
-                            .actual = fmt::format("{} of {} passed", bench.out().data_telegrams().size(),
-                                                  bench.in().data_telegrams().size())};
-          });
-      expect_answer(bench, judge, 0, bench.data_load());
-      expect_outputs(bench, judge, words, "gap_rejected");
-    }
-  }
-  bench.train().set_gap(2);
+void cycle_with_gaps(SlaveScene& scene) {
+  constexpr std::array kGaps{0U, 1U, 2U, 13U, 100U};
+  const unsigned gap = kGaps.at(scene.round % kGaps.size());
+  scene.bench.train().set_gap(gap);
+  data_cycle().run(scene);
+  const std::size_t left = scene.bench.out().data_telegrams().size();
+  const std::size_t arrived = scene.bench.in().data_telegrams().size();
+  scene.judge.expect(left == arrived, "gap_rejected", fmt::format("all telegrams pass, {} bits apart", gap),
+                     fmt::format("{} of {} passed", left, arrived));
 }
 
 // ---- delay ----
 
 void delay_is_constant(SlaveBench& bench, CaseJudge& judge) {
-  bench.bring_up();
   kernel::Duration least = kernel::Duration::max();
   kernel::Duration most{};
   for (unsigned n = 0; n < bench.volume(40U, 1'000U); ++n) {
@@ -198,7 +177,6 @@ double worst_edge(SlaveBench& bench) {
 
 void pulses_are_retimed(SlaveBench& bench, CaseJudge& judge) {
   bench.require_line_interface();
-  bench.bring_up();
   double worst = 0;
   for (unsigned n = 0; n < bench.volume(8U, 100U); ++n) {
     // Low pulses 15 % of a bit longer, or shorter: rising edges late, or early.
@@ -215,86 +193,77 @@ void pulses_are_retimed(SlaveBench& bench, CaseJudge& judge) {
                        "output_not_retimed");
 }
 
+std::vector<SlaveCase> charted_timing_cases() {
+  return {
+      slave_case("timing/bit_rate_within_one_percent_is_accepted", "IS-23",
+                 "A receiver that starts its clock at the edge of each start bit reads telegrams whose bit "
+                 "rate differs by up to 1 % from its own. At 6 % the thirteenth bit is sampled in its "
+                 "neighbour: such cycles must not pass.",
+                 sources::own("limits of 1 % and 6 %; the geometry of thirteen bits is computed"),
+                 {{"clock_too_fast", "rate_within_limit_rejected"},
+                  {"follows_any_rate", "rate_beyond_limit_accepted"},
+                  {"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"}},
+                 {.steps = {identified(),
+                            good_cycle(),
+                            {"data cycles with alternating bits at +-0.1 and +-1 % of the bit rate",
+                             "every one is accepted", accept_rates_within_limit},
+                            {"such cycles at +-6 %", "no output changes, no status word leaves clean",
+                             reject_rates_beyond_limit},
+                            {"such cycles in steps of 0.5 % between", "how far it reads is recorded",
+                             measure_accepted_rates},
+                            status_telegrams(2),
+                            good_cycle("no_recovery")}},
+                 {.details = {details::status_coding()}, .tags = {"timing"}, .only_for = for_outputs()}),
+      slave_case("timing/edge_jitter_is_accepted", "IS-24",
+                 "Edges that lie within 15 % of a bit of their place are read as if they were at it.",
+                 sources::own("15 % of a bit"), {{"clock_too_fast", "jitter_rejected"}},
+                 {{40, 400},
+                  {{"a data cycle, each edge moved at random by up to 15 % of a bit to either side",
+                    "it is accepted and its words are at the outputs", accept_jitter}},
+                  {identified()}},
+                 {.tags = {"timing"}}),
+      slave_case(
+          "timing/gaps_between_telegrams_are_accepted", "IS-25",
+          "The idle time between the telegrams of a cycle is the master's affair: none, a few bits or many.",
+          sources::derived("the factor 1.15 of the cycle time"),
+          {{"needs_idle_between_telegrams", "gap_rejected"}},
+          {{10, 250},
+           {{"a valid data cycle with 0, 1, 2, 13 or 100 bits of idle line between telegrams",
+             "all telegrams pass", cycle_with_gaps},
+            answered(),
+            shown("gap_rejected")},
+           {identified()}},
+          {.details = details::answer()})};
+}
+
 }  // namespace
 
 std::vector<SlaveCase> slave_timing_cases() {
-  std::vector<SlaveCase> cases;
-  cases.push_back(
-      {{.id = "interbus/slave/timing/bit_rate_within_one_percent_is_accepted",
-        .purpose = "IS-23",
-        .requirement =
-            "A receiver that starts its clock at the edge of each start bit reads telegrams whose bit "
-            "rate differs by up to 1 % from its own. At 6 % the thirteenth bit is sampled in its "
-            "neighbour: such cycles must not pass.",
-        .reference = sources::own("limits of 1 % and 6 %; the geometry of thirteen bits is computed"),
-        .details = {details::status_coding()},
-        .stimulus =
-            "Data cycles with alternating bits at +-0.1, +-1 and +-6 % of the bit rate; then in steps of "
-            "0.5 % between.",
-        .expected = "Up to 1 % every cycle accepted; at 6 % none: no output changes, no status word leaves "
-                    "clean; how far "
-                    "it reads is recorded.",
-        .tags = {"must", "timing"},
-        .catches = {{"clock_too_fast", "rate_within_limit_rejected"},
-                    {"follows_any_rate", "rate_beyond_limit_accepted"},
-                    {"latches_in_spite_of_own_error", "output_changed_by_rejected_cycle"}},
-        .not_applicable = for_outputs()},
-       bit_rate_tolerance});
-  cases.push_back(
-      {{.id = "interbus/slave/timing/edge_jitter_is_accepted",
-        .purpose = "IS-24",
-        .requirement = "Edges that lie within 15 % of a bit of their place are read as if they were at it.",
-        .reference = sources::own("15 % of a bit"),
-        .stimulus = "Data cycles, each edge moved at random by up to 15 % of a bit to either side.",
-        .expected = "Every cycle is accepted and its words are at the outputs.",
-        .tags = {"must", "timing"},
-        .catches = {{"clock_too_fast", "jitter_rejected"}},
-        .not_applicable = for_every_slave()},
-       edge_jitter});
-  cases.push_back(
-      {{.id = "interbus/slave/timing/gaps_between_telegrams_are_accepted",
-        .purpose = "IS-25",
-        .requirement =
-            "The idle time between the telegrams of a cycle is the master's affair: none, a few bits "
-            "or many.",
-        .reference = sources::derived("the factor 1.15 of the cycle time"),
-        .details = details::answer(),
-        .stimulus = "Valid data cycles with 0, 1, 2, 13 and 100 bits of idle line between telegrams.",
-        .expected = "Every cycle is answered and taken over.",
-        .tags = {"must"},
-        .catches = {{"needs_idle_between_telegrams", "gap_rejected"}},
-        .not_applicable = for_every_slave()},
-       gaps_between_telegrams});
-  cases.push_back(
-      {{.id = "interbus/slave/timing/delay_is_constant_and_at_most_three_bits",
-        .purpose = "IS-37",
-        .requirement =
-            "A telegram leaves the last slave of the ring a constant time after it began to arrive, at "
-            "most three bits: the cycle-time formula counts 3 bits for a station, both ways.",
-        .reference = sources::park("section 2.2: the term 3 m of the cycle time"),
-        .stimulus = "Status telegrams and data cycles at random instants.",
-        .expected = "Every telegram leaves after the same delay, at most three bits; the delay is recorded.",
-        .tags = {"must", "timing"},
-        .catches = {{"delays_four_bits", "delay_above_limit"}, {"delay_varies", "delay_not_constant"}},
-        .not_applicable = for_every_slave()},
-       delay_is_constant});
-  cases.push_back(
-      {{.id = "interbus/slave/timing/pulses_leave_retimed",
-        .purpose = "IS-38",
-        .requirement =
-            "A slave regenerates: what arrives with pulses 15 % of a bit too long or too short leaves "
-            "with edges within 3 % of a bit of their place.",
-        .reference = sources::own("15 % and 3 % of a bit"),
-        .stimulus = "Data cycles whose low pulses are all 15 % of a bit longer, then shorter, at the slave's "
-                    "receiver.",
-        .expected =
-            "The cycles are accepted, and every edge that leaves lies within 3 % of a bit of the grid "
-            "of its telegram.",
-        .tags = {"must", "timing"},
-        .catches = {{"does_not_retime", "output_not_retimed"}},
-        .not_applicable = for_every_slave()},
-       pulses_are_retimed});
-  return cases;
+  return joined(
+      {charted_timing_cases(),
+       {slave_case(
+            "timing/delay_is_constant_and_at_most_three_bits", "IS-37",
+            "A telegram leaves the last slave of the ring a constant time after it began to arrive, at most "
+            "three bits: the cycle-time formula counts 3 bits for a station, both ways.",
+            sources::park("section 2.2: the term 3 m of the cycle time"),
+            {{"delays_four_bits", "delay_above_limit"}, {"delay_varies", "delay_not_constant"}},
+            {.steps =
+                 {identified(),
+                  step(
+                      "status telegrams and data cycles at random instants",
+                      "every telegram leaves after the same delay, at most three bits; the delay is recorded",
+                      delay_is_constant)}},
+            {.tags = {"timing"}}),
+        slave_case("timing/pulses_leave_retimed", "IS-38",
+                   "A slave regenerates: what arrives with pulses 15 % of a bit too long or too short leaves "
+                   "with edges within 3 % of a bit of their place.",
+                   sources::own("15 % and 3 % of a bit"), {{"does_not_retime", "output_not_retimed"}},
+                   {.steps = {identified(), step("data cycles whose low pulses are all 15 % of a bit longer, "
+                                                 "then shorter, at the slave's receiver",
+                                                 "the cycles are accepted, and every edge that leaves lies "
+                                                 "within 3 % of a bit of the grid of its telegram",
+                                                 pulses_are_retimed)}},
+                   {.tags = {"timing"}})}});
 }
 
 }  // namespace fieldproof::conformance
