@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/fieldbus_dll/ff_cases.hpp"
+#include "conformance/fieldbus_dll/ff_expect.hpp"
+#include "conformance/fieldbus_dll/link_scene.hpp"
+
+// The words of charts for stations of the profile FF-P, with those of every profile.
+namespace fieldproof::conformance {
+
+// What the steps of one round share.
+struct FfScene final : LinkScene {
+  FfScene(FfBench& bench_, CaseJudge& judge_, unsigned round_)
+      : LinkScene(bench_, judge_, round_, bench_.response_delay()), bench(bench_) {}
+
+  bool submit(Priority priority, const Octets& data) override { return bench.submit(priority, data); }
+  // `answer` is the first DT1, or what returned the token without one.
+  void expect_used(const std::vector<Octets>& data, const Reasons& reasons) override;
+  void expect_serves() override { conformance::expect_serves(bench, judge); }
+
+  // Each but the station's own, turn by turn; in a quick run every seventh.
+  std::uint8_t other_node() const {
+    return static_cast<std::uint8_t>(bench.node() + 1 + turn * bench.volume(7U, 1U));
+  }
+
+  FfBench& bench;
+  std::vector<Octets> written{};  // into the first buffer
+  kernel::Duration latency{};     // from a PT to what is sent under it
+};
+
+using FfStep = ChartStep<FfScene>;
+
+inline FfCase on_chart(TestCase test_case, Chart<FfScene> chart, FfNeeds needs = {}) {
+  return charted<FfCase>(std::move(test_case), std::move(chart), needs);
+}
+
+namespace ff_chart {
+
+using namespace link_chart;
+
+inline FfStep repeat(Rounds times, std::vector<FfStep> steps) {
+  return repeated<FfScene>(times, std::move(steps));
+}
+
+FfStep pt(LinkScene::Priority least, unsigned duration);
+// For the station.
+FfStep pn();
+FfStep cd();
+FfStep activation();
+FfStep probe_response(const std::string& reason, const std::string& reason_wrong = "dlpdu_wrong");
+// Of the first buffer.
+FfStep write(std::size_t size);
+
+}  // namespace ff_chart
+}  // namespace fieldproof::conformance
