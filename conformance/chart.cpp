@@ -29,8 +29,11 @@ void Words::add(const std::string& stimulus, const std::string& expected) {
 }
 
 void Words::add_repeated(const Words& inner, const Rounds& times) {
-  if (!inner.stimuli.empty())
+  if (times.full == 1) {
+    for (const std::string& one : inner.stimuli) add_other(stimuli, one);
+  } else if (!inner.stimuli.empty()) {
     add_other(stimuli, fmt::format("{} times ({})", times.full, fmt::join(inner.stimuli, "; ")));
+  }
   for (const std::string& one : inner.expectations) add_other(expectations, one);
   steps.insert(steps.end(), inner.steps.begin(), inner.steps.end());
 }

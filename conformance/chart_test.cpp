@@ -112,6 +112,14 @@ struct GreaterScene : CountingScene {
   unsigned answers = 0;
 };
 
+TEST(Chart, SaysOfStepsThatStandTogetherWhatItSaysOfTheSameOneByOne) {
+  const TestCase together = case_of({repeated<CountingScene>({}, {ask(), fail_in(9)})}).test_case;
+  const TestCase one_by_one = case_of({ask(), fail_in(9)}).test_case;
+  EXPECT_EQ(together.stimulus, one_by_one.stimulus);
+  EXPECT_EQ(together.expected, one_by_one.expected);
+  EXPECT_EQ(together.steps, one_by_one.steps);
+}
+
 TEST(Chart, TakesStepsOfAScenesBase) {
   const auto answer = stimulus<GreaterScene>(
       "it answers", [](GreaterScene& scene) { scene.asked += std::to_string(++scene.answers); });
