@@ -6,9 +6,9 @@ namespace fieldproof::conformance {
 
 using fieldbus_dll::Priority;
 
-void FfScene::expect_used(const std::vector<Octets>& data, const Reasons& reasons) {
+void FfScene::expect_used(const std::vector<Octets>& dlsdus, const Reasons& reasons) {
   const std::vector<DrivenDlpdu> all = expect_token_used(bench, judge, sent);
-  expect_dlsdus(judge, all, data, reasons.missing, reasons.more, reasons.others);
+  expect_dlsdus(judge, all, dlsdus, reasons.missing, reasons.more, reasons.others);
   answer = all.empty() ? bench.driven().back() : all.front();
 }
 
@@ -19,8 +19,8 @@ FfStep pt(Priority least, unsigned duration) {
               [=](FfScene& scene) { return scene.bench.pt(least, duration); });
 }
 
-FfStep pn() {
-  return send("a PN for the station",
+FfStep pn(const std::string& where) {
+  return send("a PN for the station" + where,
               [](FfScene& scene) { return Octets{scene.bench.rules().codes.pn, scene.bench.node()}; });
 }
 
@@ -40,6 +40,22 @@ FfStep probe_response(const std::string& reason, const std::string& reason_wrong
         return one.octets == Octets{scene.bench.rules().codes.pr, scene.bench.node()};
       },
       reason_wrong);
+}
+
+FfStep delivered(std::string reason) {
+  return expected<FfScene>("it is delivered", [reason = std::move(reason)](FfScene& scene) {
+    FfUpperTester& user = scene.bench.user();
+    scene.judge.expect(user.was_delivered(scene.data), reason, "what was sent to the user is delivered",
+                       "it was not");
+    user.data.clear();
+  });
+}
+
+FfStep nothing_delivered(std::string reason) {
+  return require(
+      "nothing is delivered",
+      [](FfScene& scene) { return scene.bench.user().data.empty() && scene.bench.user().published.empty(); },
+      std::move(reason));
 }
 
 FfStep write(std::size_t size) {

@@ -16,9 +16,9 @@ struct FfScene final : LinkScene {
   FfScene(FfBench& bench_, CaseJudge& judge_, unsigned round_)
       : LinkScene(bench_, judge_, round_, bench_.response_delay()), bench(bench_) {}
 
-  bool submit(Priority priority, const Octets& data) override { return bench.submit(priority, data); }
+  bool submit(Priority priority, const Octets& dlsdu) override { return bench.submit(priority, dlsdu); }
   // `answer` is the first DT1, or what returned the token without one.
-  void expect_used(const std::vector<Octets>& data, const Reasons& reasons) override;
+  void expect_used(const std::vector<Octets>& dlsdus, const Reasons& reasons) override;
   void expect_serves() override { conformance::expect_serves(bench, judge); }
 
   // Each but the station's own, turn by turn; in a quick run every seventh.
@@ -28,6 +28,7 @@ struct FfScene final : LinkScene {
 
   FfBench& bench;
   std::vector<Octets> written{};  // into the first buffer
+  DrivenDlpdu before{};           // a DT3 before `answer`
   kernel::Duration latency{};     // from a PT to what is sent under it
 };
 
@@ -46,11 +47,14 @@ inline FfStep repeat(Rounds times, std::vector<FfStep> steps) {
 }
 
 FfStep pt(LinkScene::Priority least, unsigned duration);
-// For the station.
-FfStep pn();
+// For the station; where, when it is not the usual link.
+FfStep pn(const std::string& where = "");
 FfStep cd();
 FfStep activation();
 FfStep probe_response(const std::string& reason, const std::string& reason_wrong = "dlpdu_wrong");
+// What the tester sent last to the user.
+FfStep delivered(std::string reason);
+FfStep nothing_delivered(std::string reason);
 // Of the first buffer.
 FfStep write(std::size_t size);
 

@@ -76,6 +76,15 @@ LinkStep silence(std::string reason, std::string why) {
   });
 }
 
+LinkStep says(std::string what, std::string reason, std::size_t least) {
+  const std::string text = what;
+  return expected<LinkScene>(
+      text, [what = std::move(what), reason = std::move(reason), least](LinkScene& scene) {
+        const std::size_t count = scene.link.listen().size();
+        scene.judge.expect(count >= least, reason, what, fmt::format("{} DLPDUs", count));
+      });
+}
+
 LinkStep serves() {
   return {"more data, and a right token for all that waits", "all of it is sent",
           [](LinkScene& scene) { scene.expect_serves(); }};

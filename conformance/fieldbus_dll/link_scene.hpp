@@ -28,15 +28,17 @@ struct LinkScene {
   virtual ~LinkScene() = default;
 
   // False: it is refused.
-  virtual bool submit(Priority priority, const Octets& data) = 0;
+  virtual bool submit(Priority priority, const Octets& dlsdu) = 0;
   // Under the token that was sent last: these DLSDUs, and that it is returned.
-  virtual void expect_used(const std::vector<Octets>& data, const Reasons& reasons) = 0;
+  virtual void expect_used(const std::vector<Octets>& dlsdus, const Reasons& reasons) = 0;
   virtual void expect_serves() = 0;
   // The next DLPDU, begun between V(MID) and the time for an answer.
   const DrivenDlpdu& expect_answer(const std::string& what, std::string_view reason);
   // All that is said ends within the duration of the token that was sent last: `talks_behind_duration`.
   // Gives how much of it is left.
   kernel::Duration expect_none_behind(std::string_view token, unsigned duration);
+  // Data for its user that no other has: `data`.
+  const Octets& fresh(std::size_t size) { return data = link.numbered_data(size); }
   // All three are walked over.
   Priority priority() const { return static_cast<Priority>(3 - round % 3); }
 
@@ -47,6 +49,7 @@ struct LinkScene {
   kernel::Duration answer_time;
   kernel::Time sent{};              // the end of what the tester sent last
   std::vector<Octets> submitted{};  // by the user
+  Octets data{};                    // of what the tester sent last to the user
   DrivenDlpdu answer{};             // what the IUT drove last, of what was required
 };
 
@@ -60,6 +63,8 @@ LinkStep wait(std::int64_t octets);
 // The DLSDUs with these numbers are sent under the token, in this order, and it is returned once.
 LinkStep used(std::vector<std::size_t> numbers, LinkScene::Reasons reasons);
 LinkStep silence(std::string reason, std::string why);
+// So many DLPDUs of the IUT at least, until it is silent.
+LinkStep says(std::string what, std::string reason, std::size_t least = 1);
 // A longer token is used for all that waits, and for what is submitted then: `does_not_recover`.
 LinkStep serves();
 // The longest DLSDU of the priority of the round is accepted, and none that is longer.
@@ -78,6 +83,18 @@ ChartStep<Scene> answer(const std::string& what, std::string reason,
                            scene.judge.expect(!is_right || is_right(scene, one), reason_wrong,
                                               [&] { return Mismatch{{what}, one.text(), one.begin}; });
                          });
+}
+
+template <typename Scene>
+ChartStep<Scene> require_of(const std::string& text, std::function<bool(Scene&)> holds, std::string reason) {
+  return expected<Scene>(text, [text, holds = std::move(holds), reason = std::move(reason)](Scene& scene) {
+    scene.judge.expect(holds(scene), reason, text, "it is otherwise");
+  });
+}
+// What the text says holds of the scene.
+template <typename Holds>
+auto require(const std::string& text, Holds holds, std::string reason) {
+  return require_of(text, std::function(std::move(holds)), std::move(reason));
 }
 
 template <typename Scene>
