@@ -31,8 +31,7 @@ std::string_view priority_text(Priority priority) {
 }
 
 void tokens_go_round(FfBench& bench, CaseJudge& judge) {
-  const auto all = bench.serve(kernel::kStart + bench.octets(bench.volume(1'500, 20'000)),
-                               [&](const DrivenDlpdu& one) { return bench.returned(one); });
+  const auto all = bench.serve(kernel::kStart + bench.octets(bench.volume(1'500, 20'000)));
   std::uint8_t next = 0x11;
   std::size_t tokens = 0;
   for (const DrivenDlpdu& one : all) {
@@ -112,8 +111,7 @@ DrivenDlpdu next_token_for(FfBench& bench, CaseJudge& judge, std::uint8_t node) 
     const DrivenDlpdu one =
         expect_next(bench, judge, latest, "no_token", fmt::format("a PT for {:02X}", node));
     if (is_pt(bench, one) && one.octet(1) == node) return one;
-    if (const auto reply = bench.returned(one))
-      bench.run_until(bench.send_at(one.end + bench.least_gap(), reply->octets));
+    bench.answer_one(one);
   }
 }
 

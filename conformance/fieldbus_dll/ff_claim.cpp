@@ -57,9 +57,7 @@ void a_silent_link_is_claimed(FfBench& bench, CaseJudge& judge) {
   expect_claim(bench, judge, end);
   bool has_compelled = false;
   bool has_passed = false;
-  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(800), [&](const DrivenDlpdu& dlpdu) {
-         return bench.returned(dlpdu);
-       })) {
+  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(800))) {
     has_compelled |= is_cd(bench, one);
     has_passed |= is_pt(bench, one);
   }
@@ -79,9 +77,7 @@ void the_macrocycle_goes_on(FfBench& bench, CaseJudge& judge) {
   const kernel::Duration at = schedule.items[0].at * fieldbus_dll::kTick;
   expect_claim(bench, judge, end);
   std::size_t compelled = 0;
-  for (const DrivenDlpdu& one :
-       bench.serve(bench.now() + bench.volume(4, 40) * macrocycle,
-                   [&](const DrivenDlpdu& dlpdu) { return bench.returned(dlpdu); })) {
+  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.volume(4, 40) * macrocycle)) {
     if (!is_cd(bench, one)) continue;
     const kernel::Duration late = (one.begin + kLinkRounding - end + into + macrocycle - at) % macrocycle;
     judge.expect(late <= bench.octets(bench.rules().scheduling_overhead_octets) + 2 * kLinkRounding,
@@ -104,9 +100,7 @@ void who_was_told_to_be_live_gets_the_token(FfBench& bench, CaseJudge& judge) {
                                                 fieldbus_dll::live_list_spdu(9, live)));
   expect_claim(bench, judge, end);
   std::set<unsigned> passed;
-  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(1'200), [&](const DrivenDlpdu& dlpdu) {
-         return bench.returned(dlpdu);
-       })) {
+  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(1'200))) {
     if (is_pt(bench, one)) passed.insert(one.octet(1));
   }
   judge.expect(passed == std::set<unsigned>{0x12, 0x15}, "live_list_not_kept", [&] {
@@ -168,8 +162,7 @@ void a_transfer_is_taken(FfBench& bench, CaseJudge& judge) {
   expect_begins(judge, first, end + bench.least_gap(), "answers_too_early", end + bench.response_delay(),
                 "answers_too_late");
   bool has_compelled = false;
-  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(900),
-                                            [&](const DrivenDlpdu& dlpdu) { return bench.returned(dlpdu); }))
+  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(900)))
     has_compelled |= is_cd(bench, one);
   judge.expect(has_compelled, "schedule_not_run", "the CD of its schedule", "none");
 }
@@ -221,8 +214,7 @@ void a_transfer_that_is_not_taken_is_taken_back(FfBench& bench, CaseJudge& judge
                                        "the scheduler goes on: its heir says nothing");
   expect_begins(judge, next, over, "taken_back_early", over + 2 * bench.slot(), "not_taken_back");
   bool has_compelled = is_cd(bench, next);
-  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(900),
-                                            [&](const DrivenDlpdu& dlpdu) { return bench.returned(dlpdu); }))
+  for (const DrivenDlpdu& one : bench.serve(bench.now() + bench.octets(900)))
     has_compelled |= is_cd(bench, one);
   judge.expect(has_compelled, "schedule_not_run", "the CD of its schedule", "none");
 }
@@ -252,13 +244,12 @@ void a_link_master_in_standby_is_a_device(FfBench& bench, CaseJudge& judge) {
 
 template <typename Say>
 void expect_leaves(FfBench& bench, CaseJudge& judge, Say say) {
-  bench.serve(bench.now() + bench.octets(700), [&](const DrivenDlpdu& one) { return bench.returned(one); });
+  bench.serve(bench.now() + bench.octets(700));
   // In the middle of a silence of the IUT's own.
   const kernel::Time latest = bench.now() + bench.octets(2'000);
   while (const auto one = bench.next(latest)) {
     if (is_of(*one, bench.rules().codes.pn)) break;
-    if (const auto reply = bench.returned(*one))
-      bench.run_until(bench.send_at(one->end + bench.least_gap(), reply->octets));
+    bench.answer_one(*one);
   }
   bench.wait(bench.least_gap());
   say();
