@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace fieldproof::conformance {
 
 using fieldbus_dll::Priority;
@@ -65,6 +67,26 @@ FfStep write(std::size_t size) {
         const bool is_taken = scene.bench.write(FfBench::kPublished, scene.written.back());
         scene.judge.expect(is_taken, "write_refused", "the buffer is written", "it was not");
       });
+}
+
+FfStep serve(Rounds octets) {
+  return stimulus<FfScene>(
+      fmt::format("all nodes return their tokens at once, for {} octet durations", octets.full),
+      [octets](FfScene& scene) {
+        const std::int64_t count = scene.bench.volume(octets.quick, octets.full);
+        scene.driven = scene.bench.serve(scene.bench.now() + scene.bench.octets(count));
+      });
+}
+
+FfStep has_driven(const std::string& what, bool (*is_one)(const FfBench&, const DrivenDlpdu&),
+                  std::string reason) {
+  return require(
+      what,
+      [is_one](FfScene& scene) {
+        return std::ranges::any_of(scene.driven,
+                                   [&](const DrivenDlpdu& one) { return is_one(scene.bench, one); });
+      },
+      std::move(reason));
 }
 
 }  // namespace ff_chart

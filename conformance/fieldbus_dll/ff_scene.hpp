@@ -27,9 +27,10 @@ struct FfScene final : LinkScene {
   }
 
   FfBench& bench;
-  std::vector<Octets> written{};  // into the first buffer
-  DrivenDlpdu before{};           // a DT3 before `answer`
-  kernel::Duration latency{};     // from a PT to what is sent under it
+  std::vector<DrivenDlpdu> driven{};  // by a scheduler, while it was served
+  std::vector<Octets> written{};      // into the first buffer
+  DrivenDlpdu before{};               // a DT3 before `answer`
+  kernel::Duration latency{};         // from a PT to what is sent under it
 };
 
 using FfStep = ChartStep<FfScene>;
@@ -57,6 +58,12 @@ FfStep delivered(std::string reason);
 FfStep nothing_delivered(std::string reason);
 // Of the first buffer.
 FfStep write(std::size_t size);
+
+// All nodes of a scheduler's link return their tokens at once, for so many octet durations: `driven`.
+FfStep serve(Rounds octets);
+// It drove one of this kind meanwhile.
+FfStep has_driven(const std::string& what, bool (*is_one)(const FfBench&, const DrivenDlpdu&),
+                  std::string reason);
 
 }  // namespace ff_chart
 }  // namespace fieldproof::conformance

@@ -33,6 +33,26 @@ Octets with_wrong_bits(Octets frame, const std::vector<std::size_t>& bits) {
   return frame;
 }
 
+TestCase must(std::string id, std::string purpose, std::string requirement, judge::Reference reference,
+              std::vector<MustCatch> catches, std::vector<PartialSource> details) {
+  return {.id = std::move(id),
+          .purpose = std::move(purpose),
+          .requirement = std::move(requirement),
+          .reference = std::move(reference),
+          .details = std::move(details),
+          .tags = {"must"},
+          .catches = std::move(catches)};
+}
+
+TestCase must_in_time(std::string id, std::string purpose, std::string requirement,
+                      judge::Reference reference, std::vector<MustCatch> catches,
+                      std::vector<PartialSource> details) {
+  TestCase test_case = must(std::move(id), std::move(purpose), std::move(requirement), std::move(reference),
+                            std::move(catches), std::move(details));
+  test_case.tags.emplace_back("timing");
+  return test_case;
+}
+
 namespace link_chart {
 
 using Priority = LinkScene::Priority;
@@ -59,12 +79,15 @@ LinkStep wait(std::int64_t octets) {
 }
 
 LinkStep used(std::vector<std::size_t> numbers, LinkScene::Reasons reasons) {
-  const std::string text =
-      numbers.empty() ? "no data" : fmt::format("DLSDU {} of the user", fmt::join(numbers, ", "));
+  std::string text = "no data";
+  if (!numbers.empty())
+    text = numbers[0] == 0 ? "the DLSDU submitted last"
+                           : fmt::format("DLSDU {} of the user", fmt::join(numbers, ", "));
   return expected<LinkScene>(text + ", and the token returned once",
                              [numbers = std::move(numbers), reasons = std::move(reasons)](LinkScene& scene) {
                                std::vector<Octets> data;
-                               for (const std::size_t n : numbers) data.push_back(scene.submitted.at(n - 1));
+                               for (const std::size_t n : numbers)
+                                 data.push_back(n == 0 ? scene.submitted.back() : scene.submitted.at(n - 1));
                                scene.expect_used(data, reasons);
                              });
 }

@@ -55,12 +55,20 @@ struct LinkScene {
 
 using LinkStep = ChartStep<LinkScene>;
 
+// What an implementation must do; the same where it must do it in time.
+TestCase must(std::string id, std::string purpose, std::string requirement, judge::Reference reference,
+              std::vector<MustCatch> catches, std::vector<PartialSource> details = {});
+TestCase must_in_time(std::string id, std::string purpose, std::string requirement,
+                      judge::Reference reference, std::vector<MustCatch> catches,
+                      std::vector<PartialSource> details = {});
+
 namespace link_chart {
 
 // Data that no other has, accepted by the IUT: `data_refused`. Those of a chart count from 1.
 LinkStep submit(const std::vector<LinkScene::Priority>& priorities, std::size_t least, std::size_t most = 0);
 LinkStep wait(std::int64_t octets);
-// The DLSDUs with these numbers are sent under the token, in this order, and it is returned once.
+// The DLSDUs with these numbers, 0 for the last of all, are sent under the token, in this order, and it is
+// returned once.
 LinkStep used(std::vector<std::size_t> numbers, LinkScene::Reasons reasons);
 LinkStep silence(std::string reason, std::string why);
 // So many DLPDUs of the IUT at least, until it is silent.
