@@ -39,12 +39,9 @@ line::Waveform jittered(IsaBench& bench, const line::Levels& half_bits) {
 
 IsaCase at_rate(std::int64_t bit_rate, const std::string& name) {
   using namespace isa_chart;
-  return on_chart({.id = "fieldbus_dll/isa_dle/line/a_token_is_used_at_" + name,
-                   .purpose = "ISA-01",
-                   .requirement = "All that is counted in octets scales with the bit rate.",
-                   .reference = link_sources::line("bit rates"),
-                   .tags = {"must"},
-                   .catches = {{"timers_of_31250", "token_not_returned"}}},
+  return on_chart(must("fieldbus_dll/isa_dle/line/a_token_is_used_at_" + name, "ISA-01",
+                       "All that is counted in octets scales with the bit rate.",
+                       link_sources::line("bit rates"), {{"timers_of_31250", "token_not_returned"}}),
                   {{2, 20},
                    {submit({Priority::normal}, 2, 101), et(Priority::normal),
                     used({1}, {"no_data_frame", "more_than_one_frame"})}},
@@ -58,16 +55,14 @@ std::vector<IsaCase> isa_line_cases() {
   using link_sources::line;
   using link_sources::memory;
   return {
-      on_chart({.id = "fieldbus_dll/isa_dle/line/all_preambles_are_taken",
-                .purpose = "ISA-39",
-                .requirement = "A frame has 1 to 8 octets of preamble and both delimiters, to the half bit.",
-                .reference = line("preamble and delimiters"),
-                .tags = {"must"},
-                .catches = {{"wants_one_preamble_octet", "preamble_not_taken"},
-                            {"sends_no_preamble", "frame_malformed"},
-                            {"end_delimiter_turned", "frame_malformed"},
-                            {"least_significant_bit_first", "check_wrong"},
-                            {"short_silence", "gap_too_short"}}},
+      on_chart(must("fieldbus_dll/isa_dle/line/all_preambles_are_taken", "ISA-39",
+                    "A frame has 1 to 8 octets of preamble and both delimiters, to the half bit.",
+                    line("preamble and delimiters"),
+                    {{"wants_one_preamble_octet", "preamble_not_taken"},
+                     {"sends_no_preamble", "frame_malformed"},
+                     {"end_delimiter_turned", "frame_malformed"},
+                     {"least_significant_bit_first", "check_wrong"},
+                     {"short_silence", "gap_too_short"}}),
                {{8, 8},
                 {drive("a DU with 1 to 8 octets of preamble, in turn",
                        [](IsaScene& scene) { return half_bits_of_frame(long_du(scene), scene.round + 1); }),
@@ -79,29 +74,24 @@ std::vector<IsaCase> isa_line_cases() {
                        }),
                  says("data, and EE, exact to the half bit, with V(MID) of silence in front",
                       "token_not_returned")}}),
-      on_chart({.id = "fieldbus_dll/isa_dle/line/other_clocks_are_taken",
-                .purpose = "ISA-40",
-                .requirement = "A receiver takes frames whose clock is 0.2 % off.",
-                .reference = memory("tolerance of the bit rate"),
-                .tags = {"must", "timing"},
-                .catches = {{"does_not_recover_clock", "clock_not_taken"}}},
-               {{3, 30},
-                {stimulus<IsaScene>("a DU of 205 octets at 100, 100.2 and 99.8 % of the bit rate, in turn",
-                                    [](IsaScene& scene) {
-                                      constexpr std::array<std::int64_t, 3> kPerMille{1'000, 1'002, 998};
-                                      IsaBench& bench = scene.bench;
-                                      bench.send_wave({bench.now(),
-                                                       2 * bench.rules().link.bit_rate *
-                                                           kPerMille[scene.round % 3] / 1'000,
-                                                       half_bits_of_frame(long_du(scene))});
-                                    }),
-                 wait(32), delivered("the frame", "clock_not_taken")}}),
-      on_chart({.id = "fieldbus_dll/isa_dle/line/jitter_is_taken",
-                .purpose = "ISA-40",
-                .requirement = "A receiver takes frames whose edges are up to a tenth of a bit off.",
-                .reference = memory("jitter at a receiver"),
-                .tags = {"must", "timing"},
-                .catches = {{"wants_exact_edges", "jitter_not_taken"}}},
+      on_chart(
+          must_in_time("fieldbus_dll/isa_dle/line/other_clocks_are_taken", "ISA-40",
+                       "A receiver takes frames whose clock is 0.2 % off.",
+                       memory("tolerance of the bit rate"), {{"does_not_recover_clock", "clock_not_taken"}}),
+          {{3, 30},
+           {stimulus<IsaScene>("a DU of 205 octets at 100, 100.2 and 99.8 % of the bit rate, in turn",
+                               [](IsaScene& scene) {
+                                 constexpr std::array<std::int64_t, 3> kPerMille{1'000, 1'002, 998};
+                                 IsaBench& bench = scene.bench;
+                                 bench.send_wave(
+                                     {bench.now(),
+                                      2 * bench.rules().link.bit_rate * kPerMille[scene.round % 3] / 1'000,
+                                      half_bits_of_frame(long_du(scene))});
+                               }),
+            wait(32), delivered("the frame", "clock_not_taken")}}),
+      on_chart(must_in_time("fieldbus_dll/isa_dle/line/jitter_is_taken", "ISA-40",
+                            "A receiver takes frames whose edges are up to a tenth of a bit off.",
+                            memory("jitter at a receiver"), {{"wants_exact_edges", "jitter_not_taken"}}),
                {{3, 50},
                 {stimulus<IsaScene>(
                      "a DU of 205 octets, each edge moved by up to a tenth of a bit, at random",

@@ -98,32 +98,27 @@ std::vector<IsaCase> isa_rejection_cases() {
   using link_sources::line;
   using link_sources::own;
   return {
-      on_chart({.id = "fieldbus_dll/isa_dle/rejection/tokens_of_others_are_left",
-                .purpose = "ISA-14",
-                .requirement = "A station acts on tokens that are delegated to it, and on no others.",
-                .reference = isa_paper("the token is delegated to a station"),
-                .tags = {"must"},
-                .catches = {{"takes_any_token", "acts_on_others"}}},
-               {{},
-                {something,
-                 repeat({20, 246}, {send("an ET for another station, each in its turn",
-                                         [](IsaScene& scene) {
-                                           return for_other(scene, scene.bench.et(Priority::time_available));
-                                         }),
-                                    silence("acts_on_others", "the ET is for another station"),
-                                    send("an ES for it",
-                                         [](IsaScene& scene) {
-                                           return for_other(scene,
-                                                            scene.bench.es(Priority::time_available, 1'000));
-                                         }),
-                                    silence("acts_on_others", "the ES is for another station")}),
-                 serves()}}),
-      on_chart({.id = "fieldbus_dll/isa_dle/rejection/single_bit_errors_are_seen",
-                .purpose = "ISA-15",
-                .requirement = "A DLPDU whose frame check does not fit is ignored.",
-                .reference = line("frame check 1DCF"),
-                .tags = {"must"},
-                .catches = {{"short_frames_not_checked", "acts_on_wrong_check"}}},
+      on_chart(
+          must("fieldbus_dll/isa_dle/rejection/tokens_of_others_are_left", "ISA-14",
+               "A station acts on tokens that are delegated to it, and on no others.",
+               isa_paper("the token is delegated to a station"), {{"takes_any_token", "acts_on_others"}}),
+          {{},
+           {something,
+            repeat({20, 246}, {send("an ET for another station, each in its turn",
+                                    [](IsaScene& scene) {
+                                      return for_other(scene, scene.bench.et(Priority::time_available));
+                                    }),
+                               silence("acts_on_others", "the ET is for another station"),
+                               send("an ES for it",
+                                    [](IsaScene& scene) {
+                                      return for_other(scene,
+                                                       scene.bench.es(Priority::time_available, 1'000));
+                                    }),
+                               silence("acts_on_others", "the ES is for another station")}),
+            serves()}}),
+      on_chart(must("fieldbus_dll/isa_dle/rejection/single_bit_errors_are_seen", "ISA-15",
+                    "A DLPDU whose frame check does not fit is ignored.", line("frame check 1DCF"),
+                    {{"short_frames_not_checked", "acts_on_wrong_check"}}),
                {{},
                 {something,
                  repeat({40, 40}, {drive("an ET with one wrong bit, each of its 40 in its turn",
@@ -134,31 +129,24 @@ std::vector<IsaCase> isa_rejection_cases() {
                                          }),
                                    silence("acts_on_wrong_check", "its check does not fit")}),
                  serves()}}),
-      on_chart(
-          {.id = "fieldbus_dll/isa_dle/rejection/other_checks_are_refused",
-           .purpose = "ISA-16",
-           .requirement = "The frame check is that of the line: 1DCF, preset to ones, complemented, the high "
-                          "octet first.",
-           .reference = line("frame check 1DCF"),
-           .tags = {"must"},
-           .catches = {{"check_from_zero_too", "acts_on_other_check"}}},
-          {{},
-           {something,
-            repeat({14, 14},
-                   {drive("an ET, then an ES, with a check without complement, beginning with 0, both, "
-                          "reflected, CCITT, CCITT with complement, with its octets exchanged, in turn",
-                          isa_with_other_check),
-                    silence("acts_on_other_check", "its check is of another kind")}),
-            serves()}}),
-      on_chart({.id = "fieldbus_dll/isa_dle/rejection/broken_frames_are_left",
-                .purpose = "ISA-17",
-                .requirement =
+      on_chart(must("fieldbus_dll/isa_dle/rejection/other_checks_are_refused", "ISA-16",
+                    "The frame check is that of the line: 1DCF, preset to ones, complemented, the high "
+                    "octet first.",
+                    line("frame check 1DCF"), {{"check_from_zero_too", "acts_on_other_check"}}),
+               {{},
+                {something,
+                 repeat({14, 14},
+                        {drive("an ET, then an ES, with a check without complement, beginning with 0, both, "
+                               "reflected, CCITT, CCITT with complement, with its octets exchanged, in turn",
+                               isa_with_other_check),
+                         silence("acts_on_other_check", "its check is of another kind")}),
+                 serves()}}),
+      on_chart(must("fieldbus_dll/isa_dle/rejection/broken_frames_are_left", "ISA-17",
                     "A frame with symbols that are no data between its delimiters, without an end or with a "
                     "part of an octet is ignored.",
-                .reference = line("delimiters"),
-                .tags = {"must"},
-                .catches = {{"violations_are_bits", "acts_on_violation"},
-                            {"stuck_behind_violation", "does_not_recover"}}},
+                    line("delimiters"),
+                    {{"violations_are_bits", "acts_on_violation"},
+                     {"stuck_behind_violation", "does_not_recover"}}),
                {{},
                 {something,
                  repeat({16, 16},
@@ -175,30 +163,25 @@ std::vector<IsaCase> isa_rejection_cases() {
                  silence("acts_without_end", "the frame has no end delimiter"),
                  drive("an ET with seven bits in its last octet", with_short_octet),
                  silence("acts_on_part_of_octet", "the last octet has seven bits"), serves()}}),
-      on_chart({.id = "fieldbus_dll/isa_dle/rejection/unknown_control_octets_are_left",
-                .purpose = "ISA-18",
-                .requirement = "A DLPDU with a reserved bit or an unknown control octet is ignored.",
-                .reference = own("control octets of the profile"),
-                .tags = {"must"},
-                .catches = {{"reserved_bit_ignored", "acts_on_unknown"},
-                            {"priority_zero_taken", "acts_on_unknown"}}},
-               {{},
-                {something,
-                 repeat({250, 250}, {send("a control octet that makes no ET and no CD, with addresses and a "
-                                          "right check, each of the 250 in its turn",
-                                          [](IsaScene& scene) {
-                                            return Octets{unknown_control(scene.bench, scene.turn),
-                                                          scene.bench.address(), IsaBench::kScheduler};
-                                          }),
-                                     silence("acts_on_unknown", "it is no token")}),
-                 serves()}}),
       on_chart(
-          {.id = "fieldbus_dll/isa_dle/rejection/other_lengths_are_left",
-           .purpose = "ISA-18",
-           .requirement = "An ET has five octets, an ES seven, with their checks.",
-           .reference = own("encoding of the profile"),
-           .tags = {"must"},
-           .catches = {{"length_not_checked", "acts_on_other_length"}}},
+          must("fieldbus_dll/isa_dle/rejection/unknown_control_octets_are_left", "ISA-18",
+               "A DLPDU with a reserved bit or an unknown control octet is ignored.",
+               own("control octets of the profile"),
+               {{"reserved_bit_ignored", "acts_on_unknown"}, {"priority_zero_taken", "acts_on_unknown"}}),
+          {{},
+           {something,
+            repeat({250, 250}, {send("a control octet that makes no ET and no CD, with addresses and a "
+                                     "right check, each of the 250 in its turn",
+                                     [](IsaScene& scene) {
+                                       return Octets{unknown_control(scene.bench, scene.turn),
+                                                     scene.bench.address(), IsaBench::kScheduler};
+                                     }),
+                                silence("acts_on_unknown", "it is no token")}),
+            serves()}}),
+      on_chart(
+          must("fieldbus_dll/isa_dle/rejection/other_lengths_are_left", "ISA-18",
+               "An ET has five octets, an ES seven, with their checks.", own("encoding of the profile"),
+               {{"length_not_checked", "acts_on_other_length"}}),
           {{},
            {something,
             repeat({12, 12},

@@ -84,49 +84,41 @@ std::vector<IsaCase> isa_supervision_cases() {
                             {"reclaimed_early", "reclaimed_late"}};
   return {
       on_chart(
-          {.id = "fieldbus_dll/isa_las/supervision/who_says_nothing_loses_the_token",
-           .purpose = "ISA-31",
-           .requirement = "A token whose holder says nothing is taken back when V(RR) is over.",
-           .reference = isa_paper("duration guarded on both sides"),
-           .details = {times},
-           .tags = {"must", "timing"},
-           .catches = {{"reclaims_by_uc_only", "reclaimed_late"}, {"reclaims_early", "reclaimed_early"}}},
+          must_in_time("fieldbus_dll/isa_las/supervision/who_says_nothing_loses_the_token", "ISA-31",
+                       "A token whose holder says nothing is taken back when V(RR) is over.",
+                       isa_paper("duration guarded on both sides"),
+                       {{"reclaims_by_uc_only", "reclaimed_late"}, {"reclaims_early", "reclaimed_early"}},
+                       {times}),
           silent_holder, {.schedule = two_items(IsaType::es, 500)}),
       on_chart(
-          {.id = "fieldbus_dll/isa_las/supervision/a_single_frame_that_does_not_come",
-           .purpose = "ISA-31",
-           .requirement = "A token for one frame whose holder says nothing is taken back when V(RR) is over.",
-           .reference = own("V(RR) supervises an ET, too"),
-           .details = {times},
-           .tags = {"must", "timing"},
-           .catches = {{"single_token_for_ever", "not_reclaimed"}, {"reclaims_early", "reclaimed_early"}}},
+          must_in_time("fieldbus_dll/isa_las/supervision/a_single_frame_that_does_not_come", "ISA-31",
+                       "A token for one frame whose holder says nothing is taken back when V(RR) is over.",
+                       own("V(RR) supervises an ET, too"),
+                       {{"single_token_for_ever", "not_reclaimed"}, {"reclaims_early", "reclaimed_early"}},
+                       {times}),
           silent_holder, {.schedule = two_items(IsaType::et)}),
-      on_chart({.id = "fieldbus_dll/isa_las/supervision/who_talks_too_long_is_not_talked_into",
-                .purpose = "ISA-32",
-                .requirement = "A holder that is still sending when its duration is over is not disturbed.",
-                .reference = own("VC(UC) that runs out on a busy line"),
-                .tags = {"must", "timing"},
-                .catches = {{"reclaims_into_holder", "talks_into_holder"}}},
-               {{},
-                {first,
-                 stimulus<IsaScene>("its holder sends a frame of 108 octets",
-                                    [](IsaScene& scene) {
-                                      scene.sent =
-                                          scene.bench.send_at(scene.answer.end + scene.bench.least_gap(),
-                                                              du_of_holder(scene.bench, 100));
-                                    }),
-                 expected<IsaScene>("the next token V(MID) to V(MID) and V(ST) after that frame",
-                                    expect_not_talked_into)}},
-               {.schedule = two_items(IsaType::es, 40)}),
-      on_chart({.id = "fieldbus_dll/isa_las/supervision/who_keeps_the_token_loses_it_with_its_duration",
-                .purpose = "ISA-33",
-                .requirement = "A token that is not returned is taken back when its duration is over.",
-                .reference = isa_paper("VC(UC) at the scheduler"),
-                .details = {times},
-                .tags = {"must", "timing"},
-                .catches = {{"no_supervision", "not_reclaimed"},
-                            {"supervises_without_margin", "reclaimed_early"},
-                            {"supervises_long", "reclaimed_late"}}},
+      on_chart(
+          must_in_time("fieldbus_dll/isa_las/supervision/who_talks_too_long_is_not_talked_into", "ISA-32",
+                       "A holder that is still sending when its duration is over is not disturbed.",
+                       own("VC(UC) that runs out on a busy line"),
+                       {{"reclaims_into_holder", "talks_into_holder"}}),
+          {{},
+           {first,
+            stimulus<IsaScene>("its holder sends a frame of 108 octets",
+                               [](IsaScene& scene) {
+                                 scene.sent = scene.bench.send_at(scene.answer.end + scene.bench.least_gap(),
+                                                                  du_of_holder(scene.bench, 100));
+                               }),
+            expected<IsaScene>("the next token V(MID) to V(MID) and V(ST) after that frame",
+                               expect_not_talked_into)}},
+          {.schedule = two_items(IsaType::es, 40)}),
+      on_chart(must_in_time("fieldbus_dll/isa_las/supervision/who_keeps_the_token_loses_it_with_its_duration",
+                            "ISA-33", "A token that is not returned is taken back when its duration is over.",
+                            isa_paper("VC(UC) at the scheduler"),
+                            {{"no_supervision", "not_reclaimed"},
+                             {"supervises_without_margin", "reclaimed_early"},
+                             {"supervises_long", "reclaimed_late"}},
+                            {times}),
                {{},
                 {first, holder_sends,
                  second(
@@ -137,12 +129,9 @@ std::vector<IsaCase> isa_supervision_cases() {
                      [](const IsaScene& scene) { return scene.bench.octets(1); })}},
                {.schedule = two_items(IsaType::es, kDuration)}),
       on_chart(
-          {.id = "fieldbus_dll/isa_las/supervision/the_end_of_another_is_none",
-           .purpose = "ISA-34",
-           .requirement = "Only the holder can return a token.",
-           .reference = own("EE of another"),
-           .tags = {"must"},
-           .catches = {{"end_of_anybody_taken", "end_of_other_taken"}}},
+          must("fieldbus_dll/isa_las/supervision/the_end_of_another_is_none", "ISA-34",
+               "Only the holder can return a token.", own("EE of another"),
+               {{"end_of_anybody_taken", "end_of_other_taken"}}),
           {{},
            {first, holder_sends,
             stimulus<IsaScene>("an EE of a third station",
@@ -154,28 +143,26 @@ std::vector<IsaCase> isa_supervision_cases() {
                          [](const IsaScene& scene) { return scene.answer.end + scene.bench.octets(70); }),
             returns, after_ee}},
           {.schedule = two_items(IsaType::es, 200)}),
-      on_chart({.id = "fieldbus_dll/isa_las/supervision/a_holder_may_wait_for_a_reply",
-                .purpose = "ISA-31",
-                .requirement =
-                    "A holder of a token for one frame may compel with it, and waits for the reply before "
-                    "it returns the token.",
-                .reference = own("a CD is a frame, its reply is none of the holder's"),
-                .tags = {"must", "timing"},
-                .catches = {{"forgets_reply_wait", "talks_into_token"}}},
-               {{},
-                {first,
-                 stimulus<IsaScene>("its holder compels 22, which is silent",
-                                    [](IsaScene& scene) {
-                                      scene.reply({scene.bench.control(scene.bench.rules().codes.cd,
-                                                                       Priority::normal),
-                                                   0x22, kHolder});
-                                    }),
-                 silent_until("the holder waits for a reply, until an octet after V(RR)", "talks_into_token",
-                              [](const IsaScene& scene) {
-                                return scene.sent + scene.bench.reply_wait() + scene.bench.octets(1);
-                              }),
-                 returns, after_ee}},
-               {.schedule = two_items(IsaType::et)}),
+      on_chart(
+          must_in_time("fieldbus_dll/isa_las/supervision/a_holder_may_wait_for_a_reply", "ISA-31",
+                       "A holder of a token for one frame may compel with it, and waits for the reply before "
+                       "it returns the token.",
+                       own("a CD is a frame, its reply is none of the holder's"),
+                       {{"forgets_reply_wait", "talks_into_token"}}),
+          {{},
+           {first,
+            stimulus<IsaScene>("its holder compels 22, which is silent",
+                               [](IsaScene& scene) {
+                                 scene.reply(
+                                     {scene.bench.control(scene.bench.rules().codes.cd, Priority::normal),
+                                      0x22, kHolder});
+                               }),
+            silent_until("the holder waits for a reply, until an octet after V(RR)", "talks_into_token",
+                         [](const IsaScene& scene) {
+                           return scene.sent + scene.bench.reply_wait() + scene.bench.octets(1);
+                         }),
+            returns, after_ee}},
+          {.schedule = two_items(IsaType::et)}),
   };
 }
 
