@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <concepts>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <utility>
@@ -19,11 +21,26 @@
 // words: functions that give a step.
 namespace fieldproof::conformance {
 
+// How often all steps are run.
+struct Rounds {
+  unsigned quick = 1;
+  unsigned full = 1;
+};
+
 template <typename Scene>
 struct ChartStep {
   std::string stimulus;  // what the tester does: "the PC orders a read"; empty: it waits for what must come
   std::string expected;  // what must come: "the host polls the node"; empty: nothing is required
   std::function<void(Scene&)> run;
+  Rounds times{};                  // of the steps within this one
+  std::vector<ChartStep> steps{};  // in place of `run`, see `repeated`
+
+  // What is said of a scene can be said of one that is more.
+  template <typename More>
+    requires(std::derived_from<More, Scene> && !std::same_as<More, Scene>)
+  operator ChartStep<More>() const {
+    return {stimulus, expected, run, times, {steps.begin(), steps.end()}};
+  }
 };
 
 template <typename Scene>
@@ -36,11 +53,12 @@ ChartStep<Scene> expected(std::string text, std::function<void(Scene&)> run) {
   return {{}, std::move(text), std::move(run)};
 }
 
-// How often all steps are run.
-struct Rounds {
-  unsigned quick = 1;
-  unsigned full = 1;
-};
+// Steps that are run again and again within a round, on its scene, where `scene.turn` counts from 0. Not
+// within each other, and once at least.
+template <typename Scene>
+ChartStep<Scene> repeated(Rounds times, std::vector<ChartStep<Scene>> steps) {
+  return {{}, {}, {}, times, std::move(steps)};
+}
 
 // A list that each of the rounds walks over: "each bit of the check", and how many there are. What has the
 // turn follows from `scene.round`, which counts on from walk to walk.
@@ -60,60 +78,75 @@ struct Chart {
 
 namespace chart {
 
-// "The PC orders a read; the node answers, 2 times." Equal texts that follow each other are said once.
-std::string sentence(const std::vector<std::string>& clauses, const Rounds& rounds);
-// "The node is powered. Then, for each register, 20 times: the PC orders a read; the node answers."
-std::string sentence(const std::vector<std::string>& first, const std::vector<std::string>& clauses,
-                     const Rounds& rounds, const std::string& over);
-// "2 of 5: the node answers; expected: the host reports it"
-std::string line_of(std::size_t number, std::size_t count, const std::string& stimulus,
-                    const std::string& expected);
-
-}  // namespace chart
-
-template <typename Scene>
-struct StepTexts {
+// What the steps say, clause by clause.
+struct Words {
   std::vector<std::string> stimuli{};
   std::vector<std::string> expectations{};
+  std::vector<std::string> steps{};  // "the node answers; expected: the host reports it"
 
-  explicit StepTexts(const std::vector<ChartStep<Scene>>& steps) {
-    for (const ChartStep<Scene>& step : steps) {
-      if (!step.stimulus.empty()) stimuli.push_back(step.stimulus);
-      if (!step.expected.empty()) expectations.push_back(step.expected);
+  void add(const std::string& stimulus, const std::string& expected);
+  void add_repeated(const Words& inner, const Rounds& times);
+};
+
+// "The node is powered. Then, for each register, 20 times: the PC orders a read; the node answers, 2 times."
+// Equal clauses that follow each other are said once, with their number.
+std::string sentence(const std::vector<std::string>& first, const std::vector<std::string>& clauses,
+                     const Rounds& rounds, const std::string& over);
+// Puts into the case what its steps say: stimulus, expectation, and steps as "2 of 5: ...".
+void tell(TestCase& test_case, const Words& first, const Words& words, const Rounds& rounds,
+          const std::string& over);
+
+template <typename Scene>
+Words words_of(const std::vector<ChartStep<Scene>>& steps) {
+  Words words;
+  for (const ChartStep<Scene>& step : steps) {
+    if (step.steps.empty()) {
+      words.add(step.stimulus, step.expected);
+    } else {
+      words.add_repeated(words_of(step.steps), step.times);
     }
   }
-};
+  return words;
+}
+
+// Gives where the lines of what follows begin.
+template <typename Scene>
+std::size_t run_steps(const std::vector<ChartStep<Scene>>& steps, Scene& scene, auto& bench, CaseJudge& judge,
+                      const std::vector<std::string>& lines, std::size_t line = 0) {
+  for (const ChartStep<Scene>& step : steps) {
+    if (step.steps.empty()) {
+      judge.begin_step(lines[line++]);
+      step.run(scene);
+      continue;
+    }
+    const std::size_t first = line;
+    const unsigned turns = bench.volume(step.times.quick, step.times.full);
+    for (unsigned turn = 0; turn < turns; ++turn) {
+      if constexpr (requires { scene.turn; }) scene.turn = turn;
+      line = run_steps(step.steps, scene, bench, judge, lines, first);
+    }
+  }
+  return line;
+}
+
+}  // namespace chart
 
 // The case of a chart; what the test case says of stimulus and expectation comes from it.
 template <typename Case, typename Scene>
 Case charted(TestCase test_case, Chart<Scene> chart, decltype(Case::needs) needs = {}) {
-  const StepTexts<Scene> before(chart.first);
-  const StepTexts<Scene> after(chart.steps);
-  test_case.stimulus = chart::sentence(before.stimuli, after.stimuli, chart.rounds, chart.walk.over);
-  test_case.expected = chart::sentence(before.expectations, after.expectations, {}, {});
-  const std::size_t count = chart.first.size() + chart.steps.size();
-  for (const auto* steps : {&chart.first, &chart.steps}) {
-    for (const ChartStep<Scene>& step : *steps) {
-      test_case.steps.push_back(
-          chart::line_of(test_case.steps.size() + 1, count, step.stimulus, step.expected));
-    }
-  }
-  const auto procedure = [chart, lines = test_case.steps](typename Case::BenchType& bench, CaseJudge& judge) {
+  const chart::Words before = chart::words_of(chart.first);
+  chart::tell(test_case, before, chart::words_of(chart.steps), chart.rounds, chart.walk.over);
+  const auto procedure = [chart, first_lines = before.steps.size(), lines = test_case.steps](
+                             typename Case::BenchType& bench, CaseJudge& judge) {
     std::size_t rounds = 1;
     for (std::size_t round = 0; round < rounds; ++round) {
       Scene scene(bench, judge, static_cast<unsigned>(round));
-      const auto run = [&](const std::vector<ChartStep<Scene>>& steps, std::size_t line) {
-        for (const ChartStep<Scene>& step : steps) {
-          judge.begin_step(lines[line++]);
-          step.run(scene);
-        }
-      };
       if (round == 0) {
-        run(chart.first, 0);
+        chart::run_steps(chart.first, scene, bench, judge, lines);
         rounds = bench.volume(chart.rounds.quick, chart.rounds.full) *
                  (chart.walk.count ? chart.walk.count(scene) : 1);
       }
-      if (round < rounds) run(chart.steps, chart.first.size());
+      if (round < rounds) chart::run_steps(chart.steps, scene, bench, judge, lines, first_lines);
     }
   };
   return {std::move(test_case), procedure, std::move(needs)};

@@ -25,6 +25,7 @@ struct CountingScene {
   CountingBench& bench;
   CaseJudge& judge;
   unsigned round;
+  unsigned turn = 0;
   std::string asked{};
 };
 
@@ -113,6 +114,50 @@ TEST(Chart, SaysWhatComesOnceAndWhatItWalksOver) {
             "The tester comes. Then, for each door, 30 times: the tester asks.");
   EXPECT_EQ(chart::sentence({}, {"the tester asks"}, {}, "each door"), "For each door: the tester asks.");
   EXPECT_EQ(chart::sentence({"the tester comes"}, {}, {2, 30}, {}), "The tester comes.");
+}
+
+TEST(Chart, RepeatsStepsOnOneSceneAndNumbersThemOnce) {
+  const auto count = stimulus<CountingScene>("it counts", [](CountingScene& scene) {
+    scene.bench.acts.push_back("turn " + std::to_string(scene.turn) + scene.asked);
+  });
+  const CountingCase one = case_of({ask(), repeated<CountingScene>({2, 20}, {count, fail_in(1)}), ask()});
+  EXPECT_EQ(one.test_case.stimulus,
+            "The tester asks; 20 times (it counts); the tester asks. All of it 30 times.");
+  EXPECT_EQ(one.test_case.expected, "An answer; no failure; an answer.");
+  CountingBench bench;
+  std::vector<std::string> steps;
+  EXPECT_EQ(run(one, bench, steps).findings.at(0).step, "3 of 4: expected: no failure");
+  EXPECT_EQ(bench.acts, (std::vector<std::string>{"ask 0", "turn 0 again", "turn 1 again", "ask 0 again",
+                                                  "ask 1", "turn 0 again"}));
+  EXPECT_EQ(std::vector(steps.begin(), steps.begin() + 6),
+            (std::vector<std::string>{"1 of 4: the tester asks; expected: an answer", "2 of 4: it counts",
+                                      "3 of 4: expected: no failure", "2 of 4: it counts",
+                                      "3 of 4: expected: no failure",
+                                      "4 of 4: the tester asks; expected: an answer"}));
+}
+
+struct GreaterScene : CountingScene {
+  using CountingScene::CountingScene;
+  unsigned answers = 0;
+};
+
+TEST(Chart, SaysOfStepsThatStandTogetherWhatItSaysOfTheSameOneByOne) {
+  const TestCase together = case_of({repeated<CountingScene>({}, {ask(), fail_in(9)})}).test_case;
+  const TestCase one_by_one = case_of({ask(), fail_in(9)}).test_case;
+  EXPECT_EQ(together.stimulus, one_by_one.stimulus);
+  EXPECT_EQ(together.expected, one_by_one.expected);
+  EXPECT_EQ(together.steps, one_by_one.steps);
+}
+
+TEST(Chart, TakesStepsOfAScenesBase) {
+  const auto answer = stimulus<GreaterScene>(
+      "it answers", [](GreaterScene& scene) { scene.asked += std::to_string(++scene.answers); });
+  const ChartStep<GreaterScene> twice = repeated<CountingScene>({2, 2}, {ask()});
+  const auto one = charted<CountingCase>({}, Chart<GreaterScene>{{}, {ask(), answer, twice}});
+  CountingBench bench;
+  std::vector<std::string> steps;
+  run(one, bench, steps);
+  EXPECT_EQ(bench.acts, (std::vector<std::string>{"ask 0", "ask 0 again1", "ask 0 again"}));
 }
 
 }  // namespace

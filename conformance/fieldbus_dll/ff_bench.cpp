@@ -77,10 +77,14 @@ std::vector<DrivenDlpdu> FfBench::serve(kernel::Time until, const Answers& answe
   std::vector<DrivenDlpdu> all;
   while (const auto one = next(until)) {
     all.push_back(*one);
-    if (const auto reply = answers(*one))
+    if (const auto reply = answers ? answers(*one) : returned(*one))
       run_until(send_at(one->end + least_gap() + reply->later, reply->octets));
   }
   return all;
+}
+
+void FfBench::answer_one(const DrivenDlpdu& dlpdu) {
+  if (const auto reply = returned(dlpdu)) run_until(send_at(dlpdu.end + least_gap(), reply->octets));
 }
 
 std::optional<FfBench::Reply> FfBench::returned(const DrivenDlpdu& dlpdu) const {

@@ -88,8 +88,10 @@ class FfBench final : public LinkBench {
     kernel::Duration later{};
   };
   using Answers = std::function<std::optional<Reply>(const DrivenDlpdu&)>;
-  // Answers all that the IUT says until then. Gives it.
-  std::vector<DrivenDlpdu> serve(kernel::Time until, const Answers& answers);
+  // Answers all that the IUT says until then, with `returned` where nothing else is given. Gives it.
+  std::vector<DrivenDlpdu> serve(kernel::Time until, const Answers& answers = {});
+  // Says what `returned` gives, if it gives something, and runs until it is over.
+  void answer_one(const DrivenDlpdu& dlpdu);
   // Returns each token at once and answers each CD with a DT3; no probe is answered.
   std::optional<Reply> returned(const DrivenDlpdu& dlpdu) const;
 

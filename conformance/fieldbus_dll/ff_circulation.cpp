@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include "conformance/fieldbus_dll/ff_cases.hpp"
-#include "conformance/fieldbus_dll/ff_expect.hpp"
+#include "conformance/fieldbus_dll/ff_scene.hpp"
 
 // The circulation of the token: order, probes, and the priority that the rotation time steers.
 namespace fieldproof::conformance {
@@ -28,24 +27,6 @@ bool begins_circulation(const FfBench& bench, const DrivenDlpdu& dlpdu) {
 
 std::string_view priority_text(Priority priority) {
   return fieldbus_dll::text_of(priority);
-}
-
-void tokens_go_round(FfBench& bench, CaseJudge& judge) {
-  const auto all = bench.serve(kernel::kStart + bench.octets(bench.volume(1'500, 20'000)),
-                               [&](const DrivenDlpdu& one) { return bench.returned(one); });
-  std::uint8_t next = 0x11;
-  std::size_t tokens = 0;
-  for (const DrivenDlpdu& one : all) {
-    if (!is_pt(bench, one)) continue;
-    judge.expect(one.octet(1) == next, "order_wrong",
-                 [&] { return Mismatch{{fmt::format("PT for node {:02X}", next)}, one.text(), one.begin}; });
-    judge.expect(has_final_use(one) == (next == 0x11), "begin_not_marked", [&] {
-      return Mismatch{{"the first token of a circulation marked, and no other"}, one.text(), one.begin};
-    });
-    next = next == 0x14 ? 0x11 : static_cast<std::uint8_t>(next + 1);
-    ++tokens;
-  }
-  judge.expect(tokens > 20, "no_token", "tokens", fmt::format("{}", tokens));
 }
 
 void each_circulation_probes(FfBench& bench, CaseJudge& judge) {
@@ -93,68 +74,9 @@ void each_circulation_probes(FfBench& bench, CaseJudge& judge) {
                fmt::format("{} probes, {} times from the beginning", probes, wraps));
 }
 
-void its_own_data_has_its_turn(FfBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(2, 20); ++n) {
-    const Octets data = expect_submitted(bench, judge, Priority::urgent, 10);
-    bool is_sent = false;
-    bench.serve(bench.now() + bench.octets(3 * kFastRotation), [&](const DrivenDlpdu& one) {
-      is_sent |= is_dt1(bench, one) && dlsdu_of(one) == data;
-      return bench.returned(one);
-    });
-    judge.expect(is_sent, "own_data_not_sent", "urgent data of its user, once in a circulation", "none");
-  }
-}
-
-// The next token for a node; those of others are returned at once.
-DrivenDlpdu next_token_for(FfBench& bench, CaseJudge& judge, std::uint8_t node) {
-  const kernel::Time latest = bench.now() + bench.octets(10 * kFastRotation);
-  for (;;) {
-    const DrivenDlpdu one =
-        expect_next(bench, judge, latest, "no_token", fmt::format("a PT for {:02X}", node));
-    if (is_pt(bench, one) && one.octet(1) == node) return one;
-    if (const auto reply = bench.returned(one))
-      bench.run_until(bench.send_at(one.end + bench.least_gap(), reply->octets));
-  }
-}
-
 Octets data_from(const FfBench& bench, std::uint8_t node, bool is_final) {
   return bench.dt1(Priority::urgent, fieldbus_dll::address_of(FfBench::kScheduler, 0x30),
                    fieldbus_dll::address_of(node, 1), Octets(20, 0x55), is_final);
-}
-
-// The holder sends for ever, with silences of twice V(MID).
-void who_overstays_is_stopped(FfBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(2, 20); ++n) {
-    const DrivenDlpdu pt = next_token_for(bench, judge, 0x12);
-    const kernel::Time over = pt.end + bench.octets(duration_in(pt));
-    const kernel::Time latest = over + bench.slot() + 2 * bench.frame(32);
-    std::optional<DrivenDlpdu> next;
-    for (kernel::Time end = pt.end; !next && end < latest;) {
-      end = bench.send_at(end + 2 * bench.least_gap(), data_from(bench, 0x12, false));
-      bench.run_until(end);
-      next = bench.next(end + 2 * bench.least_gap() - kLinkRounding);
-    }
-    judge.expect(next.has_value(), "holder_not_stopped", [&] {
-      return Mismatch{
-          {fmt::format("the token of 12 taken back in a silence after {}", kernel::describe(over))},
-          "the station was silent",
-          latest};
-    });
-    expect_begins(judge, *next, over, "holder_stopped_early", latest, "holder_not_stopped");
-  }
-}
-
-// A DT1 with F of another, and nothing of the holder.
-void a_return_of_another_is_none(FfBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(2, 20); ++n) {
-    const DrivenDlpdu pt = next_token_for(bench, judge, 0x12);
-    const kernel::Time end = bench.send_at(pt.end + bench.least_gap(), data_from(bench, 0x13, true));
-    bench.run_until(end);
-    const kernel::Time over = end + bench.response_delay();
-    const DrivenDlpdu next = expect_next(bench, judge, over + 4 * bench.slot(), "goes_on_late",
-                                         "the scheduler goes on when the holder says nothing");
-    expect_begins(judge, next, over, "takes_return_of_another", over + 2 * bench.slot(), "goes_on_late");
-  }
 }
 
 // What the first token of each circulation said, and when.
@@ -189,57 +111,109 @@ void expect_priorities(CaseJudge& judge, const std::vector<Circulation>& found,
   }
 }
 
-void a_fast_rotation_admits_more(FfBench& bench, CaseJudge& judge) {
-  using enum Priority;
-  expect_priorities(judge, circulations(bench, 6, {}), {urgent, normal, time_available, time_available},
-                    "priority_not_lowered");
+void expect_tokens_in_turn(FfScene& scene) {
+  std::uint8_t next = 0x11;
+  std::size_t tokens = 0;
+  for (const DrivenDlpdu& one : scene.driven) {
+    if (!is_pt(scene.bench, one)) continue;
+    scene.judge.expect(one.octet(1) == next, "order_wrong", [&] {
+      return Mismatch{{fmt::format("PT for node {:02X}", next)}, one.text(), one.begin};
+    });
+    scene.judge.expect(has_final_use(one) == (next == 0x11), "begin_not_marked", [&] {
+      return Mismatch{{"the first token of a circulation marked, and no other"}, one.text(), one.begin};
+    });
+    next = next == 0x14 ? 0x11 : static_cast<std::uint8_t>(next + 1);
+    ++tokens;
+  }
+  scene.judge.expect(tokens > 20, "no_token", "tokens", fmt::format("{}", tokens));
 }
 
-void a_slow_rotation_admits_less(FfBench& bench, CaseJudge& judge) {
-  using enum Priority;
-  expect_priorities(judge, circulations(bench, 4, {}), {urgent, urgent, urgent, urgent},
-                    "priority_not_raised");
+void expect_token_of_12(FfScene& scene) {
+  const kernel::Time latest = scene.bench.now() + scene.bench.octets(10 * kFastRotation);
+  for (;;) {
+    scene.answer = expect_next(scene.bench, scene.judge, latest, "no_token", "a PT for 12");
+    if (is_pt(scene.bench, scene.answer) && scene.answer.octet(1) == 0x12) return;
+    scene.bench.answer_one(scene.answer);
+  }
 }
 
-// V(TTRT) leaves a fast rotation room for a second probe.
-void slower_rotations_admit_less_step_by_step(FfBench& bench, CaseJudge& judge) {
+void expect_stopped(FfScene& scene) {
+  FfBench& bench = scene.bench;
+  const kernel::Time over = scene.answer.end + bench.octets(duration_in(scene.answer));
+  const kernel::Time latest = over + bench.slot() + 2 * bench.frame(32);
+  std::optional<DrivenDlpdu> next;
+  for (kernel::Time end = scene.answer.end; !next && end < latest;) {
+    end = bench.send_at(end + 2 * bench.least_gap(), data_from(bench, 0x12, false));
+    bench.run_until(end);
+    next = bench.next(end + 2 * bench.least_gap() - kLinkRounding);
+  }
+  scene.judge.expect(next.has_value(), "holder_not_stopped", [&] {
+    return Mismatch{{fmt::format("the token of 12 taken back in a silence after {}", kernel::describe(over))},
+                    "the station was silent",
+                    latest};
+  });
+  expect_begins(scene.judge, *next, over, "holder_stopped_early", latest, "holder_not_stopped");
+}
+
+void expect_wait_for_holder(FfScene& scene) {
+  const kernel::Time over = scene.sent + scene.bench.response_delay();
+  const DrivenDlpdu next = expect_next(scene.bench, scene.judge, over + 4 * scene.bench.slot(),
+                                       "goes_on_late", "the scheduler goes on when the holder says nothing");
+  expect_begins(scene.judge, next, over, "takes_return_of_another", over + 2 * scene.bench.slot(),
+                "goes_on_late");
+}
+
+void expect_steps_back(FfScene& scene) {
   using enum Priority;
-  expect_priorities(judge, circulations(bench, 5, {}), {urgent, normal, time_available},
-                    "priority_not_lowered");
-  const std::vector<Circulation> slow = circulations(bench, 6, bench.octets(20), 0x11);
+  const std::vector<Circulation> slow = circulations(scene.bench, 6, scene.bench.octets(20), 0x11);
   const auto first =
       std::ranges::find_if(slow, [](const Circulation& one) { return one.priority != time_available; });
-  judge.expect(slow.end() - first >= 2, "priority_not_raised",
-               "tokens for less than all data, then for urgent data", "tokens for all");
-  expect_priorities(judge, {first, slow.end()}, {normal, urgent}, "priority_not_raised");
+  scene.judge.expect(slow.end() - first >= 2, "priority_not_raised",
+                     "tokens for less than all data, then for urgent data", "tokens for all");
+  expect_priorities(scene.judge, {first, slow.end()}, {normal, urgent}, "priority_not_raised");
 }
 
-// Rotations of exactly V(TTRT), then shorter ones.
-void an_equal_rotation_is_slow(FfBench& bench, CaseJudge& judge) {
-  constexpr std::size_t kUntilSettled = 3;
-  const std::vector<Circulation> fast = circulations(bench, 6, {});
-  judge.expect(fast.size() == 6, "no_token", "six circulations", fmt::format("{}", fast.size()));
-  const kernel::Duration later = bench.rules().target_rotation - (fast[5].begin - fast[4].begin);
-  if (later < kernel::Duration{} || bench.least_gap() + later > bench.response_delay())
-    judge.inconclusive("rotation_not_adjustable", {{"a rotation that is 0 to 24 octets shorter than V(TTRT)"},
-                                                   kernel::describe(fast[5].begin - fast[4].begin)});
-  const std::vector<Circulation> equal = circulations(bench, 6 + kUntilSettled, later);
+constexpr std::size_t kUntilSettled = 3;
+
+// `latency`: by how much a rotation is shorter than V(TTRT).
+void measure_rotation(FfScene& scene) {
+  const std::vector<Circulation> fast = circulations(scene.bench, 6, {});
+  scene.judge.expect(fast.size() == 6, "no_token", "six circulations", fmt::format("{}", fast.size()));
+  const kernel::Duration rotation = fast[5].begin - fast[4].begin;
+  scene.latency = scene.bench.rules().target_rotation - rotation;
+  if (scene.latency < kernel::Duration{} ||
+      scene.bench.least_gap() + scene.latency > scene.bench.response_delay())
+    scene.judge.inconclusive(
+        "rotation_not_adjustable",
+        {{"a rotation that is 0 to 24 octets shorter than V(TTRT)"}, kernel::describe(rotation)});
+}
+
+void expect_equal_is_slow(FfScene& scene) {
+  const std::vector<Circulation> equal = circulations(scene.bench, 6 + kUntilSettled, scene.latency);
   for (std::size_t n = kUntilSettled; n < equal.size(); ++n) {
-    judge.expect(equal[n].priority == Priority::urgent, "equal_rotation_is_fast", [&] {
+    scene.judge.expect(equal[n].priority == Priority::urgent, "equal_rotation_is_fast", [&] {
       return Mismatch{{"a token for urgent data: the rotation before took V(TTRT)"},
                       std::string(priority_text(equal[n].priority)),
                       equal[n].begin};
     });
   }
-  const std::vector<Circulation> faster = circulations(bench, 3 + kUntilSettled, later - bench.octets(1));
-  judge.expect(faster.size() == 3 + kUntilSettled && faster.back().priority == Priority::time_available,
-               "priority_not_lowered", "tokens for all data: the rotation is shorter than V(TTRT)",
-               "otherwise");
+}
+
+void expect_shorter_is_fast(FfScene& scene) {
+  const std::vector<Circulation> faster =
+      circulations(scene.bench, 3 + kUntilSettled, scene.latency - scene.bench.octets(1));
+  scene.judge.expect(faster.size() == 3 + kUntilSettled && faster.back().priority == Priority::time_available,
+                     "priority_not_lowered", "tokens for all data: the rotation is shorter than V(TTRT)",
+                     "otherwise");
 }
 
 }  // namespace
 
 std::vector<FfCase> ff_circulation_cases() {
+  using namespace ff_chart;
+  using enum Priority;
+  const FfStep token_of_12 =
+      expected<FfScene>("a PT for 12; all others are returned at once", expect_token_of_12);
   using link_sources::ff_paper;
   using link_sources::memory;
   using link_sources::own;
@@ -247,18 +221,17 @@ std::vector<FfCase> ff_circulation_cases() {
   const PartialSource step{own("one step for each circulation; the first one is urgent"),
                            {"priority_not_lowered", "priority_not_raised"}};
   return {
-      {{.id = "fieldbus_dll/ff_las/circulation/tokens_go_round",
-        .purpose = "FF-18",
-        .requirement =
-            "The token is passed to each live node in the order of addresses; the first PT is marked.",
-        .reference = ff_paper("token circulation list"),
-        .details = {{vendors("the subfield Restart"), {"begin_not_marked"}}},
-        .stimulus = "Four live nodes that return the token at once.",
-        .expected = "11, 12, 13, 14, again and again, the first one marked.",
-        .tags = {"must"},
-        .catches = {{"descending_order", "order_wrong"}, {"begin_not_marked", "begin_not_marked"}}},
-       tokens_go_round,
-       {.change = four_nodes<1'000>}},
+      on_chart(
+          must("fieldbus_dll/ff_las/circulation/tokens_go_round", "FF-18",
+               "The token is passed to each live node in the order of addresses; the first PT is marked.",
+               ff_paper("token circulation list"),
+               {{"descending_order", "order_wrong"}, {"begin_not_marked", "begin_not_marked"}},
+               {{vendors("the subfield Restart"), {"begin_not_marked"}}}),
+          {{},
+           {serve({1'500, 20'000}),
+            expected<FfScene>("PTs for 11, 12, 13, 14, again and again, the first one of them marked",
+                              expect_tokens_in_turn)}},
+          {.change = four_nodes<1'000>}),
       {{.id = "fieldbus_dll/ff_las/circulation/each_probes",
         .purpose = "FF-23",
         .requirement =
@@ -274,86 +247,104 @@ std::vector<FfCase> ff_circulation_cases() {
                     {"probes_descending", "probes_out_of_order"}}},
        each_circulation_probes,
        {.change = four_nodes<1'000>}},
-      {{.id = "fieldbus_dll/ff_las/circulation/its_own_data_has_its_turn",
-        .purpose = "FF-18",
-        .requirement = "The scheduler itself has a turn in each circulation.",
-        .reference = own("the scheduler's own turn"),
-        .stimulus = "Four live nodes that return the token at once; its user submits.",
-        .expected = "The data within three rotations.",
-        .tags = {"must"},
-        .catches = {{"own_data_kept", "own_data_not_sent"}}},
-       its_own_data_has_its_turn,
-       {.change = four_nodes<1'000>}},
-      {{.id = "fieldbus_dll/ff_las/circulation/a_fast_rotation_admits_more",
-        .purpose = "FF-19",
-        .requirement = "While the rotation is shorter than V(TTRT), data of lower priority is admitted.",
-        .reference = ff_paper("ATRT below TTRT"),
-        .details = {step},
-        .stimulus = "Nodes that return the token at once; V(TTRT) is 1.9 times the shortest rotation.",
-        .expected = "Tokens urgent, normal, time-available.",
-        .tags = {"must", "timing"},
-        .catches = {{"steers_the_wrong_way", "priority_not_lowered"},
-                    {"steps_to_the_extreme", "priority_not_lowered"},
-                    {"rotation_counted_twice", "priority_not_lowered"}}},
-       a_fast_rotation_admits_more,
-       {.change = four_nodes<(19 * kFastRotation) / 10>}},
-      {{.id = "fieldbus_dll/ff_las/circulation/a_slow_rotation_admits_less",
-        .purpose = "FF-20",
-        .requirement = "While the rotation is not shorter than V(TTRT), only urgent data is admitted.",
-        .reference = ff_paper("ATRT not below TTRT"),
-        .details = {step},
-        .stimulus = "The same, V(TTRT) an octet shorter than a rotation.",
-        .expected = "Tokens for urgent data.",
-        .tags = {"must", "timing"},
-        .catches = {{"steers_the_wrong_way", "priority_not_raised"},
-                    {"target_ignored", "priority_not_raised"}}},
-       a_slow_rotation_admits_less,
-       {.change = four_nodes<kFastRotation - 1>}},
-      {{.id = "fieldbus_dll/ff_las/circulation/slower_rotations_admit_less_step_by_step",
-        .purpose = "FF-20",
-        .requirement = "When rotations become slower than V(TTRT), the priority rises one step for each.",
-        .reference = ff_paper("ATRT not below TTRT"),
-        .details = {step},
-        .stimulus = "Nodes that return the token at once, then 20 octets later each; V(TTRT) is in between.",
-        .expected = "Tokens for all data; normal, urgent.",
-        .tags = {"must", "timing"},
-        .catches = {{"steps_back_to_the_extreme", "priority_not_raised"}}},
-       slower_rotations_admit_less_step_by_step,
-       {.change = four_nodes<kFastRotation + 60>}},
-      {{.id = "fieldbus_dll/ff_las/circulation/who_overstays_is_stopped",
-        .purpose = "FF-18",
-        .requirement = "A token comes back to the scheduler when its duration is over.",
-        .reference = ff_paper("duration of the token"),
-        .details = {{own("the scheduler takes it in a silence of V(MID), a V(ST) after the duration"),
-                     {"holder_not_stopped", "holder_stopped_early"}}},
-        .stimulus = "A holder that sends for ever, with silences of twice V(MID).",
-        .expected = "The scheduler sends in a silence after the duration, not before.",
-        .tags = {"must", "timing"},
-        .catches = {{"holder_never_stopped", "holder_not_stopped"}}},
-       who_overstays_is_stopped,
-       {.change = four_nodes<1'000>}},
-      {{.id = "fieldbus_dll/ff_las/circulation/a_return_of_another_is_none",
-        .purpose = "FF-18",
-        .requirement = "A token is returned by who holds it.",
-        .reference = own("DT1 with F of another"),
-        .stimulus = "A PT for 12; a DT1 with F of 13.",
-        .expected = "Silence for V(MRD) x V(ST) after it, no more than two slot times more.",
-        .tags = {"must", "timing"},
-        .catches = {{"return_of_anybody_taken", "takes_return_of_another"}}},
-       a_return_of_another_is_none,
-       {.change = four_nodes<1'000>}},
-      {{.id = "fieldbus_dll/ff_las/circulation/an_equal_rotation_is_slow",
-        .purpose = "FF-21",
-        .requirement = "A rotation of exactly V(TTRT) admits urgent data only.",
-        .reference = ff_paper("ATRT not below TTRT"),
-        .details = {step},
-        .stimulus =
-            "The last node returns the token so late that a rotation takes V(TTRT); then an octet sooner.",
-        .expected = "Tokens for urgent data; then for all.",
-        .tags = {"must", "timing"},
-        .catches = {{"equal_rotation_is_fast", "equal_rotation_is_fast"}}},
-       an_equal_rotation_is_slow,
-       {.change = four_nodes<kFastRotation + 16>}},
+      on_chart(must("fieldbus_dll/ff_las/circulation/its_own_data_has_its_turn", "FF-18",
+                    "The scheduler itself has a turn in each circulation.", own("the scheduler's own turn"),
+                    {{"own_data_kept", "own_data_not_sent"}}),
+               {{2, 20},
+                {submit({Priority::urgent}, 10), serve({3 * kFastRotation, 3 * kFastRotation}),
+                 require(
+                     "the data within three rotations",
+                     [](FfScene& scene) {
+                       return std::ranges::any_of(scene.driven, [&](const DrivenDlpdu& one) {
+                         return is_dt1(scene.bench, one) && dlsdu_of(one) == scene.submitted.back();
+                       });
+                     },
+                     "own_data_not_sent")}},
+               {.change = four_nodes<1'000>}),
+      on_chart(must_in_time("fieldbus_dll/ff_las/circulation/a_fast_rotation_admits_more", "FF-19",
+                            "While the rotation is shorter than V(TTRT), data of lower priority is admitted.",
+                            ff_paper("ATRT below TTRT"),
+                            {{"steers_the_wrong_way", "priority_not_lowered"},
+                             {"steps_to_the_extreme", "priority_not_lowered"},
+                             {"rotation_counted_twice", "priority_not_lowered"}},
+                            {step}),
+               {{},
+                {FfStep{"the nodes return their tokens at once",
+                        "tokens urgent, normal, time-available, time-available",
+                        [](FfScene& scene) {
+                          expect_priorities(scene.judge, circulations(scene.bench, 6, {}),
+                                            {urgent, normal, time_available, time_available},
+                                            "priority_not_lowered");
+                        }}}},
+               {.change = four_nodes<(19 * kFastRotation) / 10>}),
+      on_chart(must_in_time("fieldbus_dll/ff_las/circulation/a_slow_rotation_admits_less", "FF-20",
+                            "While the rotation is not shorter than V(TTRT), only urgent data is admitted.",
+                            ff_paper("ATRT not below TTRT"),
+                            {{"steers_the_wrong_way", "priority_not_raised"},
+                             {"target_ignored", "priority_not_raised"}},
+                            {step}),
+               {{},
+                {FfStep{"the nodes return their tokens at once; V(TTRT) is an octet shorter than a rotation",
+                        "four tokens for urgent data",
+                        [](FfScene& scene) {
+                          expect_priorities(scene.judge, circulations(scene.bench, 4, {}),
+                                            {urgent, urgent, urgent, urgent}, "priority_not_raised");
+                        }}}},
+               {.change = four_nodes<kFastRotation - 1>}),
+      on_chart(
+          must_in_time("fieldbus_dll/ff_las/circulation/slower_rotations_admit_less_step_by_step", "FF-20",
+                       "When rotations become slower than V(TTRT), the priority rises one step for each.",
+                       ff_paper("ATRT not below TTRT"),
+                       {{"steps_back_to_the_extreme", "priority_not_raised"}}, {step}),
+          {{},
+           {FfStep{"the nodes return their tokens at once", "tokens urgent, normal, time-available",
+                   [](FfScene& scene) {
+                     expect_priorities(scene.judge, circulations(scene.bench, 5, {}),
+                                       {urgent, normal, time_available}, "priority_not_lowered");
+                   }},
+            FfStep{"then 20 octet durations later each, which is slower than V(TTRT)",
+                   "after tokens for all data one normal, then one urgent", expect_steps_back}}},
+          {.change = four_nodes<kFastRotation + 60>}),
+      on_chart(
+          must_in_time("fieldbus_dll/ff_las/circulation/who_overstays_is_stopped", "FF-18",
+                       "A token comes back to the scheduler when its duration is over.",
+                       ff_paper("duration of the token"), {{"holder_never_stopped", "holder_not_stopped"}},
+                       {{own("the scheduler takes it in a silence of V(MID), a V(ST) after the duration"),
+                         {"holder_not_stopped", "holder_stopped_early"}}}),
+          {{2, 20},
+           {token_of_12, FfStep{"12 sends for ever, with silences of twice V(MID)",
+                                "the scheduler sends in a silence within a V(ST) and two frames after "
+                                "the duration, not before",
+                                expect_stopped}}},
+          {.change = four_nodes<1'000>}),
+      on_chart(must_in_time("fieldbus_dll/ff_las/circulation/a_return_of_another_is_none", "FF-18",
+                            "A token is returned by who holds it.", own("DT1 with F of another"),
+                            {{"return_of_anybody_taken", "takes_return_of_another"}}),
+               {{2, 20},
+                {token_of_12,
+                 stimulus<FfScene>("a DT1 with F of 13",
+                                   [](FfScene& scene) {
+                                     scene.sent =
+                                         scene.bench.send_at(scene.answer.end + scene.bench.least_gap(),
+                                                             data_from(scene.bench, 0x13, true));
+                                     scene.bench.run_until(scene.sent);
+                                   }),
+                 expected<FfScene>("silence for V(MRD) x V(ST) after it, no more than two slot times more",
+                                   expect_wait_for_holder)}},
+               {.change = four_nodes<1'000>}),
+      on_chart(
+          must_in_time("fieldbus_dll/ff_las/circulation/an_equal_rotation_is_slow", "FF-21",
+                       "A rotation of exactly V(TTRT) admits urgent data only.",
+                       ff_paper("ATRT not below TTRT"),
+                       {{"equal_rotation_is_fast", "equal_rotation_is_fast"}}, {step}),
+          {{},
+           {FfStep{"the nodes return their tokens at once",
+                   "six circulations, shorter than V(TTRT) by 0 to 24 octet durations", measure_rotation},
+            FfStep{"the last node returns its token so late that a rotation takes V(TTRT)",
+                   "tokens for urgent data, from the fourth circulation on", expect_equal_is_slow},
+            FfStep{"an octet duration sooner", "a token for all data after six circulations",
+                   expect_shorter_is_fast}}},
+          {.change = four_nodes<kFastRotation + 16>}),
   };
 }
 

@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "conformance/fieldbus_dll/ff_cases.hpp"
-#include "conformance/fieldbus_dll/ff_expect.hpp"
+#include <array>
+
+#include "conformance/fieldbus_dll/ff_scene.hpp"
 
 // CD: the buffer of a publisher.
 namespace fieldproof::conformance {
@@ -29,174 +30,156 @@ DrivenDlpdu expect_published(FfBench& bench, CaseJudge& judge) {
   return dt3;
 }
 
-void expect_buffer(CaseJudge& judge, const DrivenDlpdu& dt3, const Octets& wanted, std::string_view reason) {
-  judge.expect(buffer_in(dt3).data == wanted, reason, [&] {
-    return Mismatch{{fmt::format("buffer {:02X}", fmt::join(wanted, " "))}, dt3.text(), dt3.begin};
+// One of these is in the DT3.
+void expect_buffer(FfScene& scene, const std::vector<Octets>& right, std::string_view reason) {
+  const auto is_in = [&](const Octets& one) { return buffer_in(scene.answer).data == one; };
+  scene.judge.expect(std::ranges::any_of(right, is_in), reason, [&] {
+    std::vector<std::string> texts;
+    for (const Octets& one : right) texts.push_back(fmt::format("buffer {:02X}", fmt::join(one, " ")));
+    return Mismatch{texts, scene.answer.text(), scene.answer.begin};
   });
 }
 
-Octets write_some(FfBench& bench, CaseJudge& judge, std::size_t size) {
-  const Octets data = bench.numbered_data(size);
-  judge.expect(bench.write(FfBench::kPublished, data), "write_refused", "the buffer is written",
-               "it was not");
-  return data;
+FfStep published() {
+  return {"a CD for its buffer",
+          "a DT3 begun between V(MID) and V(MRD) x V(ST), the token returned once, by F or by RT",
+          [](FfScene& scene) {
+            scene.before = scene.answer;
+            scene.answer = expect_published(scene.bench, scene.judge);
+          }};
 }
 
-void the_latest_write_is_published(FfBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(3, 30); ++n) {
-    Octets last;
-    for (std::uint64_t writes = 1 + bench.random().below(3); writes > 0; --writes) {
-      last = write_some(bench, judge, 16);
-      bench.wait(bench.octets(static_cast<std::int64_t>(bench.random().below(20))));
-    }
-    expect_buffer(judge, expect_published(bench, judge), last, "buffer_wrong");
-  }
+// The octet that counts them goes round.
+FfStep writes_are(unsigned more) {
+  const std::string text = more == 0 ? "the number of writes in it as before" : "one write more in it";
+  return ff_chart::require(
+      text,
+      [more](FfScene& scene) {
+        const unsigned writes = buffer_in(scene.before).writes + more;
+        return buffer_in(scene.answer).writes == static_cast<std::uint8_t>(writes);
+      },
+      "freshness_wrong");
 }
 
-void a_buffer_is_published_whole(FfBench& bench, CaseJudge& judge) {
-  Octets before = write_some(bench, judge, 16);
-  for (int n = 0; n < bench.volume(20, 300); ++n) {
-    bench.send(bench.cd(FfBench::kPublished));
-    // Written while the answer is formed or on the line.
-    bench.wait(bench.octets(static_cast<std::int64_t>(bench.random().below(24))));
-    const Octets after = write_some(bench, judge, 16);
-    const DrivenDlpdu dt3 = expect_next(bench, judge, "not_published", "a DT3");
-    const Octets found = buffer_in(dt3).data;
-    judge.expect(found == before || found == after, "buffer_torn", [&] {
-      return Mismatch{{fmt::format("the old buffer {:02X}", fmt::join(before, " ")),
-                       fmt::format("the new one {:02X}", fmt::join(after, " "))},
-                      dt3.text(),
-                      dt3.begin};
+template <std::uint64_t octets>
+void wait_up_to(FfScene& scene) {
+  scene.bench.wait(scene.bench.octets(static_cast<std::int64_t>(scene.bench.random().below(octets))));
+}
+
+// Written while the answer is formed or on the line.
+void expect_whole(FfScene& scene) {
+  scene.answer = expect_next(scene.bench, scene.judge, "not_published", "a DT3");
+  expect_buffer(scene, {scene.written.end()[-2], scene.written.back()}, "buffer_torn");
+  scene.bench.listen();
+}
+
+void expect_no_buffer(FfScene& scene) {
+  for (const DrivenDlpdu& one : scene.bench.listen()) {
+    const auto& codes = scene.bench.rules().codes;
+    const bool is_status = (one.octet(0) & ~fieldbus_dll::kFinalBit) == codes.sr;
+    scene.judge.expect(is_status || is_of(one, codes.rt), "unknown_address_published", [&] {
+      return Mismatch{
+          {"SR, RT or silence: there is no such buffer, or nothing in it"}, one.text(), one.begin};
     });
-    bench.listen();
-    before = after;
   }
-}
-
-void what_is_not_fresh_shows(FfBench& bench, CaseJudge& judge) {
-  const auto writes_in = [](const DrivenDlpdu& dt3) { return buffer_in(dt3).writes; };
-  for (int n = 0; n < bench.volume(2, 20); ++n) {
-    const Octets data = write_some(bench, judge, 8);
-    const DrivenDlpdu first = expect_published(bench, judge);
-    const DrivenDlpdu again = expect_published(bench, judge);
-    expect_buffer(judge, first, data, "buffer_wrong");
-    expect_buffer(judge, again, data, "buffer_wrong");
-    judge.expect(writes_in(again) == writes_in(first), "freshness_wrong",
-                 [&] { return Mismatch{{"the number of writes as before"}, again.text(), again.begin}; });
-    write_some(bench, judge, 8);
-    const DrivenDlpdu fresh = expect_published(bench, judge);
-    judge.expect(writes_in(fresh) == static_cast<std::uint8_t>(writes_in(first) + 1), "freshness_wrong",
-                 [&] { return Mismatch{{"one write more"}, fresh.text(), fresh.begin}; });
-  }
-  const DrivenDlpdu before = expect_published(bench, judge);
-  for (int n = 0; n < 256; ++n) write_some(bench, judge, 8);
-  const DrivenDlpdu behind = expect_published(bench, judge);
-  judge.expect(writes_in(behind) == writes_in(before), "freshness_wrong", [&] {
-    return Mismatch{{"the number of writes as before: its octet went round"}, behind.text(), behind.begin};
-  });
-}
-
-void an_unknown_address_is_not_published(FfBench& bench, CaseJudge& judge) {
-  write_some(bench, judge, 8);
-  for (const unsigned selector : {0x33U, 0x21U, 0xFFU}) {
-    const fieldbus_dll::FfAddress address =
-        fieldbus_dll::address_of(bench.node(), static_cast<std::uint8_t>(selector));
-    bench.send(bench.cd(address));
-    for (const DrivenDlpdu& one : bench.listen()) {
-      const bool is_status = (one.octet(0) & ~fieldbus_dll::kFinalBit) == bench.rules().codes.sr;
-      judge.expect(is_status || is_of(one, bench.rules().codes.rt), "unknown_address_published", [&] {
-        return Mismatch{
-            {"SR, RT or silence: there is no such buffer, or nothing in it"}, one.text(), one.begin};
-      });
-    }
-  }
-  for (const unsigned node : {0x22U, 0x20U, 0x10U}) {
-    bench.send(bench.cd(fieldbus_dll::address_of(static_cast<std::uint8_t>(node), 0x20)));
-    expect_silence(bench, judge, "answers_others", "the buffer is another's");
-  }
-  expect_published(bench, judge);
-}
-
-void what_is_subscribed_is_delivered(FfBench& bench, CaseJudge& judge) {
-  const Octets data = bench.numbered_data(8);
-  bench.send(bench.dt3(FfBench::kSubscribed, data));
-  bench.send(bench.dt3(FfBench::kSubscribed + 1, bench.numbered_data(8)));
-  bench.wait(bench.octets(20));
-  const auto& published = bench.user().published;
-  judge.expect(!published.empty(), "subscription_not_delivered", "the subscribed buffer is delivered",
-               "nothing was");
-  judge.expect(published.size() == 1 && published[0].data == data, "other_buffer_delivered",
-               "the subscribed buffer alone", fmt::format("{} buffers", published.size()));
-  expect_serves(bench, judge);
 }
 
 }  // namespace
 
 std::vector<FfCase> ff_publisher_cases() {
+  using namespace ff_chart;
+  const FfStep latest = expected<FfScene>("the buffer as it was written last", [](FfScene& scene) {
+    expect_buffer(scene, {scene.written.back()}, "buffer_wrong");
+  });
   using link_sources::ff_paper;
   using link_sources::memory;
   using link_sources::own;
   const PartialSource returned{memory("final use, RT"), {"token_not_returned_once"}};
   return {
-      {{.id = "fieldbus_dll/ff_device/publisher/the_latest_write_is_published",
-        .purpose = "FF-11",
-        .requirement =
-            "A station that is compelled sends the buffer as it was written last, and the token returns.",
-        .reference = ff_paper("CD: scheduled data"),
-        .details = {returned},
-        .stimulus = "One to three writes, a CD.",
-        .expected = "A DT3 with the last of them, begun within V(MRD) x V(ST); the token returned once.",
-        .tags = {"must", "timing"},
-        .catches = {{"mute_after_activation", "not_published"},
-                    {"publishes_first_write", "buffer_wrong"},
-                    {"answers_late", "answers_too_late"},
-                    {"published_not_final", "token_not_returned_once"}}},
-       the_latest_write_is_published},
-      {{.id = "fieldbus_dll/ff_device/publisher/a_buffer_is_published_whole",
-        .purpose = "FF-11",
-        .requirement = "A buffer that is written while it is sent is sent as it was before or as it is then.",
-        .reference = memory("buffers of a publisher"),
-        .stimulus = "Writes at random instants after a CD.",
-        .expected = "The old buffer or the new one.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "not_published"}, {"buffer_torn", "buffer_torn"}}},
-       a_buffer_is_published_whole},
-      {{.id = "fieldbus_dll/ff_device/publisher/what_is_not_fresh_shows",
-        .purpose = "FF-12",
-        .requirement = "A buffer that was not written since is sent again, and a subscriber can see that.",
-        .reference = own("the number of writes in a DT3"),
-        .details = {returned},
-        .stimulus = "A write, two CDs, a write, a CD; 256 writes and a CD.",
-        .expected = "The same data and number of writes twice, then one more; the same number.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "not_published"},
-                    {"counts_reads", "freshness_wrong"},
-                    {"counts_nothing", "freshness_wrong"},
-                    {"counts_to_255", "freshness_wrong"}}},
-       what_is_not_fresh_shows},
-      {{.id = "fieldbus_dll/ff_device/publisher/an_unknown_address_is_not_published",
-        .purpose = "FF-13",
-        .requirement = "A CD for what a station does not publish gets no DT3.",
-        .reference = memory("CD and SR"),
-        .details = {returned},
-        .stimulus = "CDs for other selectors of the station and for other nodes.",
-        .expected = "SR or silence; silence.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "not_published"},
-                    {"publishes_anything", "unknown_address_published"},
-                    {"answers_for_all_nodes", "answers_others"}}},
-       an_unknown_address_is_not_published},
-      {{.id = "fieldbus_dll/ff_device/publisher/what_is_subscribed_is_delivered",
-        .purpose = "FF-11",
-        .requirement = "What its publisher sends is reported to a subscriber, and nothing else.",
-        .reference = ff_paper("scheduled data"),
-        .stimulus = "DT3 of the publisher, and of another.",
-        .expected = "The first is delivered.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "does_not_recover"},
-                    {"subscribed_to_all", "other_buffer_delivered"},
-                    {"subscribed_to_none", "subscription_not_delivered"}}},
-       what_is_subscribed_is_delivered},
+      on_chart(
+          must_in_time(
+              "fieldbus_dll/ff_device/publisher/the_latest_write_is_published", "FF-11",
+              "A station that is compelled sends the buffer as it was written last, and the token returns.",
+              ff_paper("CD: scheduled data"),
+              {{"mute_after_activation", "not_published"},
+               {"publishes_first_write", "buffer_wrong"},
+               {"answers_late", "answers_too_late"},
+               {"published_not_final", "token_not_returned_once"}},
+              {returned}),
+          {{3, 30},
+           {repeat({1, 3}, {write(16), stimulus<FfScene>("up to 19 octet durations pass", wait_up_to<20>)}),
+            published(), latest}}),
+      on_chart(must("fieldbus_dll/ff_device/publisher/a_buffer_is_published_whole", "FF-11",
+                    "A buffer that is written while it is sent is sent as it was before or as it is then.",
+                    memory("buffers of a publisher"),
+                    {{"mute_after_activation", "not_published"}, {"buffer_torn", "buffer_torn"}}),
+               {{},
+                {write(16),
+                 repeat({20, 300},
+                        {cd(), stimulus<FfScene>("up to 23 octet durations pass", wait_up_to<24>), write(16),
+                         expected<FfScene>("a DT3 with the buffer as it was before, or as it is then",
+                                           expect_whole)})}}),
+      on_chart(must("fieldbus_dll/ff_device/publisher/what_is_not_fresh_shows", "FF-12",
+                    "A buffer that was not written since is sent again, and a subscriber can see that.",
+                    own("the number of writes in a DT3"),
+                    {{"mute_after_activation", "not_published"},
+                     {"counts_reads", "freshness_wrong"},
+                     {"counts_nothing", "freshness_wrong"},
+                     {"counts_to_255", "freshness_wrong"}},
+                    {returned}),
+               {{2, 20},
+                {write(8), published(), latest, published(), latest, writes_are(0), write(8), published(),
+                 writes_are(1), repeat({256, 256}, {write(8)}), published(), writes_are(0)}}),
+      on_chart(
+          must("fieldbus_dll/ff_device/publisher/an_unknown_address_is_not_published", "FF-13",
+               "A CD for what a station does not publish gets no DT3.", memory("CD and SR"),
+               {{"mute_after_activation", "not_published"},
+                {"publishes_anything", "unknown_address_published"},
+                {"answers_for_all_nodes", "answers_others"}},
+               {returned}),
+          {{},
+           {write(8),
+            repeat({3, 3}, {send("a CD for the selectors 33, 21 and FF of the station, in turn",
+                                 [](FfScene& scene) {
+                                   constexpr std::array<std::uint8_t, 3> kSelectors{0x33, 0x21, 0xFF};
+                                   return scene.bench.cd(
+                                       fieldbus_dll::address_of(scene.bench.node(), kSelectors[scene.turn]));
+                                 }),
+                            expected<FfScene>("SR, RT or silence: there is no such buffer, or nothing in it",
+                                              expect_no_buffer)}),
+            repeat({3, 3}, {send("a CD for the nodes 22, 20 and 10, in turn",
+                                 [](FfScene& scene) {
+                                   constexpr std::array<std::uint8_t, 3> kNodes{0x22, 0x20, 0x10};
+                                   return scene.bench.cd(fieldbus_dll::address_of(kNodes[scene.turn], 0x20));
+                                 }),
+                            silence("answers_others", "the buffer is another's")}),
+            published()}}),
+      on_chart(must("fieldbus_dll/ff_device/publisher/what_is_subscribed_is_delivered", "FF-11",
+                    "What its publisher sends is reported to a subscriber, and nothing else.",
+                    ff_paper("scheduled data"),
+                    {{"mute_after_activation", "does_not_recover"},
+                     {"subscribed_to_all", "other_buffer_delivered"},
+                     {"subscribed_to_none", "subscription_not_delivered"}}),
+               {{},
+                {send("a DT3 of the publisher",
+                      [](FfScene& scene) { return scene.bench.dt3(FfBench::kSubscribed, scene.fresh(8)); }),
+                 send("a DT3 of another",
+                      [](FfScene& scene) {
+                        return scene.bench.dt3(FfBench::kSubscribed + 1, scene.bench.numbered_data(8));
+                      }),
+                 wait(20),
+                 require(
+                     "the subscribed buffer is delivered",
+                     [](FfScene& scene) { return !scene.bench.user().published.empty(); },
+                     "subscription_not_delivered"),
+                 require(
+                     "no other buffer is",
+                     [](FfScene& scene) {
+                       const auto& all = scene.bench.user().published;
+                       return all.size() == 1 && all[0].data == scene.data;
+                     },
+                     "other_buffer_delivered"),
+                 serves()}}),
   };
 }
 

@@ -150,8 +150,8 @@ void a_missing_answer_costs_its_time(FfBench& bench, CaseJudge& judge) {
     }
     if (is_cd(bench, *one)) {
       cd = *one;
-    } else if (const auto reply = bench.returned(*one)) {
-      bench.run_until(bench.send_at(one->end + bench.least_gap(), reply->octets));
+    } else {
+      bench.answer_one(*one);
     }
   }
   judge.expect(seen > 5, "not_compelled", "CDs", fmt::format("{}", seen));
@@ -172,9 +172,7 @@ void its_own_buffer_is_published(FfBench& bench, CaseJudge& judge) {
     judge.expect(bench.write(kOwn, data), "write_refused", "the buffer is written", "it was not");
     const kernel::Time due = kernel::kStart + n * macrocycle + at;
     bool is_published = false;
-    for (const DrivenDlpdu& one :
-         bench.serve(kernel::kStart + (n + 1) * macrocycle,
-                     [&](const DrivenDlpdu& dlpdu) { return bench.returned(dlpdu); })) {
+    for (const DrivenDlpdu& one : bench.serve(kernel::kStart + (n + 1) * macrocycle)) {
       if (!is_dt3(bench, one)) continue;
       const BufferOfDt3 buffer = buffer_in(one);
       judge.expect(buffer.from == kOwn && buffer.data == data, "buffer_wrong", [&] {
@@ -197,8 +195,7 @@ void nothing_but_cds(FfConfiguration& configuration) {
 void the_line_is_kept_active(FfBench& bench, CaseJudge& judge) {
   // The lowest link master claims after this silence.
   const kernel::Duration claim = 16 * bench.slot();
-  const auto all = bench.serve(kernel::kStart + bench.octets(8'000),
-                               [&](const DrivenDlpdu& one) { return bench.returned(one); });
+  const auto all = bench.serve(kernel::kStart + bench.octets(8'000));
   kernel::Time silent_since = kernel::kStart;
   std::size_t heard = 0;
   for (const DrivenDlpdu& one : all) {

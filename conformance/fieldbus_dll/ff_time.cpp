@@ -37,8 +37,8 @@ void time_is_distributed(FfBench& bench, CaseJudge& judge) {
   const kernel::Duration most = bench.rules().time_distribution_period * 95 / 100;
   std::optional<DrivenDlpdu> last;
   kernel::Duration longest{};
-  const auto all = bench.serve(kernel::kStart + bench.volume(8, 200) * bench.rules().time_distribution_period,
-                               [&](const DrivenDlpdu& one) { return bench.returned(one); });
+  const auto all =
+      bench.serve(kernel::kStart + bench.volume(8, 200) * bench.rules().time_distribution_period);
   for (const DrivenDlpdu& one : all) {
     if (!is_of(one, bench.rules().codes.td)) continue;
     if (last) {
@@ -67,8 +67,7 @@ void who_asks_is_told(FfBench& bench, CaseJudge& judge) {
     judge.expect(one.has_value(), "no_token", "a PT for 11", "silence");
     if (is_of(*one, codes.td)) before = *one;
     if (!is_pt(bench, *one) || !before) {
-      if (const auto reply = bench.returned(*one))
-        bench.run_until(bench.send_at(one->end + bench.least_gap(), reply->octets));
+      bench.answer_one(*one);
       continue;
     }
     // The holder asks, and returns the token when it knows.

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include "conformance/fieldbus_dll/ff_cases.hpp"
-#include "conformance/fieldbus_dll/ff_expect.hpp"
+#include "conformance/fieldbus_dll/ff_scene.hpp"
 
 // PT: what a device sends under a token, and how it returns it.
 namespace fieldproof::conformance {
@@ -11,43 +10,6 @@ using fieldbus_dll::Priority;
 
 constexpr unsigned kAmple = 3'000;     // octet durations: more than all that is queued needs
 constexpr std::size_t kDt1Header = 5;  // with short addresses
-
-std::vector<DrivenDlpdu> use_pt(FfBench& bench, CaseJudge& judge, Priority least, unsigned duration) {
-  const kernel::Time end = bench.send(bench.pt(least, duration));
-  return expect_token_used(bench, judge, end);
-}
-
-void only_what_is_urgent_enough_is_sent(FfBench& bench, CaseJudge& judge) {
-  const Octets urgent = expect_submitted(bench, judge, Priority::urgent, 10);
-  const Octets normal = expect_submitted(bench, judge, Priority::normal, 10);
-  const Octets available = expect_submitted(bench, judge, Priority::time_available, 10);
-  expect_dlsdus(judge, use_pt(bench, judge, Priority::normal, 1'000), {urgent, normal}, "frames_missing",
-                "lower_priority_sent");
-  expect_dlsdus(judge, use_pt(bench, judge, Priority::urgent, 1'000), {}, "", "lower_priority_sent");
-  expect_dlsdus(judge, use_pt(bench, judge, Priority::time_available, 1'000), {available}, "frames_missing",
-                "sent_twice");
-}
-
-void all_is_sent_in_order(FfBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(1, 10); ++n) {
-    std::vector<Octets> in_order(6);
-    for (std::size_t i = 0; i < 2; ++i) {
-      in_order[4 + i] = expect_submitted(bench, judge, Priority::time_available, 12);
-      in_order[2 + i] = expect_submitted(bench, judge, Priority::normal, 12);
-      in_order[i] = expect_submitted(bench, judge, Priority::urgent, 12);
-    }
-    expect_dlsdus(judge, use_pt(bench, judge, Priority::time_available, kAmple), in_order, "frames_missing",
-                  "sent_twice", "wrong_order");
-  }
-}
-
-void ff_an_empty_queue_returns_the_token(FfBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(2, 20); ++n) {
-    for (const Priority least : {Priority::urgent, Priority::normal, Priority::time_available}) {
-      expect_dlsdus(judge, use_pt(bench, judge, least, 280), {}, "", "unexpected_dlpdu");
-    }
-  }
-}
 
 // In octet durations, a begun one counted.
 unsigned in_whole_octets(const FfBench& bench, kernel::Duration duration) {
@@ -74,203 +36,162 @@ bool fit_is_judged(FfBench& bench, CaseJudge& judge, unsigned duration, std::siz
   return !sent.empty();
 }
 
-void what_fits_exactly_is_sent_and_no_more(FfBench& bench, CaseJudge& judge) {
-  const Octets first = expect_submitted(bench, judge, Priority::normal, 8);
-  const kernel::Time end = bench.send(bench.pt(Priority::normal, 500));
-  const std::vector<DrivenDlpdu> sent = expect_token_used(bench, judge, end);
-  expect_dlsdus(judge, sent, {first}, "frames_missing", "sent_twice");
-  const kernel::Duration latency = sent[0].begin - end;
-  judge.measure("start latency", "octets", static_cast<double>(latency / bench.octets(1)));
-  for (int n = 0; n < bench.volume(3, 30); ++n) {
-    const Octets data = expect_submitted(bench, judge, Priority::normal, 20 + bench.random().below(100));
-    const unsigned fit = in_whole_octets(bench, latency + bench.frame(kDt1Header + data.size()));
-    const bool has_room_for_rt = fit - 1 >= in_whole_octets(bench, latency + bench.frame(1));
-    bool is_sent = false;
-    if (has_room_for_rt) is_sent = fit_is_judged(bench, judge, fit - 1, data.size());
-    if (!is_sent) is_sent = fit_is_judged(bench, judge, fit, data.size());
-    if (!is_sent)
-      expect_dlsdus(judge, use_pt(bench, judge, Priority::normal, 2 * fit), {data}, "frames_missing",
-                    "sent_twice");
-  }
+void measure_latency(FfScene& scene) {
+  scene.latency = scene.answer.begin - scene.sent;
+  scene.judge.measure("start latency", "octets", static_cast<double>(scene.latency / scene.bench.octets(1)));
 }
 
-void ff_nothing_is_sent_behind_the_duration(FfBench& bench, CaseJudge& judge) {
-  // Short frames, too: of those some end just after a duration.
-  for (int n = 0; n < bench.volume(60, 300); ++n) {
-    const std::uint64_t longest = n % 6 == 0 ? 250 : 12;
-    const auto duration = static_cast<unsigned>(32 + bench.random().below(4 * longest));
-    for (int i = 0; i < 8; ++i) {
-      bench.submit(Priority::time_available, bench.numbered_data(2 + bench.random().below(longest)));
-    }
-    const kernel::Time over =
-        bench.send(bench.pt(Priority::time_available, duration)) + bench.octets(duration);
-    for (const DrivenDlpdu& one : bench.listen()) {
-      judge.expect(one.end <= over + kLinkRounding, "talks_behind_duration", [&] {
-        return Mismatch{
-            {fmt::format("silence after {}, {} octets after the PT", kernel::describe(over), duration)},
-            fmt::format("{} until {}", one.text(), kernel::describe(one.end)),
-            one.begin};
-      });
-    }
-    for (int i = 0; i < 2; ++i) {
-      bench.send(bench.pt(Priority::time_available, kAmple));
-      judge.expect(!bench.listen().empty(), "token_not_returned",
-                   fmt::format("under a token of {} octets data, or RT", kAmple), "silence");
-    }
-  }
+void expect_exact_fit(FfScene& scene) {
+  FfBench& bench = scene.bench;
+  const Octets& data = scene.submitted.back();
+  const unsigned fit = in_whole_octets(bench, scene.latency + bench.frame(kDt1Header + data.size()));
+  const bool has_room_for_rt = fit - 1 >= in_whole_octets(bench, scene.latency + bench.frame(1));
+  bool is_sent = has_room_for_rt && fit_is_judged(bench, scene.judge, fit - 1, data.size());
+  if (!is_sent) is_sent = fit_is_judged(bench, scene.judge, fit, data.size());
+  if (is_sent) return;
+  scene.sent = bench.send(bench.pt(Priority::normal, 2 * fit));
+  scene.expect_used({data}, {"frames_missing", "sent_twice"});
 }
 
-void what_does_not_fit_is_sent_next_time(FfBench& bench, CaseJudge& judge) {
-  std::vector<Octets> left;
-  for (int n = 0; n < 12; ++n) left.push_back(expect_submitted(bench, judge, Priority::normal, 60));
+// Short frames, too: of those some end just after a duration.
+void expect_nothing_behind_duration(FfScene& scene) {
+  FfBench& bench = scene.bench;
+  const std::uint64_t longest = scene.round % 6 == 0 ? 250 : 12;
+  const auto duration = static_cast<unsigned>(32 + bench.random().below(4 * longest));
+  for (int i = 0; i < 8; ++i)
+    bench.submit(Priority::time_available, bench.numbered_data(2 + bench.random().below(longest)));
+  scene.sent = bench.send(bench.pt(Priority::time_available, duration));
+  scene.expect_none_behind("PT", duration);
+}
+
+void expect_all_in_turn(FfScene& scene) {
+  std::vector<Octets>& left = scene.submitted;
   for (int tokens = 0; !left.empty(); ++tokens) {
-    judge.expect(tokens < 12, "queued_data_lost", "each token takes at least one DT1", "some are left");
-    const std::vector<DrivenDlpdu> sent = use_pt(bench, judge, Priority::normal, 250);
-    judge.expect(!sent.empty() && sent.size() <= left.size(), "frames_missing", "at least one DT1", "none");
-    const auto first = left.begin();
-    const auto last = first + static_cast<std::ptrdiff_t>(sent.size());
-    expect_dlsdus(judge, sent, {first, last}, "frames_missing", "sent_twice", "wrong_order");
-    left.erase(first, last);
-  }
-}
-
-void ff_tokens_of_others_are_left(FfBench& bench, CaseJudge& judge) {
-  expect_submitted(bench, judge, Priority::urgent, 6);
-  for (unsigned node = 0; node < 256; node += static_cast<unsigned>(bench.volume(7, 1))) {
-    if (node == bench.node()) continue;
-    Octets pt = bench.pt(Priority::time_available, 500);
-    pt[1] = static_cast<std::uint8_t>(node);
-    bench.send(pt);
-    expect_silence(bench, judge, "uses_token_of_others", fmt::format("the PT is for node {:02X}", node));
-  }
-  expect_serves(bench, judge);
-}
-
-void ff_the_longest_is_sent_and_no_longer(FfBench& bench, CaseJudge& judge) {
-  for (const Priority priority : {Priority::urgent, Priority::normal, Priority::time_available}) {
-    const std::size_t most = fieldbus_dll::most_data(bench.link(), priority);
-    const Octets longest = bench.numbered_data(most);
-    judge.expect(bench.submit(priority, longest), "longest_refused",
-                 fmt::format("{} octets are accepted", most), "they were refused");
-    judge.expect(!bench.submit(priority, bench.numbered_data(most + 1)), "too_long_taken",
-                 fmt::format("{} octets are refused", most + 1), "they were accepted");
-    expect_dlsdus(judge, use_pt(bench, judge, Priority::time_available, kAmple), {longest},
-                  "longest_not_sent", "too_long_sent");
+    scene.judge.expect(tokens < 12, "queued_data_lost", "each token takes at least one DT1", "some are left");
+    const kernel::Time end = scene.bench.send(scene.bench.pt(Priority::normal, 250));
+    const std::vector<DrivenDlpdu> sent = expect_token_used(scene.bench, scene.judge, end);
+    scene.judge.expect(!sent.empty() && sent.size() <= left.size(), "frames_missing", "at least one DT1",
+                       "none");
+    const auto last = left.begin() + static_cast<std::ptrdiff_t>(sent.size());
+    expect_dlsdus(scene.judge, sent, {left.begin(), last}, "frames_missing", "sent_twice", "wrong_order");
+    left.erase(left.begin(), last);
   }
 }
 
 }  // namespace
 
 std::vector<FfCase> ff_token_cases() {
+  using namespace ff_chart;
+  using enum Priority;
+  const Chart<FfScene> all_in_order{
+      {1, 10},
+      {submit({time_available, normal, urgent, time_available, normal, urgent}, 12),
+       pt(time_available, kAmple),
+       used({3, 6, 2, 5, 1, 4}, {"frames_missing", "sent_twice", "wrong_order"})}};
+  const LinkStep unused = used({}, {"", "unexpected_dlpdu"});
+  const FfStep ample =
+      repeat({2, 2}, {pt(time_available, kAmple), says("data, or RT", "token_not_returned")});
   using link_sources::ff_paper;
   using link_sources::memory;
   using link_sources::own;
   return {
-      {{.id = "fieldbus_dll/ff_device/token/only_what_is_urgent_enough_is_sent",
-        .purpose = "FF-03",
-        .requirement = "Under a PT a station sends data whose priority is at least that of the PT.",
-        .reference = ff_paper("priority of the token"),
-        .stimulus = "Data of all priorities; PT normal, urgent, time-available.",
-        .expected = "Urgent and normal; nothing; the rest.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "token_not_returned"},
-                    {"priority_ignored", "lower_priority_sent"},
-                    {"priority_inverted", "data_wrong"},
-                    {"sends_to_another", "dlpdu_wrong"},
-                    {"sends_as_another", "dlpdu_wrong"}}},
-       only_what_is_urgent_enough_is_sent},
-      {{.id = "fieldbus_dll/ff_device/token/all_is_sent_in_order",
-        .purpose = "FF-04",
-        .requirement = "Data of the higher priority is sent first, of one priority as submitted.",
-        .reference = ff_paper("three priorities"),
-        .stimulus = "Two DLSDUs of each priority, the least urgent first; PT time-available.",
-        .expected = "Urgent, normal, time-available.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "token_not_returned"},
-                    {"fifo_across_priorities", "wrong_order"},
-                    {"one_frame_a_token", "frames_missing"}}},
-       all_is_sent_in_order},
-      {{.id = "fieldbus_dll/ff_device/token/an_empty_queue_returns_the_token",
-        .purpose = "FF-05",
-        .requirement = "A token that is not used is returned within V(MRD) x V(ST).",
-        .reference = ff_paper("RT: the token returns to the scheduler"),
-        .stimulus = "PTs, nothing submitted.",
-        .expected = "One RT each.",
-        .tags = {"must", "timing"},
-        .catches = {{"mute_after_activation", "token_not_returned"},
-                    {"no_return_when_empty", "token_not_returned"},
-                    {"marked_token_unknown", "token_not_returned"},
-                    {"answers_late", "answers_too_late"}}},
-       ff_an_empty_queue_returns_the_token},
-      {{.id = "fieldbus_dll/ff_device/token/what_fits_exactly_is_sent_and_no_more",
-        .purpose = "FF-06",
-        .requirement = "A DT1 is sent when it ends within the duration of the PT.",
-        .reference = ff_paper("duration of the token"),
-        .details = {{own("the duration begins with the end of the PT and holds whole frames; the last DT1 "
-                         "returns the token"),
-                     {"exact_fit_not_sent", "sends_what_does_not_fit"}}},
-        .stimulus = "The start latency is measured; PT for exactly what a DT1 needs, and for an octet less.",
-        .expected = "The DT1; a RT.",
-        .tags = {"must", "timing"},
-        .catches = {{"mute_after_activation", "token_not_returned"},
-                    {"duration_in_bits", "token_not_returned"},
-                    {"fit_is_strict", "exact_fit_not_sent"},
-                    {"duration_from_begin_of_pt", "exact_fit_not_sent"},
-                    {"overhead_not_charged", "sends_what_does_not_fit"}}},
-       what_fits_exactly_is_sent_and_no_more},
-      {{.id = "fieldbus_dll/ff_device/token/nothing_is_sent_behind_the_duration",
-        .purpose = "FF-07",
-        .requirement = "A station sends nothing after the duration of its token.",
-        .reference = ff_paper("duration of the token"),
-        .stimulus = "More data than fits; 300 random durations.",
-        .expected = "The last frame ends within the duration.",
-        .tags = {"must", "timing"},
-        .catches = {{"mute_after_activation", "token_not_returned"},
-                    {"overhead_not_charged", "talks_behind_duration"},
-                    {"duration_ignored", "talks_behind_duration"},
-                    {"duration_in_two_octets", "talks_behind_duration"}}},
-       ff_nothing_is_sent_behind_the_duration},
-      {{.id = "fieldbus_dll/ff_device/token/what_does_not_fit_is_sent_next_time",
-        .purpose = "FF-08",
-        .requirement = "Data that does not fit waits for the next token, in order.",
-        .reference = memory("use of a token"),
-        .stimulus = "Twelve DLSDUs; PTs for some three of them.",
-        .expected = "All of them, in order, and each token returned.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "token_not_returned"},
-                    {"queue_lost_with_token", "frames_missing"}}},
-       what_does_not_fit_is_sent_next_time},
-      {{.id = "fieldbus_dll/ff_device/token/is_returned_once",
-        .purpose = "FF-09",
-        .requirement = "A token is returned by F in the last DT1 or by RT, not by both.",
-        .reference = memory("final use, RT"),
-        .stimulus = "PTs with and without data.",
-        .expected = "Exactly one return each.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "token_not_returned"},
-                    {"returns_twice", "token_returned_twice"},
-                    {"never_final", "token_not_returned"}}},
-       all_is_sent_in_order},
-      {{.id = "fieldbus_dll/ff_device/token/others_are_left",
-        .purpose = "FF-10",
-        .requirement = "A station uses no token of another.",
-        .reference = ff_paper("the token is passed to a node"),
-        .stimulus = "Data, and PTs to other nodes.",
-        .expected = "Silence.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "does_not_recover"},
-                    {"answers_for_all_nodes", "uses_token_of_others"}}},
-       ff_tokens_of_others_are_left},
-      {{.id = "fieldbus_dll/ff_device/token/the_longest_is_sent_and_no_longer",
-        .purpose = "FF-39",
-        .requirement = "A DLSDU has at most 64, 128, 256 octets when it is urgent, normal, time-available.",
-        .reference = memory("the longest DLSDU of each priority"),
-        .stimulus = "DLSDUs of these lengths and of one octet more are submitted.",
-        .expected = "The first are accepted and sent, the others refused.",
-        .tags = {"must"},
-        .catches = {{"mute_after_activation", "token_not_returned"},
-                    {"urgent_as_long_as_normal", "too_long_taken"}}},
-       ff_the_longest_is_sent_and_no_longer},
+      on_chart(must("fieldbus_dll/ff_device/token/only_what_is_urgent_enough_is_sent", "FF-03",
+                    "Under a PT a station sends data whose priority is at least that of the PT.",
+                    ff_paper("priority of the token"),
+                    {{"mute_after_activation", "token_not_returned"},
+                     {"priority_ignored", "lower_priority_sent"},
+                     {"priority_inverted", "data_wrong"},
+                     {"sends_to_another", "dlpdu_wrong"},
+                     {"sends_as_another", "dlpdu_wrong"}}),
+               {{},
+                {submit({urgent, normal, time_available}, 10), pt(normal, 1'000),
+                 used({1, 2}, {"frames_missing", "lower_priority_sent"}), pt(urgent, 1'000),
+                 used({}, {"", "lower_priority_sent"}), pt(time_available, 1'000),
+                 used({3}, {"frames_missing", "sent_twice"})}}),
+      on_chart(must("fieldbus_dll/ff_device/token/all_is_sent_in_order", "FF-04",
+                    "Data of the higher priority is sent first, of one priority as submitted.",
+                    ff_paper("three priorities"),
+                    {{"mute_after_activation", "token_not_returned"},
+                     {"fifo_across_priorities", "wrong_order"},
+                     {"one_frame_a_token", "frames_missing"}}),
+               all_in_order),
+      on_chart(
+          must_in_time("fieldbus_dll/ff_device/token/an_empty_queue_returns_the_token", "FF-05",
+                       "A token that is not used is returned within V(MRD) x V(ST).",
+                       ff_paper("RT: the token returns to the scheduler"),
+                       {{"mute_after_activation", "token_not_returned"},
+                        {"no_return_when_empty", "token_not_returned"},
+                        {"marked_token_unknown", "token_not_returned"},
+                        {"answers_late", "answers_too_late"}}),
+          {{2, 20}, {pt(urgent, 280), unused, pt(normal, 280), unused, pt(time_available, 280), unused}}),
+      on_chart(
+          must_in_time(
+              "fieldbus_dll/ff_device/token/what_fits_exactly_is_sent_and_no_more", "FF-06",
+              "A DT1 is sent when it ends within the duration of the PT.", ff_paper("duration of the token"),
+              {{"mute_after_activation", "token_not_returned"},
+               {"duration_in_bits", "token_not_returned"},
+               {"fit_is_strict", "exact_fit_not_sent"},
+               {"duration_from_begin_of_pt", "exact_fit_not_sent"},
+               {"overhead_not_charged", "sends_what_does_not_fit"}},
+              {{own("the duration begins with the end of the PT and holds whole frames; the last DT1 "
+                    "returns the token"),
+                {"exact_fit_not_sent", "sends_what_does_not_fit"}}}),
+          {{},
+           {submit({normal}, 8), pt(normal, 500), used({1}, {"frames_missing", "sent_twice"}),
+            expected<FfScene>("the time until it begins is measured", measure_latency),
+            repeat({3, 30},
+                   {submit({normal}, 20, 119),
+                    FfStep{"a PT for an octet less than a DT1 with it needs, then one for exactly that",
+                           "the DT1 when it ends within the duration, else a RT", expect_exact_fit}})}}),
+      on_chart(must_in_time("fieldbus_dll/ff_device/token/nothing_is_sent_behind_the_duration", "FF-07",
+                            "A station sends nothing after the duration of its token.",
+                            ff_paper("duration of the token"),
+                            {{"mute_after_activation", "token_not_returned"},
+                             {"overhead_not_charged", "talks_behind_duration"},
+                             {"duration_ignored", "talks_behind_duration"},
+                             {"duration_in_two_octets", "talks_behind_duration"}}),
+               {{60, 300},
+                {{"eight DLSDUs of random lengths, a PT for a random duration",
+                  "the last frame ends within the duration", expect_nothing_behind_duration},
+                 ample}}),
+      on_chart(must("fieldbus_dll/ff_device/token/what_does_not_fit_is_sent_next_time", "FF-08",
+                    "Data that does not fit waits for the next token, in order.", memory("use of a token"),
+                    {{"mute_after_activation", "token_not_returned"},
+                     {"queue_lost_with_token", "frames_missing"}}),
+               {{},
+                {submit(std::vector(12, normal), 60),
+                 FfStep{"PTs normal for 250 octet durations, until all is sent",
+                        "at least one DT1 under each, all in order, and each token returned",
+                        expect_all_in_turn}}}),
+      on_chart(
+          must("fieldbus_dll/ff_device/token/is_returned_once", "FF-09",
+               "A token is returned by F in the last DT1 or by RT, not by both.", memory("final use, RT"),
+               {{"mute_after_activation", "token_not_returned"},
+                {"returns_twice", "token_returned_twice"},
+                {"never_final", "token_not_returned"}}),
+          all_in_order),
+      on_chart(must("fieldbus_dll/ff_device/token/others_are_left", "FF-10",
+                    "A station uses no token of another.", ff_paper("the token is passed to a node"),
+                    {{"mute_after_activation", "does_not_recover"},
+                     {"answers_for_all_nodes", "uses_token_of_others"}}),
+               {{},
+                {submit({urgent}, 6),
+                 repeat({36, 255}, {send("a PT for another node, each in its turn",
+                                         [](FfScene& scene) {
+                                           Octets pt = scene.bench.pt(time_available, 500);
+                                           pt[1] = scene.other_node();
+                                           return pt;
+                                         }),
+                                    silence("uses_token_of_others", "the PT is for another node")}),
+                 serves()}}),
+      on_chart(
+          must("fieldbus_dll/ff_device/token/the_longest_is_sent_and_no_longer", "FF-39",
+               "A DLSDU has at most 64, 128, 256 octets when it is urgent, normal, time-available.",
+               memory("the longest DLSDU of each priority"),
+               {{"mute_after_activation", "token_not_returned"},
+                {"urgent_as_long_as_normal", "too_long_taken"}}),
+          {{3, 3},
+           {submit_longest(), pt(time_available, kAmple), used({1}, {"longest_not_sent", "too_long_sent"})}}),
   };
 }
 

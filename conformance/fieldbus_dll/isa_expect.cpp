@@ -73,7 +73,8 @@ TokenUse expect_token_use(IsaBench& bench, CaseJudge& judge, kernel::Time from) 
 }
 
 void expect_data(CaseJudge& judge, const TokenUse& use, const std::vector<Octets>& data,
-                 std::string_view reason_for_missing, std::string_view reason_for_more) {
+                 std::string_view reason_for_missing, std::string_view reason_for_more,
+                 std::string_view reason_for_others) {
   judge.expect(use.data.size() >= data.size(), reason_for_missing, [&] {
     return Mismatch{{fmt::format("{} data DLPDUs", data.size())}, fmt::format("{}", use.data.size())};
   });
@@ -84,7 +85,7 @@ void expect_data(CaseJudge& judge, const TokenUse& use, const std::vector<Octets
                     first.begin};
   });
   for (std::size_t n = 0; n < data.size(); ++n) {
-    judge.expect(use.data[n].rest() == data[n], "data_wrong", [&] {
+    judge.expect(use.data[n].rest() == data[n], reason_for_others, [&] {
       return Mismatch{{fmt::format("DLSDU {:02X}", fmt::join(data[n], " "))},
                       use.data[n].text(),
                       use.data[n].begin,

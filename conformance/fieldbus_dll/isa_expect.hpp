@@ -31,9 +31,10 @@ struct TokenUse {
 // `token_not_returned`, `unexpected_dlpdu`, `talks_behind_end`, `answers_too_late`, `dlpdu_wrong`.
 TokenUse expect_token_use(IsaBench& bench, CaseJudge& judge, kernel::Time from);
 // It has sent exactly these DLSDUs: `reason_for_missing` for too few, `reason_for_more` for too many,
-// `data_wrong` for others.
+// `reason_for_others` for others.
 void expect_data(CaseJudge& judge, const TokenUse& use, const std::vector<Octets>& data,
-                 std::string_view reason_for_missing, std::string_view reason_for_more);
+                 std::string_view reason_for_missing, std::string_view reason_for_more,
+                 std::string_view reason_for_others = "data_wrong");
 void expect_end_reason(CaseJudge& judge, const TokenUse& use, fieldbus_dll::EndReason reason);
 
 // What is submitted is sent under a long ES: `does_not_recover`.

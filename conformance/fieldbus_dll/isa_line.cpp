@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 
-#include "conformance/fieldbus_dll/isa_cases.hpp"
-#include "conformance/fieldbus_dll/isa_expect.hpp"
+#include "conformance/fieldbus_dll/isa_scene.hpp"
 
 // Frames on the line: preambles, clocks and jitter that a receiver must take.
 namespace fieldproof::conformance {
@@ -11,53 +10,14 @@ namespace {
 
 using fieldbus_dll::Priority;
 
-constexpr unsigned kMostPreamble = 8;
 constexpr std::size_t kLongData = 200;
 
-// A DU to the IUT with data that no other has.
-Octets long_du(IsaBench& bench, Octets& data) {
-  data = bench.numbered_data(kLongData);
-  Octets octets{bench.control(bench.rules().codes.du, Priority::time_available), bench.address(),
-                IsaBench::kPeer};
-  octets.insert(octets.end(), data.begin(), data.end());
+// A DU to the IUT with data that no other has, and its check.
+Octets long_du(IsaScene& scene) {
+  Octets octets{scene.bench.control(scene.bench.rules().codes.du, Priority::time_available),
+                scene.bench.address(), IsaBench::kPeer};
+  for (const std::uint8_t octet : scene.fresh(kLongData)) octets.push_back(octet);
   return with_frame_check(octets);
-}
-
-void expect_heard(IsaBench& bench, CaseJudge& judge, const Octets& data, std::string_view reason,
-                  const std::string& what) {
-  const bool is_heard = bench.user().was_delivered(data);
-  judge.expect(is_heard, reason, what, "it was not delivered");
-  bench.user().deliveries.clear();
-}
-
-void all_preambles_are_taken(IsaBench& bench, CaseJudge& judge) {
-  for (unsigned preamble = 1; preamble <= kMostPreamble; ++preamble) {
-    Octets data;
-    const Octets du = long_du(bench, data);
-    bench.send_half_bits(half_bits_of_frame(du, preamble));
-    bench.wait(bench.reply_wait());
-    expect_heard(bench, judge, data, "preamble_not_taken",
-                 fmt::format("a frame with {} octets of preamble is received", preamble));
-    // What the station drives itself is held to the half bit after the case.
-    bench.submit_unit_data(Priority::normal, bench.numbered_data(10));
-    bench.send_half_bits(half_bits_of_frame(with_frame_check(bench.et(Priority::normal)), preamble));
-    judge.expect(!bench.listen().empty(), "token_not_returned", "data, and EE", "silence");
-  }
-}
-
-void other_clocks_are_taken(IsaBench& bench, CaseJudge& judge) {
-  constexpr std::int64_t kParts = 1'000'000;
-  for (const std::int64_t parts : {kParts, kParts + 2'000, kParts - 2'000}) {
-    for (int n = 0; n < bench.volume(1, 10); ++n) {
-      Octets data;
-      line::Levels half_bits = half_bits_of_frame(long_du(bench, data));
-      bench.send_wave({bench.now(), 2 * bench.rules().link.bit_rate * parts / kParts, std::move(half_bits)});
-      bench.wait(bench.reply_wait());
-      expect_heard(bench, judge, data, "clock_not_taken",
-                   fmt::format("a frame at {:.1f} % of the bit rate is received",
-                               100.0 * static_cast<double>(parts) / static_cast<double>(kParts)));
-    }
-  }
 }
 
 // Each edge moved by up to a tenth of a bit, in hundredths of a half bit.
@@ -77,76 +37,68 @@ line::Waveform jittered(IsaBench& bench, const line::Levels& half_bits) {
   return wave;
 }
 
-void jitter_is_taken(IsaBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(3, 50); ++n) {
-    Octets data;
-    const line::Levels half_bits = half_bits_of_frame(long_du(bench, data));
-    bench.send_wave(jittered(bench, half_bits));
-    bench.wait(bench.reply_wait());
-    expect_heard(bench, judge, data, "jitter_not_taken",
-                 "a frame whose edges are up to a tenth of a bit off is received");
-  }
-}
-
-void a_token_is_used(IsaBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(2, 20); ++n) {
-    const Octets data = bench.numbered_data(2 + bench.random().below(100));
-    bench.submit_unit_data(Priority::normal, data);
-    const kernel::Time end = bench.send(bench.et(Priority::normal));
-    expect_data(judge, expect_token_use(bench, judge, end), {data}, "no_data_frame", "more_than_one_frame");
-  }
-}
-
 IsaCase at_rate(std::int64_t bit_rate, const std::string& name) {
-  return {{.id = "fieldbus_dll/isa_dle/line/a_token_is_used_at_" + name,
-           .purpose = "ISA-01",
-           .requirement = "All that is counted in octets scales with the bit rate.",
-           .reference = link_sources::line("bit rates"),
-           .stimulus = "Data, and an ET, at " + name + ".",
-           .expected = "As at 31.25 kbit/s: one DU, an EE.",
-           .tags = {"must"},
-           .catches = {{"timers_of_31250", "token_not_returned"}}},
-          a_token_is_used,
-          {.schedule = {}, .is_scheduler = true, .bit_rate = bit_rate}};
+  using namespace isa_chart;
+  return on_chart(must("fieldbus_dll/isa_dle/line/a_token_is_used_at_" + name, "ISA-01",
+                       "All that is counted in octets scales with the bit rate.",
+                       link_sources::line("bit rates"), {{"timers_of_31250", "token_not_returned"}}),
+                  {{2, 20},
+                   {submit({Priority::normal}, 2, 101), et(Priority::normal),
+                    used({1}, {"no_data_frame", "more_than_one_frame"})}},
+                  {.schedule = {}, .is_scheduler = true, .bit_rate = bit_rate});
 }
 
 }  // namespace
 
 std::vector<IsaCase> isa_line_cases() {
+  using namespace isa_chart;
   using link_sources::line;
   using link_sources::memory;
   return {
-      {{.id = "fieldbus_dll/isa_dle/line/all_preambles_are_taken",
-        .purpose = "ISA-39",
-        .requirement = "A frame has 1 to 8 octets of preamble and both delimiters, to the half bit.",
-        .reference = line("preamble and delimiters"),
-        .stimulus = "Frames with 1 to 8 octets of preamble; tokens under which the IUT sends some itself.",
-        .expected = "All are received; what the IUT sends is exact, and has V(MID) of silence in front.",
-        .tags = {"must"},
-        .catches = {{"wants_one_preamble_octet", "preamble_not_taken"},
-                    {"sends_no_preamble", "frame_malformed"},
-                    {"end_delimiter_turned", "frame_malformed"},
-                    {"least_significant_bit_first", "check_wrong"},
-                    {"short_silence", "gap_too_short"}}},
-       all_preambles_are_taken},
-      {{.id = "fieldbus_dll/isa_dle/line/other_clocks_are_taken",
-        .purpose = "ISA-40",
-        .requirement = "A receiver takes frames whose clock is 0.2 % off.",
-        .reference = memory("tolerance of the bit rate"),
-        .stimulus = "Frames of 205 octets at 99.8, 100 and 100.2 % of the bit rate.",
-        .expected = "All are received.",
-        .tags = {"must", "timing"},
-        .catches = {{"does_not_recover_clock", "clock_not_taken"}}},
-       other_clocks_are_taken},
-      {{.id = "fieldbus_dll/isa_dle/line/jitter_is_taken",
-        .purpose = "ISA-40",
-        .requirement = "A receiver takes frames whose edges are up to a tenth of a bit off.",
-        .reference = memory("jitter at a receiver"),
-        .stimulus = "Frames of 205 octets, each edge moved at random.",
-        .expected = "All are received.",
-        .tags = {"must", "timing"},
-        .catches = {{"wants_exact_edges", "jitter_not_taken"}}},
-       jitter_is_taken},
+      on_chart(must("fieldbus_dll/isa_dle/line/all_preambles_are_taken", "ISA-39",
+                    "A frame has 1 to 8 octets of preamble and both delimiters, to the half bit.",
+                    line("preamble and delimiters"),
+                    {{"wants_one_preamble_octet", "preamble_not_taken"},
+                     {"sends_no_preamble", "frame_malformed"},
+                     {"end_delimiter_turned", "frame_malformed"},
+                     {"least_significant_bit_first", "check_wrong"},
+                     {"short_silence", "gap_too_short"}}),
+               {{8, 8},
+                {drive("a DU with 1 to 8 octets of preamble, in turn",
+                       [](IsaScene& scene) { return half_bits_of_frame(long_du(scene), scene.round + 1); }),
+                 wait(32), delivered("the frame", "preamble_not_taken"), submit({Priority::normal}, 10),
+                 drive("an ET with as many",
+                       [](IsaScene& scene) {
+                         return half_bits_of_frame(with_frame_check(scene.bench.et(Priority::normal)),
+                                                   scene.round + 1);
+                       }),
+                 says("data, and EE, exact to the half bit, with V(MID) of silence in front",
+                      "token_not_returned")}}),
+      on_chart(
+          must_in_time("fieldbus_dll/isa_dle/line/other_clocks_are_taken", "ISA-40",
+                       "A receiver takes frames whose clock is 0.2 % off.",
+                       memory("tolerance of the bit rate"), {{"does_not_recover_clock", "clock_not_taken"}}),
+          {{3, 30},
+           {stimulus<IsaScene>("a DU of 205 octets at 100, 100.2 and 99.8 % of the bit rate, in turn",
+                               [](IsaScene& scene) {
+                                 constexpr std::array<std::int64_t, 3> kPerMille{1'000, 1'002, 998};
+                                 IsaBench& bench = scene.bench;
+                                 bench.send_wave(
+                                     {bench.now(),
+                                      2 * bench.rules().link.bit_rate * kPerMille[scene.round % 3] / 1'000,
+                                      half_bits_of_frame(long_du(scene))});
+                               }),
+            wait(32), delivered("the frame", "clock_not_taken")}}),
+      on_chart(must_in_time("fieldbus_dll/isa_dle/line/jitter_is_taken", "ISA-40",
+                            "A receiver takes frames whose edges are up to a tenth of a bit off.",
+                            memory("jitter at a receiver"), {{"wants_exact_edges", "jitter_not_taken"}}),
+               {{3, 50},
+                {stimulus<IsaScene>(
+                     "a DU of 205 octets, each edge moved by up to a tenth of a bit, at random",
+                     [](IsaScene& scene) {
+                       scene.bench.send_wave(jittered(scene.bench, half_bits_of_frame(long_du(scene))));
+                     }),
+                 wait(32), delivered("the frame", "jitter_not_taken")}}),
       at_rate(1'000'000, "1_Mbit_s"),
       at_rate(2'500'000, "2500_kbit_s"),
   };

@@ -1,7 +1,6 @@
-#include <fmt/format.h>
+#include <array>
 
-#include "conformance/fieldbus_dll/isa_cases.hpp"
-#include "conformance/fieldbus_dll/isa_expect.hpp"
+#include "conformance/fieldbus_dll/isa_scene.hpp"
 #include "harness/line/frame_check.hpp"
 #include "harness/line/manchester.hpp"
 
@@ -12,80 +11,10 @@ namespace {
 using fieldbus_dll::Priority;
 using line::Symbol;
 
-void queue_something(IsaBench& bench) {
-  bench.submit_unit_data(Priority::urgent, bench.numbered_data(4));
-}
-
-void tokens_of_others_are_left(IsaBench& bench, CaseJudge& judge) {
-  queue_something(bench);
-  for (int n = 0; n < bench.volume(20, 246); ++n) {
-    const auto other = static_cast<std::uint8_t>(1 + (bench.address() + n) % 247);
-    if (other == bench.address()) continue;
-    Octets et = bench.et(Priority::time_available);
-    Octets es = bench.es(Priority::time_available, 1'000);
-    et[1] = es[1] = other;
-    bench.send(et);
-    expect_silence(bench, judge, "acts_on_others", "the ET is for another station");
-    bench.send(es);
-    expect_silence(bench, judge, "acts_on_others", "the ES is for another station");
-  }
-  expect_serves(bench, judge);
-}
-
-void single_bit_errors_are_seen(IsaBench& bench, CaseJudge& judge) {
-  queue_something(bench);
-  const Octets right = with_frame_check(bench.et(Priority::time_available));
-  for (std::size_t bit = 0; bit < 8 * right.size(); ++bit) {
-    Octets wrong = right;
-    wrong[bit / 8] = static_cast<std::uint8_t>(wrong[bit / 8] ^ (0x80U >> bit % 8));
-    bench.send_half_bits(half_bits_of_frame(wrong));
-    expect_silence(bench, judge, "acts_on_wrong_check", fmt::format("bit {} of the ET is wrong", bit));
-  }
-  expect_serves(bench, judge);
-}
-
 // The two octets that another variant of the check would have.
 Octets check_of_variant(line::FrameCheckParameters parameters, const Octets& octets) {
   const auto check = static_cast<unsigned>(line::FrameCheck(parameters).compute(octets));
   return {static_cast<std::uint8_t>(check >> 8), static_cast<std::uint8_t>(check & 0xFF)};
-}
-
-void other_checks_are_refused(IsaBench& bench, CaseJudge& judge) {
-  queue_something(bench);
-  const line::FrameCheckParameters right = line::frame_check_named("CRC-16/PROFIBUS");
-  line::FrameCheckParameters no_complement = right;
-  no_complement.xorout = 0;
-  line::FrameCheckParameters from_zero = right;
-  from_zero.init = 0;
-  line::FrameCheckParameters plain = from_zero;
-  plain.xorout = 0;
-  line::FrameCheckParameters reflected = right;
-  reflected.refin = reflected.refout = true;
-  const struct {
-    std::string_view name;
-    line::FrameCheckParameters parameters;
-  } variants[]{
-      {"without complement", no_complement},
-      {"beginning with 0", from_zero},
-      {"beginning with 0, without complement", plain},
-      {"reflected", reflected},
-      {"CCITT", line::frame_check_named("CRC-16/IBM-3740")},
-      {"CCITT with complement", line::frame_check_named("CRC-16/GENIBUS")},
-  };
-  for (const Octets& dlpdu :
-       {bench.et(Priority::time_available), bench.es(Priority::time_available, 1'000)}) {
-    for (const auto& variant : variants) {
-      Octets octets = dlpdu;
-      for (const std::uint8_t octet : check_of_variant(variant.parameters, dlpdu)) octets.push_back(octet);
-      bench.send_half_bits(half_bits_of_frame(octets));
-      expect_silence(bench, judge, "acts_on_other_check", fmt::format("its check is one {}", variant.name));
-    }
-    Octets swapped = with_frame_check(dlpdu);
-    std::swap(swapped[swapped.size() - 2], swapped[swapped.size() - 1]);
-    bench.send_half_bits(half_bits_of_frame(swapped));
-    expect_silence(bench, judge, "acts_on_other_check", "the octets of its check are exchanged");
-  }
-  expect_serves(bench, judge);
 }
 
 // The half bits of an ET with symbols that are no data in place of a bit of its second octet.
@@ -98,122 +27,168 @@ line::Levels with_violation(const line::Levels& frame, std::size_t bit, bool hig
   return levels;
 }
 
-void broken_frames_are_left(IsaBench& bench, CaseJudge& judge) {
-  queue_something(bench);
-  const line::Levels right = half_bits_of_frame(with_frame_check(bench.et(Priority::time_available)));
-  for (std::size_t bit = 0; bit < 8; ++bit) {
-    for (const bool high : {true, false}) {
-      bench.send_half_bits(with_violation(right, bit, high));
-      expect_silence(bench, judge, "acts_on_violation",
-                     fmt::format("bit {} of the address is N{}", bit, high ? '+' : '-'));
-    }
-  }
-  bench.send_half_bits(right.slice(0, right.size() - 16));
-  expect_silence(bench, judge, "acts_without_end", "the frame has no end delimiter");
-  // Seven bits in the last octet: the last one is left out, the end delimiter follows.
-  line::Levels short_octet = right.slice(0, right.size() - 18);
-  short_octet.append(right, right.size() - 16, 16);
-  bench.send_half_bits(short_octet);
-  expect_silence(bench, judge, "acts_on_part_of_octet", "the last octet has seven bits");
-  expect_serves(bench, judge);
+Octets for_other(const IsaScene& scene, Octets token) {
+  token[1] = static_cast<std::uint8_t>(1 + (scene.bench.address() + scene.turn) % 247);
+  return token;
 }
 
-void unknown_control_octets_are_left(IsaBench& bench, CaseJudge& judge) {
-  queue_something(bench);
+line::Levels right_et(IsaScene& scene) {
+  return half_bits_of_frame(with_frame_check(scene.bench.et(Priority::time_available)));
+}
+
+line::Levels isa_with_other_check(IsaScene& scene) {
+  const line::FrameCheckParameters right = line::frame_check_named("CRC-16/PROFIBUS");
+  std::array variants{right,
+                      right,
+                      right,
+                      right,
+                      line::frame_check_named("CRC-16/IBM-3740"),
+                      line::frame_check_named("CRC-16/GENIBUS")};
+  variants[0].xorout = variants[2].xorout = 0;
+  variants[1].init = variants[2].init = 0;
+  variants[3].refin = variants[3].refout = true;
+  const std::size_t variant = scene.turn % (variants.size() + 1);
+  Octets octets = scene.turn < 7 ? scene.bench.et(Priority::time_available)
+                                 : scene.bench.es(Priority::time_available, 1'000);
+  if (variant == variants.size()) {
+    octets = with_frame_check(octets);
+    std::swap(octets.end()[-2], octets.end()[-1]);
+  } else {
+    for (const std::uint8_t octet : check_of_variant(variants.at(variant), Octets(octets)))
+      octets.push_back(octet);
+  }
+  return half_bits_of_frame(octets);
+}
+
+// The last bit of the last octet is left out, the end delimiter follows.
+line::Levels with_short_octet(IsaScene& scene) {
+  const line::Levels right = right_et(scene);
+  line::Levels levels = right.slice(0, right.size() - 18);
+  levels.append(right, right.size() - 16, 16);
+  return levels;
+}
+
+// The n-th.
+std::uint8_t unknown_control(const IsaBench& bench, unsigned n) {
   constexpr unsigned kPriorities = 4;
-  for (unsigned control = 0; control < 256; ++control) {
+  unsigned control = 0;
+  for (;; ++control) {
     const unsigned code = control & 0xF0U;
     const bool is_right = (control & 0x0CU) == 0 && control % kPriorities != 0 &&
                           (code == bench.rules().codes.et || code == bench.rules().codes.cd);
-    if (is_right) continue;
-    bench.send({static_cast<std::uint8_t>(control), bench.address(), IsaBench::kScheduler});
-    expect_silence(bench, judge, "acts_on_unknown",
-                   fmt::format("{:02X} with addresses is no token", control));
+    if (!is_right && n-- == 0) return static_cast<std::uint8_t>(control);
   }
-  expect_serves(bench, judge);
 }
 
-void other_lengths_are_left(IsaBench& bench, CaseJudge& judge) {
-  queue_something(bench);
-  for (const Octets& right :
-       {bench.et(Priority::time_available), bench.es(Priority::time_available, 1'000)}) {
-    for (std::size_t size = 1; size <= right.size() + 3; ++size) {
-      if (size == right.size()) continue;
-      Octets wrong = right;
-      wrong.resize(size);
-      bench.send(wrong);
-      expect_silence(bench, judge, "acts_on_other_length", fmt::format("it has {} octets", size));
-    }
-  }
-  expect_serves(bench, judge);
+Octets of_other_length(IsaScene& scene) {
+  const bool is_et = scene.turn < 5;
+  Octets octets =
+      is_et ? scene.bench.et(Priority::time_available) : scene.bench.es(Priority::time_available, 1'000);
+  const std::size_t size = 1 + (is_et ? scene.turn : scene.turn - 5);
+  octets.resize(size < octets.size() ? size : size + 1);
+  return octets;
 }
 
 }  // namespace
 
 std::vector<IsaCase> isa_rejection_cases() {
+  using namespace isa_chart;
+  const LinkStep something = submit({Priority::urgent}, 4);
   using link_sources::isa_paper;
   using link_sources::line;
   using link_sources::own;
   return {
-      {{.id = "fieldbus_dll/isa_dle/rejection/tokens_of_others_are_left",
-        .purpose = "ISA-14",
-        .requirement = "A station acts on tokens that are delegated to it, and on no others.",
-        .reference = isa_paper("the token is delegated to a station"),
-        .stimulus = "Data, and ET and ES to other stations.",
-        .expected = "Silence.",
-        .tags = {"must"},
-        .catches = {{"takes_any_token", "acts_on_others"}}},
-       tokens_of_others_are_left},
-      {{.id = "fieldbus_dll/isa_dle/rejection/single_bit_errors_are_seen",
-        .purpose = "ISA-15",
-        .requirement = "A DLPDU whose frame check does not fit is ignored.",
-        .reference = line("frame check 1DCF"),
-        .stimulus = "An ET, each of its 40 bits wrong in turn.",
-        .expected = "Silence; a right ET is served then.",
-        .tags = {"must"},
-        .catches = {{"short_frames_not_checked", "acts_on_wrong_check"}}},
-       single_bit_errors_are_seen},
-      {{.id = "fieldbus_dll/isa_dle/rejection/other_checks_are_refused",
-        .purpose = "ISA-16",
-        .requirement = "The frame check is that of the line: 1DCF, preset to ones, complemented, the high "
-                       "octet first.",
-        .reference = line("frame check 1DCF"),
-        .stimulus = "ET and ES with checks of other kinds.",
-        .expected = "Silence; a right ET is served then.",
-        .tags = {"must"},
-        .catches = {{"check_from_zero_too", "acts_on_other_check"}}},
-       other_checks_are_refused},
-      {{.id = "fieldbus_dll/isa_dle/rejection/broken_frames_are_left",
-        .purpose = "ISA-17",
-        .requirement =
-            "A frame with symbols that are no data between its delimiters, without an end or with a "
-            "part of an octet is ignored.",
-        .reference = line("delimiters"),
-        .stimulus = "N+ and N- in place of each bit of the second octet; no end delimiter; seven bits in the "
-                    "last octet.",
-        .expected = "Silence; a right ET is served then.",
-        .tags = {"must"},
-        .catches = {{"violations_are_bits", "acts_on_violation"},
-                    {"stuck_behind_violation", "does_not_recover"}}},
-       broken_frames_are_left},
-      {{.id = "fieldbus_dll/isa_dle/rejection/unknown_control_octets_are_left",
-        .purpose = "ISA-18",
-        .requirement = "A DLPDU with a reserved bit or an unknown control octet is ignored.",
-        .reference = own("control octets of the profile"),
-        .stimulus = "All 250 control octets that make no ET and no CD, with right checks.",
-        .expected = "Silence; a right ET is served then.",
-        .tags = {"must"},
-        .catches = {{"reserved_bit_ignored", "acts_on_unknown"}, {"priority_zero_taken", "acts_on_unknown"}}},
-       unknown_control_octets_are_left},
-      {{.id = "fieldbus_dll/isa_dle/rejection/other_lengths_are_left",
-        .purpose = "ISA-18",
-        .requirement = "An ET has five octets, an ES seven, with their checks.",
-        .reference = own("encoding of the profile"),
-        .stimulus = "ET and ES from one octet to three too many, with right checks.",
-        .expected = "Silence; a right ET is served then.",
-        .tags = {"must"},
-        .catches = {{"length_not_checked", "acts_on_other_length"}}},
-       other_lengths_are_left},
+      on_chart(
+          must("fieldbus_dll/isa_dle/rejection/tokens_of_others_are_left", "ISA-14",
+               "A station acts on tokens that are delegated to it, and on no others.",
+               isa_paper("the token is delegated to a station"), {{"takes_any_token", "acts_on_others"}}),
+          {{},
+           {something,
+            repeat({20, 246}, {send("an ET for another station, each in its turn",
+                                    [](IsaScene& scene) {
+                                      return for_other(scene, scene.bench.et(Priority::time_available));
+                                    }),
+                               silence("acts_on_others", "the ET is for another station"),
+                               send("an ES for it",
+                                    [](IsaScene& scene) {
+                                      return for_other(scene,
+                                                       scene.bench.es(Priority::time_available, 1'000));
+                                    }),
+                               silence("acts_on_others", "the ES is for another station")}),
+            serves()}}),
+      on_chart(must("fieldbus_dll/isa_dle/rejection/single_bit_errors_are_seen", "ISA-15",
+                    "A DLPDU whose frame check does not fit is ignored.", line("frame check 1DCF"),
+                    {{"short_frames_not_checked", "acts_on_wrong_check"}}),
+               {{},
+                {something,
+                 repeat({40, 40}, {drive("an ET with one wrong bit, each of its 40 in its turn",
+                                         [](IsaScene& scene) {
+                                           return half_bits_of_frame(with_wrong_bits(
+                                               with_frame_check(scene.bench.et(Priority::time_available)),
+                                               {scene.turn}));
+                                         }),
+                                   silence("acts_on_wrong_check", "its check does not fit")}),
+                 serves()}}),
+      on_chart(must("fieldbus_dll/isa_dle/rejection/other_checks_are_refused", "ISA-16",
+                    "The frame check is that of the line: 1DCF, preset to ones, complemented, the high "
+                    "octet first.",
+                    line("frame check 1DCF"), {{"check_from_zero_too", "acts_on_other_check"}}),
+               {{},
+                {something,
+                 repeat({14, 14},
+                        {drive("an ET, then an ES, with a check without complement, beginning with 0, both, "
+                               "reflected, CCITT, CCITT with complement, with its octets exchanged, in turn",
+                               isa_with_other_check),
+                         silence("acts_on_other_check", "its check is of another kind")}),
+                 serves()}}),
+      on_chart(must("fieldbus_dll/isa_dle/rejection/broken_frames_are_left", "ISA-17",
+                    "A frame with symbols that are no data between its delimiters, without an end or with a "
+                    "part of an octet is ignored.",
+                    line("delimiters"),
+                    {{"violations_are_bits", "acts_on_violation"},
+                     {"stuck_behind_violation", "does_not_recover"}}),
+               {{},
+                {something,
+                 repeat({16, 16},
+                        {drive("an ET with N+, N- in place of a bit of its second octet, each in its turn",
+                               [](IsaScene& scene) {
+                                 return with_violation(right_et(scene), scene.turn / 2, scene.turn % 2 == 0);
+                               }),
+                         silence("acts_on_violation", "it has a symbol that is no data")}),
+                 drive("an ET without its end delimiter",
+                       [](IsaScene& scene) {
+                         const line::Levels right = right_et(scene);
+                         return right.slice(0, right.size() - 16);
+                       }),
+                 silence("acts_without_end", "the frame has no end delimiter"),
+                 drive("an ET with seven bits in its last octet", with_short_octet),
+                 silence("acts_on_part_of_octet", "the last octet has seven bits"), serves()}}),
+      on_chart(
+          must("fieldbus_dll/isa_dle/rejection/unknown_control_octets_are_left", "ISA-18",
+               "A DLPDU with a reserved bit or an unknown control octet is ignored.",
+               own("control octets of the profile"),
+               {{"reserved_bit_ignored", "acts_on_unknown"}, {"priority_zero_taken", "acts_on_unknown"}}),
+          {{},
+           {something,
+            repeat({250, 250}, {send("a control octet that makes no ET and no CD, with addresses and a "
+                                     "right check, each of the 250 in its turn",
+                                     [](IsaScene& scene) {
+                                       return Octets{unknown_control(scene.bench, scene.turn),
+                                                     scene.bench.address(), IsaBench::kScheduler};
+                                     }),
+                                silence("acts_on_unknown", "it is no token")}),
+            serves()}}),
+      on_chart(
+          must("fieldbus_dll/isa_dle/rejection/other_lengths_are_left", "ISA-18",
+               "An ET has five octets, an ES seven, with their checks.", own("encoding of the profile"),
+               {{"length_not_checked", "acts_on_other_length"}}),
+          {{},
+           {something,
+            repeat({12, 12},
+                   {send("an ET of 1 to 6 octets but 3, an ES of 1 to 8 but 5, with right checks, in turn",
+                         of_other_length),
+                    silence("acts_on_other_length", "it has another length")}),
+            serves()}}),
   };
 }
 

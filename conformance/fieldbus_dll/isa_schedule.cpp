@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "conformance/fieldbus_dll/isa_cases.hpp"
-#include "conformance/fieldbus_dll/isa_expect.hpp"
+#include "conformance/fieldbus_dll/isa_scene.hpp"
 
 // A scheduler that delegates its token as its schedule says.
 namespace fieldproof::conformance {
@@ -39,40 +38,11 @@ Octets octets_of_item(const IsaBench& bench, const IsaScheduleItem& item) {
   return octets;
 }
 
-void each_item_has_its_time(IsaBench& bench, CaseJudge& judge) {
-  const IsaSchedule schedule = ten_items();
-  kernel::Duration farthest{};
-  for (const IsaScheduleItem& item : schedule.items) {
-    const kernel::Time due = kernel::kStart + item.at;
-    const DrivenDlpdu one = expect_next(bench, judge, due + 2 * bench.slot(), "delegation_missing",
-                                        "the next item of the schedule");
-    const Octets wanted = octets_of_item(bench, item);
-    judge.expect(one.octets == wanted, "delegation_wrong", [&] {
-      return Mismatch{{fmt::format("{:02X}", fmt::join(wanted, " "))}, one.text(), one.begin};
-    });
-    expect_begins(judge, one, due - bench.slot(), "delegation_early", due + bench.slot(), "delegation_late");
-    farthest = std::max(farthest, one.begin < due ? due - one.begin : one.begin - due);
-    bench.run_until(bench.send_at(one.end + bench.least_gap(), bench.ee(item.node)));
-  }
-  judge.measure("farthest from its time", "us", static_cast<double>(farthest / kernel::kMicrosecond));
-  expect_silence(bench, judge, "delegation_not_in_schedule", "the schedule is over");
-}
-
 IsaSchedule overdue_second() {
   return {.version = 1,
           .period = {},
           .items = {{20 * kOctetAt31250, IsaType::es, 0x21, Priority::time_available, 400},
                     {35 * kOctetAt31250, IsaType::et, 0x22, Priority::normal, 0}}};
-}
-
-void a_token_that_comes_back_is_not_waited_for(IsaBench& bench, CaseJudge& judge) {
-  const DrivenDlpdu first = expect_next(bench, judge, "delegation_missing", "the first item");
-  const kernel::Time back = bench.send_at(first.end + bench.least_gap(), bench.ee(0x21));
-  bench.run_until(back);
-  const DrivenDlpdu second = expect_next(bench, judge, kernel::kStart + 500 * kOctetAt31250,
-                                         "delegation_missing", "the second item");
-  expect_begins(judge, second, back + bench.least_gap(), "gap_too_short",
-                back + bench.least_gap() + bench.slot(), "next_too_late");
 }
 
 constexpr int kOctetsOfPeriod = 200;
@@ -85,105 +55,135 @@ IsaSchedule one_item_a_period() {
           .items = {{kItemInPeriod * kOctetAt31250, IsaType::et, kHolderInSchedule, Priority::normal, 0}}};
 }
 
-// The token of a period, in time, and returned at once; instant by which it is back.
-kernel::Time expect_token_of_period(IsaBench& bench, CaseJudge& judge, int period) {
-  const kernel::Time due =
-      kernel::kStart + (std::int64_t{period} * kOctetsOfPeriod + kItemInPeriod) * kOctetAt31250;
-  const DrivenDlpdu et =
-      expect_next(bench, judge, due + 2 * bench.slot(), "delegation_missing", "the token of this period");
-  judge.expect(is_type(et, bench.rules().codes.et), "delegation_wrong",
-               [&] { return Mismatch{{"an ET"}, et.text(), et.begin}; });
-  expect_begins(judge, et, due - bench.slot(), "delegation_early", due + bench.slot(), "delegation_late");
-  const kernel::Time back = bench.send_at(et.end + bench.least_gap(), bench.ee(kHolderInSchedule));
-  bench.run_until(back);
-  return back;
+constexpr std::size_t kShort = 10;
+constexpr std::size_t kLong = 60;
+constexpr int kLeft = 40;  // octet durations, less than the long one needs
+
+// `latency`: farthest from its time.
+void expect_item(IsaScene& scene) {
+  IsaBench& bench = scene.bench;
+  const IsaScheduleItem item = ten_items().items.at(scene.turn);
+  const kernel::Time due = kernel::kStart + item.at;
+  scene.answer = expect_next(bench, scene.judge, due + 2 * bench.slot(), "delegation_missing",
+                             "the next item of the schedule");
+  const DrivenDlpdu& one = scene.answer;
+  const Octets right = octets_of_item(bench, item);
+  scene.judge.expect(one.octets == right, "delegation_wrong", [&] {
+    return Mismatch{{fmt::format("{:02X}", fmt::join(right, " "))}, one.text(), one.begin};
+  });
+  expect_begins(scene.judge, one, due - bench.slot(), "delegation_early", due + bench.slot(),
+                "delegation_late");
+  scene.latency = std::max(scene.latency, one.begin < due ? due - one.begin : one.begin - due);
+  if (scene.turn == 9)
+    scene.judge.measure("farthest from its time", "us",
+                        static_cast<double>(scene.latency / kernel::kMicrosecond));
 }
 
-void the_schedule_goes_round(IsaBench& bench, CaseJudge& judge) {
-  for (int n = 0; n < bench.volume(4, 100); ++n) expect_token_of_period(bench, judge, n);
+void expect_without_wait(IsaScene& scene) {
+  const DrivenDlpdu second = expect_next(scene.bench, scene.judge, kernel::kStart + 500 * kOctetAt31250,
+                                         "delegation_missing", "the second item");
+  const kernel::Time earliest = scene.sent + scene.bench.least_gap();
+  expect_begins(scene.judge, second, earliest, "gap_too_short", earliest + scene.bench.slot(),
+                "next_too_late");
 }
 
-void its_own_data_goes_between(IsaBench& bench, CaseJudge& judge) {
-  constexpr std::size_t kShort = 10;
-  constexpr std::size_t kLong = 60;
-  // Less than the long one needs, before the next token.
-  constexpr int kLeft = 40;
-  const auto expect_own = [&](const Octets& data, kernel::Time latest) {
-    const DrivenDlpdu du =
-        expect_next(bench, judge, latest, "own_data_not_sent", "a DU of the scheduler's user");
-    judge.expect(is_type(du, bench.rules().codes.du) && du.rest() == data, "own_data_not_sent",
-                 [&] { return Mismatch{{"a DU with the data of its user"}, du.text(), du.begin}; });
-  };
-  int period = 0;
-  for (int n = 0; n < bench.volume(2, 20); ++n) {
-    const kernel::Time back = expect_token_of_period(bench, judge, period++);
-    const Octets fits = bench.numbered_data(kShort);
-    judge.expect(bench.submit_unit_data(Priority::normal, fits), "data_refused", "data is accepted",
-                 "it was not");
-    expect_own(fits, back + bench.octets(60));
-    const kernel::Time next =
-        kernel::kStart + (std::int64_t{period} * kOctetsOfPeriod + kItemInPeriod) * kOctetAt31250;
-    bench.run_until(next - bench.octets(kLeft));
-    const Octets waits = bench.numbered_data(kLong);
-    judge.expect(bench.submit_unit_data(Priority::urgent, waits), "data_refused", "data is accepted",
-                 "it was not");
-    expect_own(waits, expect_token_of_period(bench, judge, period++) + bench.octets(60));
-  }
+kernel::Time due_in_period(unsigned period) {
+  return kernel::kStart + (std::int64_t{period} * kOctetsOfPeriod + kItemInPeriod) * kOctetAt31250;
+}
+
+void expect_token_of_period(IsaScene& scene, unsigned period) {
+  IsaBench& bench = scene.bench;
+  const kernel::Time due = due_in_period(period);
+  scene.answer = expect_next(bench, scene.judge, due + 2 * bench.slot(), "delegation_missing",
+                             "the token of this period");
+  scene.judge.expect(is_type(scene.answer, bench.rules().codes.et), "delegation_wrong",
+                     [&] { return Mismatch{{"an ET"}, scene.answer.text(), scene.answer.begin}; });
+  expect_begins(scene.judge, scene.answer, due - bench.slot(), "delegation_early", due + bench.slot(),
+                "delegation_late");
+}
+
+void expect_own_data(IsaScene& scene) {
+  IsaBench& bench = scene.bench;
+  const DrivenDlpdu du = expect_next(bench, scene.judge, scene.sent + bench.octets(60), "own_data_not_sent",
+                                     "a DU of the scheduler's user");
+  scene.judge.expect(is_type(du, bench.rules().codes.du) && du.rest() == scene.submitted.back(),
+                     "own_data_not_sent",
+                     [&] { return Mismatch{{"a DU with the data of its user"}, du.text(), du.begin}; });
 }
 
 }  // namespace
 
 std::vector<IsaCase> isa_schedule_cases() {
+  using namespace isa_chart;
+  const IsaStep returned = stimulus<IsaScene>("its holder returns it at once", [](IsaScene& scene) {
+    scene.reply(scene.bench.ee(kHolderInSchedule));
+  });
+  const IsaStep own_data =
+      expected<IsaScene>("the data of the scheduler's user within 60 octet durations", expect_own_data);
   using link_sources::isa_paper;
   using link_sources::own;
   return {
-      {{.id = "fieldbus_dll/isa_las/schedule/each_item_has_its_time",
-        .purpose = "ISA-29",
-        .requirement = "The scheduler delegates its token in the order and at the times of its schedule.",
-        .reference = isa_paper("the link active scheduler passes the delegated token in scheduled order"),
-        .details = {{own("within one V(ST) of its time"), {"delegation_early", "delegation_late"}}},
-        .stimulus = "A schedule of ten items; each holder returns its token at once.",
-        .expected = "Ten tokens as scheduled, and no more.",
-        .tags = {"must", "timing"},
-        .catches = {{"schedule_late", "delegation_late"},
-                    {"schedule_early", "delegation_early"},
-                    {"items_skipped", "delegation_missing"},
-                    {"delegates_urgent_only", "delegation_wrong"},
-                    {"duration_sent_little_endian", "delegation_wrong"}}},
-       each_item_has_its_time,
-       {.schedule = ten_items()}},
-      {{.id = "fieldbus_dll/isa_las/schedule/a_token_that_comes_back_is_not_waited_for",
-        .purpose = "ISA-30",
-        .requirement = "A token that comes back early ends its duration.",
-        .reference = isa_paper("EE: the use of the token has ended"),
-        .stimulus = "An ES for 400 octets whose holder returns it at once; the next item is due.",
-        .expected = "The next token V(MID) after the EE.",
-        .tags = {"must", "timing"},
-        .catches = {{"waits_out_duration", "next_too_late"}}},
-       a_token_that_comes_back_is_not_waited_for,
-       {.schedule = overdue_second()}},
-      {{.id = "fieldbus_dll/isa_las/schedule/goes_round",
-        .purpose = "ISA-29",
-        .requirement = "The scheduler delegates its token in the order and at the times of its schedule.",
-        .reference = isa_paper("the link active scheduler passes the delegated token in scheduled order"),
-        .details = {{own("the period of a schedule; within one V(ST) of its time"),
-                     {"delegation_missing", "delegation_early", "delegation_late"}}},
-        .stimulus = "A schedule with one ET in each period of 200 octet durations.",
-        .expected = "The ET in each period.",
-        .tags = {"must", "timing"},
-        .catches = {{"period_doubled", "delegation_missing"}}},
-       the_schedule_goes_round,
-       {.schedule = one_item_a_period()}},
-      {{.id = "fieldbus_dll/isa_las/schedule/its_own_data_goes_between",
-        .purpose = "ISA-29",
-        .requirement = "What the scheduler's own user submits goes between the items of the schedule.",
-        .reference = own("the scheduler's own data, where it ends before the next item"),
-        .stimulus = "Data that ends before the next token, and data that does not.",
-        .expected = "The first before it; the second after it, and the token in time.",
-        .tags = {"must", "timing"},
-        .catches = {{"own_data_kept", "own_data_not_sent"}, {"own_data_over_due", "delegation_wrong"}}},
-       its_own_data_goes_between,
-       {.schedule = one_item_a_period()}},
+      on_chart(
+          must_in_time("fieldbus_dll/isa_las/schedule/each_item_has_its_time", "ISA-29",
+                       "The scheduler delegates its token in the order and at the times of its schedule.",
+                       isa_paper("the link active scheduler passes the delegated token in scheduled order"),
+                       {{"schedule_late", "delegation_late"},
+                        {"schedule_early", "delegation_early"},
+                        {"items_skipped", "delegation_missing"},
+                        {"delegates_urgent_only", "delegation_wrong"},
+                        {"duration_sent_little_endian", "delegation_wrong"}},
+                       {{own("within one V(ST) of its time"), {"delegation_early", "delegation_late"}}}),
+          {{},
+           {repeat({10, 10},
+                   {expected<IsaScene>("the ten tokens of the schedule, each within V(ST) of its time",
+                                       expect_item),
+                    stimulus<IsaScene>(
+                        "its holder returns it at once",
+                        [](IsaScene& scene) { scene.reply(scene.bench.ee(scene.answer.octet(1))); })}),
+            silence("delegation_not_in_schedule", "the schedule is over")}},
+          {.schedule = ten_items()}),
+      on_chart(must_in_time("fieldbus_dll/isa_las/schedule/a_token_that_comes_back_is_not_waited_for",
+                            "ISA-30", "A token that comes back early ends its duration.",
+                            isa_paper("EE: the use of the token has ended"),
+                            {{"waits_out_duration", "next_too_late"}}),
+               {{},
+                {delegated("the ES for 400 octet durations"),
+                 stimulus<IsaScene>("its holder returns it at once",
+                                    [](IsaScene& scene) { scene.reply(scene.bench.ee(kHolderInSchedule)); }),
+                 expected<IsaScene>("the next token, which is due, V(MID) to V(MID) and V(ST) after the EE",
+                                    expect_without_wait)}},
+               {.schedule = overdue_second()}),
+      on_chart(
+          must_in_time("fieldbus_dll/isa_las/schedule/goes_round", "ISA-29",
+                       "The scheduler delegates its token in the order and at the times of its schedule.",
+                       isa_paper("the link active scheduler passes the delegated token in scheduled order"),
+                       {{"period_doubled", "delegation_missing"}},
+                       {{own("the period of a schedule; within one V(ST) of its time"),
+                         {"delegation_missing", "delegation_early", "delegation_late"}}}),
+          {{4, 100},
+           {expected<IsaScene>("an ET in each period of 200 octet durations, within V(ST) of its time",
+                               [](IsaScene& scene) { expect_token_of_period(scene, scene.round); }),
+            returned}},
+          {.schedule = one_item_a_period()}),
+      on_chart(
+          must_in_time("fieldbus_dll/isa_las/schedule/its_own_data_goes_between", "ISA-29",
+                       "What the scheduler's own user submits goes between the items of the schedule.",
+                       own("the scheduler's own data, where it ends before the next item"),
+                       {{"own_data_kept", "own_data_not_sent"}, {"own_data_over_due", "delegation_wrong"}}),
+          {{2, 20},
+           {expected<IsaScene>("the token of a period, in time",
+                               [](IsaScene& scene) { expect_token_of_period(scene, 2 * scene.round); }),
+            returned, submit({Priority::normal}, kShort), own_data,
+            stimulus<IsaScene>("all but 40 octet durations pass until the next token",
+                               [](IsaScene& scene) {
+                                 scene.bench.run_until(due_in_period(2 * scene.round + 1) -
+                                                       scene.bench.octets(kLeft));
+                               }),
+            submit({Priority::urgent}, kLong),
+            expected<IsaScene>("the token of the next period, in time",
+                               [](IsaScene& scene) { expect_token_of_period(scene, 2 * scene.round + 1); }),
+            returned, own_data}},
+          {.schedule = one_item_a_period()}),
   };
 }
 

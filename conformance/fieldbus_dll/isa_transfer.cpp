@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "conformance/fieldbus_dll/isa_cases.hpp"
-#include "conformance/fieldbus_dll/isa_expect.hpp"
+#include "conformance/fieldbus_dll/isa_scene.hpp"
 
 // Who is the scheduler: TL, and two of them.
 namespace fieldproof::conformance {
@@ -36,183 +35,171 @@ bool is_scheduling(const IsaBench& bench, const DrivenDlpdu& dlpdu) {
   return is_type(dlpdu, codes.et) || is_type(dlpdu, codes.es) || is_type(dlpdu, codes.tl);
 }
 
-// A period of the schedule in which the holder returns its token.
-void serve_one(IsaBench& bench, CaseJudge& judge) {
-  const DrivenDlpdu et = expect_next(bench, judge, bench.now() + (kPeriod + 40) * kOctetAt31250,
-                                     "delegation_missing", "the item of the schedule");
-  bench.run_until(bench.send_at(et.end + bench.least_gap(), bench.ee(kServed)));
+Octets tl_to(const IsaScene& scene, std::uint8_t node) {
+  return {scene.bench.rules().codes.tl, node, kLower, 0, 1};
 }
 
-void expect_no_scheduler(IsaBench& bench, CaseJudge& judge, std::string_view why) {
-  const kernel::Time end = bench.now() + 3 * kPeriod * kOctetAt31250;
-  while (const auto one = bench.next(end)) {
-    judge.expect(!is_scheduling(bench, *one), "two_schedulers", [&] {
-      return Mismatch{{fmt::format("no ET, ES or TL: {}", why)}, one->text(), one->begin};
-    });
-  }
+IsaStep no_scheduler(const std::string& why) {
+  return expected<IsaScene>(
+      "no ET, ES or TL in three periods of the schedule: " + why, [why](IsaScene& scene) {
+        const kernel::Time end = scene.bench.now() + 3 * kPeriod * kOctetAt31250;
+        while (const auto one = scene.bench.next(end)) {
+          scene.judge.expect(!is_scheduling(scene.bench, *one), "two_schedulers", [&] {
+            return Mismatch{{fmt::format("no ET, ES or TL: {}", why)}, one->text(), one->begin};
+          });
+        }
+      });
 }
 
-void a_link_master_takes_over(IsaBench& bench, CaseJudge& judge) {
-  bench.wait(bench.octets(300));
-  const kernel::Time end = bench.send({bench.rules().codes.tl, bench.address(), kLower, 0, 1});
-  const DrivenDlpdu first = expect_next(bench, judge, "not_taken", "a DLPDU of the new scheduler");
-  expect_begins(judge, first, end + bench.least_gap(), "answers_too_early", end + bench.reply_wait(),
-                "taken_late");
+void expect_taken(IsaScene& scene) {
+  IsaBench& bench = scene.bench;
+  const DrivenDlpdu first = expect_next(bench, scene.judge, "not_taken", "a DLPDU of the new scheduler");
+  expect_begins(scene.judge, first, scene.sent + bench.least_gap(), "answers_too_early",
+                scene.sent + bench.reply_wait(), "taken_late");
   std::vector<DrivenDlpdu> tokens;
   if (is_scheduling(bench, first)) tokens.push_back(first);
-  while (const auto one = bench.next(end + bench.octets(400))) {
+  while (const auto one = bench.next(scene.sent + bench.octets(400)))
     if (is_scheduling(bench, *one)) tokens.push_back(*one);
-  }
-  judge.expect(tokens.size() == 2 && is_type(tokens[0], bench.rules().codes.et) &&
-                   is_type(tokens[1], bench.rules().codes.es),
-               "schedule_not_run", [&] {
-                 return Mismatch{{"the ET and the ES of its schedule"},
-                                 fmt::format("{} tokens", tokens.size())};
-               });
-}
-
-void a_wrong_transfer_is_none_for_a_dle(IsaBench& bench, CaseJudge& judge) {
-  bench.wait(bench.octets(300));
-  Octets wrong = with_frame_check(Octets{bench.rules().codes.tl, bench.address(), kLower, 0, 1});
-  wrong.back() ^= 1;
-  bench.send_half_bits(half_bits_of_frame(wrong));
-  expect_no_scheduler(bench, judge, "the check of the TL is wrong");
-  bench.send({bench.rules().codes.tl, kHeir, kLower, 0, 1});
-  expect_no_scheduler(bench, judge, "the TL is for another");
-}
-
-void a_dle_in_standby_uses_tokens(IsaBench& bench, CaseJudge& judge) {
-  bench.wait(bench.octets(300));
-  for (int n = 0; n < bench.volume(2, 20); ++n) {
-    const Octets data = bench.numbered_data(8);
-    judge.expect(bench.submit_unit_data(Priority::normal, data), "data_refused", "data is accepted",
-                 "it was not");
-    const kernel::Time end = bench.send(bench.et(Priority::normal));
-    const DrivenDlpdu du = expect_next(bench, judge, "token_not_used", "a DU");
-    expect_begins(judge, du, end + bench.least_gap(), "answers_too_early", end + bench.reply_wait(),
-                  "answers_too_late");
-    judge.expect(is_type(du, bench.rules().codes.du) && du.rest() == data, "token_not_used",
-                 [&] { return Mismatch{{"a DU with the data of its user"}, du.text(), du.begin}; });
-    bench.listen();
-  }
-}
-
-DrivenDlpdu expect_transfer(IsaBench& bench, CaseJudge& judge) {
-  serve_one(bench, judge);
-  // So late that the next item of the schedule is due while the TL is on the line.
-  bench.run_until(kernel::kStart + (kPeriod + 14) * kOctetAt31250);
-  bench.order_transfer(kHeir);
-  const DrivenDlpdu tl = expect_next(bench, judge, "no_transfer", "a TL");
-  const Octets wanted{bench.rules().codes.tl, kHeir, bench.address(), kVersion >> 8, kVersion & 0xFF};
-  judge.expect(tl.octets == wanted, "transfer_wrong", [&] {
-    return Mismatch{{fmt::format("{:02X}", fmt::join(wanted, " "))}, tl.text(), tl.begin};
+  const auto& codes = bench.rules().codes;
+  const bool is_right = tokens.size() == 2 && is_type(tokens[0], codes.et) && is_type(tokens[1], codes.es);
+  scene.judge.expect(is_right, "schedule_not_run", [&] {
+    return Mismatch{{"the ET and the ES of its schedule"}, fmt::format("{} tokens", tokens.size())};
   });
-  return tl;
 }
 
-void what_is_not_taken_is_retaken(IsaBench& bench, CaseJudge& judge) {
-  const DrivenDlpdu tl = expect_transfer(bench, judge);
-  const kernel::Time over = tl.end + bench.reply_wait();
-  const DrivenDlpdu next =
-      expect_next(bench, judge, over + 2 * kPeriod * kOctetAt31250, "not_retaken", "the schedule goes on");
-  expect_begins(judge, next, over, "retaken_early", over + (kPeriod + 40) * kOctetAt31250, "not_retaken");
-  judge.expect(is_scheduling(bench, next), "not_retaken", "the next item of the schedule", next.text());
+void order_late_transfer(IsaScene& scene) {
+  scene.bench.run_until(kernel::kStart + (kPeriod + 14) * kOctetAt31250);
+  scene.bench.order_transfer(kHeir);
 }
 
-void what_is_taken_is_left(IsaBench& bench, CaseJudge& judge) {
-  const DrivenDlpdu tl = expect_transfer(bench, judge);
-  const Octets sign{bench.control(bench.rules().codes.du, Priority::time_available), bench.rules().everybody,
-                    kHeir};
-  bench.run_until(bench.send_at(tl.end + 2 * bench.least_gap(), sign));
-  expect_no_scheduler(bench, judge, "the heir has taken the link");
+void expect_transfer_ordered(IsaScene& scene) {
+  scene.answer = expect_next(scene.bench, scene.judge, "no_transfer", "a TL");
+  const Octets right{scene.bench.rules().codes.tl, kHeir, scene.bench.address(), kVersion >> 8,
+                     kVersion & 0xFF};
+  scene.judge.expect(scene.answer.octets == right, "transfer_wrong", [&] {
+    return Mismatch{{fmt::format("{:02X}", fmt::join(right, " "))}, scene.answer.text(), scene.answer.begin};
+  });
 }
 
-void the_lower_address_keeps_the_link(IsaBench& bench, CaseJudge& judge) {
-  serve_one(bench, judge);
-  bench.wait(bench.octets(40));
-  bench.send({bench.control(bench.rules().codes.et, Priority::normal), 0x22, kHeir});
-  const auto next = bench.next(bench.now() + 2 * kPeriod * kOctetAt31250);
-  judge.expect(next && is_scheduling(bench, *next), "left_to_higher",
-               "the schedule goes on: the other has the higher address", "the scheduler is gone");
-  bench.run_until(bench.send_at(next->end + bench.least_gap(), bench.ee(kServed)));
-  bench.wait(bench.octets(40));
-  bench.send({bench.control(bench.rules().codes.et, Priority::normal), 0x22, kLower});
-  expect_no_scheduler(bench, judge, "one with a lower address is the scheduler");
+void expect_retaken(IsaScene& scene) {
+  const kernel::Time over = scene.answer.end + scene.bench.reply_wait();
+  const DrivenDlpdu next = expect_next(scene.bench, scene.judge, over + 2 * kPeriod * kOctetAt31250,
+                                       "not_retaken", "the schedule goes on");
+  expect_begins(scene.judge, next, over, "retaken_early", over + (kPeriod + 40) * kOctetAt31250,
+                "not_retaken");
+  scene.judge.expect(is_scheduling(scene.bench, next), "not_retaken", "the next item of the schedule",
+                     next.text());
+}
+
+void expect_kept(IsaScene& scene) {
+  const auto next = scene.bench.next(scene.bench.now() + 2 * kPeriod * kOctetAt31250);
+  scene.judge.expect(next && is_scheduling(scene.bench, *next), "left_to_higher",
+                     "the schedule goes on: the other has the higher address", "the scheduler is gone");
+  scene.answer = *next;
 }
 
 }  // namespace
 
 std::vector<IsaCase> isa_transfer_cases() {
+  using namespace isa_chart;
+  const IsaStep transfer_to_station =
+      send("a TL to the station", [](IsaScene& scene) { return tl_to(scene, scene.bench.address()); });
+  const IsaStep returned = stimulus<IsaScene>("its holder returns it at once",
+                                              [](IsaScene& scene) { scene.reply(scene.bench.ee(kServed)); });
+  const IsaStep transferred = repeat(
+      {}, {delegated("the token of the schedule"), returned,
+           stimulus<IsaScene>("the user orders a transfer to 11, so late that the next item is due in it",
+                              order_late_transfer),
+           expected<IsaScene>("a TL with the version of the schedule", expect_transfer_ordered)});
+  const auto et_of = [](std::uint8_t node, const std::string& text) {
+    return send(text, [node](IsaScene& scene) {
+      return Octets{scene.bench.control(scene.bench.rules().codes.et, Priority::normal), 0x22, node};
+    });
+  };
   using link_sources::isa_paper;
   using link_sources::own;
   return {
-      {{.id = "fieldbus_dll/isa_las/transfer/a_link_master_takes_over",
-        .purpose = "ISA-35",
-        .requirement = "A TL makes a link master the scheduler.",
-        .reference = isa_paper("TL: the scheduling token goes to another link master"),
-        .details = {{own("the first DLPDU within V(RR)"), {"taken_late"}},
-                    {own("its schedule begins with the TL"), {"schedule_not_run"}}},
-        .stimulus = "A TL to the IUT, whose schedule has an item after 60 octets and one after 130.",
-        .expected = "A DLPDU within V(RR); then both items.",
-        .tags = {"must"},
-        .catches = {{"ignores_transfer", "not_taken"},
-                    {"shows_itself_late", "taken_late"},
-                    {"schedule_not_begun", "schedule_not_run"}}},
-       a_link_master_takes_over,
-       {.schedule = late_items(), .is_scheduler = false}},
-      {{.id = "fieldbus_dll/isa_las/transfer/a_wrong_one_is_none",
-        .purpose = "ISA-35",
-        .requirement = "A TL with a wrong check or for another makes a link master no scheduler.",
-        .reference = isa_paper("there is one scheduler"),
-        .stimulus = "A TL whose last bit is wrong, a TL for another.",
-        .expected = "No ET, ES or TL.",
-        .tags = {"must"},
-        .catches = {{"takes_transfer_of_others", "two_schedulers"}}},
-       a_wrong_transfer_is_none_for_a_dle,
-       {.schedule = late_items(), .is_scheduler = false}},
-      {{.id = "fieldbus_dll/isa_las/transfer/in_standby_it_uses_tokens",
-        .purpose = "ISA-35",
-        .requirement = "A link master that is not the scheduler uses tokens as every station.",
-        .reference = isa_paper("link masters that are not the scheduler"),
-        .stimulus = "Data, and an ET to the IUT.",
-        .expected = "The data, begun within V(RR).",
-        .tags = {"must"},
-        .catches = {{"deaf_in_standby", "token_not_used"}}},
-       a_dle_in_standby_uses_tokens,
-       {.schedule = late_items(), .is_scheduler = false}},
-      {{.id = "fieldbus_dll/isa_las/transfer/what_is_not_taken_is_retaken",
-        .purpose = "ISA-36",
-        .requirement = "A scheduler whose heir says nothing takes the link back when V(RR) is over.",
-        .reference = isa_paper("there is one scheduler"),
-        .details = {{own("V(RR) supervises a TL"), {"retaken_early", "not_retaken"}}},
-        .stimulus = "The IUT hands the link over; the heir is silent.",
-        .expected = "A TL with the version of the schedule; the schedule goes on, not before V(RR) is over.",
-        .tags = {"must"},
-        .catches = {{"never_retakes", "not_retaken"},
-                    {"retakes_early", "retaken_early"},
-                    {"transfer_without_version", "transfer_wrong"}}},
-       what_is_not_taken_is_retaken,
-       {.schedule = periodic()}},
-      {{.id = "fieldbus_dll/isa_las/transfer/what_is_taken_is_left",
-        .purpose = "ISA-37",
-        .requirement = "A scheduler that has handed the link over is one no more.",
-        .reference = isa_paper("there is one scheduler"),
-        .stimulus = "The IUT hands the link over; the heir sends a DU.",
-        .expected = "No ET, ES or TL in three periods of the schedule.",
-        .tags = {"must"},
-        .catches = {{"keeps_schedule_behind_transfer", "two_schedulers"}}},
-       what_is_taken_is_left,
-       {.schedule = periodic()}},
-      {{.id = "fieldbus_dll/isa_las/transfer/the_lower_address_keeps_the_link",
-        .purpose = "ISA-38",
-        .requirement = "Of two schedulers the one with the lower address stays.",
-        .reference = own("two schedulers"),
-        .stimulus = "An ET from a higher address, then one from a lower.",
-        .expected = "The schedule goes on after the first; no ET, ES or TL after the second.",
-        .tags = {"must"},
-        .catches = {{"never_yields", "two_schedulers"}, {"always_yields", "left_to_higher"}}},
-       the_lower_address_keeps_the_link,
-       {.schedule = periodic()}},
+      on_chart(
+          must("fieldbus_dll/isa_las/transfer/a_link_master_takes_over", "ISA-35",
+               "A TL makes a link master the scheduler.",
+               isa_paper("TL: the scheduling token goes to another link master"),
+               {{"ignores_transfer", "not_taken"},
+                {"shows_itself_late", "taken_late"},
+                {"schedule_not_begun", "schedule_not_run"}},
+               {{own("the first DLPDU within V(RR)"), {"taken_late"}},
+                {own("its schedule begins with the TL"), {"schedule_not_run"}}}),
+          {{},
+           {wait(300), transfer_to_station,
+            expected<IsaScene>(
+                "a DLPDU within V(RR), then the ET and the ES of its schedule, due after 60 and 130 octets",
+                expect_taken)}},
+          {.schedule = late_items(), .is_scheduler = false}),
+      on_chart(must("fieldbus_dll/isa_las/transfer/a_wrong_one_is_none", "ISA-35",
+                    "A TL with a wrong check or for another makes a link master no scheduler.",
+                    isa_paper("there is one scheduler"), {{"takes_transfer_of_others", "two_schedulers"}}),
+               {{},
+                {wait(300),
+                 drive("a TL whose last bit is wrong",
+                       [](IsaScene& scene) {
+                         return half_bits_of_frame(
+                             with_wrong_bits(with_frame_check(tl_to(scene, scene.bench.address())), {55}));
+                       }),
+                 no_scheduler("the check of the TL is wrong"),
+                 send("a TL for another", [](IsaScene& scene) { return tl_to(scene, kHeir); }),
+                 no_scheduler("the TL is for another")}},
+               {.schedule = late_items(), .is_scheduler = false}),
+      on_chart(
+          must("fieldbus_dll/isa_las/transfer/in_standby_it_uses_tokens", "ISA-35",
+               "A link master that is not the scheduler uses tokens as every station.",
+               isa_paper("link masters that are not the scheduler"), {{"deaf_in_standby", "token_not_used"}}),
+          {{},
+           {wait(300), repeat({2, 20}, {submit({Priority::normal}, 8), et(Priority::normal),
+                                        answer<IsaScene>(
+                                            "a DU with the data of its user", "token_not_used",
+                                            [](const IsaScene& scene, const DrivenDlpdu& du) {
+                                              return is_type(du, scene.bench.rules().codes.du) &&
+                                                     du.rest() == scene.submitted.back();
+                                            },
+                                            "token_not_used"),
+                                        says("the EE", "token_not_returned")})}},
+          {.schedule = late_items(), .is_scheduler = false}),
+      on_chart(must("fieldbus_dll/isa_las/transfer/what_is_not_taken_is_retaken", "ISA-36",
+                    "A scheduler whose heir says nothing takes the link back when V(RR) is over.",
+                    isa_paper("there is one scheduler"),
+                    {{"never_retakes", "not_retaken"},
+                     {"retakes_early", "retaken_early"},
+                     {"transfer_without_version", "transfer_wrong"}},
+                    {{own("V(RR) supervises a TL"), {"retaken_early", "not_retaken"}}}),
+               {{},
+                {transferred,
+                 expected<IsaScene>("the heir is silent: the schedule goes on when V(RR) is over, not before",
+                                    expect_retaken)}},
+               {.schedule = periodic()}),
+      on_chart(
+          must("fieldbus_dll/isa_las/transfer/what_is_taken_is_left", "ISA-37",
+               "A scheduler that has handed the link over is one no more.",
+               isa_paper("there is one scheduler"), {{"keeps_schedule_behind_transfer", "two_schedulers"}}),
+          {{},
+           {transferred,
+            stimulus<IsaScene>("the heir sends a DU",
+                               [](IsaScene& scene) {
+                                 scene.reply({scene.bench.control(scene.bench.rules().codes.du,
+                                                                  Priority::time_available),
+                                              scene.bench.rules().everybody, kHeir},
+                                             scene.bench.least_gap());
+                               }),
+            no_scheduler("the heir has taken the link")}},
+          {.schedule = periodic()}),
+      on_chart(must("fieldbus_dll/isa_las/transfer/the_lower_address_keeps_the_link", "ISA-38",
+                    "Of two schedulers the one with the lower address stays.", own("two schedulers"),
+                    {{"never_yields", "two_schedulers"}, {"always_yields", "left_to_higher"}}),
+               {{},
+                {delegated("the token of the schedule"), returned, wait(40),
+                 et_of(kHeir, "an ET from a higher address"),
+                 expected<IsaScene>("the schedule goes on", expect_kept), returned, wait(40),
+                 et_of(kLower, "an ET from a lower address"),
+                 no_scheduler("one with a lower address is the scheduler")}},
+               {.schedule = periodic()}),
   };
 }
 
