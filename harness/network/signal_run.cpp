@@ -99,7 +99,7 @@ class SignalRun final : private ExchangeWatcher {
     const std::string complaint = network_.complaint();
     throw kernel::Error(
         kernel::ErrorKind::configuration,
-        fmt::format("network \"{}\": no data are exchanged within {} of power-up ({}); a network to measure "
+        fmt::format("network \"{}\" does not come up within {} of power-up ({}); a network to measure "
                     "must come up",
                     network_.name(), kernel::describe(network_.bring_up_limit()),
                     complaint.empty() ? "its controller reports nothing" : complaint));

@@ -57,12 +57,13 @@ void FfNetwork::add(std::uint8_t node, std::size_t position, const std::string& 
   station.node = node;
   station.configuration = configuration_of(node, is_master);
   station.device = make ? make(position, station.configuration) : nullptr;
-  if (station.device == nullptr) {
+  const bool is_under_test = station.device != nullptr;
+  if (!is_under_test) {
     station.device = is_master ? std::make_unique<FfLas>(station.configuration)
                                : std::make_unique<FfStation>(station.configuration);
   }
   station.user = std::make_unique<User>(*this);
-  station.device->wire(seat(*station.device, node, name), *station.user);
+  station.device->wire(seat(*station.device, node, name, is_under_test), *station.user);
 }
 
 void FfNetwork::find_addresses() {

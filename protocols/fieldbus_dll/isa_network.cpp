@@ -54,12 +54,13 @@ void IsaNetwork::add(std::uint8_t node, std::size_t position, const std::string&
   Station& station = stations_.emplace_back();
   station.node = node;
   station.device = make ? make(position, configuration) : nullptr;
-  if (station.device == nullptr) {
+  const bool is_under_test = station.device != nullptr;
+  if (!is_under_test) {
     station.device =
         is_master ? std::make_unique<IsaLas>(configuration) : std::make_unique<IsaDle>(configuration);
   }
   station.user = std::make_unique<User>(*this, node);
-  station.device->wire(seat(*station.device, node, name), *station.user);
+  station.device->wire(seat(*station.device, node, name, is_under_test), *station.user);
 }
 
 // One DU, the return of the token, and the silences in front of both.
@@ -80,6 +81,13 @@ std::vector<network::CycleKind> IsaNetwork::kinds() const {
 std::vector<network::ProtectedFrame> IsaNetwork::protected_frames() const {
   return {{"DU", "CRC-16/PROFIBUS", static_cast<unsigned>(8 * octets_on_line(IsaType::du, kDataOctets)),
            description().macrocycle / static_cast<std::int64_t>(description().data.size())}};
+}
+
+std::string IsaNetwork::complaint() const {
+  const std::string absent = LinkNetwork::complaint();
+  return absent.empty()
+             ? absent
+             : absent + "; the schedule gives the token to who has a word to send, and to nobody else";
 }
 
 void IsaNetwork::power_up(Time now) {
@@ -113,6 +121,7 @@ void IsaNetwork::on_data(std::uint8_t node, const IsaDlpdu& dlpdu, Time when) {
     if (is_word && dlpdu.data[0] != static_cast<std::uint8_t>(n)) continue;
     on_got(n, is_word ? static_cast<std::uint16_t>(dlpdu.data[1] << 8 | dlpdu.data[2]) : std::uint16_t{0},
            when);
+    if (std::ranges::find(data, node, &DataDescription::from) == data.end()) take_part(node);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "protocols/fieldbus_dll/isa_device.hpp"
 #include "protocols/fieldbus_dll/link_network.hpp"
@@ -24,6 +26,8 @@ class IsaNetwork final : public LinkNetwork {
  public:
   IsaNetwork(const LinkDescription& description, std::uint64_t seed, const IsaStations& stations = {});
 
+  // A station without a token takes part by a word that it gets.
+  std::string complaint() const override;
   std::vector<network::ProtectedFrame> protected_frames() const override;
 
  private:

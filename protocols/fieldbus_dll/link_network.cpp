@@ -169,12 +169,14 @@ LinkNetwork::LinkNetwork(const LinkDescription& description, const LinkRules& ru
   has_arrived_.resize(signals_.size());
 }
 
-segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t node,
-                                       const std::string& name) {
+segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t node, const std::string& name,
+                                       bool is_under_test) {
   const std::size_t number = segment_.attach(station, name);
   segment::MediumPort& place = line_.attach(name + "/in", number, 0, {});
   place.sense_activity();
-  seats_.push_back({&station, node, number});
+  network::Attendance::Station* const attendance = is_under_test ? &attendance_.expect(name) : nullptr;
+  if (attendance != nullptr) place.tap_driven(*attendance);
+  seats_.push_back({&station, node, number, attendance});
   const bool is_exposed = !has(description_.not_exposed, node);
   // Levels are half bits.
   places_.push_back({.name = place.name(),
@@ -189,6 +191,11 @@ segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t n
 void LinkNetwork::refresh(std::uint8_t node) {
   const auto seat = std::ranges::find(seats_, node, &Seat::node);
   if (seat != seats_.end()) segment_.refresh(seat->number);
+}
+
+void LinkNetwork::take_part(std::uint8_t node) {
+  const auto seat = std::ranges::find(seats_, node, &Seat::node);
+  if (seat != seats_.end() && seat->attendance != nullptr) seat->attendance->take_part();
 }
 
 void LinkNetwork::start() {
@@ -223,7 +230,7 @@ void LinkNetwork::stop() {
 
 network::State LinkNetwork::state() const {
   const Time now = segment_.now();
-  if (got_ == sources_.size() && last_call_) {
+  if (got_ == sources_.size() && last_call_ && attendance_.is_complete()) {
     return now - *last_call_ > acceptance().silence_cycles * description_.macrocycle
                ? network::State::stopped
                : network::State::exchanging;

@@ -11,6 +11,7 @@
 
 #include "harness/config/document.hpp"
 #include "harness/kernel/random.hpp"
+#include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
@@ -59,7 +60,8 @@ kernel::Duration needed_by_item(const LinkDescription& link);
 
 // A link that runs. An exchange carries one word; it begins with what calls for it (CD, ES), as the lower
 // tester sees it on the line, and ends when its answer must be over. Served: the application of the
-// destination has got the word. Stopped: nobody was called for two macrocycles.
+// destination has got the word. Stopped: nobody was called for two macrocycles. It has not come up before
+// each station under test has driven the line.
 class LinkNetwork : public network::Network, private segment::Station, private segment::Tap {
  public:
   const std::string& name() const override { return description_.name; }
@@ -68,6 +70,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   void stop() override;
   network::State state() const override;
   kernel::Duration bring_up_limit() const override;
+  std::string complaint() const override { return attendance_.complaint(); }
   std::span<const network::Place> places() const override { return places_; }
   std::span<const network::CycleKind> cycles() const override { return cycles_; }
   network::RecoveryLimit recovery_limit() const override;
@@ -86,7 +89,10 @@ class LinkNetwork : public network::Network, private segment::Station, private s
 
   const LinkDescription& description() const { return description_; }
   // A station at its place on the line; it must live as long as the network.
-  segment::MediumPort& seat(segment::Station& station, std::uint8_t node, const std::string& name);
+  segment::MediumPort& seat(segment::Station& station, std::uint8_t node, const std::string& name,
+                            bool is_under_test);
+  // A station that has nothing to drive has got what is for it.
+  void take_part(std::uint8_t node);
   void refresh(std::uint8_t node);
   void begin_cycle(std::size_t kind, kernel::Time when);
   // The word of this signal is called for by what ends then.
@@ -124,6 +130,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
     segment::Station* station;
     std::uint8_t node;
     std::size_t number;
+    network::Attendance::Station* attendance;  // null: a reference
   };
 
   void receive(segment::PortIndex, const line::Waveform&) override {}
@@ -139,6 +146,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   segment::Segment segment_;
   segment::Medium line_;
   LineEnd tester_;
+  network::Attendance attendance_;
   std::deque<Seat> seats_;
   std::vector<network::Place> places_;
   std::vector<network::Signal> signals_;

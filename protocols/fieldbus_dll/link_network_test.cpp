@@ -9,6 +9,9 @@
 #include "harness/network/quiet_run.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
 #include "protocols/fieldbus_dll/ff_network.hpp"
+#include "protocols/fieldbus_dll/ff_station.hpp"
+#include "protocols/fieldbus_dll/isa_dle.hpp"
+#include "protocols/fieldbus_dll/isa_las.hpp"
 #include "protocols/fieldbus_dll/isa_network.hpp"
 
 namespace fieldproof::fieldbus_dll {
@@ -75,6 +78,74 @@ TEST(FfNetworkTest, AWordThatNobodyGaveIsSeen) {
                     }});
   const network::QuietRun run = network::run_quietly(network, 5, 5);
   EXPECT_GT(run.counts.accepted_wrong_inputs, 3U);
+}
+
+// Gets all, and drives nothing.
+template <typename Base, typename User>
+class Mute final : public Base {
+ public:
+  using Base::Base;
+  void wire(segment::Port&, User& user) override { Base::wire(nowhere_, user); }
+
+ private:
+  struct Nowhere final : segment::Port {
+    void drive(line::Waveform&) override {}
+  };
+  Nowhere nowhere_;
+};
+
+template <typename Device, typename Muted, typename Configuration>
+auto mute_at(std::size_t wanted) {
+  return [wanted](std::size_t position, const Configuration& configuration) -> std::unique_ptr<Device> {
+    return position == wanted ? std::make_unique<Muted>(configuration) : nullptr;
+  };
+}
+
+// A word from the first device to the second, and none for the third.
+LinkDescription one_word(LinkProfile profile) {
+  LinkDescription link = LinkDescription::built_in(profile, 31'250, 3);
+  link.data.resize(1);
+  return link;
+}
+
+void expect_absent(LinkNetwork& network, const std::string& station) {
+  EXPECT_FALSE(network::run_quietly(network, 5, 5).came_up) << station;
+  EXPECT_NE(network.complaint().find(station + " did not take part"), std::string::npos)
+      << network.complaint();
+}
+
+TEST(FfNetworkTest, DoesNotComeUpWithoutAStationUnderTest) {
+  const LinkDescription link = one_word(LinkProfile::foundation);
+  for (const std::size_t position : {1U, 2U}) {
+    FfNetwork network(link, 1,
+                      {.make_master = mute_at<FfDevice, Mute<FfLas, FfUser>, FfConfiguration>(position)});
+    expect_absent(network, "ff_las@" + std::to_string(position));
+  }
+  for (const std::size_t position : {1U, 2U, 3U}) {
+    FfNetwork network(link, 1,
+                      {.make_device = mute_at<FfDevice, Mute<FfStation, FfUser>, FfConfiguration>(position)});
+    expect_absent(network, "ff_device@" + std::to_string(position));
+  }
+}
+
+TEST(IsaNetworkTest, DoesNotComeUpWithoutAStationUnderTest) {
+  const LinkDescription link = one_word(LinkProfile::isa);
+  for (const std::size_t position : {1U, 2U}) {
+    IsaNetwork network(
+        link, 1, {.make_master = mute_at<IsaDevice, Mute<IsaLas, IsaUser>, IsaConfiguration>(position)});
+    expect_absent(network, "isa_las@" + std::to_string(position));
+  }
+  for (const std::size_t position : {1U, 3U}) {
+    IsaNetwork network(
+        link, 1, {.make_device = mute_at<IsaDevice, Mute<IsaDle, IsaUser>, IsaConfiguration>(position)});
+    expect_absent(network, "isa_dle@" + std::to_string(position));
+  }
+}
+
+TEST(IsaNetworkTest, WhoHasNoWordToSendTakesPartByTheOneThatItGets) {
+  IsaNetwork network(one_word(LinkProfile::isa), 1,
+                     {.make_device = mute_at<IsaDevice, Mute<IsaDle, IsaUser>, IsaConfiguration>(2)});
+  EXPECT_TRUE(network::run_quietly(network, 5, 5).came_up);
 }
 
 std::string refusal_of(const std::string& text) {

@@ -49,6 +49,7 @@ RunningNetwork::RunningNetwork(const NetworkDescription& description, std::uint6
   description_.rules.bit_rate = dip_bit_rates()[description_.dip];
   segment::MediumPort& place = line_.attach("host/in", host_number_, 0, {});
   place.tap_driven(host_drives_);
+  place.tap_driven(attendance_.expect("host"));
   host_->wire(place, *this);
   places_.push_back({.name = place.name(),
                      .receiver = &place,
@@ -75,10 +76,12 @@ void RunningNetwork::add_node(const NodeDescription& node, const RunningStations
   seat.description = node;
   seat.way = distance_to(description_, position - 1);
   seat.device = stations.make_node ? stations.make_node(position, configuration) : nullptr;
-  if (seat.device == nullptr) seat.device = std::make_unique<Node>(configuration);
+  const bool is_under_test = seat.device != nullptr;
+  if (!is_under_test) seat.device = std::make_unique<Node>(configuration);
   seat.number = segment_.attach(*seat.device, fmt::format("node@{}", position));
   segment::MediumPort& place = line_.attach(fmt::format("node@{}/in", position), seat.number, 0, seat.way);
   place.tap_driven(node_drives_);
+  if (is_under_test) place.tap_driven(attendance_.expect(fmt::format("node@{}", position)));
   seat.device->wire(place, seat.block);
   const bool is_exposed = repeaters_before(description_.rules, position - 1) == 0;
   places_.push_back({.name = place.name(),
@@ -183,7 +186,7 @@ void RunningNetwork::stop() {
 
 network::State RunningNetwork::state() const {
   const Time now = segment_.now();
-  if (has_response_ && node_drives_.last) {
+  if (has_response_ && node_drives_.last && attendance_.is_complete()) {
     return now - *node_drives_.last > longest_silence() ? network::State::stopped
                                                         : network::State::exchanging;
   }

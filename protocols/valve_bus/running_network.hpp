@@ -5,9 +5,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/kernel/random.hpp"
+#include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
@@ -22,7 +24,8 @@
 //
 // An exchange is the poll of one node, from its first command to the response; it ends when the response has
 // been reported to the PC and a write in it must have reached the valves. Whether data are exchanged at all
-// is decided on the line: a node must have driven it, lately, besides what the host reports.
+// is decided on the line: a node must have driven it, lately, besides what the host reports, and each station
+// under test once.
 //
 // Signals: of each node its valves, where the PC writes them, then its limit switches. Exposed are the host
 // and the nodes on its segment; what lies after a repeater has a segment of its own.
@@ -45,6 +48,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   void stop() override;
   network::State state() const override;
   kernel::Duration bring_up_limit() const override;
+  std::string complaint() const override { return attendance_.complaint(); }
   std::span<const network::Place> places() const override { return places_; }
   std::span<const network::CycleKind> cycles() const override { return cycles_; }
   network::RecoveryLimit recovery_limit() const override;
@@ -137,6 +141,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   kernel::Random random_;
   segment::Segment segment_;
   segment::Medium line_;
+  network::Attendance attendance_;  // of those under test
   std::unique_ptr<HostDevice> host_;
   std::size_t host_number_;
   HostDrives host_drives_;
