@@ -289,7 +289,8 @@ std::vector<network::CopiedPath> LinkNetwork::paths() const {
                      .to = item.to,
                      .source = n,
                      .sink = n,
-                     .theory = {description_.macrocycle, least_delay()}});
+                     .is_image_of_its_own = true,
+                     .theory = network::PathTheory{description_.macrocycle, least_delay(n)}});
   }
   return paths;
 }

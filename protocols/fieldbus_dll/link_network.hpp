@@ -59,9 +59,9 @@ std::optional<std::string> violation_of(const LinkDescription& link);
 kernel::Duration needed_by_item(const LinkDescription& link);
 
 // A link that runs. An exchange carries one word; it begins with what calls for it (CD, ES), as the lower
-// tester sees it on the line, and ends when its answer must be over. Served: the application of the
-// destination has got the word. Stopped: nobody was called for two macrocycles. It has not come up before
-// each station under test has driven the line.
+// tester sees it on the line, or with a word that its source publishes uncalled, and ends when its answer
+// must be over. Served: the application of the destination has got the word. Stopped: nobody was called for
+// two macrocycles. It has not come up before each station under test has driven the line.
 class LinkNetwork : public network::Network, private segment::Station, private segment::Tap {
  public:
   const std::string& name() const override { return description_.name; }
@@ -97,6 +97,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   void begin_cycle(std::size_t kind, kernel::Time when);
   // The word of this signal is called for by what ends then.
   void on_called(std::size_t signal, kernel::Time begin, kernel::Time end);
+  bool is_called(std::size_t signal) const { return sources_[signal].is_called; }
   // It has been sent; its destination has got it.
   void on_sent(std::size_t signal);
   void on_got(std::size_t signal, std::uint16_t word, kernel::Time when);
@@ -112,7 +113,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   // From the end of the call until the word must have arrived.
   virtual kernel::Duration answer_time() const = 0;
   // From the sample at the source to the application of the destination.
-  virtual kernel::Duration least_delay() const = 0;
+  virtual kernel::Duration least_delay(std::size_t signal) const = 0;
   // A sample is taken so long before the word is called for.
   kernel::Duration lead() const;
 

@@ -4,8 +4,12 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "harness/kernel/error.hpp"
+#include "harness/measure/frequency.hpp"
+#include "harness/network/network_measurement.hpp"
 #include "harness/network/quiet_run.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
 #include "protocols/fieldbus_dll/ff_network.hpp"
@@ -94,10 +98,10 @@ class Mute final : public Base {
   Nowhere nowhere_;
 };
 
-template <typename Device, typename Muted, typename Configuration>
-auto mute_at(std::size_t wanted) {
+template <typename Device, typename Given, typename Configuration>
+auto given_at(std::size_t wanted) {
   return [wanted](std::size_t position, const Configuration& configuration) -> std::unique_ptr<Device> {
-    return position == wanted ? std::make_unique<Muted>(configuration) : nullptr;
+    return position == wanted ? std::make_unique<Given>(configuration) : nullptr;
   };
 }
 
@@ -118,12 +122,12 @@ TEST(FfNetworkTest, DoesNotComeUpWithoutAStationUnderTest) {
   const LinkDescription link = one_word(LinkProfile::foundation);
   for (const std::size_t position : {1U, 2U}) {
     FfNetwork network(link, 1,
-                      {.make_master = mute_at<FfDevice, Mute<FfLas, FfUser>, FfConfiguration>(position)});
+                      {.make_master = given_at<FfDevice, Mute<FfLas, FfUser>, FfConfiguration>(position)});
     expect_absent(network, "ff_las@" + std::to_string(position));
   }
   for (const std::size_t position : {1U, 2U, 3U}) {
-    FfNetwork network(link, 1,
-                      {.make_device = mute_at<FfDevice, Mute<FfStation, FfUser>, FfConfiguration>(position)});
+    FfNetwork network(
+        link, 1, {.make_device = given_at<FfDevice, Mute<FfStation, FfUser>, FfConfiguration>(position)});
     expect_absent(network, "ff_device@" + std::to_string(position));
   }
 }
@@ -132,20 +136,92 @@ TEST(IsaNetworkTest, DoesNotComeUpWithoutAStationUnderTest) {
   const LinkDescription link = one_word(LinkProfile::isa);
   for (const std::size_t position : {1U, 2U}) {
     IsaNetwork network(
-        link, 1, {.make_master = mute_at<IsaDevice, Mute<IsaLas, IsaUser>, IsaConfiguration>(position)});
+        link, 1, {.make_master = given_at<IsaDevice, Mute<IsaLas, IsaUser>, IsaConfiguration>(position)});
     expect_absent(network, "isa_las@" + std::to_string(position));
   }
   for (const std::size_t position : {1U, 3U}) {
     IsaNetwork network(
-        link, 1, {.make_device = mute_at<IsaDevice, Mute<IsaDle, IsaUser>, IsaConfiguration>(position)});
+        link, 1, {.make_device = given_at<IsaDevice, Mute<IsaDle, IsaUser>, IsaConfiguration>(position)});
     expect_absent(network, "isa_dle@" + std::to_string(position));
   }
 }
 
 TEST(IsaNetworkTest, WhoHasNoWordToSendTakesPartByTheOneThatItGets) {
   IsaNetwork network(one_word(LinkProfile::isa), 1,
-                     {.make_device = mute_at<IsaDevice, Mute<IsaDle, IsaUser>, IsaConfiguration>(2)});
+                     {.make_device = given_at<IsaDevice, Mute<IsaDle, IsaUser>, IsaConfiguration>(2)});
   EXPECT_TRUE(network::run_quietly(network, 5, 5).came_up);
+}
+
+// A link of two masters and three devices with these words.
+LinkDescription link_of(LinkProfile profile, std::vector<DataDescription> data) {
+  LinkDescription link = LinkDescription::built_in(profile, 31'250, 3);
+  link.data = std::move(data);
+  return link;
+}
+
+constexpr kernel::Duration kSecondWord = 200 * kernel::kMillisecond;
+constexpr std::uint8_t kScheduler = 0x10;
+constexpr std::uint8_t kFirst = 0x12;
+constexpr std::uint8_t kSecond = 0x13;
+constexpr std::uint8_t kThird = 0x14;
+
+measure::Measurement measured(const LinkDescription& link) {
+  network::MeasurementSettings settings;
+  settings.signals = {{.frequency = measure::Frequency::read("0.3Hz").value()}};
+  settings.duration = 200 * kernel::kSecond;
+  return network::measure_network([&](std::uint64_t) { return make(link); }, settings);
+}
+
+void expect_all_served(const LinkDescription& link) {
+  const auto network = make(link);
+  const network::QuietRun run = network::run_quietly(*network, 10, 5);
+  ASSERT_TRUE(run.came_up);
+  EXPECT_EQ(run.cycles.size(), 10U);
+  EXPECT_GE(run.counts.sent, 9 * link.data.size());
+  EXPECT_EQ(run.counts.detected + run.counts.accepted_wrong() + run.counts.missed_outputs, 0U);
+  for (const kernel::Duration cycle : run.cycles) {
+    EXPECT_LE(std::chrono::abs(cycle - network->cycles().front().theory), network->cycles().front().jitter);
+  }
+  EXPECT_NE(measure::agreement(measured(link)), measure::Agreement::differs);
+}
+
+TEST(FfNetworkTest, ASchedulerPublishesItsOwnWords) {
+  expect_all_served(link_of(LinkProfile::foundation, {{kScheduler, kFirst, {}}}));
+  expect_all_served(
+      link_of(LinkProfile::foundation, {{kScheduler, kFirst, {}}, {kFirst, kScheduler, kSecondWord}}));
+  expect_all_served(
+      link_of(LinkProfile::foundation, {{kFirst, kScheduler, {}}, {kScheduler, kFirst, kSecondWord}}));
+}
+
+TEST(FfNetworkTest, WordsOfDifferentInstantsAreNoImage) {
+  expect_all_served(
+      link_of(LinkProfile::foundation, {{kFirst, kSecond, {}}, {kFirst, kSecond, kSecondWord}}));
+}
+
+TEST(IsaNetworkTest, AStationMaySendTwoWords) {
+  expect_all_served(link_of(LinkProfile::isa, {{kFirst, kSecond, {}}, {kFirst, kThird, kSecondWord}}));
+  expect_all_served(link_of(LinkProfile::isa, {{kFirst, kSecond, {}}, {kFirst, kSecond, kSecondWord}}));
+}
+
+// Receives nothing once, for so long that a token is lost.
+class MissesAToken final : public IsaDle {
+ public:
+  using IsaDle::IsaDle;
+  void receive(segment::PortIndex port, const line::Waveform& reception) override {
+    constexpr kernel::Time kFrom = kernel::kStart + 3 * kernel::kSecond - 10 * kernel::kMillisecond;
+    if (reception.start < kFrom || reception.start > kFrom + kSecondWord / 2)
+      IsaDle::receive(port, reception);
+  }
+};
+
+TEST(IsaNetworkTest, AWordThatMissedItsTokenGoesWithTheNext) {
+  const auto link = link_of(LinkProfile::isa, {{kFirst, kSecond, {}}, {kFirst, kThird, kSecondWord}});
+  IsaNetwork network(link, 1, {.make_device = given_at<IsaDevice, MissesAToken, IsaConfiguration>(1)});
+  const network::QuietRun run = network::run_quietly(network, 20, 5);
+  ASSERT_TRUE(run.came_up);
+  EXPECT_EQ(run.counts.missing, 1U);
+  EXPECT_EQ(run.counts.detected, 1U);
+  EXPECT_EQ(run.counts.accepted_wrong(), 0U);
 }
 
 std::string refusal_of(const std::string& text) {
