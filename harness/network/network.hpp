@@ -136,7 +136,8 @@ struct CopiedPath {
   std::size_t sink = 0;
   // Words on the same way are one image where they are sampled and shown together; this one is by itself.
   bool is_image_of_its_own = false;
-  PathTheory theory{};
+  std::optional<PathTheory> theory{};
+  std::string_view why_open{};  // where no closed form holds
 };
 
 // What a person calls the exchanges.

@@ -16,6 +16,7 @@
 #include "protocols/valve_bus/codec.hpp"
 #include "protocols/valve_bus/device.hpp"
 #include "protocols/valve_bus/network.hpp"
+#include "protocols/valve_bus/poll_cycle.hpp"
 #include "protocols/valve_bus/valve_block.hpp"
 
 // A valve bus that runs: the host, its PC, and the nodes along the cable, in a segment of its own. The PC
@@ -64,12 +65,6 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   void end() override;
 
  private:
-  // What the PC does in a cycle, one after the other.
-  struct Step {
-    std::size_t node = 0;  // index
-    bool is_write = false;
-    std::optional<std::size_t> copied_from{};  // of a write: whose limit switches
-  };
   // Notes when the line is driven.
   struct Driven final : segment::Tap {
     void on_wave(const line::Waveform& wave) override { last = wave.start; }
@@ -116,6 +111,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   void plan_steps();
   void find_signals();
   void find_cycle();
+  kernel::Duration begin_of(const PollStep& step) const;
   bool is_copied_to(unsigned address) const;
   std::size_t index_of(unsigned address) const;
   Seat* seat_of(std::uint8_t id);
@@ -129,7 +125,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   void wake();
   void give_up_lost(kernel::Time now);
   void ask_next(kernel::Time now);
-  bool may_ask(const Step& step) const;
+  bool may_ask(const PollStep& step) const;
   void close_later(Seat& seat, network::Outcome outcome);
   void close(std::size_t node, kernel::Time now);
   Rules rules_on_line() const;
@@ -150,8 +146,10 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   std::vector<network::Place> places_;
   std::vector<network::Signal> signals_;
   std::vector<network::CycleKind> cycles_;
-  std::vector<Step> steps_;
+  std::vector<PollStep> steps_;
+  PollCycle steady_cycle_;
   std::size_t next_step_ = 0;
+  bool is_held_back_ = false;  // the PC, by commands that wait in the host
   std::size_t pc_number_;
   std::deque<Closing> closings_;
   kernel::Time wakes_at_ = kernel::kNever;
