@@ -206,18 +206,29 @@ void LinkNetwork::start() {
   got_ = 0;
   std::fill(has_arrived_.begin(), has_arrived_.end(), false);
   is_on_ = true;
-  power_up(segment_.now());
-  for (std::size_t n = 0; n < sources_.size(); ++n) {
-    Source& source = sources_[n];
+  for (Source& source : sources_) {
     source.is_called = false;
     source.closes_at = source.sampled_at = kernel::kNever;
-    give(n, source.function ? source.function(segment_.now()) : source.word, segment_.now());
+  }
+  if (driven_until_ <= segment_.now()) return supply(segment_.now());
+  supplied_at_ = driven_until_ + octets(rules_, rules_.inter_pdu_delay_octets);
+  set_wake();
+}
+
+// What is on the line ends before: who comes up again at once would drive into it.
+void LinkNetwork::supply(Time now) {
+  supplied_at_ = kernel::kNever;
+  power_up(now);
+  for (std::size_t n = 0; n < sources_.size(); ++n) {
+    const Source& source = sources_[n];
+    give(n, source.function ? source.function(now) : source.word, now);
   }
   for (const Seat& seat : seats_) segment_.refresh(seat.number);
 }
 
 void LinkNetwork::stop() {
   is_on_ = false;
+  supplied_at_ = kernel::kNever;
   last_call_.reset();
   power_down(segment_.now());
   for (Source& source : sources_) {
@@ -306,6 +317,7 @@ Duration LinkNetwork::lead() const {
 // ---- the lower tester and the applications ----
 
 void LinkNetwork::on_wave(const line::Waveform& wave) {
+  driven_until_ = std::max(driven_until_, wave.end());
   for (const Arrived& arrived : tester_.receive(wave)) on_driven(arrived.octets, arrived.begin, arrived.end);
 }
 
@@ -339,7 +351,7 @@ void LinkNetwork::on_got(std::size_t signal, std::uint16_t word, Time when) {
 }
 
 void LinkNetwork::set_wake() {
-  wakes_at_ = kernel::kNever;
+  wakes_at_ = supplied_at_;
   for (const Source& source : sources_) {
     wakes_at_ =
         std::min({wakes_at_, source.sampled_at, source.is_called ? source.closes_at : kernel::kNever});
@@ -364,6 +376,7 @@ void LinkNetwork::close(std::size_t signal, Time now) {
 }
 
 void LinkNetwork::on_time(Time now) {
+  if (supplied_at_ <= now) supply(now);
   for (std::size_t n = 0; n < sources_.size(); ++n) {
     Source& source = sources_[n];
     if (source.is_called && source.closes_at <= now) close(n, now);

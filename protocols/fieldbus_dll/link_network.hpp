@@ -138,6 +138,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   void on_time(kernel::Time now) override;
   kernel::Time next_time() const override { return wakes_at_; }
   void on_wave(const line::Waveform& wave) override;
+  void supply(kernel::Time now);
   void set_wake();
   void close(std::size_t signal, kernel::Time now);
 
@@ -157,6 +158,8 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   bool has_tester_ = false;
   kernel::Time wakes_at_ = kernel::kNever;
   kernel::Time started_{};
+  kernel::Time driven_until_{};
+  kernel::Time supplied_at_ = kernel::kNever;  // a start that waits for the end of what is on the line
   bool is_on_ = false;
   std::optional<kernel::Time> last_call_{};  // since the last start
   std::size_t got_ = 0;                      // signals that have arrived since then

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/kernel/error.hpp"
+#include "harness/line/delimited_frame.hpp"
 #include "harness/measure/frequency.hpp"
 #include "harness/network/network_measurement.hpp"
 #include "harness/network/quiet_run.hpp"
@@ -222,6 +223,71 @@ TEST(IsaNetworkTest, AWordThatMissedItsTokenGoesWithTheNext) {
   EXPECT_EQ(run.counts.missing, 1U);
   EXPECT_EQ(run.counts.detected, 1U);
   EXPECT_EQ(run.counts.accepted_wrong(), 0U);
+}
+
+// Counts what comes to it and is no whole frame.
+template <typename Base>
+class CountsTorn final : public Base {
+ public:
+  template <typename Configuration>
+  CountsTorn(const Configuration& configuration, unsigned& torn) : Base(configuration), torn_(torn) {}
+  void receive(segment::PortIndex port, const line::Waveform& reception) override {
+    const auto frames = line::delimited_frames_in(reception, kBitRate);
+    if (frames.size() != 1 || frames[0].end != line::FrameEnd::whole) ++torn_;
+    Base::receive(port, reception);
+  }
+
+  static constexpr std::int64_t kBitRate = 31'250;
+
+ private:
+  unsigned& torn_;
+};
+
+// At instants that fall into frames of all kinds, and between them.
+void restart_often(LinkNetwork& network, bool pauses) {
+  constexpr int kRestarts = 100;
+  network.start();
+  for (int n = 0; n < kRestarts; ++n) {
+    network.segment().run_for(600 * kernel::kMillisecond + n * 1'037 * kernel::kMicrosecond);
+    if (pauses) {
+      network.stop();
+      network.segment().run_for(network.acceptance().pause_before_start);
+    }
+    network.start();
+  }
+  const kernel::Time end = network.segment().now() + network.bring_up_limit();
+  while (network.segment().now() < end && network.state() != network::State::exchanging)
+    network.segment().run_for(10 * kernel::kMillisecond);
+  EXPECT_EQ(network.state(), network::State::exchanging);
+}
+
+TEST(FfNetworkTest, AStartTearsNoFrame) {
+  for (const bool pauses : {false, true}) {
+    unsigned torn = 0;
+    FfNetwork network(LinkDescription::built_in(LinkProfile::foundation), 1,
+                      {.make_device = [&](std::size_t position,
+                                          const FfConfiguration& configuration) -> std::unique_ptr<FfDevice> {
+                        if (position != 1) return nullptr;
+                        return std::make_unique<CountsTorn<FfStation>>(configuration, torn);
+                      }});
+    restart_often(network, pauses);
+    EXPECT_EQ(torn, 0U) << pauses;
+  }
+}
+
+TEST(IsaNetworkTest, AStartTearsNoFrame) {
+  for (const bool pauses : {false, true}) {
+    unsigned torn = 0;
+    IsaNetwork network(
+        LinkDescription::built_in(LinkProfile::isa), 1,
+        {.make_device = [&](std::size_t position,
+                            const IsaConfiguration& configuration) -> std::unique_ptr<IsaDevice> {
+          if (position != 1) return nullptr;
+          return std::make_unique<CountsTorn<IsaDle>>(configuration, torn);
+        }});
+    restart_often(network, pauses);
+    EXPECT_EQ(torn, 0U) << pauses;
+  }
 }
 
 std::string refusal_of(const std::string& text) {
