@@ -134,7 +134,10 @@ struct CopiedPath {
   int to = 0;
   std::size_t source = 0;  // signals: that of the input, that of the output
   std::size_t sink = 0;
-  PathTheory theory{};
+  // Words on the same way are one image where they are sampled and shown together; this one is by itself.
+  bool is_image_of_its_own = false;
+  std::optional<PathTheory> theory{};
+  std::string_view why_open{};  // where no closed form holds
 };
 
 // What a person calls the exchanges.

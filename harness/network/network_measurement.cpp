@@ -102,10 +102,10 @@ class DelayRows {
 
 // Everything that a comparison of one path needs at hand. An edge waits for the sample, evenly up to a cycle.
 struct PathForms {
-  PathForms(const SignalRecord& record, const PathRecord& path)
+  PathForms(const SignalRecord& record, const PathTheory& theory)
       : wave(record.settings.wave),
-        cycle(path.path.theory.cycle),
-        least_delay(path.path.theory.least_delay),
+        cycle(theory.cycle),
+        least_delay(theory.least_delay),
         mean_delay(least_delay + Duration{std::llround(static_cast<double>(cycle.count()) / 2)}),
         delay_deviation(std::llround(static_cast<double>(cycle.count()) / std::sqrt(12.0))),
         high(wave.high()),
@@ -209,6 +209,21 @@ Comparison none_of(std::string quantity, std::uint64_t count) {
   return {std::move(quantity), "", 0, static_cast<double>(count), 1, "of one", 0, true};
 }
 
+std::vector<Comparison> compare_edges(const SignalRecord& record, const PathForms& theory,
+                                      const measure::EdgeSkew& skew) {
+  std::vector<Comparison> rows;
+  DelayRows("rising edges", theory.least_delay, theory.cycle, theory.high, theory.phases)
+      .append(rows, skew.rise_delays.in(Phase::quiet));
+  DelayRows("falling edges", theory.least_delay, theory.cycle, theory.low, theory.phases)
+      .append(rows, skew.fall_delays.in(Phase::quiet));
+  append_phase_lag(rows, theory, skew);
+  const bool is_disturbed = record.settings.disturb != nullptr;
+  append_widths(rows, theory, skew, is_disturbed);
+  append_duty(rows, theory, skew);
+  if (!is_disturbed) append_losses(rows, theory, skew);
+  return rows;
+}
+
 std::vector<measure::Curve> curves_of(const measure::EdgeSkew& skew) {
   const std::string unit(kMicrosecond);
   return {{"delay, rising edges", unit, kPerMicrosecond, skew.rise_delays},
@@ -231,6 +246,16 @@ measure::Series series_of(const SignalRecord& record, const PathRecord& path) {
   if (record.has_stopped) series.counts.push_back({"the bus stopped for good", 1, 0});
   series.trace = path.trace;
   return series;
+}
+
+// Paths without a closed form; said once.
+void leave_open(measure::Measurement& measurement, std::string_view why) {
+  measurement.is_complete = false;
+  const std::string value = fmt::format("delays and widths on copied paths: {}", why);
+  if (std::ranges::find(measurement.conditions, value, &measure::Condition::value) ==
+      measurement.conditions.end()) {
+    measurement.conditions.push_back({"not compared", value});
+  }
 }
 
 // The cycles of all signals together, a series for each kind.
@@ -300,20 +325,10 @@ std::vector<Comparison> compare_cycles(const CycleKind& kind, const Distribution
 }
 
 std::vector<Comparison> compare_path(const SignalRecord& record, const PathRecord& path) {
-  const PathForms theory(record, path);
-  const measure::EdgeSkew& skew = path.skew;
   std::vector<Comparison> rows;
-  DelayRows("rising edges", theory.least_delay, theory.cycle, theory.high, theory.phases)
-      .append(rows, skew.rise_delays.in(Phase::quiet));
-  DelayRows("falling edges", theory.least_delay, theory.cycle, theory.low, theory.phases)
-      .append(rows, skew.fall_delays.in(Phase::quiet));
-  append_phase_lag(rows, theory, skew);
-  const bool is_disturbed = record.settings.disturb != nullptr;
-  append_widths(rows, theory, skew, is_disturbed);
-  append_duty(rows, theory, skew);
-  if (is_disturbed) return rows;
-  append_losses(rows, theory, skew);
-  rows.push_back(none_of("words that the input never had", skew.foreign_words));
+  if (path.path.theory) rows = compare_edges(record, PathForms(record, *path.path.theory), path.skew);
+  if (record.settings.disturb != nullptr) return rows;
+  rows.push_back(none_of("words that the input never had", path.skew.foreign_words));
   rows.push_back(none_of("torn process images", record.torn_images));
   return rows;
 }
@@ -371,7 +386,10 @@ measure::Measurement measure_network(const MakeNetwork& make, const MeasurementS
           {"not compared", fmt::format("{}: the bus stopped for good meanwhile",
                                        measure::describe(settings.signals[n].frequency))});
     }
-    for (const PathRecord& path : record.paths) measurement.series.push_back(series_of(record, path));
+    for (const PathRecord& path : record.paths) {
+      measurement.series.push_back(series_of(record, path));
+      if (!path.path.theory) leave_open(measurement, path.path.why_open);
+    }
     if (settings.on_progress) settings.on_progress(n + 1);
   }
   // The cycles come first.

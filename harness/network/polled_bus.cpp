@@ -15,6 +15,7 @@ PolledBus::PolledBus(PolledBusSettings settings, std::uint64_t seed)
 segment::Port& PolledBus::add(std::string name, segment::Station& responder, kernel::Duration distance) {
   segment::MediumPort& place = line_.attach(name + "/in", segment_.attach(responder, name), 0, distance);
   add_place(place);
+  place.tap_driven(attendance_.expect(name));
   seats_.push_back({.station = &responder});
   signals_.push_back({.name = std::move(name), .bits = settings_.bits, .is_image = true});
   cycles_ = {{"poll cycle", cycle(), "so many slots as there are responders"}};
@@ -44,7 +45,9 @@ void PolledBus::stop() {
 
 State PolledBus::state() const {
   const kernel::Time now = segment_.now();
-  if (answered_) return now - *answered_ > 2 * cycle() ? State::stopped : State::exchanging;
+  if (answered_ && attendance_.is_complete()) {
+    return now - *answered_ > 2 * cycle() ? State::stopped : State::exchanging;
+  }
   const bool is_coming_up = next_ != kernel::kNever && now - started_ <= bring_up_limit();
   return is_coming_up ? State::coming_up : State::stopped;
 }

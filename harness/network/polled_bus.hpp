@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/line/character.hpp"
+#include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
@@ -20,7 +21,8 @@
 // writes a Network of its own.
 //
 // An exchange is a slot. It ends when the next one begins: served when the first answer that came in it was
-// right. Each responder has one signal, an input with an image in the master.
+// right. Each responder has one signal, an input with an image in the master; the bus has not come up before
+// each has driven the line.
 namespace fieldproof::network {
 
 struct PolledBusSettings {
@@ -42,6 +44,7 @@ class PolledBus : public Network, private segment::Station {
   void stop() override;
   State state() const override;
   kernel::Duration bring_up_limit() const override { return 4 * cycle(); }
+  std::string complaint() const override { return attendance_.complaint(); }
   std::span<const Place> places() const override { return places_; }
   std::span<const CycleKind> cycles() const override { return cycles_; }
   RecoveryLimit recovery_limit() const override;
@@ -81,6 +84,7 @@ class PolledBus : public Network, private segment::Station {
   PolledBusSettings settings_;
   segment::Segment segment_;
   segment::Medium line_;
+  Attendance attendance_;
   std::size_t number_;
   segment::MediumPort& master_;
   std::deque<Seat> seats_;

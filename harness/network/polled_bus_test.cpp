@@ -90,14 +90,22 @@ class Outcomes final : public ExchangeWatcher {
   std::array<int, 2> missing{};
 };
 
+TEST(PolledBus, DoesNotComeUpWithoutAResponder) {
+  Bus bus;
+  bus.answerers[1].is_mute = true;
+  EXPECT_FALSE(run_quietly(bus, 5, 1).came_up);
+  EXPECT_NE(bus.complaint().find("answerer@2 did not"), std::string::npos) << bus.complaint();
+}
+
 TEST(PolledBus, AResponderThatIsMuteIsMissedAndOneThatIsNotKeepsItRunning) {
   Bus bus;
   Outcomes outcomes;
   bus.watch(outcomes);
-  bus.answerers[1].is_mute = true;
   bus.start();
+  bus.segment().run_for(2 * kSlot);
+  bus.answerers[1].is_mute = true;
   bus.segment().run_for(20 * kSlot);
-  EXPECT_EQ(outcomes.served, (std::array{10, 0}));
+  EXPECT_EQ(outcomes.served, (std::array{11, 1}));
   EXPECT_EQ(outcomes.missing, (std::array{0, 10}));
   EXPECT_EQ(bus.state(), State::exchanging);
   bus.answerers[0].is_mute = true;

@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "harness/kernel/error.hpp"
@@ -36,6 +37,13 @@ std::vector<Duration> spread_phases(std::int64_t count, Duration cycle, kernel::
   }
   random.shuffle(phases);
   return phases;
+}
+
+// Stations, and which word between them where it is an image of its own.
+using Together = std::tuple<int, int, std::optional<std::size_t>>;
+
+Together together(const CopiedPath& path) {
+  return {path.from, path.to, path.is_image_of_its_own ? std::optional(path.sink) : std::nullopt};
 }
 
 // A recorder, and where its word stands among those that belong together.
@@ -75,15 +83,15 @@ class SignalRun final : private ExchangeWatcher {
                                       "name at least one copy",
                                       network_.name()));
     }
-    std::map<std::pair<int, int>, std::size_t> words;
-    for (const CopiedPath& path : paths) ++words[{path.from, path.to}];
-    std::map<std::pair<int, int>, measure::TornImageCounter*> images;
-    std::map<std::pair<int, int>, std::size_t> next_word;
-    for (const auto& [stations, count] : words) images[stations] = &images_.emplace_back(count);
+    std::map<Together, std::size_t> words;
+    for (const CopiedPath& path : paths) ++words[together(path)];
+    std::map<Together, measure::TornImageCounter*> images;
+    std::map<Together, std::size_t> next_word;
+    for (const auto& [image, count] : words) images[image] = &images_.emplace_back(count);
     for (const CopiedPath& path : paths) {
-      const std::pair stations{path.from, path.to};
+      const Together image = together(path);
       Watched& watched = watched_.emplace_back(
-          Watched{path, measure::TwoChannelRecorder(generator_), images[stations], next_word[stations]++});
+          Watched{path, measure::TwoChannelRecorder(generator_), images[image], next_word[image]++});
       by_sink_[path.sink] = &watched;
       network_.set_source_function(path.source,
                                    [&watched](Time when) { return watched.recorder.input(when); });
@@ -99,7 +107,7 @@ class SignalRun final : private ExchangeWatcher {
     const std::string complaint = network_.complaint();
     throw kernel::Error(
         kernel::ErrorKind::configuration,
-        fmt::format("network \"{}\": no data are exchanged within {} of power-up ({}); a network to measure "
+        fmt::format("network \"{}\" does not come up within {} of power-up ({}); a network to measure "
                     "must come up",
                     network_.name(), kernel::describe(network_.bring_up_limit()),
                     complaint.empty() ? "its controller reports nothing" : complaint));

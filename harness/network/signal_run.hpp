@@ -51,7 +51,7 @@ struct SignalRecord {
   std::int64_t trains = 0;
   std::vector<CycleRecord> cycles;
   std::vector<PathRecord> paths;
-  // Images of the words that are copied from one station to one other.
+  // Images of the words that are copied together from one station to one other.
   std::uint64_t images = 0;
   std::uint64_t torn_images = 0;
   std::uint64_t data_exchanges = 0;

@@ -37,6 +37,7 @@ bool FfLas::start(kernel::Time now) {
   const auto is_outside = [&](const FfScheduleItem& item) { return item.at >= schedule.macrocycle; };
   if (schedule.macrocycle == 0 || std::ranges::any_of(schedule.items, is_outside)) return false;
   if (!FfStation::start(now)) return false;
+  started_ = now;
   live_[node()] = true;
   if (configuration().begins_as_scheduler) take_link(now);
   return true;

@@ -62,7 +62,8 @@ class FfLas : public FfStation {
   void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override;
   void on_spdu(const FfDlpdu& dlpdu, kernel::Time now) override;
   virtual kernel::Duration claim_silence() const;
-  virtual kernel::Time silent_for_claim_since() const { return line().silent_since(); }
+  // Whether the line was silent before it had a supply it does not know.
+  virtual kernel::Time silent_for_claim_since() const { return std::max(line().silent_since(), started_); }
   virtual bool leaves_to(const FfDlpdu& dlpdu) const { return is_of_scheduler(dlpdu.type); }
   virtual bool is_from_awaited(const FfDlpdu& dlpdu) const;
   virtual bool is_too_slow(kernel::Duration rotation) const { return rotation >= rules().target_rotation; }
@@ -126,6 +127,7 @@ class FfLas : public FfStation {
   kernel::Time timer() const;
 
   FfLasState las_ = FfLasState::standby;
+  kernel::Time started_{};
   std::vector<bool> live_;
   std::vector<unsigned> misses_;
   std::uint8_t revision_ = 0;

@@ -138,6 +138,19 @@ TEST_F(FfLasTest, ClaimsALinkOnWhichNobodySpeaks) {
   EXPECT_EQ(master_users_[0]->take(), "claimed 17\n");
 }
 
+// What the line was like before it had a supply it does not know.
+TEST_F(FfLasTest, ClaimsAsLongAfterItsSupplyComesBack) {
+  FfLas& las = add_master(master(0x11, false));
+  las.stop(link_.now());
+  link_.refresh();
+  link_.run_to(1'000);
+  EXPECT_EQ(link_.heard(), "");
+  EXPECT_TRUE(las.start(link_.now()));
+  link_.refresh();
+  link_.run_to(1'200);
+  EXPECT_EQ(link_.heard().substr(0, 12), "@1138 CL 11\n");
+}
+
 TEST_F(FfLasTest, HandsTheLinkOver) {
   add_master(master(0x10, true));
   add_master(master(0x14, false));

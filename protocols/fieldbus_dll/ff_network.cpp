@@ -57,12 +57,13 @@ void FfNetwork::add(std::uint8_t node, std::size_t position, const std::string& 
   station.node = node;
   station.configuration = configuration_of(node, is_master);
   station.device = make ? make(position, station.configuration) : nullptr;
-  if (station.device == nullptr) {
+  const bool is_under_test = station.device != nullptr;
+  if (!is_under_test) {
     station.device = is_master ? std::make_unique<FfLas>(station.configuration)
                                : std::make_unique<FfStation>(station.configuration);
   }
   station.user = std::make_unique<User>(*this);
-  station.device->wire(seat(*station.device, node, name), *station.user);
+  station.device->wire(seat(*station.device, node, name, is_under_test), *station.user);
 }
 
 void FfNetwork::find_addresses() {
@@ -151,6 +152,10 @@ void FfNetwork::on_published(const User& user, const FfDlpdu& dlpdu, Time when) 
          is_word ? static_cast<std::uint16_t>(dlpdu.data[0] << 8 | dlpdu.data[1]) : std::uint16_t{0}, when);
 }
 
+bool FfNetwork::has_master(std::uint8_t node) const {
+  return std::ranges::find(description().masters, node) != description().masters.end();
+}
+
 void FfNetwork::on_driven(const Octets& octets, Time begin, Time end) {
   const auto dlpdu = ff_dlpdu_of(octets, rules_);
   if (!dlpdu) return;
@@ -163,23 +168,23 @@ void FfNetwork::on_driven(const Octets& octets, Time begin, Time end) {
   const FfAddress address = is_call ? dlpdu->destination : dlpdu->source;
   const auto found = signal_of_address_.find(address);
   if (found == signal_of_address_.end()) return;
-  if (is_call) {
-    on_called(found->second, begin, end);
-  } else {
-    on_sent(found->second);
-  }
+  const std::size_t signal = found->second;
+  const bool is_of_master = has_master(description().data[signal].from);
+  if (is_call || (is_of_master && !is_called(signal))) on_called(signal, begin, end);
+  if (!is_call) on_sent(signal);
 }
 
 Duration FfNetwork::answer_time() const {
   return response_delay(rules_.link) + frame_time(rules_.link, octets_on_line(word_dlpdu(), rules_));
 }
 
-Duration FfNetwork::least_delay() const {
+Duration FfNetwork::least_delay(std::size_t signal) const {
   const auto frame = [&](const FfDlpdu& dlpdu) {
     return frame_time(rules_.link, octets_on_line(dlpdu, rules_));
   };
-  return lead() + frame({.type = FfType::cd}) + octets(rules_.link, rules_.link.inter_pdu_delay_octets) +
-         frame(word_dlpdu());
+  const Duration call = frame({.type = FfType::cd}) + octets(rules_.link, rules_.link.inter_pdu_delay_octets);
+  const bool is_of_scheduler = description().data[signal].from == description().masters.front();
+  return lead() + (is_of_scheduler ? Duration{} : call) + frame(word_dlpdu());
 }
 
 }  // namespace fieldproof::fieldbus_dll

@@ -10,8 +10,8 @@
 #include "protocols/fieldbus_dll/link_network.hpp"
 
 // A running link of the profile FF-P: link masters, the first of which schedules, and devices. Words are
-// published buffers. Cycles: the macrocycle, and the rotation of the token (from a pass to the first device
-// to the next pass to it).
+// published buffers; the scheduler publishes its own without a call. Cycles: the macrocycle, and the rotation
+// of the token (from a pass to the first device to the next pass to it).
 namespace fieldproof::fieldbus_dll {
 
 // Who plays; null, or a null from them: the references. Positions count from 1, masters and devices each.
@@ -53,6 +53,7 @@ class FfNetwork final : public LinkNetwork {
   FfConfiguration configuration_of(std::uint8_t node, bool is_master) const;
   void on_published(const User& user, const FfDlpdu& dlpdu, kernel::Time when);
   void find_addresses();
+  bool has_master(std::uint8_t node) const;
   std::vector<network::CycleKind> kinds() const;
 
   void power_up(kernel::Time now) override;
@@ -60,7 +61,7 @@ class FfNetwork final : public LinkNetwork {
   void on_driven(const Octets& octets, kernel::Time begin, kernel::Time end) override;
   void give(std::size_t signal, std::uint16_t word, kernel::Time now) override;
   kernel::Duration answer_time() const override;
-  kernel::Duration least_delay() const override;
+  kernel::Duration least_delay(std::size_t signal) const override;
 
   FfRules rules_;
   std::deque<Station> stations_;

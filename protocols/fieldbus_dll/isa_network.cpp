@@ -26,9 +26,7 @@ IsaRules rules_of(const LinkDescription& link) {
 }  // namespace
 
 IsaNetwork::IsaNetwork(const LinkDescription& description, std::uint64_t seed, const IsaStations& stations)
-    : LinkNetwork(description, rules_of(description).link, seed),
-      rules_(rules_of(description)),
-      is_waiting_(description.data.size()) {
+    : LinkNetwork(description, rules_of(description).link, seed), rules_(rules_of(description)) {
   for (std::size_t n = 0; n < description.masters.size(); ++n) {
     add(description.masters[n], n + 1, fmt::format("isa_las@{}", n + 1), stations.make_master, true);
   }
@@ -54,12 +52,13 @@ void IsaNetwork::add(std::uint8_t node, std::size_t position, const std::string&
   Station& station = stations_.emplace_back();
   station.node = node;
   station.device = make ? make(position, configuration) : nullptr;
-  if (station.device == nullptr) {
+  const bool is_under_test = station.device != nullptr;
+  if (!is_under_test) {
     station.device =
         is_master ? std::make_unique<IsaLas>(configuration) : std::make_unique<IsaDle>(configuration);
   }
   station.user = std::make_unique<User>(*this, node);
-  station.device->wire(seat(*station.device, node, name), *station.user);
+  station.device->wire(seat(*station.device, node, name, is_under_test), *station.user);
 }
 
 // One DU, the return of the token, and the silences in front of both.
@@ -74,12 +73,19 @@ std::vector<network::CycleKind> IsaNetwork::kinds() const {
   const Duration jitter = octets(rules_.link, 2 * rules_.link.inter_pdu_delay_octets);
   return {{"macrocycle", description().macrocycle, "period of the schedule", false, jitter},
           {"token rotation", description().macrocycle,
-           "the schedule delegates the token to the first device once in a period", false, jitter}};
+           "the schedule delegates the token for the first word once in a period", false, jitter}};
 }
 
 std::vector<network::ProtectedFrame> IsaNetwork::protected_frames() const {
   return {{"DU", "CRC-16/PROFIBUS", static_cast<unsigned>(8 * octets_on_line(IsaType::du, kDataOctets)),
            description().macrocycle / static_cast<std::int64_t>(description().data.size())}};
+}
+
+std::string IsaNetwork::complaint() const {
+  const std::string absent = LinkNetwork::complaint();
+  return absent.empty()
+             ? absent
+             : absent + "; the schedule gives the token to who has a word to send, and to nobody else";
 }
 
 void IsaNetwork::power_up(Time now) {
@@ -88,21 +94,22 @@ void IsaNetwork::power_up(Time now) {
 
 void IsaNetwork::power_down(Time now) {
   for (Station& station : stations_) station.device->stop(now);
-  is_waiting_.assign(is_waiting_.size(), false);
+  waiting_.clear();
 }
 
 // The application submits one word at a time: what waits for a token that was lost goes first.
 void IsaNetwork::give(std::size_t signal, std::uint16_t word, Time now) {
-  if (is_waiting_[signal]) return;
+  if (std::ranges::find(waiting_, signal) != waiting_.end()) return;
   const DataDescription& item = description().data[signal];
   const auto station = std::ranges::find(stations_, item.from, &Station::node);
-  is_waiting_[signal] = station->device->submit(
+  const bool is_taken = station->device->submit(
       {.service = IsaService::unit_data,
        .priority = Priority::normal,
        .destination = item.to,
        .data = {static_cast<std::uint8_t>(signal), static_cast<std::uint8_t>(word >> 8),
                 static_cast<std::uint8_t>(word & 0xFF)}},
       now);
+  if (is_taken) waiting_.push_back(signal);
 }
 
 void IsaNetwork::on_data(std::uint8_t node, const IsaDlpdu& dlpdu, Time when) {
@@ -113,7 +120,17 @@ void IsaNetwork::on_data(std::uint8_t node, const IsaDlpdu& dlpdu, Time when) {
     if (is_word && dlpdu.data[0] != static_cast<std::uint8_t>(n)) continue;
     on_got(n, is_word ? static_cast<std::uint16_t>(dlpdu.data[1] << 8 | dlpdu.data[2]) : std::uint16_t{0},
            when);
+    if (std::ranges::find(data, node, &DataDescription::from) == data.end()) take_part(node);
   }
+}
+
+// What a station has submitted goes out in this order, one under each token: after a token that was lost, a
+// word goes with the next one, and not with that of its own place in the schedule.
+std::size_t IsaNetwork::called_by_token(std::uint8_t node) const {
+  const auto& data = description().data;
+  const auto waits = [&](std::size_t signal) { return data[signal].from == node; };
+  if (const auto first = std::ranges::find_if(waiting_, waits); first != waiting_.end()) return *first;
+  return static_cast<std::size_t>(std::ranges::find(data, node, &DataDescription::from) - data.begin());
 }
 
 void IsaNetwork::on_driven(const Octets& octets, Time begin, Time end) {
@@ -121,14 +138,14 @@ void IsaNetwork::on_driven(const Octets& octets, Time begin, Time end) {
   if (!dlpdu) return;
   const auto& data = description().data;
   if (dlpdu->type == IsaType::es) {
-    if (dlpdu->destination == data.front().from) begin_cycle(1, begin);
-    for (std::size_t n = 0; n < data.size(); ++n) {
-      if (data[n].from == dlpdu->destination) on_called(n, begin, end);
-    }
+    const std::size_t signal = called_by_token(dlpdu->destination);
+    if (signal == data.size()) return;
+    if (signal == 0) begin_cycle(1, begin);
+    on_called(signal, begin, end);
   } else if (dlpdu->type == IsaType::du && dlpdu->data.size() == kDataOctets &&
              dlpdu->data[0] < data.size()) {
     on_sent(dlpdu->data[0]);
-    is_waiting_[dlpdu->data[0]] = false;
+    std::erase(waiting_, std::size_t{dlpdu->data[0]});
   }
 }
 
@@ -136,7 +153,7 @@ Duration IsaNetwork::answer_time() const {
   return octets(rules_.link, token_octets() + rules_.supervision_margin_octets);
 }
 
-Duration IsaNetwork::least_delay() const {
+Duration IsaNetwork::least_delay(std::size_t) const {
   return lead() + frame_time(rules_.link, octets_on_line(IsaType::es)) +
          octets(rules_.link, rules_.link.inter_pdu_delay_octets) +
          frame_time(rules_.link, octets_on_line(IsaType::du, kDataOctets));

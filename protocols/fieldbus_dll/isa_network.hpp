@@ -3,14 +3,16 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "protocols/fieldbus_dll/isa_device.hpp"
 #include "protocols/fieldbus_dll/link_network.hpp"
 
 // A running link of the profile ISA-D: link masters, the first of which schedules, and devices. A word is
-// what a device sends (DU) under the token that the scheduler delegates to it for a duration (ES). Cycles:
-// the period of the schedule, and the rotation of the token (from a delegation to the first device that has
-// data to the next to it).
+// what a device sends (DU) under the token that the scheduler delegates to it for a duration (ES), which
+// calls for what waits there longest. Cycles: the period of the schedule, and the rotation of the token (from
+// a delegation for the first word to the next for it).
 namespace fieldproof::fieldbus_dll {
 
 // Who plays; null, or a null from them: the references. Positions count from 1, masters and devices each.
@@ -24,6 +26,8 @@ class IsaNetwork final : public LinkNetwork {
  public:
   IsaNetwork(const LinkDescription& description, std::uint64_t seed, const IsaStations& stations = {});
 
+  // A station without a token takes part by a word that it gets.
+  std::string complaint() const override;
   std::vector<network::ProtectedFrame> protected_frames() const override;
 
  private:
@@ -47,6 +51,7 @@ class IsaNetwork final : public LinkNetwork {
   void add(std::uint8_t node, std::size_t position, const std::string& name, const IsaStations::Make& make,
            bool is_master);
   void on_data(std::uint8_t node, const IsaDlpdu& dlpdu, kernel::Time when);
+  std::size_t called_by_token(std::uint8_t node) const;
   std::uint16_t token_octets() const;
   std::vector<network::CycleKind> kinds() const;
 
@@ -55,11 +60,11 @@ class IsaNetwork final : public LinkNetwork {
   void on_driven(const Octets& octets, kernel::Time begin, kernel::Time end) override;
   void give(std::size_t signal, std::uint16_t word, kernel::Time now) override;
   kernel::Duration answer_time() const override;
-  kernel::Duration least_delay() const override;
+  kernel::Duration least_delay(std::size_t signal) const override;
 
   IsaRules rules_;
   std::deque<Station> stations_;
-  std::vector<bool> is_waiting_;  // by signal: submitted, and not seen on the line yet
+  std::deque<std::size_t> waiting_;  // signals submitted and not seen on the line yet, the first goes first
 };
 
 }  // namespace fieldproof::fieldbus_dll

@@ -169,12 +169,14 @@ LinkNetwork::LinkNetwork(const LinkDescription& description, const LinkRules& ru
   has_arrived_.resize(signals_.size());
 }
 
-segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t node,
-                                       const std::string& name) {
+segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t node, const std::string& name,
+                                       bool is_under_test) {
   const std::size_t number = segment_.attach(station, name);
   segment::MediumPort& place = line_.attach(name + "/in", number, 0, {});
   place.sense_activity();
-  seats_.push_back({&station, node, number});
+  network::Attendance::Station* const attendance = is_under_test ? &attendance_.expect(name) : nullptr;
+  if (attendance != nullptr) place.tap_driven(*attendance);
+  seats_.push_back({&station, node, number, attendance});
   const bool is_exposed = !has(description_.not_exposed, node);
   // Levels are half bits.
   places_.push_back({.name = place.name(),
@@ -191,6 +193,11 @@ void LinkNetwork::refresh(std::uint8_t node) {
   if (seat != seats_.end()) segment_.refresh(seat->number);
 }
 
+void LinkNetwork::take_part(std::uint8_t node) {
+  const auto seat = std::ranges::find(seats_, node, &Seat::node);
+  if (seat != seats_.end() && seat->attendance != nullptr) seat->attendance->take_part();
+}
+
 void LinkNetwork::start() {
   if (!std::exchange(has_tester_, true)) tester_number_ = segment_.attach(*this, "tester");
   if (is_on_) power_down(segment_.now());
@@ -199,18 +206,29 @@ void LinkNetwork::start() {
   got_ = 0;
   std::fill(has_arrived_.begin(), has_arrived_.end(), false);
   is_on_ = true;
-  power_up(segment_.now());
-  for (std::size_t n = 0; n < sources_.size(); ++n) {
-    Source& source = sources_[n];
+  for (Source& source : sources_) {
     source.is_called = false;
     source.closes_at = source.sampled_at = kernel::kNever;
-    give(n, source.function ? source.function(segment_.now()) : source.word, segment_.now());
+  }
+  if (driven_until_ <= segment_.now()) return supply(segment_.now());
+  supplied_at_ = driven_until_ + octets(rules_, rules_.inter_pdu_delay_octets);
+  set_wake();
+}
+
+// What is on the line ends before: who comes up again at once would drive into it.
+void LinkNetwork::supply(Time now) {
+  supplied_at_ = kernel::kNever;
+  power_up(now);
+  for (std::size_t n = 0; n < sources_.size(); ++n) {
+    const Source& source = sources_[n];
+    give(n, source.function ? source.function(now) : source.word, now);
   }
   for (const Seat& seat : seats_) segment_.refresh(seat.number);
 }
 
 void LinkNetwork::stop() {
   is_on_ = false;
+  supplied_at_ = kernel::kNever;
   last_call_.reset();
   power_down(segment_.now());
   for (Source& source : sources_) {
@@ -223,7 +241,7 @@ void LinkNetwork::stop() {
 
 network::State LinkNetwork::state() const {
   const Time now = segment_.now();
-  if (got_ == sources_.size() && last_call_) {
+  if (got_ == sources_.size() && last_call_ && attendance_.is_complete()) {
     return now - *last_call_ > acceptance().silence_cycles * description_.macrocycle
                ? network::State::stopped
                : network::State::exchanging;
@@ -282,7 +300,8 @@ std::vector<network::CopiedPath> LinkNetwork::paths() const {
                      .to = item.to,
                      .source = n,
                      .sink = n,
-                     .theory = {description_.macrocycle, least_delay()}});
+                     .is_image_of_its_own = true,
+                     .theory = network::PathTheory{description_.macrocycle, least_delay(n)}});
   }
   return paths;
 }
@@ -298,6 +317,7 @@ Duration LinkNetwork::lead() const {
 // ---- the lower tester and the applications ----
 
 void LinkNetwork::on_wave(const line::Waveform& wave) {
+  driven_until_ = std::max(driven_until_, wave.end());
   for (const Arrived& arrived : tester_.receive(wave)) on_driven(arrived.octets, arrived.begin, arrived.end);
 }
 
@@ -331,7 +351,7 @@ void LinkNetwork::on_got(std::size_t signal, std::uint16_t word, Time when) {
 }
 
 void LinkNetwork::set_wake() {
-  wakes_at_ = kernel::kNever;
+  wakes_at_ = supplied_at_;
   for (const Source& source : sources_) {
     wakes_at_ =
         std::min({wakes_at_, source.sampled_at, source.is_called ? source.closes_at : kernel::kNever});
@@ -356,6 +376,7 @@ void LinkNetwork::close(std::size_t signal, Time now) {
 }
 
 void LinkNetwork::on_time(Time now) {
+  if (supplied_at_ <= now) supply(now);
   for (std::size_t n = 0; n < sources_.size(); ++n) {
     Source& source = sources_[n];
     if (source.is_called && source.closes_at <= now) close(n, now);

@@ -11,6 +11,7 @@
 
 #include "harness/config/document.hpp"
 #include "harness/kernel/random.hpp"
+#include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
@@ -58,8 +59,9 @@ std::optional<std::string> violation_of(const LinkDescription& link);
 kernel::Duration needed_by_item(const LinkDescription& link);
 
 // A link that runs. An exchange carries one word; it begins with what calls for it (CD, ES), as the lower
-// tester sees it on the line, and ends when its answer must be over. Served: the application of the
-// destination has got the word. Stopped: nobody was called for two macrocycles.
+// tester sees it on the line, or with a word that its source publishes uncalled, and ends when its answer
+// must be over. Served: the application of the destination has got the word. Stopped: nobody was called for
+// two macrocycles. It has not come up before each station under test has driven the line.
 class LinkNetwork : public network::Network, private segment::Station, private segment::Tap {
  public:
   const std::string& name() const override { return description_.name; }
@@ -68,6 +70,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   void stop() override;
   network::State state() const override;
   kernel::Duration bring_up_limit() const override;
+  std::string complaint() const override { return attendance_.complaint(); }
   std::span<const network::Place> places() const override { return places_; }
   std::span<const network::CycleKind> cycles() const override { return cycles_; }
   network::RecoveryLimit recovery_limit() const override;
@@ -86,11 +89,15 @@ class LinkNetwork : public network::Network, private segment::Station, private s
 
   const LinkDescription& description() const { return description_; }
   // A station at its place on the line; it must live as long as the network.
-  segment::MediumPort& seat(segment::Station& station, std::uint8_t node, const std::string& name);
+  segment::MediumPort& seat(segment::Station& station, std::uint8_t node, const std::string& name,
+                            bool is_under_test);
+  // A station that has nothing to drive has got what is for it.
+  void take_part(std::uint8_t node);
   void refresh(std::uint8_t node);
   void begin_cycle(std::size_t kind, kernel::Time when);
   // The word of this signal is called for by what ends then.
   void on_called(std::size_t signal, kernel::Time begin, kernel::Time end);
+  bool is_called(std::size_t signal) const { return sources_[signal].is_called; }
   // It has been sent; its destination has got it.
   void on_sent(std::size_t signal);
   void on_got(std::size_t signal, std::uint16_t word, kernel::Time when);
@@ -106,7 +113,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   // From the end of the call until the word must have arrived.
   virtual kernel::Duration answer_time() const = 0;
   // From the sample at the source to the application of the destination.
-  virtual kernel::Duration least_delay() const = 0;
+  virtual kernel::Duration least_delay(std::size_t signal) const = 0;
   // A sample is taken so long before the word is called for.
   kernel::Duration lead() const;
 
@@ -124,12 +131,14 @@ class LinkNetwork : public network::Network, private segment::Station, private s
     segment::Station* station;
     std::uint8_t node;
     std::size_t number;
+    network::Attendance::Station* attendance;  // null: a reference
   };
 
   void receive(segment::PortIndex, const line::Waveform&) override {}
   void on_time(kernel::Time now) override;
   kernel::Time next_time() const override { return wakes_at_; }
   void on_wave(const line::Waveform& wave) override;
+  void supply(kernel::Time now);
   void set_wake();
   void close(std::size_t signal, kernel::Time now);
 
@@ -139,6 +148,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   segment::Segment segment_;
   segment::Medium line_;
   LineEnd tester_;
+  network::Attendance attendance_;
   std::deque<Seat> seats_;
   std::vector<network::Place> places_;
   std::vector<network::Signal> signals_;
@@ -148,6 +158,8 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   bool has_tester_ = false;
   kernel::Time wakes_at_ = kernel::kNever;
   kernel::Time started_{};
+  kernel::Time driven_until_{};
+  kernel::Time supplied_at_ = kernel::kNever;  // a start that waits for the end of what is on the line
   bool is_on_ = false;
   std::optional<kernel::Time> last_call_{};  // since the last start
   std::size_t got_ = 0;                      // signals that have arrived since then

@@ -189,7 +189,7 @@ TEST(NetworkMeasurementTest, TheShortestCycleIsTheOneOfTheStructure) {
 TEST(NetworkMeasurementTest, AWrongTheoryDiffers) {
   const SignalRecord record = run_at(50);
   network::PathRecord path = record.paths.front();
-  path.path.theory.cycle += kPaperBestCycle / 20;
+  path.path.theory->cycle += kPaperBestCycle / 20;
   EXPECT_EQ(agreement(compare_path(record, path), 2), measure::Agreement::differs);
   network::CycleRecord cycle = record.cycles.front();
   cycle.kind.theory += kPaperBestCycle / 20;

@@ -211,14 +211,14 @@ std::vector<network::CopiedPath> RunningNetwork::paths() const {
   for (const CopyRule& rule : description_.copy) {
     const int from = position_of(rule.from);
     const int to = position_of(rule.to);
-    paths.push_back(
-        {.name =
-             fmt::format("{} word {} to {} word {}", rule.from, rule.input_word, rule.to, rule.output_word),
-         .from = from,
-         .to = to,
-         .source = 2 * std::size_t{ring_.first_word(from) + rule.input_word} + 1,
-         .sink = 2 * std::size_t{ring_.first_word(to) + rule.output_word},
-         .theory = {cycle_time_in_force(description_), path_delay(description_, from, to, latch_).min}});
+    paths.push_back({.name = fmt::format("{} word {} to {} word {}", rule.from, rule.input_word, rule.to,
+                                         rule.output_word),
+                     .from = from,
+                     .to = to,
+                     .source = 2 * std::size_t{ring_.first_word(from) + rule.input_word} + 1,
+                     .sink = 2 * std::size_t{ring_.first_word(to) + rule.output_word},
+                     .theory = network::PathTheory{cycle_time_in_force(description_),
+                                                   path_delay(description_, from, to, latch_).min}});
   }
   return paths;
 }

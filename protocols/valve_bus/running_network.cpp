@@ -21,6 +21,8 @@ using network::Outcome;
 constexpr std::size_t kCommandOfPc = 4;  // octets: ID, COMMAND, DATA0, DATA1
 // The PC gives the host so many commands in advance: never a pause between two, and words are fresh.
 constexpr std::size_t kCommandsAhead = 4;
+constexpr std::string_view kNotSteady =
+    "the cycles of this bus are not equally long; its host repeats writes between the commands of its PC";
 constexpr std::string_view kAfterRepeater = "it lies after a repeater, on a segment that is not in the clamp";
 
 std::unique_ptr<HostDevice> make_host(const RunningStations& stations,
@@ -49,6 +51,7 @@ RunningNetwork::RunningNetwork(const NetworkDescription& description, std::uint6
   description_.rules.bit_rate = dip_bit_rates()[description_.dip];
   segment::MediumPort& place = line_.attach("host/in", host_number_, 0, {});
   place.tap_driven(host_drives_);
+  place.tap_driven(attendance_.expect("host"));
   host_->wire(place, *this);
   places_.push_back({.name = place.name(),
                      .receiver = &place,
@@ -75,10 +78,12 @@ void RunningNetwork::add_node(const NodeDescription& node, const RunningStations
   seat.description = node;
   seat.way = distance_to(description_, position - 1);
   seat.device = stations.make_node ? stations.make_node(position, configuration) : nullptr;
-  if (seat.device == nullptr) seat.device = std::make_unique<Node>(configuration);
+  const bool is_under_test = seat.device != nullptr;
+  if (!is_under_test) seat.device = std::make_unique<Node>(configuration);
   seat.number = segment_.attach(*seat.device, fmt::format("node@{}", position));
   segment::MediumPort& place = line_.attach(fmt::format("node@{}/in", position), seat.number, 0, seat.way);
   place.tap_driven(node_drives_);
+  if (is_under_test) place.tap_driven(attendance_.expect(fmt::format("node@{}", position)));
   seat.device->wire(place, seat.block);
   const bool is_exposed = repeaters_before(description_.rules, position - 1) == 0;
   places_.push_back({.name = place.name(),
@@ -130,23 +135,26 @@ void RunningNetwork::plan_steps() {
   }
 }
 
-// Each write and each poll by its closed form. A host that refreshes writes between them takes longer: then
-// the form is for a cycle without, and is left open by what is measured.
+// A host that refreshes writes between the PC's commands takes longer: then the form is for a cycle without,
+// and is left open by what is measured.
 void RunningNetwork::find_cycle() {
   const Rules& rules = description_.rules;
-  Duration sum{};
-  for (const Step& step : steps_) {
-    sum += step.is_write ? reference_write_time(rules)
-                         : reference_poll_time(rules, seats_[step.node].way).total();
-  }
-  const bool is_refreshed = sum > rules.refresh && std::ranges::any_of(steps_, &Step::is_write);
+  std::vector<PolledNode> nodes;
+  for (const Seat& seat : seats_) nodes.push_back({seat.way, seat.is_written});
+  steady_cycle_ = poll_cycle(rules, steps_, nodes);
+  const bool is_refreshed =
+      steady_cycle_.longest >= rules.refresh && std::ranges::any_of(steps_, &PollStep::is_write);
+  if (is_refreshed) steady_cycle_.is_steady = false;
+  Duration time = steady_cycle_.is_steady ? steady_cycle_.time : steady_cycle_.longest;
   // Between any two commands a refresh may come.
-  if (is_refreshed) sum += static_cast<std::int64_t>(steps_.size()) * reference_write_time(rules);
+  if (is_refreshed)
+    time += static_cast<std::int64_t>(steps_.size()) * reference_write_time(rules, seats_.back().way);
   const Duration rounding = kernel::kNanosecond * static_cast<std::int64_t>(2 * steps_.size());
-  cycles_ = {{"poll cycle", sum,
-              is_refreshed ? "sum of the polls and writes, and a refresh in front of each of them"
-                           : "sum of the polls and writes of one cycle, each by its frames and silences",
-              is_refreshed, rounding}};
+  cycles_ = {{"poll cycle", time,
+              is_refreshed ? "the polls and writes of one cycle, and a refresh in front of each of them"
+                           : "the polls and writes of one cycle, each by its frames and silences, after what "
+                             "it waits for",
+              !steady_cycle_.is_steady, rounding}};
 }
 
 // ---- the installation ----
@@ -183,7 +191,7 @@ void RunningNetwork::stop() {
 
 network::State RunningNetwork::state() const {
   const Time now = segment_.now();
-  if (has_response_ && node_drives_.last) {
+  if (has_response_ && node_drives_.last && attendance_.is_complete()) {
     return now - *node_drives_.last > longest_silence() ? network::State::stopped
                                                         : network::State::exchanging;
   }
@@ -195,7 +203,8 @@ Duration RunningNetwork::longest_exchange() const {
   const Rules& rules = description_.rules;
   const PollTime poll = reference_poll_time(rules, seats_.back().way);
   const Duration attempt = poll.total() + response_time_out(rules) + poll.silence;
-  return reference_write_time(rules) * 2 + rules.read_attempts * attempt;
+  const Duration write = rules.answers_writes ? rules.read_attempts * attempt : reference_write_time(rules);
+  return 2 * write + rules.read_attempts * attempt;
 }
 
 // Until a read is answered that waits after others, each with a refresh in front of it.
@@ -235,7 +244,7 @@ std::vector<measure::Condition> RunningNetwork::conditions() const {
                    kernel::describe(poll.total()), kernel::describe(poll.command),
                    kernel::describe(poll.turnaround_time), kernel::describe(poll.response),
                    kernel::describe(poll.silence), kernel::describe(poll.way))},
-      {"write", kernel::describe(reference_write_time(rules))}};
+      {"write to the first node", kernel::describe(reference_write_time(rules, seats_.front().way))}};
 }
 
 std::vector<network::ProtectedFrame> RunningNetwork::protected_frames() const {
@@ -269,20 +278,29 @@ std::uint16_t RunningNetwork::image(std::size_t) const {
 }
 
 // From the sample, when the node is sure of the command, to the valves, when the other node is sure of the
-// write: the silences that make them sure are equally long.
+// write: both are equally long and end with equally long silences.
+Duration RunningNetwork::begin_of(const PollStep& step) const {
+  return steady_cycle_.begins.at(static_cast<std::size_t>(std::ranges::find(steps_, step) - steps_.begin()));
+}
+
 std::vector<network::CopiedPath> RunningNetwork::paths() const {
   std::vector<network::CopiedPath> paths;
   for (const CopyRule& rule : description_.copy) {
     const Seat& from = seats_[index_of(rule.from)];
     const Seat& to = seats_[index_of(rule.to)];
-    const PollTime poll = reference_poll_time(description_.rules);
+    std::optional<network::PathTheory> theory;
+    if (steady_cycle_.is_steady) {
+      const Duration read = begin_of({.node = index_of(rule.from)});
+      const Duration write = begin_of({index_of(rule.to), true, index_of(rule.from)});
+      theory = {steady_cycle_.time, write - read + to.way - from.way};
+    }
     paths.push_back({.name = fmt::format("limit switches of {} to valves of {}", rule.from, rule.to),
                      .from = static_cast<int>(index_of(rule.from)) + 1,
                      .to = static_cast<int>(index_of(rule.to)) + 1,
                      .source = from.first_signal + (from.is_written ? 1 : 0),
                      .sink = to.first_signal,
-                     .theory = {cycles_.front().theory, poll.turnaround_time + poll.response + poll.silence +
-                                                            poll.command + from.way + to.way}});
+                     .theory = theory,
+                     .why_open = theory ? "" : kNotSteady});
   }
   return paths;
 }
@@ -297,13 +315,15 @@ void RunningNetwork::end() {
 RunningNetwork::HostDrives::HostDrives(RunningNetwork& network)
     : network_(network), codec_(network.rules_on_line()), collector_(network.rules_on_line()) {}
 
-// A frame is known to have ended when the next one begins, or when somebody asks.
+// A frame is known to have ended when the next one begins, or when somebody asks. What the host sends has
+// left its FIFO: there is room for the PC.
 void RunningNetwork::HostDrives::on_wave(const line::Waveform& wave) {
   codec_.hear(wave, [this](const HeardCharacter& character) {
     if (character.start >= collector_.ends_at()) take_frame();
     collector_.add(character);
     if (collector_.frame().count == kCommandOctets) take_frame();
   });
+  if (network_.is_held_back_) network_.wake();
 }
 
 void RunningNetwork::HostDrives::take_frame() {
@@ -349,16 +369,12 @@ void RunningNetwork::on_error(const HostError& error, Time) {
   close_later(*seat, error.kind == HostErrorKind::no_response ? Outcome::missing : Outcome::rejected);
 }
 
-// A write in the exchange was sent before the read, so its time to reach the valves has begun a write
-// distance earlier than the response came.
 void RunningNetwork::close_later(Seat& seat, Outcome outcome) {
   seat.is_read = false;
   if (!seat.is_open || seat.is_closing) return wake();
   if (outcome != Outcome::served) seat.outcome = outcome;
   seat.is_closing = true;
-  const Rules& rules = description_.rules;
-  const Duration rest = seat.is_written ? actuation_limit(rules) - rules.write_distance : Duration{};
-  const Time at = segment_.now() + std::max(rest, Duration{});
+  const Time at = segment_.now() + (seat.is_written ? rest_of_exchange(description_.rules) : Duration{});
   const auto node = static_cast<std::size_t>(
       std::ranges::find_if(seats_, [&](const Seat& one) { return &one == &seat; }) - seats_.begin());
   const auto after = std::ranges::find_if(closings_, [at](const Closing& other) { return other.at > at; });
@@ -405,7 +421,7 @@ void RunningNetwork::give_up_lost(Time now) {
   }
 }
 
-bool RunningNetwork::may_ask(const Step& step) const {
+bool RunningNetwork::may_ask(const PollStep& step) const {
   const Seat& seat = seats_[step.node];
   if (seat.is_read || seat.is_closing) return false;
   return !step.copied_from || !seats_[*step.copied_from].is_read;
@@ -413,11 +429,13 @@ bool RunningNetwork::may_ask(const Step& step) const {
 
 void RunningNetwork::ask_next(Time now) {
   const std::size_t all_room = description_.rules.fifo_octets;
+  is_held_back_ = false;
   for (std::size_t n = 0; n < steps_.size(); ++n) {
     const std::size_t room = host_->fifo_room();
     const std::size_t waiting = all_room - std::min(all_room, room);
-    if (room < kCommandOfPc || waiting >= kCommandsAhead * kCommandOfPc) break;
-    const Step& step = steps_[next_step_];
+    is_held_back_ = room < kCommandOfPc || waiting >= kCommandsAhead * kCommandOfPc;
+    if (is_held_back_) break;
+    const PollStep& step = steps_[next_step_];
     if (!may_ask(step)) break;
     Seat& seat = seats_[step.node];
     if (step.copied_from && !seat.is_given) seat.valves = seats_[*step.copied_from].switches;

@@ -5,15 +5,18 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/kernel/random.hpp"
+#include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/valve_bus/codec.hpp"
 #include "protocols/valve_bus/device.hpp"
 #include "protocols/valve_bus/network.hpp"
+#include "protocols/valve_bus/poll_cycle.hpp"
 #include "protocols/valve_bus/valve_block.hpp"
 
 // A valve bus that runs: the host, its PC, and the nodes along the cable, in a segment of its own. The PC
@@ -22,7 +25,8 @@
 //
 // An exchange is the poll of one node, from its first command to the response; it ends when the response has
 // been reported to the PC and a write in it must have reached the valves. Whether data are exchanged at all
-// is decided on the line: a node must have driven it, lately, besides what the host reports.
+// is decided on the line: a node must have driven it, lately, besides what the host reports, and each station
+// under test once.
 //
 // Signals: of each node its valves, where the PC writes them, then its limit switches. Exposed are the host
 // and the nodes on its segment; what lies after a repeater has a segment of its own.
@@ -45,6 +49,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   void stop() override;
   network::State state() const override;
   kernel::Duration bring_up_limit() const override;
+  std::string complaint() const override { return attendance_.complaint(); }
   std::span<const network::Place> places() const override { return places_; }
   std::span<const network::CycleKind> cycles() const override { return cycles_; }
   network::RecoveryLimit recovery_limit() const override;
@@ -60,12 +65,6 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   void end() override;
 
  private:
-  // What the PC does in a cycle, one after the other.
-  struct Step {
-    std::size_t node = 0;  // index
-    bool is_write = false;
-    std::optional<std::size_t> copied_from{};  // of a write: whose limit switches
-  };
   // Notes when the line is driven.
   struct Driven final : segment::Tap {
     void on_wave(const line::Waveform& wave) override { last = wave.start; }
@@ -112,6 +111,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   void plan_steps();
   void find_signals();
   void find_cycle();
+  kernel::Duration begin_of(const PollStep& step) const;
   bool is_copied_to(unsigned address) const;
   std::size_t index_of(unsigned address) const;
   Seat* seat_of(std::uint8_t id);
@@ -125,7 +125,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   void wake();
   void give_up_lost(kernel::Time now);
   void ask_next(kernel::Time now);
-  bool may_ask(const Step& step) const;
+  bool may_ask(const PollStep& step) const;
   void close_later(Seat& seat, network::Outcome outcome);
   void close(std::size_t node, kernel::Time now);
   Rules rules_on_line() const;
@@ -137,6 +137,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   kernel::Random random_;
   segment::Segment segment_;
   segment::Medium line_;
+  network::Attendance attendance_;  // of those under test
   std::unique_ptr<HostDevice> host_;
   std::size_t host_number_;
   HostDrives host_drives_;
@@ -145,8 +146,10 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   std::vector<network::Place> places_;
   std::vector<network::Signal> signals_;
   std::vector<network::CycleKind> cycles_;
-  std::vector<Step> steps_;
+  std::vector<PollStep> steps_;
+  PollCycle steady_cycle_;
   std::size_t next_step_ = 0;
+  bool is_held_back_ = false;  // the PC, by commands that wait in the host
   std::size_t pc_number_;
   std::deque<Closing> closings_;
   kernel::Time wakes_at_ = kernel::kNever;

@@ -16,6 +16,16 @@ struct NeverAnswers final : Node {
   using Node::Node;
   void transmit(std::span<const std::uint8_t>, kernel::Time) override {}
 };
+class AnswersOnce final : public Node {
+ public:
+  using Node::Node;
+  void transmit(std::span<const std::uint8_t> octets, kernel::Time at) override {
+    if (!std::exchange(has_answered_, true)) Node::transmit(octets, at);
+  }
+
+ private:
+  bool has_answered_ = false;
+};
 struct SwapsBoards final : Node {
   using Node::Node;
   std::uint16_t valves_of(const Command& command) const override {
@@ -32,8 +42,14 @@ RunningStations at(std::size_t wanted) {
   }};
 }
 
-TEST(ValveBusRunningNetwork, ANodeThatNeverAnswersIsMissedAfterItsRetries) {
+TEST(ValveBusRunningNetwork, DoesNotComeUpWithANodeThatNeverAnswers) {
   RunningNetwork network(NetworkDescription::even(0, 4, 100), 1, at<NeverAnswers>(3));
+  EXPECT_FALSE(network::run_quietly(network, 10, 1).came_up);
+  EXPECT_NE(network.complaint().find("node@3 did not"), std::string::npos) << network.complaint();
+}
+
+TEST(ValveBusRunningNetwork, ANodeThatAnswersNoMoreIsMissedAfterItsRetries) {
+  RunningNetwork network(NetworkDescription::even(0, 4, 100), 1, at<AnswersOnce>(3));
   const network::QuietRun run = network::run_quietly(network, 10, 1);
   ASSERT_TRUE(run.came_up);
   EXPECT_GE(run.counts.missing, 9U);

@@ -28,7 +28,8 @@ PollTime reference_poll_time(const Rules& rules, kernel::Duration distance) {
   return time;
 }
 
-kernel::Duration reference_write_time(const Rules& rules) {
+kernel::Duration reference_write_time(const Rules& rules, kernel::Duration distance) {
+  if (rules.answers_writes) return reference_poll_time(rules, distance).total();
   return half_characters(rules, 2 * kCommandOctets) + delimiter(rules) + rules.write_distance +
          bits(rules, kDriverOnBits);
 }

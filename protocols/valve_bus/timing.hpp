@@ -25,8 +25,9 @@ PollTime least_poll_time(const Rules& rules, kernel::Duration turnaround_time,
 // one character later, and its driver comes on in front of the start bit.
 PollTime reference_poll_time(const Rules& rules, kernel::Duration distance = {});
 
-// From the first start bit of a write to that of what follows it.
-kernel::Duration reference_write_time(const Rules& rules);
+// From the first start bit of a write to that of what follows it: a rest where nobody answers it, else as of
+// a poll.
+kernel::Duration reference_write_time(const Rules& rules, kernel::Duration distance = {});
 
 // Where the node number `node` (from 0) of `nodes` lies on a cable of so many metres, spread evenly, as the
 // time from the host to it. After each 30 nodes (31 on the segment of the host) there is a repeater: 32 unit
