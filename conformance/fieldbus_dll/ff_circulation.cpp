@@ -269,7 +269,7 @@ std::vector<FfCase> ff_circulation_cases() {
                              {"rotation_counted_twice", "priority_not_lowered"}},
                             {step}),
                {{},
-                {FfStep{"the nodes return their tokens at once",
+                {FfStep{"the nodes return their tokens at once; V(TTRT) is 1.9 times the shortest rotation",
                         "tokens urgent, normal, time-available, time-available",
                         [](FfScene& scene) {
                           expect_priorities(scene.judge, circulations(scene.bench, 6, {}),
@@ -297,7 +297,8 @@ std::vector<FfCase> ff_circulation_cases() {
                        ff_paper("ATRT not below TTRT"),
                        {{"steps_back_to_the_extreme", "priority_not_raised"}}, {step}),
           {{},
-           {FfStep{"the nodes return their tokens at once", "tokens urgent, normal, time-available",
+           {FfStep{"the nodes return their tokens at once, which is faster than V(TTRT)",
+                   "tokens urgent, normal, time-available",
                    [](FfScene& scene) {
                      expect_priorities(scene.judge, circulations(scene.bench, 5, {}),
                                        {urgent, normal, time_available}, "priority_not_lowered");

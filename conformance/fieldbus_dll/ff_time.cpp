@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include "conformance/fieldbus_dll/ff_cases.hpp"
-#include "conformance/fieldbus_dll/ff_expect.hpp"
+#include "conformance/fieldbus_dll/ff_scene.hpp"
 
 // Link time: TD and CT.
 namespace fieldproof::conformance {
@@ -33,87 +32,93 @@ void expect_time_goes_on(CaseJudge& judge, const DrivenDlpdu& before, const Driv
       });
 }
 
-void time_is_distributed(FfBench& bench, CaseJudge& judge) {
-  const kernel::Duration most = bench.rules().time_distribution_period * 95 / 100;
+void expect_time_distributed(FfScene& scene) {
+  const kernel::Duration most = scene.bench.rules().time_distribution_period * 95 / 100;
   std::optional<DrivenDlpdu> last;
   kernel::Duration longest{};
-  const auto all =
-      bench.serve(kernel::kStart + bench.volume(8, 200) * bench.rules().time_distribution_period);
-  for (const DrivenDlpdu& one : all) {
-    if (!is_of(one, bench.rules().codes.td)) continue;
+  for (const DrivenDlpdu& one : scene.driven) {
+    if (!is_of(one, scene.bench.rules().codes.td)) continue;
     if (last) {
       longest = std::max(longest, one.begin - last->begin);
-      judge.expect(one.begin - last->begin <= most + kLinkRounding, "time_told_late", [&] {
+      scene.judge.expect(one.begin - last->begin <= most + kLinkRounding, "time_told_late", [&] {
         return Mismatch{{fmt::format("a TD within {}: 95 % of V(TDP)", kernel::describe(most))},
                         kernel::describe(one.begin - last->begin),
                         one.begin};
       });
-      expect_time_goes_on(judge, *last, one);
+      expect_time_goes_on(scene.judge, *last, one);
     }
     last = one;
   }
-  judge.expect(last.has_value() && bench.now() - last->begin <= most, "time_not_told", "TDs to the end",
-               "none");
-  judge.measure("longest time without a TD", "ms",
-                static_cast<double>(longest / kernel::kMicrosecond) * 1e-3);
+  scene.judge.expect(last.has_value() && scene.bench.now() - last->begin <= most, "time_not_told",
+                     "TDs to the end", "none");
+  scene.judge.measure("longest time without a TD", "ms",
+                      static_cast<double>(longest / kernel::kMicrosecond) * 1e-3);
 }
 
-void who_asks_is_told(FfBench& bench, CaseJudge& judge) {
-  const auto& codes = bench.rules().codes;
-  std::optional<DrivenDlpdu> before;
-  int asked = 0;
-  for (int n = 0; n < bench.volume(200, 2'000) && asked < bench.volume(3, 30); ++n) {
-    const auto one = bench.next(bench.now() + bench.octets(400));
-    judge.expect(one.has_value(), "no_token", "a PT for 11", "silence");
-    if (is_of(*one, codes.td)) before = *one;
-    if (!is_pt(bench, *one) || !before) {
-      bench.answer_one(*one);
-      continue;
-    }
-    // The holder asks, and returns the token when it knows.
-    const kernel::Time end = bench.send_at(one->end + bench.least_gap(), {codes.ct, 0x11});
-    bench.run_until(end);
-    const DrivenDlpdu td = expect_next(bench, judge, "time_not_told", "a TD");
-    judge.expect(is_of(td, codes.td), "time_not_told", "a TD", td.text());
-    expect_begins(judge, td, end + bench.least_gap(), "answers_too_early", end + bench.response_delay(),
-                  "answers_too_late");
-    expect_time_goes_on(judge, *before, td);
-    bench.run_until(bench.send_at(td.end + bench.least_gap(), {codes.rt}));
-    ++asked;
+// `before` is the last TD, `answer` the PT.
+void serve_until_token(FfScene& scene) {
+  FfBench& bench = scene.bench;
+  for (int n = 0; n < 200; ++n) {
+    scene.answer =
+        expect_next(bench, scene.judge, bench.now() + bench.octets(400), "no_token", "a PT for 11");
+    if (is_of(scene.answer, bench.rules().codes.td)) scene.before = scene.answer;
+    if (is_pt(bench, scene.answer) && !scene.before.octets.empty()) return;
+    bench.answer_one(scene.answer);
   }
-  judge.expect(asked > 0, "no_token", "a PT for 11", "none");
+  scene.judge.fail("no_token", {{"a PT for 11"}, "none"});
 }
 
 }  // namespace
 
 std::vector<FfCase> ff_time_cases() {
+  using namespace ff_chart;
   using link_sources::memory;
   using link_sources::own;
   using link_sources::vendors;
   const PartialSource time{own("link time in 1/32 ms at the end of a TD"), {"time_wrong"}};
   return {
-      {{.id = "fieldbus_dll/ff_las/time/is_distributed",
-        .purpose = "FF-27",
-        .requirement = "Link time is sent within 95 % of V(TDP).",
-        .reference = vendors("V(TDP)"),
-        .details = {time},
-        .stimulus = "200 times V(TDP) with tokens and CDs.",
-        .expected = "TDs at most 95 % of V(TDP) apart, which agree.",
-        .tags = {"must", "timing"},
-        .catches = {{"time_told_at_full_period", "time_told_late"}, {"time_at_half_speed", "time_wrong"}}},
-       time_is_distributed,
-       {.change = often}},
-      {{.id = "fieldbus_dll/ff_las/time/who_asks_is_told",
-        .purpose = "FF-28",
-        .requirement = "A CT is answered by a TD within V(MRD) x V(ST).",
-        .reference = memory("CT and TD"),
-        .details = {time},
-        .stimulus = "CTs of a node that holds the token.",
-        .expected = "A TD each.",
-        .tags = {"must", "timing"},
-        .catches = {{"ct_ignored", "time_not_told"}}},
-       who_asks_is_told,
-       {.change = often}},
+      on_chart(
+          must_in_time("fieldbus_dll/ff_las/time/is_distributed", "FF-27",
+                       "Link time is sent within 95 % of V(TDP).", vendors("V(TDP)"),
+                       {{"time_told_at_full_period", "time_told_late"}, {"time_at_half_speed", "time_wrong"}},
+                       {time}),
+          {{},
+           {serve({12'500, 312'500}),
+            expected<FfScene>("TDs at most 95 % of V(TDP) apart, 200 times V(TDP) long, which agree",
+                              expect_time_distributed)}},
+          {.change = often}),
+      on_chart(
+          must_in_time("fieldbus_dll/ff_las/time/who_asks_is_told", "FF-28",
+                       "A CT is answered by a TD within V(MRD) x V(ST).", memory("CT and TD"),
+                       {{"ct_ignored", "time_not_told"}}, {time}),
+          {{},
+           {repeat({3, 30}, {stimulus<FfScene>(
+                                 "all tokens are returned at once until there was a TD, and 11 has the token",
+                                 serve_until_token),
+                             stimulus<FfScene>("11 asks by CT",
+                                               [](FfScene& scene) {
+                                                 scene.sent = scene.bench.send_at(
+                                                     scene.answer.end + scene.bench.least_gap(),
+                                                     {scene.bench.rules().codes.ct, 0x11});
+                                                 scene.bench.run_until(scene.sent);
+                                               }),
+                             answer<FfScene>(
+                                 "a TD", "time_not_told",
+                                 [](const FfScene& scene, const DrivenDlpdu& one) {
+                                   return is_of(one, scene.bench.rules().codes.td);
+                                 },
+                                 "time_not_told"),
+                             expected<FfScene>("it agrees with the TD before, to a tick",
+                                               [](FfScene& scene) {
+                                                 expect_time_goes_on(scene.judge, scene.before, scene.answer);
+                                               }),
+                             stimulus<FfScene>("11 returns the token",
+                                               [](FfScene& scene) {
+                                                 scene.bench.run_until(scene.bench.send_at(
+                                                     scene.answer.end + scene.bench.least_gap(),
+                                                     {scene.bench.rules().codes.rt}));
+                                               })})}},
+          {.change = often}),
   };
 }
 

@@ -138,7 +138,7 @@ std::vector<FfCase> ff_token_cases() {
                 {"exact_fit_not_sent", "sends_what_does_not_fit"}}}),
           {{},
            {submit({normal}, 8), pt(normal, 500), used({1}, {"frames_missing", "sent_twice"}),
-            expected<FfScene>("the time until it begins is measured", measure_latency),
+            stimulus<FfScene>("the time until it begins is measured", measure_latency),
             repeat({3, 30},
                    {submit({normal}, 20, 119),
                     FfStep{"a PT for an octet less than a DT1 with it needs, then one for exactly that",

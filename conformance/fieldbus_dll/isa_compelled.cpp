@@ -18,7 +18,7 @@ IsaStep works_on_reply() {
 // Octet durations after the end of V(FD).
 IsaStep until_fd(std::int64_t more) {
   return stimulus<IsaScene>(
-      fmt::format("{} octet durations pass, V(FD) and {}", 24 + more, more), [more](IsaScene& scene) {
+      fmt::format("{} octet durations pass; V(FD) is 24", 24 + more), [more](IsaScene& scene) {
         scene.bench.run_until(scene.sent + scene.bench.reply_forming() + scene.bench.octets(more));
       });
 }

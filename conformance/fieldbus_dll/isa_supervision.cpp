@@ -63,14 +63,18 @@ IsaStep silent_until(const std::string& why, const std::string& reason, Instant 
 
 std::vector<IsaCase> isa_supervision_cases() {
   using namespace isa_chart;
-  const IsaStep first = delegated("the first token of the schedule");
+  const auto first = [](const std::string& token) {
+    return delegated("an " + token + ", the next token due 10 octet durations later");
+  };
   const auto one_slot = [](const IsaScene& scene) { return scene.bench.slot(); };
-  const Chart<IsaScene> silent_holder{
-      {},
-      {first,
-       second(
-           "the next token within V(ST) after V(RR), not before",
-           [](const IsaScene& scene) { return scene.answer.end + scene.bench.reply_wait(); }, one_slot)}};
+  const auto silent_holder = [&](const std::string& token) {
+    return Chart<IsaScene>{
+        {},
+        {first(token),
+         second(
+             "the next token within V(ST) after V(RR), not before",
+             [](const IsaScene& scene) { return scene.answer.end + scene.bench.reply_wait(); }, one_slot)}};
+  };
   const IsaStep holder_sends = stimulus<IsaScene>("its holder sends a DU of 6 octets", [](IsaScene& scene) {
     scene.reply(du_of_holder(scene.bench, 6));
   });
@@ -89,21 +93,22 @@ std::vector<IsaCase> isa_supervision_cases() {
                        isa_paper("duration guarded on both sides"),
                        {{"reclaims_by_uc_only", "reclaimed_late"}, {"reclaims_early", "reclaimed_early"}},
                        {times}),
-          silent_holder, {.schedule = two_items(IsaType::es, 500)}),
+          silent_holder("ES for 500 octet durations, whose holder says nothing"),
+          {.schedule = two_items(IsaType::es, 500)}),
       on_chart(
           must_in_time("fieldbus_dll/isa_las/supervision/a_single_frame_that_does_not_come", "ISA-31",
                        "A token for one frame whose holder says nothing is taken back when V(RR) is over.",
                        own("V(RR) supervises an ET, too"),
                        {{"single_token_for_ever", "not_reclaimed"}, {"reclaims_early", "reclaimed_early"}},
                        {times}),
-          silent_holder, {.schedule = two_items(IsaType::et)}),
+          silent_holder("ET, whose holder says nothing"), {.schedule = two_items(IsaType::et)}),
       on_chart(
           must_in_time("fieldbus_dll/isa_las/supervision/who_talks_too_long_is_not_talked_into", "ISA-32",
                        "A holder that is still sending when its duration is over is not disturbed.",
                        own("VC(UC) that runs out on a busy line"),
                        {{"reclaims_into_holder", "talks_into_holder"}}),
           {{},
-           {first,
+           {first("ES for 40 octet durations"),
             stimulus<IsaScene>("its holder sends a frame of 108 octets",
                                [](IsaScene& scene) {
                                  scene.sent = scene.bench.send_at(scene.answer.end + scene.bench.least_gap(),
@@ -120,7 +125,7 @@ std::vector<IsaCase> isa_supervision_cases() {
                              {"supervises_long", "reclaimed_late"}},
                             {times}),
                {{},
-                {first, holder_sends,
+                {first("ES for 100 octet durations"), holder_sends,
                  second(
                      "the next token within an octet after VC(UC), 100 octets and V(ST), not before",
                      [](const IsaScene& scene) {
@@ -133,7 +138,7 @@ std::vector<IsaCase> isa_supervision_cases() {
                "Only the holder can return a token.", own("EE of another"),
                {{"end_of_anybody_taken", "end_of_other_taken"}}),
           {{},
-           {first, holder_sends,
+           {first("ES for 200 octet durations"), holder_sends,
             stimulus<IsaScene>("an EE of a third station",
                                [](IsaScene& scene) {
                                  scene.bench.send_at(scene.sent + scene.bench.least_gap(),
@@ -150,7 +155,7 @@ std::vector<IsaCase> isa_supervision_cases() {
                        own("a CD is a frame, its reply is none of the holder's"),
                        {{"forgets_reply_wait", "talks_into_token"}}),
           {{},
-           {first,
+           {first("ET"),
             stimulus<IsaScene>("its holder compels 22, which is silent",
                                [](IsaScene& scene) {
                                  scene.reply(

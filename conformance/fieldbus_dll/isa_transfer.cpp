@@ -195,9 +195,9 @@ std::vector<IsaCase> isa_transfer_cases() {
                     {{"never_yields", "two_schedulers"}, {"always_yields", "left_to_higher"}}),
                {{},
                 {delegated("the token of the schedule"), returned, wait(40),
-                 et_of(kHeir, "an ET from a higher address"),
+                 et_of(kHeir, "an ET from a higher address, 11"),
                  expected<IsaScene>("the schedule goes on", expect_kept), returned, wait(40),
-                 et_of(kLower, "an ET from a lower address"),
+                 et_of(kLower, "an ET from a lower address, 0F"),
                  no_scheduler("one with a lower address is the scheduler")}},
                {.schedule = periodic()}),
   };

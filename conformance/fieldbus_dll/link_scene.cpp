@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace fieldproof::conformance {
 
 const DrivenDlpdu& LinkScene::expect_answer(const std::string& what, std::string_view reason) {
@@ -58,11 +60,15 @@ namespace link_chart {
 using Priority = LinkScene::Priority;
 
 LinkStep submit(const std::vector<Priority>& priorities, std::size_t least, std::size_t most) {
-  std::vector<std::string_view> names;
-  for (const Priority one : priorities) names.push_back(fieldbus_dll::text_of(one));
+  std::vector<std::string> kinds;
+  for (auto one = priorities.begin(); one != priorities.end();) {
+    const auto other = std::find_if(one, priorities.end(), [&](Priority next) { return next != *one; });
+    kinds.push_back(fmt::format("{} {}", other - one, fieldbus_dll::text_of(*one)));
+    one = other;
+  }
   const std::string size = most > least ? fmt::format("{} to {}", least, most) : fmt::format("{}", least);
   return stimulus<LinkScene>(
-      fmt::format("the user submits data: {}, {} octets each", fmt::join(names, ", "), size),
+      fmt::format("the user submits DLSDUs of {} octets: {}", size, fmt::join(kinds, ", ")),
       [priorities, least, most](LinkScene& scene) {
         for (const Priority one : priorities) {
           const std::size_t more = most > least ? scene.link.random().below(most - least + 1) : 0;
@@ -83,7 +89,7 @@ LinkStep used(std::vector<std::size_t> numbers, LinkScene::Reasons reasons) {
   if (!numbers.empty())
     text = numbers[0] == 0 ? "the DLSDU submitted last"
                            : fmt::format("DLSDU {} of the user", fmt::join(numbers, ", "));
-  return expected<LinkScene>(text + ", and the token returned once",
+  return expected<LinkScene>(text + ", and the token returned once, each within V(MRD) x V(ST)",
                              [numbers = std::move(numbers), reasons = std::move(reasons)](LinkScene& scene) {
                                std::vector<Octets> data;
                                for (const std::size_t n : numbers)
