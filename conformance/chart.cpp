@@ -1,5 +1,6 @@
 #include "conformance/chart.hpp"
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
