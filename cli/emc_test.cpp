@@ -117,7 +117,7 @@ TEST_F(EmcVerb, AChannelOnWhichNothingComesThroughShowsNothing) {
 TEST_F(EmcVerb, ANodeWithoutABlockCheckIsFoundOnAChannelOfTheTextbooks) {
   const auto on_channel = [&](const std::string& iut) {
     return ProgramFixture::call(
-        {"emc", "valve_bus", "--channel", "bsc:0.001", "--duration", "30s", "--quiet", "--iut", iut});
+        {"emc", "valve_bus", "--channel", "bsc:0.001", "--duration", "120s", "--quiet", "--iut", iut});
   };
   EXPECT_EQ(on_channel("node@3=ref").exit_code, 0);
   const Called unchecked = on_channel("node@3=mutant:write_not_checked");

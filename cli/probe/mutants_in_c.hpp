@@ -15,7 +15,7 @@ struct MutantInC {
 };
 
 inline constexpr std::array kMutantsInC{
-    MutantInC{"check_without_command", "check/single_bit_errors_are_refused", "acts_on_wrong_check"},
+    MutantInC{"check_without_command", "read/is_answered", "no_answer"},
     MutantInC{"answers_writes", "write/drives_the_valves", "write_answered"},
     MutantInC{"address_low_nibble", "address/only_its_own_id_acts", "acts_on_foreign_id"},
     MutantInC{"any_command_reads", "command/undefined_commands_are_ignored", "acts_on_undefined_command"},
