@@ -1,10 +1,5 @@
 #include "conformance/fieldbus_dll/ff_expect.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-
 namespace fieldproof::conformance {
 namespace {
 
@@ -82,12 +77,6 @@ BufferOfDt3 buffer_in(const DrivenDlpdu& dt3) {
   return {address_at(dt3, 1), dt3.octet(1 + size), behind(dt3, 2 + size)};
 }
 
-Octets expect_submitted(FfBench& bench, CaseJudge& judge, Priority priority, std::size_t size) {
-  const Octets data = bench.numbered_data(size);
-  judge.expect(bench.submit(priority, data), "data_refused", "data is accepted", "it was refused");
-  return data;
-}
-
 std::vector<DrivenDlpdu> expect_token_used(FfBench& bench, CaseJudge& judge, kernel::Time from) {
   const auto& codes = bench.rules().codes;
   std::vector<DrivenDlpdu> data;
@@ -108,41 +97,10 @@ std::vector<DrivenDlpdu> expect_token_used(FfBench& bench, CaseJudge& judge, ker
   return data;
 }
 
-void expect_dlsdus(CaseJudge& judge, const std::vector<DrivenDlpdu>& data, const std::vector<Octets>& wanted,
-                   std::string_view reason_for_missing, std::string_view reason_for_more,
-                   std::string_view reason_for_others) {
-  judge.expect(data.size() >= wanted.size(), reason_for_missing, [&] {
-    return Mismatch{{fmt::format("{} DT1", wanted.size())}, fmt::format("{}", data.size())};
-  });
-  judge.expect(data.size() <= wanted.size(), reason_for_more, [&] {
-    const DrivenDlpdu& first = data[wanted.size()];
-    return Mismatch{{fmt::format("{} DT1", wanted.size())},
-                    fmt::format("{}, the first one too many: {}", data.size(), first.text()),
-                    first.begin};
-  });
-  for (std::size_t n = 0; n < wanted.size(); ++n) {
-    judge.expect(dlsdu_of(data[n]) == wanted[n], reason_for_others, [&] {
-      return Mismatch{{fmt::format("DLSDU {:02X}", fmt::join(wanted[n], " "))},
-                      data[n].text(),
-                      data[n].begin,
-                      fmt::format("DT1 {}", n + 1)};
-    });
-  }
-}
-
 void expect_serves(FfBench& bench, CaseJudge& judge) {
   const Octets data = bench.numbered_data(6);
-  judge.expect(bench.submit(Priority::urgent, data), "does_not_recover", "data is accepted",
-               "it was refused");
-  // What was submitted before goes first.
-  bench.send(bench.pt(Priority::time_available, 5'000));
-  const std::vector<DrivenDlpdu> all = bench.listen();
-  const bool is_served = std::ranges::any_of(
-      all, [&](const DrivenDlpdu& one) { return is_dt1(bench, one) && dlsdu_of(one) == data; });
-  judge.expect(is_served, "does_not_recover", [&] {
-    return Mismatch{{"under a long PT, all that was submitted"},
-                    all.empty() ? std::string("silence") : all.front().text()};
-  });
+  const bool is_submitted = bench.submit(Priority::urgent, data);
+  expect_recovers(bench, judge, is_submitted, bench.pt(Priority::time_available, 5'000), dlsdu_of, data);
 }
 
 }  // namespace fieldproof::conformance

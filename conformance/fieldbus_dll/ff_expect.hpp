@@ -34,17 +34,10 @@ struct BufferOfDt3 {
 };
 BufferOfDt3 buffer_in(const DrivenDlpdu& dt3);
 
-// Data that no other has, accepted by the IUT: `data_refused`.
-Octets expect_submitted(FfBench& bench, CaseJudge& judge, fieldbus_dll::Priority priority, std::size_t size);
-
 // All that the IUT says under a token that came at `from`, until it is silent: DT1, RI, RT. It returns the
 // token exactly once, by RT or by F: `token_not_returned`, `token_returned_twice`, `unexpected_dlpdu`,
 // `answers_too_late`. Gives the DT1s.
 std::vector<DrivenDlpdu> expect_token_used(FfBench& bench, CaseJudge& judge, kernel::Time from);
-// The DT1s carry exactly these DLSDUs.
-void expect_dlsdus(CaseJudge& judge, const std::vector<DrivenDlpdu>& data, const std::vector<Octets>& wanted,
-                   std::string_view reason_for_missing, std::string_view reason_for_more,
-                   std::string_view reason_for_others = "data_wrong");
 // What is submitted is sent under a long PT: `does_not_recover`.
 void expect_serves(FfBench& bench, CaseJudge& judge);
 

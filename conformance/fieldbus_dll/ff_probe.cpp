@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "conformance/fieldbus_dll/ff_scene.hpp"
 
 // PN: who is there; and rules that cannot be.

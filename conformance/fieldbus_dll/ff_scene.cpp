@@ -8,9 +8,9 @@ namespace fieldproof::conformance {
 
 using fieldbus_dll::Priority;
 
-void FfScene::expect_used(const std::vector<Octets>& dlsdus, const Reasons& reasons) {
+void FfScene::expect_used(const std::vector<Octets>& dlsdus, const DlsduReasons& reasons) {
   const std::vector<DrivenDlpdu> all = expect_token_used(bench, judge, sent);
-  expect_dlsdus(judge, all, dlsdus, reasons.missing, reasons.more, reasons.others);
+  expect_dlsdus(judge, all, dlsdu_of, dlsdus, reasons);
   answer = all.empty() ? bench.driven().back() : all.front();
 }
 

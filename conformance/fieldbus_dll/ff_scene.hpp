@@ -18,7 +18,7 @@ struct FfScene final : LinkScene {
 
   bool submit(Priority priority, const Octets& dlsdu) override { return bench.submit(priority, dlsdu); }
   // `answer` is the first DT1, or what returned the token without one.
-  void expect_used(const std::vector<Octets>& dlsdus, const Reasons& reasons) override;
+  void expect_used(const std::vector<Octets>& dlsdus, const DlsduReasons& reasons) override;
   void expect_serves() override { conformance::expect_serves(bench, judge); }
 
   // Each but the station's own, turn by turn; in a quick run every seventh.

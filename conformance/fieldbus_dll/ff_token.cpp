@@ -73,7 +73,8 @@ void expect_all_in_turn(FfScene& scene) {
     scene.judge.expect(!sent.empty() && sent.size() <= left.size(), "frames_missing", "at least one DT1",
                        "none");
     const auto last = left.begin() + static_cast<std::ptrdiff_t>(sent.size());
-    expect_dlsdus(scene.judge, sent, {left.begin(), last}, "frames_missing", "sent_twice", "wrong_order");
+    expect_dlsdus(scene.judge, sent, dlsdu_of, {left.begin(), last},
+                  {"frames_missing", "sent_twice", "wrong_order"});
     left.erase(left.begin(), last);
   }
 }

@@ -45,7 +45,7 @@ void expect_isa_exact_fit(IsaScene& scene) {
     scene.expect_used({data}, {"frames_missing", "sent_twice"});
     return;
   }
-  expect_data(scene.judge, use, {data}, "exact_fit_not_sent", "sent_twice");
+  expect_dlsdus(scene.judge, use.data, dlsdu_in, {data}, {"exact_fit_not_sent", "sent_twice"});
   scene.judge.expect(use.end.end <= over + kLinkRounding, "talks_behind_duration", [&] {
     return Mismatch{{fmt::format("the EE ends until {}", kernel::describe(over))},
                     kernel::describe(use.end.end),

@@ -1,9 +1,6 @@
 #include "conformance/fieldbus_dll/isa_expect.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
 
 namespace fieldproof::conformance {
 namespace {
@@ -41,6 +38,10 @@ bool is_final(const DrivenDlpdu& dlpdu) {
   return (dlpdu.octet(0) & kFinalBit) != 0;
 }
 
+Octets dlsdu_in(const DrivenDlpdu& dlpdu) {
+  return dlpdu.rest();
+}
+
 Octets expect_submitted(IsaBench& bench, CaseJudge& judge, fieldbus_dll::IsaService service,
                         Priority priority, std::size_t size) {
   const Octets data = bench.numbered_data(size);
@@ -72,28 +73,6 @@ TokenUse expect_token_use(IsaBench& bench, CaseJudge& judge, kernel::Time from) 
   return use;
 }
 
-void expect_data(CaseJudge& judge, const TokenUse& use, const std::vector<Octets>& data,
-                 std::string_view reason_for_missing, std::string_view reason_for_more,
-                 std::string_view reason_for_others) {
-  judge.expect(use.data.size() >= data.size(), reason_for_missing, [&] {
-    return Mismatch{{fmt::format("{} data DLPDUs", data.size())}, fmt::format("{}", use.data.size())};
-  });
-  judge.expect(use.data.size() <= data.size(), reason_for_more, [&] {
-    const DrivenDlpdu& first = use.data[data.size()];
-    return Mismatch{{fmt::format("{} data DLPDUs", data.size())},
-                    fmt::format("{}, the first one too many: {}", use.data.size(), first.text()),
-                    first.begin};
-  });
-  for (std::size_t n = 0; n < data.size(); ++n) {
-    judge.expect(use.data[n].rest() == data[n], reason_for_others, [&] {
-      return Mismatch{{fmt::format("DLSDU {:02X}", fmt::join(data[n], " "))},
-                      use.data[n].text(),
-                      use.data[n].begin,
-                      fmt::format("data DLPDU {}", n + 1)};
-    });
-  }
-}
-
 void expect_end_reason(CaseJudge& judge, const TokenUse& use, EndReason reason) {
   judge.expect(use.end.octet(3) == static_cast<std::uint8_t>(reason), "end_reason_wrong", [&] {
     return Mismatch{
@@ -103,18 +82,8 @@ void expect_end_reason(CaseJudge& judge, const TokenUse& use, EndReason reason) 
 
 void expect_serves(IsaBench& bench, CaseJudge& judge) {
   const Octets data = bench.numbered_data(6);
-  judge.expect(bench.submit_unit_data(Priority::urgent, data), "does_not_recover", "data is accepted",
-               "it was refused");
-  // What was submitted before goes first.
-  bench.send(bench.es(Priority::time_available, 5'000));
-  const std::vector<DrivenDlpdu> all = bench.listen();
-  const bool is_served = std::ranges::any_of(all, [&](const DrivenDlpdu& one) {
-    return is_type(one, bench.rules().codes.du) && one.rest() == data;
-  });
-  judge.expect(is_served, "does_not_recover", [&] {
-    return Mismatch{{"under a long ES, all that was submitted"},
-                    all.empty() ? std::string("silence") : all.front().text()};
-  });
+  const bool is_submitted = bench.submit_unit_data(Priority::urgent, data);
+  expect_recovers(bench, judge, is_submitted, bench.es(Priority::time_available, 5'000), dlsdu_in, data);
 }
 
 }  // namespace fieldproof::conformance

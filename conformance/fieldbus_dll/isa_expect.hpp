@@ -16,6 +16,8 @@ namespace fieldproof::conformance {
 bool is_type(const DrivenDlpdu& dlpdu, std::uint8_t code);
 fieldbus_dll::Priority priority_of(const DrivenDlpdu& dlpdu);
 bool is_final(const DrivenDlpdu& dlpdu);
+// Of a DU or DT.
+Octets dlsdu_in(const DrivenDlpdu& dlpdu);
 
 // Data for the peer that no other has, accepted by the IUT: `data_refused`.
 Octets expect_submitted(IsaBench& bench, CaseJudge& judge, fieldbus_dll::IsaService service,
@@ -30,11 +32,6 @@ struct TokenUse {
 // All that the IUT says until it has returned its token by EE and is silent, when the token came at `from`:
 // `token_not_returned`, `unexpected_dlpdu`, `talks_behind_end`, `answers_too_late`, `dlpdu_wrong`.
 TokenUse expect_token_use(IsaBench& bench, CaseJudge& judge, kernel::Time from);
-// It has sent exactly these DLSDUs: `reason_for_missing` for too few, `reason_for_more` for too many,
-// `reason_for_others` for others.
-void expect_data(CaseJudge& judge, const TokenUse& use, const std::vector<Octets>& data,
-                 std::string_view reason_for_missing, std::string_view reason_for_more,
-                 std::string_view reason_for_others = "data_wrong");
 void expect_end_reason(CaseJudge& judge, const TokenUse& use, fieldbus_dll::EndReason reason);
 
 // What is submitted is sent under a long ES: `does_not_recover`.

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <array>
 
 #include "conformance/fieldbus_dll/isa_scene.hpp"

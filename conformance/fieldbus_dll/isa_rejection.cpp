@@ -2,14 +2,12 @@
 
 #include "conformance/fieldbus_dll/isa_scene.hpp"
 #include "harness/line/frame_check.hpp"
-#include "harness/line/manchester.hpp"
 
 // What is no token for the IUT.
 namespace fieldproof::conformance {
 namespace {
 
 using fieldbus_dll::Priority;
-using line::Symbol;
 
 // The two octets that another variant of the check would have.
 Octets check_of_variant(line::FrameCheckParameters parameters, const Octets& octets) {

@@ -6,9 +6,9 @@ namespace fieldproof::conformance {
 
 using fieldbus_dll::Priority;
 
-void IsaScene::expect_used(const std::vector<Octets>& dlsdus, const Reasons& reasons) {
+void IsaScene::expect_used(const std::vector<Octets>& dlsdus, const DlsduReasons& reasons) {
   use = expect_token_use(bench, judge, sent);
-  expect_data(judge, use, dlsdus, reasons.missing, reasons.more, reasons.others);
+  expect_dlsdus(judge, use.data, dlsdu_in, dlsdus, reasons);
   answer = use.data.empty() ? use.end : use.data.front();
 }
 

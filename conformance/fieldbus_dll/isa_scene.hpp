@@ -20,7 +20,7 @@ struct IsaScene final : LinkScene {
     return bench.submit_unit_data(priority, dlsdu);
   }
   // `answer` is the first DU, or the EE without one.
-  void expect_used(const std::vector<Octets>& dlsdus, const Reasons& reasons) override;
+  void expect_used(const std::vector<Octets>& dlsdus, const DlsduReasons& reasons) override;
   void expect_serves() override { conformance::expect_serves(bench, judge); }
   // V(MID) after `answer`, or so much later; runs until they are over.
   void reply(const Octets& octets, kernel::Duration later = {});

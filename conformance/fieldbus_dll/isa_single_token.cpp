@@ -13,9 +13,9 @@ std::vector<IsaCase> isa_single_token_cases() {
   using namespace isa_chart;
   using enum Priority;
   const auto some = [](const std::vector<Priority>& priorities) { return submit(priorities, 2, 31); };
-  const LinkScene::Reasons one_frame{"no_data_frame", "more_than_one_frame"};
-  const LinkScene::Reasons queued{"queued_data_lost", "more_than_one_frame"};
-  const LinkScene::Reasons lower{"", "lower_priority_sent"};
+  const DlsduReasons one_frame{"no_data_frame", "more_than_one_frame"};
+  const DlsduReasons queued{"queued_data_lost", "more_than_one_frame"};
+  const DlsduReasons lower{"", "lower_priority_sent"};
   const IsaStep unused =
       repeat({}, {used({}, {"", "unexpected_dlpdu"}), end_reason(EndReason::nothing_to_send)});
   using link_sources::isa_paper;

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "conformance/fieldbus_dll/isa_scene.hpp"
 
 // A scheduler whose token does not come back as it should.

@@ -1,6 +1,7 @@
 #include "conformance/fieldbus_dll/link_expect.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -32,6 +33,40 @@ void expect_begins(CaseJudge& judge, const DrivenDlpdu& dlpdu, kernel::Time earl
   };
   judge.expect(dlpdu.begin + kLinkRounding >= earliest, reason_early, sighting);
   judge.expect(dlpdu.begin <= latest + kLinkRounding, reason_late, sighting);
+}
+
+void expect_dlsdus(CaseJudge& judge, const std::vector<DrivenDlpdu>& data, DlsduOf dlsdu_of,
+                   const std::vector<Octets>& right, const DlsduReasons& reasons) {
+  judge.expect(data.size() >= right.size(), reasons.missing, [&] {
+    return Mismatch{{fmt::format("{} data DLPDUs", right.size())}, fmt::format("{}", data.size())};
+  });
+  judge.expect(data.size() <= right.size(), reasons.more, [&] {
+    const DrivenDlpdu& first = data[right.size()];
+    return Mismatch{{fmt::format("{} data DLPDUs", right.size())},
+                    fmt::format("{}, the first one too many: {}", data.size(), first.text()),
+                    first.begin};
+  });
+  for (std::size_t n = 0; n < right.size(); ++n) {
+    judge.expect(dlsdu_of(data[n]) == right[n], reasons.others, [&] {
+      return Mismatch{{fmt::format("DLSDU {:02X}", fmt::join(right[n], " "))},
+                      data[n].text(),
+                      data[n].begin,
+                      fmt::format("data DLPDU {}", n + 1)};
+    });
+  }
+}
+
+void expect_recovers(LinkBench& bench, CaseJudge& judge, bool is_submitted, const Octets& token,
+                     DlsduOf dlsdu_of, const Octets& right) {
+  judge.expect(is_submitted, "does_not_recover", "data is accepted", "it was refused");
+  bench.send(token);
+  const std::vector<DrivenDlpdu> all = bench.listen();
+  const bool is_served =
+      std::ranges::any_of(all, [&](const DrivenDlpdu& one) { return dlsdu_of(one) == right; });
+  judge.expect(is_served, "does_not_recover", [&] {
+    return Mismatch{{"under a long token, all that was submitted"},
+                    all.empty() ? std::string("silence") : all.front().text()};
+  });
 }
 
 void judge_driven(const LinkBench& bench, CaseJudge& judge) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +21,20 @@ DrivenDlpdu expect_next(LinkBench& bench, CaseJudge& judge, kernel::Time limit, 
 // It begins in this span, to a rounding.
 void expect_begins(CaseJudge& judge, const DrivenDlpdu& dlpdu, kernel::Time earliest,
                    std::string_view reason_early, kernel::Time latest, std::string_view reason_late);
+
+// Why DLSDUs are not those that must be sent.
+struct DlsduReasons {
+  std::string missing;
+  std::string more;
+  std::string others = "data_wrong";
+};
+using DlsduOf = Octets (*)(const DrivenDlpdu&);
+// Data DLPDUs carry exactly these DLSDUs.
+void expect_dlsdus(CaseJudge& judge, const std::vector<DrivenDlpdu>& data, DlsduOf dlsdu_of,
+                   const std::vector<Octets>& right, const DlsduReasons& reasons);
+// Under a long token, all that waits is sent, and so this, which was submitted last: `does_not_recover`.
+void expect_recovers(LinkBench& bench, CaseJudge& judge, bool is_submitted, const Octets& token,
+                     DlsduOf dlsdu_of, const Octets& right);
 
 // What the user of the IUT was told was sent by the tester as it was told: in that order, and no more often:
 // `told_otherwise`. `is_told(sent, told)`: this was sent, for the user, and says the same. For the end of a

@@ -84,7 +84,7 @@ LinkStep wait(std::int64_t octets) {
                              [octets](LinkScene& scene) { scene.link.wait(scene.link.octets(octets)); });
 }
 
-LinkStep used(std::vector<std::size_t> numbers, LinkScene::Reasons reasons) {
+LinkStep used(std::vector<std::size_t> numbers, DlsduReasons reasons) {
   std::string text = "no data";
   if (!numbers.empty())
     text = numbers[0] == 0 ? "the DLSDU submitted last"

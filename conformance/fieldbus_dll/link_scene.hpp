@@ -16,13 +16,6 @@ namespace fieldproof::conformance {
 struct LinkScene {
   using Priority = fieldbus_dll::Priority;
 
-  // Why the DLSDUs under a token are not those that must be sent.
-  struct Reasons {
-    std::string missing;
-    std::string more;
-    std::string others = "data_wrong";
-  };
-
   LinkScene(LinkBench& link_, CaseJudge& judge_, unsigned round_, kernel::Duration answer_time_)
       : link(link_), judge(judge_), round(round_), answer_time(answer_time_) {}
   virtual ~LinkScene() = default;
@@ -30,7 +23,7 @@ struct LinkScene {
   // False: it is refused.
   virtual bool submit(Priority priority, const Octets& dlsdu) = 0;
   // Under the token that was sent last: these DLSDUs, and that it is returned.
-  virtual void expect_used(const std::vector<Octets>& dlsdus, const Reasons& reasons) = 0;
+  virtual void expect_used(const std::vector<Octets>& dlsdus, const DlsduReasons& reasons) = 0;
   virtual void expect_serves() = 0;
   // The next DLPDU, begun between V(MID) and the time for an answer.
   const DrivenDlpdu& expect_answer(const std::string& what, std::string_view reason);
@@ -69,7 +62,7 @@ LinkStep submit(const std::vector<LinkScene::Priority>& priorities, std::size_t 
 LinkStep wait(std::int64_t octets);
 // The DLSDUs with these numbers, 0 for the last of all, are sent under the token, in this order, and it is
 // returned once.
-LinkStep used(std::vector<std::size_t> numbers, LinkScene::Reasons reasons);
+LinkStep used(std::vector<std::size_t> numbers, DlsduReasons reasons);
 LinkStep silence(std::string reason, std::string why);
 // So many DLPDUs of the IUT at least, until it is silent.
 LinkStep says(std::string what, std::string reason, std::size_t least = 1);
