@@ -26,16 +26,16 @@ namespace {
 using traffic::TokenRun;
 using traffic::UrgentTraffic;
 
-constexpr traffic::TokenRun kRun{.seed = 1, .urgent_packets = 50'000, .warm_up_rotations = 100};
+constexpr TokenRun kRun{.seed = 1, .urgent_packets = 50'000, .warm_up_rotations = 100};
 
-traffic::UrgentTraffic traffic_of_the_paper() {
+UrgentTraffic traffic_of_the_paper() {
   return traffic::paper_traffic(0.35, 1, 1, 34'816 * kernel::kMicrosecond);
 }
 
 // As one would write it for this case alone: 16 nodes, times as numbers.
 class HandWritten {
  public:
-  explicit HandWritten(const traffic::UrgentTraffic& traffic)
+  explicit HandWritten(const UrgentTraffic& traffic)
       : urgent_length_(traffic.urgent_length.count()),
         available_length_(traffic.available_length.count()),
         overhead_(traffic.empty_rotation.count() / std::int64_t{kNodes}),
@@ -111,7 +111,7 @@ enum class Ns3Arrivals { events, drawn_at_visits };
 
 class OnNs3 {
  public:
-  OnNs3(const traffic::UrgentTraffic& traffic, const char* queue, Ns3Arrivals arrivals)
+  OnNs3(const UrgentTraffic& traffic, const char* queue, Ns3Arrivals arrivals)
       : traffic_(traffic), has_events_(arrivals == Ns3Arrivals::events) {
     ns3::ObjectFactory factory;
     factory.SetTypeId(queue);
@@ -209,7 +209,7 @@ class OnNs3 {
     schedule(transmission + overhead_, &OnNs3::on_token);
   }
 
-  traffic::UrgentTraffic traffic_;
+  UrgentTraffic traffic_;
   bool has_events_;
   kernel::Duration overhead_ = traffic_.empty_rotation / std::int64_t{kNs3Nodes};
   std::vector<Queue> urgent_, available_;

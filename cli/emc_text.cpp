@@ -255,7 +255,7 @@ std::string emc_line(const EmcTest& test) {
     line += fmt::format("    {}: {}\n", emc::name(result.criterion), result.decided_by);
   }
   if (!result.complaint.empty()) line += fmt::format("    {}\n", reports::escaped_line(result.complaint));
-  if (result.complaint.empty() && (result.receivers == 0 || !result.had_a_burst))
+  if (result.complaint.empty() && !result.was_disturbed())
     line += "    no burst met a receiver: this shows nothing\n";
   return line;
 }

@@ -10,14 +10,14 @@ namespace fieldproof::conformance::chart {
 namespace {
 
 std::string joined(const std::vector<std::string>& clauses) {
-  std::vector<std::string> said;
+  std::vector<std::string> listed;
   for (auto clause = clauses.begin(); clause != clauses.end();) {
     const auto next = std::find_if(clause, clauses.end(), [&](const auto& each) { return each != *clause; });
     const auto count = next - clause;
-    said.push_back(count > 1 ? fmt::format("{}, {} times", *clause, count) : *clause);
+    listed.push_back(count > 1 ? fmt::format("{}, {} times", *clause, count) : *clause);
     clause = next;
   }
-  return fmt::format("{}", fmt::join(said, "; "));
+  return fmt::format("{}", fmt::join(listed, "; "));
 }
 
 std::string capitalised(std::string text) {
@@ -70,8 +70,8 @@ std::string sentence(const std::vector<std::string>& first, const std::vector<st
   return fmt::format("{}: {}.", capitalised(repeated), joined(clauses));
 }
 
-void tell(TestCase& test_case, const Words& first, const Words& words, const Rounds& rounds,
-          const std::string& over) {
+void describe(TestCase& test_case, const Words& first, const Words& words, const Rounds& rounds,
+              const std::string& over) {
   test_case.stimulus = sentence(first.stimuli, words.stimuli, rounds, over);
   test_case.expected = sentence(first.expectations, words.expectations, {}, {});
   const std::size_t count = first.steps.size() + words.steps.size();

@@ -19,6 +19,17 @@
 // words: functions that give a step.
 namespace fieldproof::conformance {
 
+// What every scene has; one of a bench adds what its steps share besides.
+template <typename BenchType>
+struct Scene {
+  Scene(BenchType& bench_, CaseJudge& judge_, unsigned round_)
+      : bench(bench_), judge(judge_), round(round_) {}
+
+  BenchType& bench;
+  CaseJudge& judge;
+  unsigned round;  // from 0
+};
+
 // How often all steps are run.
 struct Rounds {
   unsigned quick = 1;
@@ -33,7 +44,7 @@ struct ChartStep {
   Rounds times{};                  // of the steps within this one
   std::vector<ChartStep> steps{};  // in place of `run`, see `repeated`
 
-  // What is said of a scene can be said of one that is more.
+  // A step of a scene is one of each scene that is derived from it.
   template <typename More>
     requires(std::derived_from<More, Scene> && !std::same_as<More, Scene>)
   operator ChartStep<More>() const {
@@ -76,7 +87,7 @@ struct Chart {
 
 namespace chart {
 
-// What the steps say, clause by clause.
+// The clauses of the steps.
 struct Words {
   std::vector<std::string> stimuli{};
   std::vector<std::string> expectations{};
@@ -87,12 +98,12 @@ struct Words {
 };
 
 // "The node is powered. Then, for each register, 20 times: the PC orders a read; the node answers, 2 times."
-// Equal clauses that follow each other are said once, with their number.
+// Equal clauses that follow each other are listed once, with their number.
 std::string sentence(const std::vector<std::string>& first, const std::vector<std::string>& clauses,
                      const Rounds& rounds, const std::string& over);
-// Puts into the case what its steps say: stimulus, expectation, and steps as "2 of 5: ...".
-void tell(TestCase& test_case, const Words& first, const Words& words, const Rounds& rounds,
-          const std::string& over);
+// Fills in the case from its steps: stimulus, expectation, and steps as "2 of 5: ...".
+void describe(TestCase& test_case, const Words& first, const Words& words, const Rounds& rounds,
+              const std::string& over);
 
 template <typename Scene>
 Words words_of(const std::vector<ChartStep<Scene>>& steps) {
@@ -133,7 +144,7 @@ std::size_t run_steps(const std::vector<ChartStep<Scene>>& steps, Scene& scene, 
 template <typename Case, typename Scene>
 Case charted(TestCase test_case, Chart<Scene> chart, decltype(Case::needs) needs = {}) {
   const chart::Words before = chart::words_of(chart.first);
-  chart::tell(test_case, before, chart::words_of(chart.steps), chart.rounds, chart.walk.over);
+  chart::describe(test_case, before, chart::words_of(chart.steps), chart.rounds, chart.walk.over);
   const auto procedure = [chart, first_lines = before.steps.size(), lines = test_case.steps](
                              typename Case::BenchType& bench, CaseJudge& judge) {
     std::size_t rounds = 1;

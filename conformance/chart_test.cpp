@@ -18,13 +18,9 @@ struct CountingBench {
   unsigned volume(unsigned quick, unsigned full) const { return is_full ? full : quick; }
 };
 
-struct CountingScene {
-  CountingScene(CountingBench& bench_, CaseJudge& judge_, unsigned round_)
-      : bench(bench_), judge(judge_), round(round_) {}
+struct CountingScene : Scene<CountingBench> {
+  using Scene::Scene;
 
-  CountingBench& bench;
-  CaseJudge& judge;
-  unsigned round;
   unsigned turn = 0;
   std::string asked{};
 };

@@ -67,6 +67,9 @@ struct ImmunityResult {
   bool had_a_burst = false;  // one at least came while they were; a textbook's channel is always there
   BurstStatistics line;      // sums over them; of a textbook's channel only the transmissions
   std::vector<CycleTimes> cycles;
+
+  // Where not, a criterion says nothing.
+  bool was_disturbed() const { return receivers > 0 && had_a_burst; }
 };
 
 // `network` has not been started.

@@ -61,7 +61,7 @@ void expect_nothing_behind_duration(FfScene& scene) {
   for (int i = 0; i < 8; ++i)
     bench.submit(Priority::time_available, bench.numbered_data(2 + bench.random().below(longest)));
   scene.sent = bench.send(bench.pt(Priority::time_available, duration));
-  scene.expect_none_behind("PT", duration);
+  scene.expect_none_after("PT", duration);
 }
 
 void expect_all_in_turn(FfScene& scene) {

@@ -70,11 +70,11 @@ void expect_fit_then(IsaScene& scene) {
   scene.expect_used({scene.submitted.back()}, {"queued_data_lost", "sent_twice"});
 }
 
-void expect_none_behind_es(IsaScene& scene) {
+void expect_none_after_es(IsaScene& scene) {
   constexpr std::array kDurations{10U, 20U, 50U, 100U, 500U, 5'000U};
   const unsigned duration = kDurations[scene.round];
   send_es(scene, duration);
-  const kernel::Duration left = scene.expect_none_behind("ES", duration);
+  const kernel::Duration left = scene.expect_none_after("ES", duration);
   scene.judge.measure(fmt::format("left of {} octets", duration), "octets",
                       static_cast<double>(left / scene.bench.octets(1)));
 }
@@ -128,7 +128,7 @@ std::vector<IsaCase> isa_duration_cases() {
                {{6, 6},
                 {submit(std::vector(25, Priority::time_available), 2, 251),
                  IsaStep{"an ES for 10, 20, 50, 100, 500, 5000 octet durations, in turn",
-                         "the last frame ends within the duration, the EE included", expect_none_behind_es},
+                         "the last frame ends within the duration, the EE included", expect_none_after_es},
                  repeat({3, 3},
                         {es(Priority::time_available, 8'000), says("data, and EE", "token_not_returned")})}}),
       on_chart(must("fieldbus_dll/isa_dle/duration/zero_is_no_token", "ISA-13",

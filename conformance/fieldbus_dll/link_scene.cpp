@@ -14,7 +14,7 @@ const DrivenDlpdu& LinkScene::expect_answer(const std::string& what, std::string
   return answer;
 }
 
-kernel::Duration LinkScene::expect_none_behind(std::string_view token, unsigned duration) {
+kernel::Duration LinkScene::expect_none_after(std::string_view token, unsigned duration) {
   const kernel::Time over = sent + link.octets(duration);
   kernel::Duration left = link.octets(duration);
   for (const DrivenDlpdu& one : link.listen()) {

@@ -29,7 +29,7 @@ struct LinkScene {
   const DrivenDlpdu& expect_answer(const std::string& what, std::string_view reason);
   // All that is said ends within the duration of the token that was sent last: `talks_behind_duration`.
   // Gives how much of it is left.
-  kernel::Duration expect_none_behind(std::string_view token, unsigned duration);
+  kernel::Duration expect_none_after(std::string_view token, unsigned duration);
   // Data for its user that no other has: `data`.
   const Octets& fresh(std::size_t size) { return data = link.numbered_data(size); }
   // All three are walked over.

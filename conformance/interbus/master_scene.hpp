@@ -12,13 +12,9 @@
 namespace fieldproof::conformance {
 
 // What the steps of one round share.
-struct RingScene {
-  RingScene(MasterBench& bench_, CaseJudge& judge_, unsigned round_)
-      : bench(bench_), judge(judge_), round(round_) {}
+struct RingScene : Scene<MasterBench> {
+  using Scene::Scene;
 
-  MasterBench& bench;
-  CaseJudge& judge;
-  unsigned round;                    // from 0
   MasterBench::Suffered suffered{};  // by the last cycle with a fault
   std::uint16_t held = 0;            // inputs that have to stay
 };

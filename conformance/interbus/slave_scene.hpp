@@ -15,13 +15,9 @@
 namespace fieldproof::conformance {
 
 // What the steps of one round share.
-struct SlaveScene {
-  SlaveScene(SlaveBench& bench_, CaseJudge& judge_, unsigned round_)
-      : bench(bench_), judge(judge_), round(round_) {}
+struct SlaveScene : Scene<SlaveBench> {
+  using Scene::Scene;
 
-  SlaveBench& bench;
-  CaseJudge& judge;
-  unsigned round;                      // from 0
   std::vector<std::uint16_t> words{};  // of the last data cycle without a fault
   std::string fault{};                 // of the last one with a fault
   kernel::Time last{};                 // end of the last telegram before a silence

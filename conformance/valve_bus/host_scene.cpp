@@ -19,9 +19,7 @@ valve_bus::Response data_of(const HostScene& scene) {
 }  // namespace
 
 HostScene::HostScene(HostBench& bench_, CaseJudge& judge_, unsigned round_)
-    : bench(bench_),
-      judge(judge_),
-      round(round_),
+    : Scene(bench_, judge_, round_),
       id(bench.random_id()),
       other(static_cast<std::uint8_t>(id % bench.rules().last_address + 1)) {}
 

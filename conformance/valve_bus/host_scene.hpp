@@ -16,12 +16,9 @@
 namespace fieldproof::conformance {
 
 // What the steps of one round share.
-struct HostScene {
+struct HostScene : Scene<HostBench> {
   HostScene(HostBench& bench_, CaseJudge& judge_, unsigned round_);
 
-  HostBench& bench;
-  CaseJudge& judge;
-  unsigned round;                      // from 0
   std::uint8_t id;                     // of the node that is read
   std::uint8_t other;                  // of the next one
   unsigned writes = 0;                 // that were ordered

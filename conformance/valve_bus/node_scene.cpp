@@ -13,8 +13,7 @@ std::string why(const NodeScene& scene, const std::string& why_not) {
 
 }  // namespace
 
-NodeScene::NodeScene(NodeBench& bench_, CaseJudge& judge_, unsigned round_)
-    : bench(bench_), judge(judge_), round(round_) {
+NodeScene::NodeScene(NodeBench& bench_, CaseJudge& judge_, unsigned round_) : Scene(bench_, judge_, round_) {
   set_switches(static_cast<std::uint16_t>(bench.random().below(0x10000)));
 }
 

@@ -15,13 +15,10 @@
 namespace fieldproof::conformance {
 
 // What the steps of one round share.
-struct NodeScene {
+struct NodeScene : Scene<NodeBench> {
   // With random limit switches.
   NodeScene(NodeBench& bench_, CaseJudge& judge_, unsigned round_);
 
-  NodeBench& bench;
-  CaseJudge& judge;
-  unsigned round;                     // from 0
   std::uint16_t switches = 0;         // of the boards
   std::vector<std::uint8_t> frame{};  // that was sent last
   kernel::Time end{};                 // of its last stop bit

@@ -252,6 +252,16 @@ TEST_F(AttachedNodeTest, DriverAndCharactersAreSaidEachAtItsOwnTime) {
   EXPECT_EQ(well_ended_, 1);
 }
 
+TEST_F(AttachedNodeTest, CharactersHaveNoMoreBitsThanTheFormat) {
+  const auto send = [](std::uint16_t character) {
+    return [character](iut::Bench& bench) {
+      bench.set_driver(0, true, kNow);
+      bench.send(0, kNow, std::array{character});
+    };
+  };
+  EXPECT_THAT(complaint(send(0x241)), testing::HasSubstr("characters here have 9 bits"));
+}
+
 TEST_F(AttachedNodeTest, DriverThatHangsIsAFindingAfterTheLimitAndAtTheEnd) {
   EXPECT_EQ(complaint([](iut::Bench& bench) { bench.set_driver(0, true, kNow); }), "");
   segment_.run_for(9 * kSecond);
