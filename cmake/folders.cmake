@@ -111,10 +111,11 @@ function(fieldproof_cacheable_precompiled_headers name)
   endif()
 endfunction()
 
-# fieldproof_tests(name folder [COMPUTE] LINK targets...). Tests whose suite name contains "Threads" carry the label
-# "threads". COMPUTE: most of their time passes in templates that are compiled with the tests.
+# fieldproof_tests(name folder [COMPUTE] LINK targets... [THREADS targets...]). Tests whose suite name contains "Threads"
+# carry the label "threads", and link THREADS where they are built alone. COMPUTE: most of their time passes in templates
+# that are compiled with the tests.
 function(fieldproof_tests name folder)
-  cmake_parse_arguments(arg "COMPUTE" "" "LINK" ${ARGN})
+  cmake_parse_arguments(arg "COMPUTE" "" "LINK;THREADS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS
     "${CMAKE_SOURCE_DIR}/${folder}/*_test.cpp" "${CMAKE_SOURCE_DIR}/${folder}/test_main.cpp")
   list(FILTER sources EXCLUDE REGEX "/node_modules/")
@@ -126,11 +127,10 @@ function(fieldproof_tests name folder)
       list(APPEND sources_with_threads "${source}")
     endif()
   endforeach()
-  if(FIELDPROOF_SANITIZE STREQUAL "thread" AND sources)
-    list(FILTER sources INCLUDE REGEX "/test_main.cpp$")
-    list(APPEND sources ${sources_with_threads})
-    if(NOT sources_with_threads)
-      return()
+  if(FIELDPROOF_SANITIZE STREQUAL "thread")
+    set(sources ${sources_with_threads})
+    if(arg_THREADS)
+      set(arg_LINK ${arg_THREADS})
     endif()
   endif()
   if(NOT sources)

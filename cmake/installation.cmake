@@ -50,7 +50,7 @@ endfunction()
 set(harness_libraries kernel frame_check line config trace fault segment judge field measure traffic network iut harness)
 list(TRANSFORM harness_libraries PREPEND fieldproof_)
 fieldproof_install(fieldproofTargets ${harness_libraries} ${protocol_libraries}
-  fieldproof_conformance fieldproof_fuzz fieldproof_emc fieldproof_reports fieldproof_papers fieldproof_cli fieldproof_plugin)
+  fieldproof_cases ${suite_libraries} fieldproof_conformance fieldproof_fuzz fieldproof_emc fieldproof_reports fieldproof_papers fieldproof_cli fieldproof_plugin)
 if(TARGET fieldproof_gtest)
   fieldproof_install(fieldproofGTestTargets fieldproof_gtest)
 endif()
