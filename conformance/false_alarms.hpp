@@ -12,7 +12,7 @@
 // For tests of suites: the references pass, whatever is drawn.
 namespace fieldproof::conformance {
 
-inline constexpr std::uint64_t kManySeeds = kernel::kIsSanitized ? 3 : 100;
+inline constexpr std::uint64_t kManySeeds = kernel::kIsSanitized ? 1 : 100;
 
 // The cases that the references of a suite do not pass with a seed, at quick volume.
 inline std::vector<std::string> false_alarms(const Suite& suite, std::uint64_t seed) {

@@ -13,6 +13,7 @@
 
 #include "emc/profile.hpp"
 #include "harness/kernel/error.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::emc {
 namespace {
@@ -29,6 +30,10 @@ constexpr CharacterFormat kElevenBits{8, Parity::none, StopBits::two};
 constexpr CharacterFormat kWithParity{8, Parity::even, StopBits::one};
 constexpr ReceiverClock kReal = ReceiverClock::of_each_start_edge;
 constexpr ReceiverClock kInStep = ReceiverClock::of_the_sender;
+
+// Under a sanitizer so many times fewer frames, and twice the error.
+constexpr unsigned kFewer = kernel::kIsSanitized ? 4 : 1;
+constexpr double kWider = kernel::kIsSanitized ? 2 : 1;
 
 // At 375 kbit/s.
 struct Question {
@@ -53,7 +58,7 @@ PulseTrain pulses_of(const Question& question) {
 }
 
 FrameCounts answer(const Question& question) {
-  return count_frames_under_pulses(format_of(question), pulses_of(question), question.frames,
+  return count_frames_under_pulses(format_of(question), pulses_of(question), question.frames / kFewer,
                                    kernel::Random(6));
 }
 
@@ -83,7 +88,7 @@ TEST(Resonance, ThreePulsesInACharacterHitOneColumn) {
     expect_share(15.0 / 17, answer(question));
     question.forced = ForcedLevel::high;
     const FrameCounts high = answer(question);
-    EXPECT_GT(high.corrupted, 20'000U);
+    EXPECT_GT(high.corrupted, 20'000U / kFewer);
     // Where the last pulse just misses, by the picosecond that its place is rounded to.
     EXPECT_LE(high.undetected, 1U);
     question.forced = ForcedLevel::opposite;  // five flips in a column
@@ -194,16 +199,16 @@ TEST(Resonance, MeanOverTheToleranceIsThatStated) {
     EXPECT_LT(command.undetected_share(), 0.021);
     EXPECT_NEAR(command.corrupted_share(), 0.51, 0.008);
     question.characters = 3;
-    EXPECT_NEAR(answer(question).undetected_share(), 0.01, 0.002);
+    EXPECT_NEAR(answer(question).undetected_share(), 0.01, kWider * 0.002);
     // A real receiver, with the clock that edges start, takes up to twice as many.
     question.clock = kReal;
     question.frames = 60'000;
     for (const ForcedLevel forced : {ForcedLevel::drawn, ForcedLevel::low, ForcedLevel::high}) {
       question.forced = forced;
       question.characters = 5;
-      EXPECT_NEAR(answer(question).undetected_share(), 0.0205, 0.0075);
+      EXPECT_NEAR(answer(question).undetected_share(), 0.0205, kWider * 0.0075);
       question.characters = 3;
-      EXPECT_NEAR(answer(question).undetected_share(), 0.0135, 0.0095);
+      EXPECT_NEAR(answer(question).undetected_share(), 0.0135, kWider * 0.0095);
     }
   }
 }
@@ -265,7 +270,7 @@ TEST(Resonance, LostStartBitsPassNowAndThen) {
   EXPECT_EQ(answer(question).undetected, 0U);
   question.clock = kReal;
   const FrameCounts counts = answer(question);
-  EXPECT_GT(counts.undetected, 10U);
+  EXPECT_GT(counts.undetected, 10U / kFewer);
   EXPECT_LT(counts.undetected_share(), 1e-3);
   question.forced = ForcedLevel::low;
   EXPECT_EQ(answer(question).undetected, 0U);

@@ -30,7 +30,6 @@ void SignalGenerator::trigger(kernel::Time at, std::int64_t periods) {
   FIELDPROOF_CHECK(periods > 0, "a train has at least one period");
   const kernel::Time first = at + wave_.phase;
   FIELDPROOF_CHECK(edges_.empty() || first > edges_.back(), "a train begins after the one before it");
-  edges_.reserve(edges_.size() + static_cast<std::size_t>(2 * periods));
   for (std::int64_t k = 0; k < periods; ++k) {
     edges_.push_back(first + wave_.frequency.periods(k));
     edges_.push_back(first + part_of_periods(wave_.frequency, k * kMillion + wave_.duty_ppm));
