@@ -17,7 +17,7 @@ using fieldbus_dll::FfConfiguration;
 using fieldbus_dll::Priority;
 using kernel::kMicrosecond;
 
-constexpr std::uint8_t kFirstNode = 0x11;
+constexpr std::uint8_t kFirstOfNodes = 0x11;
 constexpr std::size_t kPaperNodes = 16;
 constexpr double kLoad = 0.2;
 
@@ -39,7 +39,7 @@ void paper_nodes(FfConfiguration& configuration) {
   configuration.rules.target_rotation = target_microseconds * kMicrosecond;
   configuration.rules.time_distribution_period = 55 * kernel::kSecond;
   for (std::size_t n = 0; n < kPaperNodes; ++n)
-    configuration.live.push_back(static_cast<std::uint8_t>(kFirstNode + n));
+    configuration.live.push_back(static_cast<std::uint8_t>(kFirstOfNodes + n));
 }
 
 // What waits at one node in one priority.
@@ -71,7 +71,7 @@ class PaperNodes {
 
   // All that the holder of this token says, to the end of its RT.
   void use(const DrivenDlpdu& pt) {
-    const auto node = static_cast<std::size_t>(pt.octet(1) - kFirstNode);
+    const auto node = static_cast<std::size_t>(pt.octet(1) - kFirstOfNodes);
     if (node >= kPaperNodes) return;
     kernel::Time at = pt.end + bench_.least_gap();
     for (const int silence : node + 1 == kPaperNodes ? kSilencesOfLast : kSilences)

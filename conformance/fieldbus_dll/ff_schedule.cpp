@@ -12,7 +12,7 @@ using fieldbus_dll::Priority;
 
 constexpr FfAddress kFirst = 0x1120;
 constexpr FfAddress kSecond = 0x1220;
-constexpr FfAddress kThird = 0x1320;
+constexpr FfAddress kThirdRelationship = 0x1320;
 constexpr FfAddress kOwn = 0x1020;             // of the scheduler
 constexpr std::uint32_t kMacrocycle = 16'000;  // 500 ms
 
@@ -23,7 +23,7 @@ void three_items(FfConfiguration& configuration) {
                             .macrocycle = kMacrocycle,
                             .items = {{1, kFirst, Priority::normal},
                                       {4'964, kSecond, Priority::urgent},
-                                      {10'240, kThird, Priority::normal}}};
+                                      {10'240, kThirdRelationship, Priority::normal}}};
 }
 
 // Who holds a token keeps it as long as it may, with data; now and then not so long.

@@ -71,9 +71,9 @@ void expect_no_voice_into_late_reply(IsaScene& scene) {
 }
 
 void expect_no_answer_while_waiting(IsaScene& scene) {
-  constexpr std::uint8_t kThird = 0x23;
+  constexpr std::uint8_t kThirdNode = 0x23;
   Octets cd = scene.bench.cd(Priority::normal);
-  cd[2] = kThird;
+  cd[2] = kThirdNode;
   scene.reply(cd);
   for (const DrivenDlpdu& one : scene.bench.listen()) {
     scene.judge.expect(!is_type(one, scene.bench.rules().codes.dt), "answers_while_waiting", [&] {

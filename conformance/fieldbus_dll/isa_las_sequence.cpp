@@ -23,7 +23,7 @@ constexpr int kPeriodOfIsaLas = 600;
 constexpr std::uint8_t kHeirOfIsaLas = 0x12;
 constexpr std::uint8_t kLowerScheduler = 0x08;
 constexpr std::uint8_t kHigherScheduler = 0x30;
-constexpr std::uint8_t kThird = 0x2A;
+constexpr std::uint8_t kThirdSender = 0x2A;
 constexpr int kMostBeforeTransfer = 4;
 
 constexpr std::array<std::int64_t, 4> kIsaLasCounts{1, 2, 6, 12};
@@ -153,7 +153,7 @@ class IsaLasSequenceRun {
         return with_token([&](const DrivenDlpdu& token) { compel(token); });
       case IsaLasWord::third:
         return with_token([&](const DrivenDlpdu& token) {
-          acceptor_.hear_other(say(bench_.ee(kThird)));
+          acceptor_.hear_other(say(bench_.ee(kThirdSender)));
           give_back(token);
         });
       case IsaLasWord::spoilt:
@@ -219,7 +219,7 @@ class IsaLasSequenceRun {
   void send_data(const DrivenDlpdu& token, bool is_for_scheduler, std::size_t size) {
     const Octets data = bench_.numbered_data(size);
     Octets du{bench_.control(bench_.rules().codes.du, Priority::normal),
-              is_for_scheduler ? bench_.address() : kThird, token.octet(1)};
+              is_for_scheduler ? bench_.address() : kThirdSender, token.octet(1)};
     du.insert(du.end(), data.begin(), data.end());
     acceptor_.hear_data(say(du));
     if (is_for_scheduler) data_.push_back(data);
@@ -227,14 +227,14 @@ class IsaLasSequenceRun {
 
   void compel(const DrivenDlpdu& token) {
     acceptor_.hear_cd(
-        say({bench_.control(bench_.rules().codes.cd, Priority::normal), kThird, token.octet(1)}));
+        say({bench_.control(bench_.rules().codes.cd, Priority::normal), kThirdSender, token.octet(1)}));
     bench_.wait(bench_.reply_wait() + bench_.octets(1) - bench_.least_gap());
     give_back(token);
   }
 
   void another_scheduler(std::uint8_t address) {
     acceptor_.hear_scheduler(
-        address, say({bench_.control(bench_.rules().codes.et, Priority::normal), kThird, address}));
+        address, say({bench_.control(bench_.rules().codes.et, Priority::normal), kThirdSender, address}));
   }
 
   void submit(Priority priority, std::size_t size) {
@@ -257,7 +257,7 @@ class IsaLasSequenceRun {
       if (one && (one->octet(0) & 0xF0U) == bench_.rules().codes.tl) {
         if (is_taken)
           acceptor_.hear_heir(
-              say({bench_.control(bench_.rules().codes.du, Priority::normal), kThird, kHeirOfIsaLas}));
+              say({bench_.control(bench_.rules().codes.du, Priority::normal), kThirdSender, kHeirOfIsaLas}));
         return;
       }
       if (one && is_token(*one)) give_back(*one);
@@ -270,7 +270,7 @@ class IsaLasSequenceRun {
     const auto tl = [&](std::uint8_t to) {
       return Octets{bench_.rules().codes.tl, to, kLowerScheduler, 0, 1};
     };
-    acceptor_.hear_other(say(tl(kThird)));
+    acceptor_.hear_other(say(tl(kThirdSender)));
     (void)next_said();
     acceptor_.hear_transfer(say(tl(bench_.address())));
   }

@@ -68,7 +68,7 @@ void expect_no_jitter(MasterBench& bench, CaseJudge& judge) {
                        0.01 * in_us(seen.longest_cycle), "jitter");
 }
 
-constexpr std::string_view kBelowMinimum = "request_below_minimum";
+constexpr std::string_view kRequestBelowMinimum = "request_below_minimum";
 
 void request_too_short(MasterBench& bench, CaseJudge& judge) {
   bench.configuration().cycle_time = 400 * kernel::kMicrosecond;
@@ -77,12 +77,12 @@ void request_too_short(MasterBench& bench, CaseJudge& judge) {
   if (bench.wait_for_run()) {
     judge.expect_between("cycle time with a request of 400 us", "us", measured_us(bench, judge, 4),
                          shortest * (1 - kTolerance), shortest * (1 + kTolerance), "cycle_below_minimum");
-    judge.expect(bench.may_answer(kBelowMinimum, "clipped"), "request_not_refused",
+    judge.expect(bench.may_answer(kRequestBelowMinimum, "clipped"), "request_not_refused",
                  "as declared, the request is refused", "it is clipped");
   } else {
     judge.expect(!bench.status().configuration_error.empty(), "request_not_answered",
                  "the request is clipped, or refused with a configuration error", "neither");
-    judge.expect(bench.may_answer(kBelowMinimum, "refused"), "request_not_clipped",
+    judge.expect(bench.may_answer(kRequestBelowMinimum, "refused"), "request_not_clipped",
                  "as declared, the request is clipped", "it is refused");
   }
 }
