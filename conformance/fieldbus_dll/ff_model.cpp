@@ -127,8 +127,8 @@ Time FfModel::latest_of_token() const {
 }
 
 Time FfModel::end_of(std::size_t octets, Time begin) const {
-  constexpr std::size_t kCheck = 2;
-  return begin + frame_time(configuration_.rules.link, octets + kCheck);
+  constexpr std::size_t kCheckOctets = 2;
+  return begin + frame_time(configuration_.rules.link, octets + kCheckOctets);
 }
 
 std::optional<FfModel::Next> FfModel::next_to_send() const {

@@ -149,8 +149,8 @@ std::vector<FfCase> ff_publisher_cases() {
                                               expect_no_buffer)}),
             repeat({3, 3}, {send("a CD for the nodes 22, 20 and 10, in turn",
                                  [](FfScene& scene) {
-                                   constexpr std::array<std::uint8_t, 3> kNodes{0x22, 0x20, 0x10};
-                                   return scene.bench.cd(fieldbus_dll::address_of(kNodes[scene.turn], 0x20));
+                                   constexpr std::array<std::uint8_t, 3> kOthers{0x22, 0x20, 0x10};
+                                   return scene.bench.cd(fieldbus_dll::address_of(kOthers[scene.turn], 0x20));
                                  }),
                             silence("answers_others", "the buffer is another's")}),
             published()}}),
