@@ -1,3 +1,5 @@
+// Subject: protocols/token_bus/token_station.hpp, several of them on one line.
+
 #include <gtest/gtest.h>
 
 #include <deque>
