@@ -138,7 +138,7 @@ void ServedFfDevice::tell(FfIndication what, const FfDlpdu& dlpdu, kernel::Time 
   Octets octets{static_cast<std::uint8_t>(what)};
   const Octets of_dlpdu = octets_of(dlpdu, rules_);
   octets.insert(octets.end(), of_dlpdu.begin(), of_dlpdu.end());
-  tell_user(octets, when);
+  report_to_user(octets, when);
 }
 
 }  // namespace fieldproof::fieldbus_dll

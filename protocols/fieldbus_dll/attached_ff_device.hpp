@@ -58,7 +58,7 @@ class AttachedFfDevice final : public FfDevice, private iut::Bench {
   FfUser* user_ = nullptr;
 };
 
-class ServedFfDevice final : public ServedLink<FfDevice>, private FfUser {
+class ServedFfDevice final : public iut::ServedUserLine<FfDevice>, private FfUser {
  public:
   using Make = std::function<std::unique_ptr<FfDevice>(const FfConfiguration&)>;
   explicit ServedFfDevice(Make make) : make_(std::move(make)) {}
@@ -73,7 +73,7 @@ class ServedFfDevice final : public ServedLink<FfDevice>, private FfUser {
     tell(FfIndication::published, dlpdu, when);
   }
   void on_event(const FfEvent& event, kernel::Time when) override {
-    tell_event(static_cast<std::uint64_t>(event.kind), event.node, when);
+    report_event(static_cast<std::uint64_t>(event.kind), event.node, when);
   }
   void tell(FfIndication what, const FfDlpdu& dlpdu, kernel::Time when);
 

@@ -110,7 +110,7 @@ void ServedIsaDevice::on_data(const IsaDlpdu& dlpdu, kernel::Time when) {
   Octets octets{kIsaData};
   const Octets of_dlpdu = octets_of(dlpdu, rules_);
   octets.insert(octets.end(), of_dlpdu.begin(), of_dlpdu.end());
-  tell_user(octets, when);
+  report_to_user(octets, when);
 }
 
 bool ServedIsaDevice::is_reply_coming(Priority least, kernel::Time when) {

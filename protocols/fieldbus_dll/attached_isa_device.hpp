@@ -57,7 +57,7 @@ class AttachedIsaDevice final : public IsaDevice, private iut::Bench {
   IsaUser* user_ = nullptr;
 };
 
-class ServedIsaDevice final : public ServedLink<IsaDevice>, private IsaUser {
+class ServedIsaDevice final : public iut::ServedUserLine<IsaDevice>, private IsaUser {
  public:
   using Make = std::function<std::unique_ptr<IsaDevice>(const IsaConfiguration&)>;
   explicit ServedIsaDevice(Make make) : make_(std::move(make)) {}
@@ -69,7 +69,7 @@ class ServedIsaDevice final : public ServedLink<IsaDevice>, private IsaUser {
   bool asked(const Octets& request, kernel::Time now) override;
   void on_data(const IsaDlpdu& dlpdu, kernel::Time when) override;
   void on_event(const IsaEvent& event, kernel::Time when) override {
-    tell_event(static_cast<std::uint64_t>(event.kind), event.node, when);
+    report_event(static_cast<std::uint64_t>(event.kind), event.node, when);
   }
   bool is_reply_coming(Priority least, kernel::Time when) override;
 

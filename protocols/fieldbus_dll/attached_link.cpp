@@ -14,18 +14,8 @@ constexpr std::size_t kMostFrameOctets = 300;  // of IEC 61158-2, with its check
 
 }  // namespace
 
-void put_number(Octets& octets, std::uint64_t number, unsigned size) {
-  while (size-- > 0) octets.push_back(static_cast<std::uint8_t>(number >> 8 * size));
-}
-
-std::uint64_t number_at(std::span<const std::uint8_t> octets, std::size_t at, unsigned size) {
-  std::uint64_t number = 0;
-  for (const std::uint8_t octet : octets.subspan(at, size)) number = number << 8 | octet;
-  return number;
-}
-
 AttachedLink::AttachedLink(iut::AttachedCase& attached, const LinkRules& rules)
-    : attached_(attached), rules_(rules) {
+    : UserLine(attached), rules_(rules) {
   if (attached.unit_kind() != iut::UnitKind::characters) return;
   throw kernel::Error(
       kernel::ErrorKind::implementation,
@@ -39,7 +29,7 @@ void AttachedLink::receive(const line::Waveform& reception) {
   if (hears_frames()) {
     tell_frame(reception);
   } else {
-    attached_.call(reception.end(), [&](iut::Device& device) { device.receive(kLinePort, reception); });
+    receive_levels(reception);
   }
 }
 
@@ -62,51 +52,15 @@ void AttachedLink::tell_frame(const line::Waveform& reception) {
     characters.push_back(
         {reception.start + octets(rules_, place), reception.start + octets(rules_, place + 1), octet});
   }
-  attached_.call(reception.end(),
-                 [&](iut::Device& device) { device.receive(kLinePort, characters, reception.end()); });
-}
-
-void AttachedLink::on_activity(bool begins, kernel::Time now) {
-  const iut::Character one{now, now, static_cast<std::uint16_t>(begins ? 1 : 0)};
-  attached_.call(now, [&](iut::Device& device) { device.receive(kActivityPort, std::span(&one, 1), now); });
-}
-
-bool AttachedLink::ask(const Octets& request, kernel::Time now) {
-  std::vector<iut::Character> characters;
-  for (const std::uint8_t octet : request) characters.push_back({now, now, octet});
-  return is_taken(
-      [&] { attached_.call(now, [&](iut::Device& device) { device.receive(kUserPort, characters, now); }); });
-}
-
-bool AttachedLink::start(kernel::Time now) {
-  return is_taken([&] { attached_.set_power(true, now); });
-}
-
-void AttachedLink::stop(kernel::Time now) {
-  ahead_.clear();
-  attached_.set_power(false, now);
-}
-
-void AttachedLink::refuse() {
-  if (!is_asking_) iut::refuse_impossible("refuses something, and nothing is asked of it");
-  is_refused_ = true;
-}
-
-void AttachedLink::on_time(kernel::Time now) {
-  drive_due(now);
-  if (attached_.next_time() <= now) attached_.on_time(now);
-}
-
-kernel::Time AttachedLink::next_time() const {
-  const kernel::Time wanted = attached_.next_time();
-  return ahead_.empty() ? wanted : std::min(wanted, ahead_.front().start);
+  attached().call(reception.end(),
+                  [&](iut::Device& device) { device.receive(kLinePort, characters, reception.end()); });
 }
 
 // ---- what it does ----
 
 void AttachedLink::send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) {
-  attached_.expect_supplied();
-  if (port != kLinePort) iut::refuse_impossible(fmt::format("drives port {}; the line is port 0", port));
+  attached().expect_supplied();
+  expect_line_port(port);
   if (!hears_frames()) iut::refuse_impossible("drives telegrams, having announced levels");
   const std::size_t count = characters.size();
   if (count == 0 || count > kMostFrameOctets) {
@@ -119,43 +73,12 @@ void AttachedLink::send(unsigned port, kernel::Time start, std::span<const std::
     octets.push_back(static_cast<std::uint8_t>(one));
   }
   // No sum of an instant that lies further than time reaches.
-  attached_.expect_ahead(start, "drives a frame");
+  attached().expect_ahead(start, "drives a frame");
   drive(wave_of(octets, start));
 }
 
-void AttachedLink::transmit(unsigned port, line::Waveform& wave) {
-  attached_.expect_supplied();
-  if (port != kLinePort) iut::refuse_impossible(fmt::format("drives port {}; the line is port 0", port));
-  drive(std::exchange(wave, {}));
-}
-
-void AttachedLink::drive(line::Waveform&& wave) {
-  attached_.expect_drive(wave);
-  if (wave.start < driven_until_) {
-    iut::refuse_impossible(fmt::format("drives from {} on, and drives already until {}",
-                                       kernel::describe(wave.start), kernel::describe(driven_until_)));
-  }
-  driven_until_ = wave.end();
-  ahead_.push_back(std::move(wave));
-  drive_due(attached_.now());
-}
-
-void AttachedLink::drive_due(kernel::Time now) {
-  while (!ahead_.empty() && ahead_.front().start <= now) {
-    line::Waveform wave = std::move(ahead_.front());
-    ahead_.pop_front();
-    line_->drive(wave);
-  }
-}
-
 Octets AttachedLink::told_octets(std::span<const std::uint16_t> characters) {
-  Octets octets;
-  for (const std::uint16_t one : characters) {
-    if (one > 0xFF || octets.size() >= kMostFrameOctets)
-      iut::refuse_impossible("reports no octets to its user");
-    octets.push_back(static_cast<std::uint8_t>(one));
-  }
-  return octets;
+  return reported_octets(characters, kMostFrameOctets);
 }
 
 }  // namespace fieldproof::fieldbus_dll

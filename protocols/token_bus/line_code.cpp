@@ -1,0 +1,212 @@
+#include "protocols/token_bus/line_code.hpp"
+
+#include "harness/kernel/check.hpp"
+#include "harness/line/delimited_frame.hpp"
+#include "harness/line/manchester.hpp"
+
+namespace fieldproof::token_bus {
+namespace {
+
+using enum PhySymbol;
+
+constexpr line::ManchesterLayout kPhyLayout{.one_falls = false, .most_significant_first = false};
+
+const line::ManchesterCode& phy_code() {
+  static const line::ManchesterCode code{kPhyLayout};
+  return code;
+}
+
+// Idle is the level of the line, for both halves of a bit.
+line::Symbol line_symbol_of(PhySymbol symbol) {
+  if (symbol == idl) return line::Symbol::non_data_plus;
+  return symbol == cd1 ? line::Symbol::one : line::Symbol::zero;
+}
+
+ReceivedBit received_bit(bool first_half, bool second_half) {
+  switch (phy_code().symbol_of(first_half, second_half)) {
+    case line::Symbol::zero:
+      return {cd0, {}};
+    case line::Symbol::one:
+      return {cd1, {}};
+    case line::Symbol::non_data_plus:
+      return {idl, {}};
+    case line::Symbol::non_data_minus:
+      break;
+  }
+  return {idl, {.has_carrier = true, .has_signal_error = true}};
+}
+
+// The half bit at which bits begin: 0 or 1.
+std::size_t first_bit_in(const line::Levels& half_bits) {
+  std::size_t edge = 0;
+  for (std::size_t n = half_bits.end_of_run(0); n < half_bits.size(); n = half_bits.end_of_run(n)) {
+    if (n - edge == 2 && edge > 0) return (edge + 1) % 2;
+    edge = n;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string written(std::span<const PhySymbol> symbols) {
+  std::string text;
+  for (const PhySymbol symbol : symbols) text += symbol == idl ? 'I' : symbol == cd1 ? '1' : '0';
+  return text;
+}
+
+PhyPair MacEncoder::encode(MacSymbol symbol) {
+  const bool is_second = is_second_non_data_;
+  is_second_non_data_ = symbol == MacSymbol::non_data && !is_second;
+  switch (symbol) {
+    case MacSymbol::silence:
+      return {idl, idl};
+    case MacSymbol::pad_idle:
+    case MacSymbol::one:
+      return {cd1, cd0};
+    case MacSymbol::zero:
+      return {cd0, cd1};
+    case MacSymbol::non_data:
+      return is_second ? PhyPair{cd0, cd0} : PhyPair{cd1, cd1};
+    case MacSymbol::bad_signal:
+      break;
+  }
+  FIELDPROOF_CHECK(false, "nobody requests bad_signal");
+  return {idl, idl};
+}
+
+PhySymbols phy_symbols_of(std::span<const MacSymbol> symbols) {
+  PhySymbols bits;
+  bits.reserve(2 * symbols.size());
+  MacEncoder encoder;
+  for (const MacSymbol symbol : symbols) {
+    const PhyPair pair = encoder.encode(symbol);
+    bits.push_back(pair.first);
+    bits.push_back(pair.second);
+  }
+  return bits;
+}
+
+void append(line::Levels& half_bits, std::span<const PhySymbol> symbols) {
+  for (const PhySymbol symbol : symbols) phy_code().append(half_bits, line_symbol_of(symbol));
+}
+
+line::Levels half_bits_of(std::span<const MacSymbol> symbols) {
+  line::Levels half_bits;
+  append(half_bits, phy_symbols_of(symbols));
+  return half_bits;
+}
+
+// ---- MacDecoder ----
+
+void MacDecoder::reset() {
+  phase_ = Phase::silent;
+  first_.reset();
+  to_drop_ = 0;
+  lose_lock();
+}
+
+void MacDecoder::lose_lock() {
+  phase_ = Phase::silent;
+  expects_second_ = false;
+  zeros_ = ones_ = 0;
+}
+
+std::optional<MacSymbol> MacDecoder::take(PhySymbol bit, LineStatus status) {
+  if (to_drop_ > 0) {
+    --to_drop_;
+    return std::nullopt;
+  }
+  if (!first_) {
+    first_ = bit;
+    return std::nullopt;
+  }
+  const PhyPair pair{*first_, bit};
+  first_.reset();
+  return indicate(pair, status);
+}
+
+MacSymbol MacDecoder::indication(PhyPair pair, LineStatus status) const {
+  using enum MacSymbol;
+  if (!status.has_carrier) return silence;
+  if (status.has_signal_error) return bad_signal;
+  if (pair.first == idl) return silence;
+  if (pair.second == idl) {
+    // A bit too many after the end of the last frame is none of its own: what a repeater adds.
+    constexpr std::uint64_t kEnd = 044'344'320;  // N N 1 N N 1 0, and E
+    constexpr std::uint64_t kMask = 077'777'770;
+    return (last_symbols_ & kMask) == kEnd ? silence : bad_signal;
+  }
+  if (pair.first != pair.second) {
+    if (expects_second_) return bad_signal;
+    return pair.first == cd1 ? one : zero;
+  }
+  return (pair.first == cd0) == expects_second_ ? non_data : bad_signal;
+}
+
+MacSymbol MacDecoder::indicate(PhyPair pair, LineStatus status) {
+  const MacSymbol symbol = indication(pair, status);
+  last_symbols_ = (last_symbols_ << 3 | static_cast<std::uint64_t>(symbol)) & 077'777'777;
+  const bool has_bits = status.has_carrier && (pair.first != idl || pair.second != idl);
+  if (!status.has_carrier || (!status.has_signal_error && pair.second == idl)) {
+    lose_lock();
+    return symbol;
+  }
+  if (phase_ == Phase::silent && has_bits) {
+    phase_ = Phase::hunting;
+    slips_ = 0;
+  }
+  expects_second_ = symbol == MacSymbol::non_data && !expects_second_;
+  follow(symbol);
+  return symbol;
+}
+
+void MacDecoder::follow(MacSymbol symbol) {
+  zeros_ = symbol == MacSymbol::zero ? zeros_ + 1 : 0;
+  ones_ = symbol == MacSymbol::one ? ones_ + 1 : 0;
+  if (symbol == MacSymbol::non_data || ones_ >= 2) phase_ = Phase::locked;
+  if (may_slip() && slips_after(zeros_)) {
+    to_drop_ = slip_bits();
+    ++slips_;
+    zeros_ = 0;
+  }
+}
+
+// ---- a whole transmission ----
+
+std::vector<ReceivedBit> received_bits(const line::Waveform& wave, std::int64_t phy_bit_rate,
+                                       std::size_t* first_half_bit) {
+  const line::Levels half_bits = line::half_bits_of(wave, phy_bit_rate);
+  std::size_t at = first_bit_in(half_bits);
+  if (first_half_bit != nullptr) *first_half_bit = at;
+  std::vector<ReceivedBit> bits;
+  bits.reserve(half_bits.size() / 2 + 3);
+  // Beyond its end the line is idle: a half bit that is left over has its partner there.
+  for (; at < half_bits.size(); at += 2) bits.push_back(received_bit(half_bits[at], half_bits[at + 1]));
+  for (unsigned n = 0; n < 2; ++n) bits.push_back({idl, {}});
+  return bits;
+}
+
+std::vector<Indication> indications_in(const line::Waveform& wave, std::int64_t phy_bit_rate) {
+  MacDecoder decoder;
+  return indications_in(wave, phy_bit_rate, decoder);
+}
+
+std::vector<Indication> indications_in(const line::Waveform& wave, std::int64_t phy_bit_rate,
+                                       MacDecoder& decoder) {
+  std::size_t half_bit = 0;
+  const std::vector<ReceivedBit> bits = received_bits(wave, phy_bit_rate, &half_bit);
+  std::vector<Indication> indications;
+  indications.reserve(bits.size() / 2);
+  bool has_error = false;
+  for (std::size_t n = 0; n < bits.size(); ++n, half_bit += 2) {
+    LineStatus status = bits[n].status;
+    // An error in the first bit of a pair is one of the pair.
+    status.has_signal_error |= has_error;
+    const auto symbol = decoder.take(bits[n].symbol, status);
+    has_error = !symbol && bits[n].status.has_signal_error;
+    if (symbol) indications.push_back({*symbol, half_bit >= 2 ? half_bit - 2 : 0});
+  }
+  return indications;
+}
+
+}  // namespace fieldproof::token_bus
