@@ -132,7 +132,7 @@ void Doctor::examine_line(const std::string& uri) {
                                  : "open");
   const iut::UartLine uart = role.uart({});  // where a case says nothing
   const std::int64_t rate = settings.bit_rate.value_or(uart.bit_rate);
-  const line::CharacterFormat format = settings.format.value_or(uart.of_uart);
+  const line::CharacterFormat format = settings.format.value_or(uart.eight_bit_format());
   line.set(rate, format);
   say("settings", line.is_terminal() ? "a pseudo terminal has none"
                                      : fmt::format("{} bit/s {} accepted", rate, format.text()));

@@ -8,8 +8,8 @@ namespace fieldproof::conformance {
 template <typename Station>
 class StopBitIgnored : public Station {
   using Station::Station;
-  valve_bus::HeardCharacter judged(const valve_bus::HeardCharacter& character) const override {
-    valve_bus::HeardCharacter taken = character;
+  line::UartCharacter judged(const line::UartCharacter& character) const override {
+    line::UartCharacter taken = character;
     taken.is_stop_missing = false;
     return taken;
   }
@@ -18,8 +18,8 @@ class StopBitIgnored : public Station {
 template <typename Station>
 class ParityIgnored : public Station {
   using Station::Station;
-  valve_bus::HeardCharacter judged(const valve_bus::HeardCharacter& character) const override {
-    valve_bus::HeardCharacter taken = character;
+  line::UartCharacter judged(const line::UartCharacter& character) const override {
+    line::UartCharacter taken = character;
     taken.is_parity_wrong = false;
     return taken;
   }
@@ -29,8 +29,8 @@ class ParityIgnored : public Station {
 template <typename Station>
 class NinthBitRequired : public Station {
   using Station::Station;
-  valve_bus::HeardCharacter judged(const valve_bus::HeardCharacter& character) const override {
-    valve_bus::HeardCharacter taken = character;
+  line::UartCharacter judged(const line::UartCharacter& character) const override {
+    line::UartCharacter taken = character;
     const bool has_ninth_bit = valve_bus::character_format(this->rules()).data_bits == 9;
     if (has_ninth_bit && (character.data & 0x100U) == 0) taken.is_stop_missing = true;
     return taken;

@@ -74,7 +74,7 @@ class DriverCutsStopBit : public Host {
 class DelimiterMissing : public Host {
   using Host::Host;
   Duration silence() const override { return {}; }
-  void on_character(const HeardCharacter& character) override {
+  void on_character(const UartCharacter& character) override {
     Host::on_character(character);
     if (collector().frame().whole(valve_bus::kResponseOctets)) end_frame(character.busy_until);
   }

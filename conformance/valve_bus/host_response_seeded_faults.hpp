@@ -127,12 +127,12 @@ class TakesOtherResponses : public Host {
 // Hears itself, and takes the first three octets that fit.
 class TakesEcho : public Host {
   using Host::Host;
-  bool is_own(const HeardCharacter&) const override { return false; }
+  bool is_own(const UartCharacter&) const override { return false; }
   void send(Time now) override {
     echo_.clear();
     Host::send(now);
   }
-  void on_character(const HeardCharacter& character) override {
+  void on_character(const UartCharacter& character) override {
     echo_.push_back(character.octet());
     const bool is_response = echo_.size() == 3 && fits(echo_) && exchange();
     if (is_response && state() == valve_bus::HostState::awaiting) {

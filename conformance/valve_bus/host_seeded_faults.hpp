@@ -13,10 +13,10 @@ namespace fieldproof::conformance::host_seeded_faults {
 
 using kernel::Duration;
 using kernel::Time;
+using line::UartCharacter;
 using valve_bus::CollectedFrame;
 using valve_bus::Command;
 using valve_bus::CommandFifo;
-using valve_bus::HeardCharacter;
 using valve_bus::Host;
 using valve_bus::HostConfiguration;
 using valve_bus::HostError;

@@ -60,7 +60,7 @@ class GapBetweenOctets : public Node {
 // Does not wait for the delimiter.
 class AnswersAtOnce : public Node {
   using Node::Node;
-  void on_character(const HeardCharacter& character) override {
+  void on_character(const UartCharacter& character) override {
     Node::on_character(character);
     if (collector().frame().whole(valve_bus::kCommandOctets)) end_frame(character.busy_until);
   }

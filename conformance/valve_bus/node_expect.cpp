@@ -78,7 +78,7 @@ void expect_octets(NodeBench& bench, CaseJudge& judge, const Transmission& answe
   judge.expect(!is_known || octets[1] == wanted[1], "answer_data_wrong", sighting("DATA1"));
   judge.expect(octets[2] == (octets[0] ^ octets[1]), "answer_check_wrong", sighting("BCC"));
   const bool has_ninth_bit = std::ranges::all_of(answer.characters, [&](const DrivenCharacter& one) {
-    return one.data == written_character(bench.rules(), one.octet());
+    return one.data == uart(bench.rules()).character_of(one.octet());
   });
   judge.expect(has_ninth_bit, "ninth_bit_wrong", "a ninth bit of 1 in each character", "one of 0");
 }

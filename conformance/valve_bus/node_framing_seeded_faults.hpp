@@ -17,7 +17,7 @@ namespace fieldproof::conformance::node_seeded_faults {
 // A frame is five octets, whatever silence there is.
 class CountsOctetsOnly : public Node {
   using Node::Node;
-  void on_character(const HeardCharacter& character) override {
+  void on_character(const UartCharacter& character) override {
     if (!character.is_good()) return;
     frame_.octets.at(frame_.count++) = character.octet();
     frame_.busy_until = character.busy_until;
@@ -48,7 +48,7 @@ class TakesOtherLengths : public Node {
       : Node(configuration), which_(which) {}
 
  private:
-  void on_character(const HeardCharacter& character) override {
+  void on_character(const UartCharacter& character) override {
     Node::on_character(character);
     std::rotate(last_.begin(), last_.begin() + 1, last_.end());
     last_.back() = character.octet();
@@ -95,8 +95,8 @@ class DeafBehindWrite : public Node {
 
 class ParityInverted : public Node {
   using Node::Node;
-  HeardCharacter judged(const HeardCharacter& character) const override {
-    HeardCharacter taken = character;
+  UartCharacter judged(const UartCharacter& character) const override {
+    UartCharacter taken = character;
     if (valve_bus::character_format(rules()).parity != line::Parity::none) {
       taken.is_parity_wrong = !character.is_parity_wrong;
     }
@@ -106,7 +106,7 @@ class ParityInverted : public Node {
 
 class LocksUpAfterBreak : public Node {
   using Node::Node;
-  void on_character(const HeardCharacter& character) override {
+  void on_character(const UartCharacter& character) override {
     constexpr unsigned kCharacters = 3;  // of low line, more than a character can have
     if (character.busy_until - character.start > kCharacters * valve_bus::character_time(rules())) {
       is_locked_ = true;
@@ -143,7 +143,7 @@ class SamplesElsewhere : public Node {
     wave_ = &reception;
     Node::receive(port, reception);
   }
-  HeardCharacter judged(const HeardCharacter& character) const override {
+  UartCharacter judged(const UartCharacter& character) const override {
     const line::CharacterCode code(valve_bus::character_format(rules()));
     std::uint32_t bits = 0;
     for (unsigned bit = 1; bit <= code.format().bits_before_stop(); ++bit) {
@@ -151,7 +151,7 @@ class SamplesElsewhere : public Node {
       bits |= std::uint32_t{wave_->at(when)} << bit;
     }
     const line::Character sampled = code.from_bits(bits);
-    HeardCharacter taken = character;
+    UartCharacter taken = character;
     taken.data = sampled.data;
     taken.is_parity_wrong = sampled.is_parity_wrong;
     taken.is_stop_missing = sampled.is_stop_missing;
@@ -175,9 +175,9 @@ class FollowsAnyRate : public Node {
 
 class HearsWhileDriving : public Node {
   using Node::Node;
-  HeardCharacter judged(const HeardCharacter& character) const override { return character; }
-  void on_character(const HeardCharacter& character) override {
-    HeardCharacter heard = character;
+  UartCharacter judged(const UartCharacter& character) const override { return character; }
+  void on_character(const UartCharacter& character) override {
+    UartCharacter heard = character;
     heard.is_stop_missing = false;
     Node::on_character(heard);
   }
@@ -190,7 +190,7 @@ class GivesUpOnCollision : public Node {
     driving_until_ = start + 4 * valve_bus::character_time(rules());
     Node::transmit(octets, start);
   }
-  void on_character(const HeardCharacter& character) override {
+  void on_character(const UartCharacter& character) override {
     if (character.start < driving_until_) has_given_up_ = true;
     Node::on_character(character);
   }

@@ -25,7 +25,7 @@ class SpeaksAtPowerUp : public Node {
 
 class KeepsOctetsOverPowerLoss : public Node {
   using Node::Node;
-  void on_character(const HeardCharacter& character) override {
+  void on_character(const UartCharacter& character) override {
     Node::on_character(character);
     kept_.push_back(character);
   }
@@ -35,7 +35,7 @@ class KeepsOctetsOverPowerLoss : public Node {
   }
   void on_power_up(Time now) override {
     const auto kept = std::exchange(kept_, {});
-    for (HeardCharacter character : kept) {
+    for (UartCharacter character : kept) {
       // As if the time without power had not been.
       const Duration lost = now - kept.back().busy_until;
       character.start += lost;
@@ -43,7 +43,7 @@ class KeepsOctetsOverPowerLoss : public Node {
       Node::on_character(character);
     }
   }
-  std::vector<HeardCharacter> kept_;
+  std::vector<UartCharacter> kept_;
 };
 
 class KeepsValvesOverPowerLoss : public Node {

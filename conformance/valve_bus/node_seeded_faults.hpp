@@ -13,9 +13,9 @@ namespace fieldproof::conformance::node_seeded_faults {
 
 using kernel::Duration;
 using kernel::Time;
+using line::UartCharacter;
 using valve_bus::CollectedFrame;
 using valve_bus::Command;
-using valve_bus::HeardCharacter;
 using valve_bus::Node;
 using valve_bus::Response;
 using Octets = std::span<const std::uint8_t>;

@@ -9,7 +9,7 @@ namespace fieldproof::conformance::node_seeded_faults {
 
 class ValvesBeforeCheck : public Node {
   using Node::Node;
-  void on_character(const HeardCharacter& character) override {
+  void on_character(const UartCharacter& character) override {
     Node::on_character(character);
     const CollectedFrame& frame = collector().frame();
     const bool is_own_write = frame.octets[0] == address() && frame.octets[1] == rules().write_command;

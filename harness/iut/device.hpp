@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/kernel/time.hpp"
+#include "harness/line/uart.hpp"
 #include "harness/line/waveform.hpp"
 
 // An implementation under test as the bench calls it, whatever it is: a shared library, a process, a peer
@@ -34,15 +35,8 @@ constexpr std::string_view name(UnitKind kind) {
   return kind == UnitKind::levels ? "levels" : "telegrams";
 }
 
-struct Character {
-  kernel::Time start{};       // of its start bit
-  kernel::Time busy_until{};  // end of its last stop bit, or of the low line behind it
-  std::uint16_t data = 0;     // with a ninth bit, where the format has one
-  bool is_parity_wrong = false;
-  bool is_stop_missing = false;
-
-  friend bool operator==(const Character&, const Character&) = default;
-};
+// A telegram travels as one, too.
+using Character = line::UartCharacter;
 
 // A word of the process side, by its number within the role.
 using Item = std::uint16_t;

@@ -27,9 +27,9 @@ bool LinePlayer::start(const CaseBegin& begin) {
 
 void LinePlayer::set_line(const CaseBegin& begin) {
   uart_ = make_uart_(begin);
-  code_ = std::make_unique<line::CharacterCode>(uart_.on_wire);
-  receiver_ = std::make_unique<line::CharacterReceiver>(uart_.on_wire, uart_.bit_rate);
-  line_.set(uart_.bit_rate, uart_.of_uart);
+  code_ = std::make_unique<line::CharacterCode>(uart_.format);
+  receiver_ = std::make_unique<line::CharacterReceiver>(uart_.format, uart_.bit_rate);
+  line_.set(uart_.bit_rate, uart_.eight_bit_format());
 }
 
 void LinePlayer::look_at_inputs() {
@@ -118,7 +118,7 @@ void LinePlayer::receive(const Arrival& arrival) {
   kernel::Time start = std::max(arrival.stamp.latest - length, now_ - character);
   for (const std::uint8_t octet : arrival.octets) {
     line::Waveform wave;
-    wave.rate = uart_.bit_rate;
+    wave.rate = uart_.bit_rate * uart_.levels_per_bit();
     wave.start = start;
     code_->append(wave.levels, uart_.character_of(octet));
     const kernel::Time end = wave.end();

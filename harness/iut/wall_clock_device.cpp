@@ -56,7 +56,7 @@ void WallClockDevice::set_line(const UartLine& uart) {
   // With an upper channel it is known how much is on its way, and waited for.
   margin_ = kMarginCharacters * character_ + 2 * step_ +
             (attachment_.upper == nullptr ? 2 : 0) * attachment_.latency;
-  attachment_.line->set(uart_.bit_rate, uart_.of_uart);
+  attachment_.line->set(uart_.bit_rate, uart_.eight_bit_format());
   attachment_.line->look_every(
       std::clamp(character_ / 8, 20 * kernel::kMicrosecond, 200 * kernel::kMicrosecond));
 }
@@ -91,14 +91,14 @@ void WallClockDevice::set_power(bool is_on, kernel::Time now) {
 kernel::Time WallClockDevice::next_time() const {
   if (bench_ == nullptr || !is_supplied_) return kernel::kNever;
   kernel::Time next = next_pump_;
-  if (!pending_.empty()) next = std::min(next, sent_until_ + uart_.end_notice);
+  if (!pending_.empty()) next = std::min(next, sent_until_ + uart_.character_notice());
   if (!writes_.empty()) next = std::min(next, writes_.front().when);
   return next;
 }
 
 void WallClockDevice::on_time(kernel::Time now) {
   now_ = now;
-  if (!pending_.empty() && now >= sent_until_ + uart_.end_notice) flush(now);
+  if (!pending_.empty() && now >= sent_until_ + uart_.character_notice()) flush(now);
   pump(now);
   write_due(now);
   next_pump_ = now + step_;
@@ -256,7 +256,7 @@ void WallClockDevice::place_arrived(kernel::Time now) {
     kernel::Time earliest = arrival.stamp.earliest - attachment_.latency - length;
     const bool goes_on = instant_of(earliest) <= placed_until_;
     if (goes_on) earliest = wall_of(placed_until_);
-    const kernel::Duration bit = kernel::level_time(kernel::kStart, 1, uart_.bit_rate) - kernel::kStart;
+    const kernel::Duration bit = uart_.bits(1);
     const kernel::Duration driver = goes_on ? kernel::Duration{} : bit;
     transmission.start = earliest;
     transmission.driver_on = earliest - driver;

@@ -62,7 +62,10 @@ class CharacterCode {
 
   const CharacterFormat& format() const { return format_; }
   // Levels per bit that `append` writes: 1, with one and a half stop bits 2.
-  unsigned levels_per_bit() const { return format_.stop_bits == StopBits::one_and_a_half ? 2 : 1; }
+  static unsigned levels_per_bit(const CharacterFormat& format) {
+    return format.stop_bits == StopBits::one_and_a_half ? 2 : 1;
+  }
+  unsigned levels_per_bit() const { return levels_per_bit(format_); }
   unsigned levels_per_character() const { return format_.half_bits() * levels_per_bit() / 2; }
 
   // Bits of `data` above the data bits are ignored.

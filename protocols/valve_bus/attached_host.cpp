@@ -28,7 +28,7 @@ AttachedHost::AttachedHost(iut::Attachment attachment, const HostConfiguration& 
     : rules_(configuration.rules),
       dip_(configuration.dip),
       attached_(std::move(attachment)),
-      line_(attached_, rules_) {
+      line_(attached_, uart(rules_)) {
   attached_.begin({case_id, seed, host_settings(configuration)}, *this);
 }
 
@@ -40,7 +40,7 @@ void AttachedHost::wire(segment::Port& line, HostApplication& application) {
 void AttachedHost::set_power(bool is_on, kernel::Time now) {
   const auto rates = dip_bit_rates();
   rules_.bit_rate = rates[dip_ % rates.size()];
-  line_.begin(rules_, now);
+  line_.begin(uart(rules_), now);
   attached_.set_power(is_on, now);
   line_.after_call(now);
 }

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "harness/iut/attached_uart.hpp"
 #include "harness/iut/served_station.hpp"
-#include "protocols/valve_bus/attached_line.hpp"
 #include "protocols/valve_bus/device.hpp"
 #include "protocols/valve_bus/host_settings.hpp"
 
@@ -70,7 +70,7 @@ class AttachedHost final : public HostDevice, private iut::Bench {
   Rules rules_;
   unsigned dip_;
   iut::AttachedCase attached_;
-  AttachedLine line_;
+  iut::AttachedUart line_;
   HostApplication* application_ = nullptr;
   std::size_t fifo_room_ = 0;
   bool has_overflowed_ = false;

@@ -8,7 +8,7 @@ namespace fieldproof::valve_bus {
 
 AttachedNode::AttachedNode(iut::Attachment attachment, const NodeConfiguration& configuration,
                            const std::string& case_id, std::uint64_t seed)
-    : rules_(configuration.rules), attached_(std::move(attachment)), line_(attached_, rules_) {
+    : rules_(configuration.rules), attached_(std::move(attachment)), line_(attached_, uart(rules_)) {
   attached_.begin({case_id, seed, node_settings(configuration)}, *this);
 }
 
@@ -18,7 +18,7 @@ void AttachedNode::wire(segment::Port& line, NodeBoards& boards) {
 }
 
 void AttachedNode::set_power(bool is_on, kernel::Time now) {
-  line_.begin(rules_, now);
+  line_.begin(uart(rules_), now);
   attached_.set_power(is_on, now);
   line_.after_call(now);
 }

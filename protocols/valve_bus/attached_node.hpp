@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "harness/iut/attached_uart.hpp"
 #include "harness/iut/served_station.hpp"
-#include "protocols/valve_bus/attached_line.hpp"
 #include "protocols/valve_bus/device.hpp"
 #include "protocols/valve_bus/node_settings.hpp"
 
@@ -54,7 +54,7 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
 
   Rules rules_;
   iut::AttachedCase attached_;
-  AttachedLine line_;
+  iut::AttachedUart line_;
   NodeBoards* boards_ = nullptr;
 };
 

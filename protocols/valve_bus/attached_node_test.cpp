@@ -196,7 +196,7 @@ TEST_F(AttachedNodeTest, TransmissionHasTheDriverAroundItsCharacters) {
 // What is on the line, whatever the pieces.
 struct OnTheLine {
   std::vector<std::pair<kernel::Time, kernel::Time>> driven;  // without a gap
-  std::vector<HeardCharacter> heard;
+  std::vector<line::UartCharacter> heard;
 };
 
 OnTheLine on_the_line(const std::vector<line::Waveform>& waves, const Rules& rules) {
@@ -207,7 +207,7 @@ OnTheLine on_the_line(const std::vector<line::Waveform>& waves, const Rules& rul
         !all.driven.empty() && std::chrono::abs(wave.start - all.driven.back().second) <= kernel::kNanosecond;
     if (!follows) all.driven.emplace_back(wave.start, wave.end());
     all.driven.back().second = wave.end();
-    codec.hear(wave, [&](const HeardCharacter& one) { all.heard.push_back(one); });
+    codec.decode(wave, [&](const line::UartCharacter& one) { all.heard.push_back(one); });
   }
   return all;
 }
@@ -448,7 +448,7 @@ class InCharacters final : public iut::Device, private iut::Bench {
     if (driven_.empty()) return;
     bench_->set_driver(0, true, driven_.front().start);
     for (const line::Waveform& wave : driven_) {
-      codec_.hear(wave, [&](const HeardCharacter& one) {
+      codec_.decode(wave, [&](const line::UartCharacter& one) {
         bench_->send(0, one.start, std::array<std::uint16_t, 1>{one.data});
       });
     }

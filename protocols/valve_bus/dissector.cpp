@@ -7,7 +7,7 @@
 namespace fieldproof::valve_bus {
 namespace {
 
-std::string character_text(const HeardCharacter& character) {
+std::string character_text(const line::UartCharacter& character) {
   return fmt::format("{:02X}{}", character.octet(), character.is_good() ? "" : "!");
 }
 
@@ -19,7 +19,7 @@ class FrameTeller final : public trace::Teller {
 
   trace::Decoded tell(const line::Waveform& wave) override {
     trace::Decoded told;
-    codec_.hear(wave, [&](const HeardCharacter& character) {
+    codec_.decode(wave, [&](const line::UartCharacter& character) {
       if (collector_.ends_at() <= character.start) collector_.clear();
       collector_.add(character);
       if (!told.text.empty()) told.text += ' ';
@@ -50,7 +50,7 @@ class FrameTeller final : public trace::Teller {
 
 std::string FrameDissector::brief(const line::Waveform& wave) const {
   std::string text;
-  CharacterCodec(rules_).hear(wave, [&](const HeardCharacter& character) {
+  CharacterCodec(rules_).decode(wave, [&](const line::UartCharacter& character) {
     if (!text.empty()) text += ' ';
     text += character_text(character);
   });

@@ -115,7 +115,7 @@ std::optional<Host::Exchange> Host::next_exchange(kernel::Time now) {
 void Host::receive(segment::PortIndex, const line::Waveform& reception) {
   if (state_ == HostState::off) return;
   const kernel::Time now = reception.end();
-  codec_.hear(reception, [&](const HeardCharacter& character) {
+  codec_.decode(reception, [&](const line::UartCharacter& character) {
     if (is_own(character)) return;
     if (collector_.ends_at() <= character.start) end_frame(now);
     on_character(judged(character));

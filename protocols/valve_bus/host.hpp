@@ -102,9 +102,9 @@ class Host : public HostDevice {
   virtual kernel::Duration late_span() const;
 
   // ---- decisions: what is heard ----
-  virtual HeardCharacter judged(const HeardCharacter& character) const { return character; }
-  virtual bool is_own(const HeardCharacter& character) const { return character.start < driving_until_; }
-  virtual void on_character(const HeardCharacter& character) { collector_.add(character); }
+  virtual line::UartCharacter judged(const line::UartCharacter& character) const { return character; }
+  virtual bool is_own(const line::UartCharacter& character) const { return character.start < driving_until_; }
+  virtual void on_character(const line::UartCharacter& character) { collector_.add(character); }
   virtual kernel::Duration shortest_turnaround_time() const { return longest_gap(rules_); }
   virtual std::optional<Response> response_in(const CollectedFrame& frame) const;
   virtual bool fits(std::span<const std::uint8_t> octets) const;

@@ -61,7 +61,7 @@ class HostTest : public testing::Test, private segment::Station, private HostApp
 
  private:
   void receive(segment::PortIndex, const line::Waveform& wave) override {
-    codec_.hear(wave, [&](const HeardCharacter& character) {
+    codec_.decode(wave, [&](const line::UartCharacter& character) {
       if (octets_.empty()) first_start_bit_ = character.start;
       octets_.push_back(character.octet());
       heard_until_ = character.busy_until;

@@ -41,16 +41,16 @@ void Node::set_power(bool is_on, kernel::Time now) {
 void Node::receive(segment::PortIndex, const line::Waveform& reception) {
   if (state_ == NodeState::off) return;
   const kernel::Time now = reception.end();
-  codec_.hear(reception, [&](const HeardCharacter& character) {
+  codec_.decode(reception, [&](const line::UartCharacter& character) {
     if (collector_.ends_at() <= character.start) end_frame(now);
-    HeardCharacter heard = judged(character);
+    line::UartCharacter heard = judged(character);
     // The receiver is off: what comes now is not heard, so what it belongs to is not whole.
     if (heard.start < driving_until_) heard.is_stop_missing = true;
     on_character(heard);
   });
 }
 
-void Node::on_character(const HeardCharacter& character) {
+void Node::on_character(const line::UartCharacter& character) {
   answer_.reset();
   collector_.add(character);
   state_ = NodeState::collecting;

@@ -49,8 +49,8 @@ class Node : public NodeDevice {
 
   // ---- decisions ----
   virtual unsigned address_of(unsigned tens, unsigned units) const;
-  virtual HeardCharacter judged(const HeardCharacter& character) const { return character; }
-  virtual void on_character(const HeardCharacter& character);
+  virtual line::UartCharacter judged(const line::UartCharacter& character) const { return character; }
+  virtual void on_character(const line::UartCharacter& character);
   virtual void on_frame(const CollectedFrame& frame, kernel::Time now);
   virtual bool is_meant(std::uint8_t id) const;
   virtual bool fits(std::span<const std::uint8_t> octets) const;

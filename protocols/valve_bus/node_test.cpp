@@ -64,7 +64,7 @@ class NodeTest : public testing::Test, private segment::Station, private segment
  private:
   void receive(segment::PortIndex, const line::Waveform& wave) override {
     heard_.push_back(wave);
-    codec_.hear(wave, [&](const HeardCharacter& character) {
+    codec_.decode(wave, [&](const line::UartCharacter& character) {
       start_bits_.push_back(character.start);
       answer_.push_back(character.octet());
     });

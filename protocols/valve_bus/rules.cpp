@@ -11,8 +11,9 @@ line::CharacterFormat character_format(const Rules& rules) {
   return format;
 }
 
-unsigned written_character(const Rules& rules, std::uint8_t octet) {
-  return rules.characters == CharacterProfile::ninth_bit_one ? 0x100U | octet : octet;
+line::Uart uart(const Rules& rules) {
+  const bool has_ninth_bit = rules.characters == CharacterProfile::ninth_bit_one;
+  return {rules.bit_rate, character_format(rules), static_cast<std::uint16_t>(has_ninth_bit ? 0x100 : 0)};
 }
 
 std::string_view text_of(CharacterProfile profile) {
@@ -25,20 +26,6 @@ std::string_view text_of(CharacterProfile profile) {
       return "P2";
   }
   return "";
-}
-
-kernel::Duration half_characters(const Rules& rules, unsigned count) {
-  // Quarter bits: half a character of eleven bits is no whole number of half bits times two.
-  return kernel::levels_duration(std::int64_t{count} * character_format(rules).half_bits(),
-                                 4 * rules.bit_rate);
-}
-
-kernel::Duration bits(const Rules& rules, std::int64_t count) {
-  return kernel::levels_duration(count, rules.bit_rate);
-}
-
-kernel::Duration character_notice(const Rules& rules) {
-  return character_time(rules) + bits(rules, 1);
 }
 
 kernel::Duration turnaround_time_span(const Rules& rules) {

@@ -5,7 +5,8 @@
 #include <string_view>
 
 #include "harness/kernel/time.hpp"
-#include "harness/line/character.hpp"
+#include "harness/line/gap_frame.hpp"
+#include "harness/line/uart.hpp"
 
 // Every number and every genuine option of the RS-485 bus for pneumatic valves, one member each, with source
 // and standing in its row of `kRulesTable`. A station takes its numbers from here and from nowhere else, so a
@@ -69,15 +70,17 @@ struct Rules {
 
 // What a receiver takes for a character. Of P0 the ninth bit is data bit 8.
 line::CharacterFormat character_format(const Rules& rules);
-// A character as the line code writes it: with the ninth bit, where there is one.
-unsigned written_character(const Rules& rules, std::uint8_t octet);
+// The line and its times. Of P0 the ninth bit of what is sent is 1.
+line::Uart uart(const Rules& rules);
 // "P0", "P1", "P2".
 std::string_view text_of(CharacterProfile profile);
 
-// `count` half characters, bits.
-kernel::Duration half_characters(const Rules& rules, unsigned count);
-kernel::Duration bits(const Rules& rules, std::int64_t count);
-
+inline kernel::Duration half_characters(const Rules& rules, unsigned count) {
+  return uart(rules).half_characters(count);
+}
+inline kernel::Duration bits(const Rules& rules, std::int64_t count) {
+  return uart(rules).bits(count);
+}
 inline kernel::Duration character_time(const Rules& rules) {
   return half_characters(rules, 2);
 }
@@ -88,9 +91,12 @@ inline kernel::Duration delimiter(const Rules& rules) {
   return half_characters(rules, rules.delimiter_half_characters);
 }
 
-// A receiver learns of a character when it is over, so of silence it is only sure a character later; a bit
-// more is for a sender whose clock is slow.
-kernel::Duration character_notice(const Rules& rules);
+inline kernel::Duration character_notice(const Rules& rules) {
+  return uart(rules).character_notice();
+}
+inline line::InterCharacterGaps gaps(const Rules& rules) {
+  return {longest_gap(rules), delimiter(rules), character_notice(rules)};
+}
 // What a node may take after the delimiter, to begin its response and to move its valves: the span and the
 // limit of the rules, or twice the notice at bit rates at which that is longer.
 kernel::Duration turnaround_time_span(const Rules& rules);

@@ -318,7 +318,7 @@ RunningNetwork::HostDrives::HostDrives(RunningNetwork& network)
 // A frame is known to have ended when the next one begins, or when somebody asks. What the host sends has
 // left its FIFO: there is room for the PC.
 void RunningNetwork::HostDrives::on_wave(const line::Waveform& wave) {
-  codec_.hear(wave, [this](const HeardCharacter& character) {
+  codec_.decode(wave, [this](const line::UartCharacter& character) {
     if (character.start >= collector_.ends_at()) take_frame();
     collector_.add(character);
     if (collector_.frame().count == kCommandOctets) take_frame();

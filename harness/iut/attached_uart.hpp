@@ -7,21 +7,23 @@
 #include <vector>
 
 #include "harness/iut/attached_case.hpp"
-#include "protocols/valve_bus/codec.hpp"
-#include "protocols/valve_bus/line_driver.hpp"
+#include "harness/iut/enabled_driver.hpp"
+#include "harness/line/uart.hpp"
+#include "harness/line/uart_codec.hpp"
+#include "harness/segment/station.hpp"
 
-// The line of the valve bus as an implementation outside hears and drives it, whatever its role: port 0, in
-// characters that are over, or in levels.
-namespace fieldproof::valve_bus {
+// A line of UART characters as an implementation outside receives and drives it, whatever its role: port 0,
+// in characters that are over, or in levels.
+namespace fieldproof::iut {
 
-class AttachedLine {
+class AttachedUart {
  public:
-  // Throws kernel::Error for an implementation that announces what the valve bus does not have.
-  AttachedLine(iut::AttachedCase& attached, const Rules& rules);
+  // Throws kernel::Error for an implementation that announces telegrams, which such a line does not have.
+  AttachedUart(AttachedCase& attached, const line::Uart& uart);
 
   void wire(segment::Port& line) { line_ = &line; }
-  // Nothing has been driven before `now`, and characters come as these rules say.
-  void begin(const Rules& rules, kernel::Time now);
+  // Nothing has been driven before `now`, and characters are these.
+  void begin(const line::Uart& uart, kernel::Time now);
 
   void receive(segment::PortIndex port, const line::Waveform& reception);
   void on_time(kernel::Time now);
@@ -32,7 +34,7 @@ class AttachedLine {
   void after_call(kernel::Time now) {
     if (driver_.has_work()) put(now);
   }
-  // Throws iut::Misbehaviour where its driver is on for no reason.
+  // Throws Misbehaviour where its driver is on for no reason.
   void end();
 
   // What the implementation drives.
@@ -41,28 +43,28 @@ class AttachedLine {
   void transmit(unsigned port, line::Waveform& wave);
 
   // Of all that it does from now on; kept with what it drives.
-  void set_uncertainty(iut::TimingUncertainty uncertainty) { uncertainty_ = uncertainty; }
-  iut::TimingUncertainty uncertainty() const { return uncertainty_; }
-  iut::TimingUncertainty uncertainty_of(kernel::Time driver_on) const;
+  void set_uncertainty(TimingUncertainty uncertainty) { uncertainty_ = uncertainty; }
+  TimingUncertainty uncertainty() const { return uncertainty_; }
+  TimingUncertainty uncertainty_of(kernel::Time driver_on) const;
 
  private:
   struct Known {
     kernel::Time driver_on;
-    iut::TimingUncertainty uncertainty;
+    TimingUncertainty uncertainty;
   };
 
   void put(kernel::Time now);
   void expect_exact(const line::Waveform& reception) const;
   void expect_port(unsigned port) const;
 
-  iut::AttachedCase& attached_;
-  Rules rules_;
-  CharacterCodec codec_;
-  LineDriver driver_;
+  AttachedCase& attached_;
+  line::Uart uart_;
+  line::UartCodec codec_;
+  EnabledDriver driver_;
   segment::Port* line_ = nullptr;
-  std::vector<iut::Character> characters_;
-  iut::TimingUncertainty uncertainty_;
+  std::vector<Character> characters_;
+  TimingUncertainty uncertainty_;
   std::deque<Known> known_;  // the last ones
 };
 
-}  // namespace fieldproof::valve_bus
+}  // namespace fieldproof::iut
