@@ -21,7 +21,16 @@ struct BenchCase {
   TestCase test_case;
   std::function<void(Bench&, CaseJudge&)> procedure;
   Needs needs{};
+  // In which an IUT drives when it is asked, where those of the case do not let it; absent: they do.
+  std::optional<Needs> asked_with{};
 };
+
+// The same case, asked with these.
+template <typename Case>
+Case asked_with(decltype(Case::needs) others, Case one) {
+  one.asked_with = std::move(others);
+  return one;
+}
 
 // Of cases that take the bench as it is.
 struct NoNeeds {};
@@ -59,6 +68,32 @@ judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting
   result.virtual_time = bench->segment().now() - kernel::kStart;
   if constexpr (requires { bench->planned_hits(); }) result.planned_hits = bench->planned_hits();
   return result;
+}
+
+// A pass in which the IUT has driven nothing rests on this: asked on a bench of its own, it drives. Without
+// that silence proves nothing, and the case is inconclusive. Only for a bench that cannot ask, too.
+template <typename Bench, typename Needs, typename Setting>
+void require_driven(const BenchCase<Bench, Needs>& one, Setting setting, judge::CaseResult& result) {
+  if (result.verdict != judge::Verdict::pass || result.has_driven) return;
+  setting.make_recorder = nullptr;
+  if constexpr (requires { setting.plan = {}; }) setting.plan = {};
+  std::optional<Bench> bench;
+  CaseJudge judge(one.test_case);
+  judge.use_clock([&] { return bench ? bench->segment().now() : kernel::kStart; });
+  const judge::CaseResult asked = judge.run_procedure([&](CaseJudge& j) {
+    bench.emplace(one.asked_with.value_or(one.needs), setting);
+    if constexpr (requires { bench->ask(); }) bench->ask();
+    if (!bench->line_watch().has_seen()) {
+      j.inconclusive("precondition_not_met", {{"an implementation that drives its line when it is asked"},
+                                              "it has driven nothing in the case, nor when it was asked"});
+    }
+    bench->finish();
+  });
+  if (asked.verdict == judge::Verdict::pass) return;
+  result.verdict = asked.verdict;
+  result.reason = asked.reason;
+  result.reference = asked.reference;
+  result.findings = asked.findings;
 }
 
 // The cases of the chapters, each resting on these details too.

@@ -86,16 +86,17 @@ RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
     if (one.test_case.role() == role.name) row.cases.push_back(one.test_case);
   if (role.pics_items != nullptr) row.pics_items = role.pics_items();
   row.settings = role.settings;
-  const auto run_case = [role, play](const Case& one, RunningCase& run) {
+  const auto run_case = [role, play](const Case& one, RunningCase& run, bool has_to_drive) {
     Setting setting = role.setting(run);
     play(setting, run);
     Outcome outcome;
     outcome.result = role.run(one, setting);
+    if (has_to_drive) require_driven(one, setting, outcome.result);
     run.keep(outcome);
     return outcome;
   };
   row.run = [role, run_case](const TestCase& test_case, RunningCase& run) {
-    return run_case(role.find(test_case), run);
+    return run_case(role.find(test_case), run, true);
   };
   row.check = [role](const TestCase& test_case, RunningCase& run) {
     const Setting setting = role.setting(run);
@@ -114,7 +115,8 @@ RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
       one.procedure = [&sequence, run_sequence = role.sequences->run](auto& bench, CaseJudge& judge) {
         run_sequence(sequence, bench, judge);
       };
-      return run_case(one, run);
+      // Who searches counts the silent ones.
+      return run_case(one, run, false);
     };
   }
   return row;

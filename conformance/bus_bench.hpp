@@ -21,7 +21,7 @@ class BusBench : public LineBench, private segment::Tap {
   BusBench(const std::string& role, const Configuration& configuration, const Setting& setting,
            segment::ContentionRule rule = segment::ContentionRule::noise)
       : LineBench(setting.seed, setting.volume, setting.stresses,
-                  kernel::levels_duration(1, configuration.rules.bit_rate), rule),
+                  LineWatch(kernel::levels_duration(1, configuration.rules.bit_rate)), rule),
         configuration_(configuration),
         device_(setting.make_device(configuration)) {
     attach_iut(*device_, role);

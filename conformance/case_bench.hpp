@@ -71,10 +71,8 @@ class CaseBench {
   const LineWatch& line_watch() const { return line_watch_; }
 
  protected:
-  // The shortest transmission of the protocol, see LineWatch.
-  CaseBench(std::uint64_t seed, Volume volume, std::span<const fault::Stress> stresses,
-            kernel::Duration shortest_transmission)
-      : volume_(volume), random_(seed), line_watch_(shortest_transmission), stressed_(stresses) {}
+  CaseBench(std::uint64_t seed, Volume volume, std::span<const fault::Stress> stresses, LineWatch line_watch)
+      : volume_(volume), random_(seed), line_watch_(std::move(line_watch)), stressed_(stresses) {}
   ~CaseBench() = default;
 
   template <typename Setting, typename Rules>

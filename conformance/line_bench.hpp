@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "conformance/case_bench.hpp"
 #include "harness/segment/medium.hpp"
@@ -13,10 +14,9 @@ namespace fieldproof::conformance {
 class LineBench : public CaseBench, private segment::Station {
  protected:
   // A bit on the line lasts as its rate says; levels of a plan are counted at it.
-  LineBench(std::uint64_t seed, Volume volume, std::span<const fault::Stress> stresses,
-            kernel::Duration shortest_transmission,
+  LineBench(std::uint64_t seed, Volume volume, std::span<const fault::Stress> stresses, LineWatch line_watch,
             segment::ContentionRule rule = segment::ContentionRule::noise)
-      : CaseBench(seed, volume, stresses, shortest_transmission),
+      : CaseBench(seed, volume, stresses, std::move(line_watch)),
         line_(segment(), "line", rule, random()),
         tester_seat_(segment().attach(*this, "tester")) {}
   ~LineBench() override = default;

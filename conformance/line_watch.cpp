@@ -11,7 +11,9 @@ constexpr kernel::Duration kWindow = 10 * kernel::kMillisecond;
 
 }  // namespace
 
-LineWatch::LineWatch(kernel::Duration shortest_transmission) {
+LineWatch::LineWatch(kernel::Duration shortest_transmission,
+                     std::optional<kernel::Duration> longest_transmission) {
+  rules_.longest_drive = longest_transmission;
   rules_.window = kWindow;
   rules_.most_transmissions = static_cast<std::size_t>(kWindow / shortest_transmission) + 1;
 }
@@ -34,6 +36,12 @@ void LineWatch::judge(CaseJudge& judge) const {
                                rules_.most_transmissions, kernel::describe(rules_.window))},
                   fmt::format("one more in {}", kernel::describe(first.measured)),
                   first.time});
+    }
+    if (first.kind == segment::ViolationKind::long_drive) {
+      judge.fail("driver_held", {{fmt::format("on the line to {}, the driver is off after {} at most",
+                                              place.line, kernel::describe(*rules_.longest_drive))},
+                                 fmt::format("on for {}", kernel::describe(first.measured)),
+                                 first.time});
     }
     judge.fail("transmissions_overlap",
                {{fmt::format("on the line to {}, each transmission begins when the one before has ended",

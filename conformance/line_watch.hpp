@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 
 #include "conformance/judging.hpp"
@@ -16,7 +17,10 @@ class LineWatch {
  public:
   // `shortest_transmission` is that of the protocol: more of them than fit a window are babble, even where
   // each is too short to overlap the next.
-  explicit LineWatch(kernel::Duration shortest_transmission);
+  // Who drives longer than `longest_transmission` without a pause holds its driver on, whatever it drives;
+  // absent: a line of its own may be driven for ever.
+  explicit LineWatch(kernel::Duration shortest_transmission,
+                     std::optional<kernel::Duration> longest_transmission = {});
 
   // What is driven into the line from now on: a link, or a station's place on a bus. It must outlive the
   // segment's last run.
@@ -25,8 +29,8 @@ class LineWatch {
     line.tap_driven(add(line.name(), trace, line.trace_channel()));
   }
 
-  // Fails the case at the first violation, with `transmissions_overlap` or `station_babbles`. For the end of
-  // a procedure.
+  // Fails the case at the first violation, with `transmissions_overlap`, `station_babbles` or `driver_held`.
+  // For the end of a procedure.
   void judge(CaseJudge& judge) const;
   // Whether anything was driven at all.
   bool has_seen() const;

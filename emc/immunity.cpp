@@ -124,6 +124,7 @@ class Run final : private network::ExchangeWatcher {
 
   void restart_if_stopped() {
     if (network_.state() != State::stopped) return;
+    if (result_.stops == 0) why_stopped_ = network_.complaint();
     ++result_.stops;
     start();
   }
@@ -213,8 +214,10 @@ class Run final : private network::ExchangeWatcher {
       return because(Criterion::d, "not all words arrived after a start (least_bring_up, limits_waited)");
     }
     if (result_.stops > 0) {
-      return because(Criterion::c, fmt::format("it stopped {} times: no exchange for silence_cycles = {}",
-                                               result_.stops, acceptance_.silence_cycles));
+      const std::string why = why_stopped_.empty() ? fmt::format("no exchange for silence_cycles = {}",
+                                                                 acceptance_.silence_cycles)
+                                                   : why_stopped_;
+      return because(Criterion::c, fmt::format("it stopped {} times: {}", result_.stops, why));
     }
     if (!result_.recovered_by_itself) {
       return because(Criterion::c,
@@ -247,6 +250,7 @@ class Run final : private network::ExchangeWatcher {
   bool is_exchanging_ = false;  // a served exchange of data since the last start, seen on the line as well
   bool is_recovering_ = false;
   std::uint64_t recovery_exchanges_ = 0;
+  std::string why_stopped_;  // the first time, where the network can say so
   std::uint64_t bad_run_ = 0;
   std::uint64_t changed_before_ = 0;
   std::vector<std::optional<Time>> last_begin_;  // by kind of cycle

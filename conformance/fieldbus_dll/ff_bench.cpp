@@ -144,4 +144,9 @@ Octets FfBench::activation(std::uint8_t node) const {
              {static_cast<std::uint8_t>(fieldbus_dll::SpduKind::activation)});
 }
 
+void FfBench::ask() {
+  send({rules().codes.pn, node()});
+  next();
+}
+
 }  // namespace fieldproof::conformance

@@ -81,6 +81,8 @@ class FfBench final : public LinkBench {
              bool is_final = false) const;
   Octets dt3(fieldbus_dll::FfAddress from, const Octets& data) const;  // final
   Octets activation(std::uint8_t node) const;
+  // A probe for the IUT; a scheduler drives without it.
+  void ask();
 
   // What the tester says V(MID) after a DLPDU of the IUT, or later; nothing: silence.
   struct Reply {

@@ -138,7 +138,13 @@ void expect_taken_back(FfScene& scene) {
 // In the middle of a silence of the IUT's own.
 void serve_until_probe(FfScene& scene) {
   const kernel::Time latest = scene.bench.now() + scene.bench.octets(2'000);
-  while (const auto one = scene.bench.next(latest)) {
+  for (;;) {
+    const auto one = scene.bench.next(latest);
+    if (!one) {
+      scene.judge.inconclusive(
+          "precondition_not_met",
+          {{"a scheduler that probes, before another takes over"}, "it has stopped by itself"});
+    }
     if (is_of(*one, scene.bench.rules().codes.pn)) break;
     scene.bench.answer_one(*one);
   }

@@ -93,19 +93,21 @@ std::vector<FfCase> ff_probe_cases() {
             activation(), silence("talks_behind_answer", "an activation is not answered"), long_pt,
             used({1}, {"not_activated", "sent_twice"})}},
           {.is_live = false}),
-      on_chart(must("fieldbus_dll/ff_device/probe/impossible_rules_are_refused", "FF-36",
-                    "V(MID) is at most (V(MRD) - 1) x V(ST).", vendors("range of V(MID)"),
-                    {{"impossible_rules_taken", "impossible_rules_taken"}}),
-               {{},
-                {require(
-                     "a station with V(MID) an octet above (V(MRD) - 1) x V(ST) does not start",
-                     [](FfScene& scene) { return !scene.bench.has_started(); }, "impossible_rules_taken"),
-                 wait(50), pn(), silence("impossible_rules_taken", "the station has not started")}},
-               {.change =
-                    [](fieldbus_dll::FfConfiguration& configuration) {
-                      configuration.rules.link.inter_pdu_delay_octets = 25;
-                    },
-                .is_live = false}),
+      asked_with(
+          {.is_live = false},
+          on_chart(must("fieldbus_dll/ff_device/probe/impossible_rules_are_refused", "FF-36",
+                        "V(MID) is at most (V(MRD) - 1) x V(ST).", vendors("range of V(MID)"),
+                        {{"impossible_rules_taken", "impossible_rules_taken"}}),
+                   {{},
+                    {require(
+                         "a station with V(MID) an octet above (V(MRD) - 1) x V(ST) does not start",
+                         [](FfScene& scene) { return !scene.bench.has_started(); }, "impossible_rules_taken"),
+                     wait(50), pn(), silence("impossible_rules_taken", "the station has not started")}},
+                   {.change =
+                        [](fieldbus_dll::FfConfiguration& configuration) {
+                          configuration.rules.link.inter_pdu_delay_octets = 25;
+                        },
+                    .is_live = false})),
   };
 }
 

@@ -51,6 +51,11 @@ Octets IsaBench::et(Priority least) const {
   return {control(rules().codes.et, least), address(), kScheduler};
 }
 
+void IsaBench::ask() {
+  send(et(Priority::time_available));
+  next();
+}
+
 Octets IsaBench::es(Priority least, unsigned duration) const {
   return {control(rules().codes.es, least), address(), kScheduler, static_cast<std::uint8_t>(duration >> 8),
           static_cast<std::uint8_t>(duration & 0xFF)};

@@ -79,6 +79,8 @@ class IsaBench final : public LinkBench {
     return static_cast<std::uint8_t>(code | static_cast<unsigned>(priority));
   }
   Octets et(Priority least) const;
+  // A token for the IUT, which it returns.
+  void ask();
   Octets es(Priority least, unsigned duration) const;
   Octets cd(Priority least) const;
   // A final DT to the IUT.

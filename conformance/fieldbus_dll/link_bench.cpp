@@ -15,11 +15,15 @@ std::span<const fault::Stress> stresses_at(std::int64_t bit_rate, const LinkStre
   return found->second;
 }
 
+// Octets of the longest DLPDU without its check, and more: nobody has to drive so long.
+constexpr std::size_t kLongestDlpdu = 300;
+
 }  // namespace
 
 LinkBench::LinkBench(const fieldbus_dll::LinkRules& link, std::uint64_t seed, Volume volume,
                      const LinkStresses* stresses)
-    : LineBench(seed, volume, stresses_at(link.bit_rate, stresses), fieldbus_dll::octets(link, 1)),
+    : LineBench(seed, volume, stresses_at(link.bit_rate, stresses),
+                LineWatch(fieldbus_dll::octets(link, 1), fieldbus_dll::frame_time(link, kLongestDlpdu))),
       link_(link),
       driven_(link.bit_rate),
       sent_(link.bit_rate),

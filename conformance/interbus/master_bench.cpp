@@ -23,7 +23,7 @@ std::vector<VirtualStation> paper_ring() {
 
 MasterBench::MasterBench(const NoNeeds&, const MasterSetting& setting)
     : CaseBench(setting.seed, setting.volume, setting.stresses,
-                interbus::shortest_telegram(interbus::Rules{})),
+                LineWatch(interbus::shortest_telegram(interbus::Rules{}))),
       make_master_(setting.make_device),
       pics_(setting.pics.value_or(judge::Pics{})) {
   start_recording(setting, rules_);

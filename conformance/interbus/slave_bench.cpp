@@ -66,7 +66,8 @@ SlaveBench::SlaveBench(const SlaveNeeds& needs, const SlaveSetting& setting)
     : SlaveBench(slave_network(needs, setting), setting) {}
 
 SlaveBench::SlaveBench(interbus::NetworkDescription network, const SlaveSetting& setting)
-    : CaseBench(setting.seed, setting.volume, setting.stresses, interbus::shortest_telegram(network.rules)),
+    : CaseBench(setting.seed, setting.volume, setting.stresses,
+                LineWatch(interbus::shortest_telegram(network.rules))),
       network_(std::move(network)),
       position_(setting.position),
       seat_(segment().attach(*this, "tester")),

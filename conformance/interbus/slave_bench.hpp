@@ -82,6 +82,7 @@ class SlaveBench final : public CaseBench, private segment::Station {
   // Opens the way to the IUT, whose interfaces stay closed, and identifies it: ID cycles, a status telegram.
   // Judges nothing.
   void bring_up();
+  void ask() { bring_up(); }
   void id_cycle(std::uint16_t control) { return id_cycle(control, {}); }
   // `after`: for stations after the IUT, the last one first.
   void id_cycle(std::uint16_t control, std::span<const std::uint16_t> behind);

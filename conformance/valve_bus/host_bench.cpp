@@ -31,10 +31,17 @@ std::string frame_text(const HostFrame& frame) {
   return text;
 }
 
-// At the highest rate of the switches.
-kernel::Duration shortest_character(const HostNeeds& needs, const judge::Pics& pics) {
-  const valve_bus::Rules rules = host_configuration(needs, pics).rules;
-  return kernel::levels_duration(character_format(rules).half_bits() / 2, valve_bus::dip_bit_rates().front());
+// Of a character at the highest rate of the switches, and of a command at the lowest, with a delimiter on
+// either side.
+LineWatch watch_of(const HostNeeds& needs, const judge::Pics& pics) {
+  valve_bus::Rules rules = host_configuration(needs, pics).rules;
+  const kernel::Duration shortest =
+      kernel::levels_duration(character_format(rules).half_bits() / 2, valve_bus::dip_bit_rates().front());
+  rules.bit_rate = std::ranges::min(valve_bus::dip_bit_rates());
+  const kernel::Duration command =
+      valve_bus::kCommandOctets * (character_time(rules) + longest_gap(rules)) +
+      valve_bus::bits(rules, std::int64_t{rules.driver_on_bits} + rules.driver_off_bits);
+  return LineWatch(shortest, command + 2 * delimiter(rules));
 }
 
 }  // namespace
@@ -69,7 +76,7 @@ HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting)
     : HostBench(needs, setting, setting.pics.value_or(judge::Pics{}).completed_by(declared_host())) {}
 
 HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting, judge::Pics pics)
-    : LineBench(setting.seed, setting.volume, setting.stresses, shortest_character(needs, pics)),
+    : LineBench(setting.seed, setting.volume, setting.stresses, watch_of(needs, pics)),
       pics_(std::move(pics)),
       configuration_(host_configuration(needs, pics_)),
       codec_(rules()),

@@ -30,6 +30,14 @@ std::unique_ptr<valve_bus::NodeDevice> made(const NodeSetting& setting,
   return std::make_unique<valve_bus::Node>(configuration);
 }
 
+// A driver may come on as soon as the command is over, and has to be off after the answer.
+LineWatch watch_of(const valve_bus::Rules& rules) {
+  const kernel::Duration answer =
+      valve_bus::kResponseOctets * (character_time(rules) + longest_gap(rules)) +
+      valve_bus::bits(rules, std::int64_t{rules.driver_on_bits} + rules.driver_off_bits);
+  return LineWatch(valve_bus::bits(rules, 1), delimiter(rules) + turnaround_time_span(rules) + answer);
+}
+
 }  // namespace
 
 NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& pics) {
@@ -46,7 +54,7 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting)
 
 NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting, judge::Pics pics)
     : LineBench(setting.seed, setting.volume, setting.stresses,
-                valve_bus::bits(node_configuration(needs, pics).rules, 1)),
+                watch_of(node_configuration(needs, pics).rules)),
       pics_(std::move(pics)),
       configuration_(node_configuration(needs, pics_)),
       distance_(needs.distance),
@@ -142,6 +150,11 @@ kernel::Time NodeBench::write(std::uint8_t data0, std::uint8_t data1) {
 kernel::Time NodeBench::read() {
   return send(valve_bus::Command{address(), static_cast<std::uint8_t>(rules().read_command), random_octet(),
                                  random_octet()});
+}
+
+void NodeBench::ask() {
+  read();
+  await_response_window();
 }
 
 void NodeBench::drive(line::Waveform& wave) {

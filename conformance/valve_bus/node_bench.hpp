@@ -91,6 +91,8 @@ class NodeBench final : public LineBench {
   // A valid command for the IUT.
   kernel::Time write(std::uint8_t data0, std::uint8_t data1);
   kernel::Time read();
+  // A read, and the time for its answer.
+  void ask();
   // As long as the IUT may take to act on what it has heard, and to have said it.
   void await_response_window() { wait(settling_); }
   // Silence after a write until the next frame may come: a delimiter, or the whole answer of a node that

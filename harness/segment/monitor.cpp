@@ -5,6 +5,15 @@
 #include "harness/kernel/check.hpp"
 
 namespace fieldproof::segment {
+namespace {
+
+bool has_change(const line::Levels& levels) {
+  for (std::size_t n = 1; n < levels.size(); ++n)
+    if (levels[n] != levels[0]) return true;
+  return false;
+}
+
+}  // namespace
 
 std::string_view text_of(ViolationKind kind) {
   switch (kind) {
@@ -37,6 +46,7 @@ void LineMonitor::on_wave(const line::Waveform& wave) {
     is_drive_told_ = false;
   }
   has_heard_ = true;
+  has_changed_ = has_changed_ || has_change(wave.levels);
   heard_until_ = std::max(heard_until_, end);
   if (rules_.longest_drive) check_drive(wave.start, end);
   if (rules_.most_transmissions > 0) check_number(wave.start);

@@ -63,7 +63,8 @@ class LineMonitor final : public Tap, public ContentionWatcher {
   // The first kKept violations, in the order in which they were seen.
   const std::vector<Violation>& violations() const { return violations_; }
   std::uint64_t count() const { return count_; }
-  bool has_seen() const { return has_heard_; }
+  // A transmission with a change of level: a driver that is on, and no more, says nothing.
+  bool has_seen() const { return has_changed_; }
 
  private:
   kernel::Time end_of(const line::Waveform& wave);
@@ -76,6 +77,7 @@ class LineMonitor final : public Tap, public ContentionWatcher {
   trace::Trace& trace_;
   trace::Channel place_;
   bool has_heard_ = false;
+  bool has_changed_ = false;
   kernel::Time heard_until_{};
   kernel::Time drive_since_{};
   bool is_drive_told_ = false;

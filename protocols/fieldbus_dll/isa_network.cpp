@@ -23,6 +23,14 @@ IsaRules rules_of(const LinkDescription& link) {
   return rules;
 }
 
+// Nobody but the scheduler drives before it has got a token, and who has no word gets none.
+std::string why_silent(const LinkDescription& link, std::uint8_t node) {
+  const auto has_word = [node](const DataDescription& item) { return item.from == node || item.to == node; };
+  if (node == link.masters.front() || std::ranges::any_of(link.data, has_word)) return {};
+  return "the schedule gives the token to who has a word to send, and no item of \"data\" is from it, or to "
+         "it";
+}
+
 }  // namespace
 
 IsaNetwork::IsaNetwork(const LinkDescription& description, std::uint64_t seed, const IsaStations& stations)
@@ -58,7 +66,8 @@ void IsaNetwork::add(std::uint8_t node, std::size_t position, const std::string&
         is_master ? std::make_unique<IsaLas>(configuration) : std::make_unique<IsaDle>(configuration);
   }
   station.user = std::make_unique<User>(*this, node);
-  station.device->wire(seat(*station.device, node, name, is_under_test), *station.user);
+  station.device->wire(seat(*station.device, node, name, is_under_test, why_silent(description(), node)),
+                       *station.user);
 }
 
 // One DU, the return of the token, and the silences in front of both.
@@ -79,13 +88,6 @@ std::vector<network::CycleKind> IsaNetwork::kinds() const {
 std::vector<network::ProtectedFrame> IsaNetwork::protected_frames() const {
   return {{"DU", "CRC-16/PROFIBUS", static_cast<unsigned>(8 * octets_on_line(IsaType::du, kDataOctets)),
            description().macrocycle / static_cast<std::int64_t>(description().data.size())}};
-}
-
-std::string IsaNetwork::complaint() const {
-  const std::string absent = LinkNetwork::complaint();
-  return absent.empty()
-             ? absent
-             : absent + "; the schedule gives the token to who has a word to send, and to nobody else";
 }
 
 void IsaNetwork::power_up(Time now) {

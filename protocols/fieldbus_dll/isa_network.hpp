@@ -27,7 +27,6 @@ class IsaNetwork final : public LinkNetwork {
   IsaNetwork(const LinkDescription& description, std::uint64_t seed, const IsaStations& stations = {});
 
   // A station without a token takes part by a word that it gets.
-  std::string complaint() const override;
   std::vector<network::ProtectedFrame> protected_frames() const override;
 
  private:

@@ -170,11 +170,12 @@ LinkNetwork::LinkNetwork(const LinkDescription& description, const LinkRules& ru
 }
 
 segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t node, const std::string& name,
-                                       bool is_under_test) {
+                                       bool is_under_test, const std::string& why_silent) {
   const std::size_t number = segment_.attach(station, name);
   segment::MediumPort& place = line_.attach(name + "/in", number, 0, {});
   place.sense_activity();
-  network::Attendance::Station* const attendance = is_under_test ? &attendance_.expect(name) : nullptr;
+  network::Attendance::Station* const attendance =
+      is_under_test ? &attendance_.expect(name, why_silent) : nullptr;
   if (attendance != nullptr) place.tap_driven(*attendance);
   seats_.push_back({&station, node, number, attendance});
   const bool is_exposed = !has(description_.not_exposed, node);
@@ -195,13 +196,14 @@ void LinkNetwork::refresh(std::uint8_t node) {
 
 void LinkNetwork::take_part(std::uint8_t node) {
   const auto seat = std::ranges::find(seats_, node, &Seat::node);
-  if (seat != seats_.end() && seat->attendance != nullptr) seat->attendance->take_part();
+  if (seat != seats_.end() && seat->attendance != nullptr) seat->attendance->take_part(segment_.now());
 }
 
 void LinkNetwork::start() {
   if (!std::exchange(has_tester_, true)) tester_number_ = segment_.attach(*this, "tester");
   if (is_on_) power_down(segment_.now());
   started_ = segment_.now();
+  attendance_.begin();
   last_call_.reset();
   got_ = 0;
   std::fill(has_arrived_.begin(), has_arrived_.end(), false);
@@ -242,11 +244,16 @@ void LinkNetwork::stop() {
 network::State LinkNetwork::state() const {
   const Time now = segment_.now();
   if (got_ == sources_.size() && last_call_ && attendance_.is_complete()) {
-    return now - *last_call_ > acceptance().silence_cycles * description_.macrocycle
-               ? network::State::stopped
-               : network::State::exchanging;
+    const bool is_called = now - *last_call_ <= acceptance().silence_cycles * description_.macrocycle;
+    return is_called && attendance_.is_lasting(now, bring_up_limit()) ? network::State::exchanging
+                                                                      : network::State::stopped;
   }
   return !is_on_ || now - started_ > bring_up_limit() ? network::State::stopped : network::State::coming_up;
+}
+
+std::string LinkNetwork::complaint() const {
+  const std::string absent = attendance_.complaint();
+  return absent.empty() ? attendance_.complaint_about_gone(segment_.now(), bring_up_limit()) : absent;
 }
 
 Duration LinkNetwork::bring_up_limit() const {

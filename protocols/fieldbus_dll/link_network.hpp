@@ -61,7 +61,8 @@ kernel::Duration needed_by_item(const LinkDescription& link);
 // A link that runs. An exchange carries one word; it begins with what calls for it (CD, ES), as the lower
 // tester sees it on the line, or with a word that its source publishes uncalled, and ends when its answer
 // must be over. Served: the application of the destination has got the word. Stopped: nobody was called for
-// two macrocycles. It has not come up before each station under test has driven the line.
+// two macrocycles, or a station under test drives no more, though the bring-up limit is over: by then even
+// one that was lost is found again. It has not come up before each station under test has driven the line.
 class LinkNetwork : public network::Network, private segment::Station, private segment::Tap {
  public:
   const std::string& name() const override { return description_.name; }
@@ -70,7 +71,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   void stop() override;
   network::State state() const override;
   kernel::Duration bring_up_limit() const override;
-  std::string complaint() const override { return attendance_.complaint(); }
+  std::string complaint() const override;
   std::span<const network::Place> places() const override { return places_; }
   std::span<const network::CycleKind> cycles() const override { return cycles_; }
   network::RecoveryLimit recovery_limit() const override;
@@ -88,9 +89,9 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   LinkNetwork(const LinkDescription& description, const LinkRules& rules, std::uint64_t seed);
 
   const LinkDescription& description() const { return description_; }
-  // A station at its place on the line; it must live as long as the network.
+  // A station at its place on the line; it must live as long as the network. `why_silent`: see Attendance.
   segment::MediumPort& seat(segment::Station& station, std::uint8_t node, const std::string& name,
-                            bool is_under_test);
+                            bool is_under_test, const std::string& why_silent = {});
   // A station that has nothing to drive has got what is for it.
   void take_part(std::uint8_t node);
   void refresh(std::uint8_t node);

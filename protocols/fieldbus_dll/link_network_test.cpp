@@ -135,16 +135,69 @@ TEST(FfNetworkTest, DoesNotComeUpWithoutAStationUnderTest) {
 
 TEST(IsaNetworkTest, DoesNotComeUpWithoutAStationUnderTest) {
   const LinkDescription link = one_word(LinkProfile::isa);
-  for (const std::size_t position : {1U, 2U}) {
-    IsaNetwork network(
-        link, 1, {.make_master = given_at<IsaDevice, Mute<IsaLas, IsaUser>, IsaConfiguration>(position)});
-    expect_absent(network, "isa_las@" + std::to_string(position));
+  IsaNetwork first(link, 1, {.make_master = given_at<IsaDevice, Mute<IsaLas, IsaUser>, IsaConfiguration>(1)});
+  expect_absent(first, "isa_las@1");
+  IsaNetwork sender(link, 1,
+                    {.make_device = given_at<IsaDevice, Mute<IsaDle, IsaUser>, IsaConfiguration>(1)});
+  expect_absent(sender, "isa_dle@1");
+}
+
+// However right it is: nothing is seen of it.
+void expect_uncalled(LinkNetwork& network, const std::string& station) {
+  EXPECT_FALSE(network::run_quietly(network, 5, 5).came_up) << station;
+  EXPECT_NE(network.complaint().find("nothing can be seen of " + station), std::string::npos)
+      << network.complaint();
+  EXPECT_EQ(network.complaint().find("did not take part"), std::string::npos) << network.complaint();
+}
+
+TEST(IsaNetworkTest, SaysThatTheScheduleNeverCallsAStation) {
+  const LinkDescription link = one_word(LinkProfile::isa);
+  IsaNetwork master(link, 1, {.make_master = given_at<IsaDevice, IsaLas, IsaConfiguration>(2)});
+  expect_uncalled(master, "isa_las@2");
+  IsaNetwork device(link, 1, {.make_device = given_at<IsaDevice, IsaDle, IsaConfiguration>(3)});
+  expect_uncalled(device, "isa_dle@3");
+}
+
+// Works for a while, and then does nothing any more, for good.
+class Dies final : public FfStation {
+ public:
+  using FfStation::FfStation;
+  void receive(segment::PortIndex port, const line::Waveform& reception) override {
+    if (reception.start < kDead) FfStation::receive(port, reception);
   }
-  for (const std::size_t position : {1U, 3U}) {
-    IsaNetwork network(
-        link, 1, {.make_device = given_at<IsaDevice, Mute<IsaDle, IsaUser>, IsaConfiguration>(position)});
-    expect_absent(network, "isa_dle@" + std::to_string(position));
+  void on_time(kernel::Time now) override {
+    if (now < kDead) FfStation::on_time(now);
   }
+  kernel::Time next_time() const override {
+    const kernel::Time next = FfStation::next_time();
+    return next < kDead ? next : kernel::kNever;
+  }
+
+  static constexpr kernel::Time kDead = kernel::kStart + 20 * kernel::kSecond;
+};
+
+TEST(FfNetworkTest, StopsWhenAStationWithoutAWordDies) {
+  FfNetwork network(one_word(LinkProfile::foundation), 1,
+                    {.make_device = given_at<FfDevice, Dies, FfConfiguration>(3)});
+  network.start();
+  network.segment().run_until(Dies::kDead);
+  EXPECT_EQ(network.state(), network::State::exchanging);
+  network.segment().run_for(2 * network.bring_up_limit());
+  EXPECT_EQ(network.state(), network::State::stopped);
+  EXPECT_NE(network.complaint().find("ff_device@3 takes part no more"), std::string::npos)
+      << network.complaint();
+  network.start();
+  network.segment().run_for(2 * network.bring_up_limit());
+  EXPECT_EQ(network.state(), network::State::stopped);
+  EXPECT_NE(network.complaint().find("ff_device@3 did not"), std::string::npos) << network.complaint();
+}
+
+TEST(FfNetworkTest, GoesOnAsLongAsAStationWithoutAWordWorks) {
+  FfNetwork network(one_word(LinkProfile::foundation), 1,
+                    {.make_device = given_at<FfDevice, FfStation, FfConfiguration>(3)});
+  network.start();
+  network.segment().run_for(20 * network.bring_up_limit());
+  EXPECT_EQ(network.state(), network::State::exchanging);
 }
 
 TEST(IsaNetworkTest, WhoHasNoWordToSendTakesPartByTheOneThatItGets) {
