@@ -74,16 +74,21 @@ Duration slowest_datum(const WindowTraffic& traffic, std::uint64_t slot) {
 
 // ---- the slot ----
 
-SlotView::SlotView(const WindowTraffic& traffic) : length_(traffic.slot), end_(kernel::kStart + length_) {
-  for (std::uint64_t slot = 0; slot < traffic.repeats_after(); ++slot) {
+SlotView::SlotView(const WindowTraffic& traffic)
+    : traffic_(traffic), worst_(traffic.repeats_after(), -1), end_(kernel::kStart + traffic.slot) {
+  for (std::uint64_t slot = 0; slot < traffic.repeats_after(); ++slot)
     loads_.push_back(static_cast<unsigned>(traffic.nodes_with_data(slot).size()));
-    worst_.push_back(worst_begin(traffic, slot).node);
-  }
   left_ = loads_.front();
 }
 
+std::uint8_t SlotView::worst_of_next() const {
+  int& worst = worst_[(slot_ + 1) % worst_.size()];
+  if (worst < 0) worst = worst_begin(traffic_, slot_ + 1).node;
+  return static_cast<std::uint8_t>(worst);
+}
+
 void SlotView::next_slot() {
-  end_ += length_;
+  end_ += traffic_.slot;
   ++slot_;
   left_ = loads_[slot_ % loads_.size()];
 }

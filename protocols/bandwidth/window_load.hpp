@@ -15,6 +15,7 @@ namespace fieldproof::bandwidth {
 // would be.
 class SlotView {
  public:
+  // The traffic must outlive it.
   explicit SlotView(const WindowTraffic& traffic);
 
   void advance(kernel::Time now) {
@@ -29,14 +30,14 @@ class SlotView {
   // Data of this slot that have not been sent.
   unsigned left() const { return left_; }
   // The node from where the last datum of the next slot waits longest, when a packet has just begun there.
-  std::uint8_t worst_of_next() const { return worst_[(slot_ + 1) % worst_.size()]; }
+  std::uint8_t worst_of_next() const;
 
  private:
   void next_slot();
 
-  kernel::Duration length_;
+  const WindowTraffic& traffic_;
   std::vector<unsigned> loads_;
-  std::vector<std::uint8_t> worst_;
+  mutable std::vector<int> worst_;  // nodes; -1: nobody has asked yet
   std::uint64_t slot_ = 0;
   kernel::Time end_;
   unsigned left_;
