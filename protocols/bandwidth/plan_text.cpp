@@ -25,7 +25,8 @@ std::string network_text(const Plan& plan) {
       kernel::escaped_line(network.name), network.loops.size(), network.nodes, text_of(network.access),
       text_of(network.rule), plan.seed, describe(plan.demand.overhead), describe(network.periodic_packet),
       describe(network.real_time_packet), describe(plan.traffic.non_real_time_packet),
-      network.non_real_time_packet > Duration::zero()
+      plan.traffic.non_real_time_packet == Duration::zero() ? "none fits"
+      : network.non_real_time_packet > Duration::zero()
           ? "of the file"
           : fmt::format("the longest by the {} bound", text_of(network.length_rule)));
   return text;
