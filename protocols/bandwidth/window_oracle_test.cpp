@@ -55,7 +55,6 @@ class Oracle {
       if (pb == at) pb = -1;
       if (has_small_[at]) {
         now += t_.real_time_packet.count();
-        silent = false;
       }
       happen_until(now);
       if (place_.contains(at)) {

@@ -85,9 +85,9 @@ class WindowLine {
 
   void visit() {
     WindowVisit visit(at_, byte_);
-    bool has_sent = false;
+    bool is_answered = false;  // by a packet that ends the visit
     for (Packet packet = visit.next(waiting()); packet != Packet::none; packet = visit.next(waiting())) {
-      has_sent = true;
+      is_answered = packet != Packet::real_time;
       if (packet == Packet::real_time) {
         send(packet, traffic_.real_time_packet, kNothing);
         real_time_.on_sent(at_, now_);
@@ -99,11 +99,11 @@ class WindowLine {
       }
     }
     byte_ = visit.byte();
-    pass_on(has_sent);
+    pass_on(is_answered);
   }
 
-  void pass_on(bool has_sent) {
-    now_ += has_sent ? traffic_.overhead : traffic_.overhead + traffic_.empty_answer;
+  void pass_on(bool is_answered) {
+    now_ += is_answered ? traffic_.overhead : traffic_.overhead + traffic_.empty_answer;
     if (++at_ == traffic_.nodes) at_ = 0;
     ++visits_;
   }

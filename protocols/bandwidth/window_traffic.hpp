@@ -12,7 +12,8 @@
 // packet, without frames and levels: how long do data wait, are any lost, does a controller sample in vain?
 //
 // The server is at its first node at 0. What a node sends is WindowVisit's decision; then the server takes
-// its overhead to the next node. Polling: a node that has sent nothing answers with an empty frame first.
+// its overhead to the next node. Polling: a node whose visit no periodic and no non-real-time packet has
+// ended answers with an empty frame first.
 //
 // A sensor samples at the beginning of its slots, a controller at the beginning of its slots plus its skew. A
 // node has one place for periodic data: what is sampled replaces what waits there, which is lost. A
@@ -39,7 +40,7 @@ struct WindowTraffic {
   unsigned nodes = 0;
   kernel::Duration slot{};
   kernel::Duration overhead{};      // from the end of a visit to the begin of the next one
-  kernel::Duration empty_answer{};  // of a visit without a packet
+  kernel::Duration empty_answer{};  // of a visit without a periodic or non-real-time packet
   kernel::Duration periodic_packet{};
   kernel::Duration real_time_packet{};
   kernel::Duration non_real_time_packet{};
