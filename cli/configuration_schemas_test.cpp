@@ -76,6 +76,10 @@ TEST(TokenNetworkSchemaTest, TakesTheNetworkOfTheExamples) {
   expect_all("protocols/fieldbus_dll/token_network", {kSourceFolder / "examples/foundation.json"}, "valid");
 }
 
+TEST(BandwidthNetworkSchemaTest, TakesTheNetworkOfTheExamples) {
+  expect_all("protocols/bandwidth/bandwidth_network", {kSourceFolder / "examples/bandwidth.json"}, "valid");
+}
+
 TEST(BurstProfileSchemaTest, TakesWhatTheReaderTakes) {
   expect_corpus(kBurstProfile, "good", "valid");
 }

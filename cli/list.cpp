@@ -110,11 +110,25 @@ Row row_of(const conformance::Suite& suite) {
   return row;
 }
 
+// A protocol that nothing is attached to.
+Row row_of_plans(const ProtocolEntry& protocol) {
+  Row row;
+  row.json["protocol"] = protocol.name;
+  row.json["roles"] = nlohmann::ordered_json::array();
+  for (const char* const none : {"cases", "canaries", "mutants"}) row.json[none] = 0;
+  row.text = fmt::format("{}  no role to attach and no case; 'fieldproof plan' reads its {}", protocol.name,
+                         protocol.planner.file);
+  return row;
+}
+
 std::vector<Row> rows_of(Session& session) {
   std::vector<Row> rows;
   const bool is_single = session.operands.size() == 1;
   if (is_single && session.operands.front() == "protocols") {
     for (const auto& suite : session.catalogue.suites()) rows.push_back(row_of(*suite));
+    for (const ProtocolEntry& protocol : protocols())
+      if (protocol.suite == nullptr && protocol.planner.plan != nullptr)
+        rows.push_back(row_of_plans(protocol));
     return rows;
   }
   if (is_single && session.operands.front() == "mutants") {

@@ -23,7 +23,7 @@ constexpr std::array kOptions = {
     Option{"record", value, "none|failed|all", "failed", "run", "which cases keep their trace"},
     Option{"junit", value, "FILE", "", "run", "also write the JUnit report here"},
     Option{"html", value, "FILE", "", "run report", "also write the report as one HTML page here"},
-    Option{"json", value, "FILE", "", "run matrix diff residual measure paper emc", "also write the result as JSON here"},
+    Option{"json", value, "FILE", "", "run matrix diff residual measure paper emc plan", "also write the result as JSON here"},
     Option{"json", flag, "", "", "list", "print JSON", true},
     Option{"strict", flag, "", "", "run", "warn and inconclusive count as fail", false, false, true},
     Option{"allow-inconclusive", flag, "", "", "run replay judge", "an inconclusive verdict, or a run that --max-time ended, gives 0, not 2", false, false, true},

@@ -10,6 +10,12 @@ namespace {
 
 class PlanVerb : public ProgramFixture {
  protected:
+  void expect_valid_against(const std::string& schema) const {
+    const auto judgement =
+        reports::judge_with_ajv(kSourceFolder, kSourceFolder / schema, {folder_ / "plan.json"});
+    if (!judgement.is_available) GTEST_SKIP() << judgement.output;
+    EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
+  }
   Called plan(const std::string& bound, const std::string& per_s = "10") const {
     write("network.json",
           R"({"name": "four nodes", "bit_rate": "1 Mbit/s", "rule": "all_or_urgent", "nodes": [{"count": 4,
@@ -60,8 +66,87 @@ TEST_F(PlanVerb, WithoutTimeAvailableDataTheModelStandsBesideIt) {
 }
 
 TEST_F(PlanVerb, PlansTheExample) {
-  const Called called = call({"plan", (kSourceFolder / "examples/foundation.json").string()});
+  const Called called =
+      call({"plan", (kSourceFolder / "examples/foundation.json").string(), "--json", "plan.json"});
   EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_EQ(json("plan.json")["is_proven"], true);
+  expect_valid_against("protocols/fieldbus_dll/target_plan.schema.json");
+}
+
+TEST_F(PlanVerb, TheKeyOfAFileSaysWhoPlansIt) {
+  write("other.json", R"({"name": "x"})");
+  const Called called = call({"plan", "other.json"});
+  EXPECT_EQ(called.exit_code, 65);
+  EXPECT_HOLDS(called.err,
+               "no protocol plans this file; one that is planned has \"urgent_delay\" (token_network) or "
+               "\"loops\" (bandwidth_network)");
+  EXPECT_HOLDS(call({"list", "protocols"}).out, "'fieldproof plan' reads its bandwidth_network");
+}
+
+class BandwidthPlan : public PlanVerb {
+ protected:
+  Called plan_loops(const std::string& loops, const std::string& rest = "") const {
+    write("network.json",
+          R"({"name": "\u001b[31mloops", "nodes": 10, "loops": [)" + loops + "]" + rest + "}");
+    return call({"plan", "network.json", "--json", "plan.json"});
+  }
+};
+
+const std::string kTwoLoops =
+    R"({"bound": "60 ms", "sensor": 0, "controller": 1}, {"bound": "180 ms", "sensor": 2, "controller": 3})";
+
+TEST_F(BandwidthPlan, ProvesTheExample) {
+  const Called called =
+      call({"plan", (kSourceFolder / "examples/bandwidth.json").string(), "--json", "plan.json"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  for (const char* part : {"data of each slot 4 4 4 4 4 4 3 3", "safe up to 2.175 ms; 2.428 ms as the paper",
+                           "queues are stable", "just late", "proven by"})
+    EXPECT_HOLDS(called.out, part);
+  const auto document = json("plan.json");
+  EXPECT_EQ(document["is_proven"], true);
+  EXPECT_EQ(document["slot_ps"], 20'000'000'000);
+  expect_valid_against("protocols/bandwidth/bandwidth_plan.schema.json");
+}
+
+TEST_F(BandwidthPlan, ExplainsWhatDoesNotFit) {
+  const Called called = plan_loops(kTwoLoops, R"(, "periodic_packet": "9 ms")");
+  EXPECT_EQ(called.exit_code, 1) << called.err;
+  for (const char* part : {"not feasible: loop 1 makes the slot 20.000 ms", "more\n", "a bound of loop 1 of",
+                           "periodic packets of at most", "to leave out"})
+    EXPECT_HOLDS(called.out, part);
+  EXPECT_EQ(called.out.find('\x1b'), std::string::npos) << "what a file names steers no terminal";
+  EXPECT_EQ(json("plan.json")["is_feasible"], false);
+  expect_valid_against("protocols/bandwidth/bandwidth_plan.schema.json");
+}
+
+TEST_F(BandwidthPlan, NamesTheDatumThatTooLongPacketsMakeLate) {
+  const Called called = plan_loops(
+      kTwoLoops, R"(, "non_real_time": [{"first": 0, "last": 9}], "non_real_time_packet": "4 ms")");
+  EXPECT_EQ(called.exit_code, 1) << called.err;
+  for (const char* part : {"first over T_1", "(node ", "over T_1. Before it go",
+                           "not proven: non-real-time packets "
+                           "of 4.000 ms are too long"})
+    EXPECT_HOLDS(called.out, part);
+}
+
+TEST_F(BandwidthPlan, SaysWhatAnUnevenGridCosts) {
+  const Called called = plan_loops(R"({"bound": "60 ms", "sensor": 0, "controller": 1, "skew": "4 ms"})",
+                                   R"(, "non_real_time": [{"first": 0, "last": 9}])");
+  EXPECT_EQ(called.exit_code, 1) << called.err;
+  EXPECT_HOLDS(called.out, "off the grid of the slots");
+}
+
+TEST_F(BandwidthPlan, QueuesThatGrowAreNotAPlan) {
+  const Called called =
+      plan_loops(kTwoLoops, R"(, "non_real_time": [{"first": 0, "last": 9, "mean_gap": "10 ms"}])");
+  EXPECT_EQ(called.exit_code, 1) << called.err;
+  EXPECT_HOLDS(called.out, "other queues grow without end");
+}
+
+TEST_F(BandwidthPlan, RefusesAWrongFileAndSaysWhere) {
+  const Called called = plan_loops(R"({"bound": 60})");
+  EXPECT_EQ(called.exit_code, 65);
+  EXPECT_HOLDS(called.err, "/loops/0/bound");
 }
 
 }  // namespace

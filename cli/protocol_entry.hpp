@@ -3,6 +3,7 @@
 // run_program.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,6 +12,8 @@
 
 #include "conformance/planned_network.hpp"
 #include "conformance/suite.hpp"
+#include "harness/config/document.hpp"
+#include "harness/field/named_table.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/iut/uart_line.hpp"
 #include "harness/judge/pics.hpp"
@@ -44,10 +47,18 @@ struct Role {
   std::string path() const { return std::string(protocol) + "/" + std::string(name); }
 };
 
-// What `plan` prints of a network file, and whether its bound is proven.
+// What `plan` prints and stores of a network file, and whether all that the file asks for is proven.
 struct Planned {
   std::string text;
+  std::string json;
   bool is_proven = false;
+};
+
+// Finds what keeps the bounds of a network file of its kind.
+struct Planner {
+  std::string_view file{};  // what such a file is called: "token_network", also the name of its schema
+  std::string_view key{};   // of the root, that no file of another planner has
+  Planned (*plan)(const config::Document& network, std::uint64_t seed) = nullptr;
 };
 
 // A way for a frame to arrive wrong at one receiver and to pass, where each bit flips with the same chance.
@@ -69,8 +80,9 @@ struct ProtocolEntry {
   // What `emc` and `measure` run; without a plan there is nothing.
   conformance::NetworkRow network{};
   UndetectedTheory undetected{};  // without parts none is prepared
-  // Finds what keeps the bound of a network file; null: there is nothing to plan.
-  Planned (*plan)(const std::string& file, std::uint64_t seed) = nullptr;
+  Planner planner{};              // without a function there is nothing to plan
+  // JSON Schemas of files that no suite knows.
+  std::vector<field::NamedSchema> (*schemas)() = nullptr;
 };
 
 // The rows of this process. They must outlive it; set once, by run_program or by a test.

@@ -20,8 +20,11 @@
 #include "conformance/valve_bus/planned_network.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "emc/interbus/undetected_cycle.hpp"
+#include "protocols/bandwidth/embedded_schemas.hpp"
+#include "protocols/bandwidth/plan.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
+#include "protocols/fieldbus_dll/embedded_schemas.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
 #include "protocols/fieldbus_dll/isa_las.hpp"
 #include "protocols/fieldbus_dll/target_plan_text.hpp"
@@ -143,10 +146,24 @@ constexpr std::array kFieldbusDllRoles{
     row<fieldbus_dll::FfLasRole, fieldbus_dll::FfLas, &conformance::ff_las_mutants>(kCharactersToo),
 };
 
-Planned token_plan(const std::string& file, std::uint64_t seed) {
-  const auto network = fieldbus_dll::TokenNetwork::load(file);
+Planned token_plan(const config::Document& file, std::uint64_t seed) {
+  const auto network = fieldbus_dll::TokenNetwork::read(file);
   const auto plan = fieldbus_dll::plan_target(network.traffic, network.bound, seed);
-  return {fieldbus_dll::network_text(network, seed) + fieldbus_dll::plan_text(plan, network), plan.is_proven};
+  return {fieldbus_dll::network_text(network, seed) + fieldbus_dll::plan_text(plan, network),
+          fieldbus_dll::plan_json(plan, network, seed), plan.is_proven};
+}
+std::vector<field::NamedSchema> token_schemas() {
+  return {{"token_network", fieldbus_dll::token_network_schema},
+          {"target_plan", fieldbus_dll::target_plan_schema}};
+}
+
+Planned bandwidth_plan(const config::Document& file, std::uint64_t seed) {
+  const bandwidth::Plan plan = bandwidth::plan_bandwidth(bandwidth::Network::read(file), seed);
+  return {bandwidth::plan_text(plan), bandwidth::plan_json(plan), plan.is_proven()};
+}
+std::vector<field::NamedSchema> bandwidth_schemas() {
+  return {{"bandwidth_network", bandwidth::bandwidth_network_schema},
+          {"bandwidth_plan", bandwidth::bandwidth_plan_schema}};
 }
 
 std::vector<UndetectedPart> undetected_cycles(const std::string& network_file, double flip_probability) {
@@ -176,7 +193,12 @@ constexpr std::array kProtocols{
         .roles = kFieldbusDllRoles,
         .suite = conformance::fieldbus_dll_suite,
         .network = {.own_network = "of two link masters and 4 devices", .plan = conformance::plan_link},
-        .plan = token_plan},
+        .planner = {.file = "token_network", .key = "urgent_delay", .plan = token_plan},
+        .schemas = token_schemas},
+    // A scheme for any cyclic server: nothing of it is attached or judged.
+    ProtocolEntry{.name = "bandwidth",
+                  .planner = {.file = "bandwidth_network", .key = "loops", .plan = bandwidth_plan},
+                  .schemas = bandwidth_schemas},
 };
 
 }  // namespace

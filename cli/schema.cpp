@@ -6,6 +6,7 @@
 
 #include "cli/embedded_schemas.hpp"
 #include "cli/named_schemas.hpp"
+#include "cli/protocol_entry.hpp"
 #include "cli/verbs.hpp"
 #include "emc/embedded_schemas.hpp"
 #include "harness/config/nearest.hpp"
@@ -72,6 +73,11 @@ std::vector<NamedText> named_schemas(const conformance::Catalogue& catalogue) {
     for (const field::NamedSchema& file : suite->schemas()) {
       all.push_back({std::string(file.name), std::string(file.text)});
     }
+  }
+  for (const ProtocolEntry& protocol : protocols()) {
+    if (protocol.schemas == nullptr) continue;
+    for (const field::NamedSchema& file : protocol.schemas())
+      all.push_back({std::string(file.name), std::string(file.text)});
   }
   std::ranges::sort(all, {}, &NamedText::name);
   for (const auto& suite : catalogue.suites()) {

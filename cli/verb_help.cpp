@@ -82,7 +82,7 @@ constexpr std::array kHelp = {
         {"residual --fcs CRC-16/IBM-3740 --bits 128 --samples 1000000", "with a simulation"}}}},
     VerbHelp{"plan", kNetwork, {{
         {"plan examples/foundation.json", "the target rotation time that keeps the bound in the file"},
-        {"plan network.json --seed 2", "another seed of the simulation that proves it"},
+        {"plan examples/bandwidth.json --json plan.json", "sampling periods, slots and packet lengths of control loops, also as JSON"},
         {"help plan", "its options"}}}},
     VerbHelp{"paper", kNetwork, {{
         {"paper foundation", "published figures, and what is reproduced of them"},

@@ -24,7 +24,7 @@ constexpr std::array kVerbs = {
     Verb{"emc", "PROTOCOL", 1, 1, "a network under IEC 61000-4-4 bursts: criterion and error statistics by test level, repetition, polarity", &emc_protocol},
     Verb{"measure", "PROTOCOL", 1, 1, "cycle time, jitter and skew of a network, with the closed forms they are compared with", &measure_protocol},
     Verb{"residual", "", 0, 0, "probability that a frame check does not detect a corrupted telegram", &residual},
-    Verb{"plan", "NETWORK.json", 1, 1, "the target rotation time of a Foundation Fieldbus that keeps a bound of urgent delays, proven by simulation", &plan},
+    Verb{"plan", "NETWORK.json", 1, 1, "what keeps the bounds of a network file, proven by simulation: the target rotation time of a Foundation Fieldbus, or sampling periods and packet lengths of control loops", &plan},
     Verb{"paper", "[NAME]", 0, 1, "what a paper published, next to what is reproduced of it; without a name, the first of them", &paper},
     Verb{"list", "[SELECTOR...|protocols|mutants|pics [ROLE]]", 0, kAny,
          "cases, mutants, protocols or items of a PICS; why a case does not apply", &list},

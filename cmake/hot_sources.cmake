@@ -9,6 +9,7 @@ set(hot_sources
   "protocols/interbus/(ring|slave|latching_slave|master|master_cycles|master_verdict|cycle_frame|cycle_fields)\\."
   "protocols/interbus/(station_timing|telegram_front)\\."
   "protocols/valve_bus/(node|attached_node|attached_line|codec|frame|transmitter)\\."
+  "protocols/bandwidth/window_(load|traffic)\\."
   "protocols/fieldbus_dll/(ff_link|ff_las|ff_station|ff_dlpdu|line_end)\\."
   "emc/residual/(dual_weights|register_cycles|residual_simulation)\\."
   "emc/(burst_channel|effective_time|generator|pulse|sampled_impact|exponential|random_flips|coupling|framing)\\.")

@@ -177,7 +177,8 @@ const Suite& Catalogue::suite(std::string_view protocol) const {
     if (suite->protocol() == protocol) return *suite;
     protocols.emplace_back(suite->protocol());
   }
-  refuse(fmt::format("there is no protocol '{}'; there are '{}'", protocol, fmt::join(protocols, "', '")));
+  refuse(fmt::format("there are no cases of a protocol '{}'; there are those of '{}'", protocol,
+                     fmt::join(protocols, "', '")));
 }
 
 const MutantEntry& Catalogue::mutant(std::string_view name, std::span<const Entry> among) const {

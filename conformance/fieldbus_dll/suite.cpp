@@ -11,7 +11,6 @@
 #include "conformance/fieldbus_dll/isa_sequence_check.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
-#include "protocols/fieldbus_dll/embedded_schemas.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
 #include "protocols/fieldbus_dll/ff_settings.hpp"
 #include "protocols/fieldbus_dll/isa_las.hpp"
@@ -79,7 +78,6 @@ std::unique_ptr<Suite> fieldbus_dll_suite(SuiteGiven given) {
           .protocol = "fieldbus_dll",
           .roles = {isa_dle_row(), isa_las_row(), ff_device_row(), ff_las_row()},
           .rules = {{"ff_rules", &kFfRulesTable}, {"isa_rules", &kIsaRulesTable}},
-          .schemas = {{"token_network", token_network_schema}},
           .why_no_network = "cases of the data link make the link that they need; leave out the network"},
       std::move(given));
 }

@@ -1,40 +1,19 @@
 #include "harness/traffic/token_rotation.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <vector>
 
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/scheduler.hpp"
+#include "harness/traffic/arrival_queues.hpp"
 #include "harness/traffic/batch_means.hpp"
 #include "harness/traffic/milliseconds.hpp"
-#include "harness/traffic/poisson_arrivals.hpp"
 
 namespace fieldproof::traffic {
 namespace {
 
 constexpr std::uint64_t kRotationsOfBatch = 1'000;
-
-// Packets that are told apart.
-struct UrgentQueue {
-  PoissonArrivals arrivals;
-  std::deque<kernel::Time> waiting{};
-
-  void fill(kernel::Time until) {
-    for (; arrivals.next() <= until; arrivals.draw()) waiting.push_back(arrivals.next());
-  }
-};
-
-// Packets that are only counted.
-struct AvailableQueue {
-  PoissonArrivals arrivals;
-  std::uint64_t waiting = 0;
-
-  void fill(kernel::Time until) {
-    for (; arrivals.next() <= until; arrivals.draw()) ++waiting;
-  }
-};
 
 class Token final : private kernel::Timer {
  public:
@@ -74,7 +53,7 @@ class Token final : private kernel::Timer {
 
   kernel::Time send_urgent(kernel::Time now) {
     if (at_ >= urgent_.size()) return now;
-    UrgentQueue& queue = urgent_[at_];
+    TimedQueue& queue = urgent_[at_];
     queue.fill(now);
     if (queue.waiting.empty()) return now;
     const kernel::Time end = now + traffic_.urgent_length;
@@ -87,7 +66,7 @@ class Token final : private kernel::Timer {
   kernel::Time send_available(kernel::Time now) {
     if (at_ >= available_.size() || !has_priority_1_) return now;
     if (!run_.is_available_backlogged) {
-      AvailableQueue& queue = available_[at_];
+      CountedQueue& queue = available_[at_];
       queue.fill(now);
       if (queue.waiting == 0) return now;
       --queue.waiting;
@@ -128,7 +107,7 @@ class Token final : private kernel::Timer {
         it.available_per_ms = static_cast<double>(available_sent_) / time / traffic_.available_queues;
       }
     }
-    for (AvailableQueue& queue : available_) {
+    for (CountedQueue& queue : available_) {
       queue.fill(rotation_start_);
       it.longest_available = std::max(it.longest_available, queue.waiting);
     }
@@ -140,8 +119,8 @@ class Token final : private kernel::Timer {
   unsigned nodes_;
   kernel::Duration overhead_;  // of a node
   kernel::Duration rest_;      // of the division, once in a rotation
-  std::vector<UrgentQueue> urgent_;
-  std::vector<AvailableQueue> available_;
+  std::vector<TimedQueue> urgent_;
+  std::vector<CountedQueue> available_;
   BatchMeans delays_;
   BatchMeans lengths_{kRotationsOfBatch};
   kernel::Scheduler scheduler_;

@@ -4,23 +4,11 @@
 #include <utility>
 
 #include "harness/kernel/check.hpp"
-#include "harness/line/frame_check_16.hpp"
+#include "harness/line/checked_frame.hpp"
 
 namespace fieldproof::fieldbus_dll {
-namespace {
-
-const line::FrameCheck16& frame_check() {
-  static const line::FrameCheck16& check = line::shared_frame_check_16("CRC-16/PROFIBUS");
-  return check;
-}
-
-}  // namespace
-
 Octets with_check(std::span<const std::uint8_t> octets) {
-  Octets all(octets.begin(), octets.end());
-  const auto check = frame_check().check_octets(frame_check().update(frame_check().start(), octets));
-  all.insert(all.end(), check.begin(), check.end());
-  return all;
+  return line::with_frame_check(octets);
 }
 
 kernel::Time LineEnd::transmit(std::span<const std::uint8_t> octets, kernel::Time start) {
@@ -40,12 +28,8 @@ kernel::Time LineEnd::drive(line::Levels half_bits, kernel::Time start) {
 std::vector<Arrived> LineEnd::receive(const line::Waveform& reception) {
   std::vector<Arrived> arrived;
   if (reception.start < driven_until_) return arrived;
-  for (line::DelimitedFrame& frame : line::delimited_frames_in(reception, rules_.bit_rate)) {
-    if (frame.end != line::FrameEnd::whole || frame.octets.size() <= kCheckOctets) continue;
-    if (!frame_check().is_residue(frame_check().update(frame_check().start(), frame.octets))) continue;
-    frame.octets.resize(frame.octets.size() - kCheckOctets);
-    arrived.push_back({std::move(frame.octets), reception.start, reception.end()});
-  }
+  for (Octets& octets : line::checked_frames_in(reception, rules_.bit_rate))
+    arrived.push_back({std::move(octets), reception.start, reception.end()});
   return arrived;
 }
 

@@ -11,7 +11,6 @@ namespace {
 using config::ObjectReader;
 using config::Value;
 
-constexpr std::size_t kLimitOfText = 1 << 20;
 constexpr std::int64_t kOctetBits = 8;
 
 traffic::PacketStream stream_from(const Value& value, std::int64_t bit_rate) {
@@ -74,10 +73,6 @@ DelayBound bound_from(const Value& value) {
 }
 
 }  // namespace
-
-TokenNetwork TokenNetwork::load(const std::filesystem::path& file) {
-  return read(config::Document::load(file, {.size = kLimitOfText}));
-}
 
 TokenNetwork TokenNetwork::read(const config::Document& document) {
   return config::read_object(document.root(), [](ObjectReader& o) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "harness/config/document.hpp"
@@ -14,8 +13,7 @@ struct TokenNetwork {
   traffic::TokenTraffic traffic;  // without a target
   DelayBound bound;
 
-  // Throw kernel::Error(configuration), which says where and what would be right.
-  static TokenNetwork load(const std::filesystem::path& file);
+  // Throws kernel::Error(configuration), which says where and what would be right.
   static TokenNetwork read(const config::Document& document);
 };
 
