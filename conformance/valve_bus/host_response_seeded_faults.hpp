@@ -109,7 +109,7 @@ class TakesOtherResponses : public Host {
 
  private:
   std::optional<Response> response_in(const CollectedFrame& frame) const override {
-    const bool is_long = frame.count > 3 && frame.count <= CollectedFrame::kMostOctets && !frame.is_spoilt;
+    const bool is_long = frame.count > 3 && frame.count <= frame.octets.size() && !frame.is_spoilt;
     CollectedFrame taken = frame;
     if (which_ == Which::two_octets && frame.count == 2 && !frame.is_spoilt) {
       return Response{frame.octets[0], frame.octets[1]};

@@ -129,11 +129,11 @@ std::unique_ptr<OneStation> in_state(MasterState state) {
   return line;
 }
 
-using Event = void (*)(OneStation&);
+using StationEvent = void (*)(OneStation&);
 
 struct StateRow {
   const char* name;
-  Event event;
+  StationEvent event;
 };
 
 // Up to so many cycles, until one has changed the state.
