@@ -37,4 +37,9 @@ reports::PublishedSection control_loop_quiet(const Settings& settings);
 reports::PublishedSection control_loop_under_bursts(const Settings& settings);
 reports::PublishedSection control_loop_with_operator(const Settings& settings);
 
+// Lee, Moon, Moon, Kwon, Lee and Park, the token bus on the physical layer of IEEE 802.3.
+reports::PublishedSection control_network_coding(const Settings& settings);
+reports::PublishedSection control_network_rotation(const Settings& settings);
+reports::PublishedSection control_network_access(const Settings& settings);
+
 }  // namespace fieldproof::papers

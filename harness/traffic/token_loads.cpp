@@ -125,7 +125,9 @@ Taken QueuedFrames::take(unsigned station, AccessClass access_class, Time now, D
   for (; queue.arrivals.next() <= now; queue.arrivals.draw()) queue.waiting.push_back(queue.arrivals.next());
   longest_queue_ = std::max(longest_queue_, queue.waiting.size());
   if (queue.waiting.empty()) return std::nullopt;
-  delays_[n].add(now + settings_.frame - queue.waiting.front());
+  const Duration delay = now + settings_.frame - queue.waiting.front();
+  delays_[n].add(delay);
+  if (delay > settings_.bound) ++beyond_;
   queue.waiting.pop_front();
   return settings_.frame;
 }

@@ -33,6 +33,7 @@ class QueuedFrames final : public FrameSource {
   struct Settings {
     kernel::Duration frame{};
     std::array<double, kAccessClasses> per_ms{};  // at each station; 0: none of this class
+    kernel::Duration bound{};                     // of which `beyond` tells
   };
   QueuedFrames(const TimedToken& token, const Settings& settings, const kernel::Random& random);
 
@@ -43,6 +44,8 @@ class QueuedFrames final : public FrameSource {
   const measure::Distribution& delays(AccessClass access_class) const {
     return delays_[static_cast<std::size_t>(access_class)];
   }
+  // Frames of any class that took longer than the bound.
+  std::uint64_t beyond() const { return beyond_; }
   // The longest queue that a visit found.
   std::size_t longest_queue() const { return longest_queue_; }
 
@@ -54,6 +57,7 @@ class QueuedFrames final : public FrameSource {
   Settings settings_;
   std::array<std::vector<Queue>, kAccessClasses> queues_;
   std::array<measure::Distribution, kAccessClasses> delays_;
+  std::uint64_t beyond_ = 0;
   std::size_t longest_queue_ = 0;
 };
 
