@@ -25,7 +25,8 @@ TEST(PaperCatalogue, AnUnknownNameIsRefusedWithThoseThatThereAre) {
     paper_named("profibus");
     FAIL() << "it was found";
   } catch (const kernel::Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("'interbus', 'valve_bus', 'foundation', 'fieldbus'"));
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("'interbus', 'valve_bus', 'foundation', 'fieldbus', 'bandwidth'"));
   }
 }
 
