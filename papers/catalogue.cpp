@@ -22,6 +22,8 @@ constexpr std::array<Reproduce, 5> kFoundation = {&foundation_rotations, &founda
                                                   &foundation_stations};
 constexpr std::array<Reproduce, 3> kControlLoop = {&control_loop_quiet, &control_loop_under_bursts,
                                                    &control_loop_with_operator};
+constexpr std::array<Reproduce, 5> kBandwidth = {&bandwidth_periodic, &bandwidth_non_real_time,
+                                                 &bandwidth_real_time, &bandwidth_loop, &bandwidth_stations};
 constexpr std::array<Reproduce, 3> kControlNetwork = {&control_network_coding, &control_network_rotation,
                                                       &control_network_access};
 
@@ -38,6 +40,10 @@ constexpr std::array kPapers = {
           "S.-H. Hong, K.-A. Kim, J.-Y. Kim and S.-J. Ko, distributed control and automation systems and "
           "fieldbus",
           "of a control loop and eight other nodes", kernel::kMillisecond, kControlLoop},
+    Paper{"bandwidth",
+          "S.-H. Hong, K.-A. Kim, J.-Y. Kim and S.-J. Ko, distributed control and automation systems and "
+          "fieldbus: bandwidth allocation",
+          "of four control loops and ten nodes", kernel::kMillisecond, kBandwidth},
     Paper{"control_network",
           "J.-Y. Lee, H.-j. Moon, S. Y. Moon, W.-H. Kwon, S. W. Lee and Park, token-passing bus access "
           "method on "

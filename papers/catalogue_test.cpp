@@ -26,7 +26,8 @@ TEST(PaperCatalogue, AnUnknownNameIsRefusedWithThoseThatThereAre) {
     FAIL() << "it was found";
   } catch (const kernel::Error& error) {
     EXPECT_THAT(error.what(),
-                testing::HasSubstr("'interbus', 'valve_bus', 'foundation', 'fieldbus', 'control_network'"));
+                testing::HasSubstr("'interbus', 'valve_bus', 'foundation', 'fieldbus', 'bandwidth', "
+                                   "'control_network'"));
   }
 }
 

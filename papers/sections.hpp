@@ -37,6 +37,13 @@ reports::PublishedSection control_loop_quiet(const Settings& settings);
 reports::PublishedSection control_loop_under_bursts(const Settings& settings);
 reports::PublishedSection control_loop_with_operator(const Settings& settings);
 
+// The same, its section 5: bandwidth for periodic, real-time and non-real-time data.
+reports::PublishedSection bandwidth_periodic(const Settings& settings);
+reports::PublishedSection bandwidth_non_real_time(const Settings& settings);
+reports::PublishedSection bandwidth_real_time(const Settings& settings);
+reports::PublishedSection bandwidth_loop(const Settings& settings);
+reports::PublishedSection bandwidth_stations(const Settings& settings);
+
 // Lee, Moon, Moon, Kwon, Lee and Park, the token bus on the physical layer of IEEE 802.3.
 reports::PublishedSection control_network_coding(const Settings& settings);
 reports::PublishedSection control_network_rotation(const Settings& settings);

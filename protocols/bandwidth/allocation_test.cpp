@@ -32,7 +32,7 @@ std::vector<std::pair<unsigned, unsigned>> offsets(const Allocation& allocation)
 using Offsets = std::vector<std::pair<unsigned, unsigned>>;
 
 TEST(Allocation, FirstPlanAsWorkedOut) {
-  const Allocation plan = allocate(first_plan());
+  const Allocation plan = allocate(whole_density());
   EXPECT_EQ(plan.slot, us(20'000));
   EXPECT_EQ(everies(plan), (std::vector<unsigned>{1, 1, 2, 2}));
   EXPECT_EQ(plan.windows, 6U);
@@ -48,7 +48,7 @@ TEST(Allocation, FirstPlanAsWorkedOut) {
 }
 
 TEST(Allocation, SecondPlanAsWorkedOut) {
-  const Allocation plan = allocate(second_plan());
+  const Allocation plan = allocate(fractional_density());
   EXPECT_EQ(plan.slot, us(20'000));
   EXPECT_EQ(everies(plan), (std::vector<unsigned>{1, 2, 4, 8}));
   EXPECT_EQ(plan.windows, 4U);
@@ -106,7 +106,7 @@ TEST(Allocation, SlotsAreBalanced) {
 }
 
 TEST(Allocation, FitsUpToTheLastWindow) {
-  Demand demand = first_plan();
+  Demand demand = whole_density();
   demand.periodic_packet = us(3'166);  // six and the server: 19996
   EXPECT_TRUE(allocate(demand).is_feasible());
   EXPECT_EQ(allocate(demand).most_windows, 6);
@@ -125,7 +125,7 @@ TEST(Allocation, FitsUpToTheLastWindow) {
 }
 
 TEST(Allocation, ARemedyHelps) {
-  Demand demand = first_plan();
+  Demand demand = whole_density();
   demand.periodic_packet = us(3'400);
   const Remedy found = remedy(demand, allocate(demand));
   ASSERT_TRUE(found.periodic_packet && found.bound);
@@ -140,7 +140,7 @@ TEST(Allocation, RefusesWhatNobodyCanPlan) {
   EXPECT_THROW(allocate(sample_demand({})), kernel::Error);
   EXPECT_THROW(allocate(sample_demand({60, 60, 60, 60, 60, 60})), kernel::Error) << "12 streams, 10 nodes";
   EXPECT_THROW(allocate(sample_demand({1'000'001})), kernel::Error);
-  Demand demand = first_plan();
+  Demand demand = whole_density();
   demand.bounds[0] = us(3) - kernel::kPicosecond;
   EXPECT_THROW(allocate(demand), kernel::Error);
   demand.bounds[0] = us(3);

@@ -31,15 +31,15 @@ void expect_to_hold(const WindowTraffic& traffic) {
 }
 
 TEST(WindowProof, TheSafeLengthHoldsAgainstAllAdversaries) {
-  expect_to_hold(traffic_of(first_plan(), 3'320));
+  expect_to_hold(traffic_of(whole_density(), 3'320));
 }
 
 TEST(WindowProof, TheSafeLengthHoldsWhereTheDensityIsFractional) {
-  expect_to_hold(traffic_of(second_plan(), 2'225));
+  expect_to_hold(traffic_of(fractional_density(), 2'225));
 }
 
 TEST(WindowProof, TheSafeLengthHoldsBesideRealTimePackets) {
-  Demand demand = second_plan();
+  Demand demand = fractional_density();
   demand.real_time_queues = 4;
   demand.real_time_packet = 250 * kernel::kMicrosecond;
   const Allocation allocation = allocate(demand);
@@ -48,7 +48,7 @@ TEST(WindowProof, TheSafeLengthHoldsBesideRealTimePackets) {
 }
 
 TEST(WindowProof, ThePrintedLengthIsBrokenWhereTheDensityIsFractional) {
-  const Proof proof = prove(traffic_of(second_plan(), 2'485), 1, kSlots);
+  const Proof proof = prove(traffic_of(fractional_density(), 2'485), 1, kSlots);
   EXPECT_FALSE(proof.holds());
   EXPECT_EQ(proof.slowest_own, 22'080 * kernel::kMicrosecond);
   std::uint64_t late = 0;
@@ -66,15 +66,15 @@ TEST(WindowProof, ThePrintedLengthIsBrokenWhereTheDensityIsFractional) {
 
 // As long as the data of a slot are few: controllers wait for their first datum.
 TEST(WindowProof, SlotsOfTheStartHaveALimitOfTheirOwn) {
-  const Allocation allocation = allocate(first_plan());
+  const Allocation allocation = allocate(whole_density());
   EXPECT_LT(allocation.longest_from_start, allocation.longest_safe);
   const auto us = allocation.longest_from_start / kernel::kMicrosecond;
-  const Proof proof = prove(traffic_of(first_plan(), us), 1, kSlots / 10);
+  const Proof proof = prove(traffic_of(whole_density(), us), 1, kSlots / 10);
   for (const ProofRun& run : proof.runs) EXPECT_LE(run.figures.longest_of_start, allocation.slot) << run.name;
 }
 
 TEST(WindowProof, TheSafeLengthIsNotAlwaysEnoughForTheFirstSlot) {
-  WindowTraffic traffic = traffic_of(first_plan(), 3'320);
+  WindowTraffic traffic = traffic_of(whole_density(), 3'320);
   for (std::uint8_t n = 0; n < 4; ++n) {
     traffic.loops[n].sensor = n;
     traffic.loops[n].controller = static_cast<std::uint8_t>(n + 4);
@@ -89,7 +89,7 @@ TEST(WindowProof, TheSafeLengthIsNotAlwaysEnoughForTheFirstSlot) {
 }
 
 TEST(WindowProof, OffTheCommonGridControllersSampleInVain) {
-  for (const auto& [demand, packet] : {std::pair{first_plan(), 3'320}, {second_plan(), 2'225}}) {
+  for (const auto& [demand, packet] : {std::pair{whole_density(), 3'320}, {fractional_density(), 2'225}}) {
     WindowTraffic traffic = traffic_of(demand, packet);
     for (LoopTraffic& loop : traffic.loops) loop.skew = traffic.slot / 40 * 5;
     const WindowFigures figures =
@@ -103,13 +103,13 @@ TEST(WindowProof, OffTheCommonGridControllersSampleInVain) {
 }
 
 TEST(WindowProof, TheSaturatedLoadIsThatOfTheFormula) {
-  Demand with_real_time = second_plan();
+  Demand with_real_time = fractional_density();
   with_real_time.real_time_queues = 5;
   with_real_time.real_time_packet = 150 * kernel::kMicrosecond;
-  for (const auto& [demand, packet] : {std::pair{first_plan(), 3'320},
-                                       {first_plan(), 1'111},
-                                       {second_plan(), 2'225},
-                                       {second_plan(), 700},
+  for (const auto& [demand, packet] : {std::pair{whole_density(), 3'320},
+                                       {whole_density(), 1'111},
+                                       {fractional_density(), 2'225},
+                                       {fractional_density(), 700},
                                        {with_real_time, 1'700}}) {
     WindowTraffic traffic = traffic_of(demand, packet);
     for (QueueTraffic& queue : traffic.real_time) queue.mean_gap = 50 * kernel::kMillisecond;
@@ -123,7 +123,7 @@ TEST(WindowProof, TheSaturatedLoadIsThatOfTheFormula) {
 }
 
 TEST(WindowProof, QueuesGrowOverTheLoadOfTheFormulaAndNotUnderIt) {
-  for (const auto& [demand, packet] : {std::pair{first_plan(), 3'320}, {second_plan(), 2'225}}) {
+  for (const auto& [demand, packet] : {std::pair{whole_density(), 3'320}, {fractional_density(), 2'225}}) {
     WindowTraffic traffic = traffic_of(demand, packet);
     const double most = stability(traffic, allocate(demand)).saturated_packets;
     for (const double load : {0.9, 1.1}) {
@@ -143,7 +143,7 @@ TEST(WindowProof, QueuesGrowOverTheLoadOfTheFormulaAndNotUnderIt) {
 }
 
 TEST(WindowProof, PolledNodesKeepTheSameLimits) {
-  Demand demand = second_plan();
+  Demand demand = fractional_density();
   WindowTraffic traffic = traffic_of(demand, 2'225);
   traffic.overhead = 60 * kernel::kMicrosecond;
   traffic.empty_answer = 40 * kernel::kMicrosecond;
@@ -153,7 +153,7 @@ TEST(WindowProof, PolledNodesKeepTheSameLimits) {
 }
 
 TEST(WindowProof, IsTheSameEachTime) {
-  const WindowTraffic traffic = traffic_of(second_plan(), 2'225);
+  const WindowTraffic traffic = traffic_of(fractional_density(), 2'225);
   const Proof one = prove(traffic, 7, 20'000);
   const Proof other = prove(traffic, 7, 20'000);
   ASSERT_EQ(one.runs.size(), other.runs.size());

@@ -1,5 +1,3 @@
-// Networks whose plans were worked out by another program: ten nodes, each with a non-real-time queue; sensor
-// n at node 2n, controller n at node 2n + 1.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +6,8 @@
 #include "protocols/bandwidth/allocation.hpp"
 #include "protocols/bandwidth/window_traffic.hpp"
 
+// Networks whose plans were worked out by another program: ten nodes, each with a non-real-time queue; sensor
+// n at node 2n, controller n at node 2n + 1.
 namespace fieldproof::bandwidth {
 
 inline Demand sample_demand(const std::vector<std::int64_t>& bounds_ms) {
@@ -20,11 +20,11 @@ inline Demand sample_demand(const std::vector<std::int64_t>& bounds_ms) {
 }
 
 // Six data in each slot.
-inline Demand first_plan() {
+inline Demand whole_density() {
   return sample_demand({60, 60, 100, 100});
 }
 // 3.75 data in the mean.
-inline Demand second_plan() {
+inline Demand fractional_density() {
   return sample_demand({60, 100, 180, 340});
 }
 

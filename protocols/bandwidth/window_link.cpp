@@ -109,7 +109,7 @@ class WindowLink : private segment::Tap {
       if (!frame || frame->type != FrameType::data || wave.start >= end_) continue;
       const bool is_periodic = frame->packet == Packet::periodic;
       found_.sent.push_back({frame->packet, frame->source, wave.start - rules_.gap(), wave.end(),
-                             is_periodic ? frame->generated : Time{Duration{-1}}});
+                             is_periodic ? frame->generated : Time{Duration{-1}}, frame->byte});
     }
   }
 

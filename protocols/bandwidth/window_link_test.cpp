@@ -18,7 +18,7 @@ struct Line {
 
 // A plan of sixteen nodes, its packets as long as their frames.
 WindowTraffic planned_on(const WindowLineRules& rules, std::int64_t scale) {
-  Demand demand = second_plan();
+  Demand demand = fractional_density();
   for (kernel::Duration& bound : demand.bounds) bound *= scale;
   demand.nodes = 12;
   demand.real_time_queues = 3;
@@ -42,6 +42,7 @@ void expect_alike(const WindowTraffic& traffic, const WindowLineRules& rules, Lo
     const Sent& on_the_line = link.sent[n];
     ASSERT_EQ(sent[n].packet, on_the_line.packet) << n;
     ASSERT_EQ(sent[n].node, on_the_line.node) << n;
+    ASSERT_EQ(sent[n].byte, on_the_line.byte) << n;
     ASSERT_EQ(sent[n].begin + before, on_the_line.begin) << n;
     ASSERT_EQ(sent[n].end + before, on_the_line.end) << n;
     if (sent[n].packet == Packet::periodic) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 
 #include "harness/traffic/milliseconds.hpp"
 
@@ -107,6 +108,7 @@ QueueSet::QueueSet(const WindowTraffic& traffic, const std::vector<QueueTraffic>
   if (load == Load::none) return;
   for (const QueueTraffic& queue : queues) {
     place_[queue.node] = static_cast<int>(timed_.size());
+    free_from_.push_back(kernel::kStart);
     timed_.push_back({traffic::PoissonArrivals(per_ms(queue.mean_gap), random.split(queue.node))});
   }
 }
@@ -179,9 +181,11 @@ void QueueSet::on_sent(std::uint8_t node, Time end) {
   ++figures_.sent;
   if (fillers_ > 0) --fillers_;
   if (load_ != Load::arriving) return;
-  traffic::TimedQueue& queue = timed_[static_cast<std::size_t>(place_[node])];
-  figures_.longest = std::max(figures_.longest, end - queue.waiting.front());
-  queue.waiting.pop_front();
+  const auto place = static_cast<std::size_t>(place_[node]);
+  std::deque<Time>& waiting = timed_[place].waiting;
+  figures_.longest = std::max(figures_.longest, end - std::max(waiting.front(), free_from_[place]));
+  free_from_[place] = end;
+  waiting.pop_front();
 }
 
 void QueueSet::begin_counting(Time now) {

@@ -69,6 +69,7 @@ class QueueSet {
   unsigned nodes_;
   std::vector<int> place_;  // of the queue, by node; -1: none
   std::vector<traffic::TimedQueue> timed_;
+  std::vector<kernel::Time> free_from_;  // by queue: the last packet was sent
   QueueFigures figures_;
   kernel::Time counted_from_ = kernel::kStart;
   std::uint64_t waiting_before_ = 0;

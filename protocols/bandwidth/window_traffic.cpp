@@ -79,7 +79,7 @@ class WindowLine {
   }
 
   void leave_after_packet() {
-    send(Packet::non_real_time, traffic_.non_real_time_packet, kNothing);
+    send(Packet::non_real_time, traffic_.non_real_time_packet, kNothing, byte_);
     pass_on(true);
   }
 
@@ -89,16 +89,16 @@ class WindowLine {
     for (Packet packet = visit.next(waiting()); packet != Packet::none; packet = visit.next(waiting())) {
       is_answered = packet != Packet::real_time;
       if (packet == Packet::real_time) {
-        send(packet, traffic_.real_time_packet, kNothing);
+        send(packet, traffic_.real_time_packet, kNothing, visit.byte());
         real_time_.on_sent(at_, now_);
       } else if (packet == Packet::periodic) {
-        send_periodic(streams_[static_cast<std::size_t>(stream_at_[at_])]);
+        send_periodic(streams_[static_cast<std::size_t>(stream_at_[at_])], visit.byte());
       } else {
-        send(packet, traffic_.non_real_time_packet, kNothing);
+        send(packet, traffic_.non_real_time_packet, kNothing, visit.byte());
         non_real_time_.on_sent(at_, now_);
       }
     }
-    byte_ = visit.byte();
+    if (traffic_.has_periodic_byte) byte_ = visit.byte();
     pass_on(is_answered);
   }
 
@@ -143,16 +143,16 @@ class WindowLine {
     return true;
   }
 
-  void send(Packet packet, Duration length, Time generated) {
+  void send(Packet packet, Duration length, Time generated, PeriodicByte byte) {
     const Time begin = now_;
     now_ += length;
-    if (run_.on_sent) run_.on_sent({packet, at_, begin, now_, generated});
+    if (run_.on_sent) run_.on_sent({packet, at_, begin, now_, generated, byte});
   }
 
-  void send_periodic(Stream& stream) {
+  void send_periodic(Stream& stream, PeriodicByte byte) {
     const Time generated = stream.waits;
     stream.waits = kNothing;
-    send(Packet::periodic, traffic_.periodic_packet, generated);
+    send(Packet::periodic, traffic_.periodic_packet, generated, byte);
     slot_.on_sent_periodic();
     count(stream, generated);
     Loop& loop = loops_[stream.loop];

@@ -44,6 +44,7 @@ struct WindowTraffic {
   kernel::Duration periodic_packet{};
   kernel::Duration real_time_packet{};
   kernel::Duration non_real_time_packet{};
+  bool has_periodic_byte = true;  // else non-real-time packets go at all times, as in any cyclic service
   std::vector<LoopTraffic> loops;
   std::vector<QueueTraffic> real_time;
   std::vector<QueueTraffic> non_real_time;  // at most one of each kind at a node
@@ -72,6 +73,7 @@ struct Sent {
   kernel::Time begin;
   kernel::Time end;
   kernel::Time generated;  // of periodic data
+  PeriodicByte byte{};     // with which the server is at the node meanwhile
 };
 
 struct WindowRun {
@@ -111,7 +113,7 @@ struct LateDatum {
 struct QueueFigures {
   std::uint64_t sent = 0;
   std::uint64_t waiting = 0;   // at the end
-  kernel::Duration longest{};  // wait of a real-time packet that arrived, until it was sent
+  kernel::Duration longest{};  // from when a packet that arrived is the first of its queue until it is sent
   bool grows = false;          // beyond what chance makes of a queue that is stable
 };
 

@@ -26,7 +26,7 @@ TEST(WindowTraffic, TraceOfTheSecondPlanToTheMicrosecond) {
   run.on_sent = [&](const Sent& one) {
     if (one.packet == Packet::periodic) sent.push_back(one);
   };
-  WindowTraffic traffic = traffic_of(second_plan(), 2'225);
+  WindowTraffic traffic = traffic_of(fractional_density(), 2'225);
   run_windows(traffic, run);
   ASSERT_GE(sent.size(), expected.size());
   for (std::size_t n = 0; n < expected.size(); ++n) {
