@@ -15,6 +15,7 @@ int plan(Session& session) {
     if (protocol.plan == nullptr) continue;
     const Planned planned = protocol.plan(session.operands.front(), seed);
     session.terminal.print(planned.text);
+    if (planned.is_open) return kInconclusive;
     return planned.is_proven ? kAllAsExpected : kFailed;
   }
   throw kernel::Error(kernel::ErrorKind::usage, "no protocol of this program has anything to plan");

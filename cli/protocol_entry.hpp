@@ -44,10 +44,12 @@ struct Role {
   std::string path() const { return std::string(protocol) + "/" + std::string(name); }
 };
 
-// What `plan` prints of a network file, and whether its bound is proven.
+// What `plan` prints of a network file, and whether its bound is proven; open: too little is known to say so,
+// or that nothing meets it.
 struct Planned {
   std::string text;
   bool is_proven = false;
+  bool is_open = false;
 };
 
 // A way for a frame to arrive wrong at one receiver and to pass, where each bit flips with the same chance.

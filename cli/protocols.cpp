@@ -146,7 +146,8 @@ constexpr std::array kFieldbusDllRoles{
 Planned token_plan(const std::string& file, std::uint64_t seed) {
   const auto network = fieldbus_dll::TokenNetwork::load(file);
   const auto plan = fieldbus_dll::plan_target(network.traffic, network.bound, seed);
-  return {fieldbus_dll::network_text(network, seed) + fieldbus_dll::plan_text(plan, network), plan.is_proven};
+  return {fieldbus_dll::network_text(network, seed) + fieldbus_dll::plan_text(plan, network), plan.is_proven,
+          plan.is_open};
 }
 
 std::vector<UndetectedPart> undetected_cycles(const std::string& network_file, double flip_probability) {
