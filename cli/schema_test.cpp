@@ -242,7 +242,8 @@ TEST(NamedSchemas, AreJsonOfFilesAndOfEachRole) {
     EXPECT_EQ(nlohmann::json::parse(one.text)["$schema"], "http://json-schema.org/draft-07/schema#")
         << one.name;
   }
-  for (const char* name : {"baseline", "network", "pics", "faults", "token_network"})
+  for (const char* name : {"baseline", "interbus/network", "valve_bus/network", "fieldbus_dll/network",
+                           "pics", "faults", "fieldbus_dll/token_network"})
     EXPECT_TRUE(names.contains(name));
   for (const auto& suite : catalogue().suites()) {
     for (const std::string& role : suite->roles()) {
