@@ -43,6 +43,8 @@ TEST_F(ExitCode, ThreeWhenAFingerprintDiffers) {
   EXPECT_EQ(called.exit_code, 3);
   EXPECT_HOLDS(called.out, "first difference in line 3 of the recording");
   EXPECT_EQ(code({"verify", "probe/**", "-n", "3"}), 0);
+  EXPECT_EQ(code({"verify", "probe/**", "--iut", "mutant:swapped"}), 1);
+  EXPECT_EQ(code({"verify", "odd/end/is_inconclusive"}), 2);
 }
 
 TEST_F(ExitCode, FourWhenNothingIsJudged) {

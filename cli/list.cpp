@@ -116,8 +116,8 @@ Row row_of_plans(const ProtocolEntry& protocol) {
   row.json["protocol"] = protocol.name;
   row.json["roles"] = nlohmann::ordered_json::array();
   for (const char* const none : {"cases", "canaries", "mutants"}) row.json[none] = 0;
-  row.text = fmt::format("{}  no role to attach and no case; 'fieldproof plan' reads its {}", protocol.name,
-                         protocol.planner.file);
+  row.text = fmt::format("{}  no role to attach and no case; 'fieldproof plan' reads {}/{}", protocol.name,
+                         protocol.name, protocol.planner.file);
   return row;
 }
 

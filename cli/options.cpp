@@ -26,7 +26,7 @@ constexpr std::array kOptions = {
     Option{"json", value, "FILE", "", "run matrix diff residual measure paper emc plan", "also write the result as JSON here"},
     Option{"json", flag, "", "", "list", "print JSON", true},
     Option{"strict", flag, "", "", "run", "warn and inconclusive count as fail", false, false, true},
-    Option{"allow-inconclusive", flag, "", "", "run replay judge", "an inconclusive verdict, or a run that --max-time ended, gives 0, not 2", false, false, true},
+    Option{"allow-inconclusive", flag, "", "", "run replay judge verify", "an inconclusive verdict, or a run that --max-time ended, gives 0, not 2", false, false, true},
     Option{"baseline", value, "FILE", "", "run", "failures that are expected, each with its reason and its last day; one that is stale gives 3", false, false, true},
     Option{"confirm", value, "N", "0", "run", "a failure must come again N times, else it is inconclusive", false, true},
     Option{"shard", value, "I/N", "", "run list", "only each N-th of the selected cases, from the I-th on: one of N runs that are all of them together", false, false, true},
@@ -95,7 +95,7 @@ const Option* find_option(std::string_view name, std::string_view verb) {
 }
 
 std::string environment_name(const Option& option) {
-  std::string name = "FIELDPROOF_";
+  std::string name(kVariablePrefix);
   for (const char c : option.name) {
     name += c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   }

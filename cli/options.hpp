@@ -34,6 +34,7 @@ std::span<const Option> options();
 bool is_known_to(const Option& option, std::string_view verb);
 const Option* find_option(std::string_view name, std::string_view verb);
 
+inline constexpr std::string_view kVariablePrefix = "FIELDPROOF_";
 std::string environment_name(const Option& option);  // "FIELDPROOF_MAX_TIME"
 std::string file_key(const Option& option);          // "max_time"
 

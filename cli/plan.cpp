@@ -25,7 +25,7 @@ const Planner& planner_of(const config::Document& file) {
     for (const ProtocolEntry& protocol : protocols()) {
       const Planner& planner = protocol.planner;
       if (planner.plan == nullptr) continue;
-      known.push_back(fmt::format("\"{}\" ({})", planner.key, planner.file));
+      known.push_back(fmt::format("\"{}\" ({}/{})", planner.key, protocol.name, planner.file));
       if (found == nullptr && object.optional(planner.key)) found = &planner;
     }
   });
@@ -44,6 +44,7 @@ int plan(Session& session) {
   const Planned planned = planner_of(file).plan(file, seed);
   session.terminal.print(planned.text);
   write_document(session, "plan", planned.json);
+  if (planned.is_open) return kInconclusive;
   return planned.is_proven ? kAllAsExpected : kFailed;
 }
 

@@ -43,6 +43,16 @@ TEST_F(PlanVerb, SaysTheBestWhereNothingMeetsTheBound) {
   EXPECT_HOLDS(called.out, "no TTRT is proven to meet the bound; the best is");
 }
 
+// An urgent packet in a quarter of an hour: no simulation has enough of them, however wide the bound.
+TEST_F(PlanVerb, IsInconclusiveWhereItKnowsTooLittle) {
+  write("rare.json",
+        R"({"name": "rare", "bit_rate": "1 Mbit/s", "rule": "all_or_urgent", "nodes": [{"count": 4,
+        "overhead": "1 ms", "urgent": {"octets": 75, "per_s": 0.001}}], "urgent_delay": {"at_most": "1 s"}})");
+  const Called called = call({"plan", "rare.json"});
+  EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "none is refuted");
+}
+
 TEST_F(PlanVerb, NamesTheQueuesThatGrow) {
   const Called called = plan(R"({"at_most": "50 ms", "share": 0.9})", "400");
   EXPECT_EQ(called.exit_code, 0) << called.err;
@@ -77,10 +87,11 @@ TEST_F(PlanVerb, TheKeyOfAFileSaysWhoPlansIt) {
   write("other.json", R"({"name": "x"})");
   const Called called = call({"plan", "other.json"});
   EXPECT_EQ(called.exit_code, 65);
-  EXPECT_HOLDS(called.err,
-               "no protocol plans this file; one that is planned has \"urgent_delay\" (token_network) or "
-               "\"loops\" (bandwidth_network)");
-  EXPECT_HOLDS(call({"list", "protocols"}).out, "'fieldproof plan' reads its bandwidth_network");
+  EXPECT_HOLDS(
+      called.err,
+      "no protocol plans this file; one that is planned has \"urgent_delay\" (fieldbus_dll/token_network) or "
+      "\"loops\" (bandwidth/network)");
+  EXPECT_HOLDS(call({"list", "protocols"}).out, "'fieldproof plan' reads bandwidth/network");
 }
 
 class BandwidthPlan : public PlanVerb {

@@ -1,6 +1,7 @@
 #include "cli/program.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <exception>
@@ -21,6 +22,7 @@ int serve(const Command& command, const std::vector<std::string>& arguments, Ter
       std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == command.verb; });
   FIELDPROOF_CHECK(verb != verbs().end(), "the command line gives a verb that the table does not have");
   Settings settings(command, process_environment());
+  for (const std::string& sentence : unknown_variables(environ)) print_log_line(sentence);
   if (find_option("print-config", verb->name) != nullptr && settings.is_set("print-config")) {
     terminal.print(settings.describe());
     return kAllAsExpected;

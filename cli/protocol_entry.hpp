@@ -47,16 +47,18 @@ struct Role {
   std::string path() const { return std::string(protocol) + "/" + std::string(name); }
 };
 
-// What `plan` prints and stores of a network file, and whether all that the file asks for is proven.
+// What `plan` prints and stores of a network file, and whether all that the file asks for is proven; open:
+// too little is known to say so, or that nothing meets it.
 struct Planned {
   std::string text;
   std::string json;
   bool is_proven = false;
+  bool is_open = false;
 };
 
 // Finds what keeps the bounds of a network file of its kind.
 struct Planner {
-  std::string_view file{};  // what such a file is called: "token_network", also the name of its schema
+  std::string_view file{};  // the schema of such a file: "token_network"
   std::string_view key{};   // of the root, that no file of another planner has
   Planned (*plan)(const config::Document& network, std::uint64_t seed) = nullptr;
 };

@@ -150,7 +150,7 @@ Planned token_plan(const config::Document& file, std::uint64_t seed) {
   const auto network = fieldbus_dll::TokenNetwork::read(file);
   const auto plan = fieldbus_dll::plan_target(network.traffic, network.bound, seed);
   return {fieldbus_dll::network_text(network, seed) + fieldbus_dll::plan_text(plan, network),
-          fieldbus_dll::plan_json(plan, network, seed), plan.is_proven};
+          fieldbus_dll::plan_json(plan, network, seed), plan.is_proven, plan.is_open};
 }
 std::vector<field::NamedSchema> token_schemas() {
   return {{"token_network", fieldbus_dll::token_network_schema},
@@ -162,8 +162,7 @@ Planned bandwidth_plan(const config::Document& file, std::uint64_t seed) {
   return {bandwidth::plan_text(plan), bandwidth::plan_json(plan), plan.is_proven()};
 }
 std::vector<field::NamedSchema> bandwidth_schemas() {
-  return {{"bandwidth_network", bandwidth::bandwidth_network_schema},
-          {"bandwidth_plan", bandwidth::bandwidth_plan_schema}};
+  return {{"network", bandwidth::bandwidth_network_schema}, {"plan", bandwidth::bandwidth_plan_schema}};
 }
 
 std::vector<UndetectedPart> undetected_cycles(const std::string& network_file, double flip_probability) {
@@ -197,7 +196,7 @@ constexpr std::array kProtocols{
         .schemas = token_schemas},
     // A scheme for any cyclic server: nothing of it is attached or judged.
     ProtocolEntry{.name = "bandwidth",
-                  .planner = {.file = "bandwidth_network", .key = "loops", .plan = bandwidth_plan},
+                  .planner = {.file = "network", .key = "loops", .plan = bandwidth_plan},
                   .schemas = bandwidth_schemas},
 };
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
 
 #include "cli/case_file.hpp"
 #include "cli/exit_code.hpp"
@@ -43,10 +44,27 @@ struct Export {
 
 constexpr std::array kExports = {Export{"pcapng", capture_of}, Export{"vcd", wave_dump_of}};
 
+// Also by another path, or through a link.
+bool is_one_file(const std::string& one, const std::string& other) {
+  std::error_code failure;
+  const auto path_of = [&](const std::string& name) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(name), failure);
+  };
+  return one == other || path_of(one) == path_of(other);
+}
+
 // Refused before the case is run.
 void check_exports(const Settings& settings) {
   for (const Export& one : kExports) {
-    if (settings.is_set(one.option)) reports::check_writable(settings.text(one.option));
+    if (!settings.is_set(one.option)) continue;
+    for (const Export& other : kExports) {
+      if (&other == &one) break;
+      if (settings.is_set(other.option) &&
+          is_one_file(settings.text(other.option), settings.text(one.option)))
+        settings.refuse(one.option,
+                        fmt::format("--{} is written to the same file; name another", other.option));
+    }
+    reports::check_writable(settings.text(one.option));
   }
 }
 

@@ -90,6 +90,12 @@ int residual(Session& session) {
   result.check = &check_from(settings);
   require(settings, "bits", "2200");
   result.bits = static_cast<unsigned>(settings.number("bits", 1, emc::kMostBits));
+  if (result.bits < result.check->width) {
+    settings.refuse("bits",
+                    fmt::format("{} bits are a code word with its check, and '{}' has {} check bits; "
+                                "write {} or more",
+                                result.bits, settings.text("fcs"), result.check->width, result.check->width));
+  }
   result.messages_per_hour = settings.number("messages", 0, kMostPerHour);
   result.receivers = settings.number("receivers", 1, kMostReceivers);
   result.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());

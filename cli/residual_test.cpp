@@ -102,5 +102,21 @@ TEST_F(ResidualVerb, RefusesAWrongVariableOfTheEnvironmentAsConfiguration) {
   EXPECT_NE(called.err.find("FIELDPROOF_BER"), std::string::npos) << called.err;
 }
 
+TEST_F(ResidualVerb, NamesAVariableThatSetsNothing) {
+  Call made = prepared({"residual", "--fcs", "CRC-8/SMBUS", "--bits", "64"});
+  made.environment = {{"FIELDPROOF_BERS", "1e-3"}, {"FIELDPROOF_SEED", "3"}};
+  const Called called = made.run();
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_EQ(called.err,
+            "fieldproof: the variable FIELDPROOF_BERS sets nothing; the nearest one that does is "
+            "FIELDPROOF_BER\n");
+}
+
+TEST_F(ResidualVerb, RefusesACodeWordShorterThanItsCheck) {
+  const Called called = prepared({"residual", "--fcs", "CRC-16/IBM-3740", "--bits", "15"}).run();
+  EXPECT_EQ(called.exit_code, 64);
+  EXPECT_NE(called.err.find("has 16 check bits; write 16 or more"), std::string::npos) << called.err;
+}
+
 }  // namespace
 }  // namespace fieldproof::cli

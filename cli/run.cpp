@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "cli/baseline.hpp"
@@ -40,6 +41,12 @@ std::string failed_directory(Session& session) {
   std::string given = session.settings.text("failed");
   if (given.empty()) return "runs";
   if (std::filesystem::is_directory(given)) return given;
+  try {
+    session.catalogue.select(std::array{given});
+  } catch (const kernel::Error& refused) {
+    session.settings.refuse("failed",
+                            fmt::format("'{}' is no folder, and as a selector: {}", given, refused.what()));
+  }
   session.operands.insert(session.operands.begin(), given);
   return "runs";
 }

@@ -71,13 +71,13 @@ std::vector<NamedText> named_schemas(const conformance::Catalogue& catalogue) {
   all.push_back({"pics", pics_schema_text(catalogue)});
   for (const auto& suite : catalogue.suites()) {
     for (const field::NamedSchema& file : suite->schemas()) {
-      all.push_back({std::string(file.name), std::string(file.text)});
+      all.push_back({fmt::format("{}/{}", suite->protocol(), file.name), std::string(file.text)});
     }
   }
   for (const ProtocolEntry& protocol : protocols()) {
     if (protocol.schemas == nullptr) continue;
     for (const field::NamedSchema& file : protocol.schemas())
-      all.push_back({std::string(file.name), std::string(file.text)});
+      all.push_back({fmt::format("{}/{}", protocol.name, file.name), std::string(file.text)});
   }
   std::ranges::sort(all, {}, &NamedText::name);
   for (const auto& suite : catalogue.suites()) {
@@ -93,6 +93,29 @@ std::vector<NamedText> named_schemas(const conformance::Catalogue& catalogue) {
   return all;
 }
 
+namespace {
+
+// Without its protocol a name is near to all that end like it.
+std::vector<std::string> near_to(const std::string& wanted, const std::vector<NamedText>& all) {
+  const bool is_short = wanted.find('/') == std::string::npos;
+  const auto key_of = [is_short](const std::string& name) {
+    const std::string_view whole = name;
+    return is_short ? whole.substr(whole.rfind('/') + 1) : whole;
+  };
+  std::vector<std::string_view> keys;
+  for (const NamedText& one : all) {
+    if (const auto key = key_of(one.name); std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+  }
+  std::vector<std::string> names;
+  for (const std::string_view key : config::nearest(wanted, keys, 3)) {
+    for (const NamedText& one : all)
+      if (key_of(one.name) == key) names.push_back(one.name);
+  }
+  return names;
+}
+
+}  // namespace
+
 int schema(Session& session) {
   const std::vector<NamedText> all = named_schemas(session.catalogue);
   if (session.operands.empty()) {
@@ -102,11 +125,8 @@ int schema(Session& session) {
   const std::string& wanted = session.operands.front();
   const auto found = std::ranges::find(all, wanted, &NamedText::name);
   if (found == all.end()) {
-    std::vector<std::string_view> names;
-    for (const NamedText& one : all) names.push_back(one.name);
-    throw kernel::Error(kernel::ErrorKind::usage,
-                        fmt::format("there is no schema '{}'; near to it are {}", wanted,
-                                    fmt::join(config::nearest(wanted, names, 3), ", ")));
+    throw kernel::Error(kernel::ErrorKind::usage, fmt::format("there is no schema '{}'; near to it are {}",
+                                                              wanted, fmt::join(near_to(wanted, all), ", ")));
   }
   session.terminal.print(found->text);
   return 0;

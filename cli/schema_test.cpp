@@ -243,7 +243,8 @@ TEST(NamedSchemas, AreJsonOfFilesAndOfEachRole) {
         << one.name;
   }
   for (const char* name :
-       {"baseline", "network", "pics", "faults", "token_network", "bandwidth_network", "bandwidth_plan"})
+       {"baseline", "interbus/network", "valve_bus/network", "fieldbus_dll/network", "pics", "faults",
+        "fieldbus_dll/token_network", "fieldbus_dll/target_plan", "bandwidth/network", "bandwidth/plan"})
     EXPECT_TRUE(names.contains(name));
   for (const auto& suite : catalogue().suites()) {
     for (const std::string& role : suite->roles()) {

@@ -20,8 +20,13 @@ TEST_F(SchemaVerb, PrintsTheSettingsOfARole) {
 TEST_F(SchemaVerb, NamesTheNearestOfAWrongName) {
   const Called called = call({"schema", "netwrok"});
   EXPECT_EQ(called.exit_code, 64);
-  EXPECT_HOLDS(called.err, "there is no schema 'netwrok'; near to it are network");
+  EXPECT_HOLDS(called.err, "there is no schema 'netwrok'; near to it are ");
+  EXPECT_HOLDS(called.err, "interbus/network");
   EXPECT_HOLDS(call({"schema"}).out, "interbus/master\n");
+  for (const char* network : {"interbus/network", "valve_bus/network", "fieldbus_dll/network"}) {
+    EXPECT_HOLDS(call({"schema"}).out, std::string(network) + "\n");
+    EXPECT_EQ(call({"schema", network}).exit_code, 0) << network;
+  }
 }
 
 TEST_F(SchemaVerb, ExplainKnowsRolesAndNumbers) {

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "harness/config/document.hpp"
+#include "harness/config/nearest.hpp"
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
 #include "reports/results.hpp"
@@ -142,6 +143,22 @@ Environment process_environment() {
     if (value == nullptr || *value == '\0') return std::nullopt;
     return value;
   };
+}
+
+std::vector<std::string> unknown_variables(const char* const* variables) {
+  std::vector<std::string> known;
+  for (const Option& option : options())
+    if (!option.is_of_the_moment) known.push_back(environment_name(option));
+  std::vector<std::string> sentences;
+  for (; *variables != nullptr; ++variables) {
+    const std::string_view variable = *variables;
+    const std::string_view name = variable.substr(0, variable.find('='));
+    if (!name.starts_with(kVariablePrefix) || std::ranges::find(known, name) != known.end()) continue;
+    const auto nearest = config::nearest(name, std::span<const std::string>(known), 1);
+    sentences.push_back(fmt::format("the variable {} sets nothing; the nearest one that does is {}",
+                                    reports::escaped_line(name), nearest.front()));
+  }
+  return sentences;
 }
 
 Settings::Settings(const Command& command, const Environment& environment) : verb_(command.verb) {

@@ -39,6 +39,8 @@ struct Command {
 // Value of an environment variable, nothing when it is not set or empty.
 using Environment = std::function<std::optional<std::string>(const std::string&)>;
 Environment process_environment();
+// One sentence for each "FIELDPROOF_..." of these "NAME=value" that is the variable of no option.
+std::vector<std::string> unknown_variables(const char* const* variables);
 
 class Settings {
  public:

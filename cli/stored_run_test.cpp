@@ -46,7 +46,10 @@ TEST_F(Stored, FailingCaseReplaysBitForBit) {
   EXPECT_HOLDS(called.out, "equal: verdict, reason and fingerprint are those of the stored run");
   EXPECT_HOLDS(called.out, read(fs::relative(file.parent_path() / "trace.txt", folder_)));
   EXPECT_EQ(code({"replay", file.string(), "--iut", "ref"}), 0);
-  EXPECT_EQ(code({"verify", file.string()}), 0);
+  EXPECT_EQ(code({"replay", file.string(), "--pcapng", "one", "--vcd", "./one"}), 64);
+  const Called verified = probe({"verify", file.string()});
+  EXPECT_EQ(verified.exit_code, 1) << verified.err;
+  EXPECT_HOLDS(verified.out, "1 of 1 cases are equal in 2 runs, and 1 of them fails each time");
 }
 
 TEST_F(Stored, ReplayTellsWhatDiffers) {
@@ -102,7 +105,11 @@ TEST_F(Stored, FailedIsNarrowedBySelectorsAndBySettings) {
   EXPECT_EQ(narrowed.exit_code, 1) << narrowed.err;
   EXPECT_HOLDS(narrowed.out, "1 of 1 selected cases judged");
   EXPECT_HOLDS(narrowed.out, "seed 9,");
+  const Called nowhere = probe({"run", "--failed", "runs/nowhere"});
+  EXPECT_EQ(nowhere.exit_code, 64);
+  EXPECT_HOLDS(nowhere.err, "'runs/nowhere' is no folder");
   EXPECT_EQ(code({"run", "--failed", "--iut", "ref"}), 0);
+  EXPECT_EQ(code({"run", "--failed", "runs/nowhere"}), 64) << "also where nothing has failed";
   EXPECT_EQ(code({"run", "--failed"}), 4);
 }
 

@@ -98,7 +98,7 @@ constexpr std::array kHelp = {
         {"explain bit_rate", "unit, range and source of a number"}}}},
     VerbHelp{"schema", kKnow, {{
         {"schema", "the names of all schemas"},
-        {"schema network", "of a file that describes a network"},
+        {"schema {protocol}/network", "of a file that describes a network"},
         {"schema {role}", "of the settings that a role is given"}}}},
     VerbHelp{"help", kKnow, {{
         {"help run", "the same as run --help"},

@@ -15,7 +15,7 @@
 #include "reports/text_summary.hpp"
 
 // `fieldproof verify`: runs cases several times; equal seeds must give equal fingerprints, verdicts and
-// reasons.
+// reasons. A case that is equal each time has its verdict, and with it the exit code.
 namespace fieldproof::cli {
 namespace {
 
@@ -114,12 +114,23 @@ class Comparison {
   std::vector<std::size_t> differing_;
 };
 
-int code_of(const Comparison& comparison, std::size_t equal) {
+// What differs goes before the verdicts, because then no verdict is that of the case.
+int code_of(const Comparison& comparison, const Settings& settings) {
   reports::Run run;
   run.cases = comparison.first();
-  const int by_verdicts = exit_code(run, {});
-  if (by_verdicts == kInternal || by_verdicts == kNothingJudged) return by_verdicts;
-  return comparison.differing() > 0 || equal == 0 ? kDiffers : kAllAsExpected;
+  ExitRules rules;
+  rules.allows_inconclusive = settings.is_set("allow-inconclusive");
+  const int by_verdicts = exit_code(run, rules);
+  return comparison.differing() > 0 && by_verdicts != kInternal ? kDiffers : by_verdicts;
+}
+
+// ", and 2 of them fail each time"
+std::string failing_text(const Comparison& comparison) {
+  const auto failing = std::ranges::count_if(comparison.first(), [](const judge::CaseResult& result) {
+    return result.verdict == judge::Verdict::fail || result.verdict == judge::Verdict::error;
+  });
+  if (failing == 0 || comparison.differing() > 0) return "";
+  return fmt::format(", and {} of them {} each time", failing, failing == 1 ? "fails" : "fail");
 }
 
 }  // namespace
@@ -148,9 +159,9 @@ int verify(Session& session) {
     return kSignalBase + interruption.signal();
   }
   const std::size_t equal = target.entries.size() - comparison.differing();
-  session.terminal.print(
-      fmt::format("{} of {} cases are equal in {} runs\n", equal, target.entries.size(), runs));
-  return code_of(comparison, equal);
+  session.terminal.print(fmt::format("{} of {} cases are equal in {} runs{}\n", equal, target.entries.size(),
+                                     runs, failing_text(comparison)));
+  return code_of(comparison, session.settings);
 }
 
 }  // namespace fieldproof::cli

@@ -78,6 +78,7 @@ std::unique_ptr<Suite> fieldbus_dll_suite(SuiteGiven given) {
           .protocol = "fieldbus_dll",
           .roles = {isa_dle_row(), isa_las_row(), ff_device_row(), ff_las_row()},
           .rules = {{"ff_rules", &kFfRulesTable}, {"isa_rules", &kIsaRulesTable}},
+          .schemas = {{"network", link_network_schema}},
           .why_no_network = "cases of the data link make the link that they need; leave out the network"},
       std::move(given));
 }

@@ -125,7 +125,8 @@ TEST(InterbusSuite, AStationOfTheCallersIsJudged) {
                                          ++made;
                                          return std::make_unique<interbus::Slave>(of);
                                        })});
-  const TestCase& test_case = own->cases().front();
+  // In the first one a slave is silent, and asked another time.
+  const TestCase& test_case = own->cases()[1];
   EXPECT_EQ(own->run(test_case, setup_of("slave", "own")).result.verdict, judge::Verdict::pass);
   EXPECT_EQ(made, 1);
 }

@@ -13,6 +13,7 @@
 #include "protocols/valve_bus/attached_host.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
 #include "protocols/valve_bus/dissector.hpp"
+#include "protocols/valve_bus/embedded_schemas.hpp"
 #include "protocols/valve_bus/host.hpp"
 #include "protocols/valve_bus/node.hpp"
 
@@ -92,6 +93,7 @@ std::unique_ptr<Suite> valve_bus_suite(SuiteGiven given) {
       SuiteRows{.protocol = "valve_bus",
                 .roles = {node_row(), host_row()},
                 .rules = {{"rules", &valve_bus::kRulesTable}},
+                .schemas = {{"network", valve_bus::network_schema}},
                 .why_no_network = "cases of the valve bus make the line that they need; leave out the "
                                   "network, and say in a PICS what the implementation is"},
       std::move(given));

@@ -2,6 +2,8 @@
 """A local node of the RS-485 valve bus, to be judged; harness/iut/README.md describes the messages.
 
 On standard input and output, for --iut 'exec:python3 node.py', or, with a path, at a socket there."""
+import pathlib
+import signal
 import socketserver
 import struct
 import sys
@@ -154,5 +156,11 @@ class Connection(socketserver.StreamRequestHandler):
 
 
 if len(sys.argv) > 1:  # cases may run side by side, each with a connection of its own
-    socketserver.ThreadingUnixStreamServer(sys.argv[1], Connection).serve_forever()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit())
+    try:
+        socketserver.ThreadingUnixStreamServer(sys.argv[1], Connection).serve_forever()
+    except KeyboardInterrupt:
+        sys.exit()
+    finally:  # the next one can take the path again
+        pathlib.Path(sys.argv[1]).unlink(missing_ok=True)
 serve(Stream(sys.stdin.buffer, sys.stdout.buffer))

@@ -172,7 +172,14 @@ std::size_t Value::as_choice(std::span<const std::string_view> names) const {
 
 std::vector<Value> Value::as_array(std::size_t min, std::size_t max) const {
   const Node& node = source_->nodes[node_];
-  if (node.kind != ValueKind::array) refuse_kind(*this, *source_, node, "an array");
+  if (node.kind != ValueKind::array) {
+    const bool has_most = max < std::numeric_limits<std::size_t>::max();
+    const std::string number = min == max ? fmt::format("{}", min)
+                               : has_most ? fmt::format("{} to {}", min, max)
+                                          : fmt::format("{} or more", min);
+    refuse_kind(*this, *source_, node,
+                min > 0 || has_most ? fmt::format("an array of {} elements", number) : "an array");
+  }
   if (node.children < min) {
     fail(*this, fmt::format("the array has {}; write at least {}", some(node.children), min));
   }

@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"integer_has_fraction", "5.0", octet,
                  "5.0 is a number with a fraction or an exponent; write a whole number from 1 to 200"},
         BadValue{"number_is_string", "\"1\"", part, "\"1\" is a string; write a number from 0 to 1.5"},
-        BadValue{"array_is_object", "{}", pair, "this is an object; write an array"},
+        BadValue{"array_is_object", "{}", pair, "this is an object; write an array of 2 elements"},
         BadValue{"object_is_string", "\"a\"", members, "\"a\" is a string; write an object"}),
     name_of_row);
 

@@ -1,15 +1,22 @@
 #include "harness/field/settings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "harness/field/custom.hpp"
 #include "harness/field/walk.hpp"
+#include "harness/kernel/error.hpp"
 
 namespace fieldproof::field {
 namespace {
 
-std::int64_t in_range(std::int64_t number, const Range& range) {
-  return std::clamp(number, range.least, range.most);
+// Another number than the one that was given is another case: it is refused, never brought into its range.
+std::int64_t in_range(std::string_view name, std::int64_t number, const Range& range) {
+  if (number >= range.least && number <= range.most) return number;
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format("the setting '{}' is {}; it is from {} to {}", name, number, range.least, range.most));
 }
 
 void put_list(const Leaf& leaf, Settings& settings) {
@@ -25,7 +32,7 @@ void put_list(const Leaf& leaf, Settings& settings) {
 }
 
 void take_number(const GivenSettings& given, std::string_view name, const Row& row, void* object) {
-  if (const auto number = given.find(name)) row.set(object, in_range(*number, row.about.range));
+  if (const auto number = given.find(name)) row.set(object, in_range(name, *number, row.about.range));
 }
 
 void take_list(const GivenSettings& given, const Leaf& leaf, void* items) {
@@ -33,13 +40,13 @@ void take_list(const GivenSettings& given, const Leaf& leaf, void* items) {
   if (!list.is_of_fixed_size) {
     const auto most = static_cast<std::int64_t>(list.most);
     const auto size = given.find(leaf.name);
-    if (size) list.resize(items, static_cast<std::size_t>(in_range(*size, {0, most})));
+    if (size) list.resize(items, static_cast<std::size_t>(in_range(leaf.name, *size, {0, most})));
   }
   for (std::size_t n = 0; n < list.size(items); ++n) {
     for (const Row& column : list.element->rows) {
       // An element that is not given is brought into its range, too: a new one is zero.
       void* const element = const_cast<void*>(list.at(items, n));
-      column.set(element, in_range(column.get(element), column.about.range));
+      column.set(element, std::clamp(column.get(element), column.about.range.least, column.about.range.most));
       take_number(given, element_name(leaf, n, column.name), column, element);
     }
   }
@@ -57,7 +64,7 @@ std::optional<std::int64_t> GivenSettings::find(std::string_view name) const {
 }
 
 std::int64_t GivenSettings::within(std::string_view name, Range range, std::int64_t absent) const {
-  return in_range(find(name).value_or(absent), range);
+  return in_range(name, find(name).value_or(absent), range);
 }
 
 Settings settings_of_any(const AnyTable& table, const void* object) {

@@ -2,8 +2,8 @@
 //
 // One rule for all: the name is the member's, a duration is picoseconds, a truth 0 or 1, a choice its number.
 // A list "live" gives its size as "live" and its elements as "live_0", "live_1", of a structure
-// "items_0_at". Read back, a value outside of its range is brought into it and what is not given stays as it
-// was.
+// "items_0_at". Read back, a value outside of its range is refused (kernel::Error(configuration), with its
+// name and range) and what is not given stays as it was.
 #pragma once
 
 #include <cstdint>

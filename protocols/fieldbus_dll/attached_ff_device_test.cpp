@@ -55,13 +55,17 @@ TEST(FfSettings, ThatAreNotToldAreThoseOfTheReference) {
   EXPECT_EQ(ff_settings(ff_configuration_of({"x", 1, {}})), ff_settings({}));
 }
 
-TEST(FfSettings, ThatAreImpossibleAreTheNearestThatAre) {
-  const FfConfiguration back = ff_configuration_of(
-      {"x", 1, {{"bit_rate", 0}, {"node", 4'711}, {"published", 1'000'000}, {"preamble_octets", -3}}});
-  EXPECT_EQ(back.rules.link.bit_rate, 1'000);
-  EXPECT_EQ(back.node, 255);
-  EXPECT_EQ(back.published.size(), 1'000U);
-  EXPECT_EQ(back.rules.link.preamble_octets, 1U);
+TEST(FfSettings, ThatAreImpossibleAreRefused) {
+  const field::Settings impossible{
+      {"bit_rate", 0}, {"node", 4'711}, {"published", 1'000'000}, {"preamble_octets", -3}};
+  for (const auto& one : impossible) {
+    try {
+      ff_configuration_of({"x", 1, {one}});
+      ADD_FAILURE() << one.first;
+    } catch (const kernel::Error& refused) {
+      EXPECT_THAT(refused.what(), HasSubstr("'" + one.first + "' is " + std::to_string(one.second)));
+    }
+  }
 }
 
 class AttachedFfDeviceTest : public testing::Test, private FfUser {

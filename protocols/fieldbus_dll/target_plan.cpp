@@ -59,16 +59,27 @@ double held(const traffic::StreamFigures& urgent, bool is_share, Judges judges) 
   return urgent.mean_delay + (is_proof ? kHalfWidth95 * urgent.standard_error : 0);
 }
 
+// Whatever its half width holds, or with queues that grow.
+bool is_refuted(const traffic::StreamFigures& urgent, const DelayBound& bound, double half_width) {
+  if (urgent.packets == 0) return false;
+  if (urgent.is_unstable) return true;
+  return bound.share ? urgent.within + half_width < *bound.share
+                     : urgent.mean_delay - half_width > ms(bound.at_most);
+}
+
 TargetRun judged(kernel::Duration target, traffic::TrafficFigures figures, const DelayBound& bound,
                  Judges judges) {
   TargetRun run{.target = target, .figures = std::move(figures)};
   const bool is_share = bound.share.has_value();
   std::optional<double> worst;
   bool is_met = true;
+  bool is_refuted_somewhere = false;
   for (std::size_t n = 0; n < run.figures.nodes.size(); ++n) {
     const traffic::StreamFigures& urgent = run.figures.nodes[n][traffic::kUrgent];
     if (urgent.arrive_per_ms == 0) continue;
     const double this_one = held(urgent, is_share, judges);
+    const double half_width = std::abs(this_one - (is_share ? urgent.within : urgent.mean_delay));
+    is_refuted_somewhere |= is_refuted(urgent, bound, half_width);
     is_met &= !urgent.is_unstable && urgent.packets > 0;
     is_met &= is_share ? this_one >= *bound.share : this_one <= ms(bound.at_most);
     if (judges == Judges::proof) is_met &= urgent.packets >= kFewPackets && urgent.batches >= kFewBatches;
@@ -80,6 +91,7 @@ TargetRun judged(kernel::Duration target, traffic::TrafficFigures figures, const
     run.error = std::abs(this_one - run.reached);
   }
   run.meets_bound = worst && is_met;
+  run.is_open = !run.meets_bound && !is_refuted_somewhere;
   return run;
 }
 
@@ -175,6 +187,8 @@ TargetPlan plan_target(const traffic::TokenTraffic& traffic, const DelayBound& b
     plan.is_proven = plan.tried.back().meets_bound && !begins_to_grow(*candidate, plan.tried.back());
     if (plan.is_proven) break;
   }
+  const bool is_any_open = std::ranges::any_of(plan.tried, &TargetRun::is_open);
+  plan.is_open = !plan.is_proven && (plan.tried.empty() ? plan.searched[plan.best].is_open : is_any_open);
   return plan;
 }
 

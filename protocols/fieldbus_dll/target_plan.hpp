@@ -33,12 +33,15 @@ struct TargetRun {
   double error = 0;            // 95 % half width of it; 0 in a search
   std::uint64_t fewest = 0;    // packets of a node that has some
   bool meets_bound = false;    // at each node, with its half width, where there is one
+  bool is_open = false;        // it is not shown to, nor that it does not: too few packets
 };
 
 struct TargetPlan {
   std::vector<TargetRun> searched;  // by target
   std::vector<TargetRun> tried;     // the longer simulations, in their order; the last one is the plan
   bool is_proven = false;
+  // Not proven, and not refuted: of what was tried, or of the best that was searched, too little is known.
+  bool is_open = false;
   std::size_t best = 0;  // of `searched`: which serves urgent packets best, whatever it costs
 };
 

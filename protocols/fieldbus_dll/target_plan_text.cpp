@@ -130,7 +130,12 @@ std::string plan_text(const TargetPlan& plan, const TokenNetwork& network) {
     text += fmt::format("\nTTRT {:.3f} ms does not stand a longer simulation: {}{}", ms(tried.target),
                         reached_text(tried, network.bound), why_not_text(tried));
   }
-  return text + fmt::format("\nno TTRT is proven to meet the bound; the best is {:.3f} ms: {}\n{}",
+  return text + fmt::format("\nno TTRT is proven to meet the bound{}; the best is {:.3f} ms: {}\n{}",
+                            plan.is_open
+                                ? ", and none is refuted: the simulations end with too few packets of a "
+                                  "node, or too close to the bound; give it more packets per_s, or "
+                                  "another bound"
+                                : "",
                             ms(best.target), reached_text(best, network.bound), priorities_text(best));
 }
 

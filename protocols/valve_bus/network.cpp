@@ -90,6 +90,20 @@ NetworkDescription NetworkDescription::even(unsigned dip, unsigned nodes, double
   return network;
 }
 
+namespace {
+
+unsigned number_of_nodes(const Value& nodes) {
+  const auto number = nodes.as_integer<std::int64_t>();
+  const Rules rules;
+  if (number >= 1 && number <= rules.last_address) return static_cast<unsigned>(number);
+  config::fail(
+      nodes, fmt::format("{} nodes: write 1 to {}, because two decimal switches give a node its address, or "
+                         "an array of nodes",
+                         number, rules.last_address));
+}
+
+}  // namespace
+
 NetworkDescription NetworkDescription::read(const Value& root) {
   NetworkDescription network = config::read_object(root, [](ObjectReader& object) {
     NetworkDescription read;
@@ -108,7 +122,7 @@ NetworkDescription NetworkDescription::read(const Value& root) {
     if (nodes.is_array()) {
       for (const Value& node : nodes.as_array(1)) read.nodes.push_back(read_node(node));
     } else {
-      read.nodes = spread_evenly(nodes.as_integer<unsigned>(1, 255), read.length_m);
+      read.nodes = spread_evenly(number_of_nodes(nodes), read.length_m);
     }
     if (const auto copy = object.optional("copy")) {
       for (const Value& rule : copy->as_array()) read.copy.push_back(read_copy(rule));

@@ -47,7 +47,10 @@ TEST(ValveBusNetwork, SpreadsANumberOfNodesEvenly) {
 }
 
 TEST(ValveBusNetwork, RefusesWhatNoBusIs) {
-  EXPECT_NE(refusal_of(R"({"name": "a", "nodes": 100})").find("two decimal switches"), std::string::npos);
+  for (const char* number : {"0", "-1", "100", "256"}) {
+    const std::string refusal = refusal_of(R"({"name": "a", "nodes": )" + std::string(number) + "}");
+    EXPECT_NE(refusal.find("write 1 to 99, because two decimal switches"), std::string::npos) << refusal;
+  }
   EXPECT_NE(refusal_of(R"({"name": "a", "nodes": [{"address": 0}]})").find("1 to 99"), std::string::npos);
   EXPECT_NE(refusal_of(R"({"name": "a", "nodes": [{"address": 3}, {"address": 3}]})").find("there already"),
             std::string::npos);
