@@ -11,6 +11,7 @@
 #include "conformance/fieldbus_dll/isa_sequence_check.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
+#include "protocols/fieldbus_dll/embedded_schemas.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
 #include "protocols/fieldbus_dll/ff_settings.hpp"
 #include "protocols/fieldbus_dll/isa_las.hpp"
