@@ -67,16 +67,9 @@ class Pools {
   std::unique_ptr<SerialPool> lines_;
 };
 
-// The words of a PICS for the format of a UART.
-std::string characters_of(const std::string& uri, const line::CharacterFormat& format) {
-  const std::string text = format.text();
-  if (text == "8m1") return "P0";
-  if (text == "8e1") return "P1";
-  if (text == "8n1") return "P2";
-  throw kernel::Error(kernel::ErrorKind::usage,
-                      fmt::format("'{}': no node of the valve bus talks in characters {}; there are 8m1 (a "
-                                  "ninth bit of 1), 8e1 and 8n1",
-                                  uri, text));
+// The protocol and the role that an id begins with.
+std::string role_of(const std::string& case_id) {
+  return case_id.substr(0, case_id.find('/', case_id.find('/') + 1));
 }
 
 }  // namespace
@@ -120,16 +113,12 @@ std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::Role
       uri, role, std::vector<std::string>{self, "station", role.protocol + "/" + role.role, uri}, limits);
 }
 
-std::optional<judge::Pics> station_on_real_line(const std::string& uri) {
+std::optional<judge::Pics> station_on_real_line(const std::string& uri, const std::string& case_id) {
   if (!uri.starts_with(iut::kSerialUri)) return std::nullopt;
   const iut::SerialSettings settings = iut::serial_settings(uri);
-  judge::Pics pics;
-  if (settings.bit_rate) pics.declare("bit_rate", *settings.bit_rate);
-  if (settings.format) pics.declare("characters", characters_of(uri, *settings.format));
-  // Without an upper channel the box is as it stands there.
-  pics.declare("address_switches_can_be_set", !settings.upper.empty());
-  pics.declare("power_can_be_switched", !settings.upper.empty());
-  return pics;
+  const Role* role = find_role(role_of(case_id));
+  // Another role is refused when it is attached.
+  return role != nullptr && role->on_line != nullptr ? role->on_line(uri, settings) : judge::Pics{};
 }
 
 std::vector<iut::RoleName> served_among(const std::string& uri, std::span<const iut::RoleName> roles) {
@@ -165,8 +154,10 @@ std::string no_serial_line_for(const Role& role) {
   std::vector<std::string> known;
   for (const Role* one : roles())
     if (one->uart != nullptr) known.push_back(one->path());
-  return fmt::format("'{}' cannot be judged at a serial line: {}; serial lines serve '{}'", role.path(),
-                     role.why_not_serial, fmt::join(known, "' and '"));
+  return fmt::format(
+      "'{}' cannot be judged at a serial line: its line carries no characters of a UART; serial lines serve "
+      "'{}'",
+      role.path(), fmt::join(known, "' and '"));
 }
 
 conformance::Attach attachments() {

@@ -34,8 +34,9 @@ std::unique_ptr<iut::Device> library_of(const std::string& uri, const iut::RoleN
 std::unique_ptr<iut::DevicePool> pool_of(const std::string& uri, const iut::RoleName& role,
                                          const iut::PeerLimits& limits = {});
 
-// What the URI of a serial line says of the station at it, as answers of a PICS; nothing for other URIs.
-std::optional<judge::Pics> station_on_real_line(const std::string& uri);
+// What the URI of a serial line says of the station at it, as answers of a PICS of the role of this case;
+// nothing for other URIs.
+std::optional<judge::Pics> station_on_real_line(const std::string& uri, const std::string& case_id);
 
 // Which of these roles the implementation outside serves, as it says itself. It is started for that.
 std::vector<iut::RoleName> served_among(const std::string& uri, std::span<const iut::RoleName> roles);

@@ -122,7 +122,8 @@ void Doctor::examine_line(const std::string& uri) {
     throw kernel::Error(kernel::ErrorKind::usage, fmt::format("'{}': {}", uri, no_serial_line_for(role)));
   std::optional<iut::DevicePool> upper;
   if (settings.upper.empty()) {
-    say("upper channel", "none: valves and switches are not seen, settings and supply stay as they are");
+    say("upper channel",
+        "none: outputs and inputs are not seen, nothing is asked; settings and supply stay as they are");
   } else {
     examine_channel(upper.emplace(settings.upper, role_), "upper channel");
   }

@@ -15,6 +15,7 @@
 #include "harness/config/document.hpp"
 #include "harness/field/named_table.hpp"
 #include "harness/iut/plugin.hpp"
+#include "harness/iut/serial_line.hpp"
 #include "harness/iut/uart_line.hpp"
 #include "harness/judge/pics.hpp"
 
@@ -33,9 +34,11 @@ struct Role {
   std::unique_ptr<iut::Device> (*in_levels)(iut::Attachment, const iut::CaseBegin&);
   // The same station, but it receives and sends telegrams; null where the role has none.
   std::unique_ptr<iut::Device> (*in_telegrams)(std::unique_ptr<iut::Device>) = nullptr;
-  // How its characters go over a serial line; null where it cannot be judged there, for this reason.
+  // How its characters go over a serial line; null: it has no line that carries characters of a UART.
   iut::MakeUartLine uart = nullptr;
-  std::string_view why_not_serial = "its line carries no characters of a UART";
+  // What the URI of a serial line says of a station of the role at it, as answers of a PICS. Throws
+  // kernel::Error(usage) for what no station of the role is.
+  judge::Pics (*on_line)(const std::string& uri, const iut::SerialSettings& settings) = nullptr;
   // The items that a station of the role reads.
   std::span<const iut::Item> inputs{};
   // What a station without an upper channel is told, from the answers of a PICS; null: it cannot play alone.

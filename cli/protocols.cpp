@@ -1,5 +1,9 @@
 #include "cli/protocols.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <array>
 
 #include "cli/disturbances.hpp"
@@ -20,6 +24,7 @@
 #include "conformance/valve_bus/planned_network.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "emc/interbus/undetected_cycle.hpp"
+#include "harness/kernel/error.hpp"
 #include "protocols/bandwidth/embedded_schemas.hpp"
 #include "protocols/bandwidth/plan.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
@@ -61,9 +66,60 @@ std::unique_ptr<iut::Device> in_levels(iut::Attachment attachment, const iut::Ca
 
 // ---- serial lines ----
 
+// The words of a PICS for the format of a UART.
+std::string characters_of(const std::string& uri, const line::CharacterFormat& format) {
+  const std::string text = format.text();
+  if (text == "8m1") return "P0";
+  if (text == "8e1") return "P1";
+  if (text == "8n1") return "P2";
+  throw kernel::Error(
+      kernel::ErrorKind::usage,
+      fmt::format("'{}': no station of the valve bus sends characters {}; there are 8m1 (a ninth "
+                  "bit of 1), 8e1 and 8n1",
+                  uri, text));
+}
+
+// Without an upper channel the box is as it stands there.
+judge::Pics station_on_line(const std::string& uri, const iut::SerialSettings& settings) {
+  judge::Pics pics;
+  if (settings.format) pics.declare("characters", characters_of(uri, *settings.format));
+  pics.declare("power_can_be_switched", !settings.upper.empty());
+  return pics;
+}
+
+judge::Pics node_on_line(const std::string& uri, const iut::SerialSettings& settings) {
+  judge::Pics pics = station_on_line(uri, settings);
+  if (settings.bit_rate) pics.declare("bit_rate", *settings.bit_rate);
+  pics.declare("address_switches_can_be_set", !settings.upper.empty());
+  return pics;
+}
+
+// The bit rate is that of a position of its switches, and the line has one bit rate.
+judge::Pics host_on_line(const std::string& uri, const iut::SerialSettings& settings) {
+  judge::Pics pics = station_on_line(uri, settings);
+  pics.declare("dip_can_be_set", false);
+  if (!settings.bit_rate) return pics;
+  const auto rates = valve_bus::dip_bit_rates();
+  const auto found = std::ranges::find(rates, *settings.bit_rate);
+  if (found == rates.end()) {
+    throw kernel::Error(
+        kernel::ErrorKind::usage,
+        fmt::format("'{}': no position of the DIP switches of a host is {} bit/s; there are {}", uri,
+                    *settings.bit_rate, fmt::join(rates, ", ")));
+  }
+  pics.declare("dip", static_cast<std::int64_t>(found - rates.begin()));
+  return pics;
+}
+
 iut::UartLine node_uart(const iut::CaseBegin& begin) {
   return valve_bus::uart_line(valve_bus::node_configuration_of(begin).rules);
 }
+iut::UartLine host_uart(const iut::CaseBegin& begin) {
+  valve_bus::HostConfiguration host = valve_bus::host_configuration_of(begin);
+  host.rules.bit_rate = valve_bus::dip_bit_rates()[host.dip];
+  return valve_bus::asking_uart_line(host.rules);
+}
+constexpr std::array kHostInputs{valve_bus::kDip};
 constexpr std::array kNodeInputs{valve_bus::kLimitSwitches};
 iut::CaseBegin node_alone(const judge::Pics& pics) {
   const auto configuration =
@@ -90,16 +146,12 @@ constexpr Role with_telegrams(Role role, decltype(Role::in_telegrams) in_telegra
   return role;
 }
 
-constexpr Role with_uart(Role role, iut::MakeUartLine uart, std::span<const iut::Item> inputs,
-                         decltype(Role::alone) alone) {
+constexpr Role with_uart(Role role, iut::MakeUartLine uart, decltype(Role::on_line) on_line,
+                         std::span<const iut::Item> inputs, decltype(Role::alone) alone = nullptr) {
   role.uart = uart;
+  role.on_line = on_line;
   role.inputs = inputs;
   role.alone = alone;
-  return role;
-}
-
-constexpr Role without_serial(Role role, std::string_view why) {
-  role.why_not_serial = why;
   return role;
 }
 
@@ -132,12 +184,11 @@ constexpr std::array kInterbusRoles{
 };
 constexpr std::array kValveBusRoles{
     with_pics(with_uart(row<valve_bus::NodeRole, valve_bus::Node, &conformance::node_mutants>(kInItsUnit),
-                        node_uart, kNodeInputs, node_alone),
+                        node_uart, node_on_line, kNodeInputs, node_alone),
               conformance::node_pics_items, conformance::declared_node),
-    with_pics(
-        without_serial(row<valve_bus::HostRole, valve_bus::Host, &conformance::host_mutants>(kCharactersToo),
-                       "it begins exchanges by itself, and its cases know no uncertainty of instants"),
-        conformance::host_pics_items, conformance::declared_host),
+    with_pics(with_uart(row<valve_bus::HostRole, valve_bus::Host, &conformance::host_mutants>(kCharactersToo),
+                        host_uart, host_on_line, kHostInputs),
+              conformance::host_pics_items, conformance::declared_host),
 };
 constexpr std::array kFieldbusDllRoles{
     row<fieldbus_dll::IsaDleRole, fieldbus_dll::IsaDle, &conformance::isa_dle_mutants>(kCharactersToo),

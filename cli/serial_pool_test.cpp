@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include "cli/probe/mutants_in_c.hpp"
@@ -13,11 +14,9 @@
 #include "harness/iut/process.hpp"
 #include "harness/kernel/sanitized.hpp"
 
-// Nodes that play on pseudo terminals, judged in wall-clock time by the real program.
+// Nodes and hosts that play on pseudo terminals, judged in wall-clock time by the real program.
 namespace fieldproof::cli {
 namespace {
-
-constexpr std::string_view kNodeSuite = "valve_bus/node/";
 
 class SerialRuns : public ProgramFixture {
  protected:
@@ -30,7 +29,7 @@ class SerialRuns : public ProgramFixture {
 
   std::string line() const { return (folder_ / "line").string(); }
   std::string station(const std::string& node) const {
-    return "'" FIELDPROOF_EXE "' station valve_bus/node " + node + " --serial '" + line() + "'";
+    return "'" FIELDPROOF_EXE "' station " + role_ + " " + node + " --serial '" + line() + "'";
   }
   std::string in_c(const std::string& mutant = {}) const {
     return station("\"exec:'" VALVE_NODE_PROCESS "' " + mutant + "\"");
@@ -44,20 +43,20 @@ class SerialRuns : public ProgramFixture {
     const std::string out = "run" + std::to_string(++runs_);
     std::vector<std::string> words{"run",   "--volume", "quick", "--record", "failed",
                                    "--iut", iut,        "--out", out};
-    for (const std::string& one : selectors) words.push_back(std::string(kNodeSuite) + one);
+    for (const std::string& one : selectors) words.push_back(role_ + "/" + one);
     const Called called = call(words);
     EXPECT_TRUE(called.exit_code <= 2 || called.exit_code == 4) << called.exit_code << called.err;
     Cases found;
     if (read(out + "/results.json").empty()) return found;
     const nlohmann::json results = json(out + "/results.json");
     for (const auto& one : results.at("cases")) {
-      const std::string id = one.at("id").get<std::string>().substr(kNodeSuite.size());
+      const std::string id = one.at("id").get<std::string>().substr(role_.size() + 1);
       found[id] = {one.at("verdict"), one.at("reason"), one.at("findings").dump()};
     }
     return found;
   }
 
-  // On a machine that is busy an instant may be in doubt; that is no verdict about the node.
+  // On a machine that is busy an instant may be in doubt; that is no verdict about the station.
   void expect_no_wrong_verdict(const Cases& cases) {
     EXPECT_FALSE(cases.empty());
     for (const auto& [id, one] : cases) {
@@ -65,6 +64,8 @@ class SerialRuns : public ProgramFixture {
           << id << ": " << one.verdict << one.reason << one.findings;
     }
   }
+
+  std::string role_ = "valve_bus/node";
 
  private:
   int runs_ = 0;
@@ -172,6 +173,69 @@ TEST_F(SerialRuns, CheckOfALineAloneFailsNoRightNode) {
   // An instant may be in doubt, as in all that is judged here.
   EXPECT_TRUE(called.exit_code == 0 || called.exit_code == 2) << called.out << called.err;
   EXPECT_HOLDS(called.out, "ask for what cannot be done to it");
+}
+
+// The host asks, the tester answers in the place of the nodes, and the upper channel in that of the PC.
+class SerialRunsOfAHost : public SerialRuns {
+ protected:
+  SerialRunsOfAHost() { role_ = "valve_bus/host"; }
+
+  // Until it is known: where others keep this machine busy, answers of the tester come too late.
+  Case judged_at_last(const std::string& host, const std::string& id) {
+    Case found;
+    for (int attempt = 0; attempt < 3 && (attempt == 0 || found.reason == "timing_in_doubt"); ++attempt)
+      found = judged(uri("exec:" + station(host)), {id}).at(id);
+    return found;
+  }
+};
+
+TEST_F(SerialRunsOfAHost, ReferencePassesInWallClockTime) {
+  const std::vector<std::string> some{"request/write_is_sent_with_its_check",
+                                      "request/undefined_commands_are_refused",
+                                      "response/is_told_once_with_its_id",
+                                      "response/each_wrong_bit_is_refused",
+                                      "response/other_lengths_are_refused",
+                                      "fifo/*",
+                                      "timing/write_is_left_alone",
+                                      "timing/delimiter_is_in_front_of_each_request",
+                                      "timing/driver_is_on_for_requests_only",
+                                      "timing/unasked_octets_are_drained",
+                                      "cycle/write_is_verified"};
+  const Cases cases = judged(uri("exec:" + station("ref")), some);
+  expect_no_wrong_verdict(cases);
+  EXPECT_GT(cases.size(), some.size());
+}
+
+TEST_F(SerialRunsOfAHost, MutantsAreFoundByTheCasesThatNameThem) {
+  for (const auto& [mutant, id, reason] :
+       {std::tuple{"data_exchanged", "request/write_is_sent_with_its_check", "request_wrong"},
+        std::tuple{"response_exchanged", "response/is_told_once_with_its_id", "response_wrong"},
+        std::tuple{"delimiter_missing", "timing/delimiter_is_in_front_of_each_request", "no_delimiter"},
+        std::tuple{"driver_stays_on", "timing/driver_is_on_for_requests_only", "driver_not_released"}}) {
+    const Case found = judged_at_last(std::string("mutant:") + mutant, id);
+    EXPECT_EQ(found.reason, reason) << mutant << found.verdict << found.findings;
+  }
+}
+
+TEST_F(SerialRunsOfAHost, WhatIsNotThereDoesNotApply) {
+  const auto expect_none = [&](const std::string& uri, const std::string& id, const std::string& why) {
+    const Case found = judged(uri, {id}).at(id);
+    EXPECT_EQ(found.verdict, "not-applicable") << id << found.findings;
+    EXPECT_NE(found.reason.find(why), std::string::npos) << found.reason;
+  };
+  const std::string read = "response/is_told_once_with_its_id";
+  expect_none(uri("exec:" + station("ref")), "retry/response_just_in_time_is_taken", "not known so exactly");
+  expect_none(uri("exec:" + station("ref")), "dip/each_position_is_a_bit_rate", "cannot turn");
+  expect_none(uri("exec:" + station("ref"), 31'250), read, "begins later than the host waits");
+  const iut::SerialLine box = iut::SerialLine::at_new_terminal(line(), iut::WallClock());
+  expect_none(uri(""), read, "without an upper channel");
+}
+
+TEST_F(SerialRunsOfAHost, BitRateThatItsSwitchesDoNotHaveIsRefused) {
+  const Called called =
+      call({"run", "valve_bus/host/response/is_told_once_with_its_id", "--iut", uri("", 9'600)});
+  EXPECT_EQ(called.exit_code, 64);
+  EXPECT_HOLDS(called.err, "there are 375000, 187500");
 }
 
 TEST_F(SerialRuns, SilentBoxDoesNotAnswer) {

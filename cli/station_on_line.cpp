@@ -113,6 +113,12 @@ void play_on_line(Session& session, const Role& role, const std::string& uri) {
   const std::string name = fmt::format("fieldproof {} on a line", uri);
   if (upper == "-") return serve_bench(STDIN_FILENO, STDOUT_FILENO, line, role, make_station, name);
   if (upper != "none") return serve_socket(upper, line, role, make_station, name);
+  if (role.alone == nullptr) {
+    session.settings.refuse("upper",
+                            fmt::format("'{}' does nothing by itself: what it is asked comes through "
+                                        "the upper channel",
+                                        role.path()));
+  }
   judge::Pics pics;
   if (session.settings.is_set("pics"))
     pics = load_pics(session.settings.text("pics"), session.catalogue.pics_items());

@@ -66,6 +66,8 @@ judge::CaseResult CaseJudge::run_procedure(const std::function<void(CaseJudge&)>
     procedure(*this);
   } catch (const CaseEnded&) {
     // The finding that ended it is kept.
+  } catch (const iut::InDoubt& what) {
+    add(judge::Verdict::inconclusive, "timing_in_doubt", {{"answers of the tester in time"}, what.what()});
   } catch (const iut::CannotBeDone& what) {
     cannot_be_done = what.what();
   } catch (const iut::Misbehaviour& done) {

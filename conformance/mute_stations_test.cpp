@@ -47,6 +47,7 @@ class MutedDevice final : public iut::Device, private iut::Bench {
         held_at_(holds_driver ? kernel::kStart : kernel::kNever) {}
 
   iut::UnitKind unit_kind() const override { return device_->unit_kind(); }
+  iut::Capabilities capabilities() const override { return device_->capabilities(); }
   bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override {
     bench_ = &bench;
     return device_->begin(begin, *this);

@@ -11,7 +11,7 @@ RunningCase::RunningCase(const TestCase& test_case, const Setup& setup, const Su
       given_(given),
       telegrams_(telegrams),
       assigned_(assigned_to(test_case, setup)),
-      on_real_line_(given.on_real_line ? given.on_real_line(assigned_.uri) : std::nullopt),
+      on_real_line_(given.on_real_line ? given.on_real_line(assigned_.uri, test_case.id) : std::nullopt),
       devices_(test_case, setup, given.attach) {}
 
 std::optional<judge::Pics> RunningCase::pics() const {

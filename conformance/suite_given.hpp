@@ -65,7 +65,8 @@ struct SuiteGiven {
   OwnStations own{};
   // Stations on real lines: what their URI says of them, as answers to a PICS that has none; nothing for a
   // URI of another kind.
-  std::function<std::optional<judge::Pics>(const std::string& uri)> on_real_line{};
+  std::function<std::optional<judge::Pics>(const std::string& uri, const std::string& case_id)>
+      on_real_line{};
 };
 
 }  // namespace fieldproof::conformance

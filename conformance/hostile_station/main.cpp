@@ -68,6 +68,10 @@ class Hostile final : public iut::Device {
         right_(std::move(right.device)) {}
 
   iut::UnitKind unit_kind() const override { return right_->unit_kind(); }
+  iut::Capabilities capabilities() const override { return right_->capabilities(); }
+  void on_activity(unsigned port, bool begins, kernel::Time now) override {
+    right_->on_activity(port, begins, now);
+  }
   bool begin(const iut::CaseBegin& begin, iut::Bench& bench) override {
     bench_ = &bench;
     is_time_stuck_ = is_time_creeping_ = false;

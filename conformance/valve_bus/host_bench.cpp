@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "harness/iut/misbehaviour.hpp"
 #include "protocols/valve_bus/host.hpp"
 
 namespace fieldproof::conformance {
@@ -84,9 +85,12 @@ HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting, judge::
       driven_(character_format(rules()), rules().bit_rate),
       arrived_(rules()),
       writes_(256) {
-  attach_iut(*host_, "host", {}, configuration_.receives_own_echo);
+  // On a real line the echo is the box's own.
+  attach_iut(*host_, "host", {}, configuration_.receives_own_echo && !capabilities().is_wall_clock);
   adopt_rate(configuration_.dip);
+  expect_reachable();
   start_recording(setting, rules());
+  if (host_->capabilities().senses_activity) place().sense_activity();
   place().tap_driven(driven_);
   place().tap_arrived(arrived_);
   watch(place());
@@ -95,6 +99,23 @@ HostBench::HostBench(const HostNeeds& needs, const HostSetting& setting, judge::
   set_power(true);
   wait(kHostWarmUp);
   clear_observations();
+}
+
+// A tester on a serial line answers after what it has read: some ten characters later than it would.
+void HostBench::expect_reachable() const {
+  if (!capabilities().process_side)
+    throw iut::CannotBeDone(
+        "nothing can be ordered of the host without an upper channel: its PC is not on the line");
+  if (capabilities().is_wall_clock && characters(10) + kernel::kMillisecond > rules().response_wait) {
+    throw iut::CannotBeDone(fmt::format(
+        "at {} bit/s an answer over a serial line begins later than the host waits", rules().bit_rate));
+  }
+}
+
+void HostBench::expect_exact_instants() const {
+  if (capabilities().is_wall_clock)
+    throw iut::CannotBeDone(
+        "at a serial line the instants of a host and of its nodes are not known so exactly");
 }
 
 void HostBench::adopt_rate(unsigned dip) {

@@ -66,6 +66,11 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
 
   // With the bit rate of the DIP switches as they were at power-up.
   const valve_bus::Rules& rules() const { return configuration_.rules; }
+  iut::Capabilities capabilities() const { return host_->capabilities(); }
+  // Of the instants of this frame.
+  iut::TimingUncertainty doubt_of(const HostFrame& frame) const {
+    return host_->uncertainty_of_request(frame.sent.driver_on);
+  }
   const judge::Pics& pics() const { return pics_; }
   std::uint8_t random_id();
   valve_bus::Response random_response() { return {random_octet(), random_octet()}; }
@@ -85,6 +90,9 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   kernel::Duration turnaround_time() const { return delimiter() + 150 * kernel::kMicrosecond; }
   // In which a host that has been asked for something says it, or tells the PC that it cannot.
   kernel::Duration observation_timeout() const { return observation_timeout_; }
+
+  // Throws iut::CannotBeDone at a real line: the case is about instants.
+  void expect_exact_instants() const;
 
   // ---- upper tester: the PC ----
   void write(std::span<const std::uint8_t> octets);
@@ -155,6 +163,7 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   void on_response(const valve_bus::HostResponse& response, kernel::Time when) override;
   void on_error(const valve_bus::HostError& error, kernel::Time when) override;
 
+  void expect_reachable() const;
   void adopt_rate(unsigned dip);
   void set_power(bool is_on);
   bool has_driven_by(kernel::Time limit);

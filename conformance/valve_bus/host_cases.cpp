@@ -1,7 +1,10 @@
 #include "conformance/valve_bus/host_cases.hpp"
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace fieldproof::conformance {
@@ -18,6 +21,24 @@ HostCase host_canary() {
           }};
 }
 
+// What a driver does is reported as it was, and a silence that is too short is one whatever the doubt.
+constexpr std::array<std::string_view, 3> kOfAnyInstants{
+    "valve_bus/host/timing/write_is_left_alone",
+    "valve_bus/host/timing/delimiter_is_in_front_of_each_request",
+    "valve_bus/host/timing/driver_is_on_for_requests_only"};
+
+bool needs_exact_instants(const TestCase& test_case) {
+  return std::ranges::find(test_case.tags, "timing") != test_case.tags.end() &&
+         std::ranges::find(kOfAnyInstants, test_case.id) == kOfAnyInstants.end();
+}
+
+auto at_exact_instants(std::function<void(HostBench&, CaseJudge&)> procedure) {
+  return [procedure = std::move(procedure)](HostBench& bench, CaseJudge& judge) {
+    bench.expect_exact_instants();
+    procedure(bench, judge);
+  };
+}
+
 }  // namespace
 
 const std::vector<HostCase>& host_cases() {
@@ -26,6 +47,8 @@ const std::vector<HostCase>& host_cases() {
                                           host_fifo_cases,    host_timing_cases,   host_line_cases,
                                           host_cycle_cases,   host_dip_cases,      host_immunity_cases};
     auto all = cases_of<HostCase>(kChapters, host_details());
+    for (HostCase& one : all)
+      if (needs_exact_instants(one.test_case)) one.procedure = at_exact_instants(std::move(one.procedure));
     all.push_back(host_canary());
     return all;
   }();

@@ -77,7 +77,10 @@ void expect_form(HostBench& bench, CaseJudge& judge, const HostFrame& frame) {
   const kernel::Duration gap = frame.sent.longest_gap();
   judge.expect(gap <= valve_bus::longest_gap(bench.rules()) + kRounding, "gap_in_frame",
                duration_sighting("at most 1.5 characters between two octets", gap, frame.start));
-  judge.expect(frame.silence + kRounding >= bench.delimiter(), "no_delimiter",
+  const iut::TimingUncertainty doubt = bench.doubt_of(frame);
+  judge.expect(frame.silence == kernel::Duration::max() ||
+                   frame.silence + doubt.later + kRounding >= bench.delimiter(),
+               "no_delimiter",
                duration_sighting("at least 3.5 characters of silence in front of a frame", frame.silence,
                                  frame.start));
   expect_driver_around(bench, judge, frame);

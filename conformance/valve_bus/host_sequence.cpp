@@ -273,6 +273,7 @@ const SequenceRole& host_sequence_role() {
 }
 
 void run_host_sequence(const Sequence& sequence, HostBench& bench, CaseJudge& judge) {
+  bench.expect_exact_instants();  // they are compared with those of the reference
   if (bench.rules().answers_writes)
     throw iut::CannotBeDone("sequences have no words for nodes that acknowledge writes");
   HostSequenceRun(bench, judge).run(sequence);

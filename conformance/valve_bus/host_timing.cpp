@@ -15,13 +15,15 @@ void expect_two_writes_apart(HostScene& scene) {
   bench.order(first);
   bench.order(second);
   const kernel::Time end = expect_request(bench, scene.judge, first).end;
-  const kernel::Time start = expect_request(bench, scene.judge, second).start;
+  const HostFrame next = expect_request(bench, scene.judge, second);
+  const kernel::Time start = next.start;
   const kernel::Duration least = bench.delimiter() + bench.rules().write_distance;
-  scene.judge.expect(start - end + kernel::kNanosecond >= least, "write_distance_too_short", [&] {
-    return Mismatch{{fmt::format("{} or more after a write", kernel::describe(least))},
-                    kernel::describe(start - end),
-                    start};
-  });
+  scene.judge.expect(start - end + bench.doubt_of(next).later + kernel::kNanosecond >= least,
+                     "write_distance_too_short", [&] {
+                       return Mismatch{{fmt::format("{} or more after a write", kernel::describe(least))},
+                                       kernel::describe(start - end),
+                                       start};
+                     });
 }
 
 void expect_not_written_again(HostScene& scene) {

@@ -65,6 +65,7 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting, judge::
       arrived_(rules()) {
   attach_iut(*node_, "node", distance_);
   start_recording(setting, rules());
+  if (node_->capabilities().senses_activity) place().sense_activity();
   place().tap_driven(driven_);
   place().tap_arrived(arrived_);
   place().tap_arrived(arrivals_);

@@ -8,8 +8,10 @@ import sys
 
 NEVER = 2**63 - 1
 HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE_OCTETS, RECEIVE_LEVELS, ON_TIME = range(1, 8)
+ACTIVITY = 10
 CAPABILITIES, ECHOED, DONE, UNSUPPORTED, OCTETS, TRANSMIT_LEVELS, WRITE = range(129, 136)
-LINE, ACTIVITY, USER = range(3)  # ports
+LINE, USER = 0, 2  # ports
+ASKS_FOR_ACTIVITY = 1
 REFUSED, EVENT = 0, 1  # items
 SUBMIT, WRITE_BUFFER = 1, 2  # what the user asks for
 DATA, PUBLISHED = 1, 2  # what the user is told
@@ -76,15 +78,16 @@ class Device:
         self.driven_until = self.now + self.time_of(octets)
         self.stream.send_octets(LINE, self.now, octets + frame_check(octets))
 
+    def on_activity(self, is_active, now):
+        self.now, self.is_active = now, is_active
+        if not is_active:
+            self.heard_until = now
+
     def hear(self, message):
         port, self.now, count = struct.unpack_from("<xBqH", message)
         characters = [message[12 + 19 * n:31 + 19 * n] for n in range(count)]
         octets = bytes(character[16] for character in characters)
-        if port == ACTIVITY:
-            self.is_active = octets[0] != 0
-            if not self.is_active:
-                self.heard_until = self.now
-        elif port == USER:
+        if port == USER:
             self.ask(octets)
         elif self.is_on and octets[-2:] == frame_check(octets[:-2]) and len(octets) > 2:
             begin = struct.unpack("<q", characters[0][:8])[0]
@@ -280,8 +283,8 @@ def serve(stream):
         kind = message[0]
         if kind == HELLO:
             name = b"basic device in Python"
-            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9s", 3, 3, len(name), name,
-                        1, 12, b"fieldbus_dll", 9, b"ff_device")
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9sB", 3, 3, len(name), name,
+                        1, 12, b"fieldbus_dll", 9, b"ff_device", ASKS_FOR_ACTIVITY)
             continue
         if kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])
@@ -293,6 +296,8 @@ def serve(stream):
             device.power(*struct.unpack("<x?q", message))
         elif kind == RECEIVE_OCTETS:
             device.hear(message)
+        elif kind == ACTIVITY:
+            device.on_activity(*struct.unpack("<xx?q", message))
         elif kind == ON_TIME:
             device.on_time(struct.unpack("<xq", message)[0])
         if device is None:

@@ -10,8 +10,10 @@ from itertools import groupby
 NEVER = 2**63 - 1
 SECOND = 10**12  # times are picoseconds
 HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE_CHARACTERS, RECEIVE_LEVELS, ON_TIME = range(1, 8)
+ACTIVITY = 10
 CAPABILITIES, ECHOED, DONE, UNSUPPORTED, CHARACTERS, TRANSMIT_LEVELS, WRITE = range(129, 136)
-LINE, ACTIVITY, USER = range(3)
+LINE, USER = 0, 2
+ASKS_FOR_ACTIVITY = 1
 SUBMIT, WRITE_BUFFER = 1, 2
 DATA, PUBLISHED = 1, 2
 REFUSED, EVENT = 0, 1
@@ -109,7 +111,7 @@ class Device:
         self.buffers = {address: None for address in listed("published")}
         self.writes = dict.fromkeys(self.buffers, 0)
         self.subscribed = set(listed("subscribed"))
-        self.hears_activity, self.heard_until, self.driven_until = False, 0, 0
+        self.is_active, self.heard_until, self.driven_until = False, 0, 0
 
     def octets(self, count):
         return 8 * count * SECOND // self.s["bit_rate"]
@@ -160,7 +162,7 @@ class Device:
     # ---- the line ----
 
     def activity(self, now, begins):
-        self.hears_activity = bool(begins)
+        self.is_active = begins
         if not begins:
             self.heard_until = now
 
@@ -173,7 +175,7 @@ class Device:
 
     def may_begin(self):
         """V(MID) of silence, after others and after what it has said itself."""
-        if self.hears_activity:
+        if self.is_active:
             return NEVER
         return max(self.heard_until, self.driven_until) + self.octets(self.s["inter_pdu_delay_octets"])
 
@@ -318,12 +320,12 @@ def pass_on(device, kind, message):
     if kind == POWER:
         device.power(*struct.unpack_from("<?q", message, 1))
     elif kind == RECEIVE_CHARACTERS:
-        port, now, count = struct.unpack_from("<xBqH", message)
+        _, now, count = struct.unpack_from("<xBqH", message)
         data = [struct.unpack_from("<qqH", message, 12 + 19 * n)[2] for n in range(count)]
-        if port == ACTIVITY:
-            device.activity(now, data[0])
-        else:
-            device.request(now, bytes(data))
+        device.request(now, bytes(data))
+    elif kind == ACTIVITY:
+        _, begins, now = struct.unpack("<xB?q", message)
+        device.activity(now, begins)
     elif kind == RECEIVE_LEVELS:
         _, start, rate, count = struct.unpack_from("<xBqqI", message)
         device.receive(start, rate, count, message[22:])
@@ -338,8 +340,8 @@ def serve(stream):
         kind = message[0]
         if kind == HELLO:
             name = b"device in Python"
-            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9s", 3, LEVELS_UNIT, len(name), name,
-                        1, 12, b"fieldbus_dll", 9, b"ff_device")
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9sB", 3, LEVELS_UNIT, len(name), name,
+                        1, 12, b"fieldbus_dll", 9, b"ff_device", ASKS_FOR_ACTIVITY)
         elif kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])
         elif kind == CASE_BEGIN:

@@ -66,6 +66,7 @@ const fieldproof_implementation* fieldproof_plugin(unsigned version) {
                                                            receive,
                                                            0,
                                                            on_time,
-                                                           end};
+                                                           end,
+                                                           0};
   return version == FIELDPROOF_PLUGIN_VERSION ? &implementation : 0;
 }

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "harness/iut/device.hpp"
@@ -27,6 +28,7 @@ class ActingDevice final : public Device {
   explicit ActingDevice(UnitKind unit) : unit_(unit) {}
 
   UnitKind unit_kind() const override { return unit_; }
+  Capabilities capabilities() const override { return {.senses_activity = senses_activity}; }
   bool begin(const CaseBegin& begin, Bench& bench) override {
     told = begin;
     bench_ = &bench;
@@ -40,6 +42,10 @@ class ActingDevice final : public Device {
   void receive(unsigned port, const line::Waveform& reception) override {
     heard_levels.push_back({port, reception});
   }
+  void on_activity(unsigned, bool begins, kernel::Time now) override {
+    activity.emplace_back(begins, now);
+    if (at_activity) at_activity(begins);
+  }
   void on_time(kernel::Time) override {
     next = kernel::kNever;
     if (at_time) at_time(*bench_);
@@ -49,8 +55,10 @@ class ActingDevice final : public Device {
 
   // What it does.
   bool serves = true;
+  bool senses_activity = true;
   Act at_begin;
   Act at_time;
+  std::function<void(bool begins)> at_activity;
   kernel::Time next = kernel::kNever;
 
   // What it was told.
@@ -58,6 +66,7 @@ class ActingDevice final : public Device {
   std::vector<bool> power;
   std::vector<Heard> heard;
   std::vector<HeardLevels> heard_levels;
+  std::vector<std::pair<bool, kernel::Time>> activity;
   int ends = 0;
 
  private:

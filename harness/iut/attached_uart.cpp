@@ -68,6 +68,11 @@ void AttachedUart::receive(segment::PortIndex port, const line::Waveform& recept
   after_call(reception.end());
 }
 
+void AttachedUart::on_activity(segment::PortIndex port, bool begins, kernel::Time now) {
+  attached_.call(now, [&](Device& device) { device.on_activity(port, begins, now); });
+  after_call(now);
+}
+
 void AttachedUart::on_time(kernel::Time now) {
   if (attached_.next_time() <= now || !driver_.has_work()) attached_.on_time(now);
   after_call(now);

@@ -26,6 +26,7 @@ class AttachedUart {
   void begin(const line::Uart& uart, kernel::Time now);
 
   void receive(segment::PortIndex port, const line::Waveform& reception);
+  void on_activity(segment::PortIndex port, bool begins, kernel::Time now);
   void on_time(kernel::Time now);
   kernel::Time next_time() const {
     return attached_.is_well() ? std::min(attached_.next_time(), driver_.next_time()) : kernel::kNever;

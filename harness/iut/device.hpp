@@ -53,12 +53,13 @@ struct TimingUncertainty {
 // What a bench can see of an implementation and do to it. In virtual time that is everything; of one at a
 // real line it may be less.
 struct Capabilities {
-  bool process_side = true;    // its outputs can be seen, its inputs set
-  bool moving_inputs = true;   // and moved while it works
-  bool driver_control = true;  // when its driver comes on and goes off can be seen
-  bool distance = true;        // it can be put farther away
-  bool power = true;           // its supply can be switched
-  bool is_wall_clock = false;  // a real line: only right characters at the nominal rate can be driven
+  bool process_side = true;      // its outputs can be seen, its inputs set
+  bool moving_inputs = true;     // and moved while it works
+  bool driver_control = true;    // when its driver comes on and goes off can be seen
+  bool distance = true;          // it can be put farther away
+  bool power = true;             // its supply can be switched
+  bool is_wall_clock = false;    // a real line: only right characters at the nominal rate can be driven
+  bool senses_activity = false;  // it has asked for the activity on its lines
 };
 
 // A role by the names of its protocol and of itself.
@@ -115,7 +116,8 @@ class Device {
   virtual void set_power(bool is_on, kernel::Time now) = 0;
   virtual void receive(unsigned port, std::span<const Character> characters, kernel::Time now) = 0;
   virtual void receive(unsigned port, const line::Waveform& reception) = 0;
-  // Others begin to drive the line at this port, or nobody of them does any more; where the role has it.
+  // Others begin to drive the line at this port, or nobody of them does any more. Only of one that
+  // senses_activity, and in a role whose line is shared.
   virtual void on_activity(unsigned /*port*/, bool /*begins*/, kernel::Time /*now*/) {}
   virtual void on_time(kernel::Time now) = 0;
   virtual kernel::Time next_time() const = 0;

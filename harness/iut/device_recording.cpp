@@ -70,7 +70,9 @@ struct ActWriter {
     return {{"uncertain", {was.uncertainty.earlier.count(), was.uncertainty.later.count()}}};
   }
   ordered_json operator()(const Misbehaved& done) const { return {{"misbehaves", to_json(done)}}; }
-  ordered_json operator()(const CouldNot& could) const { return {{"cannot", could.sentence}}; }
+  ordered_json operator()(const CouldNot& could) const {
+    return {{could.is_in_doubt ? "in_doubt" : "cannot", could.sentence}};
+  }
 };
 
 ordered_json to_json(const RecordedCall& call) {
@@ -88,6 +90,7 @@ constexpr std::array kCapabilities = {
     std::pair{"distance", &Capabilities::distance},
     std::pair{"power", &Capabilities::power},
     std::pair{"is_wall_clock", &Capabilities::is_wall_clock},
+    std::pair{"senses_activity", &Capabilities::senses_activity},
 };
 
 ordered_json to_json(const RecordedDevice& device) {
@@ -170,8 +173,9 @@ Act read_numbers(config::ObjectReader& o, const config::Value& value) {
     };
     return WasUncertain{{within_an_hour(parts[0]), within_an_hour(parts[1])}};
   }
-  config::fail(value,
-               "an act is one of driver, characters, levels, write, read, uncertain, misbehaves and cannot");
+  config::fail(
+      value,
+      "an act is one of driver, characters, levels, write, read, uncertain, misbehaves, cannot and in_doubt");
 }
 
 Act read_act(const config::Value& value) {
@@ -181,6 +185,7 @@ Act read_act(const config::Value& value) {
     if (const auto drove = o.optional("levels")) return read_drove(*drove);
     if (const auto done = o.optional("misbehaves")) return read_misbehaved(*done);
     if (const auto could = o.optional("cannot")) return CouldNot{std::string(could->as_string())};
+    if (const auto doubt = o.optional("in_doubt")) return CouldNot{std::string(doubt->as_string()), true};
     return read_numbers(o, value);
   });
 }
@@ -216,7 +221,10 @@ RecordedDevice read_device(const config::Value& value) {
     }
     device.unit = read_unit(o.required("unit"));
     config::read_object(o.required("capabilities"), [&](config::ObjectReader& c) {
-      for (const auto& [key, member] : kCapabilities) device.capabilities.*member = c.required(key).as_bool();
+      for (const auto& [key, member] : kCapabilities) {
+        // One that was recorded before there was such a thing has it not.
+        if (const auto found = c.optional(key)) device.capabilities.*member = found->as_bool();
+      }
       return 0;
     });
     device.takes_case = o.required("takes_case").as_bool();

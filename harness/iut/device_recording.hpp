@@ -59,6 +59,7 @@ struct Misbehaved {
 // Its attachment cannot do what the case asks for.
 struct CouldNot {
   std::string sentence;
+  bool is_in_doubt = false;  // what it did was too late for a verdict
 };
 using Act =
     std::variant<SwitchedDriver, Sent, DroveLevels, Wrote, WasRead, WasUncertain, Misbehaved, CouldNot>;

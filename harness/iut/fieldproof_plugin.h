@@ -8,10 +8,10 @@
  * The library exports one function, `fieldproof_plugin`; with -fvisibility=hidden it exports nothing else,
  * and calls between its own functions go straight. The bench calls what it returns in this order:
  *
- *   create  { begin  { set_power | receive | receive_levels | on_time }...  end }...  destroy
+ *   create  { begin  { set_power | receive | receive_levels | on_activity | on_time }...  end }...  destroy
  *
- * Calls come one at a time, in order of time. Within `set_power`, `receive`, `receive_levels` and `on_time`
- * the implementation acts by calling the bench, at instants that are now or later, and each of them returns
+ * Calls come one at a time, in order of time. Within `set_power`, `receive`, `receive_levels`, `on_activity` and
+ * `on_time` the implementation acts by calling the bench, at instants that are now or later, and each of them returns
  * the instant at which it wants `on_time`: one behind `now`, or FIELDPROOF_NEVER. The latest answer holds;
  * the ones before are forgotten. Several instances may live at once, each in a thread of its own: keep no
  * state outside of them.
@@ -122,6 +122,10 @@ typedef struct fieldproof_implementation {
   /* The instant has come that was asked for. Returns when on_time is wanted again. */
   fieldproof_time (*on_time)(void* self, fieldproof_time now);
   void (*end)(void* self);
+  /* Others begin to drive the line at this port (1), or nobody of them does any more (0): before what they
+   * drive is known, as a receiver senses a carrier or the first start bit. Null: it does not ask for that; so
+   * does a table that ends before it. Returns when on_time is wanted. */
+  fieldproof_time (*on_activity)(void* self, unsigned port, int begins, fieldproof_time now);
 } fieldproof_implementation;
 
 #if defined(__GNUC__)

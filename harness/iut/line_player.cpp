@@ -68,8 +68,15 @@ void LinePlayer::set_power(bool is_on, kernel::Time now) {
   report();
 }
 
-void LinePlayer::receive(unsigned, std::span<const Character>, kernel::Time) {
-  FIELDPROOF_CHECK(false, "a station on a real line receives from that line");
+// What is asked at another port than the line, at once.
+void LinePlayer::receive(unsigned port, std::span<const Character> characters, kernel::Time) {
+  FIELDPROOF_CHECK(port != 0, "a station on a real line receives from that line");
+  if (!is_supplied_) return;
+  look_at_inputs();
+  advance(clock_.now());
+  now_ = std::max(now_, clock_.now());
+  station_->receive(port, characters, now_);
+  report();
 }
 void LinePlayer::receive(unsigned, const line::Waveform&) {
   FIELDPROOF_CHECK(false, "a station on a real line receives from that line");

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint8_t kParityWrong = 1;
 constexpr std::uint8_t kStopMissing = 2;
+constexpr std::uint8_t kSensesActivity = 1;  // of capabilities
 constexpr std::size_t kMostSettings = 1000;
 
 struct NamedType {
@@ -28,6 +29,7 @@ constexpr std::array kNames = {
     NamedType{MessageType::on_time, "on time"},
     NamedType{MessageType::case_end, "case end"},
     NamedType{MessageType::value, "value"},
+    NamedType{MessageType::activity, "activity"},
     NamedType{MessageType::capabilities, "capabilities"},
     NamedType{MessageType::echoed, "echoed"},
     NamedType{MessageType::done, "done"},
@@ -112,6 +114,7 @@ std::span<const std::uint8_t> write_capabilities(MessageWriter& writer,
       .text(capabilities.name);
   writer.u16(static_cast<std::uint16_t>(capabilities.roles.size()));
   for (const RoleName& role : capabilities.roles) writer.text(role.protocol).text(role.role);
+  if (capabilities.senses_activity) writer.u8(kSensesActivity);
   return writer.finish();
 }
 
@@ -126,6 +129,12 @@ PeerCapabilities read_capabilities(MessageReader& reader) {
     role.protocol = reader.text();
     role.role = reader.text();
     read.roles.push_back(std::move(role));
+  }
+  if (!reader.is_at_end()) {
+    const unsigned asked = reader.u8();
+    if (asked != kSensesActivity)
+      throw MessageError(fmt::format("it asks for {}; there is 1 (activity), or nothing", asked));
+    read.senses_activity = true;
   }
   reader.finish();
   return read;
@@ -180,6 +189,23 @@ ReceivedCharacters read_reception(MessageReader& reader) {
   }
   reader.finish();
   return received;
+}
+
+std::span<const std::uint8_t> write_activity(MessageWriter& writer, const LineActivity& activity) {
+  writer.begin(MessageType::activity).u8(static_cast<std::uint8_t>(activity.port));
+  return writer.u8(activity.begins ? 1 : 0).time(activity.now).finish();
+}
+
+LineActivity read_activity(MessageReader& reader) {
+  LineActivity activity;
+  activity.port = reader.u8();
+  const unsigned begins = reader.u8();
+  if (begins > 1)
+    throw MessageError(fmt::format("'begins' of activity is {}; there are 0 (ends) and 1 (begins)", begins));
+  activity.begins = begins == 1;
+  activity.now = reader.time();
+  reader.finish();
+  return activity;
 }
 
 std::span<const std::uint8_t> write_driver(MessageWriter& writer, const DriverSwitch& driver) {

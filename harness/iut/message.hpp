@@ -34,6 +34,7 @@ enum class MessageType : std::uint8_t {
   on_time = 7,
   case_end = 8,
   value = 9,
+  activity = 10,
   // From the implementation.
   capabilities = 129,
   echoed = 130,
@@ -96,6 +97,7 @@ class MessageReader {
   std::span<const std::uint8_t> rest();
   // There is nothing more.
   void finish() const;
+  bool is_at_end() const { return bytes_.empty(); }
 
  private:
   std::uint64_t number(std::size_t octets);
@@ -113,6 +115,7 @@ struct PeerCapabilities {
   std::uint8_t unit = 0;  // as it came: a UnitKind, or none
   std::string name;
   std::vector<RoleName> roles;  // that it serves
+  bool senses_activity = false;
 };
 std::span<const std::uint8_t> write_capabilities(MessageWriter& writer, const PeerCapabilities& capabilities);
 // Of another version only the number is read.
@@ -130,6 +133,17 @@ struct ReceivedCharacters {
   std::vector<Character> characters;
 };
 ReceivedCharacters read_reception(MessageReader& reader);
+
+// Others begin to drive the line at a port, or cease.
+struct LineActivity {
+  unsigned port = 0;
+  bool begins = false;
+  kernel::Time now{};
+
+  friend bool operator==(const LineActivity&, const LineActivity&) = default;
+};
+std::span<const std::uint8_t> write_activity(MessageWriter& writer, const LineActivity& activity);
+LineActivity read_activity(MessageReader& reader);
 
 struct DriverSwitch {
   unsigned port = 0;

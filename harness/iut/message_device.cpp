@@ -62,6 +62,7 @@ MessageDevice::MessageDevice(Peer peer, const RoleName& role, const PeerLimits& 
                                     served.empty() ? "none" : fmt::format("{}", fmt::join(served, ", "))));
   }
   unit_kind_ = static_cast<UnitKind>(read.unit);
+  senses_activity_ = read.senses_activity;
   own_name_ = kernel::escaped_line(read.name);
 }
 
@@ -114,6 +115,10 @@ void MessageDevice::receive(unsigned port, std::span<const Character> characters
 
 void MessageDevice::receive(unsigned port, const line::Waveform& reception) {
   call(write_levels(writer_, MessageType::receive_levels, port, reception));
+}
+
+void MessageDevice::on_activity(unsigned port, bool begins, kernel::Time now) {
+  call(write_activity(writer_, {port, begins, now}));
 }
 
 void MessageDevice::on_time(kernel::Time now) {

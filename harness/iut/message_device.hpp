@@ -34,10 +34,12 @@ class MessageDevice final : public Device {
   bool is_quiet();
 
   UnitKind unit_kind() const override { return unit_kind_; }
+  Capabilities capabilities() const override { return {.senses_activity = senses_activity_}; }
   bool begin(const CaseBegin& begin, Bench& bench) override;
   void set_power(bool is_on, kernel::Time now) override;
   void receive(unsigned port, std::span<const Character> characters, kernel::Time now) override;
   void receive(unsigned port, const line::Waveform& reception) override;
+  void on_activity(unsigned port, bool begins, kernel::Time now) override;
   void on_time(kernel::Time now) override;
   kernel::Time next_time() const override { return next_time_; }
   void end() override;
@@ -56,6 +58,7 @@ class MessageDevice final : public Device {
   PeerLimits limits_;
   std::string own_name_;
   UnitKind unit_kind_ = UnitKind::characters;
+  bool senses_activity_ = false;
   MessageWriter writer_;
   Bench* bench_ = nullptr;
   Peer::Clock::time_point case_begin_ = Peer::Clock::now();

@@ -224,6 +224,21 @@ TEST(MessageDeviceCall, ActsUntilItIsDone) {
   EXPECT_TRUE(device.is_quiet());
 }
 
+TEST(MessageDeviceCall, ActivityIsACallOfOneThatAsksForIt) {
+  MessageWriter writer;
+  const PeerCapabilities asks{.unit = 1, .name = "script", .roles = {kNode}, .senses_activity = true};
+  Script script;
+  script.answers(octets_of(write_capabilities(writer, asks))).answers(done_message());
+  script.answers(write_message(3, 1, kernel::kStart)).says(done_message()).stays();
+  MessageDevice device = device_of(script);
+  EXPECT_TRUE(device.capabilities().senses_activity);
+  Notes notes;
+  ASSERT_TRUE(device.begin(kCase, notes));
+  device.on_activity(0, true, kernel::kStart);
+  EXPECT_THAT(notes.done, testing::ElementsAre("write 3 1"));
+  EXPECT_FALSE(device_of(begun()).capabilities().senses_activity);
+}
+
 TEST(MessageDeviceCall, RefusedCaseIsNoMisbehaviourAndItCanBeAskedAgain) {
   Script script;
   script.answers(capabilities_message()).answers(unsupported_message()).answers(done_message()).stays();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -90,6 +91,12 @@ const std::vector<ContentReader>& content_readers() {
          return body_of(write_characters(writer, 3, any_time(), any_sent()));
        },
        [](MessageReader& reader) { read_characters(reader); }},
+      {"activity",
+       [] {
+         MessageWriter writer;
+         return body_of(write_activity(writer, {3, true, any_time()}));
+       },
+       [](MessageReader& reader) { read_activity(reader); }},
       {"driver",
        [] {
          MessageWriter writer;
@@ -148,6 +155,43 @@ RC_GTEST_PROP(MessageTest, DriverComesBack, ()) {
   MessageReader reader(body);
   RC_ASSERT(reader.type() == MessageType::driver);
   RC_ASSERT(read_driver(reader) == driver);
+}
+
+RC_GTEST_PROP(MessageTest, ActivityComesBack, (bool begins, std::uint8_t port)) {
+  const LineActivity activity{port, begins, any_time()};
+  MessageWriter writer;
+  const Octets body = body_of(write_activity(writer, activity));
+  MessageReader reader(body);
+  RC_ASSERT(reader.type() == MessageType::activity);
+  RC_ASSERT(read_activity(reader) == activity);
+}
+
+TEST(MessageTest, ActivityThatNeitherBeginsNorEndsIsRefused) {
+  MessageWriter writer;
+  const Octets body = body_of(writer.begin(MessageType::activity).u8(0).u8(2).time(kernel::kStart).finish());
+  MessageReader reader(body);
+  EXPECT_THROW(read_activity(reader), MessageError);
+}
+
+// Who asks for activity says so after its roles; who does not may be older than that.
+TEST(MessageTest, CapabilitiesAskForActivityWithOneOctet) {
+  MessageWriter writer;
+  PeerCapabilities asks{.unit = 1, .name = "a", .roles = {{"p", "r"}}, .senses_activity = true};
+  const Octets with = body_of(write_capabilities(writer, asks));
+  asks.senses_activity = false;
+  const Octets without = body_of(write_capabilities(writer, asks));
+  EXPECT_EQ(with.size(), without.size() + 1);
+  EXPECT_EQ(with.back(), 1);
+  MessageReader asking(with);
+  EXPECT_TRUE(read_capabilities(asking).senses_activity);
+  MessageReader older(without);
+  EXPECT_FALSE(read_capabilities(older).senses_activity);
+  for (const std::uint8_t wrong : std::array<std::uint8_t, 2>{0, 2}) {
+    Octets other = with;
+    other.back() = wrong;
+    MessageReader reader(other);
+    EXPECT_THROW(read_capabilities(reader), MessageError);
+  }
 }
 
 TEST(MessageTest, DriverThatIsNeitherOnNorOffIsRefused) {

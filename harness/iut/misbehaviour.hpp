@@ -42,4 +42,10 @@ class CannotBeDone : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What this attachment did too late for a verdict on what follows: the instants of the case are in doubt.
+class InDoubt : public CannotBeDone {
+ public:
+  using CannotBeDone::CannotBeDone;
+};
+
 }  // namespace fieldproof::iut

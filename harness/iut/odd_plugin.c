@@ -3,6 +3,7 @@
  * comes. Compiled with OTHER_VERSION, LEAVES_OUT or NO_ENTRY it is none that can be used; with LEVELS_ONLY it
  * has no function for characters.
  */
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,6 +74,12 @@ static fieldproof_time receive_levels(void* self, unsigned port, fieldproof_time
   return now;
 }
 
+static fieldproof_time on_activity(void* context, unsigned port, int begins, fieldproof_time now) {
+  const odd* self = (const odd*)context;
+  self->bench->write(self->bench->context, port, (fieldproof_word)begins, now);
+  return begins ? now + 7 : FIELDPROOF_NEVER;
+}
+
 static fieldproof_time on_time(void* self, fieldproof_time now) {
   (void)self;
   return now;
@@ -95,9 +102,14 @@ static void end(void* context) {
 #endif
 
 #ifdef LEVELS_ONLY
+/* Its table ends where it ended before there was activity. */
+#define TABLE_SIZE ((unsigned)offsetof(fieldproof_implementation, on_activity))
+#define ON_ACTIVITY 0
 #define UNIT FIELDPROOF_LEVELS
 #define RECEIVE 0
 #else
+#define TABLE_SIZE sizeof(fieldproof_implementation)
+#define ON_ACTIVITY on_activity
 #define UNIT FIELDPROOF_CHARACTERS
 #define RECEIVE receive
 #endif
@@ -107,14 +119,16 @@ static void end(void* context) {
 FIELDPROOF_EXPORT const fieldproof_implementation* another_name(unsigned version);
 #endif
 const fieldproof_implementation* fieldproof_plugin(unsigned version) {
-  static const fieldproof_implementation implementation = {VERSION, sizeof(fieldproof_implementation),
+  static const fieldproof_implementation implementation = {VERSION, TABLE_SIZE,
                                                            "odd",   UNIT,
                                                            create,  free,
                                                            begin,   set_power,
                                                            RECEIVE, receive_levels,
-                                                           ON_TIME, end};
+                                                           ON_TIME, end,
+                                                           ON_ACTIVITY};
   (void)version;
   (void)on_time;
   (void)receive;
+  (void)on_activity;
   return &implementation;
 }

@@ -3,9 +3,11 @@
 #define BOOST_DLL_USE_STD_FS
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/dll/shared_library.hpp>
 #include <cstddef>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <string_view>
@@ -97,7 +99,7 @@ Plugin loaded(const std::string& path) {
 class PluginDevice final : public Device {
  public:
   PluginDevice(Plugin plugin, const std::string& protocol, const std::string& role, UnitOffer told)
-      : plugin_(std::move(plugin)), functions_(checked(plugin_)) {
+      : plugin_(std::move(plugin)), functions_(functions_of(checked(plugin_))) {
     if (functions_.receive == nullptr) {
       if (told == UnitOffer::in_characters_too) refuse_library(plugin_.name, kNoCharacters);
       functions_.receive = &refuse_characters;
@@ -118,6 +120,9 @@ class PluginDevice final : public Device {
   ~PluginDevice() override { functions_.destroy(self_); }
 
   UnitKind unit_kind() const override { return static_cast<UnitKind>(functions_.unit); }
+  Capabilities capabilities() const override {
+    return {.senses_activity = functions_.on_activity != nullptr};
+  }
 
   bool begin(const CaseBegin& begin, Bench& bench) override {
     std::vector<fieldproof_setting> settings;
@@ -153,6 +158,9 @@ class PluginDevice final : public Device {
                                        static_cast<unsigned>(count), ticks_of(reception.end()));
     });
   }
+  void on_activity(unsigned port, bool begins, kernel::Time now) override {
+    call([&] { return functions_.on_activity(self_, port, begins ? 1 : 0, ticks_of(now)); });
+  }
   void on_time(kernel::Time now) override {
     call([&] { return functions_.on_time(self_, ticks_of(now)); });
   }
@@ -169,7 +177,7 @@ class PluginDevice final : public Device {
                                               FIELDPROOF_PLUGIN_VERSION));
     }
     const fieldproof_implementation& it = *plugin.implementation;
-    if (it.size < sizeof it)
+    if (it.size < kLeastTable)
       refuse_library(plugin.name, "has a shorter table of functions than its version has");
     if (it.unit < FIELDPROOF_CHARACTERS || it.unit > FIELDPROOF_TELEGRAMS) {
       refuse_library(
@@ -186,6 +194,16 @@ class PluginDevice final : public Device {
   }
 
  private:
+  // Tables of this version end here at the earliest.
+  static constexpr std::size_t kLeastTable = offsetof(fieldproof_implementation, on_activity);
+
+  // What a shorter table does not have is null.
+  static fieldproof_implementation functions_of(const fieldproof_implementation& table) {
+    fieldproof_implementation functions{};
+    std::memcpy(&functions, &table, std::min<std::size_t>(table.size, sizeof functions));
+    return functions;
+  }
+
   // In the place of `receive` that a library of levels leaves out. To ask for it in each call takes as long
   // as a tenth of the call.
   static fieldproof_time refuse_characters(void*, unsigned, const fieldproof_character*, unsigned,

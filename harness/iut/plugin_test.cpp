@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -69,6 +71,33 @@ std::string refusal_to_load(const std::string& path, const std::string& protocol
   return {};
 }
 
+// Of levels alone: it sends back what it hears.
+fieldproof_implementation echo_of_levels() {
+  return {
+      .version = FIELDPROOF_PLUGIN_VERSION,
+      .size = sizeof(fieldproof_implementation),
+      .name = "echo",
+      .unit = FIELDPROOF_LEVELS,
+      .create = [](const char*, const char* role, const fieldproof_bench* bench) -> void* {
+        return std::string_view(role) == "echo" ? const_cast<fieldproof_bench*>(bench) : nullptr;
+      },
+      .destroy = [](void*) {},
+      .begin = [](void*, const fieldproof_case*, fieldproof_time*) { return 1; },
+      .set_power = [](void*, int, fieldproof_time) { return FIELDPROOF_NEVER; },
+      .receive = nullptr,
+      .receive_levels =
+          [](void* self, unsigned port, fieldproof_time, fieldproof_time rate, const unsigned char* levels,
+             unsigned count, fieldproof_time now) {
+            const auto* bench = static_cast<const fieldproof_bench*>(self);
+            bench->transmit_levels(bench->context, port, now, rate, levels, count);
+            return now + 1;
+          },
+      .on_time = [](void*, fieldproof_time) { return FIELDPROOF_NEVER; },
+      .end = [](void*) {},
+      .on_activity = nullptr,
+  };
+}
+
 TEST(PluginTest, ActsThroughTheBench) {
   const auto device = odd_device("acts");
   EXPECT_EQ(device->unit_kind(), UnitKind::characters);
@@ -107,6 +136,29 @@ TEST(PluginTest, EachCallReturnsWhenTheNextOneIsWanted) {
   EXPECT_EQ(device->next_time(), kernel::kNever);
 }
 
+TEST(PluginTest, AsksForActivityWithItsFunction) {
+  const auto device = odd_device("senses");
+  EXPECT_TRUE(device->capabilities().senses_activity);
+  Diary diary;
+  ASSERT_TRUE(device->begin({"odd/case", 1, {}}, diary));
+  device->on_activity(5, true, kSupply);
+  EXPECT_EQ(device->next_time(), kSupply + kernel::Duration{7});
+  device->on_activity(5, false, kSupply);
+  EXPECT_EQ(device->next_time(), kernel::kNever);
+  EXPECT_THAT(diary.lines, ElementsAre("writes 5 1", "writes 5 0"));
+}
+
+// As one that was built before there was activity.
+TEST(PluginTest, ShorterTableAsksForNoActivity) {
+  fieldproof_implementation table = echo_of_levels();
+  table.on_activity = [](void*, unsigned, int, fieldproof_time now) { return now; };
+  EXPECT_TRUE(make_plugin(table, "odd", "echo")->capabilities().senses_activity);
+  table.size = offsetof(fieldproof_implementation, on_activity);
+  EXPECT_FALSE(make_plugin(table, "odd", "echo")->capabilities().senses_activity);
+  --table.size;
+  EXPECT_THROW(make_plugin(table, "odd", "echo"), kernel::Error);
+}
+
 TEST(PluginTest, ActsAreCountedWithinEachCallAlone) {
   const auto device = odd_device("hears");
   Diary diary;
@@ -140,32 +192,6 @@ TEST(PluginTest, RateThatNoLineHasIsRefused) {
 
 TEST(PluginTest, ActsWithoutEndAreAFlood) {
   EXPECT_THAT(blamed_for("floods", reasons::kFloods), HasSubstr("more than 20000 things within one call"));
-}
-
-// Of levels alone: it sends back what it hears.
-fieldproof_implementation echo_of_levels() {
-  return {
-      .version = FIELDPROOF_PLUGIN_VERSION,
-      .size = sizeof(fieldproof_implementation),
-      .name = "echo",
-      .unit = FIELDPROOF_LEVELS,
-      .create = [](const char*, const char* role, const fieldproof_bench* bench) -> void* {
-        return std::string_view(role) == "echo" ? const_cast<fieldproof_bench*>(bench) : nullptr;
-      },
-      .destroy = [](void*) {},
-      .begin = [](void*, const fieldproof_case*, fieldproof_time*) { return 1; },
-      .set_power = [](void*, int, fieldproof_time) { return FIELDPROOF_NEVER; },
-      .receive = nullptr,
-      .receive_levels =
-          [](void* self, unsigned port, fieldproof_time, fieldproof_time rate, const unsigned char* levels,
-             unsigned count, fieldproof_time now) {
-            const auto* bench = static_cast<const fieldproof_bench*>(self);
-            bench->transmit_levels(bench->context, port, now, rate, levels, count);
-            return now + 1;
-          },
-      .on_time = [](void*, fieldproof_time) { return FIELDPROOF_NEVER; },
-      .end = [](void*) {},
-  };
 }
 
 TEST(PluginTest, ImplementationThatTheProgramHoldsIsCalledLikeALibrary) {

@@ -55,7 +55,7 @@ class Recorder final : public Device, private Bench {
       recording_.add(number_, Misbehaved{done.reason(), done.what(), done.evidence()});
       throw;
     } catch (const CannotBeDone& what) {
-      recording_.add(number_, CouldNot{what.what()});
+      recording_.add(number_, CouldNot{what.what(), dynamic_cast<const InDoubt*>(&what) != nullptr});
       throw;
     }
     recording_.end_call(number_, device_.next_time());
@@ -150,7 +150,10 @@ class PlayedBack final : public Device {
   [[noreturn]] void perform(const Misbehaved& done) {
     throw Misbehaviour(done.reason, done.sentence, done.evidence);
   }
-  [[noreturn]] void perform(const CouldNot& could) { throw CannotBeDone(could.sentence); }
+  [[noreturn]] void perform(const CouldNot& could) {
+    if (could.is_in_doubt) throw InDoubt(could.sentence);
+    throw CannotBeDone(could.sentence);
+  }
 
   const DeviceRecording& recording_;
   const RecordedDevice& device_;

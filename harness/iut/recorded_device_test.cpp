@@ -147,6 +147,31 @@ RC_GTEST_PROP(RecordedDevice, MisbehaviourComesAgainWithItsWords, ()) {
   }
 }
 
+// Whoever asked for activity is called with it again, and acts again.
+TEST(RecordedDevice, ActivityIsPlayedBack) {
+  auto acting = std::make_shared<ActingDevice>(UnitKind::characters);
+  Bench* of_case = nullptr;
+  acting->at_begin = [&](Bench& bench) { of_case = &bench; };
+  acting->at_activity = [&](bool begins) { of_case->write(3, begins ? 1 : 0, at(7)); };
+  DeviceRecording recording;
+  const auto call = [](const Attachment& attachment, Bench& bench) {
+    ASSERT_TRUE(attachment.device->begin({"case", 1, {}}, bench));
+    attachment.device->on_activity(0, true, at(5));
+    attachment.device->on_activity(0, false, at(6));
+    attachment.device->end();
+  };
+  NotingBench before;
+  call(recorded({acting.get(), acting, {}}, recording), before);
+  const StoredRecording stored(recording);
+  const DeviceRecording loaded = stored.load();
+  NotingBench after;
+  const Attachment again = played_back(loaded, 0);
+  EXPECT_TRUE(again.device->capabilities().senses_activity);
+  call(again, after);
+  EXPECT_EQ(before.lines, after.lines);
+  EXPECT_EQ(after.lines.size(), 2U);
+}
+
 TEST(RecordedDevice, AnotherCallThanWasRecordedIsRefused) {
   auto acting = std::make_shared<ActingDevice>(UnitKind::levels);
   DeviceRecording recording;

@@ -22,6 +22,9 @@ class ServedStation : public Device {
   void receive(unsigned, std::span<const Character>, kernel::Time) override {
     FIELDPROOF_CHECK(false, "a served station has asked for levels");
   }
+  void on_activity(unsigned port, bool begins, kernel::Time now) override {
+    act(now, [&] { station_->on_activity(port, begins, now); });
+  }
   void on_time(kernel::Time now) override {
     act(now, [&] { station_->on_time(now); });
   }

@@ -134,7 +134,8 @@ class Server final : private Bench {
     pipe_.send(write_capabilities(writer_, {kMessageVersion,
                                             static_cast<std::uint8_t>(device_->unit_kind()),
                                             std::string(own_name_),
-                                            {is_asked_which ? served_ : role_}}));
+                                            {is_asked_which ? served_ : role_},
+                                            device_->capabilities().senses_activity}));
   }
 
   void pass_on(MessageReader& reader) {
@@ -150,6 +151,10 @@ class Server final : private Bench {
       case MessageType::receive_levels: {
         const unsigned port = read_levels(reader, wave_);
         return device_->receive(port, wave_);
+      }
+      case MessageType::activity: {
+        const LineActivity activity = read_activity(reader);
+        return device_->on_activity(activity.port, activity.begins, activity.now);
       }
       case MessageType::on_time:
         return device_->on_time(reader.time());

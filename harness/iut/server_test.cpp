@@ -41,6 +41,7 @@ class WritingDevice final : public Device {
   explicit WritingDevice(Lines& lines) : lines_(lines) {}
 
   UnitKind unit_kind() const override { return UnitKind::levels; }
+  Capabilities capabilities() const override { return {.senses_activity = true}; }
   bool begin(const CaseBegin& begin, Bench& bench) override {
     bench_ = &bench;
     std::string text = fmt::format("begin {} {}", begin.id, begin.seed);
@@ -69,6 +70,10 @@ class WritingDevice final : public Device {
     line::Waveform answer = reception;
     bench_->transmit(port + 1, answer);
     EXPECT_TRUE(answer.levels.empty()) << "who transmits gets an empty wave back";
+  }
+  void on_activity(unsigned port, bool begins, kernel::Time now) override {
+    lines_.push_back(fmt::format("activity {} {} {}", port, begins, ticks(now)));
+    next_ = now;
   }
   void on_time(kernel::Time now) override {
     lines_.push_back(fmt::format("time {}, input {}", ticks(now), bench_->read(9, now)));
@@ -116,7 +121,7 @@ using DeviceCall = std::function<void(Device&, Bench&, Lines&)>;
 
 DeviceCall some_call() {
   const kernel::Time now = some_time();
-  switch (*rc::gen::inRange(0, 5)) {
+  switch (*rc::gen::inRange(0, 6)) {
     case 0: {
       // Seed 0: a case that the device refuses. What follows goes to the one that has begun again.
       CaseBegin begin{"valve_bus/node/x", *rc::gen::inRange<std::uint64_t>(0, 3), {{"a", 1}}};
@@ -135,6 +140,10 @@ DeviceCall some_call() {
       return [=](Device& device, Bench&, Lines&) { device.receive(2, characters, now); };
     }
     case 3: {
+      const bool begins = *rc::gen::arbitrary<bool>();
+      return [=](Device& device, Bench&, Lines&) { device.on_activity(5, begins, now); };
+    }
+    case 4: {
       const line::Waveform wave = some_wave();
       return [wave](Device& device, Bench&, Lines&) { device.receive(4, wave); };
     }

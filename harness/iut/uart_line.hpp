@@ -15,6 +15,8 @@ namespace fieldproof::iut {
 // The UART of the system has eight data bits: Uart::eight_bit_format.
 struct UartLine : line::Uart {
   kernel::Duration shortest_silence{};  // between two frames; a shorter gap cannot be driven
+  // Of a box that asks: what begins later after its last stop bit is no answer for it. Zero: it does not ask.
+  kernel::Duration latest_answer{};
 };
 
 // Characters without a gap on such a line, and the driver around them.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "harness/iut/misbehaviour.hpp"
+#include "harness/kernel/error.hpp"
 
 namespace fieldproof::iut {
 
@@ -26,8 +27,7 @@ void UserLine::receive_levels(const line::Waveform& reception) {
 }
 
 void UserLine::on_activity(bool begins, kernel::Time now) {
-  const Character one{now, now, static_cast<std::uint16_t>(begins ? 1 : 0)};
-  attached_.call(now, [&](Device& device) { device.receive(kActivityPort, std::span(&one, 1), now); });
+  attached_.call(now, [&](Device& device) { device.on_activity(kLinePort, begins, now); });
 }
 
 bool UserLine::ask(const std::vector<std::uint8_t>& request, kernel::Time now) {
@@ -65,6 +65,15 @@ kernel::Time UserLine::next_time() const {
 
 void UserLine::expect_line_port(unsigned port) {
   if (port != kLinePort) refuse_impossible(fmt::format("drives port {}; the line is port 0", port));
+}
+
+void UserLine::expect_activity() const {
+  if (attached_.capabilities().senses_activity) return;
+  throw kernel::Error(
+      kernel::ErrorKind::implementation,
+      "the timers of this role stop while others drive the line; this implementation does not ask "
+      "for activity, so it should: 1 at the end of its capabilities, on_activity in its table of "
+      "functions");
 }
 
 void UserLine::transmit(unsigned port, line::Waveform& wave) {

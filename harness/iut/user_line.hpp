@@ -12,14 +12,14 @@
 // directions and whatever the protocol:
 //
 //   port 0  the line: levels, reported when a transmission is over
-//   port 1  one character when others begin to drive the line (1) and when they cease (0)
 //   port 2  the user: characters are the octets of what it asks for, and of what is reported to it
+//
+// Its timers depend on when others drive the line, so it asks for activity.
 //
 // UserLine is the bench's end of it; ServedUserLine is a station of ours as an implementation.
 namespace fieldproof::iut {
 
 inline constexpr unsigned kLinePort = 0;
-inline constexpr unsigned kActivityPort = 1;
 inline constexpr unsigned kUserPort = 2;
 
 // Words that an implementation writes.
@@ -58,6 +58,8 @@ class UserLine {
   AttachedCase& attached() { return attached_; }
   void drive(line::Waveform&& wave);
   static void expect_line_port(unsigned port);
+  // Throws kernel::Error for an implementation that does not ask for activity.
+  void expect_activity() const;
 
  private:
   template <typename Ask>
@@ -81,19 +83,16 @@ class UserLine {
 template <typename Station>
 class ServedUserLine : public ServedStation<Station> {
  public:
+  Capabilities capabilities() const override { return {.senses_activity = true}; }
   void receive(unsigned, const line::Waveform& reception) override {
     this->act(reception.end(), [&] { this->station().receive(kLinePort, reception); });
   }
-  void receive(unsigned port, std::span<const Character> characters, kernel::Time now) override {
+  void receive(unsigned, std::span<const Character> characters, kernel::Time now) override {
     std::vector<std::uint8_t> octets;
     for (const Character& one : characters) octets.push_back(static_cast<std::uint8_t>(one.data));
     if (octets.empty()) return;
     this->act(now, [&] {
-      if (port == kActivityPort) {
-        this->station().on_activity(kLinePort, octets.front() != 0, now);
-      } else if (!asked(octets, now)) {
-        refuse(now);
-      }
+      if (!asked(octets, now)) refuse(now);
     });
   }
 

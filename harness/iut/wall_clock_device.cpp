@@ -110,9 +110,24 @@ void WallClockDevice::receive(unsigned, const line::Waveform&) {
   refuse("levels cannot be driven");
 }
 
-void WallClockDevice::receive(unsigned, std::span<const Character> characters, kernel::Time now) {
+void WallClockDevice::receive(unsigned port, std::span<const Character> characters, kernel::Time now) {
   now_ = now;
+  if (port != 0) return ask(port, characters, now);
   for (const Character& character : characters) send(character);
+}
+
+// What the box does within this call it does now; instants after it are as far from those of the line as
+// before.
+void WallClockDevice::ask(unsigned port, std::span<const Character> characters, kernel::Time now) {
+  if (attachment_.upper == nullptr) refuse("nothing can be asked of the box without an upper channel");
+  flush(now);
+  const kernel::Time asked = clock_.now();
+  std::vector<Character> passed_on(characters.begin(), characters.end());
+  for (Character& one : passed_on) one.start = one.busy_until = asked;
+  is_asking_ = true;
+  attachment_.upper->receive(port, passed_on, asked);
+  is_asking_ = false;
+  write_due(now);
 }
 
 // A UART sends whole characters of its format at its bit rate.
@@ -122,6 +137,11 @@ void WallClockDevice::send(const Character& character) {
     refuse("levels that are no right character cannot be driven");
   if (character.start < driven_until_) expect_an_answer();
   expect_no_short_gap(character.start);
+  if (pending_.empty()) {
+    sent_from_ = character.start;
+    asked_before_ = sent_from_ - placed_until_;
+    asked_at_ = ended_at_;
+  }
   pending_.push_back(octet);
   sent_until_ = character.busy_until;
 }
@@ -148,14 +168,31 @@ void WallClockDevice::expect_an_answer() const {
 void WallClockDevice::flush(kernel::Time now) {
   pump(now);
   if (pending_.empty()) return;
+  expect_in_time(asked_at_);
   // The box looks at its inputs when it is called.
   if (attachment_.upper != nullptr) ask_upper(clock_.now());
   const Stamp written = attachment_.line->write(pending_);
+  const auto length = static_cast<std::int64_t>(pending_.size()) * character_;
   sent_ += pending_.size();
   arrived_before_ = arrived_;
   pending_.clear();
   set_anchor({sent_until_, {written.earliest, written.latest + attachment_.latency}});
-  if (attachment_.upper != nullptr) wait_until_received();
+  if (attachment_.upper == nullptr) return;
+  wait_until_received();
+  expect_in_time(anchor_.wall.latest - length);
+}
+
+// The box begins to receive what was an answer in time as the case has it: not later than it waits, by its
+// own clock, and before it asks anew.
+void WallClockDevice::expect_in_time(kernel::Time received) const {
+  const bool is_answer = uart_.latest_answer > kernel::Duration{} && asked_at_ != kernel::kNever &&
+                         asked_before_ <= uart_.latest_answer;
+  if (!is_answer) return;
+  if (received - asked_at_ <= uart_.latest_answer && ended_at_ == asked_at_) return;
+  throw InDoubt(
+      fmt::format("serial: an answer of the tester that was to begin {} after a request has come later "
+                  "than the box waits, {}",
+                  kernel::describe(asked_before_), kernel::describe(uart_.latest_answer)));
 }
 
 void WallClockDevice::wait_until_received() {
@@ -241,6 +278,7 @@ void WallClockDevice::place_reported(kernel::Time now) {
     if (transmission.driver_on - reported_until_ <= kernel::kNanosecond)  // its driver has stayed on
       earliest = wall_of(driven_until_) + (transmission.start - transmission.driver_on);
     reported_until_ = transmission.driver_off;
+    ended_at_ = transmission.start + length;
     place(transmission, earliest, end.latest - length, now);
   }
 }
@@ -331,6 +369,7 @@ void WallClockDevice::write(Item item, std::uint64_t value, kernel::Time when) {
     reported_ = value;
     if (!reports_.empty()) reports_.back().written = when;
   } else {
+    if (is_asking_) when = wall_of(now_);
     const kernel::Time last = writes_.empty() ? now_ : std::max(now_, writes_.back().when);
     writes_.push_back({std::max(last, instant_of(when)), item, value});
   }

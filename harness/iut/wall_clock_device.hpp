@@ -10,14 +10,17 @@
 #include "harness/iut/serial_line.hpp"
 #include "harness/iut/uart_line.hpp"
 
-// A box at a serial line as an implementation, in wall-clock time, in any role whose one port is a line
-// that carries the characters of a UART.
+// A box at a serial line as an implementation, in wall-clock time, in any role whose line (port 0) carries
+// the characters of a UART. What is asked of it at other ports goes through the upper channel.
 //
 // The time of the case follows the clock of the machine by a margin: an instant of the case comes when all
 // that the line had brought by then, and a margin later, has been read. So what the box sends can be put
 // where it was sent. Frames of the tester are written as blocks when they are over; at each of them the time
 // of the case is tied to the clock anew. What the box does is placed at the earliest instant at which it may
 // have done it, and `set_uncertainty` says how much later it can have been.
+//
+// A box that asks by itself waits for its answer by its own clock. An answer of the tester that it receives
+// too late is InDoubt.
 //
 // What the line cannot do (gaps inside frames, wrong characters, talking into an answer) is CannotBeDone.
 // Without an upper channel the bench does not see the process side and finds the box as it is.
@@ -66,10 +69,12 @@ class WallClockDevice final : public Device, private Bench {
   kernel::Time instant_of(kernel::Time wall) const { return anchor_.at + (wall - anchor_.wall.latest); }
 
   // ---- the tester's side ----
+  void ask(unsigned port, std::span<const Character> characters, kernel::Time now);
   void send(const Character& character);
   void expect_no_short_gap(kernel::Time start) const;
   [[noreturn]] void expect_an_answer() const;
   void flush(kernel::Time now);
+  void expect_in_time(kernel::Time received) const;
   void wait_until_received();
 
   // ---- the box's side ----
@@ -105,6 +110,11 @@ class WallClockDevice final : public Device, private Bench {
 
   std::vector<std::uint8_t> pending_;  // of the tester, not yet written
   kernel::Time sent_until_{kernel::Duration::min()};
+  kernel::Time sent_from_{};  // of what is pending, or was written last
+  kernel::Duration asked_before_ =
+      kernel::Duration::max();              // this, as the case has it: the box's last stop bit
+  kernel::Time asked_at_ = kernel::kNever;  // and when that was
+  bool is_asking_ = false;
   std::uint64_t sent_ = 0;      // octets, of the tester
   std::uint64_t received_ = 0;  // of these, by the box
 
@@ -118,6 +128,7 @@ class WallClockDevice final : public Device, private Bench {
   std::deque<Written> writes_;
   kernel::Time driven_until_{};                             // as placed
   kernel::Time placed_until_{kernel::Duration::min() / 2};  // without the driver
+  kernel::Time ended_at_ = kernel::kNever;                  // the last of these, as the box reports
 };
 
 }  // namespace fieldproof::iut

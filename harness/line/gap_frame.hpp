@@ -24,6 +24,8 @@ struct InterCharacterGaps {
 // `most`: more octets are counted, not kept; no frame of the protocol is longer.
 template <std::size_t most>
 struct GapFrame {
+  static constexpr std::size_t kMostOctets = most;
+
   std::array<std::uint8_t, most> octets{};
   std::size_t count = 0;
   bool is_spoilt = false;

@@ -16,11 +16,13 @@ constexpr std::size_t kMostFrameOctets = 300;  // of IEC 61158-2, with its check
 
 AttachedLink::AttachedLink(iut::AttachedCase& attached, const LinkRules& rules)
     : UserLine(attached), rules_(rules) {
-  if (attached.unit_kind() != iut::UnitKind::characters) return;
-  throw kernel::Error(
-      kernel::ErrorKind::implementation,
-      "a station of the data link receives and sends levels or telegrams; this implementation "
-      "announces characters");
+  if (attached.unit_kind() == iut::UnitKind::characters) {
+    throw kernel::Error(
+        kernel::ErrorKind::implementation,
+        "a station of the data link receives and sends levels or telegrams; this implementation "
+        "announces characters");
+  }
+  expect_activity();
 }
 
 // ---- what it is told ----

@@ -10,14 +10,13 @@
 //
 //   port 0  the line: levels that are half a bit wide, told when a transmission is over; or telegrams, which
 //           are the octets of a frame, its check among them, without preamble and delimiters
-//   port 1  one character when others begin to drive the line (1) and when they cease (0)
+//           when others begin to drive it, and when they cease, is activity, which each of them asks for
 //   port 2  the user: characters are the octets of what it asks for, and of what it is told
 //
 // An implementation that hears frames is no receiver of its own: a case that drives anything but whole
 // frames, as this link has them, does not apply to it.
 namespace fieldproof::fieldbus_dll {
 
-using iut::kActivityPort;
 using iut::kEvent;
 using iut::kLinePort;
 using iut::kRefused;
@@ -27,7 +26,8 @@ using iut::put_number;
 
 class AttachedLink : public iut::UserLine {
  public:
-  // Throws kernel::Error for an implementation that announces characters.
+  // Throws kernel::Error for an implementation that announces characters, and for one that does not ask for
+  // activity.
   AttachedLink(iut::AttachedCase& attached, const LinkRules& rules);
 
   void receive(const line::Waveform& reception);

@@ -50,10 +50,16 @@ class AttachedHost final : public HostDevice, private iut::Bench {
   void receive(segment::PortIndex port, const line::Waveform& reception) override {
     line_.receive(port, reception);
   }
+  void on_activity(segment::PortIndex port, bool begins, kernel::Time now) override {
+    line_.on_activity(port, begins, now);
+  }
   void on_time(kernel::Time now) override { line_.on_time(now); }
   kernel::Time next_time() const override { return line_.next_time(); }
   void end() override { line_.end(); }
   iut::Capabilities capabilities() const override { return attached_.capabilities(); }
+  iut::TimingUncertainty uncertainty_of_request(kernel::Time driver_on) const override {
+    return line_.uncertainty_of(driver_on);
+  }
 
  private:
   void set_driver(unsigned port, bool is_on, kernel::Time at) override { line_.set_driver(port, is_on, at); }

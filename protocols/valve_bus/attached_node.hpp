@@ -33,6 +33,9 @@ class AttachedNode final : public NodeDevice, private iut::Bench {
   void receive(segment::PortIndex port, const line::Waveform& reception) override {
     line_.receive(port, reception);
   }
+  void on_activity(segment::PortIndex port, bool begins, kernel::Time now) override {
+    line_.on_activity(port, begins, now);
+  }
   void on_time(kernel::Time now) override { line_.on_time(now); }
   kernel::Time next_time() const override { return line_.next_time(); }
   void end() override { line_.end(); }

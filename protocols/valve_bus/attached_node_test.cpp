@@ -40,7 +40,8 @@ class AttachedNodeTest : public testing::Test, private segment::Station, private
   void attach() {
     iut::Attachment attachment{&device_, nullptr, [this] { ++well_ended_; }};
     node_ = std::make_unique<AttachedNode>(attachment, configuration_, "valve_bus/node/x", 7);
-    node_->wire(line_.attach("node/in", segment_.attach(*node_, "node"), 0, {}), boards_);
+    place_ = &line_.attach("node/in", segment_.attach(*node_, "node"), 0, {});
+    node_->wire(*place_, boards_);
     host_ = &line_.attach("host/in", segment_.attach(*this, "host"), 0, {});
     node_->set_power(true, kStart);
   }
@@ -68,6 +69,7 @@ class AttachedNodeTest : public testing::Test, private segment::Station, private
   ActingDevice device_{iut::UnitKind::characters};
   std::unique_ptr<AttachedNode> node_;
   segment::MediumPort* host_ = nullptr;
+  segment::MediumPort* place_ = nullptr;  // of the node
   std::vector<line::Waveform> driven_;
   int well_ended_ = 0;
 
@@ -178,6 +180,20 @@ TEST_F(AttachedNodeTest, CharactersAreHeardWhenTheyAreOver) {
   EXPECT_EQ(device_.heard[0].character.data, 0x112);  // the ninth bit is 1
   EXPECT_EQ(device_.heard[1].character.data, 0x1FE);
   EXPECT_FALSE(device_.heard[1].character.is_stop_missing || device_.heard[1].character.is_parity_wrong);
+}
+
+TEST_F(AttachedNodeTest, ActivityBeginsWithTheFirstStartBitAndEndsAfterTheLastCharacter) {
+  attach();
+  place_->sense_activity();
+  const kernel::Time begin = kStart + kMillisecond;
+  const kernel::Time end =
+      CharacterCodec(configuration_.rules).drive(*host_, std::vector<std::uint8_t>{0x12, 0xFE}, begin, {});
+  segment_.run_until(begin + 10 * kMicrosecond);
+  EXPECT_THAT(device_.activity, testing::ElementsAre(testing::Pair(true, begin)));
+  EXPECT_TRUE(device_.heard.empty());
+  segment_.run_for(10 * kMillisecond);
+  EXPECT_THAT(device_.activity, testing::ElementsAre(testing::Pair(true, begin), testing::Pair(false, end)));
+  EXPECT_EQ(device_.heard.size(), 2U);
 }
 
 TEST_F(AttachedNodeTest, TransmissionHasTheDriverAroundItsCharacters) {

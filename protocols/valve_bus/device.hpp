@@ -111,6 +111,8 @@ class HostApplication {
 class HostDevice : public segment::Station {
  public:
   virtual iut::Capabilities capabilities() const { return {}; }
+  // Of what it drove when its driver came on at this instant.
+  virtual iut::TimingUncertainty uncertainty_of_request(kernel::Time) const { return {}; }
   virtual void wire(segment::Port& line, HostApplication& application) = 0;
   // The supply comes and goes; a host begins without it. Power-up is the only reset.
   virtual void set_power(bool is_on, kernel::Time now) = 0;

@@ -9,5 +9,9 @@ namespace fieldproof::valve_bus {
 inline iut::UartLine uart_line(const Rules& rules) {
   return {uart(rules), delimiter(rules)};
 }
+// Of a host, which waits for responses.
+inline iut::UartLine asking_uart_line(const Rules& rules) {
+  return {uart(rules), delimiter(rules), response_time_out(rules)};
+}
 
 }  // namespace fieldproof::valve_bus
