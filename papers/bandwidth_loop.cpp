@@ -70,6 +70,9 @@ PublishedSection bandwidth_loop(const Settings& settings) {
   section.rows.push_back(row_of_course("without other data", alone));
   section.rows.push_back(row_of_course("with the scheme, other queues always full", planned));
   section.rows.push_back(row_of_course("without it", cyclic));
+  section.rows.push_back({"figure 3, delays over T: several samples come in a period, none in another",
+                          "both", fmt::format("{} lost, {} vacant", cyclic.lost, cyclic.vacant),
+                          "without the scheme", cyclic.lost > 0 && cyclic.vacant > 0});
   section.rows.push_back({"with the scheme: samples lost and vacant sampling", "none",
                           fmt::format("{} and {}", planned.lost, planned.vacant), "",
                           planned.lost + planned.vacant == 0});
