@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "harness/traffic/milliseconds.hpp"
-#include "papers/sections.hpp"
-#include "papers/window_loop.hpp"
+#include "papers/bandwidth_lines.hpp"
+#include "papers/interval_ledger.hpp"
 #include "protocols/bandwidth/proof.hpp"
 #include "protocols/bandwidth/sample_plans.hpp"
 #include "protocols/bandwidth/stability.hpp"
-#include "protocols/bandwidth/window_link.hpp"
 
 namespace fieldproof::papers {
 namespace {
@@ -24,14 +23,12 @@ namespace {
 using bandwidth::Allocation;
 using bandwidth::Demand;
 using bandwidth::Load;
-using bandwidth::Packet;
 using bandwidth::Proof;
 using bandwidth::Sent;
 using bandwidth::WindowFigures;
 using bandwidth::WindowRun;
 using bandwidth::WindowTraffic;
 using kernel::Duration;
-using reports::PublishedCurves;
 using reports::PublishedRow;
 using reports::PublishedSection;
 using traffic::ms;
@@ -43,143 +40,11 @@ std::uint64_t slots_of(const Settings& settings, Duration slot) {
   return std::clamp(static_cast<std::uint64_t>(settings.duration / slot), kFewestSlots, kMostSlots);
 }
 
-std::int64_t microseconds_of(Duration duration) {
-  return duration / kernel::kMicrosecond;
-}
-
-// Beside periodic data three real-time queues.
-Demand with_real_time() {
-  Demand demand = bandwidth::fractional_density();
-  demand.real_time_queues = 3;
-  demand.real_time_packet = 200 * kernel::kMicrosecond;
-  return demand;
-}
-
-WindowTraffic safe_traffic(const Demand& demand) {
-  return bandwidth::traffic_of(demand, microseconds_of(allocate(demand).longest_safe));
-}
-
-std::string told_longest(const WindowFigures& figures) {
-  return fmt::format("longest {:.3f} ms, {} over T_1 in {} slots", ms(figures.longest()), figures.over_slot(),
-                     figures.slots);
-}
-
 std::string told_samplings(const WindowFigures& figures) {
   const double each = 1e3 / static_cast<double>(figures.samplings());
   return fmt::format("{} vacant and {} lost; of 1000 samplings {:.1f} and {:.1f}", figures.vacant(),
                      figures.lost(), each * static_cast<double>(figures.vacant()),
                      each * static_cast<double>(figures.lost()));
-}
-
-// ---- the line as the figures show it ----
-
-// The events of some slots of stations that send frames.
-std::vector<Sent> frames_of(const WindowTraffic& traffic, const bandwidth::WindowLineRules& rules,
-                            Load others, const Settings& settings) {
-  WindowRun run{.seed = settings.seed, .slots = 8, .real_time = others, .non_real_time = others};
-  return run_window_link(traffic, rules, run).sent;
-}
-
-struct Span {
-  std::uint64_t first_slot;
-  double slots;
-};
-
-// Each packet as a step to the number of its node and back to none.
-PublishedCurves figure_of_packets(std::string name, const std::vector<Sent>& sent, Duration slot,
-                                  const Span& span) {
-  PublishedCurves figure{std::move(name), "time, ms", "node", {}};
-  const double from = static_cast<double>(span.first_slot) * ms(slot);
-  const double to = from + span.slots * ms(slot);
-  for (const Packet packet : {Packet::periodic, Packet::real_time, Packet::non_real_time}) {
-    PublishedCurves::Curve curve{name_of(packet), {}};
-    for (const Sent& one : sent) {
-      const double begin = ms(one.begin - kernel::kStart);
-      const double end = ms(one.end - kernel::kStart);
-      if (one.packet != packet || begin < from || end > to) continue;
-      const double node = one.node + 1.0;
-      for (const auto& [x, y] : {std::pair{begin, 0.0}, {begin, node}, {end, node}, {end, 0.0}})
-        curve.points.push_back({x, y});
-    }
-    if (!curve.points.empty()) figure.curves.push_back(std::move(curve));
-  }
-  return figure;
-}
-
-bandwidth::WindowLineRules line_rules() {
-  return {.real_time_octets = 12, .non_real_time_octets = 250};
-}
-
-WindowTraffic on_real_line(const Demand& demand) {
-  return on_line(bandwidth::traffic_of(demand, 1), line_rules());
-}
-
-// ---- what is counted from packet to packet ----
-
-class IntervalLedger {
- public:
-  explicit IntervalLedger(Duration slot) : slot_(slot) {}
-
-  void on_sent(const Sent& sent) {
-    if (sent.packet == Packet::periodic) on_periodic(sent);
-    if (sent.packet == Packet::non_real_time) on_non_real_time(sent);
-    is_real_time_late_ |= sent.node == node_ && sent.begin == end_ && sent.packet == Packet::real_time &&
-                          last_ != Packet::real_time && last_ != Packet::none;
-    node_ = sent.node;
-    end_ = sent.end;
-    last_ = sent.packet;
-  }
-
-  Duration longest_interval() const { return longest_; }
-  std::uint64_t most_packets() const { return most_; }
-  bool has_sent_within() const { return has_sent_within_; }
-  // A real-time packet has followed one of another kind in a visit.
-  bool is_real_time_late() const { return is_real_time_late_; }
-
- private:
-  void on_periodic(const Sent& sent) {
-    // Who has begun an interval ends it when it is visited again, and may begin the next one at once.
-    if (is_periodic_ && sent.byte.is_of(sent.node)) longest_ = std::max(longest_, sent.begin - begin_);
-    if (!is_periodic_ || sent.byte.is_of(sent.node)) begin_ = sent.begin;
-    is_periodic_ = true;
-    const std::int64_t slot = (sent.generated - kernel::kStart) / slot_;
-    if (slot != of_slot_) {
-      of_slot_ = slot;
-
-      packets_ = static_cast<std::uint64_t>(
-          std::ranges::count_if(others_, [&](const Sent& one) { return one.end > sent.generated; }));
-      others_.clear();
-    }
-    most_ = std::max(most_, packets_);
-  }
-  void on_non_real_time(const Sent& sent) {
-    has_sent_within_ |= sent.byte.is_periodic();
-    // The interval has ended with the visit of who has begun it.
-    if (is_periodic_) longest_ = std::max(longest_, sent.begin - begin_);
-    is_periodic_ = false;
-    others_.push_back(sent);
-  }
-
-  Duration slot_;
-  bool is_periodic_ = false;
-  kernel::Time begin_{};
-  Duration longest_{};
-  std::int64_t of_slot_ = -1;
-  std::uint64_t packets_ = 0, most_ = 0;
-  std::vector<Sent> others_;
-  bool has_sent_within_ = false;
-  bool is_real_time_late_ = false;
-  std::uint8_t node_ = 0;
-  kernel::Time end_{};
-  Packet last_ = Packet::none;
-};
-
-IntervalLedger ledger_of(const WindowTraffic& traffic, Load others, std::uint64_t slots, std::uint64_t seed) {
-  IntervalLedger ledger(traffic.slot);
-  WindowRun run{.seed = seed, .slots = slots, .real_time = others, .non_real_time = others};
-  run.on_sent = [&](const Sent& sent) { ledger.on_sent(sent); };
-  run_windows(traffic, run);
-  return ledger;
 }
 
 PublishedRow row_of_proof(std::string what, const WindowTraffic& traffic, const Settings& settings) {
@@ -260,28 +125,6 @@ std::uint64_t most_data_of_a_slot(const WindowTraffic& traffic, const Settings& 
   return most;
 }
 
-PublishedRow row_of_course(std::string what, const LoopCourse& course) {
-  return {std::move(what), "",
-          fmt::format("error {:.2f} %s, actuator travel {:.0f} %", course.absolute_error, course.travel),
-          fmt::format("{} samplings of the controller, {} vacant, {} samples lost", course.samplings,
-                      course.vacant, course.lost),
-          std::nullopt};
-}
-
-PublishedRow sentence(std::string what, std::string published, double with, double without) {
-  return {std::move(what), std::move(published), fmt::format("{:+.0f} %", 100 * (with / without - 1)),
-          "the same process, controller, packets and line", with > without};
-}
-
-PublishedCurves::Curve curve_of(std::string name, const LoopCourse& course, double LoopCourse::Point::* value,
-                                std::size_t points) {
-  PublishedCurves::Curve curve{std::move(name), {}};
-  for (const LoopCourse::Point& point : course.points) {
-    if (curve.points.size() < points) curve.points.push_back({point.time_s, point.*value});
-  }
-  return curve;
-}
-
 }  // namespace
 
 PublishedSection bandwidth_periodic(const Settings& settings) {
@@ -329,9 +172,8 @@ PublishedSection bandwidth_periodic(const Settings& settings) {
   }
   section.rows.push_back({"(C2) loop delays", "within their bounds", loops + " ms",
                           "the longest of each, against all adversaries", keeps_bounds});
-  section.figures.push_back(figure_of_packets(
-      "Figure 5: windows of three slots", frames_of(on_real_line(demand), line_rules(), Load::none, settings),
-      traffic.slot, {24, 3}));
+  section.figures.push_back(
+      figure_of_packets("Figure 5: windows of three slots", demand, Load::none, {24, 3}, settings));
   return section;
 }
 
@@ -376,11 +218,10 @@ PublishedSection bandwidth_non_real_time(const Settings& settings) {
   section.rows.push_back(
       row_of_balance("what saturated queues send, density 6", safe_traffic(whole), whole, settings));
   section.rows.push_back(row_of_balance("the same, density 3.75", traffic, fraction, settings));
-  const std::vector<Sent> frames = frames_of(on_real_line(fraction), line_rules(), Load::saturated, settings);
   section.figures.push_back(figure_of_packets("Figure 6: periodic and non-real-time intervals of two slots",
-                                              frames, traffic.slot, {26, 2}));
+                                              fraction, Load::saturated, {26, 2}, settings));
   section.figures.push_back(
-      figure_of_packets("Figure 7: a periodic interval", frames, traffic.slot, {26, 0.6}));
+      figure_of_packets("Figure 7: a periodic interval", fraction, Load::saturated, {26, 0.6}, settings));
   return section;
 }
 
@@ -433,87 +274,9 @@ PublishedSection bandwidth_real_time(const Settings& settings) {
                           "a rotation full of packets fits T_1", shorter <= traffic.slot});
   section.rows.push_back(
       row_of_balance("what saturated non-real-time queues send", traffic, demand, settings));
-  section.figures.push_back(figure_of_packets(
-      "Figure 8: real-time, periodic and non-real-time data of two slots",
-      frames_of(on_real_line(demand), line_rules(), Load::saturated, settings), traffic.slot, {26, 2}));
-  return section;
-}
-
-PublishedSection bandwidth_loop(const Settings& settings) {
-  PublishedSection section;
-  section.heading = "Figures 3 and 4: a control loop with and without the scheme, T 20 ms";
-  section.note =
-      "The paper shows a picture and names no process. Here: two lags of 80 and 32 ms, a PID, three other "
-      "loops, "
-      "files of all nodes. Without the scheme the same server visits the same nodes and loops sample at the "
-      "same "
-      "instants, but it has no periodic byte, and packets of files are three times as long.";
-  const WindowTraffic with = safe_traffic(bandwidth::fractional_density());
-  WindowTraffic without = with;
-  without.has_periodic_byte = false;
-  without.non_real_time_packet *= 3;
-  const auto periods =
-      static_cast<unsigned>(std::clamp<std::int64_t>(settings.duration / with.slot, 120, 20'000));
-  const LoopCourse alone = run_window_loop(with, Load::none, periods, settings.seed);
-  const LoopCourse planned = run_window_loop(with, Load::saturated, periods, settings.seed);
-  const LoopCourse cyclic = run_window_loop(without, Load::random, periods, settings.seed);
-  section.rows.push_back(row_of_course("without other data", alone));
-  section.rows.push_back(row_of_course("with the scheme, other queues always full", planned));
-  section.rows.push_back(row_of_course("without it", cyclic));
-  section.rows.push_back({"with the scheme: samples lost and vacant sampling", "none",
-                          fmt::format("{} and {}", planned.lost, planned.vacant), "",
-                          planned.lost + planned.vacant == 0});
-  section.rows.push_back(sentence("loss and vacant sampling: error of the loop",
-                                  "they lower performance much", cyclic.absolute_error,
-                                  planned.absolute_error));
-  section.rows.push_back(sentence("loss and vacant sampling: travel of the actuator", "jitter wears it",
-                                  cyclic.travel, planned.travel));
-  const std::size_t points = std::min<std::size_t>(1'200, cyclic.points.size());
-  PublishedCurves process{"Figure 4: the process", "time, s", "per cent", {}};
-  PublishedCurves actuator{"Figure 4: the actuator", "time, s", "per cent", {}};
-  for (const auto& [name, course] :
-       {std::pair{"without the scheme", &cyclic}, {"with the scheme", &planned}}) {
-    process.curves.push_back(curve_of(name, *course, &LoopCourse::Point::process, points));
-    actuator.curves.push_back(curve_of(name, *course, &LoopCourse::Point::actuator, points));
-  }
-  process.curves.push_back(curve_of("setpoint", planned, &LoopCourse::Point::setpoint, points));
-  section.figures = {std::move(process), std::move(actuator)};
-  return section;
-}
-
-PublishedSection bandwidth_stations(const Settings& settings) {
-  PublishedSection section;
-  section.heading = "The same as stations that send frames, at 1 Mbit/s";
-  section.note =
-      "The paper: the scheme fits every cyclic service, polling and token alike. Each station sends real "
-      "frames "
-      "with the periodic byte; somebody on the line reads them.";
-  for (const bool is_polled : {false, true}) {
-    bandwidth::WindowLineRules rules = line_rules();
-    rules.is_polled = is_polled;
-    const Demand demand = with_real_time();
-    const WindowTraffic traffic = on_line(bandwidth::traffic_of(demand, 1), rules);
-    for (const Load load : {Load::saturated, Load::just_late}) {
-      WindowRun run{.seed = settings.seed, .slots = 200, .real_time = load, .non_real_time = load};
-      const bandwidth::LinkRun link = run_window_link(traffic, rules, run);
-      std::vector<Sent> sent;
-      run.on_sent = [&](const Sent& one) { sent.push_back(one); };
-      const WindowFigures figures = run_windows(traffic, run);
-      const std::size_t both = std::min(sent.size(), link.sent.size());
-      const Duration before = link.origin - kernel::kStart;
-      std::size_t equal = 0;
-      while (equal < both && sent[equal].node == link.sent[equal].node &&
-             sent[equal].packet == link.sent[equal].packet &&
-             sent[equal].end + before == link.sent[equal].end)
-        ++equal;
-      section.rows.push_back(
-          {fmt::format("{}, other queues send {}", is_polled ? "polling" : "token", name_of(load)),
-           "no datum over T_1", told_longest(figures),
-           fmt::format("{} of {} packets end at the picosecond of the simulation without frames", equal,
-                       both),
-           equal == both && figures.over_slot() == 0});
-    }
-  }
+  section.figures.push_back(
+      figure_of_packets("Figure 8: real-time, periodic and non-real-time data of two slots", demand,
+                        Load::saturated, {26, 2}, settings));
   return section;
 }
 

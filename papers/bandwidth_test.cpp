@@ -69,7 +69,7 @@ TEST_F(BandwidthPaper, RealTimeDataNeedShorterPackets) {
 
 TEST_F(BandwidthPaper, TheSchemeIsWorthItToAControlLoop) {
   const reports::PublishedSection section = bandwidth_loop({.seed = 1, .duration = 20 * kernel::kSecond});
-  ASSERT_EQ(section.rows.size(), 6U);
+  ASSERT_EQ(section.rows.size(), 7U);
   EXPECT_TRUE(disagreeing(section).empty());
   EXPECT_THAT(section.rows[1].remark, HasSubstr("0 vacant, 0 samples lost"));
   ASSERT_EQ(section.figures.size(), 2U);

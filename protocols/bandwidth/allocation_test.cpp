@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "harness/kernel/error.hpp"
@@ -102,6 +103,81 @@ TEST(Allocation, SlotsAreBalanced) {
     EXPECT_EQ(plan.mean_load(), density) << "sums of powers of two are exact";
     EXPECT_EQ(plan.windows, static_cast<unsigned>(std::ceil(density)));
     EXPECT_EQ(plan.fewest, static_cast<unsigned>(std::floor(density)));
+  }
+}
+
+// Another way to the same plan: whole microseconds, trial of each power of two and of each offset, slots
+// counted one by one.
+struct Trial {
+  std::int64_t slot = 0;
+  std::vector<unsigned> every{};
+  Offsets offsets{};
+  std::vector<unsigned> loads{};
+};
+
+Trial trial_of(const Demand& demand) {
+  Trial trial;
+  std::vector<std::int64_t> bounds;
+  for (const kernel::Duration bound : demand.bounds) bounds.push_back(bound / kMicrosecond);
+  trial.slot = *std::min_element(bounds.begin(), bounds.end()) / 3;
+  unsigned slots = 1;
+  for (const std::int64_t bound : bounds) {
+    unsigned every = 1;
+    const auto keeps = [&](std::int64_t k) {
+      return demand.rule == Rule::hong ? 2 * k * trial.slot + trial.slot <= bound
+                                       : k * trial.slot + 2 * trial.slot <= bound;
+    };
+    while (every < kMostSlots && keeps(std::int64_t{2} * every)) every *= 2;
+    trial.every.push_back(every);
+    slots = std::max(slots, every);
+  }
+  trial.loads.assign(slots, 0);
+  trial.offsets.resize(bounds.size());
+  for (unsigned every = 1; every <= slots; every *= 2) {
+    for (std::size_t loop = 0; loop < bounds.size(); ++loop) {
+      if (trial.every[loop] != every) continue;
+      for (const bool is_controller : {false, true}) {
+        unsigned best = 0;
+        unsigned least = ~0U;
+        for (unsigned offset = 0; offset < every; ++offset) {
+          unsigned most = 0;
+          for (unsigned slot = offset; slot < slots; slot += every) most = std::max(most, trial.loads[slot]);
+          if (most < least) least = most, best = offset;
+        }
+        for (unsigned slot = best; slot < slots; slot += every) ++trial.loads[slot];
+        (is_controller ? trial.offsets[loop].second : trial.offsets[loop].first) = best;
+      }
+    }
+  }
+  return trial;
+}
+
+TEST(Allocation, IsThatOfTrialAndError) {
+  kernel::Random random(4);
+  for (int n = 0; n < 300; ++n) {
+    Demand demand = sample_demand({});
+    demand.nodes = static_cast<unsigned>(random.between(24, 128));
+    demand.rule = random.chance(0.5) ? Rule::hong : Rule::sharp;
+    for (auto loops = random.between(1, 12); loops > 0; --loops)
+      demand.bounds.push_back(us(random.between(10'000, 2'000'000)));
+    const Allocation plan = allocate(demand);
+    const Trial trial = trial_of(demand);
+    EXPECT_EQ(plan.slot, us(trial.slot));
+    EXPECT_EQ(everies(plan), trial.every);
+    EXPECT_EQ(offsets(plan), trial.offsets);
+    EXPECT_EQ(plan.loads, trial.loads);
+    // The longest packet, by trial of each length of whole microseconds.
+    const std::int64_t room = trial.slot - std::int64_t{demand.nodes} * 100;
+    const auto fits = [&](std::int64_t length) {
+      for (const unsigned data : plan.loads) {
+        if (data > 0 && (std::int64_t{demand.nodes} - data + 1) * length + data * 400 > room) return false;
+      }
+      return true;
+    };
+    const std::int64_t longest = plan.longest_safe / kMicrosecond;
+    if (longest < 0) continue;
+    EXPECT_TRUE(fits(longest));
+    EXPECT_FALSE(fits(longest + 1));
   }
 }
 

@@ -43,30 +43,6 @@ WindowTraffic in_a_row(WindowTraffic traffic, std::uint64_t slot) {
   return traffic;
 }
 
-void add(WindowFigures& all, const WindowFigures& one) {
-  for (std::size_t n = 0; n < all.streams.size(); ++n) {
-    StreamFigures& to = all.streams[n];
-    const StreamFigures& from = one.streams[n];
-    to.generated += from.generated;
-    to.delivered += from.delivered;
-    to.replaced += from.replaced;
-    to.over_slot += from.over_slot;
-    to.longest = std::max(to.longest, from.longest);
-    to.sum += from.sum;
-  }
-  for (std::size_t n = 0; n < all.loops.size(); ++n) {
-    all.loops[n].samplings += one.loops[n].samplings;
-    all.loops[n].vacant += one.loops[n].vacant;
-    all.loops[n].lost += one.loops[n].lost;
-    all.loops[n].longest_delay = std::max(all.loops[n].longest_delay, one.loops[n].longest_delay);
-  }
-  all.real_time.sent += one.real_time.sent;
-  all.non_real_time.sent += one.non_real_time.sent;
-  all.slots += one.slots;
-  all.visits += one.visits;
-  all.longest_of_start = std::max(all.longest_of_start, one.longest_of_start);
-}
-
 class Prover {
  public:
   Prover(const WindowTraffic& traffic, std::uint64_t seed, std::uint64_t slots)
@@ -123,7 +99,7 @@ class Prover {
         if (all.figures.slots == 0) {
           all.figures = figures;
         } else {
-          add(all.figures, figures);
+          all.figures.add(figures);
         }
         if (!figures.first_late || is_late_) continue;
         is_late_ = true;

@@ -8,7 +8,7 @@
 namespace fieldproof::bandwidth {
 namespace {
 
-constexpr std::uint64_t kSlotsOnLine = kernel::kIsSanitized ? 10 : 200;
+constexpr std::uint64_t kSlotsOfLine = kernel::kIsSanitized ? 10 : 200;
 
 struct Line {
   const char* name;
@@ -29,7 +29,7 @@ WindowTraffic planned_on(const WindowLineRules& rules, std::int64_t scale) {
 }
 
 void expect_alike(const WindowTraffic& traffic, const WindowLineRules& rules, Load load) {
-  WindowRun run{.seed = 5, .slots = kSlotsOnLine, .real_time = load, .non_real_time = load, .first_node = 3};
+  WindowRun run{.seed = 5, .slots = kSlotsOfLine, .real_time = load, .non_real_time = load, .first_node = 3};
   const LinkRun link = run_window_link(traffic, rules, run);
   std::vector<Sent> sent;
   run.on_sent = [&](const Sent& one) { sent.push_back(one); };
@@ -49,7 +49,7 @@ void expect_alike(const WindowTraffic& traffic, const WindowLineRules& rules, Lo
       ASSERT_EQ(sent[n].generated + before, on_the_line.generated) << n;
     }
   }
-  EXPECT_GT(link.sent.size(), kSlotsOnLine);
+  EXPECT_GT(link.sent.size(), kSlotsOfLine);
   for (std::size_t n = 0; n < figures.loops.size(); ++n) {
     const WindowSampler::Books& controller = link.books[2 * n + 1];
     EXPECT_NEAR(static_cast<double>(controller.samplings), static_cast<double>(figures.loops[n].samplings),

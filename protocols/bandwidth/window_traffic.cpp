@@ -281,37 +281,6 @@ std::vector<std::uint8_t> WindowTraffic::nodes_with_data(std::uint64_t number) c
   return nodes_of_slot;
 }
 
-Duration WindowFigures::longest() const {
-  Duration longest{};
-  for (const StreamFigures& stream : streams) longest = std::max(longest, stream.longest);
-  return longest;
-}
-
-std::uint64_t WindowFigures::over_slot() const {
-  std::uint64_t sum = 0;
-  for (const StreamFigures& stream : streams) sum += stream.over_slot;
-  return sum;
-}
-
-std::uint64_t WindowFigures::lost() const {
-  std::uint64_t sum = 0;
-  for (const StreamFigures& stream : streams) sum += stream.replaced;
-  for (const LoopFigures& loop : loops) sum += loop.lost;
-  return sum;
-}
-
-std::uint64_t WindowFigures::vacant() const {
-  std::uint64_t sum = 0;
-  for (const LoopFigures& loop : loops) sum += loop.vacant;
-  return sum;
-}
-
-std::uint64_t WindowFigures::samplings() const {
-  std::uint64_t sum = 0;
-  for (const LoopFigures& loop : loops) sum += loop.samplings;
-  return sum;
-}
-
 std::uint64_t slots_of_start(const WindowTraffic& traffic) {
   return 3 * std::uint64_t{traffic.repeats_after()} + 2;
 }
