@@ -88,7 +88,7 @@ class TokenBench final : public LineBench {
     begin_stress_at(stress, place(), 2 * rules().phy_bit_rate, now());
   }
 
-  segment::MediumPort& iut_place() { return place(); }
+  segment::MediumPort& tester_place() { return tester(); }
   const token_bus::StationConfiguration& configuration() const { return configuration_; }
   // The last frames of both, in words.
   std::vector<std::string> decode_lines();

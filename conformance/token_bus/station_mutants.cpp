@@ -1,5 +1,6 @@
 #include "conformance/token_bus/station_mutants.hpp"
 
+#include "conformance/token_bus/station_check_seeded_faults.hpp"
 #include "conformance/token_bus/station_seeded_faults.hpp"
 
 namespace fieldproof::conformance {
@@ -155,12 +156,22 @@ std::vector<TokenRow> token_reception_rows() {
   };
 }
 
+std::vector<TokenRow> token_check_rows() {
+  using namespace token_seeded_faults;
+  return TokenMutants::for_check({
+      {"deaf_after_fault", "", "misses what comes after a faulty reception", mutant<DeafAfterFault>()},
+      {"answers_one_solicitation", "", "answers the first solicitation only", mutant<AnswersOnce>()},
+      {"same_response_empty", "", "responds without data where the response is that of before",
+       mutant<SameResponseEmpty>()},
+  });
+}
+
 }  // namespace
 
 const TokenMutants& token_station_mutants() {
   static const TokenMutants table(
       "station", {token_initialisation_rows, token_joining_rows, token_passing_rows, token_failure_rows,
-                  token_holding_rows, token_reception_rows});
+                  token_holding_rows, token_reception_rows, token_check_rows});
   return table;
 }
 

@@ -3,6 +3,7 @@
 #include "conformance/bench_role.hpp"
 #include "conformance/token_bus/station_cases.hpp"
 #include "conformance/token_bus/station_mutants.hpp"
+#include "conformance/token_bus/station_sequence.hpp"
 #include "protocols/token_bus/attached_station.hpp"
 #include "protocols/token_bus/dissector.hpp"
 #include "protocols/token_bus/rules_table.hpp"
@@ -16,7 +17,10 @@ RoleRow token_station_row() {
   using Cases = CaseRole<TokenCase, TokenSetting, token_bus::BusDissector>;
   return row_of<token_bus::StationRole, token_bus::TokenStation>(
       {.what = "station of the token bus", .mutants = token_station_mutants},
-      Cases{.name = "station", .cases = token_cases, .settings = &token_bus::kStationTable});
+      Cases{.name = "station",
+            .cases = token_cases,
+            .settings = &token_bus::kStationTable,
+            .sequences = SequenceRow<TokenCase>{token_station_sequence_role, run_token_station_sequence}});
 }
 
 }  // namespace
