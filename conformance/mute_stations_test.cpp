@@ -14,6 +14,7 @@
 #include "conformance/interbus/suite.hpp"
 #include "conformance/suite.hpp"
 #include "conformance/suite_given.hpp"
+#include "conformance/token_bus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
@@ -25,6 +26,8 @@
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"
+#include "protocols/token_bus/attached_station.hpp"
+#include "protocols/token_bus/token_station.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
 #include "protocols/valve_bus/host.hpp"
@@ -160,6 +163,7 @@ class MuteStations : public testing::Test {
     expect_no_pass<fieldbus_dll::FfLasRole, fieldbus_dll::FfLas>(fieldbus_dll_suite, uri);
     expect_no_pass<fieldbus_dll::IsaDleRole, fieldbus_dll::IsaDle>(fieldbus_dll_suite, uri);
     expect_no_pass<fieldbus_dll::IsaLasRole, fieldbus_dll::IsaLas>(fieldbus_dll_suite, uri);
+    expect_no_pass<token_bus::StationRole, token_bus::TokenStation>(token_bus_suite, uri);
   }
   static void expect_no_pass_in_a_ring(const std::string& uri) {
     expect_no_pass<interbus::SlaveRole, interbus::Slave>(interbus_suite, uri);

@@ -48,6 +48,8 @@ class UserLine {
   void on_time(kernel::Time now);
   kernel::Time next_time() const;
 
+  // Throws kernel::Error for an implementation that does not ask for activity.
+  void expect_activity() const;
   // What the implementation drives on the line, now or later.
   void transmit(unsigned port, line::Waveform& wave);
   // What is sent at the user's port, at most so much of it.
@@ -58,8 +60,6 @@ class UserLine {
   AttachedCase& attached() { return attached_; }
   void drive(line::Waveform&& wave);
   static void expect_line_port(unsigned port);
-  // Throws kernel::Error for an implementation that does not ask for activity.
-  void expect_activity() const;
 
  private:
   template <typename Ask>

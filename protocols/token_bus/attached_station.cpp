@@ -26,6 +26,7 @@ AttachedStation::AttachedStation(iut::Attachment attachment, const StationConfig
                         "a station of the token bus receives and sends levels; this implementation announces "
                         "another unit");
   }
+  line_.expect_activity();
   attached_.begin({case_id, seed, station_settings(configuration)}, *this);
 }
 
