@@ -18,6 +18,12 @@ void append_address(Octets& octets, std::uint64_t address, unsigned size) {
   for (unsigned n = 0; n < size; ++n) octets.push_back(static_cast<std::uint8_t>(address >> 8 * n));
 }
 
+// A transmission may have several frames, and each at most so many octets.
+LineWatch line_watch_of(const token_bus::Rules& rules) {
+  return LineWatch(token_bus::octets(rules, 1),
+                   token_bus::octets(rules, 2 * std::int64_t{rules.most_octets}));
+}
+
 }  // namespace
 
 bool TokenUser::has_event(token_bus::EventKind kind) const {
@@ -26,7 +32,7 @@ bool TokenUser::has_event(token_bus::EventKind kind) const {
 
 TokenBench::TokenBench(const TokenNeeds& needs, const TokenSetting& setting)
     : LineBench(setting.seed, setting.volume, setting.stresses,
-                token_bus::octets(configuration_for(needs).rules, 1)),
+                line_watch_of(configuration_for(needs).rules)),
       configuration_(configuration_for(needs)),
       driven_(rules().phy_bit_rate, token_bus::address_octets(rules())),
       sent_(rules().phy_bit_rate, token_bus::address_octets(rules())),
