@@ -88,7 +88,10 @@ TEST_P(StationsThatNeverStop, FailEveryCase) {
     const judge::CaseResult result = suite->run(test_case, setup).result;
     // Who babbles keeps the line active.
     const bool may_pass = test_case.id.ends_with("/the_line_is_kept_active");
-    EXPECT_TRUE(may_pass || result.verdict == judge::Verdict::fail) << test_case.id;
+    // Only one that probes its link has one to leave.
+    const bool has_nothing_to_leave = test_case.id.find("/ff_las/claim/a_second_") != std::string::npos &&
+                                      result.verdict == judge::Verdict::inconclusive;
+    EXPECT_TRUE(may_pass || has_nothing_to_leave || result.verdict == judge::Verdict::fail) << test_case.id;
     EXPECT_LT(result.virtual_time, 600 * kernel::kSecond) << test_case.id;
   }
 }
