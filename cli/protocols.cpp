@@ -17,6 +17,7 @@
 #include "conformance/interbus/planned_network.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
+#include "conformance/token_bus/planned_network.hpp"
 #include "conformance/token_bus/station_mutants.hpp"
 #include "conformance/token_bus/suite.hpp"
 #include "conformance/valve_bus/declarations.hpp"
@@ -252,7 +253,10 @@ constexpr std::array kProtocols{
         .network = {.own_network = "of two link masters and 4 devices", .plan = conformance::plan_link},
         .planner = {.file = "token_network", .key = "urgent_delay", .plan = token_plan},
         .schemas = token_schemas},
-    ProtocolEntry{.name = "token_bus", .roles = kTokenBusRoles, .suite = conformance::token_bus_suite},
+    ProtocolEntry{.name = "token_bus",
+                  .roles = kTokenBusRoles,
+                  .suite = conformance::token_bus_suite,
+                  .network = {.own_network = "of 4 stations", .plan = conformance::plan_token_bus}},
     // A scheme for any cyclic server: nothing of it is attached or judged.
     ProtocolEntry{.name = "bandwidth",
                   .planner = {.file = "network", .key = "loops", .plan = bandwidth_plan},
