@@ -107,7 +107,7 @@ PublishedSection bandwidth_stations(const Settings& settings) {
     const Demand demand = with_real_time();
     const WindowTraffic traffic = on_line(bandwidth::traffic_of(demand, 1), rules);
     for (const Load load : {Load::saturated, Load::just_late}) {
-      WindowRun run{.seed = settings.seed, .slots = 200, .real_time = load, .non_real_time = load};
+      WindowRun run{.seed = settings.seed, .slots = 100, .real_time = load, .non_real_time = load};
       const bandwidth::LinkRun link = run_window_link(traffic, rules, run);
       std::vector<Sent> sent;
       run.on_sent = [&](const Sent& one) { sent.push_back(one); };

@@ -8,7 +8,7 @@
 namespace fieldproof::bandwidth {
 namespace {
 
-constexpr std::uint64_t kSlotsOfLine = kernel::kIsSanitized ? 10 : 200;
+constexpr std::uint64_t kSlotsOfLine = kernel::kIsSanitized ? 10 : 80;
 
 struct Line {
   const char* name;
