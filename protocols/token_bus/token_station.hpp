@@ -89,6 +89,7 @@ class TokenStation : public StationDevice {
     return frame.destination == address() || is_group(frame.destination);
   }
   virtual void count(ReceptionKind kind);
+  virtual Frame response_to(const Frame& request, const Octets& data) const;
 
   // ---- decisions: initialisation ----
   virtual unsigned bus_idle_slots() const;

@@ -49,12 +49,16 @@ void TokenStation::on_indication(const Frame& frame, kernel::Time end) {
   user_->on_data(frame, end);
   const bool is_asked = frame.action == Action::request_with_response && frame.destination == address();
   if (!is_asked || !response_ || frame.kind != FrameKind::data) return;
-  Frame response = frame;
-  response.action = Action::response;
-  response.destination = frame.source;
-  response.source = address();
-  response.data = *response_;
-  send(response, end + octets(rules(), rules().response_gap_octets), false);
+  send(response_to(frame, *response_), end + octets(rules(), rules().response_gap_octets), false);
+}
+
+Frame TokenStation::response_to(const Frame& request, const Octets& data) const {
+  return {.kind = FrameKind::data,
+          .action = Action::response,
+          .priority = request.priority,
+          .destination = request.source,
+          .source = address(),
+          .data = data};
 }
 
 void TokenStation::set_successor(Address successor, kernel::Time now) {

@@ -1,0 +1,143 @@
+#include "conformance/token_bus/station_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace fieldproof::conformance {
+namespace {
+
+token_bus::StationConfiguration configuration_for(const TokenNeeds& needs) {
+  token_bus::StationConfiguration configuration;
+  if (needs.adjust != nullptr) needs.adjust(configuration);
+  return configuration;
+}
+
+void append_address(Octets& octets, std::uint64_t address, unsigned size) {
+  for (unsigned n = 0; n < size; ++n) octets.push_back(static_cast<std::uint8_t>(address >> 8 * n));
+}
+
+}  // namespace
+
+bool TokenUser::has_event(token_bus::EventKind kind) const {
+  return std::ranges::any_of(events, [&](const token_bus::Event& one) { return one.kind == kind; });
+}
+
+TokenBench::TokenBench(const TokenNeeds& needs, const TokenSetting& setting)
+    : LineBench(setting.seed, setting.volume, setting.stresses,
+                token_bus::octets(configuration_for(needs).rules, 1)),
+      configuration_(configuration_for(needs)),
+      driven_(rules().phy_bit_rate, token_bus::address_octets(rules())),
+      sent_(rules().phy_bit_rate, token_bus::address_octets(rules())),
+      station_(setting.make_device(configuration_)) {
+  start_recording(setting, rules());
+  attach_iut(*station_, "station");
+  place().sense_activity();
+  place().tap_driven(driven_);
+  tester().tap_driven(sent_);
+  watch(place());
+  install(setting.plan, rules().phy_bit_rate);
+  station_->wire(place(), user_);
+  if (needs.is_powered) set_power(true);
+}
+
+void TokenBench::set_power(bool is_on) {
+  if (is_on) {
+    station_->start(now());
+  } else {
+    station_->stop(now());
+  }
+  is_powered_ = is_on;
+  refresh_iut();
+}
+
+bool TokenBench::submit(const token_bus::DataRequest& request) {
+  const bool is_taken = station_->submit(request, now());
+  refresh_iut();
+  return is_taken;
+}
+
+void TokenBench::set_in_ring_desired(bool is_desired) {
+  station_->set_in_ring_desired(is_desired, now());
+  refresh_iut();
+}
+
+void TokenBench::set_response(const Octets& data) {
+  station_->set_response(data, now());
+  refresh_iut();
+}
+
+Octets TokenBench::numbered_data(std::size_t size) {
+  ++number_;
+  Octets data{static_cast<std::uint8_t>(number_ >> 8), static_cast<std::uint8_t>(number_ & 0xFF)};
+  while (data.size() < size) data.push_back(random_octet());
+  data.resize(size);
+  return data;
+}
+
+Octets TokenBench::frame(TokenControl control, std::uint64_t destination, std::uint64_t source,
+                         std::optional<std::uint64_t> data) const {
+  const unsigned size = token_bus::address_octets(rules());
+  Octets octets{static_cast<std::uint8_t>(control)};
+  append_address(octets, destination, size);
+  append_address(octets, source, size);
+  if (data) append_address(octets, *data, size);
+  return octets;
+}
+
+Octets TokenBench::data_frame(std::uint8_t control, std::uint64_t destination, std::uint64_t source,
+                              const Octets& data) const {
+  Octets octets = frame(TokenControl{control}, destination, source);
+  octets.insert(octets.end(), data.begin(), data.end());
+  return octets;
+}
+
+kernel::Time TokenBench::send(const Octets& octets, const FrameForm& form) {
+  return send_half_bits(half_bits_around(with_crc_32(octets), form));
+}
+
+kernel::Time TokenBench::send_half_bits(line::Levels half_bits) {
+  line::Waveform wave{now(), 2 * rules().phy_bit_rate, std::move(half_bits)};
+  return drive_to_end(wave);
+}
+
+kernel::Time TokenBench::send_noise(std::size_t octet_times) {
+  constexpr std::uint64_t kZero = 0b1001;
+  line::Levels levels;
+  for (std::size_t n = 0; n < 8 * octet_times; ++n) levels.append(kZero, 4);
+  return send_half_bits(std::move(levels));
+}
+
+void TokenBench::run_until(kernel::Time time) {
+  if (time > now()) segment().run_until(time);
+}
+
+std::optional<DrivenFrame> TokenBench::next(kernel::Time limit) {
+  // In steps of an octet: the ear knows at once what the IUT begins, and no frame is as short.
+  while (!driven_.has_new(limit) && now() < limit) run_until(std::min(limit, now() + octets(1)));
+  if (!driven_.has_new(limit)) return std::nullopt;
+  const DrivenFrame one = driven_.take_one();
+  run_until(one.end);
+  return one;
+}
+
+std::vector<std::string> TokenBench::decode_lines() {
+  constexpr std::size_t kMostLines = 12;
+  std::vector<std::pair<kernel::Time, std::string>> all;
+  const auto add = [&](std::string_view who, std::span<const DrivenFrame> frames) {
+    for (const DrivenFrame& one : frames) {
+      all.emplace_back(one.begin, fmt::format("{} {} to {}: {}", who, kernel::describe(one.begin),
+                                              kernel::describe(one.end), one.text()));
+    }
+  };
+  add("tester drove", sent());
+  add("station drove", driven());
+  std::ranges::stable_sort(all, {}, &std::pair<kernel::Time, std::string>::first);
+  const std::size_t first = all.size() - std::min(all.size(), kMostLines);
+  std::vector<std::string> lines;
+  for (std::size_t n = first; n < all.size(); ++n) lines.push_back(all[n].second);
+  return lines;
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "conformance/line_bench.hpp"
+#include "conformance/token_bus/driven_frames.hpp"
+#include "protocols/token_bus/device.hpp"
+
+// The bench of one case for a station of the token bus: a line with the implementation under test (IUT) and
+// the lower tester in the place of every other station, and the upper tester as the IUT's user.
+//
+// The lower tester drives what the case says and receives what the IUT drives as it leaves it. Verdicts rest
+// on that, and on what was reported to the user.
+namespace fieldproof::conformance {
+
+// Positions on the line are rounded to picoseconds, each for itself.
+inline constexpr kernel::Duration kTokenRounding = kernel::kNanosecond;
+
+// What a case needs around the IUT.
+struct TokenNeeds {
+  void (*adjust)(token_bus::StationConfiguration&) = nullptr;
+  bool is_powered = true;  // when the case begins
+};
+
+using TokenSetting = PlannedSetting<token_bus::StationDevice, token_bus::StationConfiguration>;
+
+// The IUT's user.
+class TokenUser final : public token_bus::StationUser {
+ public:
+  void on_data(const token_bus::Frame& frame, kernel::Time) override { frames.push_back(frame); }
+  void on_event(const token_bus::Event& event, kernel::Time) override { events.push_back(event); }
+  bool has_event(token_bus::EventKind kind) const;
+
+  std::vector<token_bus::Frame> frames;
+  std::vector<token_bus::Event> events;
+};
+
+class TokenBench final : public LineBench {
+ public:
+  // Stations of the tester: the IUT's predecessor and successor where it is in a ring, and a stranger.
+  static constexpr std::uint64_t kAbove = 0x000E;
+  static constexpr std::uint64_t kBelow = 0x0004;
+  static constexpr std::uint64_t kStranger = 0x0020;
+
+  TokenBench(const TokenNeeds& needs, const TokenSetting& setting);
+
+  const token_bus::Rules& rules() const { return configuration_.rules; }
+  std::uint64_t address() const { return configuration_.address; }
+  kernel::Duration octets(std::int64_t count) const { return token_bus::octets(rules(), count); }
+  kernel::Duration slots(std::int64_t count) const { return token_bus::slots(rules(), count); }
+  kernel::Duration gap() const { return octets(rules().response_gap_octets); }
+
+  // ---- upper tester ----
+  TokenUser& user() { return user_; }
+  void set_power(bool is_on);
+  // False when the IUT refuses it.
+  bool submit(const token_bus::DataRequest& request);
+  void set_in_ring_desired(bool is_desired);
+  void set_response(const Octets& data);
+  token_bus::Counters counters() const { return station_->counters(); }
+  // Data that no other has.
+  Octets numbered_data(std::size_t size);
+
+  // ---- lower tester ----
+  Octets frame(TokenControl control, std::uint64_t destination, std::uint64_t source,
+               std::optional<std::uint64_t> data = std::nullopt) const;
+  Octets data_frame(std::uint8_t control, std::uint64_t destination, std::uint64_t source,
+                    const Octets& data) const;
+  // Octets with their check, from now on, and runs until they are over. Gives that instant.
+  kernel::Time send(const Octets& octets, const FrameForm& form = {});
+  kernel::Time send_half_bits(line::Levels half_bits);
+  // MAC zeros, of which no receiver makes a frame.
+  kernel::Time send_noise(std::size_t octet_times);
+  void run_until(kernel::Time time);
+
+  // The next frame that the IUT begins before `limit`, when it is over; none: it was silent.
+  std::optional<DrivenFrame> next(kernel::Time limit);
+  std::span<const DrivenFrame> driven() const { return driven_.all(); }
+  std::span<const DrivenFrame> sent() const { return sent_.all(); }
+
+  // ---- stress ----
+  void begin_stress(const fault::Stress& stress) {
+    begin_stress_at(stress, place(), 2 * rules().phy_bit_rate, now());
+  }
+
+  segment::MediumPort& tester_place() { return tester(); }
+  const token_bus::StationConfiguration& configuration() const { return configuration_; }
+  // The last frames of both, in words.
+  std::vector<std::string> decode_lines();
+  void finish() { station_->end(); }
+
+ private:
+  token_bus::StationConfiguration configuration_;
+  TokenUser user_;
+  DrivenFrames driven_;
+  DrivenFrames sent_;
+  std::unique_ptr<token_bus::StationDevice> station_;
+  bool is_powered_ = false;
+  std::uint16_t number_ = 0;
+};
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "conformance/bench_case.hpp"
+#include "conformance/token_bus/station_bench.hpp"
+#include "conformance/token_bus/station_sources.hpp"
+
+// The test cases for a station of the token bus, TB-01 to TB-35 of the catalogue of test purposes.
+namespace fieldproof::conformance {
+
+using TokenCase = BenchCase<TokenBench, TokenNeeds>;
+
+const std::vector<TokenCase>& token_cases();
+
+// How each frame of the IUT stands on the line, whatever the case was about.
+void judge_end(TokenBench& bench, CaseJudge& judge);
+
+// The chapters, each in its own file.
+std::vector<TokenCase> token_initialisation_cases();
+std::vector<TokenCase> token_joining_cases();
+std::vector<TokenCase> token_passing_cases();
+std::vector<TokenCase> token_failure_cases();
+std::vector<TokenCase> token_holding_cases();
+std::vector<TokenCase> token_reception_cases();
+
+}  // namespace fieldproof::conformance

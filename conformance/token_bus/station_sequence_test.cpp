@@ -1,0 +1,45 @@
+#include "conformance/token_bus/station_sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "conformance/sequence_check.hpp"
+#include "conformance/token_bus/suite.hpp"
+#include "harness/kernel/sanitized.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+SequenceSearchResult searched(const std::string& uri, std::uint64_t cases, std::uint64_t seed = 1) {
+  static const std::unique_ptr<Suite> suite = token_bus_suite();
+  SequenceSearch one;
+  one.suite = suite.get();
+  one.role = &token_station_sequence_role();
+  one.setup.seed = seed;
+  one.setup.implementations = {{"station", 0, uri}};
+  one.cases = kernel::kIsSanitized ? cases / 5 : cases;
+  return search(one);
+}
+
+TEST(TokenStationSequence, TheReferenceFollowsItsTwin) {
+  for (const std::uint64_t seed : {1U, 2U}) {
+    const SequenceSearchResult result = searched("ref", 500, seed);
+    EXPECT_FALSE(result.found.has_value());
+    EXPECT_EQ(result.passed, kernel::kIsSanitized ? 100U : 500U);
+  }
+}
+
+TEST(TokenStationSequence, FindsEachStationForCheckWithFewCommands) {
+  for (const Mutant& mutant : token_bus_suite()->mutants()) {
+    if (!mutant.is_for_check) continue;
+    const SequenceSearchResult result = searched("mutant:" + mutant.name, 2'000);
+    ASSERT_TRUE(result.found) << mutant.name;
+    EXPECT_TRUE(result.found->is_confirmed) << mutant.name;
+    EXPECT_GE(result.found->smallest.size(), 2U) << mutant.name;
+    EXPECT_LE(result.found->smallest.size(), 5U) << mutant.name;
+  }
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance
