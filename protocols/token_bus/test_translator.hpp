@@ -1,6 +1,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,13 +18,15 @@ namespace fieldproof::token_bus {
 class TestTranslator : private segment::Station {
  public:
   explicit TestTranslator(const TranslatorConfiguration& configuration = {})
-      : translator_(configuration), seat_(segment_.attach(translator_, "translator")) {
-    translator_.wire(phy_out_, mac_out_);
+      : TestTranslator(std::make_unique<Translator>(configuration)) {}
+  explicit TestTranslator(std::unique_ptr<TranslatorDevice> translator)
+      : translator_(std::move(translator)), seat_(segment_.attach(*translator_, "translator")) {
+    translator_->wire(phy_out_, mac_out_);
     set_power(true);
   }
 
   void set_power(bool is_on) {
-    translator_.set_power(is_on, now());
+    translator_->set_power(is_on, now());
     segment_.refresh(seat_);
   }
   void set_clock(std::int64_t parts_per_million) { parts_per_million_ = parts_per_million; }
@@ -143,7 +146,7 @@ class TestTranslator : private segment::Station {
   kernel::Time next_time() const override { return kernel::kNever; }
 
   segment::Segment segment_;
-  Translator translator_;
+  std::unique_ptr<TranslatorDevice> translator_;
   std::size_t seat_;
   segment::Link& phy_in_{segment_.connect("phy", seat_, kPhySide, {})};
   segment::Link& mac_in_{segment_.connect("mac", seat_, kMacSide, {})};

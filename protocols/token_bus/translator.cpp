@@ -81,8 +81,8 @@ void Translator::receive(segment::PortIndex port, const line::Waveform& receptio
   }
 }
 
-// A bit that is left over has its partner in the silence after it. By then a next one would have come, however
-// it is rounded.
+// A bit that is left over has its partner in the silence after it. By then a next one would have come,
+// however it is rounded.
 kernel::Time Translator::half_pair_until() const {
   if (!blocks_.receiver->is_within_pair()) return kernel::kNever;
   return last_bit_.end + (last_bit_.end - last_bit_.begin) * 3 / 2;
