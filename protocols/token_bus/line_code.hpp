@@ -60,7 +60,7 @@ class MacEncoder {
   // non_data comes in pairs: which of the two this one is follows from those before. bad_signal is never
   // requested: a broken invariant.
   PhyPair encode(MacSymbol symbol);
-  void reset() { is_second_non_data_ = false; }
+  virtual void reset() { is_second_non_data_ = false; }
 
  protected:
   // ---- decisions ----

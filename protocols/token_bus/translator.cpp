@@ -170,17 +170,17 @@ void Translator::request(const ServiceUnit& unit, MacSymbol symbol) {
 // ---- from the line ----
 
 bool Translator::is_error_masked(kernel::Duration after_own_transmission) const {
-  return after_own_transmission < mac_symbols(configuration_.rules, configuration_.error_mask_symbols);
+  return after_own_transmission >= kernel::Duration{} &&
+         after_own_transmission < mac_symbols(configuration_.rules, configuration_.error_mask_symbols);
 }
 
 void Translator::follow_phy() {
   const ServiceUnit unit = bits_.front();
   PhyCell cell = phy_cell_at(bits_.levels(), bits_.number());
   bits_.pop();
-  if (blocks_.manager->is_looped_back()) return;
-  // While it transmits, an error is a collision.
   const kernel::Duration after = unit.begin - transmitted_until_;
-  if (after >= kernel::Duration{} && is_error_masked(after)) cell.status.has_signal_error = false;
+  if (!takes_line(blocks_.manager->is_looped_back(), after < kernel::Duration{})) return;
+  if (is_error_masked(after)) cell.status.has_signal_error = false;
   decode({unit.begin, unit.end, unit.rate / 2}, cell.symbol, cell.status);
 }
 

@@ -72,8 +72,10 @@ class Translator : public TranslatorDevice {
   const TranslatorConfiguration& configuration() const { return configuration_; }
 
   // ---- decisions ----
-  // A signal error so long after the end of an own transmission is the SQE test of the transceiver.
+  // A signal error so long after the end of an own transmission is the SQE test of the transceiver; within
+  // one, where the time is negative, it is a collision.
   virtual bool is_error_masked(kernel::Duration after_own_transmission) const;
+  virtual bool takes_line(bool is_looped_back, bool /*is_sending*/) const { return !is_looped_back; }
 
  private:
   // One bit at the decoder; `rate` is that of four levels for each symbol.

@@ -10,7 +10,7 @@ void StationManager::power_on() {
 }
 
 void StationManager::reset() {
-  has_jabbered_ = false;
+  if (ends_jabber_at_reset()) has_jabbered_ = false;
   is_looped_back_ = loops_back_at_reset();
   is_transmitter_enabled_ = enables_transmitter_at_reset();
 }

@@ -37,6 +37,7 @@ class StationManager {
   virtual bool enables_transmitter_at_reset() const { return false; }
   virtual bool loops_back_at_reset() const { return true; }
   virtual bool disables_loopback() const { return true; }
+  virtual bool ends_jabber_at_reset() const { return true; }
   virtual ManagementAnswer answer_to(ManagementCommand command) const;
 
  private:
