@@ -161,7 +161,11 @@ INSTANTIATE_TEST_SUITE_P(
                  {"fit_is_strict", "token/what_fits_exactly_is_sent_and_no_more", "exact_fit_not_sent"}}}},
         Served{"fieldbus_dll/ff_las",
                {{{"token_over_due", "schedule/each_item_has_its_time", "compelled_late"},
-                 {"probes_unpolled", "circulation/each_probes", "probes_unpolled"}}}}),
+                 {"probes_unpolled", "circulation/each_probes", "probes_unpolled"}}}},
+        Served{
+            "token_bus/station",
+            {{{"lowest_opens_one_window", "passing/the_lowest_opens_two_windows", "window_wrong"},
+              {"error_bit_ignored", "reception/frames_with_the_error_bit_are_left", "acts_on_error_bit"}}}}),
     [](const testing::TestParamInfo<Served>& one) {
       std::string name = one.param.role;
       std::ranges::replace(name, '/', '_');

@@ -13,6 +13,8 @@
 #include "conformance/interbus/planned_network.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
+#include "conformance/token_bus/station_mutants.hpp"
+#include "conformance/token_bus/suite.hpp"
 #include "conformance/valve_bus/declarations.hpp"
 #include "conformance/valve_bus/host_mutants.hpp"
 #include "conformance/valve_bus/node_bench.hpp"
@@ -30,6 +32,8 @@
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"
 #include "protocols/interbus/telegram_speaker.hpp"
+#include "protocols/token_bus/attached_station.hpp"
+#include "protocols/token_bus/token_station.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
 #include "protocols/valve_bus/host.hpp"
@@ -142,6 +146,9 @@ constexpr std::array kFieldbusDllRoles{
     row<fieldbus_dll::FfDeviceRole, fieldbus_dll::FfStation, &conformance::ff_device_mutants>(kCharactersToo),
     row<fieldbus_dll::FfLasRole, fieldbus_dll::FfLas, &conformance::ff_las_mutants>(kCharactersToo),
 };
+constexpr std::array kTokenBusRoles{
+    row<token_bus::StationRole, token_bus::TokenStation, &conformance::token_station_mutants>(kInItsUnit),
+};
 
 Planned token_plan(const std::string& file, std::uint64_t seed) {
   const auto network = fieldbus_dll::TokenNetwork::load(file);
@@ -177,6 +184,7 @@ constexpr std::array kProtocols{
         .suite = conformance::fieldbus_dll_suite,
         .network = {.own_network = "of two link masters and 4 devices", .plan = conformance::plan_link},
         .plan = token_plan},
+    ProtocolEntry{.name = "token_bus", .roles = kTokenBusRoles, .suite = conformance::token_bus_suite},
 };
 
 }  // namespace

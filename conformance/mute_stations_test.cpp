@@ -14,6 +14,7 @@
 #include "conformance/interbus/suite.hpp"
 #include "conformance/suite.hpp"
 #include "conformance/suite_given.hpp"
+#include "conformance/token_bus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
@@ -21,6 +22,8 @@
 #include "protocols/fieldbus_dll/isa_dle.hpp"
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/interbus/slave.hpp"
+#include "protocols/token_bus/attached_station.hpp"
+#include "protocols/token_bus/token_station.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
 #include "protocols/valve_bus/node.hpp"
 
@@ -166,6 +169,13 @@ TEST(MuteStations, OfTheIsaLinkPassWhatIsAboutReception) {
                        .are_about_reception = {{"data/is_delivered_to_whom_it_is_for", delivered},
                                                {"line/jitter_is_taken", delivered},
                                                {"line/other_clocks_are_taken", delivered}}});
+}
+
+// Whatever is judged of a station is judged of one that has driven something before.
+TEST(MuteStations, OfTheTokenBusPassNothing) {
+  const auto suite =
+      token_bus_suite(given_mute(served_reference<token_bus::StationRole, token_bus::TokenStation>, 0));
+  expect_all_fail_but(*suite, "station", {.are_about_silence = {}, .are_about_reception = {}});
 }
 
 TEST(MuteStations, OfTheValveBusPassWhatIsAboutWrites) {

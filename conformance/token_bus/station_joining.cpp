@@ -118,7 +118,8 @@ std::vector<TokenCase> token_joining_cases() {
             repeat({7, 7},
                    {solicitation("a solicitation whose range does not have the station, each of seven",
                                  kOutOfRange),
-                    silence(2 * 28 + 10, "answers_unasked", "its address is not solicited")})}}),
+                    silence(2 * 28 + 10, "answers_unasked", "its address is not solicited")}),
+            solicited(), answers_above(at_once())}}),
       on_chart(token_must(
                    "joining/second_window_is_used_after_a_silent_first", "TB-18",
                    "A station above the highest address answers in the second window, and only when the "

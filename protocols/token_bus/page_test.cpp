@@ -1,0 +1,68 @@
+// Subject: what README.md says of settings, frames and events is what the code has.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "harness/field/written_table.hpp"
+#include "protocols/token_bus/device.hpp"
+#include "protocols/token_bus/station_settings.hpp"
+
+namespace fieldproof::token_bus {
+namespace {
+
+void expect_on_token_bus_page(const std::string& text) {
+  std::ifstream file(FIELDPROOF_SOURCE_DIR "/protocols/token_bus/README.md");
+  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_NE(page.find("\n" + text), std::string::npos) << "protocols/token_bus/README.md must have:\n"
+                                                       << text;
+}
+
+TEST(TokenBusPage, HasEverySettingOfAStation) {
+  expect_on_token_bus_page(field::markdown_of(kStationTable) + "\n");
+}
+
+TEST(TokenBusPage, HasEveryEvent) {
+  for (unsigned n = 0; n < kEventKinds; ++n)
+    expect_on_token_bus_page(fmt::format("| {} | {} | ", n, text_of(static_cast<EventKind>(n))));
+}
+
+TEST(TokenBusPage, HasEveryFrame) {
+  using enum FrameKind;
+  const Rules rules;
+  const std::vector<Frame> samples{
+      {.kind = claim_token, .source = 0x0A},
+      {.kind = solicit_successor_1, .destination = 4, .source = 0x0A},
+      {.kind = solicit_successor_2, .destination = 0x0E, .source = 0x0A},
+      {.kind = who_follows, .destination = 4, .source = 0x0A, .data = {4, 0}},
+      {.kind = resolve_contention, .destination = 0x0A, .source = 0x0A},
+      {.kind = token, .destination = 4, .source = 0x0A},
+      {.kind = set_successor, .destination = 0x0A, .source = 6, .data = {6, 0}},
+      {.kind = data, .priority = 6, .destination = 4, .source = 0x0A, .data = {0x41}},
+      {.kind = data,
+       .action = Action::request_with_response,
+       .priority = 6,
+       .destination = 4,
+       .source = 0x0A,
+       .data = {0x41}},
+      {.kind = data,
+       .action = Action::response,
+       .priority = 6,
+       .destination = 0x0A,
+       .source = 4,
+       .data = {0x42}},
+  };
+  std::string text = "| octets between the delimiters, with their check | which reads |\n|---|---|\n";
+  for (const Frame& frame : samples) {
+    text += fmt::format("| `{:02X}` | {} |\n", fmt::join(with_check(octets_of(frame, rules)), " "),
+                        describe(frame, rules));
+  }
+  expect_on_token_bus_page(text);
+}
+
+}  // namespace
+}  // namespace fieldproof::token_bus
