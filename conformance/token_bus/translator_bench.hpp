@@ -18,8 +18,7 @@ struct TranslatorNeeds {
   void (*adjust)(token_bus::TranslatorConfiguration&) = nullptr;
 };
 
-using TranslatorSetting =
-    PlannedSetting<token_bus::TranslatorDevice, token_bus::TranslatorConfiguration>;
+using TranslatorSetting = PlannedSetting<token_bus::TranslatorDevice, token_bus::TranslatorConfiguration>;
 
 class TranslatorBench final : public CaseBench, private segment::Station {
  public:

@@ -14,7 +14,7 @@ using token_sources::memory;
 using token_sources::own;
 using token_sources::paper;
 
-constexpr std::int64_t kSurelyBlanked = 10;   // symbols after an end delimiter
+constexpr std::int64_t kSurelyBlanked = 10;  // symbols after an end delimiter
 constexpr std::int64_t kSurelyOver = 33;
 constexpr unsigned kMostDribble = 7;
 constexpr std::string_view kEcho = "101010101010101010101010";
@@ -41,7 +41,8 @@ void expect_echo(TranslatorScene& scene, std::string_view reason) {
 void receive_with_dribble(TranslatorScene& scene) {
   scene.requested = frame_text(scene.octets);
   std::string bits = encoded(scene.requested);
-  for (unsigned n = 0; n <= scene.round % kMostDribble; ++n) bits += scene.bench.random_octet() % 2 == 0 ? '0' : '1';
+  for (unsigned n = 0; n <= scene.round % kMostDribble; ++n)
+    bits += scene.bench.random_octet() % 2 == 0 ? '0' : '1';
   scene.receive(bits);
 }
 
@@ -84,46 +85,49 @@ void expect_collision(TranslatorScene& scene) {
 
 std::vector<TranslatorCase> translator_blanking_cases() {
   return {
-      on_chart(translator_must("blanking/dribble_bits_cost_no_frame", "PST-10",
-                               "One to seven bits after the last end delimiter, as repeaters add them, are "
-                               "silence.",
-                               own("bits after the end of a transmission"),
-                               {{"blanking_absent", "dribble_indicated"}}),
-               {{kMostDribble, 10 * kMostDribble},
-                {does("a frame with 1 to 7 bits after it", receive_with_dribble),
-                 requires_that("the frame, and silence",
-                               [](TranslatorScene& scene) { expect_frame_alone(scene, "dribble_indicated"); }),
-                 receives()},
-                {on_line()}}),
-      on_chart(translator_must("blanking/an_echo_is_hidden", "PST-11",
-                               "After the end of a transmission the receiver is blanked: ten symbols after "
-                               "it, silence is reported; 33 symbols after it, what is there is reported.",
-                               paper("receiver blanking"),
-                               {{"blanking_absent", "echo_indicated"},
-                                {"blanking_of_6_symbols", "echo_indicated"},
-                                {"blanking_of_100_symbols", "blanked_too_long"}},
-                               {{memory("24 to 32 symbols"), {"echo_indicated", "blanked_too_long"}}}),
-               {{2, 20},
-                {does("a frame, and 12 symbols that begin ten symbols after it",
-                      [](TranslatorScene& scene) { receive_with_echo(scene, kSurelyBlanked); }),
-                 requires_that("the frame, and silence",
-                               [](TranslatorScene& scene) { expect_frame_alone(scene, "echo_indicated"); }),
-                 pause(),
-                 does("a frame, and 12 symbols that begin 33 symbols after it",
-                      [](TranslatorScene& scene) { receive_with_echo(scene, kSurelyOver); }),
-                 requires_that("both", [](TranslatorScene& scene) { expect_echo(scene, "blanked_too_long"); }),
-                 pause()},
-                {on_line()}}),
-      on_chart(translator_must("blanking/none_while_more_follows", "PST-12",
-                               "After an end delimiter with I = 1 nothing is blanked.",
-                               memory("blanking follows the end of a transmission"),
-                               {{"blanks_after_every_frame", "blanked_too_long"}}),
-               {{2, 20},
-                {does("a frame with I = 1, and 12 symbols that begin ten symbols after it",
-                      [](TranslatorScene& scene) { receive_with_echo(scene, kSurelyBlanked, true); }),
-                 requires_that("both", [](TranslatorScene& scene) { expect_echo(scene, "blanked_too_long"); }),
-                 pause()},
-                {on_line()}}),
+      on_chart(
+          translator_must("blanking/dribble_bits_cost_no_frame", "PST-10",
+                          "One to seven bits after the last end delimiter, as repeaters add them, are "
+                          "silence.",
+                          own("bits after the end of a transmission"),
+                          {{"blanking_absent", "dribble_indicated"}}),
+          {{kMostDribble, 10 * kMostDribble},
+           {does("a frame with 1 to 7 bits after it", receive_with_dribble),
+            requires_that("the frame, and silence",
+                          [](TranslatorScene& scene) { expect_frame_alone(scene, "dribble_indicated"); }),
+            receives()},
+           {on_line()}}),
+      on_chart(
+          translator_must("blanking/an_echo_is_hidden", "PST-11",
+                          "After the end of a transmission the receiver is blanked: ten symbols after "
+                          "it, silence is reported; 33 symbols after it, what is there is reported.",
+                          paper("receiver blanking"),
+                          {{"blanking_absent", "echo_indicated"},
+                           {"blanking_of_6_symbols", "echo_indicated"},
+                           {"blanking_of_100_symbols", "blanked_too_long"}},
+                          {{memory("24 to 32 symbols"), {"echo_indicated", "blanked_too_long"}}}),
+          {{2, 20},
+           {does("a frame, and 12 symbols that begin ten symbols after it",
+                 [](TranslatorScene& scene) { receive_with_echo(scene, kSurelyBlanked); }),
+            requires_that("the frame, and silence",
+                          [](TranslatorScene& scene) { expect_frame_alone(scene, "echo_indicated"); }),
+            pause(),
+            does("a frame, and 12 symbols that begin 33 symbols after it",
+                 [](TranslatorScene& scene) { receive_with_echo(scene, kSurelyOver); }),
+            requires_that("both", [](TranslatorScene& scene) { expect_echo(scene, "blanked_too_long"); }),
+            pause()},
+           {on_line()}}),
+      on_chart(
+          translator_must("blanking/none_while_more_follows", "PST-12",
+                          "After an end delimiter with I = 1 nothing is blanked.",
+                          memory("blanking follows the end of a transmission"),
+                          {{"blanks_after_every_frame", "blanked_too_long"}}),
+          {{2, 20},
+           {does("a frame with I = 1, and 12 symbols that begin ten symbols after it",
+                 [](TranslatorScene& scene) { receive_with_echo(scene, kSurelyBlanked, true); }),
+            requires_that("both", [](TranslatorScene& scene) { expect_echo(scene, "blanked_too_long"); }),
+            pause()},
+           {on_line()}}),
       on_chart(translator_must("blanking/the_heartbeat_is_silence", "PST-15",
                                "The signal error by which a transceiver tests itself after a transmission "
                                "is silence, with and without carrier.",

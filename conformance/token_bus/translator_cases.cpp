@@ -5,7 +5,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-TranslatorCase canary() {
+TranslatorCase translator_canary() {
   return {canary_of("token_bus/translator", token_sources::own("rules of the suite"), "A preamble.",
                     "the case asks for a symbol that no translator indicates."),
           [](TranslatorBench& bench, CaseJudge& judge) {
@@ -32,7 +32,7 @@ const std::vector<TranslatorCase>& translator_cases() {
                                           translator_decoding_cases, translator_blanking_cases,
                                           translator_management_cases};
     auto all = cases_of<TranslatorCase>(kChapters, translator_details());
-    all.push_back(canary());
+    all.push_back(translator_canary());
     return all;
   }();
   return cases;

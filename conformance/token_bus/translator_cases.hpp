@@ -6,8 +6,8 @@
 #include "conformance/token_bus/station_sources.hpp"
 #include "conformance/token_bus/translator_bench.hpp"
 
-// The test cases for a physical layer service translator, PST-01 to PST-15 and PST-18 of the catalogue of test
-// purposes and what a user of one would miss.
+// The test cases for a physical layer service translator, PST-01 to PST-15 and PST-18 of the catalogue of
+// test purposes and what a user of one would miss.
 namespace fieldproof::conformance {
 
 using TranslatorCase = BenchCase<TranslatorBench, TranslatorNeeds>;

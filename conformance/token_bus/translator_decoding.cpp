@@ -4,8 +4,8 @@
 
 #include "conformance/token_bus/translator_scene.hpp"
 
-// What arrives is indicated by its two bits, the carrier, and the signal status. The paper leaves the table of
-// decoding out: what follows from that of encoding is derived, the rest is this project's choice.
+// What arrives is indicated by its two bits, the carrier, and the signal status. The paper leaves the table
+// of decoding out: what follows from that of encoding is derived, the rest is this project's choice.
 namespace fieldproof::conformance {
 namespace {
 
@@ -16,8 +16,8 @@ using token_sources::paper;
 
 struct PairRow {
   std::string_view pair;
-  char fresh;         // carrier on, no error, no non_data open
-  char within_pair;   // the same, and the second non_data is due
+  char fresh;        // carrier on, no error, no non_data open
+  char within_pair;  // the same, and the second non_data is due
 };
 constexpr std::array<PairRow, 9> kPairs{{{"10", '1', 'B'},
                                          {"01", '0', 'B'},
@@ -69,11 +69,9 @@ void expect_cell(TranslatorScene& scene) {
   before = before.substr(before.find('N'));
   std::string seen = scene.content();
   seen.resize(std::max(seen.size(), before.size() + 1), 'S');
-  scene.judge.expect(seen.substr(0, before.size()) == before && seen[before.size()] == cell.right(),
-                     "cell_wrong", [&] {
-                       return Mismatch{{fmt::format("{}: {}, after {}", cell.text(), cell.right(), before)},
-                                       seen};
-                     });
+  scene.judge.expect(
+      seen.substr(0, before.size()) == before && seen[before.size()] == cell.right(), "cell_wrong",
+      [&] { return Mismatch{{fmt::format("{}: {}, after {}", cell.text(), cell.right(), before)}, seen}; });
 }
 
 // A frame with something in its middle; each half is 16 octets.
@@ -165,15 +163,15 @@ std::vector<TranslatorCase> translator_decoding_cases() {
                       receive_cell),
                  requires_that("the symbol of the table", expect_cell), pause()},
                 {on_line()}}),
-      on_chart(translator_must("decoding/swapped_non_data_is_bad_signal", "PST-07",
-                               "CD0,CD0 in front of CD1,CD1 is no non_data.",
-                               own("non_data is an ordered pair"),
-                               {{"non_data_in_any_order", "swapped_non_data_taken"},
-                                {"non_data_pair_read_swapped", "swapped_non_data_taken"}}),
-               {{3, 30},
-                {does("a frame with CD0,CD0,CD1,CD1 in its data", receive_with_swapped_non_data),
-                 requires_that("bad_signal", expect_rejected), receives()},
-                {on_line()}}),
+      on_chart(
+          translator_must("decoding/swapped_non_data_is_bad_signal", "PST-07",
+                          "CD0,CD0 in front of CD1,CD1 is no non_data.", own("non_data is an ordered pair"),
+                          {{"non_data_in_any_order", "swapped_non_data_taken"},
+                           {"non_data_pair_read_swapped", "swapped_non_data_taken"}}),
+          {{3, 30},
+           {does("a frame with CD0,CD0,CD1,CD1 in its data", receive_with_swapped_non_data),
+            requires_that("bad_signal", expect_rejected), receives()},
+           {on_line()}}),
       on_chart(translator_must("decoding/swapped_start_delimiter_is_none", "PST-07",
                                "A start delimiter whose first two non_data are exchanged begins no frame.",
                                own("non_data is an ordered pair"),
@@ -184,33 +182,33 @@ std::vector<TranslatorCase> translator_decoding_cases() {
                                [](TranslatorScene& scene) {
                                  scene.bench.settle();
                                  const std::string& seen = scene.bench.indicated().text();
-                                 scene.judge.expect(
-                                     seen.find(start_delimiter_text()) == std::string::npos,
-                                     "swapped_delimiter_taken", "no NN0NN000", seen);
+                                 scene.judge.expect(seen.find(start_delimiter_text()) == std::string::npos,
+                                                    "swapped_delimiter_taken", "no NN0NN000", seen);
                                }),
                  receives()},
                 {on_line()}}),
-      on_chart(translator_must("decoding/a_signal_error_is_bad_signal", "PST-08",
-                               "One bit with a signal error is a bad_signal, and costs no other symbol.",
-                               paper("carrier status and signal status are considered"),
-                               {{"error_is_silence", "error_not_indicated"},
-                                {"error_not_looked_at", "error_not_indicated"},
-                                {"error_loses_the_lock", "error_not_indicated"}},
-                               {{own("the phase is kept"), {"error_not_indicated"}}}),
-               {{4, 40},
-                {does("a frame with a signal error in the first or second bit of one symbol",
-                      receive_with_error),
-                 is_indicated("bad_signal in its place, and the rest of the frame", "error_not_indicated"),
-                 receives()},
-                {on_line()}}),
-      on_chart(translator_must("decoding/a_lost_carrier_is_silence", "PST-09",
-                               "When the line falls silent within a frame, silence is indicated.",
-                               paper("silence is IDL,IDL"), {{"idle_is_bad_signal", "silence_not_indicated"}}),
-               {{4, 40},
-                {does("a frame that ends in its middle, with and without the carrier for eight more bits",
-                      receive_with_gap),
-                 is_indicated("its symbols, then silence", "silence_not_indicated"), receives()},
-                {on_line()}}),
+      on_chart(
+          translator_must("decoding/a_signal_error_is_bad_signal", "PST-08",
+                          "One bit with a signal error is a bad_signal, and costs no other symbol.",
+                          paper("carrier status and signal status are considered"),
+                          {{"error_is_silence", "error_not_indicated"},
+                           {"error_not_looked_at", "error_not_indicated"},
+                           {"error_loses_the_lock", "error_not_indicated"}},
+                          {{own("the phase is kept"), {"error_not_indicated"}}}),
+          {{4, 40},
+           {does("a frame with a signal error in the first or second bit of one symbol", receive_with_error),
+            is_indicated("bad_signal in its place, and the rest of the frame", "error_not_indicated"),
+            receives()},
+           {on_line()}}),
+      on_chart(
+          translator_must("decoding/a_lost_carrier_is_silence", "PST-09",
+                          "When the line falls silent within a frame, silence is indicated.",
+                          paper("silence is IDL,IDL"), {{"idle_is_bad_signal", "silence_not_indicated"}}),
+          {{4, 40},
+           {does("a frame that ends in its middle, with and without the carrier for eight more bits",
+                 receive_with_gap),
+            is_indicated("its symbols, then silence", "silence_not_indicated"), receives()},
+           {on_line()}}),
       on_chart(translator_must("decoding/frames_of_one_transmission_follow_each_other", "PST-12",
                                "After an end delimiter with I = 1 the next frame is indicated at once.",
                                token_sources::standard("I: more follows in this transmission"),
@@ -219,12 +217,12 @@ std::vector<TranslatorCase> translator_decoding_cases() {
                 {does("two frames in one transmission", receive_two_frames),
                  is_indicated("both, and the preamble between them", "second_frame_lost"), pause()},
                 {on_line()}}),
-      on_chart(translator_must("decoding/a_collision_is_forgotten", "",
-                               "After a fragment of a collision, which repeaters make 96 bits long, the next "
-                               "frame is received.",
-                               derived("fragments of a repeater"),
-                               {{"deaf_after_error", "does_not_recover"}}),
-               {{3, 30}, {does("96 bits with signal errors", receive_collision), receives()}, {on_line()}}),
+      on_chart(
+          translator_must("decoding/a_collision_is_forgotten", "",
+                          "After a fragment of a collision, which repeaters make 96 bits long, the next "
+                          "frame is received.",
+                          derived("fragments of a repeater"), {{"deaf_after_error", "does_not_recover"}}),
+          {{3, 30}, {does("96 bits with signal errors", receive_collision), receives()}, {on_line()}}),
   };
 }
 

@@ -8,8 +8,6 @@ using namespace translator_chart;
 using token_sources::derived;
 using token_sources::paper;
 
-constexpr std::size_t kLongest = 8'191;
-
 std::string repeated_bits(std::size_t times) {
   std::string bits;
   for (std::size_t n = 0; n < times; ++n) bits += "10";
@@ -73,28 +71,27 @@ std::vector<TranslatorCase> translator_encoding_cases() {
                             [](TranslatorScene& scene) { return frame_text(scene.octets); }),
                  requires_that("the first 66 bits are (10) x 32 and 11", expect_first_bits), pause()},
                 {on_line()}}),
-      on_chart(translator_must("encoding/a_frame_goes_out_whole", "",
-                               "A token from 000A to 0004 is 240 bits: the sample of this project's notes.",
-                               derived("code of the symbols, frame check"),
-                               {{"first_symbol_lost", "bits_wrong"}}),
-               {{2, 10},
-                {request_of("a token from 000A to 0004",
-                            [](TranslatorScene&) {
-                              return frame_text({0x10, 0x04, 0x00, 0x0A, 0x00, 0x42, 0x1F, 0x4F, 0xD3});
-                            }),
-                 is_encoded("bits_wrong"), pause()},
-                {on_line()}}),
-      on_chart(translator_must("encoding/a_cut_transmission_leaves_nothing_behind", "",
-                               "What was requested before silence changes nothing after it: also where the "
-                               "second non_data of a pair was missing.",
-                               derived("non_data in pairs"),
-                               {{"non_data_pair_over_silence", "bits_wrong"}}),
-               {{3, 30},
-                {request_of("pad_idle, and one non_data", [](TranslatorScene&) { return "PPPPPPPPN"; }),
-                 pause(),
-                 request_of("a frame", [](TranslatorScene& scene) { return frame_text(scene.octets); }),
-                 is_encoded("bits_wrong"), pause()},
-                {on_line()}}),
+      on_chart(
+          translator_must("encoding/a_frame_goes_out_whole", "",
+                          "A token from 000A to 0004 is 240 bits: the sample of this project's notes.",
+                          derived("code of the symbols, frame check"), {{"first_symbol_lost", "bits_wrong"}}),
+          {{2, 10},
+           {request_of("a token from 000A to 0004",
+                       [](TranslatorScene&) {
+                         return frame_text({0x10, 0x04, 0x00, 0x0A, 0x00, 0x42, 0x1F, 0x4F, 0xD3});
+                       }),
+            is_encoded("bits_wrong"), pause()},
+           {on_line()}}),
+      on_chart(
+          translator_must("encoding/a_cut_transmission_leaves_nothing_behind", "",
+                          "What was requested before silence changes nothing after it: also where the "
+                          "second non_data of a pair was missing.",
+                          derived("non_data in pairs"), {{"non_data_pair_over_silence", "bits_wrong"}}),
+          {{3, 30},
+           {request_of("pad_idle, and one non_data", [](TranslatorScene&) { return "PPPPPPPPN"; }), pause(),
+            request_of("a frame", [](TranslatorScene& scene) { return frame_text(scene.octets); }),
+            is_encoded("bits_wrong"), pause()},
+           {on_line()}}),
       on_chart(translator_must("encoding/the_longest_frame_goes_out", "",
                                "A frame of 8191 octets goes out whole: no watchdog of the transmitter ends "
                                "it.",
@@ -103,7 +100,7 @@ std::vector<TranslatorCase> translator_encoding_cases() {
                {{1, 3},
                 {request_of("a frame of 8191 octets",
                             [](TranslatorScene& scene) {
-                              return frame_text(scene.bench.random_octets(kLongest));
+                              return frame_text(scene.bench.random_octets(kLongestFrame));
                             }),
                  is_encoded("bits_wrong"), pause()},
                 {on_line()}}),

@@ -14,7 +14,6 @@ using token_sources::memory;
 using token_sources::own;
 using token_sources::paper;
 
-constexpr std::size_t kLongest = 8'191;
 constexpr unsigned kMostLost = 15;
 
 void receive_frame(TranslatorScene& scene, const std::vector<std::uint8_t>& octets, std::size_t lost,
@@ -55,11 +54,11 @@ std::vector<TranslatorCase> translator_locking_cases() {
                  }),
             is_received("frame_not_found"), pause()},
            {on_line()}}),
-      on_chart(translator_must("locking/lost_bits_cost_no_frame", "PST-04",
-                               "Receivers and repeaters lose bits of the preamble: up to 15 cost no frame.",
-                               derived("preamble of a repeater"),
-                               {{"never_slips", "frame_not_found"},
-                                {"locks_after_24_symbols", "frame_not_found"}}),
+      on_chart(translator_must(
+                   "locking/lost_bits_cost_no_frame", "PST-04",
+                   "Receivers and repeaters lose bits of the preamble: up to 15 cost no frame.",
+                   derived("preamble of a repeater"),
+                   {{"never_slips", "frame_not_found"}, {"locks_after_24_symbols", "frame_not_found"}}),
                {{kMostLost, 10 * kMostLost},
                 {does("a frame without its first 1 to 15 bits",
                       [](TranslatorScene& scene) {
@@ -67,17 +66,18 @@ std::vector<TranslatorCase> translator_locking_cases() {
                       }),
                  is_received("frame_not_found"), pause()},
                 {on_line()}}),
-      on_chart(translator_must("locking/each_transmission_is_locked_anew", "",
-                               "The phase of a transmission says nothing about that of the next one.",
-                               derived("bits that are lost at the begin of a carrier"),
-                               {{"keeps_its_phase", "frame_not_found"}, {"slips_once_only", "frame_not_found"}}),
-               {{6, 60},
-                {does("a frame, and each one in another phase than the last",
-                      [](TranslatorScene& scene) { receive_frame(scene, scene.octets, scene.round % 2); }),
-                 is_received("frame_not_found"),
-                 does("so short a silence as two stations leave",
-                      [](TranslatorScene& scene) { scene.bench.wait(scene.bench.symbols(48)); })},
-                {on_line()}}),
+      on_chart(
+          translator_must("locking/each_transmission_is_locked_anew", "",
+                          "The phase of a transmission says nothing about that of the next one.",
+                          derived("bits that are lost at the begin of a carrier"),
+                          {{"keeps_its_phase", "frame_not_found"}, {"slips_once_only", "frame_not_found"}}),
+          {{6, 60},
+           {does("a frame, and each one in another phase than the last",
+                 [](TranslatorScene& scene) { receive_frame(scene, scene.octets, scene.round % 2); }),
+            is_received("frame_not_found"),
+            does("so short a silence as two stations leave",
+                 [](TranslatorScene& scene) { scene.bench.wait(scene.bench.symbols(48)); })},
+           {on_line()}}),
       on_chart(translator_must("locking/data_move_no_phase", "PST-06",
                                "After the first non_data the phase stands: data that look like another "
                                "phase move nothing.",
@@ -99,7 +99,7 @@ std::vector<TranslatorCase> translator_locking_cases() {
                 {does("a frame of 8191 octets from a clock that is 100 ppm slow, right, 100 ppm fast",
                       [](TranslatorScene& scene) {
                         scene.bench.set_line_clock(100 * (static_cast<int>(scene.round % 3) - 1));
-                        receive_frame(scene, scene.bench.random_octets(kLongest), 0);
+                        receive_frame(scene, scene.bench.random_octets(kLongestFrame), 0);
                         scene.bench.set_line_clock(0);
                       }),
                  is_received("symbols_wrong"), pause()},
@@ -108,8 +108,7 @@ std::vector<TranslatorCase> translator_locking_cases() {
                                "A symbol of the line is indicated within the declared delay.",
                                own("delay of a translator"), {{"slow_receiver", "indicated_too_late"}}),
                {{2, 10},
-                {does("a frame",
-                      [](TranslatorScene& scene) { receive_frame(scene, scene.octets, 0); }),
+                {does("a frame", [](TranslatorScene& scene) { receive_frame(scene, scene.octets, 0); }),
                  requires_that("the first non_data is indicated within the delay of its bits",
                                [](TranslatorScene& scene) {
                                  scene.bench.settle();

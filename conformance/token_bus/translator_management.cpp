@@ -44,14 +44,12 @@ TranslatorStep frame_requested() {
               [](TranslatorScene& scene) { scene.request(frame_text(scene.octets)); });
 }
 TranslatorStep nothing_sent(std::string reason, std::string why) {
-  return requires_that("nothing is sent: " + why, [=](TranslatorScene& scene) {
-    scene.expect_nothing_sent(reason, why);
-  });
+  return requires_that("nothing is sent: " + why,
+                       [=](TranslatorScene& scene) { scene.expect_nothing_sent(reason, why); });
 }
 TranslatorStep is_sent(std::string reason) {
-  return requires_that("it is sent", [=](TranslatorScene& scene) {
-    scene.expect_sent(encoded(scene.requested), reason);
-  });
+  return requires_that("it is sent",
+                       [=](TranslatorScene& scene) { scene.expect_sent(encoded(scene.requested), reason); });
 }
 TranslatorStep is_looped_back(std::string reason) {
   return requires_that("it is indicated", [=](TranslatorScene& scene) {
@@ -59,9 +57,8 @@ TranslatorStep is_looped_back(std::string reason) {
   });
 }
 TranslatorStep nothing_indicated(std::string reason, std::string why) {
-  return requires_that("silence is indicated: " + why, [=](TranslatorScene& scene) {
-    scene.expect_nothing_indicated(reason, why);
-  });
+  return requires_that("silence is indicated: " + why,
+                       [=](TranslatorScene& scene) { scene.expect_nothing_indicated(reason, why); });
 }
 TranslatorStep frame_received() {
   return does("a frame comes from the line",
@@ -78,8 +75,8 @@ void expect_answers_only(TranslatorScene& scene) {
   scene.bench.settle();
   const std::string& seen = scene.bench.indicated().text();
   scene.judge.expect(seen.find('i') != std::string::npos, "no_answer", "IDLE", "no answer");
-  scene.judge.expect(seen.find_first_not_of("iS") == std::string::npos, "symbols_leak",
-                     "nothing but IDLE", seen);
+  scene.judge.expect(seen.find_first_not_of("iS") == std::string::npos, "symbols_leak", "nothing but IDLE",
+                     seen);
 }
 
 TranslatorStep power_failure() {
@@ -91,7 +88,9 @@ TranslatorStep power_failure() {
   });
 }
 
-void request_jabber(TranslatorScene& scene) { scene.request(std::string(kJabberSymbols + 2'000, 'P')); }
+void request_jabber(TranslatorScene& scene) {
+  scene.request(std::string(kJabberSymbols + 2'000, 'P'));
+}
 
 void expect_jabber_ends(TranslatorScene& scene) {
   scene.bench.settle();
@@ -107,20 +106,21 @@ TranslatorNeeds with_short_jabber() {
 
 std::vector<TranslatorCase> command_cases() {
   return {
-      on_chart(translator_must("management/commands_are_answered", "PST-13",
-                               "RESET, DISABLE LOOPBACK and ENABLE TRANSMITTER are acknowledged, in any "
-                               "order; no command is answered with IDLE, and serial data, which this "
-                               "physical layer has not, with NACK.",
-                               memory("answers of the management mode"),
-                               {{"reset_not_acknowledged", "answer_wrong"},
-                                {"idle_acknowledged", "answer_wrong"},
-                                {"serial_data_acknowledged", "answer_wrong"},
-                                {"answers_late", "answer_wrong"}}),
-               {{2, 10},
-                {answers(reset, 'a', "answer_wrong"), answers(disable_loopback, 'a', "answer_wrong"),
-                 answers(enable_transmitter, 'a', "answer_wrong"), answers(idle, 'i', "answer_wrong"),
-                 answers(serial_data, 'n', "answer_wrong"), answers(enable_transmitter, 'a', "answer_wrong"),
-                 answers(disable_loopback, 'a', "answer_wrong"), answers(reset, 'a', "answer_wrong"), pause()}}),
+      on_chart(
+          translator_must("management/commands_are_answered", "PST-13",
+                          "RESET, DISABLE LOOPBACK and ENABLE TRANSMITTER are acknowledged, in any "
+                          "order; no command is answered with IDLE, and serial data, which this "
+                          "physical layer has not, with NACK.",
+                          memory("answers of the management mode"),
+                          {{"reset_not_acknowledged", "answer_wrong"},
+                           {"idle_acknowledged", "answer_wrong"},
+                           {"serial_data_acknowledged", "answer_wrong"},
+                           {"answers_late", "answer_wrong"}}),
+          {{2, 10},
+           {answers(reset, 'a', "answer_wrong"), answers(disable_loopback, 'a', "answer_wrong"),
+            answers(enable_transmitter, 'a', "answer_wrong"), answers(idle, 'i', "answer_wrong"),
+            answers(serial_data, 'n', "answer_wrong"), answers(enable_transmitter, 'a', "answer_wrong"),
+            answers(disable_loopback, 'a', "answer_wrong"), answers(reset, 'a', "answer_wrong"), pause()}}),
       on_chart(translator_must("management/the_transmitter_waits_for_its_command", "PST-13",
                                "Nothing is sent before ENABLE TRANSMITTER: neither after the supply has "
                                "come, nor after RESET, nor after DISABLE LOOPBACK.",
@@ -144,8 +144,8 @@ std::vector<TranslatorCase> command_cases() {
                                 {"loopback_never_disabled", "looped_back_on_line"}}),
                {{2, 10},
                 {commanded(reset), pause(), frame_requested(), is_looped_back("not_looped_back"), pause(),
-                 frame_received(), nothing_indicated("line_indicated", "the receiver is looped back"), pause(),
-                 commanded(disable_loopback), pause(), frame_requested(),
+                 frame_received(), nothing_indicated("line_indicated", "the receiver is looped back"),
+                 pause(), commanded(disable_loopback), pause(), frame_requested(),
                  nothing_indicated("looped_back_on_line", "nothing comes from the line"), receives()}}),
       on_chart(translator_must("management/reset_takes_it_off_the_line", "PST-13",
                                "RESET ends what ENABLE TRANSMITTER and DISABLE LOOPBACK have begun.",
@@ -160,33 +160,36 @@ std::vector<TranslatorCase> command_cases() {
 
 std::vector<TranslatorCase> mode_cases() {
   return {
-      on_chart(translator_must("management/no_symbol_leaks", "PST-14",
-                               "In management mode no symbol of the line is indicated, whatever comes from "
-                               "there; after END PHYSICAL it is.",
-                               paper("INMUX: indications of the mode"),
-                               {{"symbols_leak", "symbols_leak"}, {"stays_in_management", "does_not_recover"}}),
-               {{3, 30},
-                {does("a frame comes from the line in management mode", receive_under_management),
-                 requires_that("nothing but answers is indicated", expect_answers_only), receives()},
-                {on_line()}}),
+      on_chart(
+          translator_must("management/no_symbol_leaks", "PST-14",
+                          "In management mode no symbol of the line is indicated, whatever comes from "
+                          "there; after END PHYSICAL it is.",
+                          paper("INMUX: indications of the mode"),
+                          {{"symbols_leak", "symbols_leak"}, {"stays_in_management", "does_not_recover"}}),
+          {{3, 30},
+           {does("a frame comes from the line in management mode", receive_under_management),
+            requires_that("nothing but answers is indicated", expect_answers_only), receives()},
+           {on_line()}}),
       on_chart(translator_must("management/commands_are_not_sent", "",
                                "In management mode nothing goes out: a command is no symbol.",
                                paper("two modes"), {{"commands_are_sent", "sends_commands"}}),
                {{2, 10},
-                {commanded(idle), does("SM idle again", [](TranslatorScene& scene) {
-                   scene.bench.clear();
-                   scene.bench.command(idle, 64);
-                 }),
+                {commanded(idle),
+                 does("SM idle again",
+                      [](TranslatorScene& scene) {
+                        scene.bench.clear();
+                        scene.bench.command(idle, 64);
+                      }),
                  nothing_sent("sends_commands", "a command is no symbol"), frame_requested(),
                  is_sent("does_not_recover"), pause()},
                 {on_line()}}),
-      on_chart(translator_must("management/power_failure_takes_it_off_the_line", "",
-                               "When the supply has failed the translator is as after RESET.",
-                               own("state after power-up"),
-                               {{"remembers_over_power_failure", "sends_unasked"}}),
-               {{2, 10},
-                {on_line(), power_failure(), frame_requested(),
-                 nothing_sent("sends_unasked", "nobody has enabled the transmitter since"), pause()}}),
+      on_chart(
+          translator_must("management/power_failure_takes_it_off_the_line", "",
+                          "When the supply has failed the translator is as after RESET.",
+                          own("state after power-up"), {{"remembers_over_power_failure", "sends_unasked"}}),
+          {{2, 10},
+           {on_line(), power_failure(), frame_requested(),
+            nothing_sent("sends_unasked", "nobody has enabled the transmitter since"), pause()}}),
       on_chart(translator_must("management/jabber_ends", "",
                                "A transmission that does not end is cut off; the transmitter stays off, and "
                                "says so, until RESET.",
@@ -197,10 +200,10 @@ std::vector<TranslatorCase> mode_cases() {
                {{1, 2},
                 {on_line(), does("66000 + 2000 symbols of pad_idle are requested", request_jabber),
                  requires_that("it is cut off", expect_jabber_ends), pause(), frame_requested(),
-                 nothing_sent("sends_after_jabber", "it is off until RESET"), answers(idle, 'e', "answer_wrong"),
-                 answers(enable_transmitter, 'n', "answer_wrong"), answers(reset, 'a', "answer_wrong"),
-                 answers(enable_transmitter, 'a', "answer_wrong"), pause(), frame_requested(),
-                 is_sent("does_not_recover"), pause()}},
+                 nothing_sent("sends_after_jabber", "it is off until RESET"),
+                 answers(idle, 'e', "answer_wrong"), answers(enable_transmitter, 'n', "answer_wrong"),
+                 answers(reset, 'a', "answer_wrong"), answers(enable_transmitter, 'a', "answer_wrong"),
+                 pause(), frame_requested(), is_sent("does_not_recover"), pause()}},
                with_short_jabber()),
   };
 }

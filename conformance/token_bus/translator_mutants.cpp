@@ -34,7 +34,6 @@ auto with_delay_tripled() {
   };
 }
 
-template <typename... More>
 auto with_encoder(translator_seeded_faults::Encoded encoded) {
   return with_block<&TranslatorBlocks::transmitter, translator_seeded_faults::EncodesOtherwise>(encoded);
 }
@@ -98,14 +97,16 @@ std::vector<TranslatorMutant> decoding_rows() {
        with_block<&Blocks::receiver, LooksAtLess<true>>()},
       {"error_not_looked_at", "", "does not look at SIGNAL_STATUS",
        with_block<&Blocks::receiver, LooksAtLess<false>>()},
-      {"error_is_silence", "TB-28", "indicates silence for a signal error", with_indications(error_is_silence)},
+      {"error_is_silence", "TB-28", "indicates silence for a signal error",
+       with_indications(error_is_silence)},
       {"cut_pair_is_silence", "", "indicates silence for a pair whose second bit is missing",
        with_indications(cut_pair_is_silence)},
       {"idle_is_bad_signal", "", "indicates bad_signal for an idle line that has a carrier",
        with_indications(idle_is_bad_signal)},
       {"data_after_non_data_taken", "", "indicates data where the second non_data is due",
        with_indications(data_after_non_data_taken)},
-      {"non_data_in_any_order", "", "indicates non_data in any order", with_indications(non_data_in_any_order)},
+      {"non_data_in_any_order", "", "indicates non_data in any order",
+       with_indications(non_data_in_any_order)},
       {"non_data_pair_read_swapped", "TB-25", "has CD0,CD0 for the first non_data",
        with_indications(non_data_pair_read_swapped)},
       {"error_loses_the_lock", "", "indicates bad_signal from a signal error to the next silence",
@@ -123,7 +124,8 @@ std::vector<TranslatorMutant> blanking_rows() {
       {"blanking_of_100_symbols", "TB-29", "blanks 100 symbols", with_blanking(100)},
       {"blanks_after_every_frame", "", "blanks though more follows",
        with_block<&TranslatorBlocks::blanking, BlanksAfterEveryFrame>()},
-      {"heartbeat_indicated", "", "indicates the test of the transceiver", mutant<ErrorsMaskedOtherwise>(false)},
+      {"heartbeat_indicated", "", "indicates the test of the transceiver",
+       mutant<ErrorsMaskedOtherwise>(false)},
       {"errors_masked_while_it_sends", "", "indicates no collision of its own",
        mutant<ErrorsMaskedOtherwise>(true)},
       {"deaf_while_it_sends", "", "receives nothing while it sends", mutant<DeafWhileItSends>()},
@@ -133,7 +135,8 @@ std::vector<TranslatorMutant> blanking_rows() {
 std::vector<TranslatorMutant> management_rows() {
   using namespace translator_seeded_faults;
   return {
-      {"reset_enables_transmitter", "TB-30", "enables its transmitter by RESET", with_manager<EnabledByReset>()},
+      {"reset_enables_transmitter", "TB-30", "enables its transmitter by RESET",
+       with_manager<EnabledByReset>()},
       {"transmitter_on_from_the_start", "", "has its transmitter on from power-up",
        with_manager<EnabledFromTheStart>()},
       {"reset_keeps_the_transmitter", "", "leaves its transmitter on when it is reset",
@@ -164,8 +167,8 @@ std::vector<TranslatorMutant> management_rows() {
 }  // namespace
 
 const TranslatorMutants& translator_mutants() {
-  static const TranslatorMutants table("translator", {encoding_rows, locking_rows, decoding_rows, blanking_rows,
-                                                      management_rows});
+  static const TranslatorMutants table(
+      "translator", {encoding_rows, locking_rows, decoding_rows, blanking_rows, management_rows});
   return table;
 }
 

@@ -5,8 +5,7 @@
 
 namespace fieldproof::conformance {
 
-using TranslatorMutants =
-    DeviceMutants<token_bus::TranslatorDevice, token_bus::TranslatorConfiguration>;
+using TranslatorMutants = DeviceMutants<token_bus::TranslatorDevice, token_bus::TranslatorConfiguration>;
 
 // Translators with one seeded fault each.
 const TranslatorMutants& translator_mutants();

@@ -23,7 +23,8 @@ Mismatch difference(const std::string& right, const std::string& seen) {
   const auto at = static_cast<std::size_t>(at_right - right.begin());
   const std::size_t first = at - std::min<std::size_t>(at, 8);
   const auto part = [&](const std::string& text) {
-    return fmt::format("from {} on: {}", first, first < text.size() ? text.substr(first, kMostShown) : "nothing");
+    return fmt::format("from {} on: {}", first,
+                       first < text.size() ? text.substr(first, kMostShown) : "nothing");
   };
   Mismatch made{{part(right)}, part(seen)};
   made.first_difference = fmt::format("unit {}", at);
@@ -85,8 +86,9 @@ void TranslatorScene::expect_sent(const std::string& bits, std::string_view reas
   judge.expect(bench.sent().text() == bits, reason, [&] { return difference(bits, bench.sent().text()); });
   const kernel::Duration took = bench.sent().begin() - begin;
   judge.expect(took <= bench.delay() + kernel::kNanosecond, "sent_too_late", [&] {
-    return Mismatch{{fmt::format("the first bit at most {} after its request", kernel::describe(bench.delay()))},
-                    kernel::describe(took)};
+    return Mismatch{
+        {fmt::format("the first bit at most {} after its request", kernel::describe(bench.delay()))},
+        kernel::describe(took)};
   });
 }
 
@@ -137,8 +139,9 @@ TestCase translator_must(std::string id, std::string purpose, std::string requir
 namespace translator_chart {
 
 TranslatorStep on_line() {
-  return does("the MAC brings the translator on line: RESET, DISABLE LOOPBACK, ENABLE TRANSMITTER, END PHYSICAL",
-              [](TranslatorScene& scene) { scene.bring_up(); });
+  return does(
+      "the MAC brings the translator on line: RESET, DISABLE LOOPBACK, ENABLE TRANSMITTER, END PHYSICAL",
+      [](TranslatorScene& scene) { scene.bring_up(); });
 }
 TranslatorStep pause() {
   return does("silence", [](TranslatorScene& scene) { scene.rest(); });

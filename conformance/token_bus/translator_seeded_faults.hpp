@@ -17,14 +17,14 @@ using Encoded = PhyPair (*)(MacSymbol symbol, bool is_second_non_data, PhyPair r
 
 class EncodesOtherwise final : public MacEncoder {
  public:
-  explicit EncodesOtherwise(Encoded encoded) : encoded_(encoded) {}
+  explicit EncodesOtherwise(Encoded how) : how_(how) {}
 
  private:
   PhyPair encoded(MacSymbol symbol, bool is_second_non_data) const override {
-    return encoded_(symbol, is_second_non_data, MacEncoder::encoded(symbol, is_second_non_data));
+    return how_(symbol, is_second_non_data, MacEncoder::encoded(symbol, is_second_non_data));
   }
 
-  Encoded encoded_;
+  Encoded how_;
 };
 
 inline PhyPair turned(PhyPair pair) {
@@ -65,7 +65,8 @@ class FirstSymbolLost final : public MacEncoder {
  private:
   PhyPair encoded(MacSymbol symbol, bool is_second_non_data) const override {
     const bool is_lost = std::exchange(is_first_, symbol == MacSymbol::silence);
-    return is_lost ? PhyPair{PhySymbol::idl, PhySymbol::idl} : MacEncoder::encoded(symbol, is_second_non_data);
+    return is_lost ? PhyPair{PhySymbol::idl, PhySymbol::idl}
+                   : MacEncoder::encoded(symbol, is_second_non_data);
   }
 
   mutable bool is_first_ = true;
@@ -217,12 +218,12 @@ class LosesABit final : public ClockControl {
 
 class BlankingOtherwise final : public ReceiverBlanking {
  public:
-  explicit BlankingOtherwise(unsigned symbols) : symbols_(symbols) {}
+  explicit BlankingOtherwise(unsigned length) : length_(length) {}
 
  private:
-  unsigned symbols(const Rules&) const override { return symbols_; }
+  unsigned symbols(const Rules&) const override { return length_; }
 
-  unsigned symbols_;
+  unsigned length_;
 };
 
 class BlanksAfterEveryFrame final : public ReceiverBlanking {
@@ -393,7 +394,8 @@ class CommandsAreSent final : public Translator {
     if (port != kMacSide || mac_request_at(reception.levels, 0).command != ManagementCommand::idle) return;
     const kernel::Duration delay = mac_symbols(configuration().rules, configuration().delay_symbols);
     line::Waveform wave{reception.start + delay, phy_side_rate(configuration().rules.phy_bit_rate), {}};
-    for (std::size_t n = 0; n < units_in(reception.levels); ++n) append(wave.levels, PhyCell{PhySymbol::cd0, {}});
+    for (std::size_t n = 0; n < units_in(reception.levels); ++n)
+      append(wave.levels, PhyCell{PhySymbol::cd0, {}});
     phy_->drive(wave);
   }
 

@@ -95,8 +95,7 @@ line::Levels request_levels_of(std::string_view symbols) {
 
 line::Levels request_levels_of(SideCommand command, std::size_t symbols) {
   std::string text;
-  for (std::size_t n = 0; n < symbols; ++n)
-    text += kCommands.at(static_cast<std::size_t>(command)).circuits;
+  for (std::size_t n = 0; n < symbols; ++n) text += kCommands.at(static_cast<std::size_t>(command)).circuits;
   return line::Levels::of_text(text);
 }
 

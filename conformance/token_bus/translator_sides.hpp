@@ -51,8 +51,8 @@ std::string indicated_as(std::string requested);
 
 // ---- what the translator drives ----
 
-// Everything that is driven on one side, one letter for each unit. A gap is silence, or idle bits; one that is
-// shorter than three quarters of a unit is a clock that was stretched.
+// Everything that is driven on one side, one letter for each unit. A gap is silence, or idle bits; one that
+// is shorter than three quarters of a unit is a clock that was stretched.
 class SideLog final : public segment::Tap {
  public:
   enum class Side : std::uint8_t { phy, mac };
