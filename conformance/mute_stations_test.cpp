@@ -23,7 +23,9 @@
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/interbus/slave.hpp"
 #include "protocols/token_bus/attached_station.hpp"
+#include "protocols/token_bus/attached_translator.hpp"
 #include "protocols/token_bus/token_station.hpp"
+#include "protocols/token_bus/translator.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
 #include "protocols/valve_bus/node.hpp"
 
@@ -176,6 +178,12 @@ TEST(MuteStations, OfTheTokenBusPassNothing) {
   const auto suite =
       token_bus_suite(given_mute(served_reference<token_bus::StationRole, token_bus::TokenStation>, 0));
   expect_all_fail_but(*suite, "station", {.are_about_silence = {}, .are_about_reception = {}});
+}
+
+TEST(MuteStations, OfTheTranslatorPassNothing) {
+  const auto suite =
+      token_bus_suite(given_mute(served_reference<token_bus::TranslatorRole, token_bus::Translator>, 0));
+  expect_all_fail_but(*suite, "translator", {.are_about_silence = {}, .are_about_reception = {}});
 }
 
 TEST(MuteStations, OfTheValveBusPassWhatIsAboutWrites) {

@@ -79,7 +79,7 @@ std::vector<TranslatorMutant> locking_rows() {
        with_clock<SlipsOtherwise>(std::numeric_limits<unsigned>::max(), 1U)},
       {"slips_by_two_bits", "TB-27", "slips by two bits", with_clock<SlipsOtherwise>(2U, 2U)},
       {"slips_in_data", "TB-27", "slips in a field of data", with_clock<SlipsInData>()},
-      {"locks_after_24_symbols", "", "slips after 24 zeros only", with_clock<SlipsOtherwise>(24U, 1U)},
+      {"slips_after_28_zeros", "", "slips after 28 zeros only", with_clock<SlipsOtherwise>(28U, 1U)},
       {"slips_once_only", "", "slips in the first transmission that needs it", with_clock<SlipsOnceOnly>()},
       {"keeps_its_phase", "", "keeps the phase of the first transmission", with_clock<KeepsItsPhase>()},
       {"loses_a_bit_after_50000", "", "loses a bit after 50000 symbols", with_clock<LosesABit>()},
