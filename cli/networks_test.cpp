@@ -29,6 +29,7 @@ TEST_F(Networks, OfEveryProtocolExchangeDataUnderBursts) {
            {"interbus", "--duration", "1s"},
            {"valve_bus", "--duration", "1s"},
            {"fieldbus_dll", "--duration", "10s"},
+           {"token_bus", "--duration", "300ms"},
            {"fieldbus_dll", "--iut", "isa_dle@1=ref", "--duration", "10s"}}) {
     const Called called = emc(arguments);
     EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
@@ -69,7 +70,7 @@ TEST_F(Networks, OneThatCannotBeAttachedEndsTheCall) {
 TEST_F(Networks, JudgeTheReferenceOutsideAsInside) {
   for (const char* role :
        {"fieldbus_dll/isa_dle", "fieldbus_dll/isa_las", "fieldbus_dll/ff_device", "fieldbus_dll/ff_las",
-        "valve_bus/node", "valve_bus/host", "interbus/slave", "interbus/master"}) {
+        "valve_bus/node", "valve_bus/host", "interbus/slave", "interbus/master", "token_bus/station"}) {
     const std::string path = role;
     const std::string protocol = path.substr(0, path.find('/'));
     const std::string name = path.substr(path.find('/') + 1);

@@ -13,6 +13,7 @@
 #include "conformance/interbus/planned_network.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
+#include "conformance/token_bus/planned_network.hpp"
 #include "conformance/token_bus/station_mutants.hpp"
 #include "conformance/token_bus/suite.hpp"
 #include "conformance/token_bus/translator_mutants.hpp"
@@ -188,7 +189,10 @@ constexpr std::array kProtocols{
         .suite = conformance::fieldbus_dll_suite,
         .network = {.own_network = "of two link masters and 4 devices", .plan = conformance::plan_link},
         .plan = token_plan},
-    ProtocolEntry{.name = "token_bus", .roles = kTokenBusRoles, .suite = conformance::token_bus_suite},
+    ProtocolEntry{.name = "token_bus",
+                  .roles = kTokenBusRoles,
+                  .suite = conformance::token_bus_suite,
+                  .network = {.own_network = "of 4 stations", .plan = conformance::plan_token_bus}},
 };
 
 }  // namespace

@@ -31,7 +31,8 @@ TEST(TokenStationSequence, TheReferenceFollowsItsTwin) {
 }
 
 TEST(TokenStationSequence, FindsEachStationForCheckWithFewCommands) {
-  for (const Mutant& mutant : token_bus_suite()->mutants()) {
+  const auto suite = token_bus_suite();
+  for (const Mutant& mutant : suite->mutants()) {
     if (!mutant.is_for_check) continue;
     const SequenceSearchResult result = searched("mutant:" + mutant.name, 2'000);
     ASSERT_TRUE(result.found) << mutant.name;

@@ -7,6 +7,7 @@
 #include "conformance/token_bus/translator_row.hpp"
 #include "protocols/token_bus/attached_station.hpp"
 #include "protocols/token_bus/dissector.hpp"
+#include "protocols/token_bus/embedded_schemas.hpp"
 #include "protocols/token_bus/rules_table.hpp"
 #include "protocols/token_bus/station_settings.hpp"
 #include "protocols/token_bus/token_station.hpp"
@@ -32,6 +33,7 @@ std::unique_ptr<Suite> token_bus_suite(SuiteGiven given) {
           .protocol = "token_bus",
           .roles = {token_station_row(), translator_row()},
           .rules = {{"rules", &token_bus::kRulesTable}},
+          .schemas = {{"ring_network", token_bus::ring_network_schema}},
           .why_no_network = "cases of the token bus make the ring that they need; leave out the network"},
       std::move(given));
 }

@@ -8,8 +8,8 @@
 -- the program that wrote the capture. Only "a fault changed this" comes from the mask in the packet.
 
 -- The protocols by the number in a packet, and the file of each. It gives a function(packet, pinfo, tree).
-local FILES = { [1] = "interbus.lua", [2] = "valve_bus.lua", [3] = "fieldbus_dll.lua" }
-local NAMES = { [0] = "unknown", [1] = "INTERBUS", [2] = "valve bus", [3] = "fieldbus data link" }
+local FILES = { [1] = "interbus.lua", [2] = "valve_bus.lua", [3] = "fieldbus_dll.lua", [4] = "token_bus.lua" }
+local NAMES = { [0] = "unknown", [1] = "INTERBUS", [2] = "valve bus", [3] = "fieldbus data link", [4] = "token bus" }
 
 -- ---------------------------------------------------------------------------------------------------------
 -- The packet.
