@@ -165,7 +165,12 @@ INSTANTIATE_TEST_SUITE_P(
         Served{
             "token_bus/station",
             {{{"lowest_opens_one_window", "passing/the_lowest_opens_two_windows", "window_wrong"},
-              {"error_bit_ignored", "reception/frames_with_the_error_bit_are_left", "acts_on_error_bit"}}}}),
+              {"error_bit_ignored", "reception/frames_with_the_error_bit_are_left", "acts_on_error_bit"}}}},
+        Served{
+            "token_bus/translator",
+            {{{"pad_idle_as_zero", "encoding/preamble_and_start_delimiter_are_an_sfd", "preamble_is_no_sfd"},
+              {"reset_enables_transmitter", "management/the_transmitter_waits_for_its_command",
+               "sends_unasked"}}}}),
     [](const testing::TestParamInfo<Served>& one) {
       std::string name = one.param.role;
       std::ranges::replace(name, '/', '_');

@@ -20,6 +20,7 @@
 #include "conformance/token_bus/planned_network.hpp"
 #include "conformance/token_bus/station_mutants.hpp"
 #include "conformance/token_bus/suite.hpp"
+#include "conformance/token_bus/translator_mutants.hpp"
 #include "conformance/valve_bus/declarations.hpp"
 #include "conformance/valve_bus/host_mutants.hpp"
 #include "conformance/valve_bus/node_bench.hpp"
@@ -42,7 +43,9 @@
 #include "protocols/interbus/slave.hpp"
 #include "protocols/interbus/telegram_speaker.hpp"
 #include "protocols/token_bus/attached_station.hpp"
+#include "protocols/token_bus/attached_translator.hpp"
 #include "protocols/token_bus/token_station.hpp"
+#include "protocols/token_bus/translator.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
 #include "protocols/valve_bus/attached_node.hpp"
 #include "protocols/valve_bus/host.hpp"
@@ -203,6 +206,7 @@ constexpr std::array kFieldbusDllRoles{
 };
 constexpr std::array kTokenBusRoles{
     row<token_bus::StationRole, token_bus::TokenStation, &conformance::token_station_mutants>(kInItsUnit),
+    row<token_bus::TranslatorRole, token_bus::Translator, &conformance::translator_mutants>(kInItsUnit),
 };
 
 Planned token_plan(const config::Document& file, std::uint64_t seed) {

@@ -34,6 +34,7 @@ constexpr std::array kJudgedRoles = {
     JudgedRole{"fieldbus_dll", "ff_device", "probe/is_answered"},
     JudgedRole{"fieldbus_dll", "ff_las", "schedule/each_item_has_its_time"},
     JudgedRole{"token_bus", "station", "passing/token_goes_to_its_successor"},
+    JudgedRole{"token_bus", "translator", "encoding/a_frame_goes_out_whole"},
 };
 
 class VerbTable : public ProgramFixture, public testing::WithParamInterface<JudgedRole> {

@@ -4,6 +4,7 @@
 #include "conformance/token_bus/station_cases.hpp"
 #include "conformance/token_bus/station_mutants.hpp"
 #include "conformance/token_bus/station_sequence.hpp"
+#include "conformance/token_bus/translator_row.hpp"
 #include "protocols/token_bus/attached_station.hpp"
 #include "protocols/token_bus/dissector.hpp"
 #include "protocols/token_bus/embedded_schemas.hpp"
@@ -30,7 +31,7 @@ std::unique_ptr<Suite> token_bus_suite(SuiteGiven given) {
   return std::make_unique<Suite>(
       SuiteRows{
           .protocol = "token_bus",
-          .roles = {token_station_row()},
+          .roles = {token_station_row(), translator_row()},
           .rules = {{"rules", &token_bus::kRulesTable}},
           .schemas = {{"ring_network", token_bus::ring_network_schema}},
           .why_no_network = "cases of the token bus make the ring that they need; leave out the network"},

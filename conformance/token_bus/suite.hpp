@@ -4,7 +4,7 @@
 
 #include "conformance/suite.hpp"
 
-// The suite of the token bus: stations of the MAC.
+// The suite of the token bus: stations of the MAC, and translators to the physical layer.
 namespace fieldproof::conformance {
 
 std::unique_ptr<Suite> token_bus_suite(SuiteGiven given = {});

@@ -1,5 +1,8 @@
 #include "protocols/token_bus/line_code.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "harness/kernel/check.hpp"
 #include "harness/line/delimited_frame.hpp"
 #include "harness/line/manchester.hpp"
@@ -57,6 +60,10 @@ std::string written(std::span<const PhySymbol> symbols) {
 PhyPair MacEncoder::encode(MacSymbol symbol) {
   const bool is_second = is_second_non_data_;
   is_second_non_data_ = symbol == MacSymbol::non_data && !is_second;
+  return encoded(symbol, is_second);
+}
+
+PhyPair MacEncoder::encoded(MacSymbol symbol, bool is_second_non_data) const {
   switch (symbol) {
     case MacSymbol::silence:
       return {idl, idl};
@@ -66,7 +73,7 @@ PhyPair MacEncoder::encode(MacSymbol symbol) {
     case MacSymbol::zero:
       return {cd0, cd1};
     case MacSymbol::non_data:
-      return is_second ? PhyPair{cd0, cd0} : PhyPair{cd1, cd1};
+      return is_second_non_data ? PhyPair{cd0, cd0} : PhyPair{cd1, cd1};
     case MacSymbol::bad_signal:
       break;
   }
@@ -98,77 +105,89 @@ line::Levels half_bits_of(std::span<const MacSymbol> symbols) {
 
 // ---- MacDecoder ----
 
+namespace {
+
+enum class Cell : std::uint8_t { silence, zero, one, first_non_data, second_non_data, cut, bad };
+
+struct Row {
+  PhyPair pair;
+  std::array<Cell, 3> cells;  // carrier off; on; on, with a signal error
+};
+
+constexpr std::array<Row, 9> kRows{{
+    {{cd1, cd0}, {Cell::silence, Cell::one, Cell::bad}},
+    {{cd0, cd1}, {Cell::silence, Cell::zero, Cell::bad}},
+    {{cd1, cd1}, {Cell::silence, Cell::first_non_data, Cell::bad}},
+    {{cd0, cd0}, {Cell::silence, Cell::second_non_data, Cell::bad}},
+    {{cd1, idl}, {Cell::silence, Cell::cut, Cell::bad}},
+    {{cd0, idl}, {Cell::silence, Cell::cut, Cell::bad}},
+    {{idl, cd1}, {Cell::silence, Cell::silence, Cell::bad}},
+    {{idl, cd0}, {Cell::silence, Cell::silence, Cell::bad}},
+    {{idl, idl}, {Cell::silence, Cell::silence, Cell::bad}},
+}};
+
+Cell cell_of(PhyPair pair, LineStatus status) {
+  const std::size_t column = !status.has_carrier ? 0 : status.has_signal_error ? 2 : 1;
+  const auto* const row = std::ranges::find_if(kRows, [&](const Row& one) { return one.pair == pair; });
+  return row->cells.at(column);
+}
+
+}  // namespace
+
 void MacDecoder::reset() {
-  phase_ = Phase::silent;
   first_.reset();
-  to_drop_ = 0;
   lose_lock();
 }
 
 void MacDecoder::lose_lock() {
-  phase_ = Phase::silent;
+  clock_->lose_lock();
   expects_second_ = false;
-  zeros_ = ones_ = 0;
 }
 
 std::optional<MacSymbol> MacDecoder::take(PhySymbol bit, LineStatus status) {
-  if (to_drop_ > 0) {
-    --to_drop_;
-    return std::nullopt;
-  }
+  if (clock_->drops_bit()) return std::nullopt;
   if (!first_) {
-    first_ = bit;
+    first_ = First{bit, status.has_signal_error};
     return std::nullopt;
   }
-  const PhyPair pair{*first_, bit};
+  status.has_signal_error |= first_->has_signal_error;
+  const PhyPair pair{first_->symbol, bit};
   first_.reset();
   return indicate(pair, status);
 }
 
 MacSymbol MacDecoder::indication(PhyPair pair, LineStatus status) const {
   using enum MacSymbol;
-  if (!status.has_carrier) return silence;
-  if (status.has_signal_error) return bad_signal;
-  if (pair.first == idl) return silence;
-  if (pair.second == idl) {
-    // A bit too many after the end of the last frame is none of its own: what a repeater adds.
-    constexpr std::uint64_t kEnd = 044'344'320;  // N N 1 N N 1 0, and E
-    constexpr std::uint64_t kMask = 077'777'770;
-    return (last_symbols_ & kMask) == kEnd ? silence : bad_signal;
+  switch (cell_of(pair, status)) {
+    case Cell::silence:
+      return silence;
+    case Cell::zero:
+      return expects_second_ ? bad_signal : zero;
+    case Cell::one:
+      return expects_second_ ? bad_signal : one;
+    case Cell::first_non_data:
+      return expects_second_ ? bad_signal : non_data;
+    case Cell::second_non_data:
+      return expects_second_ ? non_data : bad_signal;
+    case Cell::cut:
+      return last_.is_seen() ? silence : bad_signal;
+    case Cell::bad:
+      break;
   }
-  if (pair.first != pair.second) {
-    if (expects_second_) return bad_signal;
-    return pair.first == cd1 ? one : zero;
-  }
-  return (pair.first == cd0) == expects_second_ ? non_data : bad_signal;
+  return bad_signal;
 }
 
 MacSymbol MacDecoder::indicate(PhyPair pair, LineStatus status) {
   const MacSymbol symbol = indication(pair, status);
-  last_symbols_ = (last_symbols_ << 3 | static_cast<std::uint64_t>(symbol)) & 077'777'777;
-  const bool has_bits = status.has_carrier && (pair.first != idl || pair.second != idl);
+  last_.take(symbol);
   if (!status.has_carrier || (!status.has_signal_error && pair.second == idl)) {
     lose_lock();
     return symbol;
   }
-  if (phase_ == Phase::silent && has_bits) {
-    phase_ = Phase::hunting;
-    slips_ = 0;
-  }
+  if (pair.first != idl || pair.second != idl) clock_->notice_bits();
   expects_second_ = symbol == MacSymbol::non_data && !expects_second_;
-  follow(symbol);
+  clock_->follow(symbol);
   return symbol;
-}
-
-void MacDecoder::follow(MacSymbol symbol) {
-  zeros_ = symbol == MacSymbol::zero ? zeros_ + 1 : 0;
-  ones_ = symbol == MacSymbol::one ? ones_ + 1 : 0;
-  if (symbol == MacSymbol::non_data || ones_ >= 2) phase_ = Phase::locked;
-  if (may_slip() && slips_after(zeros_)) {
-    to_drop_ = slip_bits();
-    ++slips_;
-    zeros_ = 0;
-  }
 }
 
 // ---- a whole transmission ----
@@ -197,13 +216,8 @@ std::vector<Indication> indications_in(const line::Waveform& wave, std::int64_t 
   const std::vector<ReceivedBit> bits = received_bits(wave, phy_bit_rate, &half_bit);
   std::vector<Indication> indications;
   indications.reserve(bits.size() / 2);
-  bool has_error = false;
   for (std::size_t n = 0; n < bits.size(); ++n, half_bit += 2) {
-    LineStatus status = bits[n].status;
-    // An error in the first bit of a pair is one of the pair.
-    status.has_signal_error |= has_error;
-    const auto symbol = decoder.take(bits[n].symbol, status);
-    has_error = !symbol && bits[n].status.has_signal_error;
+    const auto symbol = decoder.take(bits[n].symbol, bits[n].status);
     if (symbol) indications.push_back({*symbol, half_bit >= 2 ? half_bit - 2 : 0});
   }
   return indications;

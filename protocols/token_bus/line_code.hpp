@@ -2,28 +2,36 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/line/waveform.hpp"
+#include "protocols/token_bus/clock_control.hpp"
 #include "protocols/token_bus/mac_symbol.hpp"
 
 // How MAC symbols become the signal of an IEEE 802.3 line and the other way round: two bits of the line for
 // each symbol, and each bit Manchester coded, its second half as the bit is.
 //
 // The paper gives the table of encoding. It leaves out that of decoding, which follows from it but for ties;
-// those are this project's choice:
+// those are this project's choice. Of a pair of bits, by CARRIER_STATUS and SIGNAL_STATUS:
 //
-//   CD1,CD0 one          CD1,CD1 non_data, the first of two    IDL,IDL silence
-//   CD0,CD1 zero         CD0,CD0 non_data, the second of two   CDx,IDL bad_signal; silence after the last
-//   frame anything else, or with a signal error: bad_signal          IDL,CDx silence, and a transmission
-//   begins
+//               carrier off   carrier on                               carrier on, signal error
+//   CD1,CD0     silence       one                                      bad_signal
+//   CD0,CD1     silence       zero                                     bad_signal
+//   CD1,CD1     silence       non_data, the first of two               bad_signal
+//   CD0,CD0     silence       non_data, the second of two              bad_signal
+//   CD1,IDL     silence       bad_signal; silence after a last frame   bad_signal
+//   CD0,IDL     silence       bad_signal; silence after a last frame   bad_signal
+//   IDL,CD1     silence       silence, and a transmission begins       bad_signal
+//   IDL,CD0     silence       silence, and a transmission begins       bad_signal
+//   IDL,IDL     silence       silence                                  bad_signal
 //
-// Nothing on the line says which bit is the first of a pair. A preamble read one bit late is a row of zeros:
-// the decoder slips by one bit until it reads ones, and never again after the first non_data of a
-// transmission, because pairs across the border of two symbols look like non_data in any field of data.
+// A non_data that is not the half of a pair that is due, and a data symbol where the second half is due, are
+// bad_signal. After a last frame: its end delimiter says that nothing follows, and repeaters add bits to it.
 namespace fieldproof::token_bus {
 
 // Bits of the line: clocked data zero and one, and idle, which has no edge.
@@ -41,12 +49,22 @@ std::string written(std::span<const PhySymbol> symbols);
 
 // ---- encoding ----
 
+// MACTX of the paper.
 class MacEncoder {
  public:
+  MacEncoder() = default;
+  MacEncoder(const MacEncoder&) = delete;
+  MacEncoder& operator=(const MacEncoder&) = delete;
+  virtual ~MacEncoder() = default;
+
   // non_data comes in pairs: which of the two this one is follows from those before. bad_signal is never
   // requested: a broken invariant.
   PhyPair encode(MacSymbol symbol);
-  void reset() { is_second_non_data_ = false; }
+  virtual void reset() { is_second_non_data_ = false; }
+
+ protected:
+  // ---- decisions ----
+  virtual PhyPair encoded(MacSymbol symbol, bool is_second_non_data) const;
 
  private:
   bool is_second_non_data_ = false;
@@ -65,44 +83,43 @@ struct LineStatus {
   friend bool operator==(const LineStatus&, const LineStatus&) = default;
 };
 
-// Gives a MAC symbol for each two bits. The decisions that a wrong decoder takes otherwise are virtual.
+// MACRX of the paper. Gives a MAC symbol for each two bits. The decisions that a wrong decoder takes
+// otherwise are virtual.
 class MacDecoder {
  public:
-  MacDecoder() = default;
-  MacDecoder(const MacDecoder&) = default;
-  MacDecoder& operator=(const MacDecoder&) = default;
+  MacDecoder() : MacDecoder(std::make_unique<ClockControl>()) {}
+  explicit MacDecoder(std::unique_ptr<ClockControl> clock) : clock_(std::move(clock)) {}
+  MacDecoder(const MacDecoder&) = delete;
+  MacDecoder& operator=(const MacDecoder&) = delete;
   virtual ~MacDecoder() = default;
 
-  // The next bit of the line; a symbol where it is the second one of a pair.
+  // The next bit of the line; a symbol where it is the second one of a pair. A signal error in one of both is
+  // one of the pair; whether there is a carrier, the second says.
   std::optional<MacSymbol> take(PhySymbol bit, LineStatus status = {});
   void reset();
 
-  bool is_hunting() const { return phase_ == Phase::hunting; }
+  bool is_within_pair() const { return first_.has_value(); }
+  bool is_hunting() const { return clock_->is_hunting(); }
   bool expects_second_non_data() const { return expects_second_; }
-  std::size_t slips() const { return slips_; }  // since the transmission began
+  std::size_t slips() const { return clock_->slips(); }  // since the transmission began
 
  protected:
   // ---- decisions ----
   virtual MacSymbol indication(PhyPair pair, LineStatus status) const;
-  virtual bool slips_after(unsigned zeros_in_a_row) const { return zeros_in_a_row >= 2; }
-  virtual bool may_slip() const { return phase_ == Phase::hunting; }
-  virtual unsigned slip_bits() const { return 1; }
 
  private:
-  enum class Phase : std::uint8_t { silent, hunting, locked };
+  struct First {
+    PhySymbol symbol;
+    bool has_signal_error;
+  };
 
   MacSymbol indicate(PhyPair pair, LineStatus status);
-  void follow(MacSymbol symbol);
   void lose_lock();
 
-  Phase phase_ = Phase::silent;
-  std::optional<PhySymbol> first_{};
-  unsigned to_drop_ = 0;
+  std::unique_ptr<ClockControl> clock_;
+  std::optional<First> first_{};
   bool expects_second_ = false;
-  unsigned zeros_ = 0;
-  unsigned ones_ = 0;
-  std::size_t slips_ = 0;
-  std::uint64_t last_symbols_ = 0;  // eight octal digits, the last one lowest
+  LastFrameEnd last_{};
 };
 
 // ---- a whole transmission ----

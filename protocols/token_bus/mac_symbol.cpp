@@ -55,6 +55,18 @@ MacSymbols end_delimiter(bool more_follows, bool has_error) {
       non_data, non_data, one, non_data, non_data, one, more_follows ? one : zero, has_error ? one : zero};
 }
 
+void LastFrameEnd::take(MacSymbol symbol) {
+  constexpr std::uint64_t kEight = 077'777'777;
+  symbols_ = (symbols_ << 3 | static_cast<std::uint64_t>(symbol)) & kEight;
+}
+
+bool LastFrameEnd::is_seen() const {
+  // N N 1 N N 1 0, and E.
+  constexpr std::uint64_t kEnd = 044'344'320;
+  constexpr std::uint64_t kAllButE = 077'777'770;
+  return (symbols_ & kAllButE) == kEnd;
+}
+
 void append_octet(MacSymbols& symbols, std::uint8_t octet) {
   for (unsigned bit = 0; bit < 8; ++bit) symbols.push_back((octet >> bit & 1) != 0 ? one : zero);
 }

@@ -32,6 +32,16 @@ MacSymbols mac_symbols_of(std::string_view text);
 // E, an error was noticed on the way.
 MacSymbols start_delimiter();
 MacSymbols end_delimiter(bool more_follows, bool has_error);
+// Watches symbols for the end delimiter after which nothing follows: I is 0.
+class LastFrameEnd {
+ public:
+  void take(MacSymbol symbol);
+  // It was complete with the last symbol.
+  bool is_seen() const;
+
+ private:
+  std::uint64_t symbols_ = 0;  // the last eight, three bits each, the last one lowest
+};
 // Octets go least significant bit first.
 void append_octet(MacSymbols& symbols, std::uint8_t octet);
 

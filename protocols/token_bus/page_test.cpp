@@ -11,19 +11,23 @@
 #include "harness/field/written_table.hpp"
 #include "protocols/token_bus/device.hpp"
 #include "protocols/token_bus/station_settings.hpp"
+#include "protocols/token_bus/translator_settings.hpp"
 
 namespace fieldproof::token_bus {
 namespace {
 
-void expect_on_token_bus_page(const std::string& text) {
-  std::ifstream file(FIELDPROOF_SOURCE_DIR "/protocols/token_bus/README.md");
+void expect_on_token_bus_page(const std::string& text, const std::string& name = "README.md") {
+  std::ifstream file(FIELDPROOF_SOURCE_DIR "/protocols/token_bus/" + name);
   const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  EXPECT_NE(page.find("\n" + text), std::string::npos) << "protocols/token_bus/README.md must have:\n"
-                                                       << text;
+  EXPECT_NE(page.find("\n" + text), std::string::npos) << name << " of this folder must have:\n" << text;
 }
 
 TEST(TokenBusPage, HasEverySettingOfAStation) {
   expect_on_token_bus_page(field::markdown_of(kStationTable) + "\n");
+}
+
+TEST(TokenBusPage, HasEverySettingOfATranslator) {
+  expect_on_token_bus_page(field::markdown_of(kTranslatorTable) + "\n", "translator.md");
 }
 
 TEST(TokenBusPage, HasEveryEvent) {

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/case_bench.hpp"
+#include "conformance/token_bus/translator_sides.hpp"
+#include "protocols/token_bus/translator_device.hpp"
+
+// The bench of one case for a translator: the implementation under test (IUT) between two testers. The lower
+// tester is the IEEE 802.3 physical layer, the upper tester the MAC of IEEE 802.4. Verdicts rest on what the
+// IUT drives on its two sides.
+namespace fieldproof::conformance {
+
+struct TranslatorNeeds {
+  void (*adjust)(token_bus::TranslatorConfiguration&) = nullptr;
+};
+
+using TranslatorSetting = PlannedSetting<token_bus::TranslatorDevice, token_bus::TranslatorConfiguration>;
+
+class TranslatorBench final : public CaseBench, private segment::Station {
+ public:
+  TranslatorBench(const TranslatorNeeds& needs, const TranslatorSetting& setting);
+
+  const token_bus::TranslatorConfiguration& configuration() const { return configuration_; }
+  kernel::Duration symbols(std::int64_t count) const {
+    return token_bus::mac_symbols(configuration_.rules, count);
+  }
+  kernel::Duration delay() const { return symbols(configuration_.delay_symbols); }
+  void set_power(bool is_on);
+
+  // ---- upper tester; each runs until what is requested is over ----
+  void request(std::string_view symbols);
+  void command(SideCommand command, std::size_t symbols);
+
+  // ---- lower tester; each runs until what is received is over ----
+  void receive(const SideBits& bits);
+  // As a repeater or another station sends it.
+  void receive(std::string_view bits) { receive(side_bits_of(bits)); }
+  // Both at once: what the IUT receives while something is requested of it.
+  void request_and_receive(std::string_view symbols, const SideBits& bits);
+  void command_and_receive(SideCommand command, std::size_t symbols, const SideBits& bits);
+  void set_line_clock(std::int64_t parts_per_million) { parts_per_million_ = parts_per_million; }
+
+  // Until everything that was given has come out, and what
+  // that comes too late, too.
+  void settle() { wait(4 * delay() + symbols(4)); }
+  void clear() {
+    sent_.clear();
+    indicated_.clear();
+  }
+  // Since the last `clear`.
+  const SideLog& sent() const { return sent_; }
+  const SideLog& indicated() const { return indicated_; }
+  std::vector<std::uint8_t> random_octets(std::size_t count);
+
+  // ---- the end, and what else a bench does ----
+  std::vector<std::string> decode_lines() const;
+  void finish() { translator_->end(); }
+
+ private:
+  void receive(segment::PortIndex, const line::Waveform&) override {}
+  void on_time(kernel::Time) override {}
+  kernel::Time next_time() const override { return kernel::kNever; }
+
+  kernel::Time drive_request(line::Levels levels);
+  kernel::Time drive_bits(const SideBits& bits);
+
+  token_bus::TranslatorConfiguration configuration_;
+  SideLog sent_;
+  SideLog indicated_;
+  std::unique_ptr<token_bus::TranslatorDevice> translator_;
+  std::size_t tester_;
+  std::size_t seat_;
+  segment::Link& phy_in_;
+  segment::Link& mac_in_;
+  segment::Link& phy_out_;
+  segment::Link& mac_out_;
+  std::int64_t parts_per_million_ = 0;
+};
+
+}  // namespace fieldproof::conformance

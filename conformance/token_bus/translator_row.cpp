@@ -1,0 +1,23 @@
+#include "conformance/token_bus/translator_row.hpp"
+
+#include "conformance/bench_role.hpp"
+#include "conformance/token_bus/translator_cases.hpp"
+#include "conformance/token_bus/translator_declarations.hpp"
+#include "conformance/token_bus/translator_mutants.hpp"
+#include "protocols/token_bus/attached_translator.hpp"
+#include "protocols/token_bus/translator.hpp"
+#include "protocols/token_bus/translator_dissector.hpp"
+
+namespace fieldproof::conformance {
+
+RoleRow translator_row() {
+  using Cases = CaseRole<TranslatorCase, TranslatorSetting, token_bus::TranslatorDissector>;
+  return row_of<token_bus::TranslatorRole, token_bus::Translator>(
+      {.what = "translator of the token bus", .mutants = translator_mutants},
+      Cases{.name = "translator",
+            .cases = translator_cases,
+            .pics_items = translator_pics_items,
+            .settings = &token_bus::kTranslatorTable});
+}
+
+}  // namespace fieldproof::conformance

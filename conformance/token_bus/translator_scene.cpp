@@ -1,0 +1,165 @@
+#include "conformance/token_bus/translator_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::size_t kFrameOctets = 9;
+constexpr std::size_t kMostShown = 60;
+// Longer than any blanking.
+constexpr std::int64_t kRestSymbols = 200;
+
+std::string without_end(std::string text, char idle) {
+  while (text.ends_with(idle)) text.pop_back();
+  return text;
+}
+
+// Both from shortly in front of where they differ.
+Mismatch difference(const std::string& right, const std::string& seen) {
+  const auto [at_right, at_seen] = std::ranges::mismatch(right, seen);
+  const auto at = static_cast<std::size_t>(at_right - right.begin());
+  const std::size_t first = at - std::min<std::size_t>(at, 8);
+  const auto part = [&](const std::string& text) {
+    return fmt::format("from {} on: {}", first,
+                       first < text.size() ? text.substr(first, kMostShown) : "nothing");
+  };
+  Mismatch made{{part(right)}, part(seen)};
+  made.first_difference = fmt::format("unit {}", at);
+  return made;
+}
+
+}  // namespace
+
+TranslatorScene::TranslatorScene(TranslatorBench& bench_, CaseJudge& judge_, unsigned round_)
+    : Scene(bench_, judge_, round_), octets(bench_.random_octets(kFrameOctets)), begin(bench_.now()) {}
+
+void TranslatorScene::request(std::string symbols) {
+  bench.clear();
+  begin = bench.now();
+  requested = std::move(symbols);
+  bench.request(requested);
+}
+
+void TranslatorScene::receive(const SideBits& bits) {
+  bench.clear();
+  begin = bench.now();
+  bench.receive(bits);
+}
+
+std::string TranslatorScene::answers_to(SideCommand command) {
+  const std::size_t length = 2 * std::size_t{bench.configuration().answer_symbols};
+  bench.clear();
+  bench.command(command, length);
+  bench.settle();
+  std::string answers = bench.indicated().text();
+  std::ranges::replace(answers, 'S', 'i');
+  const std::size_t first = answers.find_first_not_of('i');
+  if (first == std::string::npos) return answers.empty() ? "" : "i";
+  if (first > bench.configuration().answer_symbols + bench.configuration().delay_symbols) return "late";
+  answers = answers.substr(first);
+  answers.erase(std::ranges::unique(answers).begin(), answers.end());
+  return without_end(answers, 'i');
+}
+
+void TranslatorScene::bring_up() {
+  for (const SideCommand one :
+       {SideCommand::reset, SideCommand::disable_loopback, SideCommand::enable_transmitter}) {
+    const std::string answers = answers_to(one);
+    if (answers == "a") continue;
+    judge.inconclusive("precondition_not_met",
+                       {{fmt::format("ACK to {}", text_of(one))},
+                        answers.empty() ? "no answer" : fmt::format("the answers {}", answers)});
+  }
+  rest();
+}
+
+void TranslatorScene::rest() {
+  bench.wait(bench.symbols(kRestSymbols));
+  bench.clear();
+}
+
+void TranslatorScene::expect_sent(const std::string& bits, std::string_view reason) {
+  bench.settle();
+  judge.expect(bench.sent().text() == bits, reason, [&] { return difference(bits, bench.sent().text()); });
+  const kernel::Duration took = bench.sent().begin() - begin;
+  judge.expect(took <= bench.delay() + kernel::kNanosecond, "sent_too_late", [&] {
+    return Mismatch{
+        {fmt::format("the first bit at most {} after its request", kernel::describe(bench.delay()))},
+        kernel::describe(took)};
+  });
+}
+
+void TranslatorScene::expect_nothing_sent(std::string_view reason, std::string_view why) {
+  bench.settle();
+  judge.expect(bench.sent().empty(), reason, [&] {
+    return Mismatch{{fmt::format("nothing is sent: {}", why)}, bench.sent().text().substr(0, kMostShown)};
+  });
+}
+
+std::string TranslatorScene::content() const {
+  const std::string& text = bench.indicated().text();
+  const std::size_t first = text.find('N');
+  return first == std::string::npos ? "" : without_end(text.substr(first), 'S');
+}
+
+void TranslatorScene::expect_content(const std::string& symbols, std::string_view reason) {
+  bench.settle();
+  const std::string right = without_end(symbols, 'S');
+  const std::string seen = content();
+  judge.expect(seen == right, reason, [&] { return difference(right, seen); });
+  const std::string& text = bench.indicated().text();
+  judge.expect(text.substr(0, text.find('N')).find_first_not_of("01S") == std::string::npos, reason, [&] {
+    return Mismatch{{"zeros, ones and silence before the start delimiter"}, text.substr(0, kMostShown)};
+  });
+}
+
+void TranslatorScene::expect_nothing_indicated(std::string_view reason, std::string_view why) {
+  bench.settle();
+  judge.expect(without_end(bench.indicated().text(), 'S').empty(), reason, [&] {
+    return Mismatch{{fmt::format("silence is indicated: {}", why)},
+                    bench.indicated().text().substr(0, kMostShown)};
+  });
+}
+
+TestCase translator_must(std::string id, std::string purpose, std::string requirement,
+                         judge::Reference reference, std::vector<MustCatch> catches,
+                         std::vector<PartialSource> details) {
+  return {.id = "token_bus/translator/" + std::move(id),
+          .purpose = std::move(purpose),
+          .requirement = std::move(requirement),
+          .reference = std::move(reference),
+          .details = std::move(details),
+          .tags = {"must"},
+          .catches = std::move(catches)};
+}
+
+namespace translator_chart {
+
+TranslatorStep on_line() {
+  return does(
+      "the MAC brings the translator on line: RESET, DISABLE LOOPBACK, ENABLE TRANSMITTER, END PHYSICAL",
+      [](TranslatorScene& scene) { scene.bring_up(); });
+}
+TranslatorStep pause() {
+  return does("silence", [](TranslatorScene& scene) { scene.rest(); });
+}
+TranslatorStep does(std::string text, std::function<void(TranslatorScene&)> run) {
+  return {std::move(text), {}, std::move(run)};
+}
+TranslatorStep requires_that(std::string text, std::function<void(TranslatorScene&)> run) {
+  return {{}, std::move(text), std::move(run)};
+}
+TranslatorStep receives() {
+  return {"a frame comes from the line", "it is indicated", [](TranslatorScene& scene) {
+            scene.rest();
+            const std::string frame = frame_text(scene.octets);
+            scene.receive(encoded(frame));
+            scene.expect_content(frame.substr(frame.find('N')), "does_not_recover");
+          }};
+}
+
+}  // namespace translator_chart
+}  // namespace fieldproof::conformance

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "conformance/chart.hpp"
+#include "conformance/token_bus/translator_cases.hpp"
+
+// The words of charts for a translator.
+namespace fieldproof::conformance {
+
+// Octets between the delimiters.
+inline constexpr std::size_t kLongestFrame = 8'191;
+
+// What the steps of one round share.
+struct TranslatorScene : Scene<TranslatorBench> {
+  TranslatorScene(TranslatorBench& bench_, CaseJudge& judge_, unsigned round_);
+
+  std::vector<std::uint8_t> octets;  // random, of the round's frame
+  unsigned turn = 0;                 // of steps that are repeated
+  std::string requested{};           // that was requested last
+  kernel::Time begin{};              // of what was requested or received last
+
+  void request(std::string symbols);
+  void receive(std::string_view bits) { receive(side_bits_of(bits)); }
+  void receive(const SideBits& bits);
+  // What a command is answered with while it stands, its idle before that left out: "a", "ian".
+  std::string answers_to(SideCommand command);
+  // On line, as the MAC brings it there; `precondition_not_met`.
+  void bring_up();
+  // So long a silence that no transmission has to do with the next one.
+  void rest();
+
+  // Exactly these bits, and when they begin.
+  void expect_sent(const std::string& bits, std::string_view reason);
+  void expect_nothing_sent(std::string_view reason, std::string_view why);
+  // From the first non_data on; in front of it zeros, ones and silence. Silence at the end is nothing.
+  void expect_content(const std::string& symbols, std::string_view reason);
+  void expect_nothing_indicated(std::string_view reason, std::string_view why);
+  // What was indicated from the first non_data on.
+  std::string content() const;
+};
+
+using TranslatorStep = ChartStep<TranslatorScene>;
+
+inline TranslatorCase on_chart(TestCase test_case, Chart<TranslatorScene> chart, TranslatorNeeds needs = {}) {
+  return charted<TranslatorCase>(std::move(test_case), std::move(chart), needs);
+}
+
+TestCase translator_must(std::string id, std::string purpose, std::string requirement,
+                         judge::Reference reference, std::vector<MustCatch> catches,
+                         std::vector<PartialSource> details = {});
+
+namespace translator_chart {
+
+// RESET, DISABLE LOOPBACK, ENABLE TRANSMITTER, END PHYSICAL.
+TranslatorStep on_line();
+TranslatorStep pause();
+// What one chart alone does, or requires.
+TranslatorStep does(std::string text, std::function<void(TranslatorScene&)> run);
+TranslatorStep requires_that(std::string text, std::function<void(TranslatorScene&)> run);
+// A frame of random octets arrives and is indicated: `does_not_recover`.
+TranslatorStep receives();
+
+}  // namespace translator_chart
+}  // namespace fieldproof::conformance

@@ -1,0 +1,168 @@
+#include "conformance/token_bus/translator_sides.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "harness/kernel/check.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::size_t kUnit = 4;  // levels
+
+struct Code {
+  char letter;
+  std::string_view circuits;  // SM*, symbol 2, symbol 1, symbol 0
+};
+
+constexpr std::array<Code, 5> kRequests{
+    {{'S', "1111"}, {'P', "1010"}, {'0', "1000"}, {'1', "1001"}, {'N', "1100"}}};
+
+// The last circuit of some codes is anything.
+constexpr std::array<Code, 16> kIndications{{{'0', "1000"},
+                                             {'1', "1001"},
+                                             {'B', "1010"},
+                                             {'B', "1011"},
+                                             {'N', "1100"},
+                                             {'N', "1101"},
+                                             {'S', "1110"},
+                                             {'S', "1111"},
+                                             {'i', "0000"},
+                                             {'i', "0001"},
+                                             {'a', "0010"},
+                                             {'a', "0011"},
+                                             {'n', "0100"},
+                                             {'n', "0101"},
+                                             {'e', "0110"},
+                                             {'e', "0111"}}};
+
+struct CommandCode {
+  std::string_view text;
+  std::string_view circuits;
+};
+constexpr std::array<CommandCode, 5> kCommands{{{"RESET", "0111"},
+                                                {"DISABLE LOOPBACK", "0101"},
+                                                {"ENABLE TRANSMITTER", "0011"},
+                                                {"SM idle", "0001"},
+                                                {"serial SM data", "0000"}}};
+
+char indication_of(std::string_view circuits) {
+  const auto* const code = std::ranges::find(kIndications, circuits, &Code::circuits);
+  return code->letter;
+}
+
+// Transmitter off, no error, and the halves of a Manchester bit; what is no bit is shown as such.
+char phy_letter_of(std::string_view levels) {
+  if (levels == "1111") return 'I';
+  if (levels == "0101") return '1';
+  return levels == "0110" ? '0' : '?';
+}
+
+}  // namespace
+
+// ---- what testers drive ----
+
+SideBits side_bits_of(std::string_view text) {
+  SideBits bits;
+  for (const char letter : text) bits.push_back({letter, true, false});
+  return bits;
+}
+
+line::Levels phy_levels_of(const SideBits& bits) {
+  std::string text;
+  for (const SideBit& bit : bits) {
+    text += bit.has_carrier ? '0' : '1';
+    text += bit.has_error ? '0' : '1';
+    text += bit.symbol == 'I' ? "11" : bit.symbol == '1' ? "01" : "10";
+  }
+  return line::Levels::of_text(text);
+}
+
+std::string_view text_of(SideCommand command) {
+  return kCommands.at(static_cast<std::size_t>(command)).text;
+}
+
+line::Levels request_levels_of(std::string_view symbols) {
+  std::string text;
+  for (const char letter : symbols) {
+    const auto* const code = std::ranges::find(kRequests, letter, &Code::letter);
+    FIELDPROOF_CHECK(code != kRequests.end(), "each letter can be requested");
+    text += code->circuits;
+  }
+  return line::Levels::of_text(text);
+}
+
+line::Levels request_levels_of(SideCommand command, std::size_t symbols) {
+  std::string text;
+  for (std::size_t n = 0; n < symbols; ++n) text += kCommands.at(static_cast<std::size_t>(command)).circuits;
+  return line::Levels::of_text(text);
+}
+
+// ---- what follows from the tables of the paper ----
+
+std::string encoded(std::string_view symbols) {
+  std::string bits;
+  bool is_second = false;
+  for (const char letter : symbols) {
+    if (letter == 'N') {
+      bits += is_second ? "00" : "11";
+      is_second = !is_second;
+      continue;
+    }
+    is_second = false;
+    bits += letter == 'S' ? "II" : letter == '0' ? "01" : "10";
+  }
+  return bits;
+}
+
+std::string start_delimiter_text() {
+  return "NN0NN000";
+}
+std::string end_delimiter_text(bool more_follows) {
+  return more_follows ? "NN1NN110" : "NN1NN100";
+}
+
+std::string data_text(const std::vector<std::uint8_t>& octets) {
+  std::string text;
+  for (const std::uint8_t octet : octets)
+    for (unsigned bit = 0; bit < 8; ++bit) text += (octet >> bit & 1) != 0 ? '1' : '0';
+  return text;
+}
+
+std::string frame_text(const std::vector<std::uint8_t>& octets, bool more_follows, unsigned preamble_octets) {
+  return std::string(std::size_t{8} * preamble_octets, 'P') + start_delimiter_text() + data_text(octets) +
+         end_delimiter_text(more_follows);
+}
+
+std::string indicated_as(std::string requested) {
+  std::ranges::replace(requested, 'P', '1');
+  return requested;
+}
+
+// ---- what the translator drives ----
+
+void SideLog::on_wave(const line::Waveform& wave) {
+  const std::string levels = wave.levels.text();
+  const kernel::Duration unit = kernel::levels_duration(1, unit_rate_);
+  if (text_.empty()) begin_ = end_ = wave.start;
+  for (; end_ + unit * 3 / 4 < wave.start; end_ += unit) {
+    text_ += side_ == Side::phy ? 'I' : 'S';
+    times_.push_back(end_);
+  }
+  for (std::size_t n = 0; n < levels.size(); n += kUnit) {
+    std::string circuits = levels.substr(n, kUnit);
+    circuits.resize(kUnit, '1');
+    text_ += side_ == Side::phy ? phy_letter_of(circuits) : indication_of(circuits);
+    times_.push_back(wave.time_of(n));
+  }
+  end_ = wave.end();
+}
+
+void SideLog::clear() {
+  text_.clear();
+  times_.clear();
+  begin_ = end_ = kernel::kNever;
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/line/waveform.hpp"
+#include "harness/segment/station.hpp"
+
+// The testers' view of the two sides of a translator, as text. It has tables of codes of its own, and uses no
+// code of the translators that it judges.
+//
+//   MAC side       S silence, P pad_idle, 0, 1, N non_data, B bad_signal; in management mode the answers
+//                  i IDLE, a ACK, n NACK, e physical error
+//   physical side  1 CD1, 0 CD0, I IDL
+namespace fieldproof::conformance {
+
+// ---- what testers drive ----
+
+// A bit on its way to the translator; carrier and error are what IEEE 802.3 reports of it.
+struct SideBit {
+  char symbol = 'I';
+  bool has_carrier = true;
+  bool has_error = false;
+};
+using SideBits = std::vector<SideBit>;
+
+SideBits side_bits_of(std::string_view text);
+line::Levels phy_levels_of(const SideBits& bits);
+
+enum class SideCommand : std::uint8_t { reset, disable_loopback, enable_transmitter, idle, serial_data };
+std::string_view text_of(SideCommand command);
+
+line::Levels request_levels_of(std::string_view symbols);
+line::Levels request_levels_of(SideCommand command, std::size_t symbols);
+
+// ---- what follows from the tables of the paper ----
+
+// Two bits for each symbol that is requested.
+std::string encoded(std::string_view symbols);
+std::string start_delimiter_text();
+std::string end_delimiter_text(bool more_follows = false);
+// Octets with their lowest bit first, as they are.
+std::string data_text(const std::vector<std::uint8_t>& octets);
+// Preamble, delimiters, and octets between them.
+std::string frame_text(const std::vector<std::uint8_t>& octets, bool more_follows = false,
+                       unsigned preamble_octets = 4);
+// How a request reads when it is indicated: pad_idle arrives as one.
+std::string indicated_as(std::string requested);
+
+// ---- what the translator drives ----
+
+// Everything that is driven on one side, one letter for each unit. A gap is silence, or idle bits; one that
+// is shorter than three quarters of a unit is a clock that was stretched.
+class SideLog final : public segment::Tap {
+ public:
+  enum class Side : std::uint8_t { phy, mac };
+  SideLog(Side side, std::int64_t unit_rate) : side_(side), unit_rate_(unit_rate) {}
+
+  void on_wave(const line::Waveform& wave) override;
+  void clear();
+  const std::string& text() const { return text_; }
+  bool empty() const { return text_.empty(); }
+  // Of the first unit since `clear`.
+  kernel::Time begin() const { return begin_; }
+  // Of unit n.
+  kernel::Time time_of(std::size_t n) const { return times_.at(n); }
+
+ private:
+  Side side_;
+  std::int64_t unit_rate_;
+  std::string text_;
+  std::vector<kernel::Time> times_;
+  kernel::Time begin_ = kernel::kNever;
+  kernel::Time end_ = kernel::kNever;
+};
+
+}  // namespace fieldproof::conformance

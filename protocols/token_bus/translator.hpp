@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "protocols/token_bus/translator_blocks.hpp"
+
+// The physical layer service translator (PST) of Lee, Moon, Moon, Kwon, Lee and Park: between the MAC of IEEE
+// 802.4 at 5 Mbit/s and the physical layer of IEEE 802.3 at 10 Mbit/s. What is requested on the MAC side is
+// encoded for the physical side, and what is received there is decoded and indicated.
+//
+// It works through both sides in pieces of a few symbols: what it drives is `delay_symbols` later than what
+// it follows from, and depends on nothing later than that. A symbol that is indicated lasts as long as the
+// two bits of the line that it was decoded from: the clock of the indications is that of the line. Silence is
+// driven by driving nothing.
+namespace fieldproof::token_bus {
+
+// One unit of an input.
+struct ServiceUnit {
+  kernel::Time begin;
+  kernel::Time end;
+  std::int64_t rate;  // of its four levels
+};
+
+// What arrived on one side and has not been worked through.
+class ServiceInput {
+ public:
+  void clear() { waves_.clear(); }
+  void add(line::Waveform wave);
+  bool empty() const { return waves_.empty(); }
+  // Of the next unit.
+  ServiceUnit front() const;
+  const line::Levels& levels() const { return waves_.front().levels; }
+  std::size_t number() const { return taken_; }  // of the next unit, in these levels
+  void pop();
+  // Of so many units, or of those that follow each other.
+  kernel::Time end_of_piece(std::size_t units) const;
+
+ private:
+  std::deque<line::Waveform> waves_;
+  std::size_t taken_ = 0;  // of the first wave
+};
+
+// What is to be driven on one side: units that follow each other are one transmission.
+class ServiceOutput {
+ public:
+  void wire(segment::Port& port) { port_ = &port; }
+  void clear() { waves_.clear(); }
+  void append(kernel::Time begin, std::int64_t rate, std::uint64_t levels, unsigned count);
+  void drive(kernel::Time now);
+
+ private:
+  segment::Port* port_ = nullptr;
+  std::vector<line::Waveform> waves_;
+  kernel::Time driven_until_ = kernel::kStart;
+};
+
+class Translator : public TranslatorDevice {
+ public:
+  explicit Translator(const TranslatorConfiguration& configuration, TranslatorBlocks blocks = {})
+      : configuration_(configuration), blocks_(std::move(blocks)) {}
+
+  void wire(segment::Port& phy, segment::Port& mac) override;
+  void set_power(bool is_on, kernel::Time now) override;
+
+  void receive(segment::PortIndex port, const line::Waveform& reception) override;
+  void on_time(kernel::Time now) override;
+  kernel::Time next_time() const override;
+
+ protected:
+  const TranslatorConfiguration& configuration() const { return configuration_; }
+
+  // ---- decisions ----
+  // A signal error so long after the end of an own transmission is the SQE test of the transceiver; within
+  // one, where the time is negative, it is a collision.
+  virtual bool is_error_masked(kernel::Duration after_own_transmission) const;
+  virtual bool takes_line(bool is_looped_back, bool /*is_sending*/) const { return !is_looped_back; }
+
+ private:
+  // One bit at the decoder; `rate` is that of four levels for each symbol.
+  struct Bit {
+    kernel::Time begin;
+    kernel::Time end;
+    std::int64_t rate;
+  };
+
+  kernel::Duration delay() const { return mac_symbols(configuration_.rules, configuration_.delay_symbols); }
+  kernel::Time half_pair_until() const;
+  bool is_management_within(kernel::Time begin, kernel::Time end) const;
+  void follow_request();
+  void follow_phy();
+  void complete_pair();
+  void manage(const ServiceUnit& unit, ManagementCommand command);
+  void request(const ServiceUnit& unit, MacSymbol symbol);
+  void decode(const Bit& bit, PhySymbol symbol, LineStatus status);
+  void indicate(const Bit& pair, MacSymbol symbol);
+
+  TranslatorConfiguration configuration_;
+  TranslatorBlocks blocks_;
+  bool is_powered_ = false;
+  ServiceInput requests_;
+  ServiceInput bits_;
+  ServiceOutput indications_;
+  ServiceOutput signals_;
+  kernel::Time requested_until_ = kernel::kStart;
+  kernel::Time transmitted_until_ = kernel::kStart;
+  Bit last_bit_{};  // at the decoder
+  kernel::Time pair_begin_ = kernel::kStart;
+};
+
+}  // namespace fieldproof::token_bus
