@@ -43,12 +43,12 @@ class VerbTable : public ProgramFixture, public testing::WithParamInterface<Judg
     const std::string role = GetParam().name;
     // One at which a tester on a pseudo terminal is quick enough for a host.
     const std::string baud = role == "host" ? "187500" : "9600";
-    return {
-        {"ref", role + "=ref"},
-        {"exec:", role + "=exec:'" FIELDPROOF_EXE "' station " + GetParam().path()},
-        {"plugin:", role + "=plugin:" VALVE_NODE_PLUGIN},
-        {"serial:", role + "=serial:./line?baud=" + baud + "&format=8m1&upper=exec:'" FIELDPROOF_EXE "' station " +
-                        GetParam().path() + " --serial ./line"}};
+    return {{"ref", role + "=ref"},
+            {"exec:", role + "=exec:'" FIELDPROOF_EXE "' station " + GetParam().path()},
+            {"plugin:", role + "=plugin:" VALVE_NODE_PLUGIN},
+            {"serial:", role + "=serial:./line?baud=" + baud +
+                            "&format=8m1&upper=exec:'" FIELDPROOF_EXE "' station " + GetParam().path() +
+                            " --serial ./line"}};
   }
 
   // What a call says: that it works, or its sentence.

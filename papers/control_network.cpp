@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,9 +70,10 @@ PublishedRow sfd_row(const token_bus::PhySymbols& line) {
 PublishedRow out_of_phase_row() {
   constexpr std::size_t kSymbols = 16;
   const auto line = token_bus::phy_symbols_of(std::vector<MacSymbol>(kSymbols, MacSymbol::pad_idle));
-  struct NeverSlips final : token_bus::MacDecoder {
+  struct NeverSlips final : token_bus::ClockControl {
     bool may_slip() const override { return false; }
-  } decoder;
+  };
+  token_bus::MacDecoder decoder(std::make_unique<NeverSlips>());
   std::size_t zeros = 0;
   for (std::size_t n = 1; n < line.size(); ++n) {
     if (decoder.take(line[n]) == MacSymbol::zero) ++zeros;

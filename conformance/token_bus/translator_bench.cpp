@@ -26,7 +26,7 @@ token_bus::TranslatorConfiguration configuration_for(const TranslatorNeeds& need
 // Nothing that is sent is shorter than a symbol.
 TranslatorBench::TranslatorBench(const TranslatorNeeds& needs, const TranslatorSetting& setting)
     : CaseBench(setting.seed, setting.volume, setting.stresses,
-                token_bus::mac_symbols(configuration_for(needs, setting).rules, 1)),
+                LineWatch(token_bus::mac_symbols(configuration_for(needs, setting).rules, 1))),
       configuration_(configuration_for(needs, setting)),
       sent_(SideLog::Side::phy, configuration_.rules.phy_bit_rate),
       indicated_(SideLog::Side::mac, token_bus::mac_symbol_rate(configuration_.rules)),
@@ -48,6 +48,12 @@ TranslatorBench::TranslatorBench(const TranslatorNeeds& needs, const TranslatorS
   }
   translator_->wire(phy_out_, mac_out_);
   set_power(true);
+}
+
+void TranslatorBench::ask() {
+  constexpr std::size_t kLongEnough = 64;
+  command(SideCommand::reset, kLongEnough);
+  settle();
 }
 
 void TranslatorBench::set_power(bool is_on) {

@@ -59,6 +59,8 @@ class TranslatorBench final : public CaseBench, private segment::Station {
   // ---- the end, and what else a bench does ----
   std::vector<std::string> decode_lines() const;
   void finish() { translator_->end(); }
+  // What it must answer: a command of the management.
+  void ask();
 
  private:
   void receive(segment::PortIndex, const line::Waveform&) override {}

@@ -74,16 +74,17 @@ void WallClockDevice::set_power(bool is_on, kernel::Time now) {
   now_ = now;
   if (is_supplied_) flush(now);
   is_supplied_ = is_on;
+  was_asked_ = false;
+  writes_.clear();
   if (attachment_.upper == nullptr) {
     if (!is_on || now != kernel::kStart)
       refuse("the supply of the box cannot be switched without an upper channel");
   } else {
     const kernel::Time switched = clock_.now();
-    attachment_.upper->set_power(is_on, switched);
     set_anchor({now, {switched, switched}});
+    attachment_.upper->set_power(is_on, switched);
   }
   sent_until_ = kernel::Time{kernel::Duration::min()};
-  writes_.clear();
   driven_until_ = std::max(now, driven_until_);
   next_pump_ = now;
 }
@@ -121,6 +122,7 @@ void WallClockDevice::receive(unsigned port, std::span<const Character> characte
 void WallClockDevice::ask(unsigned port, std::span<const Character> characters, kernel::Time now) {
   if (attachment_.upper == nullptr) refuse("nothing can be asked of the box without an upper channel");
   flush(now);
+  was_asked_ = uart_.latest_answer > kernel::Duration{};
   const kernel::Time asked = clock_.now();
   std::vector<Character> passed_on(characters.begin(), characters.end());
   for (Character& one : passed_on) one.start = one.busy_until = asked;
@@ -209,9 +211,18 @@ void WallClockDevice::wait_until_received() {
 
 // ---- the box's side ----
 
+// Who asks goes on while the bench is kept from running: its requests are repeated, its orders given up.
+void WallClockDevice::expect_no_delay(kernel::Duration delay) const {
+  if (!was_asked_ || delay <= uart_.latest_answer / 2) return;
+  throw InDoubt(
+      fmt::format("serial: this machine has kept the bench from running for {}, and the box waits {}",
+                  kernel::describe(delay), kernel::describe(uart_.latest_answer)));
+}
+
 // All that happens up to `now` and the margin after it is known afterwards.
 void WallClockDevice::pump(kernel::Time now) {
   const kernel::Time until = wall_of(now) + margin_;
+  expect_no_delay(clock_.now() - until);
   while (const auto arrival = attachment_.line->read(until)) keep(*arrival);
   if (attachment_.upper == nullptr) {
     place_arrived(now);
@@ -279,7 +290,14 @@ void WallClockDevice::place_reported(kernel::Time now) {
       earliest = wall_of(driven_until_) + (transmission.start - transmission.driver_on);
     reported_until_ = transmission.driver_off;
     ended_at_ = transmission.start + length;
-    place(transmission, earliest, end.latest - length, now);
+    // One that asks is judged by what it does after what it has received, and both are on its own clock.
+    const bool is_asker = uart_.latest_answer > kernel::Duration{};
+    const kernel::Time start = transmission.start;
+    if (is_asker) {
+      place(transmission, start, start, now);
+    } else {
+      place(transmission, earliest, end.latest - length, now);
+    }
   }
 }
 

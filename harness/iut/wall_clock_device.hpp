@@ -79,6 +79,7 @@ class WallClockDevice final : public Device, private Bench {
 
   // ---- the box's side ----
   void pump(kernel::Time now);
+  void expect_no_delay(kernel::Duration delay) const;
   void keep(const Arrival& arrival);
   void ask_upper(kernel::Time until) { attachment_.upper->on_time(until); }
   void await_reported();
@@ -115,6 +116,7 @@ class WallClockDevice final : public Device, private Bench {
       kernel::Duration::max();              // this, as the case has it: the box's last stop bit
   kernel::Time asked_at_ = kernel::kNever;  // and when that was
   bool is_asking_ = false;
+  bool was_asked_ = false;      // since power-up
   std::uint64_t sent_ = 0;      // octets, of the tester
   std::uint64_t received_ = 0;  // of these, by the box
 
