@@ -125,8 +125,11 @@ std::vector<iut::RoleName> served_among(const std::string& uri, std::span<const 
   std::vector<iut::RoleName> served;
   std::vector<iut::RoleName> own;  // what it says of itself; a library is asked role by role
   std::exception_ptr refusal;
-  const bool is_peer = iut::DevicePool::is_meant(uri);
-  if (is_peer) own = iut::DevicePool(uri, {}).served_roles();
+  const bool is_line = uri.starts_with(iut::kSerialUri);
+  // A box without an upper channel does not say what it is.
+  const std::string peer = is_line ? iut::serial_settings(uri).upper : uri;
+  const bool is_peer = iut::DevicePool::is_meant(peer);
+  if (is_peer) own = iut::DevicePool(peer, {}).served_roles();
   for (const iut::RoleName& role : roles) {
     const Role* row = find_role(role.path());
     bool is_served = false;
@@ -134,7 +137,7 @@ std::vector<iut::RoleName> served_among(const std::string& uri, std::span<const 
       is_served = std::ranges::find(own, role) != own.end();
     } else if (row == nullptr) {
       continue;  // a whole network is no implementation
-    } else if (uri.starts_with(iut::kSerialUri)) {
+    } else if (is_line) {
       is_served = row->uart != nullptr;
     } else {
       // A library that does not serve a role says so, and the process that loads it ends.

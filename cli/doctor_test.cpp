@@ -39,6 +39,15 @@ TEST_F(DoctorTest, LooksAtALineAndItsUpperChannel) {
     EXPECT_HOLDS(called.out, words);
 }
 
+// Two roles can be at a serial line; the upper channel says which one is.
+TEST_F(DoctorTest, TakesABoxForWhatItsUpperChannelSays) {
+  const Called called = call({"doctor", "--iut",
+                              "serial:./line?baud=62500&format=8m1&upper=exec:'" FIELDPROOF_EXE
+                              "' station valve_bus/host ref --serial ./line"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_HOLDS(called.out, "upper channel");
+}
+
 TEST_F(DoctorTest, WhatCannotBeUsedIsFive) {
   for (const char* wrong : {"exec:false", "unix:./nobody", "plugin:./nothing.so", "serial:./nothing"})
     EXPECT_EQ(call({"doctor", "--iut", wrong}).exit_code, 5) << wrong;
