@@ -61,7 +61,11 @@ constexpr std::array<std::pair<TokenControl, std::string_view>, 7> kControlNames
 }  // namespace
 
 bool DrivenFrame::is(TokenControl control_of) const {
-  return !octets.empty() && octets[0] == static_cast<std::uint8_t>(control_of);
+  if (octets.empty() || octets[0] != static_cast<std::uint8_t>(control_of)) return false;
+  if (is_data() || control_of == TokenControl::claim) return true;
+  const bool has_address =
+      control_of == TokenControl::who_follows || control_of == TokenControl::set_successor;
+  return data().size() == (has_address ? address_octets : 0);
 }
 
 bool DrivenFrame::is_data() const {

@@ -37,6 +37,7 @@ struct DrivenFrame {
   Octets octets{};  // without the check; whatever was found when it is not well formed
 
   std::uint8_t control() const { return octets.empty() ? std::uint8_t{0xFF} : octets[0]; }
+  // With a data unit of the length that such a control frame has; that of a claim is any.
   bool is(TokenControl control_of) const;
   // 01 MMM PPP in the order of the line; MMM 000 and 001 are requests, 010 is a response.
   bool is_data() const;

@@ -13,8 +13,16 @@ bool Plan::keeps_bounds() const {
   return true;
 }
 
+bool Plan::keeps_slot() const {
+  return proof->slowest_own <= traffic.slot;
+}
+
+bool Plan::is_stable() const {
+  return stability.is_stable() && !proof->has_growing_queues;
+}
+
 bool Plan::is_proven() const {
-  return proof && !lacks_room() && proof->holds() && keeps_bounds() && stability.is_stable();
+  return proof && !lacks_room() && proof->holds() && keeps_slot() && keeps_bounds() && is_stable();
 }
 
 Plan plan_bandwidth(const Network& network, std::uint64_t seed) {

@@ -24,6 +24,9 @@ struct Plan {
   // Non-real-time queues need a packet, and there is room for none.
   bool lacks_room() const;
   bool keeps_bounds() const;  // of loop delays, in the proof
+  // The closed form of the longest delay on the common grid, which no simulation has to meet.
+  bool keeps_slot() const;
+  bool is_stable() const;  // in the mean, and no queue grew where packets arrive
   bool is_proven() const;
 };
 

@@ -155,7 +155,7 @@ bool is_off_grid(const Network& network) {
 std::string verdict_text(const Plan& plan) {
   const Proof& proof = *plan.proof;
   if (plan.lacks_room()) return "\nnot proven: the slot has no room for a non-real-time packet\n";
-  if (!proof.holds() || !plan.keeps_bounds()) {
+  if (!proof.holds() || !plan.keeps_slot() || !plan.keeps_bounds()) {
     std::string text = "\nnot proven: ";
     if (is_off_grid(plan.network)) {
       text +=
@@ -169,7 +169,7 @@ std::string verdict_text(const Plan& plan) {
     }
     return text;
   }
-  if (!plan.stability.is_stable()) {
+  if (!plan.is_stable()) {
     return "\nnot proven: data keep T_1 and their bounds, and other queues grow without end; larger gaps or "
            "fewer queues help\n";
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "harness/kernel/error.hpp"
 #include "harness/kernel/random.hpp"
 
 namespace fieldproof::bandwidth {
@@ -14,6 +15,21 @@ using kernel::Duration;
 using kernel::Time;
 
 constexpr std::uint64_t kMostVisits = 250'000'000;
+constexpr std::uint64_t kFewestSlots = 100;
+constexpr std::uint64_t kOtherRuns = 7;
+// Simulated time is counted in picoseconds.
+constexpr Duration kLongestRun = 20 * 86'400 * kernel::kSecond;
+
+void expect_simulable(std::uint64_t visits_of_slot, std::uint64_t slots, std::uint64_t longest_run) {
+  if (slots <= longest_run && slots <= 4 * kMostVisits / visits_of_slot) return;
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format(
+          "a proof of this network takes {} slots or more with {} visits of the server each, which is "
+          "too long to simulate; a shorter slot (the least bound), fewer nodes, loops whose bounds are "
+          "nearer to each other or a larger overhead of the server take less",
+          slots, visits_of_slot));
+}
 
 Duration slowest_of(const WindowTraffic& traffic) {
   Duration slowest{};
@@ -49,7 +65,10 @@ class Prover {
       : own_(traffic), worst_(worst_order(traffic)), random_(seed) {
     const Duration step = traffic.overhead + traffic.empty_answer;
     const auto visits = static_cast<std::uint64_t>(std::max<std::int64_t>(1, traffic.slot / step));
-    slots_ = std::max<std::uint64_t>(100, std::min(slots, kMostVisits / visits));
+    const auto longest_run = static_cast<std::uint64_t>(kLongestRun / traffic.slot);
+    slots_ = std::max(kFewestSlots, std::min({slots, kMostVisits / visits, longest_run}));
+    const std::uint64_t runs = 2 * std::uint64_t{traffic.nodes} + kOtherRuns;
+    expect_simulable(visits, slots_ + runs * slots_of_start(traffic), longest_run);
   }
 
   Proof prove() {
@@ -59,7 +78,13 @@ class Prover {
       against(is_own, Load::just_late, 6);
     }
     from_each_node(8);
-    if (has_arrivals()) against(true, Load::arriving, 10);
+    if (floods()) {
+      proof_.has_growing_queues = true;
+    } else if (has_arrivals()) {
+      against(true, Load::arriving, 10);
+      const WindowFigures& figures = proof_.runs.back().figures;
+      proof_.has_growing_queues = figures.real_time.grows || figures.non_real_time.grows;
+    }
     proof_.slowest_own = slowest_of(own_);
     proof_.slowest_of_all = slowest_of(worst_);
     join_loop_delays();
@@ -119,6 +144,16 @@ class Prover {
         longest = std::max(longest, run.figures.loops[n].longest_delay);
       }
     }
+  }
+
+  // One packet of a queue goes in a rotation at most, and one of the server alone takes this long.
+  bool floods() const {
+    const Duration rotation = own_.nodes * own_.overhead;
+    const auto is_too_fast = [&](const QueueTraffic& queue) {
+      return queue.mean_gap > Duration::zero() && queue.mean_gap < rotation;
+    };
+    return std::ranges::any_of(own_.real_time, is_too_fast) ||
+           std::ranges::any_of(own_.non_real_time, is_too_fast);
   }
 
   bool has_arrivals() const {

@@ -26,6 +26,7 @@ struct Proof {
   kernel::Duration slowest_own{};
   kernel::Duration slowest_of_all{};
   std::vector<kernel::Duration> longest_loop_delays;  // by loop, in the network's own order
+  bool has_growing_queues = false;                    // where their packets arrive, more come than go
 
   std::uint64_t slots() const;
   bool holds() const;  // each run in the network's own order
@@ -38,7 +39,8 @@ inline constexpr std::uint64_t kSlotsOfProof = 1'000'000;
 // The same network with a non-real-time queue at each node and its data where their last one waits longest.
 WindowTraffic worst_order(const WindowTraffic& traffic);
 
-// `slots` are those of all runs together; less where a slot has very many visits.
+// `slots` are those of all runs together; less where a slot has very many visits or is very long. Throws
+// kernel::Error(configuration) where even the fewest slots have too many visits to be simulated.
 Proof prove(const WindowTraffic& traffic, std::uint64_t seed, std::uint64_t slots = kSlotsOfProof);
 
 // Why the first late datum of a run is late, in words: what the line carried before it.
