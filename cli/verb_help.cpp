@@ -184,7 +184,7 @@ std::string footer_of(std::string_view verb) {
   if (verb == "paper") {
     text += "Papers (NAME), the first by default:\n";
     for (const papers::Paper& one : papers::catalogue())
-      text += fmt::format("  {:<12}{}\n", one.name, one.title);
+      text += fmt::format("  {:<16}{}\n", one.name, one.title);
     text += '\n';
   }
   text += "Examples:\n";

@@ -165,12 +165,13 @@ std::vector<TokenCase> token_joining_cases() {
            {wait(10), solicited(), answers_above(at_once()), wait(6),
             send("000E resolves contention", resolve), wait(6), noise(15),
             silence(4 * 28, "answers_after_another", "another has answered sooner")}}),
-      on_chart(token_must(
-                   "joining/the_token_makes_it_a_member", "TB-16",
-                   "Who has answered and gets the token is in the ring: it passes the token on to the "
-                   "successor of who solicited.",
-                   standard("set_successor"),
-                   {{"successor_is_who_solicited", "token_wrong"}, {"token_to_predecessor", "token_wrong"}}),
+      on_chart(token_must("joining/the_token_makes_it_a_member", "TB-16",
+                          "Who has answered and gets the token is in the ring: it passes the token on to the "
+                          "successor of who solicited.",
+                          standard("set_successor"),
+                          {{"successor_is_who_solicited", "token_wrong"},
+                           {"token_to_predecessor", "token_wrong"},
+                           {"token_with_data", "token_wrong"}}),
                {{},
                 {wait(10), solicited(), answers_above(at_once()), wait(6), token(),
                  says("the token to 0004", {TokenControl::token, TokenBench::kBelow}, at_once(),

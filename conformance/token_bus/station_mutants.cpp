@@ -71,6 +71,14 @@ std::vector<TokenRow> token_passing_rows() {
        mutant<WritesOtherwise>(+[](Frame& frame, const TokenStation& station) {
          if (frame.kind == FrameKind::token) frame.destination = station.predecessor();
        })},
+      {"token_with_data", "", "sends an octet of data in each token",
+       mutant<WritesOtherwise>(+[](Frame& frame, const TokenStation&) {
+         if (frame.kind == FrameKind::token) frame.data = {0};
+       })},
+      {"solicits_with_data", "", "sends an octet of data in each solicit_successor_1",
+       mutant<WritesOtherwise>(+[](Frame& frame, const TokenStation&) {
+         if (frame.kind == FrameKind::solicit_successor_1) frame.data = {0};
+       })},
       {"most_significant_bit_first", "", "sends the most significant bit first",
        mutant<MostSignificantBitFirst>()},
       {"opens_no_window", "", "never solicits", mutant<OpensNoWindow>()},

@@ -59,7 +59,9 @@ std::vector<TokenCase> token_passing_cases() {
                      "When enough tokens have gone by the station solicits successors between it and its "
                      "own: one window of one slot time, then the token.",
                      mib("max_inter_solicit_count"),
-                     {{"opens_no_window", "window_missing"}, {"windows_of_two_slots", "begins_too_late"}},
+                     {{"opens_no_window", "window_missing"},
+                      {"windows_of_two_slots", "begins_too_late"},
+                      {"solicits_with_data", "window_missing"}},
                      {{standard("response windows"), {"window_wrong", "begins_too_late"}}}),
           {{},
            {joined(), until_window(), is_window(TokenControl::solicit_1, TokenBench::kBelow),

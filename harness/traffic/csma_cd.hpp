@@ -9,10 +9,12 @@
 // truncated binary exponential backoff, and a frame that is given up after 16 attempts.
 //
 // A station that has a frame waits for the line to be idle for an inter-frame gap and begins at once; who
-// begins within the propagation time of another collides with it. All have stopped a jam after the last of
-// them began, and after its k-th collision of a frame a station waits r slots more, r evenly from 0 to
-// 2^min(k, 10) - 1. Between any two stations the propagation time is the same, the longest one of the line:
-// no place on it is better. Source: ISO/IEC 8802-3 clause 4 [sure].
+// begins within the propagation time of another collides with it. All stop a jam after the last of them can
+// be received everywhere, and after its k-th collision of a frame a station waits r slots more, r evenly from
+// 0 to 2^min(k, 10) - 1. Between any two stations the propagation time is the same, the longest one of the
+// line: no place on it is better. After a collision the line is idle for all at one instant, which lets those
+// begin a propagation time early who were not in it: that favours this access.
+// Source: ISO/IEC 8802-3 clause 4 [sure].
 namespace fieldproof::traffic {
 
 struct CsmaCd {
