@@ -164,9 +164,9 @@ LinkNetwork::LinkNetwork(const LinkDescription& description, const LinkRules& ru
   for (const DataDescription& item : description_.data) {
     signals_.push_back({.name = fmt::format("word of node {} at node {}", item.from, item.to),
                         .admissible_words = has_buffers ? 2 : kMostWaiting});
+    words_.add_signal();
   }
-  sources_.resize(signals_.size());
-  has_arrived_.resize(signals_.size());
+  samples_.assign(signals_.size(), kernel::kNever);
 }
 
 segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t node, const std::string& name,
@@ -204,14 +204,9 @@ void LinkNetwork::start() {
   if (is_on_) power_down(segment_.now());
   started_ = segment_.now();
   attendance_.begin();
-  last_call_.reset();
-  got_ = 0;
-  std::fill(has_arrived_.begin(), has_arrived_.end(), false);
+  words_.begin();
+  samples_.assign(signals_.size(), kernel::kNever);
   is_on_ = true;
-  for (Source& source : sources_) {
-    source.is_called = false;
-    source.closes_at = source.sampled_at = kernel::kNever;
-  }
   if (driven_until_ <= segment_.now()) return supply(segment_.now());
   supplied_at_ = driven_until_ + octets(rules_, rules_.inter_pdu_delay_octets);
   set_wake();
@@ -221,30 +216,24 @@ void LinkNetwork::start() {
 void LinkNetwork::supply(Time now) {
   supplied_at_ = kernel::kNever;
   power_up(now);
-  for (std::size_t n = 0; n < sources_.size(); ++n) {
-    const Source& source = sources_[n];
-    give(n, source.function ? source.function(now) : source.word, now);
-  }
+  for (std::size_t n = 0; n < words_.size(); ++n) give(n, words_.sample(n, now), now);
   for (const Seat& seat : seats_) segment_.refresh(seat.number);
 }
 
 void LinkNetwork::stop() {
   is_on_ = false;
   supplied_at_ = kernel::kNever;
-  last_call_.reset();
   power_down(segment_.now());
-  for (Source& source : sources_) {
-    source.is_called = false;
-    source.closes_at = source.sampled_at = kernel::kNever;
-  }
+  words_.cancel();
+  samples_.assign(signals_.size(), kernel::kNever);
   set_wake();
   for (const Seat& seat : seats_) segment_.refresh(seat.number);
 }
 
 network::State LinkNetwork::state() const {
   const Time now = segment_.now();
-  if (got_ == sources_.size() && last_call_ && attendance_.is_complete()) {
-    const bool is_called = now - *last_call_ <= acceptance().silence_cycles * description_.macrocycle;
+  if (words_.has_all_arrived() && words_.last_call() && attendance_.is_complete()) {
+    const bool is_called = now - *words_.last_call() <= acceptance().silence_cycles * description_.macrocycle;
     return is_called && attendance_.is_lasting(now, bring_up_limit()) ? network::State::exchanging
                                                                       : network::State::stopped;
   }
@@ -266,7 +255,7 @@ Duration LinkNetwork::bring_up_limit() const {
 
 network::RecoveryLimit LinkNetwork::recovery_limit() const {
   const unsigned cycles = acceptance().recovery_cycles;
-  return {cycles * sources_.size(), cycles * description_.macrocycle, "recovery_cycles, each a macrocycle",
+  return {cycles * words_.size(), cycles * description_.macrocycle, "recovery_cycles, each a macrocycle",
           judge::Standing::own};
 }
 
@@ -284,13 +273,13 @@ std::vector<measure::Condition> LinkNetwork::conditions() const {
 }
 
 void LinkNetwork::set_source(std::size_t signal, std::uint16_t word) {
-  sources_.at(signal).word = word;
+  words_.set_word(signal, word);
   give(signal, word, segment_.now());
   refresh(description_.data[signal].from);
 }
 
 void LinkNetwork::set_source_function(std::size_t signal, std::function<std::uint16_t(Time)> word) {
-  sources_.at(signal).function = std::move(word);
+  words_.set_function(signal, std::move(word));
 }
 
 std::uint16_t LinkNetwork::image(std::size_t) const {
@@ -328,68 +317,27 @@ void LinkNetwork::on_wave(const line::Waveform& wave) {
   for (const Arrived& arrived : tester_.receive(wave)) on_driven(arrived.octets, arrived.begin, arrived.end);
 }
 
-void LinkNetwork::begin_cycle(std::size_t kind, Time when) {
-  if (watcher_ != nullptr) watcher_->on_cycle_begin(kind, when);
-}
-
 void LinkNetwork::on_called(std::size_t signal, Time begin, Time end) {
-  Source& source = sources_[signal];
-  if (source.is_called) close(signal, segment_.now());
-  source.is_called = true;
-  source.is_sent = source.is_got = false;
-  source.closes_at = end + answer_time();
-  last_call_ = begin;
+  if (words_.is_called(signal)) words_.close(signal, segment_.now());
+  words_.call(signal, begin, end + answer_time());
   if (signal == 0) begin_cycle(0, begin);
-  if (source.function) source.sampled_at = begin + description_.macrocycle - lead();
+  if (words_.has_function(signal)) samples_[signal] = begin + description_.macrocycle - lead();
   set_wake();
 }
 
-void LinkNetwork::on_sent(std::size_t signal) {
-  sources_[signal].is_sent = true;
-}
-
-void LinkNetwork::on_got(std::size_t signal, std::uint16_t word, Time when) {
-  sources_[signal].is_got = true;
-  if (!has_arrived_[signal]) {
-    has_arrived_[signal] = true;
-    ++got_;
-  }
-  if (watcher_ != nullptr) watcher_->on_shown(signal, word, when);
-}
-
 void LinkNetwork::set_wake() {
-  wakes_at_ = supplied_at_;
-  for (const Source& source : sources_) {
-    wakes_at_ =
-        std::min({wakes_at_, source.sampled_at, source.is_called ? source.closes_at : kernel::kNever});
-  }
+  wakes_at_ = std::min(supplied_at_, words_.next_close());
+  for (const Time sampled_at : samples_) wakes_at_ = std::min(wakes_at_, sampled_at);
   if (has_tester_) segment_.refresh(tester_number_);
-}
-
-void LinkNetwork::close(std::size_t signal, Time now) {
-  Source& source = sources_[signal];
-  source.is_called = false;
-  source.closes_at = kernel::kNever;
-  const Outcome outcome = source.is_got    ? Outcome::served
-                          : source.is_sent ? Outcome::rejected
-                                           : Outcome::missing;
-  if (watcher_ == nullptr) return;
-  watcher_->on_exchange({.end = now,
-                         .kind = network::ExchangeKind::data,
-                         .outcome = outcome,
-                         .retries = 0,
-                         .first_signal = signal,
-                         .signal_count = 1});
 }
 
 void LinkNetwork::on_time(Time now) {
   if (supplied_at_ <= now) supply(now);
-  for (std::size_t n = 0; n < sources_.size(); ++n) {
-    Source& source = sources_[n];
-    if (source.is_called && source.closes_at <= now) close(n, now);
-    if (source.sampled_at > now) continue;
-    source.sampled_at = kernel::kNever;
-    give(n, source.function(now), now);
+  words_.close_due(now, [](std::size_t) {});
+  for (std::size_t n = 0; n < samples_.size(); ++n) {
+    if (samples_[n] > now) continue;
+    samples_[n] = kernel::kNever;
+    give(n, words_.sample(n, now), now);
     refresh(description_.data[n].from);
   }
   set_wake();

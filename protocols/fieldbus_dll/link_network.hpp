@@ -13,6 +13,7 @@
 #include "harness/kernel/random.hpp"
 #include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
+#include "harness/network/word_exchanges.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/fieldbus_dll/line_end.hpp"
@@ -82,7 +83,7 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   void set_source_function(std::size_t signal, std::function<std::uint16_t(kernel::Time)> word) override;
   std::uint16_t image(std::size_t signal) const override;
   std::vector<network::CopiedPath> paths() const override;
-  void watch(network::ExchangeWatcher& watcher) override { watcher_ = &watcher; }
+  void watch(network::ExchangeWatcher& watcher) override { words_.watch(watcher); }
   void end() override;
 
  protected:
@@ -95,13 +96,15 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   // A station that has nothing to drive has got what is for it.
   void take_part(std::uint8_t node);
   void refresh(std::uint8_t node);
-  void begin_cycle(std::size_t kind, kernel::Time when);
+  void begin_cycle(std::size_t kind, kernel::Time when) { words_.begin_cycle(kind, when); }
   // The word of this signal is called for by what ends then.
   void on_called(std::size_t signal, kernel::Time begin, kernel::Time end);
-  bool is_called(std::size_t signal) const { return sources_[signal].is_called; }
+  bool is_called(std::size_t signal) const { return words_.is_called(signal); }
   // It has been sent; its destination has got it.
-  void on_sent(std::size_t signal);
-  void on_got(std::size_t signal, std::uint16_t word, kernel::Time when);
+  void on_sent(std::size_t signal) { words_.on_sent(signal); }
+  void on_got(std::size_t signal, std::uint16_t word, kernel::Time when) {
+    words_.on_got(signal, word, when);
+  }
   void set_cycles(std::vector<network::CycleKind> cycles) { cycles_ = std::move(cycles); }
 
   // ---- of a profile ----
@@ -119,15 +122,6 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   kernel::Duration lead() const;
 
  private:
-  struct Source {
-    std::uint16_t word = 0;
-    std::function<std::uint16_t(kernel::Time)> function{};
-    kernel::Time sampled_at = kernel::kNever;  // next
-    bool is_called = false;
-    bool is_sent = false;
-    bool is_got = false;
-    kernel::Time closes_at = kernel::kNever;
-  };
   struct Seat {
     segment::Station* station;
     std::uint8_t node;
@@ -141,7 +135,6 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   void on_wave(const line::Waveform& wave) override;
   void supply(kernel::Time now);
   void set_wake();
-  void close(std::size_t signal, kernel::Time now);
 
   LinkDescription description_;
   LinkRules rules_;
@@ -154,7 +147,8 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   std::vector<network::Place> places_;
   std::vector<network::Signal> signals_;
   std::vector<network::CycleKind> cycles_;
-  std::vector<Source> sources_;
+  network::WordExchanges words_;
+  std::vector<kernel::Time> samples_;  // when the next word of a signal is taken
   std::size_t tester_number_ = 0;
   bool has_tester_ = false;
   kernel::Time wakes_at_ = kernel::kNever;
@@ -162,10 +156,6 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   kernel::Time driven_until_{};
   kernel::Time supplied_at_ = kernel::kNever;  // a start that waits for the end of what is on the line
   bool is_on_ = false;
-  std::optional<kernel::Time> last_call_{};  // since the last start
-  std::size_t got_ = 0;                      // signals that have arrived since then
-  std::vector<bool> has_arrived_;
-  network::ExchangeWatcher* watcher_ = nullptr;
 };
 
 }  // namespace fieldproof::fieldbus_dll

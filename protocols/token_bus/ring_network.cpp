@@ -106,8 +106,9 @@ RingNetwork::RingNetwork(const RingDescription& description, std::uint64_t seed,
   for (const RingData& data : description_.data) {
     signals_.push_back({.name = fmt::format("word of station {} at station {}", data.from, data.to),
                         .admissible_words = kMostWaiting});
+    words_.add_signal();
   }
-  sources_.resize(signals_.size());
+  waits_.assign(signals_.size(), false);
   for (std::size_t n = 0; n < description_.stations.size(); ++n)
     add(description_.stations[n], n + 1, stations);
   cycles_.push_back({.name = "token rotation",
@@ -143,37 +144,39 @@ void RingNetwork::start() {
   started_ = segment_.now();
   is_on_ = true;
   for (Seat& seat : seats_) seat.device->start(started_);
-  for (std::size_t n = 0; n < sources_.size(); ++n) {
-    sources_[n].has_arrived = false;
-    give(n, started_);
-  }
+  attendance_.begin();
+  words_.begin();
+  for (std::size_t n = 0; n < words_.size(); ++n) give(n, started_);
   set_wake();
   for (const Seat& seat : seats_) segment_.refresh(seat.number);
 }
 
 void RingNetwork::stop() {
   is_on_ = false;
-  last_call_.reset();
   last_token_ = 0;
   for (Seat& seat : seats_) seat.device->stop(segment_.now());
-  for (Source& source : sources_) {
-    source.is_called = source.waits = false;
-    source.closes_at = kernel::kNever;
-  }
+  words_.cancel();
+  waits_.assign(signals_.size(), false);
   set_wake();
   for (const Seat& seat : seats_) segment_.refresh(seat.number);
 }
 
 network::State RingNetwork::state() const {
   const Time now = segment_.now();
-  const bool has_all = std::ranges::all_of(sources_, &Source::has_arrived);
-  if (has_all && last_call_ && attendance_.is_complete()) {
+  if (words_.has_all_arrived() && words_.last_call() && attendance_.is_complete()) {
     const network::AcceptanceRules rules = acceptance();
     const Duration silence =
         std::max(rules.silence_cycles * longest_rotation(description_), rules.least_silence);
-    return now - *last_call_ > silence ? network::State::stopped : network::State::exchanging;
+    const bool is_called = now - *words_.last_call() <= silence;
+    return is_called && attendance_.is_lasting(now, bring_up_limit()) ? network::State::exchanging
+                                                                      : network::State::stopped;
   }
   return !is_on_ || now - started_ > bring_up_limit() ? network::State::stopped : network::State::coming_up;
+}
+
+std::string RingNetwork::complaint() const {
+  const std::string absent = attendance_.complaint();
+  return absent.empty() ? attendance_.complaint_about_gone(segment_.now(), bring_up_limit()) : absent;
 }
 
 // Each station waits for a window, and the longest contest in it.
@@ -189,7 +192,7 @@ network::RecoveryLimit RingNetwork::recovery_limit() const {
   const std::int64_t rotations =
       acceptance().recovery_cycles + kTokensUntilWindow * static_cast<std::int64_t>(seats_.size());
   const Duration contest = contest_passes(description_.rules) * slots(description_.rules, 8);
-  return {static_cast<std::uint64_t>(rotations) * sources_.size(),
+  return {static_cast<std::uint64_t>(rotations) * words_.size(),
           rotations * longest_rotation(description_) + static_cast<std::int64_t>(seats_.size()) * contest,
           "recovery_cycles, and 20 tokens of each station, after which it opens a window",
           judge::Standing::own};
@@ -207,14 +210,12 @@ std::vector<network::ProtectedFrame> RingNetwork::protected_frames() const {
 }
 
 void RingNetwork::set_source(std::size_t signal, std::uint16_t word) {
-  sources_.at(signal).word = word;
-  if (!is_on_) return;
-  give(signal, segment_.now());
-  segment_.refresh(seat_of(description_.data[signal].from).number);
+  words_.set_word(signal, word);
+  if (is_on_) give_next(signal, segment_.now());
 }
 
 void RingNetwork::set_source_function(std::size_t signal, std::function<std::uint16_t(Time)> word) {
-  sources_.at(signal).function = std::move(word);
+  words_.set_function(signal, std::move(word));
 }
 
 std::uint16_t RingNetwork::image(std::size_t) const {
@@ -249,15 +250,14 @@ RingNetwork::Seat& RingNetwork::seat_of(Address address) {
 
 // One word at a time: what waits for a token goes first.
 void RingNetwork::give(std::size_t signal, Time now) {
-  Source& source = sources_[signal];
-  if (source.waits) return;
-  if (source.function) source.word = source.function(now);
+  if (waits_[signal]) return;
+  const std::uint16_t word = words_.sample(signal, now);
   const RingData& data = description_.data[signal];
-  source.waits = seat_of(data.from).device->submit(
+  waits_[signal] = seat_of(data.from).device->submit(
       {.priority = kWordPriority,
        .destination = data.to,
-       .data = {static_cast<std::uint8_t>(signal), static_cast<std::uint8_t>(source.word >> 8),
-                static_cast<std::uint8_t>(source.word & 0xFF)}},
+       .data = {static_cast<std::uint8_t>(signal), static_cast<std::uint8_t>(word >> 8),
+                static_cast<std::uint8_t>(word & 0xFF)}},
       now);
 }
 
@@ -267,73 +267,56 @@ void RingNetwork::on_wave(const line::Waveform& wave) {
         one.kind == ReceptionKind::frame ? frame_of(one.octets, description_.rules) : std::nullopt;
     if (!frame) continue;
     if (frame->kind == FrameKind::token) on_token(frame->destination, wave.start, wave.end());
-    const bool is_word = frame->kind == FrameKind::data && frame->data.size() == kWordOctets &&
-                         frame->data[0] < sources_.size();
+    const bool is_word =
+        frame->kind == FrameKind::data && frame->data.size() == kWordOctets && frame->data[0] < words_.size();
     if (!is_word) continue;
-    sources_[frame->data[0]].is_sent = true;
-    sources_[frame->data[0]].waits = false;
+    words_.on_sent(frame->data[0]);
+    waits_[frame->data[0]] = false;
   }
 }
 
 void RingNetwork::on_token(Address destination, Time begin, Time end) {
   // A token that is repeated begins no other round.
   const bool is_next = std::exchange(last_token_, destination) != destination;
-  if (is_next && destination == description_.stations.front() && watcher_ != nullptr)
-    watcher_->on_cycle_begin(0, begin);
+  if (is_next && destination == description_.stations.front()) words_.begin_cycle(0, begin);
   const Duration of_word = frame_time(description_.rules, kWordOctets) + slots(description_.rules, 1);
   std::int64_t words = 0;
-  for (std::size_t n = 0; n < sources_.size(); ++n) {
+  for (std::size_t n = 0; n < words_.size(); ++n) {
     if (description_.data[n].from != destination) continue;
-    Source& source = sources_[n];
-    const bool is_repeated = source.is_called && !source.is_sent;
-    if (source.is_called && !is_repeated) close(n, begin);
-    source.retries = is_repeated ? source.retries + 1 : 0;
-    source.is_called = true;
-    source.is_sent = source.is_got = false;
-    source.closes_at = end + ++words * of_word;
-    last_call_ = begin;
+    const Time closes_at = end + ++words * of_word;
+    if (words_.is_called(n) && !words_.is_sent(n)) {
+      words_.call_again(n, begin, closes_at);
+      continue;
+    }
+    if (words_.is_called(n)) {
+      words_.close(n, begin);
+      give_next(n, begin);
+    }
+    words_.call(n, begin, closes_at);
   }
   set_wake();
 }
 
 void RingNetwork::on_data(Address at, const Frame& frame, Time when) {
-  if (frame.data.size() != kWordOctets || frame.data[0] >= sources_.size()) return;
+  if (frame.data.size() != kWordOctets || frame.data[0] >= words_.size()) return;
   const std::size_t signal = frame.data[0];
   const RingData& data = description_.data[signal];
   if (data.to != at || data.from != frame.source) return;
-  sources_[signal].is_got = sources_[signal].has_arrived = true;
-  if (watcher_ == nullptr) return;
-  watcher_->on_shown(signal, static_cast<std::uint16_t>(frame.data[1] << 8 | frame.data[2]), when);
+  words_.on_got(signal, static_cast<std::uint16_t>(frame.data[1] << 8 | frame.data[2]), when);
 }
 
-void RingNetwork::close(std::size_t signal, Time now) {
-  Source& source = sources_[signal];
-  source.is_called = false;
-  source.closes_at = kernel::kNever;
-  const network::Outcome outcome = source.is_got    ? network::Outcome::served
-                                   : source.is_sent ? network::Outcome::rejected
-                                                    : network::Outcome::missing;
-  if (watcher_ != nullptr) {
-    watcher_->on_exchange({.end = now,
-                           .outcome = outcome,
-                           .retries = source.retries,
-                           .first_signal = signal,
-                           .signal_count = 1});
-  }
+void RingNetwork::give_next(std::size_t signal, Time now) {
   give(signal, now);
   segment_.refresh(seat_of(description_.data[signal].from).number);
 }
 
 void RingNetwork::set_wake() {
-  wakes_at_ = kernel::kNever;
-  for (const Source& source : sources_) wakes_at_ = std::min(wakes_at_, source.closes_at);
+  wakes_at_ = words_.next_close();
   if (has_tester_) segment_.refresh(tester_number_);
 }
 
 void RingNetwork::on_time(Time now) {
-  for (std::size_t n = 0; n < sources_.size(); ++n) {
-    if (sources_[n].is_called && sources_[n].closes_at <= now) close(n, now);
-  }
+  words_.close_due(now, [&](std::size_t signal) { give_next(signal, now); });
   set_wake();
 }
 

@@ -13,6 +13,7 @@
 #include "harness/kernel/random.hpp"
 #include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
+#include "harness/network/word_exchanges.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/token_bus/device.hpp"
@@ -55,7 +56,8 @@ struct RingStations {
 
 // An exchange carries one word; it begins with the token for its source, as the lower tester sees it on the
 // line, and ends when the word must be over. Served: the application of the destination has it. A token that
-// is repeated is a retry of the exchange. Stopped: no source got the token for long.
+// is repeated is a retry of the exchange. Stopped: no source got the token for long, or a station under test
+// drives no more.
 class RingNetwork final : public network::Network, private segment::Station, private segment::Tap {
  public:
   RingNetwork(const RingDescription& description, std::uint64_t seed, const RingStations& stations = {});
@@ -66,7 +68,7 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   void stop() override;
   network::State state() const override;
   kernel::Duration bring_up_limit() const override;
-  std::string complaint() const override { return attendance_.complaint(); }
+  std::string complaint() const override;
   std::span<const network::Place> places() const override { return places_; }
   std::span<const network::CycleKind> cycles() const override { return cycles_; }
   network::RecoveryLimit recovery_limit() const override;
@@ -80,7 +82,7 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   void set_source_function(std::size_t signal, std::function<std::uint16_t(kernel::Time)> word) override;
   std::uint16_t image(std::size_t signal) const override;
   std::vector<network::CopiedPath> paths() const override;
-  void watch(network::ExchangeWatcher& watcher) override { watcher_ = &watcher; }
+  void watch(network::ExchangeWatcher& watcher) override { words_.watch(watcher); }
   void end() override;
 
  private:
@@ -100,17 +102,6 @@ class RingNetwork final : public network::Network, private segment::Station, pri
     std::unique_ptr<User> user;
     std::size_t number = 0;
   };
-  struct Source {
-    std::uint16_t word = 0;
-    std::function<std::uint16_t(kernel::Time)> function{};
-    bool waits = false;  // submitted, and not seen on the line yet
-    bool is_called = false;
-    bool is_sent = false;
-    bool is_got = false;
-    bool has_arrived = false;  // since the last start
-    std::uint64_t retries = 0;
-    kernel::Time closes_at = kernel::kNever;
-  };
 
   void add(Address address, std::size_t position, const RingStations& stations);
   void receive(segment::PortIndex, const line::Waveform&) override {}
@@ -120,7 +111,7 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   void on_token(Address destination, kernel::Time begin, kernel::Time end);
   void on_data(Address at, const Frame& frame, kernel::Time when);
   void give(std::size_t signal, kernel::Time now);
-  void close(std::size_t signal, kernel::Time now);
+  void give_next(std::size_t signal, kernel::Time now);
   void set_wake();
   Seat& seat_of(Address address);
 
@@ -134,15 +125,14 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   std::vector<network::Place> places_;
   std::vector<network::Signal> signals_;
   std::vector<network::CycleKind> cycles_;
-  std::vector<Source> sources_;
+  network::WordExchanges words_;
+  std::vector<bool> waits_;  // by signal: submitted, and not seen on the line yet
   std::size_t tester_number_ = 0;
   bool has_tester_ = false;
   bool is_on_ = false;
   kernel::Time started_{};
   kernel::Time wakes_at_ = kernel::kNever;
-  std::optional<kernel::Time> last_call_{};  // since the last start
-  Address last_token_ = 0;                   // for whom the last token was; 0: none yet
-  network::ExchangeWatcher* watcher_ = nullptr;
+  Address last_token_ = 0;  // for whom the last token was; 0: none yet
 };
 
 }  // namespace fieldproof::token_bus

@@ -72,6 +72,39 @@ TEST(RingNetwork, AStationThatIsSilentKeepsItFromComingUp) {
   EXPECT_NE(ring.complaint().find("station@2"), std::string::npos);
 }
 
+constexpr kernel::Time kDead = kernel::kStart + kernel::kSecond;
+
+// The others take it out of their ring, and its words are not called for any more: nothing is lost that they
+// count.
+TEST(RingNetwork, StopsWhenAStationDies) {
+  class Dies final : public TokenStation {
+   public:
+    using TokenStation::TokenStation;
+    void receive(segment::PortIndex port, const line::Waveform& reception) override {
+      if (reception.start < kDead) TokenStation::receive(port, reception);
+    }
+    void on_time(kernel::Time now) override {
+      if (now < kDead) TokenStation::on_time(now);
+    }
+    kernel::Time next_time() const override {
+      const kernel::Time next = TokenStation::next_time();
+      return next < kDead ? next : kernel::kNever;
+    }
+  };
+  RingNetwork ring(RingDescription::built_in(3), 1,
+                   {.make = [](std::size_t position,
+                               const StationConfiguration& configuration) -> std::unique_ptr<StationDevice> {
+                     if (position == 2) return std::make_unique<Dies>(configuration);
+                     return nullptr;
+                   }});
+  ring.start();
+  ring.segment().run_until(kDead);
+  EXPECT_EQ(ring.state(), network::State::exchanging);
+  ring.segment().run_for(ring.bring_up_limit() + kernel::kSecond);
+  EXPECT_EQ(ring.state(), network::State::stopped);
+  EXPECT_NE(ring.complaint().find("station@2 takes part no more"), std::string::npos) << ring.complaint();
+}
+
 TEST(RingDescriptionReader, RefusesWhatIsNoRing) {
   const auto read = [](const std::string& text) {
     const config::Document document = config::Document::parse(text, "ring.json");
