@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "harness/line/frame_check.hpp"
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -26,8 +28,18 @@ LineWatch line_watch_of(const token_bus::Rules& rules) {
 
 }  // namespace
 
-bool TokenUser::has_event(token_bus::EventKind kind) const {
-  return std::ranges::any_of(events, [&](const token_bus::Event& one) { return one.kind == kind; });
+bool is_reported_as(const DrivenFrame& sent, const token_bus::Frame& frame) {
+  // MMM, its highest bit first.
+  const auto action = static_cast<unsigned>(line::reflect(sent.control() >> 2U & 7U, 3));
+  return sent.is_data() && frame.kind == token_bus::FrameKind::data &&
+         static_cast<unsigned>(frame.action) == action && frame.priority == sent.priority() &&
+         frame.destination == sent.destination() && frame.source == sent.source() &&
+         frame.data == sent.data();
+}
+
+bool TokenUser::has_event(token_bus::EventKind kind, std::uint64_t about) const {
+  return std::ranges::any_of(
+      events, [&](const token_bus::Event& one) { return one.kind == kind && one.address == about; });
 }
 
 TokenBench::TokenBench(const TokenNeeds& needs, const TokenSetting& setting)

@@ -29,12 +29,15 @@ struct TokenNeeds {
 
 using TokenSetting = PlannedSetting<token_bus::StationDevice, token_bus::StationConfiguration>;
 
+// What a user must get of data that were sent: nothing but the check is gone.
+bool is_reported_as(const DrivenFrame& sent, const token_bus::Frame& frame);
+
 // The IUT's user.
 class TokenUser final : public token_bus::StationUser {
  public:
   void on_data(const token_bus::Frame& frame, kernel::Time) override { frames.push_back(frame); }
   void on_event(const token_bus::Event& event, kernel::Time) override { events.push_back(event); }
-  bool has_event(token_bus::EventKind kind) const;
+  bool has_event(token_bus::EventKind kind, std::uint64_t about) const;
 
   std::vector<token_bus::Frame> frames;
   std::vector<token_bus::Event> events;

@@ -50,12 +50,6 @@ TokenStep is_requested(SpanOf span) {
   });
 }
 
-TokenStep reported(std::string text, token_bus::EventKind kind) {
-  return require(
-      text + " is reported to its user",
-      [kind](TokenScene& scene) { return scene.bench.user().has_event(kind); }, "not_reported");
-}
-
 }  // namespace
 
 std::vector<TokenCase> token_failure_cases() {
@@ -77,7 +71,7 @@ std::vector<TokenCase> token_failure_cases() {
             says("anybody is solicited", {TokenControl::solicit_2, kOwnAddress}, after_slots(3),
                  "any_missing", "any_wrong"),
             silence(6 * 28, "speaks_after_failure", "nobody is there"),
-            reported("the failure", EventKind::pass_failed)}}),
+            reported("the failure", EventKind::pass_failed, kOwnAddress)}}),
       on_chart(token_must("failure/who_follows_the_lost_one_is_the_successor", "TB-22",
                           "Who answers who_follows is the successor, and gets the token.",
                           standard("who_follows"), {{"answer_not_taken", "token_missing"}}),
@@ -111,7 +105,7 @@ std::vector<TokenCase> token_failure_cases() {
           {{},
            {joined(), until_window(), wait(6), stranger_sends("data to 0004", 0x62),
             silence(5 * 28, "token_kept", "another holds the token"),
-            reported("it", EventKind::unexpected_frame)}}),
+            reported("it", EventKind::unexpected_frame, TokenBench::kStranger)}}),
       on_chart(token_must(
                    "failure/requests_are_repeated", "TB-27",
                    "A request without a response is repeated as often as max_retry_limit says, then "
@@ -122,7 +116,8 @@ std::vector<TokenCase> token_failure_cases() {
                {{},
                 {joined(), request(), token(), is_requested(at_once()), is_requested(after_slots(3)),
                  is_requested(after_slots(3)), passes_below(after_slots(3)),
-                 reported("the missing response", EventKind::response_missing), taken(), serves()}}),
+                 reported("the missing response", EventKind::response_missing, TokenBench::kBelow), taken(),
+                 serves()}}),
       on_chart(token_must("failure/a_response_ends_the_request", "TB-27",
                           "A response is reported to the user, and the token goes on.", standard("response"),
                           {{"response_not_taken", "token_wrong"}}),
@@ -139,7 +134,7 @@ std::vector<TokenCase> token_failure_cases() {
                      "the response is reported to its user",
                      [](TokenScene& scene) {
                        const auto& frames = scene.bench.user().frames;
-                       return frames.size() == 1 && frames[0].data == scene.data;
+                       return frames.size() == 1 && is_reported_as(scene.bench.sent().back(), frames[0]);
                      },
                      "response_not_reported")}}),
       on_chart(
@@ -150,7 +145,7 @@ std::vector<TokenCase> token_failure_cases() {
           {{},
            {joined(), request(), token(), is_requested(at_once()), wait(6),
             stranger_sends("data to 0004", 0x62), silence(5 * 28, "token_kept", "another holds the token"),
-            reported("it", EventKind::unexpected_frame)}}),
+            reported("it", EventKind::unexpected_frame, TokenBench::kStranger)}}),
       on_chart(token_must("failure/the_second_of_an_address_is_silent", "TB-29",
                           "A station that receives a frame with its own address as the source reports it and "
                           "goes offline.",
@@ -162,7 +157,7 @@ std::vector<TokenCase> token_failure_cases() {
                         return scene.bench.frame(TokenControl::token, TokenBench::kBelow, kOwnAddress);
                       }),
                  wait(8), token(), silence(10 * 28, "speaks_as_duplicate", "its address is another's"),
-                 reported("it", EventKind::duplicate_address)}}),
+                 reported("it", EventKind::duplicate_address, kOwnAddress)}}),
   };
 }
 

@@ -171,11 +171,14 @@ std::vector<TokenCase> token_joining_cases() {
                           standard("set_successor"),
                           {{"successor_is_who_solicited", "token_wrong"},
                            {"token_to_predecessor", "token_wrong"},
-                           {"token_with_data", "token_wrong"}}),
+                           {"token_with_data", "token_wrong"},
+                           {"joins_unreported", "not_reported"},
+                           {"reports_about_a_stranger", "not_reported"}}),
                {{},
                 {wait(10), solicited(), answers_above(at_once()), wait(6), token(),
                  says("the token to 0004", {TokenControl::token, TokenBench::kBelow}, at_once(),
-                      "token_missing", "token_wrong")}}),
+                      "token_missing", "token_wrong"),
+                 reported("that it has joined", token_bus::EventKind::joined, TokenBench::kAbove)}}),
       on_chart(
           token_must("joining/answers_for_its_predecessor", "TB-23",
                      "When a token passer asks who follows a station, the one whose predecessor that is "

@@ -56,6 +56,15 @@ std::vector<TokenRow> token_joining_rows() {
       {"yields_to_nobody", "", "answers in a contest though another was sooner", mutant<YieldsToNobody>()},
       {"successor_is_who_solicited", "", "takes who solicited for its successor",
        mutant<SuccessorIsWhoSolicited>()},
+      {"joins_unreported", "", "reports to its user not that it has joined",
+       mutant<ReportsOtherwise>(ReportsOtherwise::Change{
+           .of_event = +[](token_bus::Event& event) { return event.kind != token_bus::EventKind::joined; }})},
+      {"reports_about_a_stranger", "", "reports each event about another station",
+       mutant<ReportsOtherwise>(ReportsOtherwise::Change{.of_event =
+                                                             +[](token_bus::Event& event) {
+                                                               event.address = 0x22;
+                                                               return true;
+                                                             }})},
       {"answers_as_the_lost_one", "TB-16", "answers who_follows about itself, not about its predecessor",
        mutant<AnswersAsTheLostOne>()},
       {"always_joins", "", "joins though it is not to be in the ring", mutant<AlwaysJoins>()},
@@ -141,6 +150,16 @@ std::vector<TokenRow> token_reception_rows() {
   using namespace token_seeded_faults;
   return {
       {"check_not_looked_at", "", "takes frames with any check", mutant<ReadsBy<CheckNotLookedAt>>()},
+      {"delivers_as_if_to_itself", "", "gives data to its user as if they were for itself alone",
+       mutant<ReportsOtherwise>(ReportsOtherwise::Change{
+           .of_data =
+               +[](Frame& frame, const TokenStation& station) { frame.destination = station.address(); }})},
+      {"delivers_from_another", "", "gives data to its user as if another had sent them",
+       mutant<ReportsOtherwise>(ReportsOtherwise::Change{
+           .of_data = +[](Frame& frame, const TokenStation&) { frame.source = 0x22; }})},
+      {"delivers_with_another_priority", "", "gives data to its user with another priority",
+       mutant<ReportsOtherwise>(ReportsOtherwise::Change{
+           .of_data = +[](Frame& frame, const TokenStation&) { frame.priority ^= 1U; }})},
       {"check_in_other_order_taken", "TB-23", "takes a check with its octets in the other order, too",
        mutant<ReadsBy<CheckInOtherOrderToo>>()},
       {"error_bit_ignored", "TB-22", "does not look at the E bit", mutant<ReadsBy<ErrorBitIgnored>>()},

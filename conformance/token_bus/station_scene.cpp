@@ -204,5 +204,11 @@ TokenStep require(std::string text, std::function<bool(TokenScene&)> holds, std:
   });
 }
 
+TokenStep reported(const std::string& text, token_bus::EventKind kind, std::uint64_t about) {
+  return require(
+      fmt::format("{} is reported to its user, about {:04X}", text, about),
+      [kind, about](TokenScene& scene) { return scene.bench.user().has_event(kind, about); }, "not_reported");
+}
+
 }  // namespace token_chart
 }  // namespace fieldproof::conformance

@@ -101,6 +101,8 @@ TokenStep silence(std::int64_t octets, std::string reason, std::string why);
 TokenStep serves();
 TokenStep repeat(Rounds times, std::vector<TokenStep> steps);
 TokenStep require(std::string text, std::function<bool(TokenScene&)> holds, std::string reason);
+// To its user, and about whom: `not_reported`.
+TokenStep reported(const std::string& text, token_bus::EventKind kind, std::uint64_t about);
 
 }  // namespace token_chart
 }  // namespace fieldproof::conformance

@@ -459,6 +459,35 @@ class WritesOtherwise : public TokenStation {
   Change change_;
 };
 
+// What it has right, its user gets otherwise; an event may be kept from it.
+class ReportsOtherwise : public TokenStation, private token_bus::StationUser {
+ public:
+  struct Change {
+    void (*of_data)(Frame&, const TokenStation&) = nullptr;
+    bool (*of_event)(token_bus::Event&) = nullptr;  // false: it is kept
+  };
+  ReportsOtherwise(const StationConfiguration& configuration, Change change)
+      : TokenStation(configuration), change_(change) {}
+  void wire(segment::Port& line, token_bus::StationUser& user) override {
+    user_ = &user;
+    TokenStation::wire(line, *this);
+  }
+
+ private:
+  void on_data(const Frame& frame, Time when) override {
+    Frame other = frame;
+    if (change_.of_data != nullptr) change_.of_data(other, *this);
+    user_->on_data(other, when);
+  }
+  void on_event(const token_bus::Event& event, Time when) override {
+    token_bus::Event other = event;
+    if (change_.of_event == nullptr || change_.of_event(other)) user_->on_event(other, when);
+  }
+
+  Change change_;
+  token_bus::StationUser* user_ = nullptr;
+};
+
 // Its octets go most significant bit first.
 class MostSignificantBitFirst : public TokenStation {
   using TokenStation::TokenStation;
