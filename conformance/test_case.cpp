@@ -24,6 +24,17 @@ judge::Reference TestCase::rests_on() const {
   return all;
 }
 
+TestCase must_case(std::string id, std::string purpose, std::string requirement, judge::Reference reference,
+                   std::vector<MustCatch> catches, std::vector<PartialSource> details) {
+  return {.id = std::move(id),
+          .purpose = std::move(purpose),
+          .requirement = std::move(requirement),
+          .reference = std::move(reference),
+          .details = std::move(details),
+          .tags = {"must"},
+          .catches = std::move(catches)};
+}
+
 void rest_also_on(TestCase& test_case, const std::vector<PartialSource>& details) {
   const auto is_told = [own = test_case.details](const std::string& reason) {
     return std::ranges::any_of(own, [&](const PartialSource& one) {

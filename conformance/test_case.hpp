@@ -62,6 +62,10 @@ struct TestCase {
   judge::Reference rests_on() const;
 };
 
+// A case about what an implementation must do; stimulus, expected and steps come from its chart.
+TestCase must_case(std::string id, std::string purpose, std::string requirement, judge::Reference reference,
+                   std::vector<MustCatch> catches, std::vector<PartialSource> details = {});
+
 // Adds the details to the case, but for reasons that details of its own are about.
 void rest_also_on(TestCase& test_case, const std::vector<PartialSource>& details);
 

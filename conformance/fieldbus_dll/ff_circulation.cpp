@@ -221,17 +221,17 @@ std::vector<FfCase> ff_circulation_cases() {
   const PartialSource step{own("one step for each circulation; the first one is urgent"),
                            {"priority_not_lowered", "priority_not_raised"}};
   return {
-      on_chart(
-          must("fieldbus_dll/ff_las/circulation/tokens_go_round", "FF-18",
-               "The token is passed to each live node in the order of addresses; the first PT is marked.",
-               ff_paper("token circulation list"),
-               {{"descending_order", "order_wrong"}, {"begin_not_marked", "begin_not_marked"}},
-               {{vendors("the subfield Restart"), {"begin_not_marked"}}}),
-          {{},
-           {serve({1'500, 20'000}),
-            expected<FfScene>("PTs for 11, 12, 13, 14, again and again, the first one of them marked",
-                              expect_tokens_in_turn)}},
-          {.change = four_nodes<1'000>}),
+      on_chart(must_case(
+                   "fieldbus_dll/ff_las/circulation/tokens_go_round", "FF-18",
+                   "The token is passed to each live node in the order of addresses; the first PT is marked.",
+                   ff_paper("token circulation list"),
+                   {{"descending_order", "order_wrong"}, {"begin_not_marked", "begin_not_marked"}},
+                   {{vendors("the subfield Restart"), {"begin_not_marked"}}}),
+               {{},
+                {serve({1'500, 20'000}),
+                 expected<FfScene>("PTs for 11, 12, 13, 14, again and again, the first one of them marked",
+                                   expect_tokens_in_turn)}},
+               {.change = four_nodes<1'000>}),
       {{.id = "fieldbus_dll/ff_las/circulation/each_probes",
         .purpose = "FF-23",
         .requirement =
@@ -247,9 +247,9 @@ std::vector<FfCase> ff_circulation_cases() {
                     {"probes_descending", "probes_out_of_order"}}},
        each_circulation_probes,
        {.change = four_nodes<1'000>}},
-      on_chart(must("fieldbus_dll/ff_las/circulation/its_own_data_has_its_turn", "FF-18",
-                    "The scheduler itself has a turn in each circulation.", own("the scheduler's own turn"),
-                    {{"own_data_kept", "own_data_not_sent"}}),
+      on_chart(must_case("fieldbus_dll/ff_las/circulation/its_own_data_has_its_turn", "FF-18",
+                         "The scheduler itself has a turn in each circulation.",
+                         own("the scheduler's own turn"), {{"own_data_kept", "own_data_not_sent"}}),
                {{2, 20},
                 {submit({Priority::urgent}, 10), serve({3 * kFastRotation, 3 * kFastRotation}),
                  require(

@@ -90,26 +90,27 @@ std::vector<FfCase> ff_link_settings_cases() {
   using link_sources::own;
   return {
       on_chart(
-          must("fieldbus_dll/ff_device/settings/a_long_preamble_is_sent", "FF-43",
-               "A station sends as many octets of preamble as its link has.", line("preamble and delimiters"),
-               {{"preamble_of_the_usual_link", "frame_length_wrong"},
-                {"mute_after_activation", "not_published"}}),
+          must_case("fieldbus_dll/ff_device/settings/a_long_preamble_is_sent", "FF-43",
+                    "A station sends as many octets of preamble as its link has.",
+                    line("preamble and delimiters"),
+                    {{"preamble_of_the_usual_link", "frame_length_wrong"},
+                     {"mute_after_activation", "not_published"}}),
           {{},
            {all_served, expected<FfScene>("each of its DLPDUs has four octets of preamble", expect_lengths)}},
           {.change = with_long_preamble, .is_live = false}),
-      on_chart(must("fieldbus_dll/ff_device/settings/other_codes_are_used", "FF-43",
-                    "The first octets of DLPDUs are those of the link.",
-                    own("codes are settings, because their standard was not at hand"),
-                    {{"codes_of_the_usual_link", "no_probe_response"},
-                     {"mute_after_activation", "not_published"}}),
+      on_chart(must_case("fieldbus_dll/ff_device/settings/other_codes_are_used", "FF-43",
+                         "The first octets of DLPDUs are those of the link.",
+                         own("codes are settings, because their standard was not at hand"),
+                         {{"codes_of_the_usual_link", "no_probe_response"},
+                          {"mute_after_activation", "not_published"}}),
                {{}, {all_served}}, {.change = with_other_codes, .is_live = false}),
-      on_chart(must("fieldbus_dll/ff_device/token/a_long_duration_is_used", "FF-44",
-                    "The duration of a PT has 16 bits, of which none is a sign.",
-                    ff_paper("duration of the token"),
-                    {{"duration_of_12_bits", "token_not_returned"},
-                     {"duration_with_sign", "token_not_returned"},
-                     {"mute_after_activation", "token_not_returned"}},
-                    {{memory("the size of the duration"), {"frames_missing", "token_not_returned"}}}),
+      on_chart(must_case("fieldbus_dll/ff_device/token/a_long_duration_is_used", "FF-44",
+                         "The duration of a PT has 16 bits, of which none is a sign.",
+                         ff_paper("duration of the token"),
+                         {{"duration_of_12_bits", "token_not_returned"},
+                          {"duration_with_sign", "token_not_returned"},
+                          {"mute_after_activation", "token_not_returned"}},
+                         {{memory("the size of the duration"), {"frames_missing", "token_not_returned"}}}),
                {{7, 7},
                 {submit({time_available, time_available, time_available}, 200),
                  send("a PT for 4096, 4100, 8192, 16384, 32768, 32780, 65535 octet durations, in turn",
@@ -119,11 +120,11 @@ std::vector<FfCase> ff_link_settings_cases() {
                         return scene.bench.pt(time_available, kDurations[scene.round]);
                       }),
                  used({1, 2, 3}, {"frames_missing", "sent_twice"})}}),
-      on_chart(must("fieldbus_dll/ff_device/frame/the_longest_is_delivered", "FF-39",
-                    "A DLSDU has at most 64, 128, 256 octets when it is urgent, normal, time-available.",
-                    memory("the longest DLSDU of each priority"),
-                    {{"deaf_to_long_frames", "longest_not_delivered"},
-                     {"mute_after_activation", "does_not_recover"}}),
+      on_chart(must_case("fieldbus_dll/ff_device/frame/the_longest_is_delivered", "FF-39",
+                         "A DLSDU has at most 64, 128, 256 octets when it is urgent, normal, time-available.",
+                         memory("the longest DLSDU of each priority"),
+                         {{"deaf_to_long_frames", "longest_not_delivered"},
+                          {"mute_after_activation", "does_not_recover"}}),
                {{3, 3},
                 {send("a DT1 to the station, urgent with 64, normal with 128, time-available with 256 "
                       "octets, in turn",
@@ -135,32 +136,32 @@ std::vector<FfCase> ff_link_settings_cases() {
                             scene.fresh(fieldbus_dll::most_data(scene.bench.link(), priority)));
                       }),
                  wait(20), delivered("longest_not_delivered"), serves()}}),
-      on_chart(
-          must("fieldbus_dll/ff_device/publisher/one_of_another_link_is_another", "FF-45",
-               "A publisher is known by its whole address, the link with it.", own("subscription by address"),
-               {{"subscribed_without_link", "other_buffer_delivered"},
-                {"mute_after_activation", "does_not_recover"}}),
-          {{},
-           {repeat({2, 2}, {send("a DT3 with the node and selector of a publisher of another link, of a "
-                                 "third link and then without one",
-                                 [](FfScene& scene) {
-                                   return scene.bench.dt3((scene.turn == 0 ? kOtherLink : FfAddress{0}) |
-                                                              (kFarPublisher & kNodeAndSelector),
-                                                          scene.bench.numbered_data(8));
-                                 }),
-                            wait(20), nothing_delivered("other_buffer_delivered")}),
-            send("a DT3 of the publisher",
-                 [](FfScene& scene) { return scene.bench.dt3(kFarPublisher, scene.fresh(8)); }),
-            wait(20),
-            require(
-                "it is delivered",
-                [](FfScene& scene) {
-                  const auto& all = scene.bench.user().published;
-                  return all.size() == 1 && all[0].data == scene.data;
-                },
-                "subscription_not_delivered"),
-            serves()}},
-          {.change = with_far_publisher}),
+      on_chart(must_case("fieldbus_dll/ff_device/publisher/one_of_another_link_is_another", "FF-45",
+                         "A publisher is known by its whole address, the link with it.",
+                         own("subscription by address"),
+                         {{"subscribed_without_link", "other_buffer_delivered"},
+                          {"mute_after_activation", "does_not_recover"}}),
+               {{},
+                {repeat({2, 2}, {send("a DT3 with the node and selector of a publisher of another link, of a "
+                                      "third link and then without one",
+                                      [](FfScene& scene) {
+                                        return scene.bench.dt3((scene.turn == 0 ? kOtherLink : FfAddress{0}) |
+                                                                   (kFarPublisher & kNodeAndSelector),
+                                                               scene.bench.numbered_data(8));
+                                      }),
+                                 wait(20), nothing_delivered("other_buffer_delivered")}),
+                 send("a DT3 of the publisher",
+                      [](FfScene& scene) { return scene.bench.dt3(kFarPublisher, scene.fresh(8)); }),
+                 wait(20),
+                 require(
+                     "it is delivered",
+                     [](FfScene& scene) {
+                       const auto& all = scene.bench.user().published;
+                       return all.size() == 1 && all[0].data == scene.data;
+                     },
+                     "subscription_not_delivered"),
+                 serves()}},
+               {.change = with_far_publisher}),
   };
 }
 

@@ -55,13 +55,14 @@ std::vector<IsaCase> isa_data_cases() {
   using link_sources::own;
   return {
       on_chart(
-          must("fieldbus_dll/isa_dle/data/the_longest_is_sent_and_no_longer", "ISA-27",
-               "A DLSDU has at most 64, 128, 256 octets when it is urgent, normal, time-available.",
-               memory("the longest DLSDU of each priority"),
-               {{"urgent_as_long_as_normal", "too_long_taken"}, {"one_octet_less", "longest_refused"}}),
+          must_case("fieldbus_dll/isa_dle/data/the_longest_is_sent_and_no_longer", "ISA-27",
+                    "A DLSDU has at most 64, 128, 256 octets when it is urgent, normal, time-available.",
+                    memory("the longest DLSDU of each priority"),
+                    {{"urgent_as_long_as_normal", "too_long_taken"}, {"one_octet_less", "longest_refused"}}),
           {{3, 3},
            {submit_longest(), es(time_available, 1'000), used({1}, {"longest_not_sent", "too_long_sent"})}}),
-      on_chart(must("fieldbus_dll/isa_dle/data/is_delivered_to_whom_it_is_for", "ISA-28",
+      on_chart(
+          must_case("fieldbus_dll/isa_dle/data/is_delivered_to_whom_it_is_for", "ISA-28",
                     "Data is delivered to the station that it is for, a DU to everybody to all; it is not "
                     "answered.",
                     isa_paper("data and their stations"),
@@ -73,13 +74,13 @@ std::vector<IsaCase> isa_data_cases() {
                      {"others_data_delivered", "others_data_delivered"}},
                     {{own("a DU may be for everybody, a DT for one station only"),
                       {"broadcast_not_delivered", "invalid_data_delivered"}}}),
-               {{15, 150},
-                {send("a DU to the station, to everybody, to another, a DT to everybody, to another, in turn "
-                      "and of each priority",
-                      data_of_round),
-                 silence("data_answered", "data is not answered"),
-                 expected<IsaScene>("those of the first two kinds are delivered, the others not",
-                                    expect_delivered_to_whom_it_is_for)}}),
+          {{15, 150},
+           {send("a DU to the station, to everybody, to another, a DT to everybody, to another, in turn "
+                 "and of each priority",
+                 data_of_round),
+            silence("data_answered", "data is not answered"),
+            expected<IsaScene>("those of the first two kinds are delivered, the others not",
+                               expect_delivered_to_whom_it_is_for)}}),
   };
 }
 

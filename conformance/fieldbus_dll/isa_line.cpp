@@ -37,9 +37,9 @@ line::Waveform jittered(IsaBench& bench, const line::Levels& half_bits) {
 
 IsaCase at_rate(std::int64_t bit_rate, const std::string& name) {
   using namespace isa_chart;
-  return on_chart(must("fieldbus_dll/isa_dle/line/a_token_is_used_at_" + name, "ISA-01",
-                       "All that is counted in octets scales with the bit rate.",
-                       link_sources::line("bit rates"), {{"timers_of_31250", "token_not_returned"}}),
+  return on_chart(must_case("fieldbus_dll/isa_dle/line/a_token_is_used_at_" + name, "ISA-01",
+                            "All that is counted in octets scales with the bit rate.",
+                            link_sources::line("bit rates"), {{"timers_of_31250", "token_not_returned"}}),
                   {{2, 20},
                    {submit({Priority::normal}, 2, 101), et(Priority::normal),
                     used({1}, {"no_data_frame", "more_than_one_frame"})}},
@@ -53,14 +53,14 @@ std::vector<IsaCase> isa_line_cases() {
   using link_sources::line;
   using link_sources::memory;
   return {
-      on_chart(must("fieldbus_dll/isa_dle/line/all_preambles_are_taken", "ISA-39",
-                    "A frame has 1 to 8 octets of preamble and both delimiters, to the half bit.",
-                    line("preamble and delimiters"),
-                    {{"wants_one_preamble_octet", "preamble_not_taken"},
-                     {"sends_no_preamble", "frame_malformed"},
-                     {"end_delimiter_turned", "frame_malformed"},
-                     {"least_significant_bit_first", "check_wrong"},
-                     {"short_silence", "gap_too_short"}}),
+      on_chart(must_case("fieldbus_dll/isa_dle/line/all_preambles_are_taken", "ISA-39",
+                         "A frame has 1 to 8 octets of preamble and both delimiters, to the half bit.",
+                         line("preamble and delimiters"),
+                         {{"wants_one_preamble_octet", "preamble_not_taken"},
+                          {"sends_no_preamble", "frame_malformed"},
+                          {"end_delimiter_turned", "frame_malformed"},
+                          {"least_significant_bit_first", "check_wrong"},
+                          {"short_silence", "gap_too_short"}}),
                {{8, 8},
                 {drive("a DU with 1 to 8 octets of preamble, in turn",
                        [](IsaScene& scene) { return half_bits_of_frame(long_du(scene), scene.round + 1); }),

@@ -96,27 +96,27 @@ std::vector<IsaCase> isa_rejection_cases() {
   using link_sources::line;
   using link_sources::own;
   return {
-      on_chart(
-          must("fieldbus_dll/isa_dle/rejection/tokens_of_others_are_left", "ISA-14",
-               "A station acts on tokens that are delegated to it, and on no others.",
-               isa_paper("the token is delegated to a station"), {{"takes_any_token", "acts_on_others"}}),
-          {{},
-           {something,
-            repeat({20, 246}, {send("an ET for another station, each in its turn",
-                                    [](IsaScene& scene) {
-                                      return for_other(scene, scene.bench.et(Priority::time_available));
-                                    }),
-                               silence("acts_on_others", "the ET is for another station"),
-                               send("an ES for it",
-                                    [](IsaScene& scene) {
-                                      return for_other(scene,
-                                                       scene.bench.es(Priority::time_available, 1'000));
-                                    }),
-                               silence("acts_on_others", "the ES is for another station")}),
-            serves()}}),
-      on_chart(must("fieldbus_dll/isa_dle/rejection/single_bit_errors_are_seen", "ISA-15",
-                    "A DLPDU whose frame check does not fit is ignored.", line("frame check 1DCF"),
-                    {{"short_frames_not_checked", "acts_on_wrong_check"}}),
+      on_chart(must_case("fieldbus_dll/isa_dle/rejection/tokens_of_others_are_left", "ISA-14",
+                         "A station acts on tokens that are delegated to it, and on no others.",
+                         isa_paper("the token is delegated to a station"),
+                         {{"takes_any_token", "acts_on_others"}}),
+               {{},
+                {something,
+                 repeat({20, 246}, {send("an ET for another station, each in its turn",
+                                         [](IsaScene& scene) {
+                                           return for_other(scene, scene.bench.et(Priority::time_available));
+                                         }),
+                                    silence("acts_on_others", "the ET is for another station"),
+                                    send("an ES for it",
+                                         [](IsaScene& scene) {
+                                           return for_other(scene,
+                                                            scene.bench.es(Priority::time_available, 1'000));
+                                         }),
+                                    silence("acts_on_others", "the ES is for another station")}),
+                 serves()}}),
+      on_chart(must_case("fieldbus_dll/isa_dle/rejection/single_bit_errors_are_seen", "ISA-15",
+                         "A DLPDU whose frame check does not fit is ignored.", line("frame check 1DCF"),
+                         {{"short_frames_not_checked", "acts_on_wrong_check"}}),
                {{},
                 {something,
                  repeat({40, 40}, {drive("an ET with one wrong bit, each of its 40 in its turn",
@@ -127,10 +127,10 @@ std::vector<IsaCase> isa_rejection_cases() {
                                          }),
                                    silence("acts_on_wrong_check", "its check does not fit")}),
                  serves()}}),
-      on_chart(must("fieldbus_dll/isa_dle/rejection/other_checks_are_refused", "ISA-16",
-                    "The frame check is that of the line: 1DCF, preset to ones, complemented, the high "
-                    "octet first.",
-                    line("frame check 1DCF"), {{"check_from_zero_too", "acts_on_other_check"}}),
+      on_chart(must_case("fieldbus_dll/isa_dle/rejection/other_checks_are_refused", "ISA-16",
+                         "The frame check is that of the line: 1DCF, preset to ones, complemented, the high "
+                         "octet first.",
+                         line("frame check 1DCF"), {{"check_from_zero_too", "acts_on_other_check"}}),
                {{},
                 {something,
                  repeat({14, 14},
@@ -139,47 +139,48 @@ std::vector<IsaCase> isa_rejection_cases() {
                                isa_with_other_check),
                          silence("acts_on_other_check", "its check is of another kind")}),
                  serves()}}),
-      on_chart(must("fieldbus_dll/isa_dle/rejection/broken_frames_are_left", "ISA-17",
-                    "A frame with symbols that are no data between its delimiters, without an end or with a "
-                    "part of an octet is ignored.",
-                    line("delimiters"),
-                    {{"violations_are_bits", "acts_on_violation"},
-                     {"stuck_behind_violation", "does_not_recover"}}),
-               {{},
-                {something,
-                 repeat({16, 16},
-                        {drive("an ET with N+, N- in place of a bit of its second octet, each in its turn",
-                               [](IsaScene& scene) {
-                                 return with_violation(right_et(scene), scene.turn / 2, scene.turn % 2 == 0);
-                               }),
-                         silence("acts_on_violation", "it has a symbol that is no data")}),
-                 drive("an ET without its end delimiter",
-                       [](IsaScene& scene) {
-                         const line::Levels right = right_et(scene);
-                         return right.slice(0, right.size() - 16);
-                       }),
-                 silence("acts_without_end", "the frame has no end delimiter"),
-                 drive("an ET with seven bits in its last octet", with_short_octet),
-                 silence("acts_on_part_of_octet", "the last octet has seven bits"), serves()}}),
       on_chart(
-          must("fieldbus_dll/isa_dle/rejection/unknown_control_octets_are_left", "ISA-18",
-               "A DLPDU with a reserved bit or an unknown control octet is ignored.",
-               own("control octets of the profile"),
-               {{"reserved_bit_ignored", "acts_on_unknown"}, {"priority_zero_taken", "acts_on_unknown"}}),
+          must_case(
+              "fieldbus_dll/isa_dle/rejection/broken_frames_are_left", "ISA-17",
+              "A frame with symbols that are no data between its delimiters, without an end or with a "
+              "part of an octet is ignored.",
+              line("delimiters"),
+              {{"violations_are_bits", "acts_on_violation"}, {"stuck_behind_violation", "does_not_recover"}}),
           {{},
            {something,
-            repeat({250, 250}, {send("a control octet that makes no ET and no CD, with addresses and a "
-                                     "right check, each of the 250 in its turn",
-                                     [](IsaScene& scene) {
-                                       return Octets{unknown_control(scene.bench, scene.turn),
-                                                     scene.bench.address(), IsaBench::kScheduler};
-                                     }),
-                                silence("acts_on_unknown", "it is no token")}),
-            serves()}}),
+            repeat({16, 16},
+                   {drive("an ET with N+, N- in place of a bit of its second octet, each in its turn",
+                          [](IsaScene& scene) {
+                            return with_violation(right_et(scene), scene.turn / 2, scene.turn % 2 == 0);
+                          }),
+                    silence("acts_on_violation", "it has a symbol that is no data")}),
+            drive("an ET without its end delimiter",
+                  [](IsaScene& scene) {
+                    const line::Levels right = right_et(scene);
+                    return right.slice(0, right.size() - 16);
+                  }),
+            silence("acts_without_end", "the frame has no end delimiter"),
+            drive("an ET with seven bits in its last octet", with_short_octet),
+            silence("acts_on_part_of_octet", "the last octet has seven bits"), serves()}}),
+      on_chart(must_case(
+                   "fieldbus_dll/isa_dle/rejection/unknown_control_octets_are_left", "ISA-18",
+                   "A DLPDU with a reserved bit or an unknown control octet is ignored.",
+                   own("control octets of the profile"),
+                   {{"reserved_bit_ignored", "acts_on_unknown"}, {"priority_zero_taken", "acts_on_unknown"}}),
+               {{},
+                {something,
+                 repeat({250, 250}, {send("a control octet that makes no ET and no CD, with addresses and a "
+                                          "right check, each of the 250 in its turn",
+                                          [](IsaScene& scene) {
+                                            return Octets{unknown_control(scene.bench, scene.turn),
+                                                          scene.bench.address(), IsaBench::kScheduler};
+                                          }),
+                                     silence("acts_on_unknown", "it is no token")}),
+                 serves()}}),
       on_chart(
-          must("fieldbus_dll/isa_dle/rejection/other_lengths_are_left", "ISA-18",
-               "An ET has five octets, an ES seven, with their checks.", own("encoding of the profile"),
-               {{"length_not_checked", "acts_on_other_length"}}),
+          must_case("fieldbus_dll/isa_dle/rejection/other_lengths_are_left", "ISA-18",
+                    "An ET has five octets, an ES seven, with their checks.", own("encoding of the profile"),
+                    {{"length_not_checked", "acts_on_other_length"}}),
           {{},
            {something,
             repeat({12, 12},

@@ -132,9 +132,9 @@ std::vector<IsaCase> isa_supervision_cases() {
                      [](const IsaScene& scene) { return scene.bench.octets(1); })}},
                {.schedule = two_items(IsaType::es, kDuration)}),
       on_chart(
-          must("fieldbus_dll/isa_las/supervision/the_end_of_another_is_none", "ISA-34",
-               "Only the holder can return a token.", own("EE of another"),
-               {{"end_of_anybody_taken", "end_of_other_taken"}}),
+          must_case("fieldbus_dll/isa_las/supervision/the_end_of_another_is_none", "ISA-34",
+                    "Only the holder can return a token.", own("EE of another"),
+                    {{"end_of_anybody_taken", "end_of_other_taken"}}),
           {{},
            {first("ES for 200 octet durations"), holder_sends,
             stimulus<IsaScene>("an EE of a third station",

@@ -35,22 +35,11 @@ Octets with_wrong_bits(Octets frame, const std::vector<std::size_t>& bits) {
   return frame;
 }
 
-TestCase must(std::string id, std::string purpose, std::string requirement, judge::Reference reference,
-              std::vector<MustCatch> catches, std::vector<PartialSource> details) {
-  return {.id = std::move(id),
-          .purpose = std::move(purpose),
-          .requirement = std::move(requirement),
-          .reference = std::move(reference),
-          .details = std::move(details),
-          .tags = {"must"},
-          .catches = std::move(catches)};
-}
-
 TestCase must_in_time(std::string id, std::string purpose, std::string requirement,
                       judge::Reference reference, std::vector<MustCatch> catches,
                       std::vector<PartialSource> details) {
-  TestCase test_case = must(std::move(id), std::move(purpose), std::move(requirement), std::move(reference),
-                            std::move(catches), std::move(details));
+  TestCase test_case = must_case(std::move(id), std::move(purpose), std::move(requirement),
+                                 std::move(reference), std::move(catches), std::move(details));
   test_case.tags.emplace_back("timing");
   return test_case;
 }

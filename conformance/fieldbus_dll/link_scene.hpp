@@ -48,9 +48,7 @@ struct LinkScene {
 
 using LinkStep = ChartStep<LinkScene>;
 
-// What an implementation must do; the same where it must do it in time.
-TestCase must(std::string id, std::string purpose, std::string requirement, judge::Reference reference,
-              std::vector<MustCatch> catches, std::vector<PartialSource> details = {});
+// What an implementation must do in time.
 TestCase must_in_time(std::string id, std::string purpose, std::string requirement,
                       judge::Reference reference, std::vector<MustCatch> catches,
                       std::vector<PartialSource> details = {});

@@ -88,15 +88,11 @@ void TokenScene::rotate_until_window() {
              {{fmt::format("a response window after {} tokens at most", kMostTokensUntilWindow)}, "none"});
 }
 
-TestCase token_must(std::string id, std::string purpose, std::string requirement, judge::Reference reference,
-                    std::vector<MustCatch> catches, std::vector<PartialSource> details) {
-  return {.id = "token_bus/station/" + std::move(id),
-          .purpose = std::move(purpose),
-          .requirement = std::move(requirement),
-          .reference = std::move(reference),
-          .details = std::move(details),
-          .tags = {"must"},
-          .catches = std::move(catches)};
+TestCase token_must(const std::string& id, std::string purpose, std::string requirement,
+                    judge::Reference reference, std::vector<MustCatch> catches,
+                    std::vector<PartialSource> details) {
+  return must_case("token_bus/station/" + id, std::move(purpose), std::move(requirement),
+                   std::move(reference), std::move(catches), std::move(details));
 }
 
 namespace token_chart {

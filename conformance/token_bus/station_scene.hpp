@@ -72,8 +72,9 @@ inline TokenCase on_chart(TestCase test_case, Chart<TokenScene> chart, TokenNeed
 }
 
 // What an implementation must do.
-TestCase token_must(std::string id, std::string purpose, std::string requirement, judge::Reference reference,
-                    std::vector<MustCatch> catches, std::vector<PartialSource> details = {});
+TestCase token_must(const std::string& id, std::string purpose, std::string requirement,
+                    judge::Reference reference, std::vector<MustCatch> catches,
+                    std::vector<PartialSource> details = {});
 
 namespace token_chart {
 

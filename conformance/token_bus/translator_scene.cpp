@@ -124,16 +124,11 @@ void TranslatorScene::expect_nothing_indicated(std::string_view reason, std::str
   });
 }
 
-TestCase translator_must(std::string id, std::string purpose, std::string requirement,
+TestCase translator_must(const std::string& id, std::string purpose, std::string requirement,
                          judge::Reference reference, std::vector<MustCatch> catches,
                          std::vector<PartialSource> details) {
-  return {.id = "token_bus/translator/" + std::move(id),
-          .purpose = std::move(purpose),
-          .requirement = std::move(requirement),
-          .reference = std::move(reference),
-          .details = std::move(details),
-          .tags = {"must"},
-          .catches = std::move(catches)};
+  return must_case("token_bus/translator/" + id, std::move(purpose), std::move(requirement),
+                   std::move(reference), std::move(catches), std::move(details));
 }
 
 namespace translator_chart {

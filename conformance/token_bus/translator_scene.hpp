@@ -51,7 +51,7 @@ inline TranslatorCase on_chart(TestCase test_case, Chart<TranslatorScene> chart,
   return charted<TranslatorCase>(std::move(test_case), std::move(chart), needs);
 }
 
-TestCase translator_must(std::string id, std::string purpose, std::string requirement,
+TestCase translator_must(const std::string& id, std::string purpose, std::string requirement,
                          judge::Reference reference, std::vector<MustCatch> catches,
                          std::vector<PartialSource> details = {});
 

@@ -43,7 +43,6 @@ class Ether {
       step();
     const double time = ms(idle_from_ - kernel::kStart);
     figures_.carried = static_cast<double>(figures_.sent) * ms(line_.frame) / time;
-    figures_.offered = line_.stations * line_.per_ms * ms(line_.frame);
     return std::move(figures_);
   }
 

@@ -46,7 +46,6 @@ struct CsmaFigures {
   std::uint64_t first_collisions = 0;  // in which no frame had collided before
   std::uint64_t beyond = 0;            // sent later than the bound
   double carried = 0;                  // share of time in which frames that are no collision are on the line
-  double offered = 0;                  // the same of what arrives
   std::uint64_t longest_queue = 0;
 };
 

@@ -43,7 +43,6 @@ class TimedRing {
 
   TimedTokenFigures rotate(std::uint64_t visits) {
     for (std::uint64_t n = 0; n < visits; ++n) visit(static_cast<unsigned>(n % token_.stations));
-    figures_.visits = visits;
     return std::move(figures_);
   }
 

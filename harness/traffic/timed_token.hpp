@@ -51,7 +51,6 @@ class FrameSource {
 struct TimedTokenFigures {
   measure::Distribution rotations;  // from one arrival at a station to its next, ps
   kernel::Duration longest_rotation{};
-  std::uint64_t visits = 0;
   std::array<std::uint64_t, kAccessClasses> frames{};  // by class
 };
 

@@ -123,7 +123,6 @@ Taken QueuedFrames::take(unsigned station, AccessClass access_class, Time now, D
   const auto n = static_cast<std::size_t>(access_class);
   Queue& queue = queues_[n][station];
   for (; queue.arrivals.next() <= now; queue.arrivals.draw()) queue.waiting.push_back(queue.arrivals.next());
-  longest_queue_ = std::max(longest_queue_, queue.waiting.size());
   if (queue.waiting.empty()) return std::nullopt;
   const Duration delay = now + settings_.frame - queue.waiting.front();
   delays_[n].add(delay);

@@ -46,8 +46,6 @@ class QueuedFrames final : public FrameSource {
   }
   // Frames of any class that took longer than the bound.
   std::uint64_t beyond() const { return beyond_; }
-  // The longest queue that a visit found.
-  std::size_t longest_queue() const { return longest_queue_; }
 
  private:
   struct Queue {
@@ -58,7 +56,6 @@ class QueuedFrames final : public FrameSource {
   std::array<std::vector<Queue>, kAccessClasses> queues_;
   std::array<measure::Distribution, kAccessClasses> delays_;
   std::uint64_t beyond_ = 0;
-  std::size_t longest_queue_ = 0;
 };
 
 }  // namespace fieldproof::traffic

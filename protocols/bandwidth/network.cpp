@@ -31,9 +31,10 @@ void check_order(const std::vector<QueueDescription>& queues, const Value& value
 }
 
 void check_network(const Network& network, ObjectReader& object) {
-  for (const LoopDescription& loop : network.loops) {
-    if (loop.bound == Duration::zero())
-      config::fail(object.required("loops"), "each loop has a \"bound\" of its delay, such as \"60 ms\"");
+  const std::vector<Value> loops = object.required("loops").as_array();
+  for (std::size_t n = 0; n < network.loops.size(); ++n) {
+    if (network.loops[n].bound == Duration::zero())
+      config::fail(loops.at(n), "a loop has a \"bound\" of its delay, such as \"60 ms\"");
   }
   if (const auto value = object.optional("real_time")) check_order(network.real_time, *value);
   if (const auto value = object.optional("non_real_time")) check_order(network.non_real_time, *value);

@@ -55,7 +55,7 @@ TEST(BandwidthNetwork, SaysWhereAFileIsWrong) {
   EXPECT_THAT(refusal("{}"), HasSubstr("name"));
   EXPECT_THAT(refusal(R"({"name": "n", "loops": []})"), HasSubstr("nodes"));
   EXPECT_THAT(refusal(with_loops("")), HasSubstr("/loops"));
-  EXPECT_THAT(refusal(with_loops("{}")), HasSubstr("each loop has a \"bound\""));
+  EXPECT_THAT(refusal(with_loops("{}")), HasSubstr("/loops/0: a loop has a \"bound\""));
   EXPECT_THAT(refusal(with_loops(R"({"bound": "60 ms", "sensr": 1})")), HasSubstr("sensr"));
   EXPECT_THAT(refusal(with_loops(kLoop, "", 129)), HasSubstr("/nodes"));
   EXPECT_THAT(refusal(with_loops(kLoop, "", 4)),

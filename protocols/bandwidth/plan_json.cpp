@@ -60,6 +60,7 @@ ordered_json proof_of(const Proof& proof) {
   }
   return {{"slowest_ps", proof.slowest_own.count()},
           {"slowest_of_any_order_ps", proof.slowest_of_all.count()},
+          {"longest_of_start_ps", proof.longest_of_start().count()},
           {"runs", std::move(runs)}};
 }
 

@@ -204,6 +204,14 @@ std::uint64_t Proof::slots() const {
   return sum;
 }
 
+Duration Proof::longest_of_start() const {
+  Duration longest{};
+  for (const ProofRun& run : runs) {
+    if (run.is_own_order) longest = std::max(longest, run.figures.longest_of_start);
+  }
+  return longest;
+}
+
 bool Proof::holds() const {
   return std::ranges::all_of(runs, [](const ProofRun& run) { return !run.is_own_order || run.holds(); });
 }

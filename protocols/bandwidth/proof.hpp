@@ -32,6 +32,8 @@ struct Proof {
   bool holds() const;  // each run in the network's own order
   bool holds_in_any_order() const;
   kernel::Duration longest() const;
+  // In the slots of the start, which are outside of the proof: controllers still wait for their first datum.
+  kernel::Duration longest_of_start() const;
 };
 
 inline constexpr std::uint64_t kSlotsOfProof = 1'000'000;

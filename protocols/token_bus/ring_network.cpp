@@ -78,7 +78,8 @@ std::optional<std::string> violation_of(const RingDescription& ring) {
   if (ring.data.size() > 256) return fmt::format("{} words: 256 are the most", ring.data.size());
   for (const RingData& data : ring.data) {
     if (!is_in(ring.stations, data.from) || !is_in(ring.stations, data.to) || data.from == data.to)
-      return fmt::format("data from {} to {}: both are stations of the ring, and two", data.from, data.to);
+      return fmt::format("data from {} to {}: write two different addresses of \"stations\"", data.from,
+                         data.to);
   }
   return std::nullopt;
 }
