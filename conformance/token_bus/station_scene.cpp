@@ -9,7 +9,7 @@ namespace {
 constexpr unsigned kMostTokensUntilWindow = 20;
 constexpr std::int64_t kPauseOctets = 8;
 
-bool is_right(const DrivenFrame& one, const WantedFrame& right) {
+bool is_right(const DrivenFrame& one, const ExpectedFrame& right) {
   return one.is_well_formed && one.has_right_check && one.is(right.control) &&
          (!right.destination || one.destination() == *right.destination) &&
          (!right.data || (one.data().size() == one.address_octets && one.address_in_data() == *right.data));
@@ -17,7 +17,7 @@ bool is_right(const DrivenFrame& one, const WantedFrame& right) {
 
 }  // namespace
 
-const DrivenFrame& TokenScene::expect_frame(const WantedFrame& right, const TokenSpan& span,
+const DrivenFrame& TokenScene::expect_frame(const ExpectedFrame& right, const TokenSpan& span,
                                             const std::string& what, std::string_view missing,
                                             std::string_view wrong) {
   const auto one = bench.next(since + span.latest + bench.slots(1));
@@ -161,7 +161,7 @@ TokenStep submit(std::vector<unsigned> priorities, std::size_t size) {
       });
 }
 
-TokenStep says(std::string what, WantedFrame right, SpanOf span, std::string missing, std::string wrong) {
+TokenStep says(std::string what, ExpectedFrame right, SpanOf span, std::string missing, std::string wrong) {
   std::string text = what;
   return expected<TokenScene>(
       std::move(text), [what = std::move(what), right, span = std::move(span), missing = std::move(missing),

@@ -23,7 +23,7 @@ struct TokenSpan {
   kernel::Duration latest{};
 };
 
-struct WantedFrame {
+struct ExpectedFrame {
   TokenControl control;
   std::optional<std::uint64_t> destination{};  // nothing: any
   std::optional<std::uint64_t> data{};         // an address
@@ -48,7 +48,7 @@ struct TokenScene : Scene<TokenBench> {
     return since = bench.send(octets, form);
   }
   // The next frame of the IUT: `begins_too_early`, `begins_too_late`, and the reasons for none or another.
-  const DrivenFrame& expect_frame(const WantedFrame& right, const TokenSpan& span, const std::string& what,
+  const DrivenFrame& expect_frame(const ExpectedFrame& right, const TokenSpan& span, const std::string& what,
                                   std::string_view missing, std::string_view wrong);
   void expect_silence(kernel::Duration duration, std::string_view reason, std::string_view why);
   // It becomes a member between 000E and 0004, or as the lowest below 000C; `precondition_not_met`.
@@ -96,7 +96,7 @@ TokenStep token();
 TokenStep taken();
 TokenStep noise(std::size_t octets);
 TokenStep submit(std::vector<unsigned> priorities, std::size_t size);
-TokenStep says(std::string what, WantedFrame right, SpanOf span, std::string missing, std::string wrong);
+TokenStep says(std::string what, ExpectedFrame right, SpanOf span, std::string missing, std::string wrong);
 TokenStep silence(std::int64_t octets, std::string reason, std::string why);
 // A token is used: `does_not_recover`.
 TokenStep serves();

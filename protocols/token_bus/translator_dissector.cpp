@@ -50,7 +50,7 @@ std::string mac_text(const line::Waveform& wave) {
   return cut(text);
 }
 
-std::string told(const line::Waveform& wave, const Rules& rules) {
+std::string described(const line::Waveform& wave, const Rules& rules) {
   const std::int64_t between = (phy_side_rate(rules.phy_bit_rate) + mac_side_rate(rules.phy_bit_rate)) / 2;
   return wave.rate > between ? phy_text(wave, rules) : mac_text(wave);
 }
@@ -58,7 +58,7 @@ std::string told(const line::Waveform& wave, const Rules& rules) {
 class SidesTeller final : public trace::Teller {
  public:
   explicit SidesTeller(const Rules& rules) : rules_(rules) {}
-  trace::Decoded tell(const line::Waveform& wave) override { return {told(wave, rules_), false}; }
+  trace::Decoded tell(const line::Waveform& wave) override { return {described(wave, rules_), false}; }
 
  private:
   Rules rules_;
@@ -67,7 +67,7 @@ class SidesTeller final : public trace::Teller {
 }  // namespace
 
 std::string TranslatorDissector::brief(const line::Waveform& wave) const {
-  return told(wave, rules_);
+  return described(wave, rules_);
 }
 
 std::unique_ptr<trace::Teller> TranslatorDissector::teller() const {
