@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "harness/config/name.hpp"
 #include "harness/kernel/check.hpp"
 #include "protocols/fieldbus_dll/ff_rules.hpp"
 
@@ -95,7 +96,7 @@ LinkDescription LinkDescription::built_in(LinkProfile profile, std::int64_t bit_
 LinkDescription LinkDescription::read(const Value& root) {
   const LinkDescription link = config::read_object(root, [](ObjectReader& object) {
     LinkDescription read;
-    read.name = object.required("name").as_string();
+    read.name = config::read_name(object.required("name"));
     read.profile = object.required("profile").as_choice<LinkProfile>(
         {{"foundation", LinkProfile::foundation}, {"isa", LinkProfile::isa}});
     if (const auto rate = object.optional("bit_rate")) read.bit_rate = rate->as_bit_rate(31'250, 2'500'000);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "harness/config/name.hpp"
 #include "harness/field/json_reader.hpp"
 #include "protocols/interbus/network.hpp"
 
@@ -89,9 +90,7 @@ Formula read_formula(const Value& value) {
 NetworkDescription read_shape(const Value& root) {
   return config::read_object(root, [](ObjectReader& object) {
     NetworkDescription network;
-    const Value name = object.required("name");
-    network.name = name.as_string();
-    if (network.name.empty()) config::fail(name, "a network has a name; write one");
+    network.name = config::read_name(object.required("name"));
     read_bit_rate(object.required("bit_rate"), network.rules);
     if (const auto formula = object.optional("formula")) network.formula = read_formula(*formula);
     if (const auto time = object.optional("cycle_time")) {

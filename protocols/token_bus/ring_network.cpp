@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "harness/config/name.hpp"
 #include "harness/kernel/check.hpp"
 #include "protocols/token_bus/token_station.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 using kernel::Duration;
 using kernel::Time;
 
-constexpr unsigned kMostRingStations = 32;
+constexpr unsigned kMostRingStations = 64;
 constexpr std::size_t kWordOctets = 3;  // number of the signal, and the word
 constexpr unsigned kWordPriority = 6;
 // A window opens after so many tokens of a station at most.
@@ -50,7 +51,7 @@ RingDescription RingDescription::read(const config::Value& root) {
   const RingDescription ring = config::read_object(root, [](config::ObjectReader& object) {
     RingDescription read;
     object.optional("$schema");
-    read.name = object.required("name").as_string();
+    read.name = config::read_name(object.required("name"));
     for (const config::Value& one : object.required("stations").as_array(2, kMostRingStations))
       read.stations.push_back(one.as_integer<Address>());
     for (const config::Value& one : object.required("data").as_array(1))

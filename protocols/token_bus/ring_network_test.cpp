@@ -74,6 +74,21 @@ TEST(RingNetwork, AStationThatIsSilentKeepsItFromComingUp) {
 
 constexpr kernel::Time kDead = kernel::kStart + kernel::kSecond;
 
+// They join one by one, each through a window, within the time that they have.
+TEST(RingNetwork, OfSixteenStationsComesUp) {
+  constexpr unsigned kStations = 16;
+  RingNetwork ring(RingDescription::built_in(kStations), 1);
+  ring.start();
+  while (ring.state() == network::State::coming_up) ring.segment().run_for(100 * kernel::kMillisecond);
+  ASSERT_EQ(ring.state(), network::State::exchanging);
+  RingLedger ledger;
+  ring.watch(ledger);
+  ring.segment().run_for(100 * kernel::kMillisecond);
+  EXPECT_GT(ledger.exchanges, kStations * 10);
+  EXPECT_EQ(ledger.served, ledger.exchanges);
+  EXPECT_LE(ledger.longest, longest_rotation(RingDescription::built_in(kStations)));
+}
+
 // The others take it out of their ring, and its words are not called for any more: nothing is lost that they
 // count.
 TEST(RingNetwork, StopsWhenAStationDies) {
@@ -91,7 +106,9 @@ TEST(RingNetwork, StopsWhenAStationDies) {
       return next < kDead ? next : kernel::kNever;
     }
   };
-  RingNetwork ring(RingDescription::built_in(3), 1,
+  RingDescription slow = RingDescription::built_in(3);
+  slow.rules.phy_bit_rate = 1'000'000;  // fewer frames in the time for which nobody is missed
+  RingNetwork ring(slow, 1,
                    {.make = [](std::size_t position,
                                const StationConfiguration& configuration) -> std::unique_ptr<StationDevice> {
                      if (position == 2) return std::make_unique<Dies>(configuration);
@@ -111,7 +128,8 @@ TEST(RingDescriptionReader, RefusesWhatIsNoRing) {
     return RingDescription::read(document.root());
   };
   EXPECT_EQ(read(R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})").stations.size(), 2U);
-  for (const char* text : {R"({"name": "a", "stations": [2], "data": [{"from": 2, "to": 4}]})",
+  for (const char* text : {R"({"name": "", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})",
+                           R"({"name": "a", "stations": [2], "data": [{"from": 2, "to": 4}]})",
                            R"({"name": "a", "stations": [2, 3], "data": [{"from": 2, "to": 3}]})",
                            R"({"name": "a", "stations": [2, 2], "data": [{"from": 2, "to": 2}]})",
                            R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 6}]})",

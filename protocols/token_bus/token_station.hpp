@@ -160,6 +160,7 @@ class TokenStation : public StationDevice {
   Time idle_due() const;
   void send_pending(Time now);
   Frame control(FrameKind kind, Address destination, std::optional<Address> data = std::nullopt) const;
+  Frame data_frame(const DataRequest& request) const;
 
   // ---- listening ----
   void on_idle_frame(const Frame& frame, Time end);

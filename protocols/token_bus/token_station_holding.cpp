@@ -65,13 +65,16 @@ void TokenStation::send_request(kernel::Time now) {
   // before costs no data.
   enter(is_answered ? AccessState::await_ifm_response : AccessState::use_token);
   repetitions_ = 0;
-  send({.kind = FrameKind::data,
-        .action = request.action,
-        .priority = request.priority,
-        .destination = request.destination,
-        .source = address(),
-        .data = request.data},
-       now);
+  send(data_frame(request), now);
+}
+
+Frame TokenStation::data_frame(const DataRequest& request) const {
+  return {.kind = FrameKind::data,
+          .action = request.action,
+          .priority = request.priority,
+          .destination = request.destination,
+          .source = address(),
+          .data = request.data};
 }
 
 // Another holds the token, too.
@@ -102,13 +105,7 @@ void TokenStation::on_response_missing(kernel::Time now) {
   if (repetitions_ < request_repetitions()) {
     ++repetitions_;
     enter(AccessState::await_ifm_response);
-    send({.kind = FrameKind::data,
-          .action = request.action,
-          .priority = request.priority,
-          .destination = request.destination,
-          .source = address(),
-          .data = request.data},
-         now);
+    send(data_frame(request), now);
     return;
   }
   queues_.at(place_).pop_front();

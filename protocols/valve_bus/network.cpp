@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "harness/config/name.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::valve_bus {
@@ -108,7 +109,7 @@ NetworkDescription NetworkDescription::read(const Value& root) {
   NetworkDescription network = config::read_object(root, [](ObjectReader& object) {
     NetworkDescription read;
     object.optional("$schema");
-    read.name = object.required("name").as_string();
+    read.name = config::read_name(object.required("name"));
     const auto most_dip = static_cast<unsigned>(dip_bit_rates().size() - 1);
     if (const auto dip = object.optional("bit_rate_switches"))
       read.dip = dip->as_integer<unsigned>(0, most_dip);
