@@ -120,6 +120,8 @@ std::string_view text_of(FrameEnd end) {
 Levels half_bits_of(const Waveform& wave, std::int64_t bit_rate) {
   __extension__ using Wide = __int128;
   const Wide rate = wave.rate;
+  // Written half bit by half bit, as stations do, it is what it is.
+  if (rate == 2 * static_cast<Wide>(bit_rate)) return wave.levels;
   Levels half_bits;
   for (std::size_t at = 0; at < wave.levels.size();) {
     const std::size_t end = wave.levels.end_of_run(at);
@@ -131,8 +133,7 @@ Levels half_bits_of(const Waveform& wave, std::int64_t bit_rate) {
 }
 
 std::vector<DelimitedFrame> delimited_frames_in(const Waveform& wave, std::int64_t bit_rate) {
-  // Written half bit by half bit, as stations do, it is what it is.
-  if (wave.rate == 2 * bit_rate) return FrameFinder(wave.levels).find();
+  if (wave.rate == 2 * bit_rate) return FrameFinder(wave.levels).find();  // without a copy
   return FrameFinder(half_bits_of(wave, bit_rate)).find();
 }
 

@@ -1,4 +1,6 @@
+#include "harness/line/delimited_frame.hpp"
 #include "protocols/token_bus/frame.hpp"
+#include "protocols/token_bus/plain_transmission.hpp"
 
 namespace fieldproof::token_bus {
 namespace {
@@ -37,7 +39,15 @@ std::size_t half_bit_at(Indications indications, std::size_t at) {
 }  // namespace
 
 std::vector<Reception> FrameReader::read(const line::Waveform& wave) const {
-  return read(indications_in(wave, rules_.phy_bit_rate));
+  const line::Levels half_bits = line::half_bits_of(wave, rules_.phy_bit_rate);
+  const auto plain = plain_transmission_in(half_bits);
+  if (!plain) return read(indications_in(wave, rules_.phy_bit_rate));
+  Reception reception{.octets = plain->octets,
+                      .more_follows = plain->more_follows,
+                      .first_half_bit = plain->first_half_bit,
+                      .end_half_bit = half_bits.size()};
+  close(reception, plain->has_error);
+  return {reception};
 }
 
 std::vector<Reception> FrameReader::read(Indications indications) const {
@@ -60,7 +70,6 @@ std::vector<Reception> FrameReader::read(Indications indications) const {
 
 // Returns where to look for the next one.
 std::size_t FrameReader::read_one(Indications indications, std::size_t at, Reception& reception) const {
-  reception.kind = ReceptionKind::fragment;
   unsigned bits = 0;
   unsigned octet = 0;
   for (; at < indications.size(); ++at) {
@@ -71,18 +80,19 @@ std::size_t FrameReader::read_one(Indications indications, std::size_t at, Recep
     reception.octets.push_back(static_cast<std::uint8_t>(octet));
     bits = octet = 0;
   }
-  const bool is_long = is_too_long(reception.octets.size());
-  if (is_long) reception.kind = ReceptionKind::too_long;
+  reception.kind = is_too_long(reception.octets.size()) ? ReceptionKind::too_long : ReceptionKind::fragment;
   if (!is_end(indications, at)) return is_start(indications, at) ? at : at + 1;
   reception.more_follows = indications[at + 6].symbol == MacSymbol::one;
-  if (bits == 0 && !is_long) close(reception, indications[at + 7].symbol == MacSymbol::one);
+  if (bits == 0) close(reception, indications[at + 7].symbol == MacSymbol::one);
   return at + kDelimiterSymbols;
 }
 
 // What stands between both delimiters.
 void FrameReader::close(Reception& reception, bool has_error) const {
   const std::size_t least = frame_octets(rules_, 0);
-  if (has_error && counts_error_bit()) {
+  if (is_too_long(reception.octets.size())) {
+    reception.kind = ReceptionKind::too_long;
+  } else if (has_error && counts_error_bit()) {
     reception.kind = ReceptionKind::e_bit_error;
   } else if (reception.octets.empty()) {
     reception.kind = ReceptionKind::fragment;  // an abort sequence

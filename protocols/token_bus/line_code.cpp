@@ -98,8 +98,14 @@ void append(line::Levels& half_bits, std::span<const PhySymbol> symbols) {
 }
 
 line::Levels half_bits_of(std::span<const MacSymbol> symbols) {
+  constexpr std::size_t kHalfBitsOfSymbol = 4;
   line::Levels half_bits;
-  append(half_bits, phy_symbols_of(symbols));
+  half_bits.make_room(kHalfBitsOfSymbol * symbols.size());
+  MacEncoder encoder;
+  for (const MacSymbol symbol : symbols) {
+    const PhyPair pair = encoder.encode(symbol);
+    append(half_bits, std::array{pair.first, pair.second});
+  }
   return half_bits;
 }
 

@@ -11,11 +11,11 @@
 namespace fieldproof::token_bus {
 namespace {
 
-constexpr std::size_t kMostShown = 80;
+constexpr std::size_t kMostSymbolsShown = 80;
 
 std::string cut(const std::string& text) {
-  if (text.size() <= kMostShown) return text;
-  return fmt::format("{} and {} more", text.substr(0, kMostShown), text.size() - kMostShown);
+  if (text.size() <= kMostSymbolsShown) return text;
+  return fmt::format("{} and {} more", text.substr(0, kMostSymbolsShown), text.size() - kMostSymbolsShown);
 }
 
 std::string phy_text(const line::Waveform& wave, const Rules& rules) {
