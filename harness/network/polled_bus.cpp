@@ -34,6 +34,7 @@ void PolledBus::add_place(segment::MediumPort& place) {
 void PolledBus::start() {
   started_ = next_ = segment_.now();
   answered_.reset();
+  attendance_.begin();
   slot_.reset();
   segment_.refresh(number_);
 }

@@ -115,6 +115,10 @@ TEST(PolledBus, AResponderThatIsMuteIsMissedAndOneThatIsNotKeepsItRunning) {
   EXPECT_EQ(bus.state(), State::coming_up);
   bus.answerers[0].is_mute = false;
   bus.segment().run_for(3 * kSlot);
+  // What the other did before this start says nothing about it now.
+  EXPECT_EQ(bus.state(), State::coming_up);
+  bus.answerers[1].is_mute = false;
+  bus.segment().run_for(2 * kSlot);
   EXPECT_EQ(bus.state(), State::exchanging);
 }
 

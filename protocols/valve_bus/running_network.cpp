@@ -163,6 +163,7 @@ void RunningNetwork::start() {
   const Time now = segment_.now();
   started_ = now;
   has_response_ = false;
+  attendance_.begin();
   for (Seat& seat : seats_) {
     seat.device->set_power(false, now);
     if (seat.block.valves() != 0) seat.block.drive_valves(0, now);

@@ -114,6 +114,19 @@ TEST(ValveBusRunningNetwork, ComesUpAgainAfterAStop) {
   EXPECT_EQ(network.state(), network::State::exchanging);
 }
 
+// What a node did before a start says nothing about it after.
+TEST(ValveBusRunningNetwork, DoesNotComeUpAgainWithoutANodeThatHasDied) {
+  RunningNetwork network(NetworkDescription::even(0, 3, 100), 1, at<AnswersOnce>(2));
+  network.start();
+  network.segment().run_for(kernel::kSecond);
+  ASSERT_EQ(network.state(), network::State::exchanging);
+  network.stop();
+  network.start();
+  network.segment().run_for(network.bring_up_limit() + kernel::kSecond);
+  EXPECT_EQ(network.state(), network::State::stopped);
+  EXPECT_NE(network.complaint().find("node@2 did not"), std::string::npos) << network.complaint();
+}
+
 TEST(ValveBusRunningNetwork, ExposesTheSegmentOfTheHost) {
   const RunningNetwork network(NetworkDescription::even(0, 99, 1000), 1);
   const auto places = network.places();
