@@ -17,6 +17,31 @@ kernel::Duration between(kernel::Duration a, kernel::Duration b) {
   return a < b ? b - a : a - b;
 }
 
+constexpr std::int64_t kLevelsOfWord = 64;
+
+// Of 64 levels, those that somebody drives to 1 and those to 0.
+struct DrivenLevels {
+  std::uint64_t ones = 0;
+  std::uint64_t zeros = 0;
+
+  // Levels of which number `first` is the first of the 64.
+  void add(const line::Levels& levels, std::int64_t first) {
+    const auto size = static_cast<std::int64_t>(levels.size());
+    if (first >= size || first <= -kLevelsOfWord) return;
+    const bool begins_here = first < 0;
+    const std::int64_t from = begins_here ? 0 : first;
+    std::uint64_t driven =
+        size - from < kLevelsOfWord ? (std::uint64_t{1} << (size - from)) - 1 : ~std::uint64_t{0};
+    std::uint64_t window = levels.window(static_cast<std::size_t>(from));
+    if (begins_here) {
+      driven <<= -first;
+      window <<= -first;
+    }
+    ones |= window & driven;
+    zeros |= ~window & driven;
+  }
+};
+
 }  // namespace
 
 MediumPort::MediumPort(Medium& medium, std::size_t index, std::string_view name, std::size_t station,
@@ -224,27 +249,51 @@ void Medium::contend(MediumPort& at, const std::vector<MediumPort::Flight>& grou
     if (wave.rate != resolved.rate || kernel::kSecond.count() % wave.rate != 0) return false;
     return (flight.start - resolved.start).count() % (kernel::kSecond.count() / wave.rate) == 0;
   });
-  if (!is_one_grid) resolved.rate *= kFiner;
-  // Every flight is asked at its own place in time.
-  for (const auto& flight : group) flight.transmission->wave.start = flight.start;
-  for (std::int64_t n = 0; kernel::level_time(resolved.start, n, resolved.rate) < end; ++n) {
-    const kernel::Time middle = kernel::level_time(resolved.start, 2 * n + 1, 2 * resolved.rate);
-    resolved.levels.append(resolve(group, middle, at.random_) ? 1 : 0, 1);
+  if (is_one_grid) {
+    resolve_on_grid(group, end, at.random_, resolved);
+  } else {
+    resolve_by_instants(group, end, at.random_, resolved);
   }
   segment_.trace().observe(at.trace_channel_, resolved.start, "contention", group.size());
   const Contention contention{at.trace_channel_, resolved.start, end, group.size()};
   for (ContentionWatcher* watcher : watchers_) watcher->on_contention(contention);
 }
 
-bool Medium::resolve(const std::vector<MediumPort::Flight>& group, kernel::Time instant,
-                     kernel::Random& random) const {
-  unsigned ones = 0;
-  unsigned zeros = 0;
-  for (const MediumPort::Flight& flight : group) {
-    if (instant < flight.start || instant >= flight.end) continue;
-    ++(flight.transmission->wave.at(instant) ? ones : zeros);
+// Level for level: many stations may contend, as those that claim a token together.
+void Medium::resolve_on_grid(const std::vector<MediumPort::Flight>& group, kernel::Time end,
+                             kernel::Random& random, line::Waveform& resolved) const {
+  const kernel::Duration level{kernel::kSecond.count() / resolved.rate};
+  const std::int64_t count = (end - resolved.start + level - kernel::kPicosecond) / level;
+  for (std::int64_t first = 0; first < count; first += kLevelsOfWord) {
+    DrivenLevels driven;
+    for (const MediumPort::Flight& flight : group)
+      driven.add(flight.transmission->wave.levels, first - (flight.start - resolved.start) / level);
+    std::uint64_t levels = ~driven.zeros;
+    for (std::uint64_t left = driven.ones & driven.zeros; left != 0; left &= left - 1)
+      if (one_wins(random)) levels |= left & (0 - left);
+    resolved.levels.append(levels, static_cast<unsigned>(std::min(kLevelsOfWord, count - first)));
   }
-  if (ones == 0 || zeros == 0) return zeros == 0;
+}
+
+void Medium::resolve_by_instants(const std::vector<MediumPort::Flight>& group, kernel::Time end,
+                                 kernel::Random& random, line::Waveform& resolved) const {
+  resolved.rate *= kFiner;
+  // Every flight is asked at its own place in time.
+  for (const auto& flight : group) flight.transmission->wave.start = flight.start;
+  for (std::int64_t n = 0; kernel::level_time(resolved.start, n, resolved.rate) < end; ++n) {
+    const kernel::Time middle = kernel::level_time(resolved.start, 2 * n + 1, 2 * resolved.rate);
+    bool has_one = false;
+    bool has_zero = false;
+    for (const MediumPort::Flight& flight : group) {
+      if (middle < flight.start || middle >= flight.end) continue;
+      (flight.transmission->wave.at(middle) ? has_one : has_zero) = true;
+    }
+    resolved.levels.append((has_one && has_zero ? one_wins(random) : !has_zero) ? 1 : 0, 1);
+  }
+}
+
+// Whether a 1 stays a 1 beside a 0.
+bool Medium::one_wins(kernel::Random& random) const {
   if (rule_ == ContentionRule::noise) return (random.next() >> 63) != 0;
   return rule_ == ContentionRule::one_wins;
 }

@@ -152,8 +152,11 @@ class Medium final : private kernel::Timer {
   void release(MediumPort::Transmission& transmission);
   void contend(MediumPort& at, const std::vector<MediumPort::Flight>& group, kernel::Time end,
                line::Waveform& resolved);
-  bool resolve(const std::vector<MediumPort::Flight>& group, kernel::Time instant,
-               kernel::Random& random) const;
+  void resolve_on_grid(const std::vector<MediumPort::Flight>& group, kernel::Time end, kernel::Random& random,
+                       line::Waveform& resolved) const;
+  void resolve_by_instants(const std::vector<MediumPort::Flight>& group, kernel::Time end,
+                           kernel::Random& random, line::Waveform& resolved) const;
+  bool one_wins(kernel::Random& random) const;
   void arm();
 
   Segment& segment_;

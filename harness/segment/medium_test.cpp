@@ -230,6 +230,7 @@ TEST(Medium, AsksTheChannelOfEachPlace) {
 
 // Every place hears, at every instant, what the rule makes of the levels that reach it; an independent sum.
 RC_GTEST_PROP(Medium, LeavesTheLineAsTheRuleSays, (std::uint64_t seed)) {
+  constexpr std::size_t kInstants = 250;
   kernel::Random random(seed);
   const bool zero_wins = seed % 2 == 0;
   Bus ruled(zero_wins ? ContentionRule::zero_wins : ContentionRule::one_wins);
@@ -238,7 +239,8 @@ RC_GTEST_PROP(Medium, LeavesTheLineAsTheRuleSays, (std::uint64_t seed)) {
     line::Waveform wave;
     wave.start = kStart + kMicrosecond * random.between(0, 40);
     wave.rate = 1'000'000;
-    wave.levels.append(random.next(), static_cast<unsigned>(random.between(1, 12)));
+    for (std::int64_t words = random.between(1, 3); words > 0; --words)
+      wave.levels.append(random.next(), static_cast<unsigned>(random.between(1, 64)));
     arriving.push_back(wave);
     const bool from_first = random.chance(0.5);
     arriving.back().start += (from_first ? 3 : 2) * kMicrosecond;
@@ -251,11 +253,11 @@ RC_GTEST_PROP(Medium, LeavesTheLineAsTheRuleSays, (std::uint64_t seed)) {
         levels.at(static_cast<std::size_t>((wave.time_of(n) - kStart) / kMicrosecond)) = wave.levels[n];
       }
     }
-    std::vector<bool> levels = std::vector<bool>(100, true);
+    std::vector<bool> levels = std::vector<bool>(kInstants, true);
   } heard;
   ruled.ports[2]->tap_arrived(heard);
   ruled.run();
-  for (std::size_t n = 0; n < 100; ++n) {
+  for (std::size_t n = 0; n < kInstants; ++n) {
     const Time at = kStart + kMicrosecond * static_cast<std::int64_t>(n);
     bool has_zero = false;
     bool has_one = false;
