@@ -24,8 +24,8 @@ constexpr std::array<Reproduce, 3> kControlLoop = {&control_loop_quiet, &control
                                                    &control_loop_with_operator};
 constexpr std::array<Reproduce, 5> kBandwidth = {&bandwidth_periodic, &bandwidth_non_real_time,
                                                  &bandwidth_real_time, &bandwidth_loop, &bandwidth_stations};
-constexpr std::array<Reproduce, 3> kControlNetwork = {&control_network_coding, &control_network_rotation,
-                                                      &control_network_access};
+constexpr std::array<Reproduce, 4> kControlNetwork = {&control_network_coding, &control_network_rotation,
+                                                      &control_network_access, &control_network_recovery};
 
 constexpr std::array kPapers = {
     Paper{"interbus", "J.-H. Park, The Study on the Cycling Time for Interbus, 2004",

@@ -42,5 +42,21 @@ TEST(ControlNetworkPaper, CsmaCdIsLateWhereTheTokenIsNot) {
   EXPECT_LT(rare.curves[0].points.at(2).y, rare.curves[1].points.at(2).y);
 }
 
+// Seven kinds, one of them with a burst alone, and five sizes.
+TEST(ControlNetworkPaper, TheRingIsWholeAgainWithinWhatItsTimersAllow) {
+  if (kernel::kIsSanitized)
+    GTEST_SKIP() << "not applicable: a sanitizer sees this code in tests of its own folder";
+  const reports::PublishedSection section =
+      control_network_recovery({.seed = 3, .duration = kernel::kSecond / 5});
+  ASSERT_EQ(section.rows.size(), 18U);
+  for (const reports::PublishedRow& row : section.rows) {
+    EXPECT_NE(row.agrees, false) << row.what << ": " << row.remark;
+    if (row.what == "a station dies, and a burst") {
+      EXPECT_THAT(row.remark, HasSubstr("2 instants; 0 over"));
+    }
+  }
+  EXPECT_THAT(section.rows.back().what, HasSubstr("64 stations"));
+}
+
 }  // namespace
 }  // namespace fieldproof::papers

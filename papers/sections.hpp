@@ -48,5 +48,6 @@ reports::PublishedSection bandwidth_stations(const Settings& settings);
 reports::PublishedSection control_network_coding(const Settings& settings);
 reports::PublishedSection control_network_rotation(const Settings& settings);
 reports::PublishedSection control_network_access(const Settings& settings);
+reports::PublishedSection control_network_recovery(const Settings& settings);
 
 }  // namespace fieldproof::papers
