@@ -114,20 +114,20 @@ QueuedFrames::QueuedFrames(const TimedToken& token, const Settings& settings, co
   for (std::size_t n = 0; n < kAccessClasses; ++n) {
     const kernel::Random of_class = random.split(name_of(static_cast<AccessClass>(n)));
     for (unsigned station = 0; station < token.stations; ++station) {
-      queues_[n].push_back({PoissonArrivals(settings.per_ms[n], of_class.split(station))});
+      arrivals_[n].emplace_back(settings.per_ms[n], of_class.split(station));
     }
   }
 }
 
 Taken QueuedFrames::take(unsigned station, AccessClass access_class, Time now, Duration /*left*/) {
   const auto n = static_cast<std::size_t>(access_class);
-  Queue& queue = queues_[n][station];
-  for (; queue.arrivals.next() <= now; queue.arrivals.draw()) queue.waiting.push_back(queue.arrivals.next());
-  if (queue.waiting.empty()) return std::nullopt;
-  const Duration delay = now + settings_.frame - queue.waiting.front();
+  // Those that wait are those that have come and were not drawn yet.
+  PoissonArrivals& arrivals = arrivals_[n][station];
+  if (arrivals.next() > now) return std::nullopt;
+  const Duration delay = now + settings_.frame - arrivals.next();
   delays_[n].add(delay);
   if (delay > settings_.bound) ++beyond_;
-  queue.waiting.pop_front();
+  arrivals.draw();
   return settings_.frame;
 }
 

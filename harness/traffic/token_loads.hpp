@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <deque>
 #include <memory>
 #include <vector>
 
@@ -27,7 +26,7 @@ std::unique_ptr<FrameSource> just_in_time(const TimedToken& token, AccessClass l
 kernel::Duration longest_under_attack(const TimedToken& token, const kernel::Random& random,
                                       std::uint64_t rotations);
 
-// Frames of one length that arrive at each station as a Poisson stream for each class.
+// Frames of one length that arrive at each station as a Poisson stream for each class, the oldest first.
 class QueuedFrames final : public FrameSource {
  public:
   struct Settings {
@@ -48,12 +47,8 @@ class QueuedFrames final : public FrameSource {
   std::uint64_t beyond() const { return beyond_; }
 
  private:
-  struct Queue {
-    PoissonArrivals arrivals;
-    std::deque<kernel::Time> waiting{};
-  };
   Settings settings_;
-  std::array<std::vector<Queue>, kAccessClasses> queues_;
+  std::array<std::vector<PoissonArrivals>, kAccessClasses> arrivals_;
   std::array<measure::Distribution, kAccessClasses> delays_;
   std::uint64_t beyond_ = 0;
 };
