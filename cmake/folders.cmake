@@ -49,6 +49,10 @@ function(fieldproof_library name folder)
     endforeach()
     target_link_libraries(${name} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:fieldproof_warnings>)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    # Under sanitizers a compilation takes less than half of the time so, and its time passes elsewhere, too.
+    if(FIELDPROOF_SANITIZE AND NOT arg_FAST)
+      target_compile_options(${name} PRIVATE -O0)
+    endif()
     if(arg_FAST AND CMAKE_BUILD_TYPE STREQUAL "Release")
       fieldproof_compile_hot_sources(${sources})
     endif()
@@ -86,10 +90,10 @@ function(fieldproof_test_ground)
     GTest::gtest_main GTest::gmock rapidcheck rapidcheck_gtest fmt::fmt nlohmann_json::nlohmann_json Boost::headers
     Threads::Threads fieldproof_warnings)
   target_include_directories(fieldproof_test_ground INTERFACE "${CMAKE_SOURCE_DIR}")
-  # What is fast is what they test; optimizing them as well would take a third of the time of their compilation, and
-  # under a sanitizer two thirds. Tests that COMPUTE would take six times as long for it.
+  # What is fast is what they test; optimizing them as well would take a quarter of the time of their compilation, and
+  # under a sanitizer two thirds. Tests that COMPUTE would take six times as long without it.
   target_compile_options(fieldproof_test_ground INTERFACE
-    $<IF:$<OR:$<CONFIG:Release>,$<BOOL:$<TARGET_PROPERTY:FIELDPROOF_COMPUTES>>>,-O1,-O0>)
+    $<IF:$<BOOL:$<TARGET_PROPERTY:FIELDPROOF_COMPUTES>>,-O1,-O0>)
   target_compile_definitions(fieldproof_test_ground INTERFACE FIELDPROOF_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   if(FIELDPROOF_PRECOMPILE)
     file(WRITE "${CMAKE_BINARY_DIR}/generated/precompiled.cpp" "")
@@ -155,7 +159,7 @@ function(fieldproof_tests name folder)
   endif()
   target_link_libraries(${name} PRIVATE ${arg_LINK} fieldproof_test_ground fieldproof_instrumented)
   # Precompiled headers are of one optimization.
-  if(FIELDPROOF_PRECOMPILE AND (CMAKE_BUILD_TYPE STREQUAL "Release" OR NOT arg_COMPUTE))
+  if(FIELDPROOF_PRECOMPILE AND NOT arg_COMPUTE)
     target_precompile_headers(${name} REUSE_FROM fieldproof_test_headers)
     fieldproof_cacheable_precompiled_headers(${name})
   endif()
@@ -166,7 +170,8 @@ function(fieldproof_tests name folder)
   # What is judged in wall-clock time has the machine for itself.
   set(seeds "RC_PARAMS=seed=20240611")
   if(FIELDPROOF_SANITIZE AND NOT FIELDPROOF_SANITIZE STREQUAL "thread")
-    fieldproof_tests_in_parts(${name} ${folder} "${seeds}")
+    # A sanitizer looks at what the code does, not at how often it holds: fewer of the values, as large ones.
+    fieldproof_tests_in_parts(${name} ${folder} "${seeds} max_success=25")
     return()
   endif()
   foreach(part IN ITEMS "*Threads*" "*SerialRuns*" "-*Threads*:*SerialRuns*")

@@ -11,6 +11,7 @@
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
 #include "conformance/fieldbus_dll/suite.hpp"
+#include "harness/kernel/sanitized.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
@@ -98,9 +99,11 @@ TEST_P(ServedLinkRoles, ReferenceIsJudgedInEveryCaseAsInside) {
 
 // In the cases that name them.
 TEST_P(ServedLinkRoles, MutantsAreJudgedAsInside) {
+  unsigned number = 0;
   for (const Mutant& mutant : suite_inside().mutants()) {
     // What shows in sequences only no case names.
     if (mutant.role != GetParam() || mutant.is_for_check) continue;
+    if (kernel::kIsSanitized && number++ % 4 != 0) continue;  // the way out and back is the same for all
     const auto suite = suite_outside(GetParam(), mutant.name);
     int judged = 0;
     for (const TestCase& test_case : suite->cases()) {

@@ -8,6 +8,7 @@
 
 #include "conformance/token_bus/station_mutants.hpp"
 #include "conformance/token_bus/suite.hpp"
+#include "harness/kernel/sanitized.hpp"
 #include "protocols/token_bus/attached_station.hpp"
 #include "protocols/token_bus/token_station.hpp"
 
@@ -55,7 +56,9 @@ TEST(ServedTokenStation, TheReferenceIsJudgedInEveryCaseAsInside) {
 
 TEST(ServedTokenStation, MutantsAreJudgedAsInside) {
   const auto inside = token_bus_suite();
+  unsigned number = 0;
   for (const Mutant& mutant : inside->mutants()) {
+    if (kernel::kIsSanitized && number++ % 4 != 0) continue;  // the way out and back is the same for all
     const auto outside = token_suite_outside(mutant.name);
     for (const TestCase& test_case : inside->cases()) {
       if (std::ranges::count(test_case.catches, mutant.name, &MustCatch::mutant) > 0)

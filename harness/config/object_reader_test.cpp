@@ -5,6 +5,7 @@
 
 #include "harness/config/document.hpp"
 #include "harness/kernel/error.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::config {
 namespace {
@@ -57,7 +58,8 @@ TEST(ObjectReader, NamesTheNearestWrittenKeyWhenOneIsMissing) {
 
 TEST(ObjectReader, NamesTheFirstOfManyUnknownKeys) {
   std::string text = "{\"name\": \"a\"";
-  for (int n = 0; n < 20'000; ++n) text += ",\n\"" + std::to_string(n) + std::string(300, 'n') + "\": 0";
+  for (int n = 0; n < (kernel::kIsSanitized ? 2'000 : 20'000); ++n)
+    text += ",\n\"" + std::to_string(n) + std::string(300, 'n') + "\": 0";
   EXPECT_TRUE(station_error(text + "}").starts_with("x.json:2: /0nnn"));
   EXPECT_NE(station_error("{\"nome\": 1, " + text.substr(14) + "}").find("\"nome\" on line 1"),
             std::string::npos);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "harness/kernel/error.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::traffic {
 namespace {
@@ -117,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(OfThePaper, WorkedCase, testing::ValuesIn(worked()),
 // Over the paper's loads, shares and target times, and those that break careless arithmetic.
 template <typename Look>
 void over_the_paper(Look look) {
-  for (const double load : {0.2, 0.35, 0.5}) {
+  for (const double load : kernel::kIsSanitized ? std::vector{0.35} : std::vector{0.2, 0.35, 0.5}) {
     for (const auto& [urgent, available] : {std::pair{2.0, 1.0}, {1.0, 1.0}, {1.0, 2.0}}) {
       for (const int target : {16'000, 16'600, 20'000, 25'000, 34'816, 48'680, 60'000, 80'000}) {
         SCOPED_TRACE(std::to_string(load) + " " + std::to_string(urgent / available) + " " +
