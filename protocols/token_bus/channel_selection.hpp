@@ -60,12 +60,17 @@ enum class Carried : std::uint8_t {
 };
 Carried carried_by(std::span<const Reception> receptions);
 
-class ChannelUser {
+// Who is told of faults.
+class ChannelListener {
  public:
-  virtual ~ChannelUser() = default;
+  virtual ~ChannelListener() = default;
+  virtual void on_channel_event(const ChannelEvent& event, kernel::Time when) = 0;
+};
+
+class ChannelUser : public ChannelListener {
+ public:
   // The transmission whose start delimiter was complete then is taken from this channel.
   virtual void on_selected(Channel channel, kernel::Time start_delimiter) = 0;
-  virtual void on_channel_event(const ChannelEvent& event, kernel::Time when) = 0;
 };
 
 class ChannelSelection {

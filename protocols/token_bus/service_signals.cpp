@@ -10,10 +10,6 @@ namespace {
 
 constexpr std::uint64_t kUnitMask = (1U << kUnitLevels) - 1;
 
-std::uint64_t unit_at(const line::Levels& levels, std::size_t unit) {
-  return levels.window(std::min(unit * kUnitLevels, levels.size())) & kUnitMask;
-}
-
 // 2 1 0 as a number, and SM*; the first circuit is the first level.
 std::uint64_t circuits(bool is_management, unsigned code) {
   return (is_management ? 0U : 1U) | (code >> 2 & 1U) << 1 | (code >> 1 & 1U) << 2 | (code & 1U) << 3;
@@ -46,6 +42,10 @@ constexpr std::array kCommands{ManagementCommand::serial_data, ManagementCommand
                                ManagementCommand::unknown,     ManagementCommand::reset};
 
 }  // namespace
+
+std::uint64_t unit_at(const line::Levels& levels, std::size_t unit) {
+  return levels.window(std::min(unit * kUnitLevels, levels.size())) & kUnitMask;
+}
 
 // ---- physical side ----
 

@@ -85,6 +85,9 @@ void append(line::Levels& levels, const MacIndication& indication);
 MacRequest mac_request_at(const line::Levels& levels, std::size_t unit);
 MacIndication mac_indication_at(const line::Levels& levels, std::size_t unit);
 
+// Its four levels as they are.
+std::uint64_t unit_at(const line::Levels& levels, std::size_t unit);
+
 // A unit that is cut off ends in idle.
 inline std::size_t units_in(const line::Levels& levels) {
   return (levels.size() + kUnitLevels - 1) / kUnitLevels;

@@ -11,10 +11,43 @@
 #include "protocols/token_bus/frame.hpp"
 #include "protocols/token_bus/translator.hpp"
 
-// For tests: a translator with somebody on both sides, who gives it symbols and keeps what it drives. An
-// answer is a small letter: i of IDLE, a, n, e of a physical error.
 namespace fieldproof::token_bus {
 
+// Keeps what is driven.
+class KeptWaves final : public segment::Port {
+ public:
+  explicit KeptWaves(segment::Segment& segment) : segment_(segment) {}
+  void drive(line::Waveform& wave) override {
+    is_in_order &= wave.start >= segment_.now() && wave.start >= until_;
+    until_ = wave.end();
+    waves.push_back(std::move(wave));
+  }
+
+  std::vector<line::Waveform> waves{};
+  bool is_in_order = true;
+
+ private:
+  segment::Segment& segment_;
+  kernel::Time until_ = kernel::kStart;
+};
+
+inline char letter_of(ManagementAnswer answer) {
+  return "iane"[static_cast<std::size_t>(answer)];
+}
+// Of a side that carries MAC symbols.
+inline std::string symbols_in(const std::vector<line::Waveform>& waves) {
+  std::string text;
+  for (const line::Waveform& wave : waves) {
+    for (std::size_t n = 0; n < units_in(wave.levels); ++n) {
+      const MacIndication one = mac_indication_at(wave.levels, n);
+      text += one.answer ? std::string(1, letter_of(*one.answer)) : written(MacSymbols{one.symbol});
+    }
+  }
+  return text;
+}
+
+// For tests: a translator with somebody on both sides, who gives it symbols and keeps what it drives. An
+// answer is a small letter: i of IDLE, a, n, e of a physical error.
 class TestTranslator : private segment::Station {
  public:
   explicit TestTranslator(const TranslatorConfiguration& configuration = {})
@@ -107,40 +140,12 @@ class TestTranslator : private segment::Station {
     }
     return text;
   }
-  std::string take_indications() {
-    std::string text;
-    for (const line::Waveform& wave : std::exchange(mac_out_.waves, {})) {
-      for (std::size_t n = 0; n < units_in(wave.levels); ++n) {
-        const MacIndication one = mac_indication_at(wave.levels, n);
-        text += one.answer ? std::string(1, letter_of(*one.answer)) : written(MacSymbols{one.symbol});
-      }
-    }
-    return text;
-  }
+  std::string take_indications() { return symbols_in(std::exchange(mac_out_.waves, {})); }
   kernel::Time first_phy() const { return phy_out_.waves.front().start; }
   // Nothing was driven in the past, and nothing twice at a time.
   bool is_in_order() const { return phy_out_.is_in_order && mac_out_.is_in_order; }
 
  private:
-  class Out final : public segment::Port {
-   public:
-    explicit Out(segment::Segment& segment) : segment_(segment) {}
-    void drive(line::Waveform& wave) override {
-      is_in_order &= wave.start >= segment_.now() && wave.start >= until_;
-      until_ = wave.end();
-      waves.push_back(std::move(wave));
-    }
-
-    std::vector<line::Waveform> waves{};
-    bool is_in_order = true;
-
-   private:
-    segment::Segment& segment_;
-    kernel::Time until_ = kernel::kStart;
-  };
-
-  static char letter_of(ManagementAnswer answer) { return "iane"[static_cast<std::size_t>(answer)]; }
-
   void receive(segment::PortIndex, const line::Waveform&) override {}
   void on_time(kernel::Time) override {}
   kernel::Time next_time() const override { return kernel::kNever; }
@@ -150,8 +155,8 @@ class TestTranslator : private segment::Station {
   std::size_t seat_;
   segment::Link& phy_in_{segment_.connect("phy", seat_, kPhySide, {})};
   segment::Link& mac_in_{segment_.connect("mac", seat_, kMacSide, {})};
-  Out phy_out_{segment_};
-  Out mac_out_{segment_};
+  KeptWaves phy_out_{segment_};
+  KeptWaves mac_out_{segment_};
   std::int64_t parts_per_million_ = 0;
 };
 
