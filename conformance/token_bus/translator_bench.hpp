@@ -1,11 +1,10 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "conformance/case_bench.hpp"
+#include "conformance/token_bus/sides_bench.hpp"
 #include "conformance/token_bus/translator_sides.hpp"
 #include "protocols/token_bus/translator_device.hpp"
 
@@ -20,16 +19,12 @@ struct TranslatorNeeds {
 
 using TranslatorSetting = PlannedSetting<token_bus::TranslatorDevice, token_bus::TranslatorConfiguration>;
 
-class TranslatorBench final : public CaseBench, private segment::Station {
+class TranslatorBench final
+    : public SidesBench<token_bus::TranslatorDevice, token_bus::TranslatorConfiguration> {
  public:
   TranslatorBench(const TranslatorNeeds& needs, const TranslatorSetting& setting);
 
-  const token_bus::TranslatorConfiguration& configuration() const { return configuration_; }
-  kernel::Duration symbols(std::int64_t count) const {
-    return token_bus::mac_symbols(configuration_.rules, count);
-  }
-  kernel::Duration delay() const { return symbols(configuration_.delay_symbols); }
-  void set_power(bool is_on);
+  kernel::Duration delay() const { return symbols(configuration().delay_symbols); }
 
   // ---- upper tester; each runs until what is requested is over ----
   void request(std::string_view symbols);
@@ -44,8 +39,7 @@ class TranslatorBench final : public CaseBench, private segment::Station {
   void command_and_receive(SideCommand command, std::size_t symbols, const SideBits& bits);
   void set_line_clock(std::int64_t parts_per_million) { parts_per_million_ = parts_per_million; }
 
-  // Until everything that was given has come out, and what
-  // that comes too late, too.
+  // Until everything that was given has come out, and what that comes too late, too.
   void settle() { wait(4 * delay() + symbols(4)); }
   void clear() {
     sent_.clear();
@@ -54,28 +48,18 @@ class TranslatorBench final : public CaseBench, private segment::Station {
   // Since the last `clear`.
   const SideLog& sent() const { return sent_; }
   const SideLog& indicated() const { return indicated_; }
-  std::vector<std::uint8_t> random_octets(std::size_t count);
 
-  // ---- the end, and what else a bench does ----
+  // ---- what else a bench does ----
   std::vector<std::string> decode_lines() const;
-  void finish() { translator_->end(); }
   // What it must answer: a command of the management.
   void ask();
 
  private:
-  void receive(segment::PortIndex, const line::Waveform&) override {}
-  void on_time(kernel::Time) override {}
-  kernel::Time next_time() const override { return kernel::kNever; }
-
   kernel::Time drive_request(line::Levels levels);
   kernel::Time drive_bits(const SideBits& bits);
 
-  token_bus::TranslatorConfiguration configuration_;
   SideLog sent_;
   SideLog indicated_;
-  std::unique_ptr<token_bus::TranslatorDevice> translator_;
-  std::size_t tester_;
-  std::size_t seat_;
   segment::Link& phy_in_;
   segment::Link& mac_in_;
   segment::Link& phy_out_;

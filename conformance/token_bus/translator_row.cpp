@@ -2,8 +2,8 @@
 
 #include "conformance/bench_role.hpp"
 #include "conformance/token_bus/translator_cases.hpp"
-#include "conformance/token_bus/translator_declarations.hpp"
 #include "conformance/token_bus/translator_mutants.hpp"
+#include "harness/field/pics.hpp"
 #include "protocols/token_bus/attached_translator.hpp"
 #include "protocols/token_bus/translator.hpp"
 #include "protocols/token_bus/translator_dissector.hpp"
@@ -16,7 +16,7 @@ RoleRow translator_row() {
       {.what = "translator of the token bus", .mutants = translator_mutants},
       Cases{.name = "translator",
             .cases = translator_cases,
-            .pics_items = translator_pics_items,
+            .pics_items = [] { return field::pics_items_of(token_bus::kTranslatorTable); },
             .settings = &token_bus::kTranslatorTable});
 }
 

@@ -39,17 +39,26 @@ constexpr std::array<Code, 16> kIndications{{{'0', "1000"},
 
 struct CommandCode {
   std::string_view text;
+  char letter;
   std::string_view circuits;
 };
-constexpr std::array<CommandCode, 5> kCommands{{{"RESET", "0111"},
-                                                {"DISABLE LOOPBACK", "0101"},
-                                                {"ENABLE TRANSMITTER", "0011"},
-                                                {"SM idle", "0001"},
-                                                {"serial SM data", "0000"}}};
+constexpr std::array<CommandCode, 5> kCommands{{{"RESET", 'r', "0111"},
+                                                {"DISABLE LOOPBACK", 'l', "0101"},
+                                                {"ENABLE TRANSMITTER", 't', "0011"},
+                                                {"SM idle", 'i', "0001"},
+                                                {"serial SM data", 'd', "0000"}}};
 
 char indication_of(std::string_view circuits) {
   const auto* const code = std::ranges::find(kIndications, circuits, &Code::circuits);
   return code->letter;
+}
+
+char request_of(std::string_view circuits) {
+  for (const CommandCode& one : kCommands)
+    if (one.circuits == circuits) return one.letter;
+  if (circuits.front() == '0') return '?';
+  const char letter = indication_of(circuits);
+  return letter == 'B' ? 'P' : letter;
 }
 
 // Transmitter off, no error, and the halves of a Manchester bit; what is no bit is shown as such.
@@ -96,6 +105,20 @@ line::Levels request_levels_of(std::string_view symbols) {
 line::Levels request_levels_of(SideCommand command, std::size_t symbols) {
   std::string text;
   for (std::size_t n = 0; n < symbols; ++n) text += kCommands.at(static_cast<std::size_t>(command)).circuits;
+  return line::Levels::of_text(text);
+}
+
+char letter_of(SideCommand command) {
+  return kCommands.at(static_cast<std::size_t>(command)).letter;
+}
+
+line::Levels indication_levels_of(std::string_view symbols) {
+  std::string text;
+  for (const char letter : symbols) {
+    const auto* const code = std::ranges::find(kIndications, letter, &Code::letter);
+    FIELDPROOF_CHECK(code != kIndications.end(), "each letter can be indicated");
+    text += code->circuits;
+  }
   return line::Levels::of_text(text);
 }
 
@@ -153,7 +176,9 @@ void SideLog::on_wave(const line::Waveform& wave) {
   for (std::size_t n = 0; n < levels.size(); n += kUnit) {
     std::string circuits = levels.substr(n, kUnit);
     circuits.resize(kUnit, '1');
-    text_ += side_ == Side::phy ? phy_letter_of(circuits) : indication_of(circuits);
+    text_ += side_ == Side::phy   ? phy_letter_of(circuits)
+             : side_ == Side::mac ? indication_of(circuits)
+                                  : request_of(circuits);
     times_.push_back(wave.time_of(n));
   }
   end_ = wave.end();

@@ -8,11 +8,13 @@
 #include "harness/line/waveform.hpp"
 #include "harness/segment/station.hpp"
 
-// The testers' view of the two sides of a translator, as text. It has tables of codes of its own, and uses no
-// code of the translators that it judges.
+// The testers' view of the sides of a translator and of a channel manager, as text. It has tables of codes of
+// its own, and uses no code of those that it judges.
 //
 //   MAC side       S silence, P pad_idle, 0, 1, N non_data, B bad_signal; in management mode the answers
 //                  i IDLE, a ACK, n NACK, e physical error
+//   MAC's requests P in the place of B, and the commands r RESET, l DISABLE LOOPBACK, t ENABLE TRANSMITTER,
+//                  i SM idle, d serial data; ? is none
 //   physical side  1 CD1, 0 CD0, I IDL
 namespace fieldproof::conformance {
 
@@ -34,6 +36,9 @@ std::string_view text_of(SideCommand command);
 
 line::Levels request_levels_of(std::string_view symbols);
 line::Levels request_levels_of(SideCommand command, std::size_t symbols);
+char letter_of(SideCommand command);
+// As a translator indicates them.
+line::Levels indication_levels_of(std::string_view symbols);
 
 // ---- what follows from the tables of the paper ----
 
@@ -55,7 +60,7 @@ std::string indicated_as(std::string requested);
 // is shorter than three quarters of a unit is a clock that was stretched.
 class SideLog final : public segment::Tap {
  public:
-  enum class Side : std::uint8_t { phy, mac };
+  enum class Side : std::uint8_t { phy, mac, requests };
   SideLog(Side side, std::int64_t unit_rate) : side_(side), unit_rate_(unit_rate) {}
 
   void on_wave(const line::Waveform& wave) override;
