@@ -170,7 +170,11 @@ INSTANTIATE_TEST_SUITE_P(
             "token_bus/translator",
             {{{"pad_idle_as_zero", "encoding/preamble_and_start_delimiter_are_an_sfd", "preamble_is_no_sfd"},
               {"reset_enables_transmitter", "management/the_transmitter_waits_for_its_command",
-               "sends_unasked"}}}}),
+               "sends_unasked"}}}},
+        Served{"token_bus/channel_manager",
+               {{{"sends_on_a_alone", "requests/go_out_on_both_channels", "not_on_both"},
+                 {"reports_the_other_channel", "faults/a_missing_start_delimiter_is_reported",
+                  "report_wrong"}}}}),
     [](const testing::TestParamInfo<Served>& one) {
       std::string name = one.param.role;
       std::ranges::replace(name, '/', '_');

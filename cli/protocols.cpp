@@ -17,6 +17,7 @@
 #include "conformance/interbus/planned_network.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
+#include "conformance/token_bus/dual_channel_mutants.hpp"
 #include "conformance/token_bus/planned_network.hpp"
 #include "conformance/token_bus/station_mutants.hpp"
 #include "conformance/token_bus/suite.hpp"
@@ -42,8 +43,10 @@
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"
 #include "protocols/interbus/telegram_speaker.hpp"
+#include "protocols/token_bus/attached_dual_channel.hpp"
 #include "protocols/token_bus/attached_station.hpp"
 #include "protocols/token_bus/attached_translator.hpp"
+#include "protocols/token_bus/dual_channel.hpp"
 #include "protocols/token_bus/token_station.hpp"
 #include "protocols/token_bus/translator.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
@@ -207,6 +210,8 @@ constexpr std::array kFieldbusDllRoles{
 constexpr std::array kTokenBusRoles{
     row<token_bus::StationRole, token_bus::TokenStation, &conformance::token_station_mutants>(kInItsUnit),
     row<token_bus::TranslatorRole, token_bus::Translator, &conformance::translator_mutants>(kInItsUnit),
+    row<token_bus::ChannelManagerRole, token_bus::ChannelManager, &conformance::channel_manager_mutants>(
+        kInItsUnit),
 };
 
 Planned token_plan(const config::Document& file, std::uint64_t seed) {

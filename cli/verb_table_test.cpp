@@ -35,6 +35,7 @@ constexpr std::array kJudgedRoles = {
     JudgedRole{"fieldbus_dll", "ff_las", "schedule/each_item_has_its_time"},
     JudgedRole{"token_bus", "station", "passing/token_goes_to_its_successor"},
     JudgedRole{"token_bus", "translator", "encoding/a_frame_goes_out_whole"},
+    JudgedRole{"token_bus", "channel_manager", "selection/stays_with_who_served"},
 };
 
 class VerbTable : public ProgramFixture, public testing::WithParamInterface<JudgedRole> {

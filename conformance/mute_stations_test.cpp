@@ -26,8 +26,10 @@
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/interbus/master.hpp"
 #include "protocols/interbus/slave.hpp"
+#include "protocols/token_bus/attached_dual_channel.hpp"
 #include "protocols/token_bus/attached_station.hpp"
 #include "protocols/token_bus/attached_translator.hpp"
+#include "protocols/token_bus/dual_channel.hpp"
 #include "protocols/token_bus/token_station.hpp"
 #include "protocols/token_bus/translator.hpp"
 #include "protocols/valve_bus/attached_host.hpp"
@@ -167,6 +169,7 @@ class MuteStations : public testing::Test {
     expect_no_pass<fieldbus_dll::IsaLasRole, fieldbus_dll::IsaLas>(fieldbus_dll_suite, uri);
     expect_no_pass<token_bus::StationRole, token_bus::TokenStation>(token_bus_suite, uri);
     expect_no_pass<token_bus::TranslatorRole, token_bus::Translator>(token_bus_suite, uri);
+    expect_no_pass<token_bus::ChannelManagerRole, token_bus::ChannelManager>(token_bus_suite, uri);
   }
   static void expect_no_pass_in_a_ring(const std::string& uri) {
     expect_no_pass<interbus::SlaveRole, interbus::Slave>(interbus_suite, uri);

@@ -1,6 +1,7 @@
 #include "conformance/token_bus/suite.hpp"
 
 #include "conformance/bench_role.hpp"
+#include "conformance/token_bus/dual_channel_row.hpp"
 #include "conformance/token_bus/station_cases.hpp"
 #include "conformance/token_bus/station_mutants.hpp"
 #include "conformance/token_bus/station_sequence.hpp"
@@ -31,7 +32,7 @@ std::unique_ptr<Suite> token_bus_suite(SuiteGiven given) {
   return std::make_unique<Suite>(
       SuiteRows{
           .protocol = "token_bus",
-          .roles = {token_station_row(), translator_row()},
+          .roles = {token_station_row(), translator_row(), channel_manager_row()},
           .rules = {{"rules", &token_bus::kRulesTable}},
           .schemas = {{"ring_network", token_bus::ring_network_schema}},
           .why_no_network = "cases of the token bus make the ring that they need; leave out the network"},

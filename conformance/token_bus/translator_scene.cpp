@@ -12,25 +12,6 @@ constexpr std::size_t kMostShown = 60;
 // Longer than any blanking.
 constexpr std::int64_t kRestSymbols = 200;
 
-std::string without_end(std::string text, char idle) {
-  while (text.ends_with(idle)) text.pop_back();
-  return text;
-}
-
-// Both from shortly in front of where they differ.
-Mismatch difference(const std::string& right, const std::string& seen) {
-  const auto [at_right, at_seen] = std::ranges::mismatch(right, seen);
-  const auto at = static_cast<std::size_t>(at_right - right.begin());
-  const std::size_t first = at - std::min<std::size_t>(at, 8);
-  const auto part = [&](const std::string& text) {
-    return fmt::format("from {} on: {}", first,
-                       first < text.size() ? text.substr(first, kMostShown) : "nothing");
-  };
-  Mismatch made{{part(right)}, part(seen)};
-  made.first_difference = fmt::format("unit {}", at);
-  return made;
-}
-
 }  // namespace
 
 TranslatorScene::TranslatorScene(TranslatorBench& bench_, CaseJudge& judge_, unsigned round_)

@@ -13,9 +13,6 @@
 // The words of charts for a translator.
 namespace fieldproof::conformance {
 
-// Octets between the delimiters.
-inline constexpr std::size_t kLongestFrame = 8'191;
-
 // What the steps of one round share.
 struct TranslatorScene : Scene<TranslatorBench> {
   TranslatorScene(TranslatorBench& bench_, CaseJudge& judge_, unsigned round_);

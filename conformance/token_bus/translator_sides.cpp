@@ -1,5 +1,7 @@
 #include "conformance/token_bus/translator_sides.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -188,6 +190,27 @@ void SideLog::clear() {
   text_.clear();
   times_.clear();
   begin_ = end_ = kernel::kNever;
+}
+
+// ---- two texts ----
+
+std::string without_end(std::string text, char idle) {
+  while (text.ends_with(idle)) text.pop_back();
+  return text;
+}
+
+Mismatch difference(const std::string& right, const std::string& seen) {
+  const auto [at_right, at_seen] = std::ranges::mismatch(right, seen);
+  const auto at = static_cast<std::size_t>(at_right - right.begin());
+  constexpr std::size_t kMostShown = 60;
+  const std::size_t first = at - std::min<std::size_t>(at, 8);
+  const auto part = [&](const std::string& text) {
+    return fmt::format("from {} on: {}", first,
+                       first < text.size() ? text.substr(first, kMostShown) : "nothing");
+  };
+  Mismatch made{{part(right)}, part(seen)};
+  made.first_difference = fmt::format("unit {}", at);
+  return made;
 }
 
 }  // namespace fieldproof::conformance

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/judging.hpp"
 #include "harness/line/waveform.hpp"
 #include "harness/segment/station.hpp"
 
@@ -44,6 +45,8 @@ line::Levels indication_levels_of(std::string_view symbols);
 
 // Two bits for each symbol that is requested.
 std::string encoded(std::string_view symbols);
+// Octets between the delimiters.
+inline constexpr std::size_t kLongestFrame = 8'191;
 std::string start_delimiter_text();
 std::string end_delimiter_text(bool more_follows = false);
 // Octets with their lowest bit first, as they are.
@@ -80,5 +83,11 @@ class SideLog final : public segment::Tap {
   kernel::Time begin_ = kernel::kNever;
   kernel::Time end_ = kernel::kNever;
 };
+
+// ---- two texts ----
+
+std::string without_end(std::string text, char idle);
+// Both from shortly in front of where they differ.
+Mismatch difference(const std::string& right, const std::string& seen);
 
 }  // namespace fieldproof::conformance

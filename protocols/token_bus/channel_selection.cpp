@@ -74,7 +74,7 @@ void ChannelSelection::on_bad_signal(Channel channel, kernel::Time when) {
   State& other = of(other_than(channel));
   own.is_bad = true;
   if (other.bad_at != kernel::kNever && !is_bad_signal_a_fault(true)) other.bad_at = kernel::kNever;
-  const bool is_in_time = other.start_delimiter && when <= *other.start_delimiter + slot();
+  const bool is_in_time = other.start_delimiter && when <= *other.start_delimiter + bad_signal_counts_for();
   if (is_in_time && is_bad_signal_a_fault(other.is_bad)) own.bad_at = std::min(own.bad_at, when + skew());
 }
 
@@ -88,7 +88,7 @@ void ChannelSelection::on_end(Channel channel, Carried carried, kernel::Time whe
   own.clean = clean_after(own.clean, carried);
   if (own.has_fault && own.clean >= channels_.clean_in_a_row) {
     own.has_fault = false;
-    user_->on_channel_event({ChannelEventKind::clean, reported_channel(channel)}, when);
+    user_->on_channel_event(reported({ChannelEventKind::clean, channel}), when);
   }
   compare(when);
 }
@@ -171,10 +171,10 @@ void ChannelSelection::select(Channel channel, kernel::Time start_delimiter) {
 void ChannelSelection::find_fault(Channel channel, ChannelEventKind kind, kernel::Time when) {
   State& own = of(channel);
   own.clean = own.errors = 0;
+  const bool is_new = is_reported(channel, own.has_fault);
   if (preferred_ == channel && is_left_for(kind)) preferred_ = other_than(channel);
-  const bool is_new = is_reported(own.has_fault);
   own.has_fault = true;
-  if (is_new) user_->on_channel_event({kind, reported_channel(channel)}, when);
+  if (is_new) user_->on_channel_event(reported({kind, channel}), when);
 }
 
 }  // namespace fieldproof::token_bus

@@ -100,13 +100,13 @@ class ChannelSelection {
   std::optional<Channel> serving() const { return serving_; }
   bool is_within_transmission(Channel channel) const { return of(channel).is_within; }
   bool has_fault(Channel channel) const { return of(channel).has_fault; }
+  // A frame is under way on the channel, neither spoiled nor longer than any.
+  bool may_complete(Channel channel, kernel::Time when) const;
 
  protected:
   const ChannelRules& channels() const { return channels_; }
   kernel::Duration skew() const { return mac_symbols(rules_, channels_.skew_symbols); }
   kernel::Duration slot() const { return slots(rules_, 1); }
-  // A frame is under way on the channel, neither spoiled nor longer than any.
-  bool may_complete(Channel channel, kernel::Time when) const;
 
   // ---- decisions ----
   // The other channel has had a start delimiter and this one none for so long.
@@ -118,11 +118,12 @@ class ChannelSelection {
   virtual bool takes_late_copies() const { return false; }
   virtual Channel preferred_after_selection(Channel selected) const { return selected; }
   virtual bool is_left_for(ChannelEventKind) const { return true; }
+  virtual kernel::Duration bad_signal_counts_for() const { return slot(); }
   virtual bool is_bad_signal_a_fault(bool other_is_bad) const { return !other_is_bad; }
   virtual unsigned errors_after(unsigned errors, Carried carried, Carried other) const;
   virtual unsigned clean_after(unsigned clean, Carried carried) const;
-  virtual bool is_reported(bool has_fault_already) const { return !has_fault_already; }
-  virtual Channel reported_channel(Channel channel) const { return channel; }
+  virtual bool is_reported(Channel /*channel*/, bool has_fault_already) const { return !has_fault_already; }
+  virtual ChannelEvent reported(const ChannelEvent& event) const { return event; }
 
  private:
   struct Ended {

@@ -126,7 +126,8 @@ void ChannelManager::follow_request() {
   if (!is_management && what.symbol == MacSymbol::silence) return;
   for (const Channel channel : kChannels) {
     if (!sends_on(channel, is_management)) continue;
-    side(channel).requests.append(unit.begin + request_delay(channel), unit.rate, levels, kUnitLevels);
+    side(channel).requests.append(unit.begin + request_delay(channel), unit.rate, requested(channel, levels),
+                                  kUnitLevels);
   }
 }
 
@@ -200,7 +201,7 @@ void ChannelManager::indicate(Channel channel, const Held& one) {
   if (one.is_answer) {
     side(channel).answered_until = one.unit.end;
     if (!gives_answer(channel, has_answer(other_than(channel), one.unit))) return;
-  } else if (sources_.front().channel != channel) {
+  } else if (!gives_symbols(channel, sources_.front().channel)) {
     return;
   }
   indications_.append(one.unit.begin + indication_delay(), one.unit.rate, indicated(one.levels), kUnitLevels);

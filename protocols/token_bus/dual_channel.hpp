@@ -53,7 +53,9 @@ class ChannelManager : public ChannelManagerDevice, private ChannelUser {
   virtual kernel::Duration indication_delay() const {
     return symbols(indication_delay_symbols(configuration_));
   }
-  virtual std::uint64_t indicated(std::uint64_t levels) { return levels; }
+  virtual std::uint64_t requested(Channel /*channel*/, std::uint64_t levels) const { return levels; }
+  virtual std::uint64_t indicated(std::uint64_t levels) const { return levels; }
+  virtual bool gives_symbols(Channel channel, std::optional<Channel> from) const { return from == channel; }
   virtual bool gives_answer(Channel channel, bool other_answers) const {
     return channel == selection_->preferred() || !other_answers;
   }

@@ -1,0 +1,86 @@
+#include "conformance/token_bus/dual_channel_bench.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "protocols/token_bus/dual_channel_settings.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+SideLog request_log(const token_bus::ChannelManagerConfiguration& configuration) {
+  return {SideLog::Side::requests, token_bus::mac_symbol_rate(configuration.rules)};
+}
+
+}  // namespace
+
+ManagerBench::ManagerBench(const ManagerNeeds& needs, const ManagerSetting& setting)
+    : SidesBench(sides_configuration(needs, setting, token_bus::kChannelManagerTable), setting, "manager"),
+      requested_{request_log(configuration()), request_log(configuration())},
+      indicated_(SideLog::Side::mac, token_bus::mac_symbol_rate(configuration().rules)),
+      mac_in_(into("mac/request", token_bus::kTowardsMac)),
+      channel_in_{&into("a/indicate", token_bus::port_of(Channel::a)),
+                  &into("b/indicate", token_bus::port_of(Channel::b))},
+      mac_out_(out_of("mac/indicate", token_bus::kTowardsMac)),
+      channel_out_{&out_of("a/request", token_bus::port_of(Channel::a)),
+                   &out_of("b/request", token_bus::port_of(Channel::b))} {
+  start_recording(setting, configuration().rules);
+  mac_out_.tap_driven(indicated_);
+  watch(mac_out_);
+  fault::InstalledPlan* const made = make_plan(setting.plan);
+  for (std::size_t n = 0; n < channel_out_.size(); ++n) {
+    channel_out_.at(n)->tap_driven(requested_.at(n));
+    watch(*channel_out_.at(n));
+    segment::Link& in = *channel_in_.at(n);
+    if (made != nullptr) in.set_channel(made->channel_for({in.name(), in.trace_channel(), rate()}));
+  }
+  device().wire(mac_out_, *channel_out_[0], *channel_out_[1], *this);
+  set_power(true);
+}
+
+void ManagerBench::ask() {
+  request("PPPPPPPP");
+  settle();
+}
+
+void ManagerBench::request(std::string_view symbols) {
+  segment().run_until(drive(mac_in_, now(), rate(), request_levels_of(symbols)));
+}
+
+void ManagerBench::command(SideCommand command, std::size_t symbols) {
+  segment().run_until(drive(mac_in_, now(), rate(), request_levels_of(command, symbols)));
+}
+
+void ManagerBench::carry(const ChannelText& on_a, const ChannelText& on_b) {
+  const kernel::Time begin = now();
+  kernel::Time end = begin;
+  for (const auto& [link, text] : {std::pair(channel_in_[0], &on_a), std::pair(channel_in_[1], &on_b)}) {
+    if (text->symbols.empty()) continue;
+    end = std::max(end,
+                   drive(*link, begin + symbols(text->later), rate(), indication_levels_of(text->symbols)));
+  }
+  segment().run_until(end);
+}
+
+void ManagerBench::clear() {
+  for (SideLog& one : requested_) one.clear();
+  indicated_.clear();
+  events_.clear();
+}
+
+void ManagerBench::on_channel_event(const token_bus::ChannelEvent& event, kernel::Time when) {
+  events_.push_back(fmt::format("{}: {}", text_of(event.channel), text_of(event.kind)));
+  last_event_ = when;
+}
+
+std::vector<std::string> ManagerBench::decode_lines() const {
+  return {shown_end("the manager requested of A", requested_[0].text()),
+          shown_end("the manager requested of B", requested_[1].text()),
+          shown_end("the manager indicated", indicated_.text()),
+          fmt::format("the manager reported: {}",
+                      events_.empty() ? "nothing" : fmt::format("{}", fmt::join(events_, ", ")))};
+}
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,249 @@
+#include "conformance/token_bus/dual_channel_scene.hpp"
+
+// When a channel has a fault, who is told, and when it has none any more.
+namespace fieldproof::conformance {
+namespace {
+
+using namespace manager_chart;
+
+constexpr const char* kMissingA = "A: no start delimiter";
+constexpr const char* kBadA = "A: bad signal";
+constexpr const char* kErrorsA = "A: frame errors";
+constexpr const char* kErrorsB = "B: frame errors";
+constexpr const char* kCleanA = "A: clean again";
+// A slot time of 28 octets, almost.
+constexpr std::int64_t kWithinASlotTime = 216;
+constexpr std::size_t kLongFrame = 60;
+
+void expect_reported_in_time(ManagerScene& scene) {
+  scene.expect_events({kMissingA}, "report_wrong");
+  // The start delimiter is complete after its preamble.
+  const kernel::Duration most = scene.bench.symbols(40) + scene.bench.slot() + scene.bench.indication_delay();
+  const kernel::Duration took = scene.bench.last_event() - scene.begin;
+  scene.judge.expect(took <= most, "reported_too_late", kernel::describe(most), kernel::describe(took));
+}
+
+// Bad signal on A so many symbols after the start delimiter of B; less on B.
+void spoil(ManagerScene& scene, std::size_t at, std::size_t on_b = 0) {
+  constexpr std::size_t kDelimiter = 40;
+  const std::string frame = scene.frame(kLongFrame);
+  std::string spoiled_a = frame;
+  std::string spoiled_b = frame;
+  spoiled_a.replace(kDelimiter + at, 4, "BBBB");
+  if (on_b > 0) spoiled_b.replace(kDelimiter + on_b, 4, "BBBB");
+  scene.carry({spoiled_a}, {spoiled_b});
+}
+
+ManagerStep carries(std::string text, std::function<void(ManagerScene&)> run, unsigned times) {
+  std::vector<ManagerStep> steps{does(std::move(text), std::move(run))};
+  return repeated<ManagerScene>({times, times}, std::move(steps));
+}
+// Each of them is indicated as it is, too: A is preferred.
+ManagerStep wrong_on_a(unsigned times) {
+  return carries(
+      "both carry a frame, that of A with a wrong check",
+      [](ManagerScene& scene) {
+        scene.carry({scene.with_wrong_check()}, {scene.frame()});
+        scene.expect_all_of(Channel::a, "wrong_channel");
+      },
+      times);
+}
+ManagerStep right_on_both() {
+  return does("both carry a right frame", [](ManagerScene& scene) { scene.carry_on_both(); });
+}
+
+std::vector<ManagerCase> missing_cases() {
+  return {
+      on_chart(
+          manager_must("faults/a_missing_start_delimiter_is_reported", "PST-16",
+                       "A channel without a start delimiter for a slot time after one of the other "
+                       "channel has a fault; it is reported once, and names the channel.",
+                       "no start delimiter for a slot time",
+                       {{"reports_nothing", "report_wrong"},
+                        {"reports_again_and_again", "report_wrong"},
+                        {"reports_the_other_channel", "report_wrong"},
+                        {"reports_after_2_slots", "reported_too_late"}}),
+          {{3, 30},
+           {powered_anew(),
+            does("B alone carries a frame", [](ManagerScene& scene) { scene.carry_on(Channel::b); }),
+            requires_that("that A has no start delimiter is reported, and within a slot time and the delay",
+                          expect_reported_in_time),
+            b_serves(), nothing_reported("report_wrong"), b_serves(), nothing_reported("report_wrong")}}),
+      on_chart(
+          manager_must("faults/of_the_other_channel_too", "",
+                       "The channel that is not preferred is watched as well.", "both channels are watched",
+                       {{"watches_the_preferred_alone", "report_wrong"}}),
+          {{3, 30},
+           {powered_anew(),
+            does("A alone carries a frame", [](ManagerScene& scene) { scene.carry_on(Channel::a); }),
+            reported({"B: no start delimiter"}, "report_wrong"), indicates_of(Channel::a, "wrong_channel")}}),
+      on_chart(manager_must("faults/within_a_slot_time_is_none", "",
+                            "A start delimiter that comes within the slot time, though later than the skew, "
+                            "is no fault.",
+                            "no start delimiter for a slot time",
+                            {{"fault_after_the_skew", "reported_without_fault"}}),
+               {{3, 30},
+                {powered_anew(),
+                 does("A carries a frame 216 symbols later than B",
+                      [](ManagerScene& scene) {
+                        const std::string frame = scene.frame();
+                        scene.carry({frame, kWithinASlotTime}, {frame});
+                      }),
+                 nothing_reported("reported_without_fault"), still_serves()}}),
+  };
+}
+
+std::vector<ManagerCase> bad_signal_cases() {
+  return {
+      on_chart(manager_must("faults/bad_signal_within_a_slot_time", "",
+                            "bad_signal within a slot time after the start delimiter of the other channel, "
+                            "which has none, is a fault: the other one is preferred.",
+                            "bad_signal for a slot time",
+                            {{"bad_signal_is_no_fault", "report_wrong"},
+                             {"reports_another_cause", "report_wrong"},
+                             {"stays_after_bad_signal", "wrong_channel"}}),
+               {{4, 40},
+                {powered_anew(),
+                 does("both carry a frame, A with bad_signal 8 to 200 symbols after the start delimiter",
+                      [](ManagerScene& scene) { spoil(scene, 8 + scene.bench.random_octet() % 192); }),
+                 reported({kBadA}, "report_wrong"), indicates_of(Channel::b, "wrong_channel")}}),
+      on_chart(manager_must("faults/a_collision_is_none", "",
+                            "bad_signal on both channels, at most the skew apart, says nothing about either.",
+                            "what both channels spoil says nothing about either",
+                            {{"a_collision_is_a_fault", "reported_without_fault"}}),
+               {{4, 40},
+                {powered_anew(),
+                 does("both carry a frame, with bad_signal a symbol apart, A and B first in turn",
+                      [](ManagerScene& scene) { spoil(scene, 50, scene.round % 2 == 0 ? 51 : 49); }),
+                 nothing_reported("reported_without_fault"), indicates_of(Channel::a, "wrong_channel")}}),
+      on_chart(manager_must("faults/late_bad_signal_counts_as_an_error", "",
+                            "bad_signal later than that spoils a frame: three in a row are a fault, one is "
+                            "none.",
+                            "spoiled transmissions in a row",
+                            {{"bad_signal_at_any_time", "reported_without_fault"},
+                             {"errors_are_no_fault", "report_wrong"}}),
+               {{2, 20},
+                {powered_anew(),
+                 carries(
+                     "both carry a frame, A with bad_signal 300 symbols after the start delimiter",
+                     [](ManagerScene& scene) {
+                       spoil(scene, 300);
+                       if (scene.turn < 2) scene.expect_events({}, "reported_without_fault");
+                     },
+                     3),
+                 reported({kErrorsA}, "report_wrong"), indicates_of(Channel::b, "wrong_channel")}}),
+  };
+}
+
+std::vector<ManagerCase> error_cases() {
+  return {
+      on_chart(
+          manager_must("faults/three_errors_in_a_row", "PST-17",
+                       "After three frames in a row with a wrong check on a channel, which the other one "
+                       "carries well, the other one is preferred, and the fault is reported.",
+                       "spoiled transmissions in a row",
+                       {{"errors_are_no_fault", "report_wrong"},
+                        {"leaves_after_2", "wrong_channel"},
+                        {"leaves_after_4", "report_wrong"}}),
+          {{2, 20},
+           {powered_anew(), wrong_on_a(3), reported({kErrorsA}, "report_wrong"),
+            indicates_of(Channel::b, "wrong_channel"), still_serves()}}),
+      on_chart(manager_must("faults/two_errors_are_none", "PST-17",
+                            "Two are no fault, nor are two again after a frame that A carries well.",
+                            "spoiled transmissions in a row",
+                            {{"leaves_after_2", "reported_without_fault"},
+                             {"errors_are_never_forgotten", "wrong_channel"}}),
+               {{2, 20},
+                {powered_anew(), wrong_on_a(2), nothing_reported("reported_without_fault"), right_on_both(),
+                 wrong_on_a(2), nothing_reported("reported_without_fault"),
+                 indicates_of(Channel::a, "wrong_channel")}}),
+      on_chart(manager_must("faults/errors_on_both_are_none", "PST-17",
+                            "What both channels carry with a wrong check says nothing about either.",
+                            "what both channels spoil says nothing about either",
+                            {{"counts_errors_of_both", "reported_without_fault"}}),
+               {{2, 20},
+                {powered_anew(),
+                 carries(
+                     "both carry a frame with a wrong check",
+                     [](ManagerScene& scene) {
+                       const std::string frame = scene.with_wrong_check();
+                       scene.carry({frame}, {frame, 2});
+                       scene.expect_events({}, "reported_without_fault");
+                     },
+                     5),
+                 indicates_of(Channel::a, "wrong_channel")}}),
+      on_chart(
+          manager_must("faults/errors_of_the_other_channel", "PST-17",
+                       "Errors of the channel that is not preferred are reported, and nothing else "
+                       "changes.",
+                       "both channels are watched", {{"watches_the_preferred_alone", "report_wrong"}}),
+          {{2, 20},
+           {powered_anew(),
+            carries(
+                "both carry a frame, that of B with a wrong check",
+                [](ManagerScene& scene) { scene.carry({scene.frame()}, {scene.with_wrong_check()}); }, 3),
+            reported({kErrorsB}, "report_wrong"), indicates_of(Channel::a, "wrong_channel")}}),
+      on_chart(manager_must("faults/a_frame_without_an_end_is_an_error", "",
+                            "A frame that is cut counts as one with a wrong check.",
+                            "spoiled transmissions in a row", {{"errors_are_no_fault", "report_wrong"}}),
+               {{2, 20},
+                {powered_anew(),
+                 carries(
+                     "both carry a frame, and A is cut within it",
+                     [](ManagerScene& scene) {
+                       const std::string frame = scene.frame(20);
+                       scene.carry({frame.substr(0, 80)}, {frame});
+                     },
+                     3),
+                 reported({kErrorsA}, "report_wrong"), indicates_of(Channel::b, "wrong_channel")}}),
+  };
+}
+
+std::vector<ManagerCase> repair_cases() {
+  return {
+      on_chart(
+          manager_must("faults/a_repaired_channel_is_reported", "",
+                       "Three clean transmissions in a row on a channel with a fault end it: that is "
+                       "reported, the preference stays, and the next fault is reported again.",
+                       "clean transmissions in a row",
+                       {{"never_clean_again", "report_wrong"},
+                        {"clean_after_one", "reported_without_fault"},
+                        {"returns_to_a_when_it_is_clean", "wrong_channel"},
+                        {"reports_once_for_ever", "report_wrong"}}),
+          {{2, 20},
+           {powered_anew(), b_serves(), right_on_both(), nothing_reported("reported_without_fault"),
+            right_on_both(), nothing_reported("reported_without_fault"), right_on_both(),
+            reported({kCleanA}, "report_wrong"), indicates_of(Channel::b, "wrong_channel"),
+            indicates_of(Channel::b, "wrong_channel"), b_serves(), reported({kMissingA}, "report_wrong")}}),
+      on_chart(manager_must("faults/a_spoiled_frame_is_no_repair", "",
+                            "Only whole frames with a right check count, and only in a row.",
+                            "clean transmissions in a row",
+                            {{"spoiled_is_clean", "reported_without_fault"},
+                             {"clean_is_never_forgotten", "reported_without_fault"}}),
+               {{2, 20},
+                {powered_anew(), b_serves(), right_on_both(), right_on_both(),
+                 does("both carry a frame, that of A with a wrong check",
+                      [](ManagerScene& scene) { scene.carry({scene.with_wrong_check()}, {scene.frame()}); }),
+                 nothing_reported("reported_without_fault"), right_on_both(),
+                 nothing_reported("reported_without_fault"), right_on_both(), right_on_both(),
+                 reported({kCleanA}, "report_wrong")}}),
+      on_chart(manager_must("faults/nothing_outlives_the_supply", "",
+                            "After a failure of the supply A is preferred, and a fault is reported again.",
+                            "what is known is lost with the supply",
+                            {{"remembers_over_power_failure", "wrong_channel"}}),
+               {{2, 20},
+                {powered_anew(), b_serves(), powered_anew(), indicates_of(Channel::a, "wrong_channel"),
+                 b_serves(), reported({kMissingA}, "report_wrong")}}),
+  };
+}
+
+}  // namespace
+
+std::vector<ManagerCase> manager_fault_cases() {
+  std::vector<ManagerCase> all;
+  for (auto* const chapter : {missing_cases, bad_signal_cases, error_cases, repair_cases})
+    for (ManagerCase& one : chapter()) all.push_back(std::move(one));
+  return all;
+}
+
+}  // namespace fieldproof::conformance

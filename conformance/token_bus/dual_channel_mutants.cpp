@@ -1,0 +1,174 @@
+#include "conformance/token_bus/dual_channel_mutants.hpp"
+
+#include <limits>
+
+#include "conformance/token_bus/dual_channel_seeded_faults.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using namespace token_bus;
+using ManagerMutant = ChannelManagerMutants::Row;
+
+// The reference with a selection of its own.
+template <typename Selection, typename... More>
+auto with_selection(More... more) {
+  return [=](const ChannelManagerConfiguration& configuration) {
+    return std::make_unique<ChannelManager>(configuration,
+                                            std::make_unique<Selection>(configuration, more...));
+  };
+}
+auto with_errors_in_a_row(unsigned count) {
+  return [count](ChannelManagerConfiguration configuration) {
+    configuration.channels.errors_in_a_row = count;
+    return std::make_unique<ChannelManager>(configuration);
+  };
+}
+auto with_clean_in_a_row(unsigned count) {
+  return [count](ChannelManagerConfiguration configuration) {
+    configuration.channels.clean_in_a_row = count;
+    return std::make_unique<ChannelManager>(configuration);
+  };
+}
+// After so many slot times and symbols without a start delimiter.
+auto missing_after(std::int64_t slot_times, std::int64_t symbols) {
+  return [=](const ChannelManagerConfiguration& configuration) {
+    const kernel::Duration after =
+        slots(configuration.rules, slot_times) + mac_symbols(configuration.rules, symbols);
+    return std::make_unique<ChannelManager>(
+        configuration, std::make_unique<dual_channel_seeded_faults::MissingOtherwise>(configuration, after));
+  };
+}
+auto waiting_for(std::int64_t slot_times) {
+  return [=](const ChannelManagerConfiguration& configuration) {
+    return std::make_unique<ChannelManager>(configuration,
+                                            std::make_unique<dual_channel_seeded_faults::WaitsOtherwise>(
+                                                configuration, slots(configuration.rules, slot_times), true));
+  };
+}
+
+std::vector<ManagerMutant> request_rows() {
+  using namespace dual_channel_seeded_faults;
+  return {
+      {"sends_on_a_alone", "", "sends on channel A alone", mutant<SendsOtherwise>(on_a_alone)},
+      {"sends_on_the_preferred_alone", "", "sends on the preferred channel alone",
+       mutant<SendsOtherwise>(on_the_preferred_alone)},
+      {"silent_on_a_faulty_channel", "", "sends nothing on a channel with a fault",
+       mutant<SendsOtherwise>(on_clean_channels)},
+      {"commands_on_a_alone", "", "gives commands to channel A alone",
+       mutant<SendsOtherwise>(commands_on_a_alone)},
+      {"zero_and_one_exchanged_on_b", "", "sends zero as one, and one as zero on channel B",
+       mutant<ExchangesBitsOnB>()},
+      {"b_is_20_symbols_later", "", "sends on channel B 20 symbols later", mutant<LateByMore>(0U, 20U, 0U)},
+      {"slow_requests", "", "sends three times as late as it may", mutant<LateByMore>(16U, 16U, 0U)},
+      {"gives_up_after_50000", "", "drops what is longer than 50000 symbols",
+       mutant<TakesApart>(std::size_t{0}, std::size_t{50'000})},
+      {"answers_dropped", "", "indicates no answer", mutant<AnswersFromElsewhere>(no_answer)},
+      {"answers_of_both_mixed", "", "indicates the answers of both channels",
+       mutant<AnswersFromElsewhere>(any_answer)},
+      {"answers_of_the_preferred_alone", "", "indicates the answers of the preferred channel alone",
+       mutant<AnswersFromElsewhere>(of_the_preferred_alone)},
+      {"answers_of_the_other_first", "", "indicates the answers of the other channel first",
+       mutant<AnswersFromElsewhere>(of_the_other_first)},
+  };
+}
+
+std::vector<ManagerMutant> selection_rows() {
+  using namespace dual_channel_seeded_faults;
+  return {
+      {"never_leaves_a", "", "indicates channel A alone",
+       with_selection<WaitsOtherwise>(kAlmostForEver, false)},
+      {"leaves_a_one_later", "", "selects another channel from the next transmission on only",
+       with_selection<WaitsOtherwise>(kAlmostForEver, true)},
+      {"takes_the_first", "", "selects whichever start delimiter is the first", waiting_for(0)},
+      {"waits_for_a_slot_time", "", "waits for the preferred channel for a slot time", waiting_for(1)},
+      {"takes_late_copies", "", "selects the same transmission again when it comes later",
+       with_selection<TakesLateCopies>()},
+      {"prefers_a_always", "", "prefers channel A whoever served",
+       with_selection<PrefersOtherwise>(a_always)},
+      {"prefers_who_did_not_serve", "", "changes the channel each time",
+       with_selection<PrefersOtherwise>(who_did_not_serve)},
+      {"indicates_both", "", "indicates the symbols of both channels", mutant<IndicatesBoth>()},
+      {"indicates_frames_alone", "", "indicates nothing but transmissions",
+       mutant<IndicatesFromElsewhere>(transmissions_alone)},
+      {"loses_the_first_symbol", "", "loses the first symbol of what a channel indicates",
+       mutant<TakesApart>(std::size_t{1}, std::numeric_limits<std::size_t>::max() / kUnitLevels)},
+      {"slow_indications", "", "indicates 24 symbols later than it may", mutant<LateByMore>(0U, 0U, 24U)},
+      {"reports_silence", "", "reports a fault where nobody sends", mutant<ReportsSilence>()},
+  };
+}
+
+std::vector<ManagerMutant> inside_rows() {
+  using namespace dual_channel_seeded_faults;
+  return {
+      {"goes_on_with_the_other", "", "puts the rest of the other channel to a frame that is cut",
+       mutant<IndicatesFromElsewhere>(whoever_goes_on)},
+      {"switches_at_bad_signal", "", "changes the channel within a frame that is spoiled",
+       mutant<IndicatesFromElsewhere>(whoever_is_clean)},
+      {"indicates_the_rest", "", "changes to a channel within its transmission",
+       mutant<IndicatesFromElsewhere>(the_preferred_always)},
+      {"bad_signal_is_silence", "", "indicates silence for bad_signal", mutant<BadSignalIsSilence>()},
+      {"selects_each_frame_anew", "", "selects each frame of a transmission anew",
+       with_selection<BeginsOtherwise<Begins::always>>()},
+      {"waits_for_the_end_of_what_is_spoiled", "", "stays with a spoiled transmission until it ends",
+       with_selection<BeginsOtherwise<Begins::never>>()},
+      {"waits_for_an_end_for_ever", "", "stays with a transmission that has no end",
+       with_selection<BeginsOtherwise<Begins::after_bad_signal>>()},
+  };
+}
+
+std::vector<ManagerMutant> fault_rows() {
+  using namespace dual_channel_seeded_faults;
+  return {
+      {"reports_nothing", "", "reports no fault", with_selection<ReportsAtOtherTimes<Reports::nothing>>()},
+      {"reports_again_and_again", "", "reports a fault whenever it shows",
+       with_selection<ReportsAtOtherTimes<Reports::again_and_again>>()},
+      {"reports_once_for_ever", "", "reports no second fault of a channel",
+       with_selection<ReportsAtOtherTimes<Reports::once_for_ever>>()},
+      {"watches_the_preferred_alone", "", "reports faults of the preferred channel alone",
+       with_selection<ReportsAtOtherTimes<Reports::of_the_preferred>>()},
+      {"reports_the_other_channel", "", "names the other channel",
+       with_selection<ReportsOtherwise>(of_the_other_channel)},
+      {"reports_another_cause", "", "names another cause",
+       with_selection<ReportsOtherwise>(of_another_cause)},
+      {"reports_after_2_slots", "", "misses a start delimiter after two slot times", missing_after(2, 0)},
+      {"fault_after_the_skew", "", "misses a start delimiter after the skew", missing_after(0, 9)},
+      {"bad_signal_is_no_fault", "", "does not look at bad_signal",
+       with_selection<BadSignalOtherwise>(false, false)},
+      {"a_collision_is_a_fault", "", "finds a fault in a collision",
+       with_selection<BadSignalOtherwise>(true, true)},
+      {"bad_signal_at_any_time", "", "finds a fault in bad_signal at any time",
+       with_selection<BadSignalOtherwise>(true, false, true)},
+      {"stays_after_bad_signal", "", "prefers a channel with bad_signal",
+       with_selection<StaysAfterBadSignal>()},
+      {"errors_are_no_fault", "", "does not look at frames",
+       with_selection<CountsErrorsOtherwise>(no_errors)},
+      {"errors_are_never_forgotten", "", "counts errors that are not in a row",
+       with_selection<CountsErrorsOtherwise>(errors_for_ever)},
+      {"counts_errors_of_both", "", "counts errors that both channels have",
+       with_selection<CountsErrorsOtherwise>(errors_of_both)},
+      {"leaves_after_2", "", "leaves a channel after two errors", with_errors_in_a_row(2)},
+      {"leaves_after_4", "", "leaves a channel after four errors", with_errors_in_a_row(4)},
+      {"never_clean_again", "", "never reports that a channel is clean",
+       with_selection<CountsCleanOtherwise>(never_clean)},
+      {"clean_after_one", "", "has a channel clean after one frame", with_clean_in_a_row(1)},
+      {"spoiled_is_clean", "", "counts spoiled frames as clean",
+       with_selection<CountsCleanOtherwise>(clean_whatever_it_is)},
+      {"clean_is_never_forgotten", "", "counts clean frames that are not in a row",
+       with_selection<CountsCleanOtherwise>(clean_for_ever)},
+      {"returns_to_a_when_it_is_clean", "", "prefers channel A as soon as it is clean",
+       with_selection<PrefersOtherwise>(a_when_it_is_clean)},
+      {"remembers_over_power_failure", "", "prefers after a failure of the supply what it preferred before",
+       mutant<RemembersChannels>()},
+  };
+}
+
+}  // namespace
+
+const ChannelManagerMutants& channel_manager_mutants() {
+  static const ChannelManagerMutants table("channel_manager",
+                                           {request_rows, selection_rows, inside_rows, fault_rows});
+  return table;
+}
+
+}  // namespace fieldproof::conformance
