@@ -11,9 +11,6 @@ constexpr const char* kBadA = "A: bad signal";
 constexpr const char* kErrorsA = "A: frame errors";
 constexpr const char* kErrorsB = "B: frame errors";
 constexpr const char* kCleanA = "A: clean again";
-// A slot time of 28 octets, almost.
-constexpr std::int64_t kWithinASlotTime = 216;
-constexpr std::size_t kLongFrame = 60;
 
 void expect_reported_in_time(ManagerScene& scene) {
   scene.expect_events({kMissingA}, "report_wrong");
@@ -26,7 +23,7 @@ void expect_reported_in_time(ManagerScene& scene) {
 // Bad signal on A so many symbols after the start delimiter of B; less on B.
 void spoil(ManagerScene& scene, std::size_t at, std::size_t on_b = 0) {
   constexpr std::size_t kDelimiter = 40;
-  const std::string frame = scene.frame(kLongFrame);
+  const std::string frame = scene.frame(scene.bench.configuration().rules.slot_time_octets + 32);
   std::string spoiled_a = frame;
   std::string spoiled_b = frame;
   spoiled_a.replace(kDelimiter + at, 4, "BBBB");
@@ -34,22 +31,43 @@ void spoil(ManagerScene& scene, std::size_t at, std::size_t on_b = 0) {
   scene.carry({spoiled_a}, {spoiled_b});
 }
 
-ManagerStep carries(std::string text, std::function<void(ManagerScene&)> run, unsigned times) {
-  std::vector<ManagerStep> steps{does(std::move(text), std::move(run))};
-  return repeated<ManagerScene>({times, times}, std::move(steps));
+unsigned errors_in_a_row(const ManagerScene& scene) {
+  return scene.bench.configuration().channels.errors_in_a_row;
+}
+unsigned clean_in_a_row(const ManagerScene& scene) {
+  return scene.bench.configuration().channels.clean_in_a_row;
+}
+
+// As often as makes a fault, or once less.
+ManagerStep carries(const std::string& text, const std::function<void(ManagerScene&)>& run, bool is_fault) {
+  return does(text + (is_fault ? ", as often as is a fault" : ", once less than is a fault"),
+              [run, is_fault](ManagerScene& scene) {
+                const unsigned times = errors_in_a_row(scene) - (is_fault ? 0 : 1);
+                for (scene.turn = 0; scene.turn < times; ++scene.turn) run(scene);
+              });
 }
 // Each of them is indicated as it is, too: A is preferred.
-ManagerStep wrong_on_a(unsigned times) {
+ManagerStep wrong_on_a(bool is_fault) {
   return carries(
       "both carry a frame, that of A with a wrong check",
       [](ManagerScene& scene) {
         scene.carry({scene.with_wrong_check()}, {scene.frame()});
         scene.expect_all_of(Channel::a, "wrong_channel");
       },
-      times);
+      is_fault);
 }
 ManagerStep right_on_both() {
   return does("both carry a right frame", [](ManagerScene& scene) { scene.carry_on_both(); });
+}
+// Nothing is reported meanwhile.
+ManagerStep right_once_less_than_clean() {
+  return {"both carry a right frame, once less than makes a channel clean", "nothing is reported",
+          [](ManagerScene& scene) {
+            for (unsigned n = 1; n < clean_in_a_row(scene); ++n) {
+              scene.carry_on_both();
+              scene.expect_events({}, "reported_without_fault");
+            }
+          }};
 }
 
 std::vector<ManagerCase> missing_cases() {
@@ -84,10 +102,10 @@ std::vector<ManagerCase> missing_cases() {
                             {{"fault_after_the_skew", "reported_without_fault"}}),
                {{3, 30},
                 {powered_anew(),
-                 does("A carries a frame 216 symbols later than B",
+                 does("A carries a frame eight symbols less than a slot time later than B",
                       [](ManagerScene& scene) {
                         const std::string frame = scene.frame();
-                        scene.carry({frame, kWithinASlotTime}, {frame});
+                        scene.carry({frame, scene.slot_symbols() - 8}, {frame});
                       }),
                  nothing_reported("reported_without_fault"), still_serves()}}),
   };
@@ -104,8 +122,11 @@ std::vector<ManagerCase> bad_signal_cases() {
                              {"stays_after_bad_signal", "wrong_channel"}}),
                {{4, 40},
                 {powered_anew(),
-                 does("both carry a frame, A with bad_signal 8 to 200 symbols after the start delimiter",
-                      [](ManagerScene& scene) { spoil(scene, 8 + scene.bench.random_octet() % 192); }),
+                 does("both carry a frame, A with bad_signal within a slot time after the start delimiter",
+                      [](ManagerScene& scene) {
+                        spoil(scene, 8 + scene.bench.random_octet() %
+                                             static_cast<std::size_t>(scene.slot_symbols() - 32));
+                      }),
                  reported({kBadA}, "report_wrong"), indicates_of(Channel::b, "wrong_channel")}}),
       on_chart(manager_must("faults/a_collision_is_none", "",
                             "bad_signal on both channels, at most the skew apart, says nothing about either.",
@@ -117,20 +138,21 @@ std::vector<ManagerCase> bad_signal_cases() {
                       [](ManagerScene& scene) { spoil(scene, 50, scene.round % 2 == 0 ? 51 : 49); }),
                  nothing_reported("reported_without_fault"), indicates_of(Channel::a, "wrong_channel")}}),
       on_chart(manager_must("faults/late_bad_signal_counts_as_an_error", "",
-                            "bad_signal later than that spoils a frame: three in a row are a fault, one is "
-                            "none.",
+                            "bad_signal later than that spoils a frame: errors_in_a_row are a fault, fewer "
+                            "are none.",
                             "spoiled transmissions in a row",
                             {{"bad_signal_at_any_time", "reported_without_fault"},
                              {"errors_are_no_fault", "report_wrong"}}),
                {{2, 20},
                 {powered_anew(),
                  carries(
-                     "both carry a frame, A with bad_signal 300 symbols after the start delimiter",
+                     "both carry a frame, A with bad_signal later than a slot time after the start delimiter",
                      [](ManagerScene& scene) {
-                       spoil(scene, 300);
-                       if (scene.turn < 2) scene.expect_events({}, "reported_without_fault");
+                       spoil(scene, static_cast<std::size_t>(scene.slot_symbols()) + 76);
+                       if (scene.turn + 1 < errors_in_a_row(scene))
+                         scene.expect_events({}, "reported_without_fault");
                      },
-                     3),
+                     true),
                  reported({kErrorsA}, "report_wrong"), indicates_of(Channel::b, "wrong_channel")}}),
   };
 }
@@ -138,24 +160,24 @@ std::vector<ManagerCase> bad_signal_cases() {
 std::vector<ManagerCase> error_cases() {
   return {
       on_chart(
-          manager_must("faults/three_errors_in_a_row", "PST-17",
-                       "After three frames in a row with a wrong check on a channel, which the other one "
+          manager_must("faults/errors_in_a_row_are_a_fault", "PST-17",
+                       "After errors_in_a_row frames with a wrong check on a channel, which the other one "
                        "carries well, the other one is preferred, and the fault is reported.",
                        "spoiled transmissions in a row",
                        {{"errors_are_no_fault", "report_wrong"},
                         {"leaves_after_2", "wrong_channel"},
                         {"leaves_after_4", "report_wrong"}}),
           {{2, 20},
-           {powered_anew(), wrong_on_a(3), reported({kErrorsA}, "report_wrong"),
+           {powered_anew(), wrong_on_a(true), reported({kErrorsA}, "report_wrong"),
             indicates_of(Channel::b, "wrong_channel"), still_serves()}}),
-      on_chart(manager_must("faults/two_errors_are_none", "PST-17",
-                            "Two are no fault, nor are two again after a frame that A carries well.",
+      on_chart(manager_must("faults/fewer_errors_are_none", "PST-17",
+                            "One less are no fault, nor are as many again after a frame that A carries well.",
                             "spoiled transmissions in a row",
                             {{"leaves_after_2", "reported_without_fault"},
                              {"errors_are_never_forgotten", "wrong_channel"}}),
                {{2, 20},
-                {powered_anew(), wrong_on_a(2), nothing_reported("reported_without_fault"), right_on_both(),
-                 wrong_on_a(2), nothing_reported("reported_without_fault"),
+                {powered_anew(), wrong_on_a(false), nothing_reported("reported_without_fault"),
+                 right_on_both(), wrong_on_a(false), nothing_reported("reported_without_fault"),
                  indicates_of(Channel::a, "wrong_channel")}}),
       on_chart(manager_must("faults/errors_on_both_are_none", "PST-17",
                             "What both channels carry with a wrong check says nothing about either.",
@@ -167,10 +189,10 @@ std::vector<ManagerCase> error_cases() {
                      "both carry a frame with a wrong check",
                      [](ManagerScene& scene) {
                        const std::string frame = scene.with_wrong_check();
-                       scene.carry({frame}, {frame, 2});
+                       scene.carry({frame}, {frame, scene.borne(2)});
                        scene.expect_events({}, "reported_without_fault");
                      },
-                     5),
+                     true),
                  indicates_of(Channel::a, "wrong_channel")}}),
       on_chart(
           manager_must("faults/errors_of_the_other_channel", "PST-17",
@@ -194,7 +216,7 @@ std::vector<ManagerCase> error_cases() {
                        const std::string frame = scene.frame(20);
                        scene.carry({frame.substr(0, 80)}, {frame});
                      },
-                     3),
+                     true),
                  reported({kErrorsA}, "report_wrong"), indicates_of(Channel::b, "wrong_channel")}}),
   };
 }
@@ -203,7 +225,7 @@ std::vector<ManagerCase> repair_cases() {
   return {
       on_chart(
           manager_must("faults/a_repaired_channel_is_reported", "",
-                       "Three clean transmissions in a row on a channel with a fault end it: that is "
+                       "clean_in_a_row clean transmissions on a channel with a fault end it: that is "
                        "reported, the preference stays, and the next fault is reported again.",
                        "clean transmissions in a row",
                        {{"never_clean_again", "report_wrong"},
@@ -211,8 +233,7 @@ std::vector<ManagerCase> repair_cases() {
                         {"returns_to_a_when_it_is_clean", "wrong_channel"},
                         {"reports_once_for_ever", "report_wrong"}}),
           {{2, 20},
-           {powered_anew(), b_serves(), right_on_both(), nothing_reported("reported_without_fault"),
-            right_on_both(), nothing_reported("reported_without_fault"), right_on_both(),
+           {powered_anew(), b_serves(), right_once_less_than_clean(), right_on_both(),
             reported({kCleanA}, "report_wrong"), indicates_of(Channel::b, "wrong_channel"),
             indicates_of(Channel::b, "wrong_channel"), b_serves(), reported({kMissingA}, "report_wrong")}}),
       on_chart(manager_must("faults/a_spoiled_frame_is_no_repair", "",
@@ -221,11 +242,10 @@ std::vector<ManagerCase> repair_cases() {
                             {{"spoiled_is_clean", "reported_without_fault"},
                              {"clean_is_never_forgotten", "reported_without_fault"}}),
                {{2, 20},
-                {powered_anew(), b_serves(), right_on_both(), right_on_both(),
+                {powered_anew(), b_serves(), right_once_less_than_clean(),
                  does("both carry a frame, that of A with a wrong check",
                       [](ManagerScene& scene) { scene.carry({scene.with_wrong_check()}, {scene.frame()}); }),
-                 nothing_reported("reported_without_fault"), right_on_both(),
-                 nothing_reported("reported_without_fault"), right_on_both(), right_on_both(),
+                 nothing_reported("reported_without_fault"), right_once_less_than_clean(), right_on_both(),
                  reported({kCleanA}, "report_wrong")}}),
       on_chart(manager_must("faults/nothing_outlives_the_supply", "",
                             "After a failure of the supply A is preferred, and a fault is reported again.",

@@ -8,8 +8,7 @@ namespace {
 
 using namespace manager_chart;
 
-constexpr std::size_t kFrameOctets = 30;
-constexpr std::size_t kEndlessSymbols = 8 * (kLongestFrame + 20);
+constexpr std::size_t kMoreOctets = 21;  // than the shortest frame has
 
 // Somewhere after the start delimiter, in front of the end.
 std::size_t place_within(ManagerScene& scene, const std::string& frame) {
@@ -19,23 +18,23 @@ std::size_t place_within(ManagerScene& scene, const std::string& frame) {
 }
 
 void cut_a(ManagerScene& scene) {
-  const std::string frame = scene.frame(kFrameOctets);
-  scene.carry({frame.substr(0, place_within(scene, frame))}, {frame, scene.round % 4});
+  const std::string frame = scene.frame(kMoreOctets);
+  scene.carry({frame.substr(0, place_within(scene, frame))}, {frame, scene.borne(scene.round % 4)});
 }
 
 // Eight symbols, or all that is left.
 void spoil_a(ManagerScene& scene) {
-  const std::string frame = scene.frame(kFrameOctets);
+  const std::string frame = scene.frame(kMoreOctets);
   const std::size_t at = place_within(scene, frame);
   std::string spoiled = frame;
   const std::size_t count = scene.round % 2 == 0 ? 8 : frame.size() - at;
   spoiled.replace(at, count, std::string(count, 'B'));
-  scene.carry({spoiled}, {frame, scene.round % 4});
+  scene.carry({spoiled}, {frame, scene.borne(scene.round % 4)});
 }
 
 // Short after the start delimiter, so that a fault is found; A is silent then, and B goes on.
 void spoil_and_cut_a(ManagerScene& scene) {
-  const std::string frame = scene.frame(kFrameOctets);
+  const std::string frame = scene.frame(kMoreOctets);
   scene.carry({frame.substr(0, 60) + "BBBB"}, {frame});
 }
 
@@ -46,17 +45,17 @@ ManagerStep all_of(Channel channel, std::string reason) {
 }
 
 void carry_train(ManagerScene& scene) {
-  const std::string train = scene.frame(9, true) + scene.frame(20, true) + scene.frame();
-  const std::int64_t skew = scene.round % 9;
+  const std::string train = scene.frame(0, true) + scene.frame(11, true) + scene.frame();
+  const std::int64_t skew = scene.round % (scene.skew() + 1);
   scene.carry({train, scene.round % 2 == 0 ? skew : 0}, {train, scene.round % 2 == 0 ? 0 : skew});
 }
 
 // On A the second frame of three has no start delimiter.
 void carry_train_with_gap(ManagerScene& scene) {
-  const std::string first = scene.frame(9, true);
-  const std::string second = scene.frame(20, true);
+  const std::string first = scene.frame(0, true);
+  const std::string second = scene.frame(11, true);
   const std::string third = scene.frame();
-  scene.carry({first + std::string(second.size(), '1') + third}, {first + second + third, 2});
+  scene.carry({first + std::string(second.size(), '1') + third}, {first + second + third, scene.borne(2)});
 }
 
 // On A what is spoiled never ends; 20 symbols after the first transmission B carries a second one.
@@ -121,7 +120,10 @@ std::vector<ManagerCase> spoiled_cases() {
                 {powered_anew(),
                  does("A carries ones from within a frame on, for ever; B carries it, and one later than the "
                       "longest frame",
-                      [](ManagerScene& scene) { carry_with_a_stuck(scene, "1", kEndlessSymbols); }),
+                      [](ManagerScene& scene) {
+                        carry_with_a_stuck(scene, "1",
+                                           8 * (scene.bench.configuration().rules.most_octets + 20));
+                      }),
                  requires_that("that is indicated", expect_second_of_b)}}),
   };
 }
@@ -146,8 +148,8 @@ std::vector<ManagerCase> length_cases() {
                 {powered_anew(),
                  does("both carry a frame of 8191 octets, B five symbols later",
                       [](ManagerScene& scene) {
-                        const std::string frame = scene.frame(kLongestFrame);
-                        scene.carry({frame}, {frame, 5});
+                        const std::string frame = scene.longest_frame();
+                        scene.carry({frame}, {frame, scene.borne(5)});
                       }),
                  all_of(Channel::a, "switched_inside"), nothing_reported("reported_without_fault"),
                  still_serves()}}),
@@ -163,7 +165,7 @@ std::vector<ManagerCase> length_cases() {
                does("both carry an abort, B four symbols later",
                     [](ManagerScene& scene) {
                       const std::string abort = indicated_as(frame_text({}));
-                      scene.carry({abort}, {abort, 4});
+                      scene.carry({abort}, {abort, scene.borne(4)});
                     }),
                all_of(Channel::a, "switched_inside"),
                nothing_reported("reported_without_fault"),

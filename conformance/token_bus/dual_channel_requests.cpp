@@ -90,7 +90,8 @@ std::vector<ManagerCase> manager_request_cases() {
                {{1, 3},
                 {does("a frame of 8191 octets is requested",
                       [](ManagerScene& scene) {
-                        scene.request(frame_text(scene.bench.random_octets(kLongestFrame)));
+                        scene.request(frame_text(
+                            scene.bench.random_octets(scene.bench.configuration().rules.most_octets)));
                       }),
                  on_both("not_on_both")}}),
       on_chart(

@@ -12,13 +12,19 @@ std::string from_delimiter(const std::string& symbols) {
   return at == std::string::npos ? "" : symbols.substr(at);
 }
 
-std::string ManagerScene::frame(std::size_t octets, bool more_follows) {
+std::string ManagerScene::frame(std::size_t more_octets, bool more_follows) {
   constexpr std::size_t kCheck = 4;
-  return indicated_as(frame_text(with_crc_32(bench.random_octets(octets - kCheck)), more_follows));
+  const std::size_t least = token_bus::frame_octets(bench.configuration().rules, 0);
+  const auto octets = bench.random_octets(least - kCheck + more_octets);
+  return indicated_as(frame_text(with_crc_32(octets), more_follows));
 }
 
-std::string ManagerScene::with_wrong_check(std::size_t octets) {
-  std::string text = frame(octets);
+std::string ManagerScene::longest_frame() {
+  return frame(token_bus::most_data(bench.configuration().rules));
+}
+
+std::string ManagerScene::with_wrong_check() {
+  std::string text = frame();
   char& last = text.at(text.size() - end_delimiter_text().size() - 1);
   last = last == '0' ? '1' : '0';
   return text;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -23,9 +25,14 @@ struct ManagerScene : Scene<ManagerBench> {
   kernel::Time begin{};  // of what was carried or requested last
   unsigned turn = 0;     // of steps that are repeated
 
-  // Random octets with their check, between delimiters.
-  std::string frame(std::size_t octets = 9, bool more_follows = false);
-  std::string with_wrong_check(std::size_t octets = 9);
+  std::int64_t skew() const { return bench.configuration().channels.skew_symbols; }
+  // So many symbols, or as many as the skew is.
+  std::int64_t borne(std::int64_t later) const { return std::min(later, skew()); }
+  std::int64_t slot_symbols() const { return 8 * std::int64_t{bench.configuration().rules.slot_time_octets}; }
+  // Random octets with their check, between delimiters: as few as a frame has, and more.
+  std::string frame(std::size_t more_octets = 0, bool more_follows = false);
+  std::string longest_frame();
+  std::string with_wrong_check();
   void request(std::string symbols);
   void carry(ChannelText on_a, ChannelText on_b);
   // The same frame.

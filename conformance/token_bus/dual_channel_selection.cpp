@@ -6,12 +6,11 @@ namespace {
 
 using namespace manager_chart;
 
-// More than any skew that is borne, less than a frame; and more than a frame, less than a slot time.
+// More than any skew that is borne; and more than the shortest frame, less than a slot time.
 constexpr std::int64_t kLate = 40;
-constexpr std::int64_t kLaterThanAFrame = 130;
-
-std::int64_t skew_of(const ManagerScene& scene) {
-  return scene.bench.configuration().channels.skew_symbols;
+std::int64_t later_than_a_frame(const ManagerScene& scene) {
+  constexpr std::int64_t kFrame = 130;
+  return std::min(kFrame, scene.slot_symbols() - 8);
 }
 
 std::string random_noise(ManagerScene& scene) {
@@ -24,8 +23,8 @@ std::string random_noise(ManagerScene& scene) {
 }
 
 void carry_with_any_skew(ManagerScene& scene) {
-  const std::int64_t skew = scene.round % (skew_of(scene) + 1);
-  const bool is_b_later = scene.round / (skew_of(scene) + 1) % 2 == 0;
+  const std::int64_t skew = scene.round % (scene.skew() + 1);
+  const bool is_b_later = scene.round / (scene.skew() + 1) % 2 == 0;
   const std::string one = scene.frame();
   scene.carry({one, is_b_later ? 0 : skew}, {one, is_b_later ? skew : 0});
 }
@@ -67,8 +66,8 @@ std::vector<ManagerCase> which_cases() {
                             "the skew that is borne", {{"takes_the_first", "wrong_channel"}}),
                {{8, 40},
                 {powered_anew(),
-                 does("A carries a frame, 1 to 8 symbols later than B another one",
-                      [](ManagerScene& scene) { carry_a_late(scene, 1 + scene.round % skew_of(scene)); }),
+                 does("A carries a frame, later than B another one, by each skew in turn",
+                      [](ManagerScene& scene) { carry_a_late(scene, 1 + scene.round % scene.skew()); }),
                  of_a("wrong_channel")}}),
       on_chart(manager_must("selection/the_first_with_a_start_delimiter", "",
                             "Where the preferred channel has none, the channel with a start delimiter is "
@@ -98,7 +97,7 @@ std::vector<ManagerCase> which_cases() {
            {powered_anew(),
             does("A carries a frame, 40 or 130 symbols later than B another one",
                  [](ManagerScene& scene) {
-                   carry_a_late(scene, scene.round % 2 == 0 ? kLate : kLaterThanAFrame);
+                   carry_a_late(scene, scene.round % 2 == 0 ? kLate : later_than_a_frame(scene));
                  }),
             of_b_from_delimiter("wrong_channel"), indicates_of(Channel::b, "wrong_channel")}}),
   };
@@ -120,21 +119,22 @@ std::vector<ManagerCase> noise_cases() {
             does("A carries a frame, and B such symbols",
                  [](ManagerScene& scene) { scene.carry({scene.frame()}, {random_noise(scene)}); }),
             of_a("indicated_wrong")}}),
-      on_chart(
-          manager_must(
-              "selection/noise_of_the_preferred_is_indicated", "",
-              "What the preferred channel carries without a start delimiter is indicated as it "
-              "is: the MAC has to know of collisions.",
-              "what comes in front of a start delimiter",
-              {{"indicates_frames_alone", "indicated_wrong"}, {"bad_signal_is_silence", "indicated_wrong"}}),
-          {{5, 50},
-           {powered_anew(),
-            does("A carries symbols without a start delimiter",
-                 [](ManagerScene& scene) { scene.carry({random_noise(scene)}, {}); }),
-            of_a("indicated_wrong"),
-            does("both carry symbols without a start delimiter",
-                 [](ManagerScene& scene) { scene.carry({random_noise(scene)}, {random_noise(scene), 3}); }),
-            of_a("indicated_wrong"), nothing_reported("reported_without_fault")}}),
+      on_chart(manager_must("selection/noise_of_the_preferred_is_indicated", "",
+                            "What the preferred channel carries without a start delimiter is indicated as it "
+                            "is: the MAC has to know of collisions.",
+                            "what comes in front of a start delimiter",
+                            {{"indicates_frames_alone", "indicated_wrong"},
+                             {"bad_signal_is_silence", "indicated_wrong"}}),
+               {{5, 50},
+                {powered_anew(),
+                 does("A carries symbols without a start delimiter",
+                      [](ManagerScene& scene) { scene.carry({random_noise(scene)}, {}); }),
+                 of_a("indicated_wrong"),
+                 does("both carry symbols without a start delimiter",
+                      [](ManagerScene& scene) {
+                        scene.carry({random_noise(scene)}, {random_noise(scene), scene.borne(3)});
+                      }),
+                 of_a("indicated_wrong"), nothing_reported("reported_without_fault")}}),
       on_chart(manager_must("selection/silence_is_no_fault", "",
                             "Two silent channels are indicated as silence, and neither has a fault.",
                             "faults show where the other channel carries something",

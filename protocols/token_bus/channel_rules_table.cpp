@@ -11,7 +11,7 @@ constexpr field::Unit kTransmissions{"transmissions"};
 
 constexpr auto kRows = field::rows<ChannelRules>(
     row<&ChannelRules::skew_symbols>(
-        {field::Unit{"MAC symbols"}, {0, 32}, "most, that one channel is later than the other", kSourceOwn}),
+        {field::Unit{"MAC symbols"}, {1, 32}, "most, that one channel is later than the other", kSourceOwn}),
     row<&ChannelRules::errors_in_a_row>({kTransmissions,
                                          {1, 16},
                                          "spoiled on a channel and clean on the other, then it has a fault",

@@ -10,6 +10,7 @@
 
 #include "harness/field/written_table.hpp"
 #include "protocols/token_bus/device.hpp"
+#include "protocols/token_bus/dual_channel_settings.hpp"
 #include "protocols/token_bus/station_settings.hpp"
 #include "protocols/token_bus/translator_settings.hpp"
 
@@ -28,6 +29,17 @@ TEST(TokenBusPage, HasEverySettingOfAStation) {
 
 TEST(TokenBusPage, HasEverySettingOfATranslator) {
   expect_on_token_bus_page(field::markdown_of(kTranslatorTable) + "\n", "translator.md");
+}
+
+TEST(TokenBusPage, HasEverySettingOfAChannelManager) {
+  expect_on_token_bus_page(field::markdown_of(kChannelManagerTable) + "\n", "channel_manager.md");
+}
+
+TEST(TokenBusPage, HasEveryEventOfAChannelManager) {
+  for (unsigned n = 0; n < kChannelEventKinds; ++n) {
+    expect_on_token_bus_page(fmt::format("| {} | {} | ", n, text_of(static_cast<ChannelEventKind>(n))),
+                             "channel_manager.md");
+  }
 }
 
 TEST(TokenBusPage, HasEveryEvent) {
