@@ -53,6 +53,25 @@ void ManagerBench::command(SideCommand command, std::size_t symbols) {
   segment().run_until(drive(mac_in_, now(), rate(), request_levels_of(command, symbols)));
 }
 
+void ManagerBench::begin_ring(token_bus::Address address) {
+  if (mac_ == nullptr) {
+    const auto request = [this](const token_bus::MacSymbols& symbols, kernel::Time start) {
+      drive(mac_in_, start, rate(), request_levels_of(token_bus::written(symbols)));
+    };
+    mac_ = std::make_unique<MacPlayer>(
+        token_bus::StationConfiguration{.rules = configuration().rules, .address = address}, request);
+    mac_seat_ = segment().attach(*mac_, "mac");
+  }
+  mac_->start_anew(now());
+  segment().refresh(mac_seat_);
+}
+
+void ManagerBench::on_driven(segment::PortIndex port, const line::Waveform& wave) {
+  if (mac_ == nullptr || port != token_bus::kTowardsMac) return;
+  mac_->indicate(wave);
+  segment().refresh(mac_seat_);
+}
+
 void ManagerBench::carry(const ChannelText& on_a, const ChannelText& on_b) {
   const kernel::Time begin = now();
   kernel::Time end = begin;
@@ -64,8 +83,12 @@ void ManagerBench::carry(const ChannelText& on_a, const ChannelText& on_b) {
   segment().run_until(end);
 }
 
-void ManagerBench::clear() {
+void ManagerBench::clear_requests() {
   for (SideLog& one : requested_) one.clear();
+}
+
+void ManagerBench::clear() {
+  clear_requests();
   indicated_.clear();
   events_.clear();
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "conformance/token_bus/mac_player.hpp"
 #include "conformance/token_bus/sides_bench.hpp"
 #include "conformance/token_bus/translator_sides.hpp"
 #include "protocols/token_bus/dual_channel_device.hpp"
@@ -46,12 +48,16 @@ class ManagerBench final
   void request(std::string_view symbols);
   void command(SideCommand command, std::size_t symbols);
 
+  // A station of a ring in the place of the MAC, from now on; it begins anew.
+  void begin_ring(token_bus::Address address);
+
   // ---- both channels, until what they carry is over ----
   void carry(const ChannelText& on_a, const ChannelText& on_b);
 
   // Until everything has come out, and each fault has been found, though it be late.
   void settle() { wait(2 * slot() + 4 * indication_delay()); }
   void clear();
+  void clear_requests();
   // Since the last `clear`.
   const SideLog& requested(Channel channel) const { return requested_[static_cast<std::size_t>(channel)]; }
   const SideLog& indicated() const { return indicated_; }
@@ -66,6 +72,7 @@ class ManagerBench final
   void ask();
 
  private:
+  void on_driven(segment::PortIndex port, const line::Waveform& wave) override;
   void on_channel_event(const token_bus::ChannelEvent& event, kernel::Time when) override;
   std::int64_t rate() const { return token_bus::mac_side_rate(configuration().rules.phy_bit_rate); }
 
@@ -77,6 +84,8 @@ class ManagerBench final
   std::array<segment::Link*, 2> channel_out_;
   std::vector<std::string> events_;
   kernel::Time last_event_{};
+  std::unique_ptr<MacPlayer> mac_;  // where a ring runs
+  std::size_t mac_seat_ = 0;
 };
 
 }  // namespace fieldproof::conformance

@@ -20,5 +20,6 @@ std::vector<ManagerCase> manager_management_cases();
 std::vector<ManagerCase> manager_selection_cases();
 std::vector<ManagerCase> manager_inside_cases();
 std::vector<ManagerCase> manager_fault_cases();
+std::vector<ManagerCase> manager_ring_cases();
 
 }  // namespace fieldproof::conformance

@@ -73,6 +73,8 @@ class SidesBench : public CaseBench, private segment::Station {
     link.drive(wave);
     return end;
   }
+  // A tester is given what comes out of a port.
+  virtual void on_driven(segment::PortIndex /*port*/, const line::Waveform& /*wave*/) {}
   // What was seen last of one side, for a report.
   static std::string shown_end(std::string_view what, const std::string& text) {
     constexpr std::size_t kMostShown = 160;
@@ -81,7 +83,7 @@ class SidesBench : public CaseBench, private segment::Station {
   }
 
  private:
-  void receive(segment::PortIndex, const line::Waveform&) override {}
+  void receive(segment::PortIndex port, const line::Waveform& wave) override { on_driven(port, wave); }
   void on_time(kernel::Time) override {}
   kernel::Time next_time() const override { return kernel::kNever; }
 

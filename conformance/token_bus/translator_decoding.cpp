@@ -19,15 +19,15 @@ struct PairRow {
   char fresh;        // carrier on, no error, no non_data open
   char within_pair;  // the same, and the second non_data is due
 };
-constexpr std::array<PairRow, 9> kPairs{{{"10", '1', 'B'},
-                                         {"01", '0', 'B'},
-                                         {"11", 'N', 'B'},
-                                         {"00", 'B', 'N'},
-                                         {"1I", 'B', 'B'},
-                                         {"0I", 'B', 'B'},
-                                         {"I1", 'S', 'S'},
-                                         {"I0", 'S', 'S'},
-                                         {"II", 'S', 'S'}}};
+constexpr std::array<PairRow, 9> kPhyPairs{{{"10", '1', 'B'},
+                                            {"01", '0', 'B'},
+                                            {"11", 'N', 'B'},
+                                            {"00", 'B', 'N'},
+                                            {"1I", 'B', 'B'},
+                                            {"0I", 'B', 'B'},
+                                            {"I1", 'S', 'S'},
+                                            {"I0", 'S', 'S'},
+                                            {"II", 'S', 'S'}}};
 constexpr unsigned kCells = 54;  // nine pairs, three states of the line, non_data open or not
 
 struct CellOfRound {
@@ -36,7 +36,9 @@ struct CellOfRound {
   bool is_within_pair;
 
   explicit CellOfRound(unsigned round)
-      : row(kPairs.at(round / 6 % kPairs.size())), status(round % 3), is_within_pair(round / 3 % 2 == 1) {}
+      : row(kPhyPairs.at(round / 6 % kPhyPairs.size())),
+        status(round % 3),
+        is_within_pair(round / 3 % 2 == 1) {}
   char right() const {
     if (status == 0) return 'S';
     if (status == 2) return 'B';
