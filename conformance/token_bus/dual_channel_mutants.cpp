@@ -163,11 +163,21 @@ std::vector<ManagerMutant> fault_rows() {
   };
 }
 
+std::vector<ManagerMutant> manager_check_rows() {
+  using namespace dual_channel_seeded_faults;
+  return ChannelManagerMutants::for_check({
+      {"reports_one_channel_at_a_time", "", "reports no fault while the other channel has one",
+       with_selection<ReportsOneChannelAtATime>()},
+      {"stays_where_the_other_has_a_fault", "", "leaves no channel while the other one has a fault",
+       with_selection<StaysWhereTheOtherHasAFault>()},
+  });
+}
+
 }  // namespace
 
 const ChannelManagerMutants& channel_manager_mutants() {
-  static const ChannelManagerMutants table("channel_manager",
-                                           {request_rows, selection_rows, inside_rows, fault_rows});
+  static const ChannelManagerMutants table(
+      "channel_manager", {request_rows, selection_rows, inside_rows, fault_rows, manager_check_rows});
   return table;
 }
 

@@ -3,6 +3,7 @@
 #include "conformance/bench_role.hpp"
 #include "conformance/token_bus/dual_channel_cases.hpp"
 #include "conformance/token_bus/dual_channel_mutants.hpp"
+#include "conformance/token_bus/dual_channel_sequence.hpp"
 #include "harness/field/pics.hpp"
 #include "protocols/token_bus/attached_dual_channel.hpp"
 #include "protocols/token_bus/dual_channel.hpp"
@@ -18,7 +19,9 @@ RoleRow channel_manager_row() {
       Cases{.name = "channel_manager",
             .cases = manager_cases,
             .pics_items = [] { return field::pics_items_of(token_bus::kChannelManagerTable); },
-            .settings = &token_bus::kChannelManagerTable});
+            .settings = &token_bus::kChannelManagerTable,
+            .sequences =
+                SequenceRow<ManagerCase>{channel_manager_sequence_role, run_channel_manager_sequence}});
 }
 
 }  // namespace fieldproof::conformance

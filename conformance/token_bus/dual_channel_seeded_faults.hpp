@@ -196,6 +196,28 @@ class ReportsAtOtherTimes final : public ChannelSelection {
   mutable std::array<bool, 2> has_reported_{};
 };
 
+// ---- for `check`: both channels have a fault ----
+
+class ReportsOneChannelAtATime final : public ChannelSelection {
+ public:
+  explicit ReportsOneChannelAtATime(const ChannelManagerConfiguration& of)
+      : ChannelSelection(of.rules, of.channels) {}
+
+ private:
+  bool is_reported(Channel channel, bool has_fault_already) const override {
+    return !has_fault_already && !has_fault(other_than(channel));
+  }
+};
+
+class StaysWhereTheOtherHasAFault final : public ChannelSelection {
+ public:
+  explicit StaysWhereTheOtherHasAFault(const ChannelManagerConfiguration& of)
+      : ChannelSelection(of.rules, of.channels) {}
+
+ private:
+  bool is_left_for(ChannelEventKind) const override { return !has_fault(other_than(preferred())); }
+};
+
 // ---- the manager: requests and answers ----
 
 using Sends = bool (*)(const ChannelSelection& selection, Channel channel, bool is_management);

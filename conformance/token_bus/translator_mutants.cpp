@@ -164,11 +164,19 @@ std::vector<TranslatorMutant> management_rows() {
   };
 }
 
+std::vector<TranslatorMutant> translator_check_rows() {
+  using namespace translator_seeded_faults;
+  return TranslatorMutants::for_check({
+      {"refuses_a_second_enable", "", "refuses to enable a transmitter that is on",
+       with_manager<RefusesASecondEnable>()},
+  });
+}
+
 }  // namespace
 
 const TranslatorMutants& translator_mutants() {
-  static const TranslatorMutants table(
-      "translator", {encoding_rows, locking_rows, decoding_rows, blanking_rows, management_rows});
+  static const TranslatorMutants table("translator", {encoding_rows, locking_rows, decoding_rows,
+                                                      blanking_rows, management_rows, translator_check_rows});
   return table;
 }
 

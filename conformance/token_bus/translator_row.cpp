@@ -3,6 +3,7 @@
 #include "conformance/bench_role.hpp"
 #include "conformance/token_bus/translator_cases.hpp"
 #include "conformance/token_bus/translator_mutants.hpp"
+#include "conformance/token_bus/translator_sequence.hpp"
 #include "harness/field/pics.hpp"
 #include "protocols/token_bus/attached_translator.hpp"
 #include "protocols/token_bus/translator.hpp"
@@ -17,7 +18,8 @@ RoleRow translator_row() {
       Cases{.name = "translator",
             .cases = translator_cases,
             .pics_items = [] { return field::pics_items_of(token_bus::kTranslatorTable); },
-            .settings = &token_bus::kTranslatorTable});
+            .settings = &token_bus::kTranslatorTable,
+            .sequences = SequenceRow<TranslatorCase>{translator_sequence_role, run_translator_sequence}});
 }
 
 }  // namespace fieldproof::conformance

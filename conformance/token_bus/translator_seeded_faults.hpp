@@ -332,6 +332,21 @@ class JabberOutlivesReset final : public StationManager {
   bool ends_jabber_at_reset() const override { return false; }
 };
 
+// For `check`: only once the transmitter is on.
+class RefusesASecondEnable final : public StationManager {
+  ManagementAnswer answer_to(ManagementCommand command) const override {
+    if (command == ManagementCommand::reset) has_enabled_ = is_enabling_ = false;
+    const bool is_enable = command == ManagementCommand::enable_transmitter;
+    if (!is_enable && std::exchange(is_enabling_, false)) has_enabled_ = true;
+    if (!is_enable) return StationManager::answer_to(command);
+    is_enabling_ = true;
+    return has_enabled_ ? ManagementAnswer::nack : StationManager::answer_to(command);
+  }
+
+  mutable bool is_enabling_ = false;  // the command stands
+  mutable bool has_enabled_ = false;
+};
+
 // ---- the whole translator ----
 
 class ErrorsMaskedOtherwise final : public Translator {
