@@ -49,6 +49,14 @@ Octets octets_from(std::string_view halves) {
   return octets;
 }
 
+// Half bits are found in runs, so each may be a quarter too long: a transmission may not.
+bool lasts(const line::Waveform& wave, std::size_t half_bits, std::int64_t rate) {
+  const kernel::Duration right = kernel::levels_duration(static_cast<std::int64_t>(half_bits), rate);
+  const kernel::Duration is = wave.end() - wave.start;
+  const kernel::Duration stray = right / 1'000;
+  return is >= right - stray && is <= right + stray;
+}
+
 constexpr std::array<std::pair<TokenControl, std::string_view>, 7> kControlNames{
     {{TokenControl::claim, "claim_token"},
      {TokenControl::solicit_1, "solicit_successor_1"},
@@ -139,7 +147,8 @@ void DrivenFrames::on_wave(const line::Waveform& wave) {
     driven.preamble_octets = static_cast<unsigned>(at / kOctetHalves);
     driven.octets = octets_from(std::string_view(text).substr(at + start.size()));
     driven.is_well_formed =
-        half_bits == half_bits_around(driven.octets, {.preamble_octets = driven.preamble_octets});
+        half_bits == half_bits_around(driven.octets, {.preamble_octets = driven.preamble_octets}) &&
+        lasts(wave, half_bits.size(), 2 * phy_bit_rate_);
   }
   if (driven.octets.size() > kCrcOctets) {
     const std::span all(driven.octets);

@@ -10,12 +10,6 @@
 namespace fieldproof::conformance {
 namespace {
 
-token_bus::StationConfiguration configuration_for(const TokenNeeds& needs) {
-  token_bus::StationConfiguration configuration;
-  if (needs.adjust != nullptr) needs.adjust(configuration);
-  return configuration;
-}
-
 void append_address(Octets& octets, std::uint64_t address, unsigned size) {
   for (unsigned n = 0; n < size; ++n) octets.push_back(static_cast<std::uint8_t>(address >> 8 * n));
 }
@@ -27,6 +21,13 @@ LineWatch line_watch_of(const token_bus::Rules& rules) {
 }
 
 }  // namespace
+
+token_bus::StationConfiguration token_configuration(const TokenNeeds& needs, std::uint64_t seed) {
+  token_bus::StationConfiguration configuration;
+  kernel::Random random = kernel::Random(seed).split("settings");
+  if (needs.adjust) needs.adjust(configuration, random);
+  return configuration;
+}
 
 bool is_reported_as(const DrivenFrame& sent, const token_bus::Frame& frame) {
   // MMM, its highest bit first.
@@ -42,10 +43,10 @@ bool TokenUser::has_event(token_bus::EventKind kind, std::uint64_t about) const 
       events, [&](const token_bus::Event& one) { return one.kind == kind && one.address == about; });
 }
 
-TokenBench::TokenBench(const TokenNeeds& needs, const TokenSetting& setting)
-    : LineBench(setting.seed, setting.volume, setting.stresses,
-                line_watch_of(configuration_for(needs).rules)),
-      configuration_(configuration_for(needs)),
+TokenBench::TokenBench(const token_bus::StationConfiguration& configuration, bool is_powered,
+                       const TokenSetting& setting)
+    : LineBench(setting.seed, setting.volume, setting.stresses, line_watch_of(configuration.rules)),
+      configuration_(configuration),
       driven_(rules().phy_bit_rate, token_bus::address_octets(rules())),
       sent_(rules().phy_bit_rate, token_bus::address_octets(rules())),
       station_(setting.make_device(configuration_)) {
@@ -57,7 +58,7 @@ TokenBench::TokenBench(const TokenNeeds& needs, const TokenSetting& setting)
   watch(place());
   install(setting.plan, rules().phy_bit_rate);
   station_->wire(place(), user_);
-  if (needs.is_powered) set_power(true);
+  if (is_powered) set_power(true);
 }
 
 void TokenBench::set_power(bool is_on) {
@@ -77,6 +78,7 @@ bool TokenBench::submit(const token_bus::DataRequest& request) {
 }
 
 void TokenBench::set_in_ring_desired(bool is_desired) {
+  may_leave_ |= !is_desired;
   station_->set_in_ring_desired(is_desired, now());
   refresh_iut();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,7 +24,8 @@ inline constexpr kernel::Duration kTokenRounding = kernel::kNanosecond;
 
 // What a case needs around the IUT.
 struct TokenNeeds {
-  void (*adjust)(token_bus::StationConfiguration&) = nullptr;
+  // What the case is about, or draws of the seed.
+  std::function<void(token_bus::StationConfiguration&, kernel::Random&)> adjust{};
   bool is_powered = true;  // when the case begins
 };
 
@@ -36,12 +38,23 @@ bool is_reported_as(const DrivenFrame& sent, const token_bus::Frame& frame);
 class TokenUser final : public token_bus::StationUser {
  public:
   void on_data(const token_bus::Frame& frame, kernel::Time) override { frames.push_back(frame); }
-  void on_event(const token_bus::Event& event, kernel::Time) override { events.push_back(event); }
+  void on_event(const token_bus::Event& event, kernel::Time when) override {
+    events.push_back(event);
+    all_events.push_back({event, when});
+  }
   bool has_event(token_bus::EventKind kind, std::uint64_t about) const;
 
   std::vector<token_bus::Frame> frames;
-  std::vector<token_bus::Event> events;
+  struct Reported {
+    token_bus::Event event;
+    kernel::Time when;
+  };
+
+  std::vector<token_bus::Event> events;  // of which a case has not disposed
+  std::vector<Reported> all_events;
 };
+
+token_bus::StationConfiguration token_configuration(const TokenNeeds& needs, std::uint64_t seed);
 
 class TokenBench final : public LineBench {
  public:
@@ -50,7 +63,8 @@ class TokenBench final : public LineBench {
   static constexpr std::uint64_t kBelow = 0x0004;
   static constexpr std::uint64_t kStranger = 0x0020;
 
-  TokenBench(const TokenNeeds& needs, const TokenSetting& setting);
+  TokenBench(const TokenNeeds& needs, const TokenSetting& setting)
+      : TokenBench(token_configuration(needs, setting.seed), needs.is_powered, setting) {}
 
   const token_bus::Rules& rules() const { return configuration_.rules; }
   std::uint64_t address() const { return configuration_.address; }
@@ -65,6 +79,8 @@ class TokenBench final : public LineBench {
   bool submit(const token_bus::DataRequest& request);
   void set_in_ring_desired(bool is_desired);
   void set_response(const Octets& data);
+  // It is, or was, not to be in the ring.
+  bool may_leave() const { return may_leave_; }
   token_bus::Counters counters() const { return station_->counters(); }
   // Data that no other has.
   Octets numbered_data(std::size_t size);
@@ -100,12 +116,16 @@ class TokenBench final : public LineBench {
   void ask();
 
  private:
+  TokenBench(const token_bus::StationConfiguration& configuration, bool is_powered,
+             const TokenSetting& setting);
+
   token_bus::StationConfiguration configuration_;
   TokenUser user_;
   DrivenFrames driven_;
   DrivenFrames sent_;
   std::unique_ptr<token_bus::StationDevice> station_;
   bool is_powered_ = false;
+  bool may_leave_ = false;
   std::uint16_t number_ = 0;
 };
 

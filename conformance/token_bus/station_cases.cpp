@@ -5,8 +5,6 @@
 namespace fieldproof::conformance {
 namespace {
 
-constexpr unsigned kLeastPreamble = 4;
-
 TokenCase canary() {
   return {canary_of("token_bus/station", token_sources::own("rules of the suite"), "A token.",
                     "the case asks for a frame that no station sends."),
@@ -27,17 +25,29 @@ void judge_end(TokenBench& bench, CaseJudge& judge) {
     };
     expect(one.is_well_formed, "frame_malformed", "preamble, delimiters and whole octets");
     expect(one.has_right_check, "check_wrong", "a frame check that fits");
-    expect(one.preamble_octets >= kLeastPreamble, "preamble_short", "four octets of preamble at least");
+    expect(one.preamble_octets >= bench.rules().preamble_octets, "preamble_short",
+           "as many octets of preamble as are set, at least");
     expect(one.source() == bench.address(), "source_wrong", "the station's own address as the source");
   }
+  judge_events(bench, judge);
   bench.finish();
 }
 
 const std::vector<TokenCase>& token_cases() {
   static const std::vector<TokenCase> cases = [] {
-    static constexpr std::array kChapters{token_initialisation_cases, token_joining_cases,
-                                          token_passing_cases,        token_failure_cases,
-                                          token_holding_cases,        token_reception_cases};
+    static constexpr std::array kChapters{token_initialisation_cases,
+                                          token_joining_cases,
+                                          token_passing_cases,
+                                          token_failure_cases,
+                                          token_holding_cases,
+                                          token_reception_cases,
+                                          token_line_cases,
+                                          token_event_cases,
+                                          token_supply_cases,
+                                          token_settings_cases,
+                                          token_rotation_settings_cases,
+                                          token_long_address_cases,
+                                          token_immunity_cases};
     auto all = cases_of<TokenCase>(kChapters, token_details());
     all.push_back(canary());
     return all;

@@ -16,6 +16,9 @@ const std::vector<TokenCase>& token_cases();
 // How each frame of the IUT stands on the line, whatever the case was about.
 void judge_end(TokenBench& bench, CaseJudge& judge);
 
+// What leads to each event that was reported: `reported_unfounded`.
+void judge_events(TokenBench& bench, CaseJudge& judge);
+
 // The chapters, each in its own file.
 std::vector<TokenCase> token_initialisation_cases();
 std::vector<TokenCase> token_joining_cases();
@@ -23,5 +26,12 @@ std::vector<TokenCase> token_passing_cases();
 std::vector<TokenCase> token_failure_cases();
 std::vector<TokenCase> token_holding_cases();
 std::vector<TokenCase> token_reception_cases();
+std::vector<TokenCase> token_line_cases();
+std::vector<TokenCase> token_event_cases();
+std::vector<TokenCase> token_supply_cases();
+std::vector<TokenCase> token_settings_cases();
+std::vector<TokenCase> token_rotation_settings_cases();
+std::vector<TokenCase> token_long_address_cases();
+std::vector<TokenCase> token_immunity_cases();
 
 }  // namespace fieldproof::conformance

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "conformance/token_bus/station_scene.hpp"
+#include "conformance/token_bus/station_life.hpp"
 
 // What a station does when the token that it passes is not taken, or when it is not alone in holding one.
 namespace fieldproof::conformance {
@@ -11,44 +11,69 @@ using token_sources::controller;
 using token_sources::memory;
 using token_sources::standard;
 
-TokenStep passes_below(SpanOf span) {
-  return says("the token to 0004", {TokenControl::token, TokenBench::kBelow}, std::move(span),
-              "token_missing", "token_wrong");
-}
-
-TokenStep asks_who_follows(SpanOf span) {
-  return says("who_follows 0004", {TokenControl::who_follows, TokenBench::kBelow, TokenBench::kBelow},
-              std::move(span), "who_follows_missing", "who_follows_wrong");
-}
-
 TokenStep stranger_sends(std::string what, std::uint8_t control) {
   return send("0020 sends " + what, [control](TokenScene& scene) {
     return scene.bench.data_frame(control, TokenBench::kBelow, TokenBench::kStranger, {1, 2});
   });
 }
 
-TokenStep request() {
-  return stimulus<TokenScene>("the user submits a request with response for 0004", [](TokenScene& scene) {
-    scene.data = scene.bench.numbered_data(4);
-    const bool is_taken = scene.bench.submit({.action = token_bus::Action::request_with_response,
-                                              .destination = TokenBench::kBelow,
-                                              .data = scene.data});
-    scene.judge.expect(is_taken, "data_refused", "the request is accepted", "it was refused");
-  });
+constexpr std::size_t kShortData = 10;
+
+// 000E solicits it and passes the token, which it passes on in vain.
+TokenStep fails_to_pass(const std::string& times, std::function<unsigned(const token_bus::Rules&)> count) {
+  return {fmt::format("{}, 000E solicits the station and passes the token to it", times),
+          "each time it joins, and finds no successor", [count = std::move(count)](TokenScene& scene) {
+            const unsigned most = count(scene.bench.rules());
+            for (unsigned n = 0; n < most; ++n) scene.fail_to_pass();
+          }};
 }
 
-// 01 001 110: the priority is 6, its highest bit first.
-constexpr std::uint8_t kRequestOfSix = 0x72;
+unsigned all_but_one(const token_bus::Rules& rules) {
+  return rules.transmitter_fault_limit - 1;
+}
+unsigned one_time(const token_bus::Rules&) {
+  return 1;
+}
+
+TokenStep is_offline() {
+  return {"000E solicits the station, and passes the token to it", "silence: it is offline",
+          [](TokenScene& scene) {
+            scene.bench.wait(scene.bench.octets(8));
+            scene.send(scene.bench.frame(TokenControl::solicit_1, TokenBench::kBelow, TokenBench::kAbove));
+            scene.expect_silence(scene.bench.slots(2), "speaks_as_faulty", "its transmitter is faulty");
+            scene.send(scene.bench.frame(TokenControl::token, scene.bench.address(), TokenBench::kAbove));
+            scene.expect_silence(scene.bench.slots(10), "speaks_as_faulty", "its transmitter is faulty");
+          }};
+}
+
+std::vector<TokenStep> becomes_faulty() {
+  return {fails_to_pass("as often as the limit of failures says, but once", all_but_one),
+          require(
+              "it is not reported as faulty yet",
+              [](TokenScene& scene) {
+                return !scene.bench.user().has_event(token_bus::EventKind::faulty_transmitter, kOwnAddress);
+              },
+              "faulty_too_soon"),
+          fails_to_pass("once more", one_time),
+          reported("the fault", token_bus::EventKind::faulty_transmitter, kOwnAddress), is_offline()};
+}
+
+template <unsigned limit>
+void fault_limit(token_bus::StationConfiguration& configuration, kernel::Random&) {
+  configuration.rules.transmitter_fault_limit = limit;
+}
+
+TokenCase faulty_after(const std::string& id, const std::string& times, std::vector<MustCatch> catches,
+                       TokenNeeds needs) {
+  return on_chart(token_must("failure/" + id, "",
+                             "A station that failed to pass the token " + times +
+                                 " in a row reports a faulty transmitter, and goes offline.",
+                             memory("transmitter_fault_count"), std::move(catches)),
+                  {{}, becomes_faulty()}, std::move(needs));
+}
+
+// 01 010 110: the priority is 6, its highest bit first.
 constexpr std::uint8_t kResponseOfSix = 0x6A;
-
-TokenStep is_requested(SpanOf span) {
-  return expected<TokenScene>("the request", [span = std::move(span)](TokenScene& scene) {
-    scene.expect_frame({TokenControl{kRequestOfSix}, TokenBench::kBelow}, span(scene),
-                       "a request with response to 0004", "request_missing", "request_wrong");
-    scene.judge.expect(scene.answer.data() == scene.data, "request_wrong", "the data of the request",
-                       scene.answer.text());
-  });
-}
 
 }  // namespace
 
@@ -66,12 +91,9 @@ std::vector<TokenCase> token_failure_cases() {
                       {"token_repeated_late", "begins_too_late"}},
                      {{controller("no successor"), {"who_follows_wrong"}}}),
           {{},
-           {joined(), token(), passes_below(at_once()), passes_below(after_slots(1)),
-            asks_who_follows(after_slots(1)), asks_who_follows(after_slots(3)),
-            says("anybody is solicited", {TokenControl::solicit_2, kOwnAddress}, after_slots(3),
-                 "any_missing", "any_wrong"),
-            silence(6 * 28, "speaks_after_failure", "nobody is there"),
-            reported("the failure", EventKind::pass_failed, kOwnAddress)}}),
+           and_then({joined()}, seeks_successor(),
+                    {silence(6 * 28, "speaks_after_failure", "nobody is there"),
+                     reported("the failure", EventKind::pass_failed, kOwnAddress)})}),
       on_chart(token_must("failure/who_follows_the_lost_one_is_the_successor", "TB-22",
                           "Who answers who_follows is the successor, and gets the token.",
                           standard("who_follows"), {{"answer_not_taken", "token_missing"}}),
@@ -146,6 +168,35 @@ std::vector<TokenCase> token_failure_cases() {
            {joined(), request(), token(), is_requested(at_once()), wait(6),
             stranger_sends("data to 0004", 0x62), silence(5 * 28, "token_kept", "another holds the token"),
             reported("it", EventKind::unexpected_frame, TokenBench::kStranger)}}),
+      on_chart(
+          token_must("failure/another_frame_between_two_of_its_own_costs_the_token", "TB-28",
+                     "A station that receives a frame between two of its own while it holds the token drops "
+                     "it.",
+                     standard("duplicate token"), {{"token_kept_between_frames", "token_kept"}}),
+          {{},
+           {joined(), submit({6, 6}, kShortData), token(),
+            says("the first data, to 0004", {TokenControl{0x62}, TokenBench::kBelow}, at_once(),
+                 "data_missing", "data_wrong"),
+            wait(5), stranger_sends("data to 0004", 0x62),
+            silence(5 * 28, "token_kept", "another holds the token"),
+            reported("it", EventKind::unexpected_frame, TokenBench::kStranger)}}),
+      faulty_after("seven_failures_are_a_faulty_transmitter", "seven times",
+                   {{"faulty_after_six", "faulty_too_soon"},
+                    {"faulty_after_eight", "not_reported"},
+                    {"fault_unreported", "not_reported"}},
+                   {}),
+      faulty_after("one_failure_may_be_a_faulty_transmitter", "once, which is the limit,",
+                   {{"faulty_after_seven", "not_reported"}}, {.adjust = fault_limit<1>}),
+      faulty_after("a_faulty_transmitter_may_have_64_failures", "64 times, which is the limit,",
+                   {{"faulty_after_seven", "answer_missing"}}, {.adjust = fault_limit<64>}),
+      on_chart(token_must("failure/a_success_forgives_the_failures", "",
+                          "Failures to pass the token count in a row: a success begins their count anew.",
+                          memory("transmitter_fault_count"), {{"failures_not_forgiven", "answer_missing"}}),
+               {{},
+                and_then({fails_to_pass("as often as the limit of failures says, but once", all_but_one),
+                          joined()},
+                         becomes_faulty())},
+               {.adjust = fault_limit<3>}),
       on_chart(token_must("failure/the_second_of_an_address_is_silent", "TB-29",
                           "A station that receives a frame with its own address as the source reports it and "
                           "goes offline.",

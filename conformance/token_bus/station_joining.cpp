@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "conformance/token_bus/station_scene.hpp"
+#include "conformance/token_bus/station_life.hpp"
 
 // How a station outside of the ring comes into it, and what it answers for its predecessor.
 namespace fieldproof::conformance {
@@ -64,23 +64,8 @@ TokenStep who_follows(std::uint64_t lost) {
 }
 
 // 11 10 01 00 ...: by the complement 0, 1, 2 and 3 slot times.
-constexpr std::array<unsigned, 8> kDelays{0, 1, 2, 3, 3, 2, 1, 1};
-void address_with_all_delays(token_bus::StationConfiguration& configuration) {
+void address_with_all_delays(token_bus::StationConfiguration& configuration, kernel::Random&) {
   configuration.address = 0xE41A;
-}
-
-TokenStep contest() {
-  return {"each of eight times, the sender resolves contention",
-          "set_successor after 0 to 3 slot times, by the complement of the next two bits of its address",
-          [](TokenScene& scene) {
-            for (const unsigned delay : kDelays) {
-              scene.bench.wait(scene.bench.gap());
-              scene.send(scene.bench.frame(TokenControl::resolve, 0xF000, 0xF000));
-              scene.expect_frame({TokenControl::set_successor, 0xF000}, scene.in_window(delay),
-                                 fmt::format("set_successor in window {}", delay), "answer_missing",
-                                 "answer_wrong");
-            }
-          }};
 }
 
 }  // namespace

@@ -7,6 +7,11 @@ namespace fieldproof::conformance {
 
 using TokenMutants = DeviceMutants<token_bus::StationDevice, token_bus::StationConfiguration>;
 
+// The groups that are not with the table.
+std::vector<TokenMutants::Row> token_settings_rows();
+std::vector<TokenMutants::Row> token_line_rows();
+std::vector<TokenMutants::Row> token_host_rows();
+
 // Stations of the token bus with one seeded fault each.
 const TokenMutants& token_station_mutants();
 

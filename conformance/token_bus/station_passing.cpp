@@ -119,6 +119,38 @@ std::vector<TokenCase> token_passing_cases() {
                         return scene.bench.data_frame(0x62, TokenBench::kAbove, TokenBench::kBelow, {1, 2});
                       }),
                  silence(6 * 28, "token_repeated", "its successor has the token"), taken(), serves()}}),
+      on_chart(token_must("passing/who_is_named_by_a_leaving_successor_is_the_next", "TB-30",
+                          "A station whose successor leaves takes the one that this names, reports it, and "
+                          "passes the token to it.",
+                          standard("leaving"), {{"new_successor_not_taken", "token_wrong"}}),
+               {{},
+                {joined(), token(), passes_to(TokenBench::kBelow, at_once()), wait(8),
+                 send("0004 leaves, and names 0002",
+                      [](TokenScene& scene) {
+                        return scene.bench.frame(TokenControl::set_successor, kOwnAddress, TokenBench::kBelow,
+                                                 0x0002);
+                      }),
+                 taken(), token(), passes_to(0x0002, at_once()),
+                 reported("the new successor", token_bus::EventKind::successor_changed, 0x0002)}}),
+      on_chart(token_must("passing/who_passes_the_token_is_its_predecessor", "TB-06",
+                          "The predecessor of a station is who has passed the last token to it: it answers "
+                          "for that one, and names its successor to that one when it leaves.",
+                          standard("token pass"), {{"first_predecessor_kept", "answer_missing"}}),
+               {{},
+                {joined(),
+                 send("0010, which has come between, passes the token to the station",
+                      [](TokenScene& scene) {
+                        return scene.bench.frame(TokenControl::token, kOwnAddress, 0x0010);
+                      }),
+                 passes_to(TokenBench::kBelow, at_once()), taken(),
+                 send("0020 asks who follows 0010",
+                      [](TokenScene& scene) {
+                        return scene.bench.frame(TokenControl::who_follows, 0x0010, TokenBench::kStranger,
+                                                 0x0010);
+                      }),
+                 says("set_successor to 0020 with its own address",
+                      {TokenControl::set_successor, TokenBench::kStranger, kOwnAddress}, at_once(),
+                      "answer_missing", "answer_wrong")}}),
       on_chart(token_must("passing/who_leaves_names_its_successor", "TB-30",
                           "A station that is not to be in the ring any more sends set_successor with its "
                           "successor to its predecessor, passes the token, and is silent.",

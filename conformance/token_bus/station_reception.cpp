@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "conformance/token_bus/station_scene.hpp"
+#include "conformance/token_bus/station_listening.hpp"
 #include "harness/line/frame_check.hpp"
 
 // What is a frame for a station, what is not, and which error it counts.
@@ -15,30 +15,6 @@ using token_sources::memory;
 using token_sources::mib;
 using token_sources::paper;
 using token_sources::standard;
-
-// Of token_bus::Counters.
-enum Counted : std::size_t { kNonSilence, kFragment, kFcsError, kEBitError, kTooLong };
-
-Octets right_token(TokenScene& scene) {
-  return scene.bench.frame(TokenControl::token, scene.bench.address(), TokenBench::kAbove);
-}
-
-TokenStep drive(std::string text, std::function<line::Levels(TokenScene&)> make) {
-  return stimulus<TokenScene>(std::move(text), [make = std::move(make)](TokenScene& scene) {
-    scene.since = scene.bench.send_half_bits(make(scene));
-  });
-}
-
-TokenStep ignored(std::string reason, std::string why) {
-  return silence(2 * 28, std::move(reason), std::move(why));
-}
-
-// Since the case began.
-TokenStep counted(std::string name, Counted which, std::uint32_t count) {
-  return require(
-      fmt::format("{} counted: {}", name, count),
-      [=](TokenScene& scene) { return scene.bench.counters().at(which) == count; }, "counter_wrong");
-}
 
 // Two values of which one is the check.
 line::Levels with_other_check(TokenScene& scene) {
@@ -91,22 +67,6 @@ Octets data_of(TokenScene& scene, std::size_t octets_between_delimiters) {
   return scene.bench.data_frame(0x62, scene.bench.address(), TokenBench::kAbove, scene.data);
 }
 
-TokenStep delivered(std::string what, std::size_t count) {
-  return require(
-      what,
-      [count](TokenScene& scene) {
-        const auto& frames = scene.bench.user().frames;
-        const auto& sent = scene.bench.sent();
-        const auto last =
-            std::find_if(sent.rbegin(), sent.rend(), [](const DrivenFrame& one) { return one.is_data(); });
-        const bool is_right = frames.size() == count &&
-                              (count == 0 || (last != sent.rend() && is_reported_as(*last, frames.back())));
-        scene.bench.user().frames.clear();
-        return is_right;
-      },
-      count == 0 ? "delivered_unasked" : "not_delivered");
-}
-
 TokenStep data_to(std::string whom, std::uint64_t destination) {
   return send("000E sends data to " + whom, [destination](TokenScene& scene) {
     scene.data = scene.bench.numbered_data(6);
@@ -122,11 +82,6 @@ line::Levels data_and_token(TokenScene& scene) {
       {.more_follows = true});
   levels.append(half_bits_around(with_crc_32(right_token(scene))));
   return levels;
-}
-
-TokenStep passes_on() {
-  return says("the token to 0004", {TokenControl::token, TokenBench::kBelow}, at_once(), "token_missing",
-              "token_wrong");
 }
 
 constexpr std::uint8_t kRequestOfFour = 0x32;   // 01 001 100

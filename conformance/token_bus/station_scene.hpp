@@ -50,19 +50,28 @@ struct TokenScene : Scene<TokenBench> {
   // The next frame of the IUT: `begins_too_early`, `begins_too_late`, and the reasons for none or another.
   const DrivenFrame& expect_frame(const ExpectedFrame& right, const TokenSpan& span, const std::string& what,
                                   std::string_view missing, std::string_view wrong);
+  // Of one that has come.
+  void expect_right(const DrivenFrame& one, const ExpectedFrame& right, const TokenSpan& span,
+                    const std::string& what, std::string_view wrong);
   void expect_silence(kernel::Duration duration, std::string_view reason, std::string_view why);
-  // It becomes a member between 000E and 0004, or as the lowest below 000C; `precondition_not_met`.
+  // It becomes a member between 000E and 0004, or as the lowest below 000C. One that is absent is no matter
+  // of the case: `precondition_not_met`. One that takes part and does it wrong fails, for the reasons of the
+  // cases about joining and the pass.
   void join(bool is_lowest);
+  void join_between(TokenControl solicit, std::uint64_t before, std::uint64_t after);
+  // It joins, and nobody takes the token that it passes.
+  void fail_to_pass();
   // As its successor: the token goes on.
   void take_token();
   // Until the IUT opens a window: `window_missing`.
   void rotate_until_window();
 
-  kernel::Time since;         // the end of what was on the line last
-  DrivenFrame answer{};       // what the IUT drove last, of what was required
-  Octets data{};              // of the last frame with data, of either side
-  kernel::Time token_came{};  // the last one whose rotation is measured
-  unsigned turn = 0;          // of steps that are repeated
+  kernel::Time since;               // the end of what was on the line last
+  DrivenFrame answer{};             // what the IUT drove last, of what was required
+  Octets data{};                    // of the last frame with data, of either side
+  std::vector<Octets> submitted{};  // by `submit`, in their order
+  kernel::Time token_came{};        // the last one whose rotation is measured
+  unsigned turn = 0;                // of steps that are repeated
 };
 
 using TokenStep = ChartStep<TokenScene>;
@@ -100,6 +109,9 @@ TokenStep says(std::string what, ExpectedFrame right, SpanOf span, std::string m
 TokenStep silence(std::int64_t octets, std::string reason, std::string why);
 // A token is used: `does_not_recover`.
 TokenStep serves();
+// Lists of steps, one after the other.
+std::vector<TokenStep> and_then(std::vector<TokenStep> first, std::vector<TokenStep> second,
+                                std::vector<TokenStep> third = {});
 TokenStep repeat(Rounds times, std::vector<TokenStep> steps);
 TokenStep require(std::string text, std::function<bool(TokenScene&)> holds, std::string reason);
 // To its user, and about whom: `not_reported`.

@@ -63,8 +63,11 @@ bool TokenStation::start(kernel::Time now) {
   const bool is_possible = !impossible(rules()) && !is_group(address()) && address() <= broadcast(rules());
   if (!is_possible) return false;
   line_.begin(now);
-  is_in_ring_ = is_leaving_ = false;
-  successor_ = predecessor_ = address();
+  if (forgets_ring()) {
+    is_in_ring_ = false;
+    successor_ = predecessor_ = address();
+  }
+  is_leaving_ = false;
   offered_successor_.reset();
   failures_ = 0;
   counters_ = {};
@@ -90,7 +93,8 @@ bool TokenStation::submit(const DataRequest& request, kernel::Time) {
   const bool is_answered_by_many =
       request.action == Action::request_with_response && is_group(request.destination);
   if (!is_request || is_answered_by_many || state_ == AccessState::offline) return false;
-  queues_.at(3 - access_class(request.priority) / 2).push_back(request);
+  auto& queue = queues_.at(3 - access_class(request.priority) / 2);
+  queue.insert(queue.begin() + static_cast<std::ptrdiff_t>(place_of(request, queue)), request);
   return true;
 }
 
@@ -170,7 +174,7 @@ void TokenStation::enter(AccessState state, kernel::Time deadline) {
 }
 
 void TokenStation::go_offline() {
-  is_in_ring_ = false;
+  if (forgets_ring()) is_in_ring_ = false;
   enter(AccessState::offline);
 }
 

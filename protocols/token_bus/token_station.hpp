@@ -90,6 +90,8 @@ class TokenStation : public StationDevice {
   }
   virtual void count(ReceptionKind kind);
   virtual Frame response_to(const Frame& request, const Octets& data) const;
+  // ---- decisions: supply ----
+  virtual bool forgets_ring() const { return true; }
 
   // ---- decisions: initialisation ----
   virtual unsigned bus_idle_slots() const;
@@ -111,6 +113,10 @@ class TokenStation : public StationDevice {
   }
 
   // ---- decisions: holding ----
+  // How many of its class go before it.
+  virtual std::size_t place_of(const DataRequest&, const std::deque<DataRequest>& waiting) const {
+    return waiting.size();
+  }
   virtual void on_token_taken(Time) {}
   // How long a class is served from now on; the first is 6. Its timer begins anew.
   virtual Duration hold_time(unsigned place, Time now);
@@ -128,6 +134,7 @@ class TokenStation : public StationDevice {
   virtual Frame leaving_frame() const;
   virtual Address answered_with() const { return address(); }
   virtual unsigned windows_of(FrameKind kind) const;
+  virtual bool forgives_failures() const { return true; }
   virtual bool takes_successor(const Frame& frame) const { return frame.destination == address(); }
 
   unsigned contest_bits(unsigned pass);

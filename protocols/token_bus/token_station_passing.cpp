@@ -104,7 +104,7 @@ void TokenStation::next_stage(kernel::Time now) {
 }
 
 void TokenStation::on_pass_success(const Frame& frame, kernel::Time end) {
-  failures_ = 0;
+  if (forgives_failures()) failures_ = 0;
   if (inter_solicit_count_ > 0) --inter_solicit_count_;
   const bool has_left = is_leaving_;
   is_leaving_ = false;
