@@ -13,6 +13,10 @@ namespace {
 using namespace token_chart;
 using token_sources::own;
 
+std::string text_of_event(const token_bus::Event& event) {
+  return fmt::format("{} about {:04X}", token_bus::text_of(event.kind), event.address);
+}
+
 // Whether something that leads to such an event was on the line before it.
 bool has_cause(const TokenBench& bench, const TokenUser::Reported& reported) {
   const std::uint64_t about = reported.event.address;
@@ -57,8 +61,7 @@ TokenStep reports_nothing() {
   return expected<TokenScene>("nothing is reported to its user", [](TokenScene& scene) {
     const auto& events = scene.bench.user().events;
     scene.judge.expect(events.empty(), "reported_unfounded", [&] {
-      return Mismatch{{"no event: nothing has happened"},
-                      fmt::format("{} about {:04X}", token_bus::text_of(events[0].kind), events[0].address)};
+      return Mismatch{{"no event: nothing has happened"}, text_of_event(events[0])};
     });
   });
 }
@@ -83,11 +86,18 @@ TokenStep others_talk() {
 void judge_events(TokenBench& bench, CaseJudge& judge) {
   for (const TokenUser::Reported& one : bench.user().all_events) {
     judge.expect(has_cause(bench, one), "reported_unfounded", [&] {
-      return Mismatch{{"an event that something on the line leads to"},
-                      fmt::format("{} about {:04X}", token_bus::text_of(one.event.kind), one.event.address),
-                      one.when};
+      return Mismatch{{"an event that something on the line leads to"}, text_of_event(one.event), one.when};
     });
   }
+  const auto is_again = [](const TokenUser::Reported& one, const TokenUser::Reported& next) {
+    return one.event.kind == next.event.kind && one.event.address == next.event.address &&
+           one.when == next.when;
+  };
+  const auto& all = bench.user().all_events;
+  const auto twice = std::ranges::adjacent_find(all, is_again);
+  judge.expect(twice == all.end(), "reported_twice", [&] {
+    return Mismatch{{"each event once"}, text_of_event(twice->event) + ", twice at once", twice->when};
+  });
 }
 
 std::vector<TokenCase> token_event_cases() {

@@ -134,6 +134,101 @@ class FirstPredecessorKept : public TokenStation {
   mutable std::optional<Address> first_;
 };
 
+class FollowsOutside : public TokenStation {
+  using TokenStation::TokenStation;
+  bool follows(const Frame& who_follows) const override {
+    return token_bus::address_of(who_follows.data) == predecessor();
+  }
+};
+
+class DuplicateInTheRingOnly : public TokenStation {
+  using TokenStation::TokenStation;
+  bool is_duplicate(const Frame& frame) const override {
+    return is_in_ring() && TokenStation::is_duplicate(frame);
+  }
+};
+
+class AnswerToAnotherTaken : public TokenStation {
+  using TokenStation::TokenStation;
+  bool takes_successor(const Frame&) const override { return true; }
+};
+
+// ---- the user ----
+
+// What must be refused is accepted, and never sent.
+class TakesAlso : public TokenStation {
+ public:
+  using Which = bool (*)(const DataRequest&, const Rules&);
+  TakesAlso(const StationConfiguration& configuration, Which which)
+      : TokenStation(configuration), which_(which) {}
+  bool submit(const DataRequest& request, Time now) override {
+    return which_(request, rules()) || TokenStation::submit(request, now);
+  }
+
+ private:
+  Which which_;
+};
+
+inline bool of_any_priority(const DataRequest& request, const Rules&) {
+  constexpr unsigned kHighest = 7;
+  return request.priority > kHighest;
+}
+inline bool of_any_length(const DataRequest& request, const Rules& rules) {
+  return request.data.size() > token_bus::most_data(rules);
+}
+inline bool asked_of_groups(const DataRequest& request, const Rules&) {
+  return request.action == token_bus::Action::request_with_response &&
+         token_bus::is_group(request.destination);
+}
+
+class BroadcastOnly : public TokenStation {
+  using TokenStation::TokenStation;
+  bool is_for_me(const Frame& frame) const override {
+    return frame.destination == address() || frame.destination == token_bus::broadcast(rules());
+  }
+};
+
+class EventsTwice : public TokenStation, private token_bus::StationUser {
+  using TokenStation::TokenStation;
+  void wire(segment::Port& line, token_bus::StationUser& user) override {
+    user_ = &user;
+    TokenStation::wire(line, *this);
+  }
+  void on_data(const Frame& frame, Time when) override { user_->on_data(frame, when); }
+  void on_event(const token_bus::Event& event, Time when) override {
+    user_->on_event(event, when);
+    user_->on_event(event, when);
+  }
+  token_bus::StationUser* user_ = nullptr;
+};
+
+class FirstResponseKept : public TokenStation {
+  using TokenStation::TokenStation;
+  void set_response(const Octets& data, Time now) override {
+    if (!std::exchange(has_one_, true)) TokenStation::set_response(data, now);
+  }
+  bool has_one_ = false;
+};
+
+class RespondsOnce : public TokenStation {
+  using TokenStation::TokenStation;
+  std::optional<Frame> understood(const Octets& octets) const override {
+    auto frame = TokenStation::understood(octets);
+    const bool is_asked = frame && frame->kind == FrameKind::data && frame->destination == address() &&
+                          frame->action == token_bus::Action::request_with_response;
+    return is_asked && std::exchange(has_responded_, true) ? std::nullopt : frame;
+  }
+  mutable bool has_responded_ = false;
+};
+
+class WishTakenOnce : public TokenStation {
+  using TokenStation::TokenStation;
+  void set_in_ring_desired(bool is_desired, Time now) override {
+    if (!std::exchange(has_one_, true)) TokenStation::set_in_ring_desired(is_desired, now);
+  }
+  bool has_one_ = false;
+};
+
 // ---- supply ----
 
 enum class Kept : std::uint8_t { queues, counters, ring, response, wish, silence };

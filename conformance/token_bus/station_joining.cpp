@@ -158,6 +158,7 @@ std::vector<TokenCase> token_joining_cases() {
                            {"token_to_predecessor", "token_wrong"},
                            {"token_with_data", "token_wrong"},
                            {"joins_unreported", "not_reported"},
+                           {"events_twice", "reported_twice"},
                            {"reports_about_a_stranger", "not_reported"}}),
                {{},
                 {wait(10), solicited(), answers_above(at_once()), wait(6), token(),

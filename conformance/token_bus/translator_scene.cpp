@@ -50,9 +50,9 @@ void TranslatorScene::bring_up() {
        {SideCommand::reset, SideCommand::disable_loopback, SideCommand::enable_transmitter}) {
     const std::string answers = answers_to(one);
     if (answers == "a") continue;
-    judge.inconclusive("precondition_not_met",
-                       {{fmt::format("ACK to {}", text_of(one))},
-                        answers.empty() ? "no answer" : fmt::format("the answers {}", answers)});
+    const std::string right = fmt::format("ACK to {}", text_of(one));
+    if (answers.empty()) judge.inconclusive("precondition_not_met", {{right}, "no answer"});
+    judge.fail("answer_wrong", {{right}, fmt::format("the answers {}", answers)});
   }
   rest();
 }

@@ -27,7 +27,7 @@ struct TranslatorScene : Scene<TranslatorBench> {
   void receive(const SideBits& bits);
   // What a command is answered with while it stands, its idle before that left out: "a", "ian".
   std::string answers_to(SideCommand command);
-  // On line, as the MAC brings it there; `precondition_not_met`.
+  // On line, as the MAC brings it there: `answer_wrong`; without an answer `precondition_not_met`.
   void bring_up();
   // So long a silence that no transmission has to do with the next one.
   void rest();
