@@ -262,6 +262,11 @@ std::string emc_line(const EmcTest& test) {
 
 namespace {
 
+std::string theory_text(const network::CycleKind& kind) {
+  if (kind.theory == kernel::Duration{}) return "none";
+  return fmt::format("{:.2f}", us(static_cast<double>(kind.theory.count())));
+}
+
 // Times of all tests together, by the phase in which they lay, beside the closed form.
 std::string cycles_text(const EmcCampaign& campaign) {
   if (campaign.tests.empty()) return "";
@@ -270,17 +275,17 @@ std::string cycles_text(const EmcCampaign& campaign) {
     const auto& more = campaign.tests[n].result.cycles;
     for (std::size_t k = 0; k < std::min(sums.size(), more.size()); ++k) sums[k].times.add(more[k].times);
   }
-  std::string text = fmt::format("\n{:<20} {:>12}  {:>10} {:>10} {:>12} {:>12} {:>12} {:>12}\n", "cycle",
+  std::string text = fmt::format("\n{:<24} {:>12}  {:>10} {:>10} {:>12} {:>12} {:>12} {:>12}\n", "cycle",
                                  "theory, us", "phase", "count", "min, us", "mean, us", "p99, us", "max, us");
   for (const emc::CycleTimes& cycle : sums) {
     for (const measure::Phase phase : measure::kPhases) {
       const measure::Distribution& times = cycle.times.in(phase);
       if (times.is_empty()) continue;
-      text += fmt::format(
-          "{:<20} {:>12.2f}{} {:>10} {:>10} {:>12.2f} {:>12.2f} {:>12.2f} {:>12.2f}\n", cycle.kind.name,
-          us(static_cast<double>(cycle.kind.theory.count())), cycle.kind.is_bound ? "<" : " ",
-          measure::name(phase), times.count(), us(static_cast<double>(times.min())), us(times.mean()),
-          us(static_cast<double>(times.quantile(0.99))), us(static_cast<double>(times.max())));
+      text += fmt::format("{:<24} {:>12}{} {:>10} {:>10} {:>12.2f} {:>12.2f} {:>12.2f} {:>12.2f}\n",
+                          cycle.kind.name, theory_text(cycle.kind), cycle.kind.is_bound ? "<" : " ",
+                          measure::name(phase), times.count(), us(static_cast<double>(times.min())),
+                          us(times.mean()), us(static_cast<double>(times.quantile(0.99))),
+                          us(static_cast<double>(times.max())));
     }
     text += fmt::format("  theory: {}\n", cycle.kind.form);
   }

@@ -181,6 +181,11 @@ class Run final : private network::ExchangeWatcher {
     before = when;
   }
 
+  void on_delay(std::size_t kind, Time from, Time to) override {
+    const measure::Phase phase = clamp_ ? clamp_->phase_during(from, to) : measure::Phase::quiet;
+    result_.cycles.at(kind).times.add(phase, to - from);
+  }
+
   template <typename Use>
   void for_each_statistics(Use use) const {
     if (clamp_) {
@@ -210,6 +215,9 @@ class Run final : private network::ExchangeWatcher {
     const std::uint64_t wrong = result_.counts.accepted_wrong();
     if (wrong > 0)
       return because(Criterion::d, fmt::format("{} words were accepted and nobody had sent them", wrong));
+    for (const measure::Count& fault : network_.delivery_faults()) {
+      if (fault.count > 0) return because(Criterion::d, fmt::format("{}: {}", fault.what, fault.count));
+    }
     if (!result_.recovered_by_itself && !result_.recovered_after_start) {
       return because(Criterion::d, "not all words arrived after a start (least_bring_up, limits_waited)");
     }

@@ -20,7 +20,7 @@ class PlannedTokenBus final : public PlannedNetwork {
   std::string name() const override { return ring_.name; }
   // The fast receiver.
   std::string default_profile() const override { return "D"; }
-  std::string_view exchange() const override { return "word under a token"; }
+  std::string_view exchange() const override { return "datum of a service"; }
 
   std::unique_ptr<network::Network> make(std::uint64_t seed) const override {
     token_bus::RingStations stations;

@@ -84,6 +84,8 @@ class ExchangeWatcher {
   virtual void on_shown(std::size_t signal, std::uint16_t word, kernel::Time when) = 0;
   // A cycle of this kind (see `Network::cycles`) begins.
   virtual void on_cycle_begin(std::size_t kind, kernel::Time when) = 0;
+  // A delay of this kind has ended.
+  virtual void on_delay(std::size_t /*kind*/, kernel::Time /*from*/, kernel::Time /*to*/) {}
 };
 
 // What the levels at a receiver are made of, where its receiver is a declared one: then a burst channel knows
@@ -104,13 +106,14 @@ struct Place {
   std::string_view why_not{};
 };
 
-// A kind of cycle that the installation goes through, with the closed form of its time.
+// A kind of cycle that the installation goes through, or of delay in it, with the closed form of its time.
 struct CycleKind {
-  std::string name;  // "poll cycle"
-  kernel::Duration theory{};
+  std::string name;           // "poll cycle"
+  kernel::Duration theory{};  // zero where none holds; `form` says why
   std::string form;           // where the closed form comes from, in words
   bool is_bound = false;      // it is the most that may be, not the time
   kernel::Duration jitter{};  // the most by which these times may differ
+  bool is_delay = false;      // it has a begin and an end of its own
 };
 
 // How soon the installation has to exchange all data again.
@@ -178,6 +181,8 @@ class Network {
 
   virtual std::span<const Place> places() const = 0;
   virtual std::span<const CycleKind> cycles() const = 0;
+  // What must never happen to data on their way, with how often it did: "delivered twice".
+  virtual std::vector<measure::Count> delivery_faults() const { return {}; }
   // By which it is decided whether it works.
   virtual AcceptanceRules acceptance() const { return {}; }
   virtual RecoveryLimit recovery_limit() const = 0;

@@ -267,6 +267,11 @@ class CycleSeries {
     } else {
       for (std::size_t n = 0; n < cycles_.size(); ++n) cycles_[n].times.add(record.cycles[n].times);
     }
+    if (faults_.empty()) {
+      faults_ = record.delivery_faults;
+    } else {
+      for (std::size_t n = 0; n < faults_.size(); ++n) faults_[n].count += record.delivery_faults[n].count;
+    }
     data_ += record.data_exchanges;
     service_ += record.service_exchanges;
     unserved_ += record.unserved_exchanges;
@@ -279,9 +284,12 @@ class CycleSeries {
       measure::Series& series = all.emplace_back();
       series.name = cycle.kind.name;
       series.comparisons = compare_cycles(cycle.kind, cycle.times.in(Phase::quiet), all.size() == 1);
-      series.curves = {{cycle.kind.name + " time", std::string(kMicrosecond), kPerMicrosecond, cycle.times}};
+      series.curves = {{cycle.kind.name + (cycle.kind.is_delay ? "" : " time"), std::string(kMicrosecond),
+                        kPerMicrosecond, cycle.times}};
     }
     if (all.empty()) return all;
+    for (const measure::Count& fault : faults_)
+      all.front().comparisons.push_back(none_of(fault.what, fault.count));
     auto& counts = all.front().counts;
     counts.push_back({std::string(words.data), data_, 0});
     if (!words.service.empty()) counts.push_back({std::string(words.service), service_, 0});
@@ -292,6 +300,7 @@ class CycleSeries {
 
  private:
   std::vector<CycleRecord> cycles_;
+  std::vector<measure::Count> faults_;
   std::uint64_t data_ = 0;
   std::uint64_t service_ = 0;
   std::uint64_t unserved_ = 0;
@@ -301,7 +310,7 @@ class CycleSeries {
 }  // namespace
 
 std::vector<Comparison> compare_cycles(const CycleKind& kind, const Distribution& times, bool is_sampling) {
-  if (times.is_empty()) return {};
+  if (times.is_empty() || kind.theory == Duration::zero()) return {};
   const std::string unit(kMicrosecond);
   const double cycle = us(kind.theory);
   std::vector<Comparison> rows;

@@ -159,6 +159,11 @@ class SignalRun final : private ExchangeWatcher {
     before = when;
   }
 
+  void on_delay(std::size_t kind, Time from, Time to) override {
+    if (is_recording_)
+      record_.cycles.at(kind).times.add(measure::phase_during(settings_.phase_during, from, to), to - from);
+  }
+
   measure::Trace trace_of(const measure::TwoChannelRecorder& recorder) const {
     measure::Trace trace;
     trace.length = span_;
@@ -175,6 +180,7 @@ class SignalRun final : private ExchangeWatcher {
   SignalRecord finish() {
     record_.settings = settings_;
     record_.trains = trains_;
+    record_.delivery_faults = network_.delivery_faults();
     record_.has_stopped = network_.state() != State::exchanging;
     for (const Watched& watched : watched_) {
       record_.paths.push_back({watched.path, measure::edge_skew(watched.recorder, settings_.phase_during),

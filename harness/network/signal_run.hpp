@@ -40,7 +40,7 @@ struct PathRecord {
   measure::Trace trace;  // of the first train, from the start of a cycle on
 };
 
-// Times from the begin of a cycle of one kind to that of the next, ps.
+// Times from the begin of a cycle of one kind to that of the next, or of delays, ps.
 struct CycleRecord {
   CycleKind kind;
   measure::PhasedDistribution times{};
@@ -58,6 +58,7 @@ struct SignalRecord {
   std::uint64_t service_exchanges = 0;
   std::uint64_t unserved_exchanges = 0;
   std::uint64_t retries = 0;
+  std::vector<measure::Count> delivery_faults;
   // A disturbance has stopped the network: it exchanges no data at the end.
   bool has_stopped = false;
 };

@@ -30,6 +30,10 @@ void WordExchanges::begin_cycle(std::size_t kind, kernel::Time when) {
   if (watcher_ != nullptr) watcher_->on_cycle_begin(kind, when);
 }
 
+void WordExchanges::end_delay(std::size_t kind, kernel::Time from, kernel::Time to) {
+  if (watcher_ != nullptr) watcher_->on_delay(kind, from, to);
+}
+
 void WordExchanges::call(std::size_t signal, kernel::Time begin, kernel::Time closes_at) {
   Word& word = words_[signal];
   FIELDPROOF_CHECK(!word.is_called, "a word has one call at a time");

@@ -40,11 +40,20 @@ class WordExchanges {
 
   // ---- its line ----
   void begin_cycle(std::size_t kind, kernel::Time when);
+  void end_delay(std::size_t kind, kernel::Time from, kernel::Time to);
   // The word must be over at `closes_at`.
   void call(std::size_t signal, kernel::Time begin, kernel::Time closes_at);
-  // The same call once more: a retry of the exchange.
+  // The same call once more: a retry of the exchange. It must be over then, or when it had to be.
   void call_again(std::size_t signal, kernel::Time begin, kernel::Time closes_at);
+  void call_again(std::size_t signal, kernel::Time begin) {
+    call_again(signal, begin, words_.at(signal).closes_at);
+  }
   void on_sent(std::size_t signal) { words_[signal].is_sent = true; }
+  // It is on its way, and must be over then.
+  void on_sent(std::size_t signal, kernel::Time closes_at) {
+    on_sent(signal);
+    if (is_called(signal)) words_[signal].closes_at = closes_at;
+  }
   void on_got(std::size_t signal, std::uint16_t value, kernel::Time when);
   bool is_called(std::size_t signal) const { return words_[signal].is_called; }
   bool is_sent(std::size_t signal) const { return words_[signal].is_sent; }
@@ -62,6 +71,7 @@ class WordExchanges {
 
   // Since `begin`.
   bool has_all_arrived() const { return arrived_ == words_.size(); }
+  bool has_arrived(std::size_t signal) const { return words_[signal].has_arrived; }
   std::optional<kernel::Time> last_call() const { return last_call_; }
 
  private:

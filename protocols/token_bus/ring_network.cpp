@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "harness/config/name.hpp"
 #include "harness/kernel/check.hpp"
 #include "protocols/token_bus/token_station.hpp"
 
@@ -15,89 +14,31 @@ namespace {
 using kernel::Duration;
 using kernel::Time;
 
-constexpr unsigned kMostRingStations = 64;
-constexpr std::size_t kWordOctets = 3;  // number of the signal, and the word
-constexpr unsigned kWordPriority = 6;
 // A window opens after so many tokens of a station at most.
 constexpr std::int64_t kTokensUntilWindow = 20;
+// Rounds of the token after which a datum that was not sent is missing.
+constexpr std::int64_t kRoundsWaited = 2;
+// A round that is longer for another reason than data: a contest, a lost token.
+constexpr std::size_t kRotation = 0;
 
-Duration gap_of(const Rules& rules) {
-  return octets(rules, rules.response_gap_octets);
+// What the application of a station answers confirmed data with.
+Octets response_of(Address address) {
+  return {0xFF, static_cast<std::uint8_t>(address >> 8), static_cast<std::uint8_t>(address)};
 }
 
-RingData read_ring_data(const config::Value& value) {
-  return config::read_object(value, [](config::ObjectReader& object) {
-    return RingData{object.required("from").as_integer<Address>(),
-                    object.required("to").as_integer<Address>()};
-  });
-}
-
-bool is_in(const std::vector<Address>& stations, Address address) {
-  return std::ranges::find(stations, address) != stations.end();
+std::string unbounded_because(RingService service) {
+  return service == RingService::urgent
+             ? "no bound: data come oftener than each other round, or outlast the hold time"
+             : "no bound: data come oftener than each other round, or a round may outlast the target time";
 }
 
 }  // namespace
-
-RingDescription RingDescription::built_in(unsigned stations) {
-  RingDescription ring;
-  ring.name = fmt::format("ring of {} stations", stations);
-  for (unsigned n = 0; n < stations; ++n) ring.stations.push_back(2 * (n + 1));
-  for (unsigned n = 0; n < stations; ++n)
-    ring.data.push_back({ring.stations[n], ring.stations[(n + 1) % stations]});
-  return ring;
-}
-
-RingDescription RingDescription::read(const config::Value& root) {
-  const RingDescription ring = config::read_object(root, [](config::ObjectReader& object) {
-    RingDescription read;
-    object.optional("$schema");
-    read.name = config::read_name(object.required("name"));
-    for (const config::Value& one : object.required("stations").as_array(2, kMostRingStations))
-      read.stations.push_back(one.as_integer<Address>());
-    for (const config::Value& one : object.required("data").as_array(1))
-      read.data.push_back(read_ring_data(one));
-    return read;
-  });
-  if (const auto violation = violation_of(ring)) config::fail(root, *violation);
-  return ring;
-}
-
-RingDescription RingDescription::load(const std::filesystem::path& path) {
-  const config::Document document = config::Document::load(path);
-  return read(document.root());
-}
-
-std::optional<std::string> violation_of(const RingDescription& ring) {
-  for (std::size_t n = 0; n < ring.stations.size(); ++n) {
-    const Address address = ring.stations[n];
-    if (address == 0 || is_group(address) || address > broadcast(ring.rules))
-      return fmt::format("station {}: an address is even, from 2 to 65534, because an odd one is a group's",
-                         address);
-    if (std::ranges::count(ring.stations, address) > 1)
-      return fmt::format("station {} is there twice; each has its own address", address);
-  }
-  if (ring.data.size() > 256) return fmt::format("{} words: 256 are the most", ring.data.size());
-  for (const RingData& data : ring.data) {
-    if (!is_in(ring.stations, data.from) || !is_in(ring.stations, data.to) || data.from == data.to)
-      return fmt::format("data from {} to {}: write two different addresses of \"stations\"", data.from,
-                         data.to);
-  }
-  return std::nullopt;
-}
-
-Duration longest_rotation(const RingDescription& ring) {
-  const Rules& rules = ring.rules;
-  const auto stations = static_cast<std::int64_t>(ring.stations.size());
-  const auto words = static_cast<std::int64_t>(ring.data.size());
-  // A window is closed when its slot times are over; the lowest opens two.
-  return stations * (2 * (frame_time(rules, 0) + gap_of(rules)) + slots(rules, 1)) + slots(rules, 1) +
-         words * (frame_time(rules, kWordOctets) + gap_of(rules));
-}
 
 // ---- the running ring ----
 
 RingNetwork::RingNetwork(const RingDescription& description, std::uint64_t seed, const RingStations& stations)
     : description_(description),
+      bounds_(bounds_of(description)),
       random_(seed),
       line_(segment_, "line", segment::ContentionRule::noise, random_),
       tester_(description.rules) {
@@ -106,17 +47,31 @@ RingNetwork::RingNetwork(const RingDescription& description, std::uint64_t seed,
   // A word that waits for a token outlives each one that is lost: it is late, not wrong.
   constexpr unsigned kMostWaiting = 16;
   for (const RingData& data : description_.data) {
+    flows_.emplace_back(data, static_cast<std::uint8_t>(signals_.size()),
+                        random_.split("flows").split(signals_.size()));
     signals_.push_back({.name = fmt::format("word of station {} at station {}", data.from, data.to),
                         .admissible_words = kMostWaiting});
     words_.add_signal();
+    deliveries_.add_flow();
   }
-  waits_.assign(signals_.size(), false);
   for (std::size_t n = 0; n < description_.stations.size(); ++n)
     add(description_.stations[n], n + 1, stations);
   cycles_.push_back({.name = "token rotation",
-                     .theory = longest_rotation(description_),
-                     .form = "all words, and a response window of each station",
+                     .theory = bounds_.rotation,
+                     .form = "all data or what the timers leave, and a response window of each station",
                      .is_bound = true});
+  for (const RingService service : kRingServices) {
+    if (std::ranges::find(description_.data, service, &RingData::service) == description_.data.end())
+      continue;
+    delay_kinds_[static_cast<std::size_t>(service)] = cycles_.size();
+    const auto bound = bounds_.access[static_cast<std::size_t>(service)];
+    cycles_.push_back(
+        {.name = fmt::format("access delay, {}", text_of(service)),
+         .theory = bound.value_or(Duration{}),
+         .form = bound ? "a round, and the data of this class of the station" : unbounded_because(service),
+         .is_bound = true,
+         .is_delay = true});
+  }
 }
 
 void RingNetwork::add(Address address, std::size_t position, const RingStations& stations) {
@@ -145,10 +100,15 @@ void RingNetwork::start() {
   if (is_on_) stop();
   started_ = segment_.now();
   is_on_ = true;
-  for (Seat& seat : seats_) seat.device->start(started_);
+  for (Seat& seat : seats_) {
+    seat.device->start(started_);
+    const bool confirms = std::ranges::any_of(description_.data, [&](const RingData& data) {
+      return data.to == seat.address && data.service == RingService::confirmed;
+    });
+    if (confirms) seat.device->set_response(response_of(seat.address), started_);
+  }
   attendance_.begin();
   words_.begin();
-  for (std::size_t n = 0; n < words_.size(); ++n) give(n, started_);
   set_wake();
   for (const Seat& seat : seats_) segment_.refresh(seat.number);
 }
@@ -156,54 +116,91 @@ void RingNetwork::start() {
 void RingNetwork::stop() {
   is_on_ = false;
   last_token_ = 0;
-  for (Seat& seat : seats_) seat.device->stop(segment_.now());
+  last_token_at_.reset();
+  for (Seat& seat : seats_) {
+    seat.device->stop(segment_.now());
+    seat.has_had_token = false;
+    seat.asks.reset();
+  }
   words_.cancel();
-  waits_.assign(signals_.size(), false);
+  for (RingFlow& flow : flows_) flow.stop();
   set_wake();
   for (const Seat& seat : seats_) segment_.refresh(seat.number);
 }
 
 network::State RingNetwork::state() const {
   const Time now = segment_.now();
-  if (words_.has_all_arrived() && words_.last_call() && attendance_.is_complete()) {
+  if (words_.has_all_arrived() && last_token_at_ && attendance_.is_complete()) {
     const network::AcceptanceRules rules = acceptance();
-    const Duration silence =
-        std::max(rules.silence_cycles * longest_rotation(description_), rules.least_silence);
-    const bool is_called = now - *words_.last_call() <= silence;
-    return is_called && attendance_.is_lasting(now, bring_up_limit()) ? network::State::exchanging
-                                                                      : network::State::stopped;
+    const Duration silence = std::max(rules.silence_cycles * bounds_.rotation, rules.least_silence);
+    const bool is_alive = now - *last_token_at_ <= silence;
+    return is_alive && attendance_.is_lasting(now, bring_up_limit()) ? network::State::exchanging
+                                                                     : network::State::stopped;
   }
   return !is_on_ || now - started_ > bring_up_limit() ? network::State::stopped : network::State::coming_up;
 }
 
 std::string RingNetwork::complaint() const {
-  const std::string absent = attendance_.complaint();
-  return absent.empty() ? attendance_.complaint_about_gone(segment_.now(), bring_up_limit()) : absent;
+  std::string complaint = attendance_.complaint();
+  if (complaint.empty()) complaint = attendance_.complaint_about_gone(segment_.now(), bring_up_limit());
+  for (std::size_t n = 0; n < signals_.size() && complaint.empty(); ++n) {
+    if (!words_.has_arrived(n))
+      complaint =
+          fmt::format("no {} ({}) since power-up", signals_[n].name, text_of(flows_[n].data().service));
+  }
+  return complaint;
 }
 
-// Each station waits for a window, and the longest contest in it.
+Duration RingNetwork::longest_period() const {
+  Duration longest{};
+  for (const RingData& data : description_.data) longest = std::max(longest, data.mean_gap());
+  return longest;
+}
+
+// Each station waits for a window, and the longest contest in it; then each datum comes. Gaps at random are
+// longer than this once in 10^8.
 Duration RingNetwork::bring_up_limit() const {
   const auto stations = static_cast<std::int64_t>(seats_.size());
   const Duration contest = contest_passes(description_.rules) * slots(description_.rules, 6);
-  return acceptance().least_bring_up +
-         stations * (kTokensUntilWindow * longest_rotation(description_) + 2 * contest);
+  constexpr std::int64_t kMeanGaps = 20;
+  return acceptance().least_bring_up + kMeanGaps * longest_period() +
+         stations * (kTokensUntilWindow * bounds_.rotation + 2 * contest);
 }
 
-// Who has fallen out of the ring comes back through a window.
+// Who has fallen out of the ring comes back through a window; then its data are due.
 network::RecoveryLimit RingNetwork::recovery_limit() const {
   const std::int64_t rotations =
       acceptance().recovery_cycles + kTokensUntilWindow * static_cast<std::int64_t>(seats_.size());
   const Duration contest = contest_passes(description_.rules) * slots(description_.rules, 8);
-  return {static_cast<std::uint64_t>(rotations) * words_.size(),
-          rotations * longest_rotation(description_) + static_cast<std::int64_t>(seats_.size()) * contest,
+  constexpr std::int64_t kMeanGaps = 2;
+  const Duration period = kMeanGaps * longest_period();
+  std::int64_t exchanges = rotations * static_cast<std::int64_t>(words_.size());
+  for (const RingData& data : description_.data)
+    exchanges += period / std::max(data.mean_gap(), least_rotation(description_));
+  return {static_cast<std::uint64_t>(exchanges),
+          period + rotations * bounds_.rotation + static_cast<std::int64_t>(seats_.size()) * contest,
           "recovery_cycles, and 20 tokens of each station, after which it opens a window",
           judge::Standing::own};
 }
 
 std::vector<measure::Condition> RingNetwork::conditions() const {
-  return {{"stations", fmt::format("{}", seats_.size())},
-          {"slot time", kernel::describe(slots(description_.rules, 1))},
-          {"a word is sampled", "when the one before it must have arrived"}};
+  std::vector<measure::Condition> conditions{{"stations", fmt::format("{}", seats_.size())},
+                                             {"slot time", kernel::describe(slots(description_.rules, 1))},
+                                             {"a word is sampled", "when its datum is given to the MAC"}};
+  const auto used = [&](RingService service) { return delay_kinds_[static_cast<std::size_t>(service)] != 0; };
+  for (const RingService service : kRingServices) {
+    if (!used(service)) continue;
+    conditions.push_back({fmt::format("{} data", text_of(service)),
+                          fmt::format("class {}, this project's choice", priority_of(service))});
+  }
+  return conditions;
+}
+
+std::vector<measure::Count> RingNetwork::delivery_faults() const {
+  const auto of = [&](Delivery delivery) { return deliveries_by_kind_[static_cast<std::size_t>(delivery)]; };
+  return {{"data delivered twice", of(Delivery::twice)},
+          {"data out of order", of(Delivery::out_of_order)},
+          {"data that nobody had sent so", of(Delivery::wrong)}};
 }
 
 // What a check of 32 bits cannot see has no closed form here: it is counted over 2^32 words of the dual code.
@@ -213,7 +210,6 @@ std::vector<network::ProtectedFrame> RingNetwork::protected_frames() const {
 
 void RingNetwork::set_source(std::size_t signal, std::uint16_t word) {
   words_.set_word(signal, word);
-  if (is_on_) give_next(signal, segment_.now());
 }
 
 void RingNetwork::set_source_function(std::size_t signal, std::function<std::uint16_t(Time)> word) {
@@ -250,17 +246,22 @@ RingNetwork::Seat& RingNetwork::seat_of(Address address) {
   return *std::ranges::find(seats_, address, &Seat::address);
 }
 
-// One word at a time: what waits for a token goes first.
+// One datum at a time: what waits for a token goes first.
 void RingNetwork::give(std::size_t signal, Time now) {
-  if (waits_[signal]) return;
-  const std::uint16_t word = words_.sample(signal, now);
-  const RingData& data = description_.data[signal];
-  waits_[signal] = seat_of(data.from).device->submit(
-      {.priority = kWordPriority,
-       .destination = data.to,
-       .data = {static_cast<std::uint8_t>(signal), static_cast<std::uint8_t>(word >> 8),
-                static_cast<std::uint8_t>(word & 0xFF)}},
-      now);
+  RingFlow& flow = flows_[signal];
+  if (!flow.may_give() || words_.is_called(signal)) return;
+  const auto datum = flow.next_datum(words_.sample(signal, now));
+  const RingData& data = flow.data();
+  Seat& seat = seat_of(data.from);
+  const bool is_taken = seat.device->submit({.action = action_of(data.service),
+                                             .priority = priority_of(data.service),
+                                             .destination = data.to,
+                                             .data = octets_of(*datum, data.octets)},
+                                            now);
+  segment_.refresh(seat.number);
+  if (!is_taken) return flow.on_done();
+  deliveries_.give(*datum);
+  words_.call(signal, now, now + kRoundsWaited * bounds_.rotation);
 }
 
 void RingNetwork::on_wave(const line::Waveform& wave) {
@@ -268,57 +269,113 @@ void RingNetwork::on_wave(const line::Waveform& wave) {
     const auto frame =
         one.kind == ReceptionKind::frame ? frame_of(one.octets, description_.rules) : std::nullopt;
     if (!frame) continue;
-    if (frame->kind == FrameKind::token) on_token(frame->destination, wave.start, wave.end());
-    const bool is_word =
-        frame->kind == FrameKind::data && frame->data.size() == kWordOctets && frame->data[0] < words_.size();
-    if (!is_word) continue;
-    words_.on_sent(frame->data[0]);
-    waits_[frame->data[0]] = false;
+    if (frame->kind == FrameKind::token) on_token(frame->destination, wave.start);
+    if (frame->kind == FrameKind::data) on_datum(*frame, wave.start, wave.end());
   }
 }
 
-void RingNetwork::on_token(Address destination, Time begin, Time end) {
+void RingNetwork::on_token(Address destination, Time begin) {
+  last_token_at_ = begin;
   // A token that is repeated begins no other round.
   const bool is_next = std::exchange(last_token_, destination) != destination;
-  if (is_next && destination == description_.stations.front()) words_.begin_cycle(0, begin);
-  const Duration of_word = frame_time(description_.rules, kWordOctets) + slots(description_.rules, 1);
-  std::int64_t words = 0;
-  for (std::size_t n = 0; n < words_.size(); ++n) {
-    if (description_.data[n].from != destination) continue;
-    const Time closes_at = end + ++words * of_word;
-    if (words_.is_called(n) && !words_.is_sent(n)) {
-      words_.call_again(n, begin, closes_at);
-      continue;
-    }
+  if (is_next && destination == description_.stations.front()) words_.begin_cycle(kRotation, begin);
+  const auto seat = std::ranges::find(seats_, destination, &Seat::address);
+  if (seat == seats_.end()) return;
+  const bool is_first = !std::exchange(seat->has_had_token, true);
+  for (std::size_t n = 0; n < flows_.size(); ++n) {
+    RingFlow& flow = flows_[n];
+    if (flow.data().from != destination) continue;
+    if (is_first) flow.begin(begin);
+    if (words_.is_called(n) && words_.is_sent(n) && flow.data().is_under_each_token()) close(n, begin);
     if (words_.is_called(n)) {
-      words_.close(n, begin);
-      give_next(n, begin);
+      // What is due under each token has missed one.
+      const bool is_retry = !is_next || flow.data().is_under_each_token();
+      if (is_retry && !words_.is_sent(n)) words_.call_again(n, begin);
+    } else if (flow.given()) {
+      words_.call(n, begin, begin + kRoundsWaited * bounds_.rotation);
+    } else if (flow.data().is_under_each_token()) {
+      flow.request(begin);
+      give(n, begin);
     }
-    words_.call(n, begin, closes_at);
   }
   set_wake();
 }
 
-void RingNetwork::on_data(Address at, const Frame& frame, Time when) {
-  if (frame.data.size() != kWordOctets || frame.data[0] >= words_.size()) return;
-  const std::size_t signal = frame.data[0];
-  const RingData& data = description_.data[signal];
-  if (data.to != at || data.from != frame.source) return;
-  words_.on_got(signal, static_cast<std::uint16_t>(frame.data[1] << 8 | frame.data[2]), when);
+void RingNetwork::on_datum(const Frame& frame, Time begin, Time end) {
+  const auto datum = datum_of(frame.data);
+  if (!datum || datum->flow >= flows_.size()) return;
+  const std::size_t signal = datum->flow;
+  RingFlow& flow = flows_[signal];
+  const RingData& data = flow.data();
+  if (frame.source != data.from || !flow.given() || flow.given()->datum != *datum) return;
+  if (const auto requested = flow.on_sent(*datum)) {
+    words_.end_delay(delay_kinds_[static_cast<std::size_t>(data.service)], *requested, end);
+  } else if (words_.is_called(signal)) {
+    words_.call_again(signal, begin);
+  }
+  Duration due = slots(description_.rules, 1);
+  if (data.service == RingService::confirmed) {
+    seat_of(data.from).asks = signal;
+    due += slots(description_.rules, description_.rules.response_wait_slots) +
+           frame_time(description_.rules, kResponseOctets);
+  } else {
+    flow.on_done();
+  }
+  words_.on_sent(signal, end + due);
+  set_wake();
 }
 
-void RingNetwork::give_next(std::size_t signal, Time now) {
+void RingNetwork::on_data(Address at, const Frame& frame, Time when) {
+  if (frame.action == Action::response) return on_response(seat_of(at), frame, when);
+  const auto datum = datum_of(frame.data);
+  if (!datum || datum->flow >= flows_.size()) return count(Delivery::wrong);
+  const RingData& data = flows_[datum->flow].data();
+  const bool is_its = data.to == at && data.from == frame.source && data.octets == frame.data.size();
+  const Delivery delivery = is_its ? deliveries_.get(*datum) : Delivery::wrong;
+  const bool is_repetition = data.service == RingService::confirmed && delivery == Delivery::twice;
+  if (is_repetition) return;
+  count(delivery);
+  if (delivery == Delivery::first) words_.on_got(datum->flow, datum->word, when);
+}
+
+void RingNetwork::on_response(Seat& seat, const Frame& frame, Time when) {
+  if (!seat.asks || flows_[*seat.asks].data().to != frame.source) return;
+  if (frame.data != response_of(frame.source)) return count(Delivery::wrong);
+  close(*std::exchange(seat.asks, std::nullopt), when);
+}
+
+void RingNetwork::on_event(Address at, const Event& event, Time when) {
+  Seat& seat = seat_of(at);
+  const bool is_about_it =
+      event.kind == EventKind::response_missing && seat.asks && flows_[*seat.asks].data().to == event.address;
+  if (is_about_it) close(*std::exchange(seat.asks, std::nullopt), when);
+}
+
+// Nothing more comes of what was sent; the next one may go.
+void RingNetwork::close(std::size_t signal, Time now) {
+  if (words_.is_called(signal)) words_.close(signal, now);
+  after_close(signal, now);
+}
+
+void RingNetwork::after_close(std::size_t signal, Time now) {
+  RingFlow& flow = flows_[signal];
+  if (flow.given() && flow.given()->is_sent) flow.on_done();
   give(signal, now);
-  segment_.refresh(seat_of(description_.data[signal].from).number);
+  set_wake();
 }
 
 void RingNetwork::set_wake() {
   wakes_at_ = words_.next_close();
+  for (const RingFlow& flow : flows_) wakes_at_ = std::min(wakes_at_, flow.next_request());
   if (has_tester_) segment_.refresh(tester_number_);
 }
 
 void RingNetwork::on_time(Time now) {
-  words_.close_due(now, [&](std::size_t signal) { give_next(signal, now); });
+  words_.close_due(now, [&](std::size_t signal) { after_close(signal, now); });
+  for (std::size_t n = 0; n < flows_.size(); ++n) {
+    flows_[n].take_due(now);
+    give(n, now);
+  }
   set_wake();
 }
 

@@ -1,15 +1,14 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "harness/config/document.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
@@ -17,47 +16,25 @@
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/token_bus/device.hpp"
+#include "protocols/token_bus/ring_bounds.hpp"
+#include "protocols/token_bus/ring_flow.hpp"
 
-// A ring of the token bus as a file describes it, and one that runs.
-//
-//   { "name": "boiler", "stations": [2, 4, 6, 8],
-//     "data": [ { "from": 2, "to": 4 }, { "from": 4, "to": 2 } ] }
-//
-// Each station with data sends a word for each of them under each token that it gets.
+// A ring that runs, as a RingDescription says.
 namespace fieldproof::token_bus {
-
-struct RingData {
-  Address from = 0;
-  Address to = 0;
-};
-
-struct RingDescription {
-  std::string name;
-  std::vector<Address> stations;  // even: addresses of individuals
-  std::vector<RingData> data;
-  Rules rules{};
-
-  // So many stations, each with a word for the next one.
-  static RingDescription built_in(unsigned stations = 4);
-  // Throw kernel::Error(configuration) with file, line, pointer and what would be right.
-  static RingDescription load(const std::filesystem::path& path);
-  static RingDescription read(const config::Value& root);
-};
-
-// The first thing in a description that no ring has, as a sentence with what would be right.
-std::optional<std::string> violation_of(const RingDescription& ring);
-// The most that a round of the token takes: all data, and a response window of each station.
-kernel::Duration longest_rotation(const RingDescription& ring);
 
 // Who plays; null, or a null from it: the references. Positions count from 1.
 struct RingStations {
   std::function<std::unique_ptr<StationDevice>(std::size_t position, const StationConfiguration&)> make{};
 };
 
-// An exchange carries one word; it begins with the token for its source, as the lower tester sees it on the
-// line, and ends when the word must be over. Served: the application of the destination has it. A token that
-// is repeated is a retry of the exchange. Stopped: no source got the token for long, or a station under test
-// drives no more.
+// An exchange carries one datum of a flow, with a word in it. It begins when the application gives it to its
+// MAC, and ends when it must be over: a slot time after it was on the line, with the response where it is
+// confirmed, or when it was not sent for long. Served: the application of the destination has it. A token
+// that is repeated while it waits, and each repetition, is a retry of the exchange. A confirmed datum that
+// comes once more is dropped by the application of its destination, as this service has it; nothing else may
+// come twice.
+//
+// Stopped: no source got the token for long, or a station under test drives no more.
 class RingNetwork final : public network::Network, private segment::Station, private segment::Tap {
  public:
   RingNetwork(const RingDescription& description, std::uint64_t seed, const RingStations& stations = {});
@@ -71,9 +48,10 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   std::string complaint() const override;
   std::span<const network::Place> places() const override { return places_; }
   std::span<const network::CycleKind> cycles() const override { return cycles_; }
+  std::vector<measure::Count> delivery_faults() const override;
   network::RecoveryLimit recovery_limit() const override;
   network::ExchangeWords exchange_words() const override {
-    return {"words under a token", "", "words that were lost"};
+    return {"data of the services", "", "data that were lost"};
   }
   std::vector<measure::Condition> conditions() const override;
   std::vector<network::ProtectedFrame> protected_frames() const override;
@@ -90,7 +68,9 @@ class RingNetwork final : public network::Network, private segment::Station, pri
    public:
     User(RingNetwork& network, Address address) : network_(network), address_(address) {}
     void on_data(const Frame& frame, kernel::Time when) override { network_.on_data(address_, frame, when); }
-    void on_event(const Event&, kernel::Time) override {}
+    void on_event(const Event& event, kernel::Time when) override {
+      network_.on_event(address_, event, when);
+    }
 
    private:
     RingNetwork& network_;
@@ -101,6 +81,8 @@ class RingNetwork final : public network::Network, private segment::Station, pri
     std::unique_ptr<StationDevice> device;
     std::unique_ptr<User> user;
     std::size_t number = 0;
+    bool has_had_token = false;            // since the start
+    std::optional<std::size_t> asks = {};  // the flow whose confirmed datum was sent last
   };
 
   void add(Address address, std::size_t position, const RingStations& stations);
@@ -108,14 +90,21 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   void on_time(kernel::Time now) override;
   kernel::Time next_time() const override { return wakes_at_; }
   void on_wave(const line::Waveform& wave) override;
-  void on_token(Address destination, kernel::Time begin, kernel::Time end);
+  void on_token(Address destination, kernel::Time begin);
   void on_data(Address at, const Frame& frame, kernel::Time when);
+  void on_response(Seat& seat, const Frame& frame, kernel::Time when);
+  void on_event(Address at, const Event& event, kernel::Time when);
+  void on_datum(const Frame& frame, kernel::Time begin, kernel::Time end);
   void give(std::size_t signal, kernel::Time now);
-  void give_next(std::size_t signal, kernel::Time now);
+  void close(std::size_t signal, kernel::Time now);
+  void after_close(std::size_t signal, kernel::Time now);
+  void count(Delivery delivery) { ++deliveries_by_kind_[static_cast<std::size_t>(delivery)]; }
   void set_wake();
   Seat& seat_of(Address address);
+  kernel::Duration longest_period() const;
 
   RingDescription description_;
+  RingBounds bounds_;
   kernel::Random random_;
   segment::Segment segment_;
   segment::Medium line_;
@@ -126,7 +115,11 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   std::vector<network::Signal> signals_;
   std::vector<network::CycleKind> cycles_;
   network::WordExchanges words_;
-  std::vector<bool> waits_;  // by signal: submitted, and not seen on the line yet
+  std::array<std::size_t, kRingServices.size()> delay_kinds_{};  // by service; 0: none has it
+  std::deque<RingFlow> flows_;                                   // by signal
+  Deliveries deliveries_;
+  std::array<std::uint64_t, kDeliveries> deliveries_by_kind_{};
+  std::optional<kernel::Time> last_token_at_{};
   std::size_t tester_number_ = 0;
   bool has_tester_ = false;
   bool is_on_ = false;

@@ -16,6 +16,9 @@ class RingLedger final : public network::ExchangeWatcher {
     retries += exchange.retries;
   }
   void on_shown(std::size_t, std::uint16_t word, kernel::Time) override { shown = word; }
+  void on_delay(std::size_t kind, kernel::Time from, kernel::Time to) override {
+    delays.at(kind).push_back(to - from);
+  }
   void on_cycle_begin(std::size_t, kernel::Time when) override {
     if (last != kernel::Time{}) longest = std::max(longest, when - last);
     last = when;
@@ -27,7 +30,38 @@ class RingLedger final : public network::ExchangeWatcher {
   std::uint16_t shown = 0;
   kernel::Time last{};
   kernel::Duration longest{};
+  std::array<std::vector<kernel::Duration>, 5> delays{};
 };
+
+// Runs until data are exchanged, or not any more.
+void bring_up(RingNetwork& ring) {
+  ring.start();
+  while (ring.state() == network::State::coming_up) ring.segment().run_for(20 * kernel::kMillisecond);
+  ASSERT_EQ(ring.state(), network::State::exchanging) << ring.complaint();
+}
+
+void expect_no_fault(const RingNetwork& ring) {
+  for (const measure::Count& fault : ring.delivery_faults()) EXPECT_EQ(fault.count, 0U) << fault.what;
+}
+
+// All services of the stations, each to the next but one.
+RingDescription with_services(unsigned stations) {
+  RingDescription ring = RingDescription::built_in(stations);
+  ring.name = "services";
+  ring.data.clear();
+  ring.rules.target_rotation_octets = {40'000, 30'000, 4'000};
+  for (unsigned n = 0; n < stations; ++n) {
+    const auto add = [&](RingService service, kernel::Duration every, std::int64_t load, std::size_t octets) {
+      ring.data.push_back(
+          {ring.stations[n], ring.stations[(n + 2) % stations], service, every, load, octets});
+    };
+    add(RingService::urgent, 40 * kernel::kMillisecond, 0, 8);
+    add(RingService::periodic, 60 * kernel::kMillisecond, 0, 32);
+    if (n % 3 == 0) add(RingService::confirmed, 90 * kernel::kMillisecond, 0, 64);
+    if (n % 4 == 0) add(RingService::bulk, {}, 1'000'000, 500);
+  }
+  return ring;
+}
 
 TEST(RingNetwork, ExchangesWordsWithinItsBound) {
   for (const unsigned stations : {2U, 4U}) {
@@ -70,6 +104,120 @@ TEST(RingNetwork, AStationThatIsSilentKeepsItFromComingUp) {
   ring.segment().run_for(kernel::kSecond);
   EXPECT_EQ(ring.state(), network::State::coming_up);
   EXPECT_NE(ring.complaint().find("station@2"), std::string::npos);
+}
+
+TEST(RingNetwork, CarriesItsServicesWithinTheirBounds) {
+  const RingDescription description = with_services(16);
+  const RingBounds bounds = bounds_of(description);
+  RingNetwork ring(description, 1);
+  bring_up(ring);
+  RingLedger ledger;
+  ring.watch(ledger);
+  ring.segment().run_for(300 * kernel::kMillisecond);
+  expect_no_fault(ring);
+  EXPECT_EQ(ledger.served, ledger.exchanges);
+  EXPECT_EQ(ledger.retries, 0U);
+  EXPECT_LE(ledger.longest, bounds.rotation);
+  ASSERT_EQ(ring.cycles().size(), 5U);
+  for (std::size_t service = 0; service < kRingServices.size(); ++service) {
+    const auto& delays = ledger.delays[1 + service];
+    ASSERT_GE(delays.size(), 10U) << text_of(kRingServices[service]);
+    ASSERT_EQ(bounds.access[service].has_value(), kRingServices[service] != RingService::bulk);
+    EXPECT_LE(std::ranges::max(delays), bounds.access[service].value_or(kernel::Duration::max()));
+    EXPECT_GE(std::ranges::min(delays), octets(description.rules, 15 + 8));
+  }
+}
+
+// A load that is more than its class may have: its timers hold the round.
+TEST(RingNetwork, KeepsItsRoundUnderOverload) {
+  RingDescription description = RingDescription::built_in(4);
+  description.rules.target_rotation_octets = {9'000, 7'000, 5'000};
+  for (unsigned n = 0; n < 20; ++n) {
+    description.data.push_back({.from = 2 * (1 + n % 4),
+                                .to = 2 * (1 + (n + 1) % 4),
+                                .service = RingService::bulk,
+                                .load = 4'000'000,
+                                .octets = 400});
+  }
+  RingNetwork ring(description, 1);
+  bring_up(ring);
+  RingLedger ledger;
+  ring.watch(ledger);
+  ring.segment().run_for(300 * kernel::kMillisecond);
+  expect_no_fault(ring);
+  EXPECT_LE(ledger.longest, longest_rotation(description));
+  EXPECT_GT(ledger.longest, longest_rotation(description) / 2);
+}
+
+// A destination that does not respond is asked again, and the next datum goes on.
+TEST(RingNetwork, GoesOnWhereNobodyConfirms) {
+  class Mute final : public TokenStation {
+   public:
+    using TokenStation::TokenStation;
+    void set_response(const Octets&, kernel::Time) override {}
+  };
+  RingDescription description = RingDescription::built_in(3);
+  description.data.push_back(
+      {.from = 2, .to = 4, .service = RingService::confirmed, .every = 5 * kernel::kMillisecond});
+  RingNetwork ring(description, 1,
+                   {.make = [](std::size_t position,
+                               const StationConfiguration& configuration) -> std::unique_ptr<StationDevice> {
+                     if (position == 2) return std::make_unique<Mute>(configuration);
+                     return nullptr;
+                   }});
+  bring_up(ring);
+  RingLedger ledger;
+  ring.watch(ledger);
+  ring.segment().run_for(100 * kernel::kMillisecond);
+  expect_no_fault(ring);  // its application drops repetitions
+  EXPECT_GE(ledger.delays[2].size(), 18U);
+  EXPECT_EQ(ledger.retries, ledger.delays[2].size() * description.rules.max_retry_limit);
+}
+
+// Whatever a station does to data on their way shows.
+TEST(RingNetwork, SeesDataThatComeTwiceOrLateOrOtherwise) {
+  class Spoils final : public TokenStation {
+   public:
+    using TokenStation::TokenStation;
+    bool submit(const DataRequest& request, kernel::Time now) override {
+      const unsigned n = count_++ % 4;
+      if (n == 0) kept_ = request;
+      if (n == 1) TokenStation::submit(request, now);
+      if (n == 2) TokenStation::submit(kept_, now);
+      if (n == 3) {
+        DataRequest other = request;
+        other.data.back() ^= 1;
+        TokenStation::submit(other, now);
+      }
+      return TokenStation::submit(request, now);
+    }
+
+   private:
+    unsigned count_ = 0;
+    DataRequest kept_{};
+  };
+  RingDescription description = RingDescription::built_in(3);
+  description.data = {{.from = 2, .to = 4, .every = 5 * kernel::kMillisecond, .octets = 9}};
+  RingNetwork ring(description, 1,
+                   {.make = [](std::size_t position,
+                               const StationConfiguration& configuration) -> std::unique_ptr<StationDevice> {
+                     if (position == 1) return std::make_unique<Spoils>(configuration);
+                     return nullptr;
+                   }});
+  ring.start();
+  ring.segment().run_for(kernel::kSecond);
+  for (const measure::Count& fault : ring.delivery_faults()) EXPECT_GT(fault.count, 0U) << fault.what;
+}
+
+TEST(RingNetwork, NamesTheDataThatHaveNoRoom) {
+  RingDescription description = RingDescription::built_in(2);
+  description.rules.target_rotation_octets = {0, 0, 0};
+  description.data.push_back({.from = 2, .to = 4, .service = RingService::bulk, .load = 1'000});
+  RingNetwork ring(description, 1);
+  ring.start();
+  ring.segment().run_for(kernel::kSecond);
+  EXPECT_EQ(ring.state(), network::State::coming_up);
+  EXPECT_EQ(ring.complaint(), "no word of station 2 at station 4 (bulk) since power-up");
 }
 
 constexpr kernel::Time kDead = kernel::kStart + kernel::kSecond;
@@ -128,13 +276,22 @@ TEST(RingDescriptionReader, RefusesWhatIsNoRing) {
     return RingDescription::read(document.root());
   };
   EXPECT_EQ(read(R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})").stations.size(), 2U);
-  for (const char* text : {R"({"name": "", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})",
-                           R"({"name": "a", "stations": [2], "data": [{"from": 2, "to": 4}]})",
-                           R"({"name": "a", "stations": [2, 3], "data": [{"from": 2, "to": 3}]})",
-                           R"({"name": "a", "stations": [2, 2], "data": [{"from": 2, "to": 2}]})",
-                           R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 6}]})",
-                           R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 2}]})",
-                           R"({"name": "a", "stations": [2, 4], "data": []})"}) {
+  for (const char* text :
+       {R"({"name": "", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})",
+        R"({"name": "a", "stations": [2], "data": [{"from": 2, "to": 4}]})",
+        R"({"name": "a", "stations": [2, 3], "data": [{"from": 2, "to": 3}]})",
+        R"({"name": "a", "stations": [2, 2], "data": [{"from": 2, "to": 2}]})",
+        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 6}]})",
+        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 2}]})",
+        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 4}]})",
+        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 8183}]})",
+        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "every": "1 us"}]})",
+        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "service": "slow"}]})",
+        R"({"name": "a", "stations": [2, 4],
+                               "data": [{"from": 2, "to": 4, "every": "1 ms", "load": "1 kbit/s"}]})",
+        R"({"name": "a", "stations": [2, 4], "slot_time_octets": 7,
+                               "data": [{"from": 2, "to": 4}]})",
+        R"({"name": "a", "stations": [2, 4], "data": []})"}) {
     EXPECT_THROW(read(text), kernel::Error) << text;
   }
 }

@@ -1,0 +1,126 @@
+#include "protocols/token_bus/ring_description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/config/name.hpp"
+
+namespace fieldproof::token_bus {
+namespace {
+
+constexpr unsigned kMostRingStations = 64;
+constexpr std::size_t kMostFlows = 256;
+constexpr kernel::Duration kShortestPeriod = 100 * kernel::kMicrosecond;
+constexpr kernel::Duration kLongestPeriod = 100 * kernel::kSecond;
+
+RingData read_ring_data(const config::Value& value) {
+  return config::read_object(value, [](config::ObjectReader& object) {
+    RingData data;
+    data.from = object.required("from").as_integer<Address>();
+    data.to = object.required("to").as_integer<Address>();
+    if (const auto service = object.optional("service")) {
+      data.service = service->as_choice<RingService>({{"urgent", RingService::urgent},
+                                                      {"periodic", RingService::periodic},
+                                                      {"confirmed", RingService::confirmed},
+                                                      {"bulk", RingService::bulk}});
+    }
+    if (const auto every = object.optional("every"))
+      data.every = every->as_duration(kShortestPeriod, kLongestPeriod);
+    if (const auto load = object.optional("load")) data.load = load->as_bit_rate();
+    if (const auto octets = object.optional("octets")) data.octets = octets->as_integer<std::size_t>();
+    return data;
+  });
+}
+
+void read_ring_rules(config::ObjectReader& object, Rules& rules) {
+  if (const auto slot = object.optional("slot_time_octets"))
+    rules.slot_time_octets = slot->as_integer<unsigned>();
+  if (const auto hold = object.optional("high_priority_hold_octets"))
+    rules.high_priority_hold_octets = hold->as_integer<std::uint32_t>();
+  if (const auto targets = object.optional("target_rotation_octets")) {
+    const std::vector<config::Value> values = targets->as_array(3, 3);
+    for (std::size_t n = 0; n < values.size(); ++n)
+      rules.target_rotation_octets[n] = values[n].as_integer<std::uint32_t>(0, 2'097'151);
+  }
+}
+
+bool is_in(const std::vector<Address>& stations, Address address) {
+  return std::ranges::find(stations, address) != stations.end();
+}
+
+std::optional<std::string> violation_of_stations(const RingDescription& ring) {
+  for (const Address address : ring.stations) {
+    if (address == 0 || is_group(address) || address > broadcast(ring.rules))
+      return fmt::format("station {}: an address is even, from 2 to 65534, because an odd one is a group's",
+                         address);
+    if (std::ranges::count(ring.stations, address) > 1)
+      return fmt::format("station {} is there twice; each has its own address", address);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> violation_of_data(const RingDescription& ring, const RingData& data) {
+  if (!is_in(ring.stations, data.from) || !is_in(ring.stations, data.to) || data.from == data.to)
+    return fmt::format("data from {} to {}: write two different addresses of \"stations\"", data.from,
+                       data.to);
+  if (data.every != kernel::Duration{} && data.load != 0)
+    return fmt::format("data from {} to {}: they have a period or a load, not both", data.from, data.to);
+  if (data.octets < kLeastDatum || data.octets > most_data(ring.rules))
+    return fmt::format("data from {} to {}: {} octets, and a frame carries {} to {}", data.from, data.to,
+                       data.octets, kLeastDatum, most_data(ring.rules));
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view text_of(RingService service) {
+  constexpr std::array<std::string_view, kRingServices.size()> kTexts{"urgent", "periodic", "confirmed",
+                                                                      "bulk"};
+  return kTexts.at(static_cast<std::size_t>(service));
+}
+
+kernel::Duration RingData::mean_gap() const {
+  return load == 0 ? every : kernel::levels_duration(static_cast<std::int64_t>(8 * octets), load);
+}
+
+RingDescription RingDescription::built_in(unsigned stations) {
+  RingDescription ring;
+  ring.name = fmt::format("ring of {} stations", stations);
+  for (unsigned n = 0; n < stations; ++n) ring.stations.push_back(2 * (n + 1));
+  for (unsigned n = 0; n < stations; ++n)
+    ring.data.push_back({.from = ring.stations[n], .to = ring.stations[(n + 1) % stations]});
+  return ring;
+}
+
+RingDescription RingDescription::read(const config::Value& root) {
+  const RingDescription ring = config::read_object(root, [](config::ObjectReader& object) {
+    RingDescription read;
+    object.optional("$schema");
+    read.name = config::read_name(object.required("name"));
+    for (const config::Value& one : object.required("stations").as_array(2, kMostRingStations))
+      read.stations.push_back(one.as_integer<Address>());
+    for (const config::Value& one : object.required("data").as_array(1, kMostFlows))
+      read.data.push_back(read_ring_data(one));
+    read_ring_rules(object, read.rules);
+    return read;
+  });
+  if (const auto violation = violation_of(ring)) config::fail(root, *violation);
+  return ring;
+}
+
+RingDescription RingDescription::load(const std::filesystem::path& path) {
+  const config::Document document = config::Document::load(path);
+  return read(document.root());
+}
+
+std::optional<std::string> violation_of(const RingDescription& ring) {
+  if (auto sentence = impossible(ring.rules)) return sentence;
+  if (auto sentence = violation_of_stations(ring)) return sentence;
+  for (const RingData& data : ring.data) {
+    if (auto sentence = violation_of_data(ring, data)) return sentence;
+  }
+  return std::nullopt;
+}
+
+}  // namespace fieldproof::token_bus
