@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/field/written_table.hpp"
+#include "protocols/token_bus/cable_rules.hpp"
 #include "protocols/token_bus/device.hpp"
 #include "protocols/token_bus/dual_channel_settings.hpp"
 #include "protocols/token_bus/station_settings.hpp"
@@ -25,6 +26,10 @@ void expect_on_token_bus_page(const std::string& text, const std::string& name =
 
 TEST(TokenBusPage, HasEverySettingOfAStation) {
   expect_on_token_bus_page(field::markdown_of(kStationTable) + "\n");
+}
+
+TEST(TokenBusPage, HasEveryNumberOfALine) {
+  expect_on_token_bus_page(field::markdown_of(kCableRulesTable) + "\n");
 }
 
 TEST(TokenBusPage, HasEverySettingOfATranslator) {

@@ -64,7 +64,8 @@ Duration passes_of(const RingDescription& ring) {
   const Rules& rules = ring.rules;
   const auto stations = static_cast<std::int64_t>(ring.stations.size());
   // A window is closed when its slot times are over; the lowest opens two.
-  return stations * (2 * with_gap(rules, frame_time(rules, 0)) + slots(rules, 1)) + slots(rules, 1);
+  const Duration window = with_gap(rules, frame_time(rules, 0)) + slots(rules, 1);
+  return stations * (with_gap(rules, frame_time(rules, 0)) + path_delay(ring) + window) + slots(rules, 1);
 }
 
 // A lower class as far as its timers let it.

@@ -9,7 +9,7 @@
 //
 // A round of the token. With
 //
-//   P    tokens, and a response window of each station, the lowest with two
+//   P    tokens and their way, and a response window of each station, the lowest with two
 //   C_f  a datum of flow f on the line, a gap in front; of a confirmed one with its response
 //   n_f  data of a flow in a round: 1 under each token; 2 of a period that two rounds fit into; else no
 //   number H_i  of a station: the lesser of hold time and longest urgent datum together, and the sum of n_f

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "harness/config/name.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr unsigned kMostRingStations = 64;
 constexpr std::size_t kMostFlows = 256;
+constexpr double kLongestCable = 100'000;  // m: more is a slip of the pen
 constexpr kernel::Duration kShortestPeriod = 100 * kernel::kMicrosecond;
 constexpr kernel::Duration kLongestPeriod = 100 * kernel::kSecond;
 
@@ -31,6 +33,15 @@ RingData read_ring_data(const config::Value& value) {
     if (const auto octets = object.optional("octets")) data.octets = octets->as_integer<std::size_t>();
     return data;
   });
+}
+
+void read_cable(config::ObjectReader& object, RingDescription& ring) {
+  if (const auto cable = object.optional("cable")) ring.cable_m = cable->as_length_m(0, kLongestCable);
+  const auto repeaters = object.optional("repeaters");
+  if (!repeaters) return;
+  for (const config::Value& one : repeaters->as_array(1, ring.cable.most_repeaters))
+    ring.repeaters_m.push_back(one.as_length_m(0, kLongestCable));
+  ring.rules.most_octets = ring.cable.most_octets_with_repeaters;
 }
 
 void read_ring_rules(config::ObjectReader& object, Rules& rules) {
@@ -67,8 +78,31 @@ std::optional<std::string> violation_of_data(const RingDescription& ring, const 
   if (data.every != kernel::Duration{} && data.load != 0)
     return fmt::format("data from {} to {}: they have a period or a load, not both", data.from, data.to);
   if (data.octets < kLeastDatum || data.octets > most_data(ring.rules))
-    return fmt::format("data from {} to {}: {} octets, and a frame carries {} to {}", data.from, data.to,
-                       data.octets, kLeastDatum, most_data(ring.rules));
+    return fmt::format("data from {} to {}: {} octets, and a frame carries {} to {}{}", data.from, data.to,
+                       data.octets, kLeastDatum, most_data(ring.rules),
+                       ring.repeaters_m.empty() ? "" : ", because a repeater cuts what is longer");
+  return std::nullopt;
+}
+
+std::optional<std::string> violation_of_cable(const RingDescription& ring) {
+  double begin = 0;
+  std::vector<double> ends = ring.repeaters_m;
+  ends.push_back(ring.cable_m);
+  for (const double end : ends) {
+    if (end < begin || (end == begin && ends.size() > 1))
+      return fmt::format("a repeater at {:g} m: they stand in the order of the cable, which ends at {:g} m",
+                         begin, ring.cable_m);
+    if (end - begin > ring.cable.longest_segment_m)
+      return fmt::format("a segment of {:g} m: {} m is the longest; put a repeater into it", end - begin,
+                         ring.cable.longest_segment_m);
+    begin = end;
+  }
+  if (ring.rules.slot_time_octets < needed_slot_octets(ring))
+    return fmt::format(
+        "a slot time of {} octets: a path of {} with {} repeaters needs slot_time_octets of {} at least, "
+        "twice the path and the {} of a station",
+        ring.rules.slot_time_octets, kernel::describe(path_delay(ring)), ring.repeaters_m.size(),
+        needed_slot_octets(ring), kernel::describe(ring.cable.station_delay));
   return std::nullopt;
 }
 
@@ -82,6 +116,27 @@ std::string_view text_of(RingService service) {
 
 kernel::Duration RingData::mean_gap() const {
   return load == 0 ? every : kernel::levels_duration(static_cast<std::int64_t>(8 * octets), load);
+}
+
+double position_m(const RingDescription& ring, std::size_t station) {
+  if (ring.stations.size() < 2) return 0;
+  return ring.cable_m * static_cast<double>(station) / static_cast<double>(ring.stations.size() - 1);
+}
+
+kernel::Duration cable_delay(const RingDescription& ring, double length_m) {
+  return kernel::Duration{std::llround(length_m * static_cast<double>(ring.cable.cable_delay_ps_per_m))};
+}
+
+kernel::Duration path_delay(const RingDescription& ring) {
+  const auto bits = static_cast<std::int64_t>(ring.repeaters_m.size() * ring.cable.repeater_delay_bits);
+  return cable_delay(ring, ring.cable_m) + kernel::levels_duration(bits, ring.rules.phy_bit_rate);
+}
+
+unsigned needed_slot_octets(const RingDescription& ring) {
+  const kernel::Duration symbol = mac_symbols(ring.rules, 1);
+  const kernel::Duration all = 2 * path_delay(ring) + 2 * ring.cable.station_delay + symbol;
+  const kernel::Duration octet = 8 * symbol;
+  return static_cast<unsigned>((all + octet - kernel::kPicosecond) / octet);
 }
 
 RingDescription RingDescription::built_in(unsigned stations) {
@@ -102,6 +157,7 @@ RingDescription RingDescription::read(const config::Value& root) {
       read.stations.push_back(one.as_integer<Address>());
     for (const config::Value& one : object.required("data").as_array(1, kMostFlows))
       read.data.push_back(read_ring_data(one));
+    read_cable(object, read);
     read_ring_rules(object, read.rules);
     return read;
   });
@@ -117,6 +173,7 @@ RingDescription RingDescription::load(const std::filesystem::path& path) {
 std::optional<std::string> violation_of(const RingDescription& ring) {
   if (auto sentence = impossible(ring.rules)) return sentence;
   if (auto sentence = violation_of_stations(ring)) return sentence;
+  if (auto sentence = violation_of_cable(ring)) return sentence;
   for (const RingData& data : ring.data) {
     if (auto sentence = violation_of_data(ring, data)) return sentence;
   }

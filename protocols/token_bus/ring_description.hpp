@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/config/document.hpp"
+#include "protocols/token_bus/cable_rules.hpp"
 #include "protocols/token_bus/frame.hpp"
 
 // A ring of the token bus as a file describes it: stations, and data that go between them by the services of
@@ -17,7 +18,8 @@
 //   { "name": "boiler", "stations": [2, 4, 6, 8],
 //     "data": [ { "from": 2, "to": 4 },
 //               { "from": 4, "to": 2, "service": "periodic", "every": "10 ms", "octets": 32 },
-//               { "from": 6, "to": 8, "service": "bulk", "load": "100 kbit/s", "octets": 1000 } ] }
+//               { "from": 6, "to": 8, "service": "bulk", "load": "100 kbit/s", "octets": 1000 } ],
+//     "cable": "700 m", "repeaters": ["350 m"], "slot_time_octets": 34 }
 namespace fieldproof::token_bus {
 
 // The paper names them: urgent data in real time, periodic data, advanced services. Which access class
@@ -59,7 +61,10 @@ struct RingDescription {
   std::string name;
   std::vector<Address> stations;  // even: addresses of individuals
   std::vector<RingData> data;
+  double cable_m = 0;                 // along which the stations stand evenly, in their order
+  std::vector<double> repeaters_m{};  // from its begin, ascending
   Rules rules{};
+  CableRules cable{};
 
   // So many stations, each with a word for the next one.
   static RingDescription built_in(unsigned stations = 4);
@@ -70,5 +75,13 @@ struct RingDescription {
 
 // The first thing in a description that no ring has, as a sentence with what would be right.
 std::optional<std::string> violation_of(const RingDescription& ring);
+
+// ---- the line ----
+double position_m(const RingDescription& ring, std::size_t station);
+kernel::Duration cable_delay(const RingDescription& ring, double length_m);
+// From one end to the other, repeaters included.
+kernel::Duration path_delay(const RingDescription& ring);
+// The least slot time: there and back, two stations, and a symbol.
+unsigned needed_slot_octets(const RingDescription& ring);
 
 }  // namespace fieldproof::token_bus

@@ -40,10 +40,9 @@ RingNetwork::RingNetwork(const RingDescription& description, std::uint64_t seed,
     : description_(description),
       bounds_(bounds_of(description)),
       random_(seed),
-      line_(segment_, "line", segment::ContentionRule::noise, random_),
+      line_(segment_, description_, "line", random_),
       tester_(description.rules) {
   FIELDPROOF_CHECK(!violation_of(description_), "a ring that runs is one within its limits");
-  line_.tap_driven(*this);
   // A word that waits for a token outlives each one that is lost: it is late, not wrong.
   constexpr unsigned kMostWaiting = 16;
   for (const RingData& data : description_.data) {
@@ -84,8 +83,9 @@ void RingNetwork::add(Address address, std::size_t position, const RingStations&
   seat.user = std::make_unique<User>(*this, address);
   const std::string name = fmt::format("station@{}", position);
   seat.number = segment_.attach(*seat.device, name);
-  segment::MediumPort& place = line_.attach(name + "/in", seat.number, 0, {});
+  segment::MediumPort& place = line_.attach(name + "/in", seat.number, 0, position - 1);
   place.sense_activity();
+  place.tap_driven(*this);
   if (is_under_test) place.tap_driven(attendance_.expect(name));
   seat.device->wire(place, *seat.user);
   // Levels are half bits.
@@ -187,6 +187,12 @@ std::vector<measure::Condition> RingNetwork::conditions() const {
   std::vector<measure::Condition> conditions{{"stations", fmt::format("{}", seats_.size())},
                                              {"slot time", kernel::describe(slots(description_.rules, 1))},
                                              {"a word is sampled", "when its datum is given to the MAC"}};
+  if (description_.cable_m > 0) {
+    conditions.push_back(
+        {"path from end to end",
+         fmt::format("{}, {} repeaters, this project's choice of delays",
+                     kernel::describe(path_delay(description_)), description_.repeaters_m.size())});
+  }
   const auto used = [&](RingService service) { return delay_kinds_[static_cast<std::size_t>(service)] != 0; };
   for (const RingService service : kRingServices) {
     if (!used(service)) continue;

@@ -13,11 +13,11 @@
 #include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
 #include "harness/network/word_exchanges.hpp"
-#include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/token_bus/device.hpp"
 #include "protocols/token_bus/ring_bounds.hpp"
 #include "protocols/token_bus/ring_flow.hpp"
+#include "protocols/token_bus/ring_line.hpp"
 
 // A ring that runs, as a RingDescription says.
 namespace fieldproof::token_bus {
@@ -107,7 +107,7 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   RingBounds bounds_;
   kernel::Random random_;
   segment::Segment segment_;
-  segment::Medium line_;
+  RingLine line_;
   FrameReader tester_;
   network::Attendance attendance_;
   std::deque<Seat> seats_;
