@@ -221,6 +221,26 @@ std::vector<ManagerCase> error_cases() {
   };
 }
 
+std::vector<ManagerCase> e_bit_cases() {
+  return {on_chart(
+      manager_must(
+          "faults/the_e_bit_is_no_error", "",
+          "A frame with E = 1 counts for nothing: it neither makes a fault nor ends one, nor a row of "
+          "errors.",
+          "what a repeater has noticed", {{"counts_the_e_bit", "reported_without_fault"}}),
+      {{2, 20},
+       {powered_anew(),
+        carries(
+            "both carry a frame, that of A with E = 1",
+            [](ManagerScene& scene) {
+              const std::string frame = scene.frame();
+              scene.carry({frame.substr(0, frame.size() - 1) + "1"}, {frame});
+              scene.expect_events({}, "reported_without_fault");
+            },
+            true),
+        indicates_of(Channel::a, "wrong_channel")}})};
+}
+
 std::vector<ManagerCase> repair_cases() {
   return {
       on_chart(
@@ -261,7 +281,7 @@ std::vector<ManagerCase> repair_cases() {
 
 std::vector<ManagerCase> manager_fault_cases() {
   std::vector<ManagerCase> all;
-  for (auto* const chapter : {missing_cases, bad_signal_cases, error_cases, repair_cases})
+  for (auto* const chapter : {missing_cases, bad_signal_cases, error_cases, e_bit_cases, repair_cases})
     for (ManagerCase& one : chapter()) all.push_back(std::move(one));
   return all;
 }

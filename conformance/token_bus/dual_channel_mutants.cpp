@@ -147,6 +147,8 @@ std::vector<ManagerMutant> fault_rows() {
        with_selection<CountsErrorsOtherwise>(errors_for_ever)},
       {"counts_errors_of_both", "", "counts errors that both channels have",
        with_selection<CountsErrorsOtherwise>(errors_of_both)},
+      {"counts_the_e_bit", "", "counts E bits as errors of a channel",
+       with_selection<CountsErrorsOtherwise>(errors_of_senders_too)},
       {"leaves_after_2", "", "leaves a channel after two errors", with_errors_in_a_row(2)},
       {"leaves_after_4", "", "leaves a channel after four errors", with_errors_in_a_row(4)},
       {"never_clean_again", "", "never reports that a channel is clean",

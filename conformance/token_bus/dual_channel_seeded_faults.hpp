@@ -134,6 +134,11 @@ inline unsigned errors_of_both(unsigned errors, Carried carried, Carried) {
   return carried == Carried::clean ? 0 : errors + 1;
 }
 
+inline unsigned errors_of_senders_too(unsigned errors, Carried carried, Carried other) {
+  if (carried == Carried::clean) return 0;
+  return other == Carried::clean ? errors + 1 : errors;
+}
+
 using Clean = unsigned (*)(unsigned clean, Carried carried);
 
 class CountsCleanOtherwise final : public ChannelSelection {
