@@ -28,6 +28,7 @@ std::vector<TokenCase> token_holding_cases();
 std::vector<TokenCase> token_reception_cases();
 std::vector<TokenCase> token_line_cases();
 std::vector<TokenCase> token_event_cases();
+std::vector<TokenCase> token_anew_cases();
 std::vector<TokenCase> token_user_cases();
 std::vector<TokenCase> token_supply_cases();
 std::vector<TokenCase> token_settings_cases();

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "conformance/token_bus/station_life.hpp"
 
 // What a station does when the token that it passes is not taken, or when it is not alone in holding one.
@@ -63,13 +65,24 @@ void fault_limit(token_bus::StationConfiguration& configuration, kernel::Random&
   configuration.rules.transmitter_fault_limit = limit;
 }
 
+TokenStep reports_each_joining() {
+  return require(
+      "it has reported each time that it has joined",
+      [](TokenScene& scene) {
+        return std::ranges::count(scene.bench.user().events, token_bus::EventKind::joined,
+                                  &token_bus::Event::kind) ==
+               std::ptrdiff_t{scene.bench.rules().transmitter_fault_limit};
+      },
+      "not_reported");
+}
+
 TokenCase faulty_after(const std::string& id, const std::string& times, std::vector<MustCatch> catches,
                        TokenNeeds needs) {
   return on_chart(token_must("failure/" + id, "",
                              "A station that failed to pass the token " + times +
                                  " in a row reports a faulty transmitter, and goes offline.",
                              memory("transmitter_fault_count"), std::move(catches)),
-                  {{}, becomes_faulty()}, std::move(needs));
+                  {{}, and_then(becomes_faulty(), {reports_each_joining()})}, std::move(needs));
 }
 
 // 01 010 110: the priority is 6, its highest bit first.
@@ -183,7 +196,8 @@ std::vector<TokenCase> token_failure_cases() {
       faulty_after("seven_failures_are_a_faulty_transmitter", "seven times",
                    {{"faulty_after_six", "faulty_too_soon"},
                     {"faulty_after_eight", "not_reported"},
-                    {"fault_unreported", "not_reported"}},
+                    {"fault_unreported", "not_reported"},
+                    {"joins_once", "not_reported"}},
                    {}),
       faulty_after("one_failure_may_be_a_faulty_transmitter", "once, which is the limit,",
                    {{"faulty_after_seven", "not_reported"}}, {.adjust = fault_limit<1>}),

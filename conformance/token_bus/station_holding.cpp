@@ -16,6 +16,13 @@ using token_sources::standard;
 void short_hold(token_bus::StationConfiguration& configuration, kernel::Random&) {
   configuration.rules.high_priority_hold_octets = 400;
 }
+// A frame and its gap last 31 octet durations: the ninth would begin two after this.
+void hold_that_ends_in_a_gap(token_bus::StationConfiguration& configuration, kernel::Random&) {
+  configuration.rules.high_priority_hold_octets = 6 + 8 * 31 - 2;
+}
+void hold_of_one_frame(token_bus::StationConfiguration& configuration, kernel::Random&) {
+  configuration.rules.high_priority_hold_octets = 20;
+}
 void three_targets(token_bus::StationConfiguration& configuration, kernel::Random&) {
   configuration.rules.target_rotation_octets = {600, 450, 250};
 }
@@ -119,6 +126,21 @@ std::vector<TokenCase> token_holding_cases() {
             sends("nothing: 400 octet durations are over since the service before began", {},
                   "served_without_time", "class_not_served")}},
           {.adjust = one_target}),
+      on_chart(
+          token_must("holding/no_frame_begins_when_time_is_over", "TB-07",
+                     "hi_pri_token_hold_time begins with the token, and a frame that would begin when it "
+                     "is over is not sent, though the one before ended in time.",
+                     controller("hi_pri_token_hold_time"),
+                     {{"hold_begins_with_the_first_frame", "hold_exceeded"}}),
+          {{}, {joined(), submit_each(20), token(), holds()}}, {.adjust = hold_that_ends_in_a_gap}),
+      on_chart(token_must("holding/the_hold_time_is_for_class_six_alone", "TB-08",
+                          "A lower class is served as long as its rotation timer has left, whatever "
+                          "hi_pri_token_hold_time is.",
+                          controller("priority option"), {{"lower_classes_held_too", "class_not_served"}}),
+               {{},
+                {joined(), submit({4, 4, 4}, 10), token(),
+                 sends("all of class 4", {4, 4, 4}, "speaks_unasked", "class_not_served")}},
+               {.adjust = hold_of_one_frame}),
       on_chart(token_must("holding/a_class_is_served_in_the_order_of_submission", "TB-08",
                           "Within a class what was submitted first is sent first, whichever of the two "
                           "priorities of the class it has.",

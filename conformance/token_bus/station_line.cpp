@@ -106,6 +106,17 @@ std::vector<TokenCase> blanking() {
 std::vector<TokenCase> token_line_cases() {
   std::vector<TokenCase> all = blanking();
   const std::vector<TokenCase> others{
+      on_chart(token_must("line/no_blanking_while_more_follows", "PST-12",
+                          "After a frame with I = 1 the receiver is not blanked.",
+                          memory("receiver blanking"), {{"blanks_always", "counter_wrong"}}),
+               {{},
+                {joined(),
+                 send("data for the station with I = 1",
+                      [](TokenScene& scene) {
+                        return scene.bench.data_frame(0x62, kOwnAddress, TokenBench::kAbove, {1, 2});
+                      },
+                      {.more_follows = true}),
+                 reflection(8, 20), wait(20), counted("non-silence", kNonSilence, 1), serves()}}),
       on_chart(
           token_must("line/a_lost_front_costs_no_frame", "PST-04",
                      "A frame whose preamble has lost its first 1 to 15 bits is received.",

@@ -11,6 +11,7 @@ using TokenMutants = DeviceMutants<token_bus::StationDevice, token_bus::StationC
 std::vector<TokenMutants::Row> token_settings_rows();
 std::vector<TokenMutants::Row> token_line_rows();
 std::vector<TokenMutants::Row> token_host_rows();
+std::vector<TokenMutants::Row> token_anew_rows();
 
 // Stations of the token bus with one seeded fault each.
 const TokenMutants& token_station_mutants();

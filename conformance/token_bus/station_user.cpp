@@ -70,6 +70,13 @@ TokenStep is_responded() {
           }};
 }
 
+TokenStep names_successor(std::uint64_t to, std::uint64_t successor) {
+  return send(fmt::format("0004 names {:04X} as the successor of {:04X}", successor, to),
+              [to, successor](TokenScene& scene) {
+                return scene.bench.frame(TokenControl::set_successor, to, TokenBench::kBelow, successor);
+              });
+}
+
 TokenStep data_for_group() {
   return send("000E sends data to the group 0003", [](TokenScene& scene) {
     return scene.bench.data_frame(0x62, kGroup, TokenBench::kAbove, scene.bench.numbered_data(6));
@@ -116,6 +123,58 @@ std::vector<TokenCase> token_user_cases() {
                       }),
                  silence(2 * 28, "speaks_after_leaving", "it is not in the ring"), wants_in_ring(true),
                  joined(), token(), passes_on()}}),
+      on_chart(token_must("user/it_responds_outside_of_the_ring", "TB-27",
+                          "A station answers a request with response whether it is in the ring or not, and "
+                          "none for a group.",
+                          standard("response"),
+                          {{"responds_in_the_ring_only", "response_missing"},
+                           {"responds_for_groups", "responds_unasked"}}),
+               {{},
+                {response_of(5), is_responded(), wait(8),
+                 send("000E sends a request of priority 4 for the group 0003",
+                      [](TokenScene& scene) {
+                        return scene.bench.data_frame(0x32, kGroup, TokenBench::kAbove, {7});
+                      }),
+                 silence(3 * 28, "responds_unasked", "nobody answers for a group")}}),
+      on_chart(
+          token_must("user/it_stays_until_its_data_are_sent", "TB-30",
+                     "A station that is not to be in the ring any more stays while data wait, and leaves "
+                     "when they are sent.",
+                     standard("in_ring_desired"), {{"leaves_with_data_left", "leaves_with_data"}}),
+          {{},
+           {joined(), submit({6, 6, 6}, 20), wants_in_ring(false), token(),
+            sends("what has time: one frame", {6}, "leaves_with_data", "data_missing"), taken(), token(),
+            sends("one more", {6}, "leaves_with_data", "data_missing"), taken(), token(),
+            says("the last", {TokenControl{0x62}, TokenBench::kBelow}, at_once(), "data_missing",
+                 "data_wrong"),
+            says("set_successor to 000E with 0004",
+                 {TokenControl::set_successor, TokenBench::kAbove, TokenBench::kBelow}, at_once(),
+                 "leaving_missing", "leaving_wrong"),
+            passes_below(at_once())}},
+          with([](token_bus::Rules& rules) { rules.high_priority_hold_octets = 20; })),
+      on_chart(
+          token_must("user/what_costs_the_token_is_received", "TB-26",
+                     "A frame that costs a station the token is received as any other: its data are "
+                     "reported.",
+                     own("unexpected frames"), {{"data_lost_with_the_token", "not_delivered"}}),
+          {{},
+           {joined(), until_window(), wait(6),
+            send("0020 sends data to the station",
+                 [](TokenScene& scene) {
+                   return scene.bench.data_frame(0x62, kOwnAddress, TokenBench::kStranger,
+                                                 scene.bench.numbered_data(6));
+                 }),
+            reported("it", token_bus::EventKind::unexpected_frame, TokenBench::kStranger),
+            delivered("they are delivered", 1), silence(5 * 28, "token_kept", "another holds the token")}}),
+      on_chart(
+          token_must("user/only_its_own_successor_is_changed", "TB-30",
+                     "What is said to another, or names a group, leaves a station its successor.",
+                     standard("leaving"),
+                     {{"successor_of_another_taken", "token_wrong"}, {"group_is_successor", "token_wrong"}}),
+          {{},
+           {joined(), names_successor(TokenBench::kStranger, 0x0002), wait(10), token(),
+            passes_below(at_once()), taken(), names_successor(kOwnAddress, 0x0003), wait(10), token(),
+            passes_below(at_once()), taken()}}),
       on_chart(token_must("user/any_group_is_its_own", "TB-33",
                           "Data for a group, whichever it is, are reported to its user.", own("groups"),
                           {{"broadcast_only", "not_delivered"}}),

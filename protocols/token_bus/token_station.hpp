@@ -77,7 +77,7 @@ class TokenStation : public StationDevice {
   StationUser& user() { return *user_; }
   LineSide& line() { return line_; }
   kernel::Random& random() { return random_; }
-  bool wants_ring() const;
+  virtual bool wants_ring() const;
 
   // ---- decisions: reception ----
   virtual std::vector<Reception> received(const line::Waveform& wave) const {
@@ -99,6 +99,7 @@ class TokenStation : public StationDevice {
   virtual unsigned claim_bits(unsigned pass) { return contest_bits(pass); }
   virtual unsigned claim_slots(unsigned bits) const { return 2 * bits; }
   virtual unsigned claim_passes() const { return contest_passes(rules()); }
+  virtual bool is_alone_after_claim() const { return true; }
   virtual bool loses_claim() const { return line_.is_active(); }
 
   // ---- decisions: joining ----

@@ -124,7 +124,7 @@ void TokenStation::claim_goes_on(kernel::Time now) {
     return;
   }
   if (contest_pass_ == claim_passes()) {
-    successor_ = predecessor_ = address();
+    if (is_alone_after_claim()) successor_ = predecessor_ = address();
     is_in_ring_ = true;
     report(EventKind::sole_station, address(), now);
     hold_token(now);
