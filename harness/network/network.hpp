@@ -183,6 +183,8 @@ class Network {
   virtual std::span<const CycleKind> cycles() const = 0;
   // What must never happen to data on their way, with how often it did: "delivered twice".
   virtual std::vector<measure::Count> delivery_faults() const { return {}; }
+  // What else it counts of itself: "faults of channel A that were reported".
+  virtual std::vector<measure::Count> remarks() const { return {}; }
   // By which it is decided whether it works.
   virtual AcceptanceRules acceptance() const { return {}; }
   virtual RecoveryLimit recovery_limit() const = 0;

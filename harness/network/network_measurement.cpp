@@ -258,6 +258,15 @@ void leave_open(measure::Measurement& measurement, std::string_view why) {
   }
 }
 
+// The same ones of each signal.
+void add_counts(std::vector<measure::Count>& sums, const std::vector<measure::Count>& counts) {
+  if (sums.empty()) {
+    sums = counts;
+    return;
+  }
+  for (std::size_t n = 0; n < sums.size(); ++n) sums[n].count += counts[n].count;
+}
+
 // The cycles of all signals together, a series for each kind.
 class CycleSeries {
  public:
@@ -267,11 +276,8 @@ class CycleSeries {
     } else {
       for (std::size_t n = 0; n < cycles_.size(); ++n) cycles_[n].times.add(record.cycles[n].times);
     }
-    if (faults_.empty()) {
-      faults_ = record.delivery_faults;
-    } else {
-      for (std::size_t n = 0; n < faults_.size(); ++n) faults_[n].count += record.delivery_faults[n].count;
-    }
+    add_counts(faults_, record.delivery_faults);
+    add_counts(remarks_, record.remarks);
     data_ += record.data_exchanges;
     service_ += record.service_exchanges;
     unserved_ += record.unserved_exchanges;
@@ -295,12 +301,14 @@ class CycleSeries {
     if (!words.service.empty()) counts.push_back({std::string(words.service), service_, 0});
     counts.push_back({std::string(words.unserved), unserved_, data_ + service_});
     if (retries_ > 0) counts.push_back({"retries", retries_, 0});
+    counts.insert(counts.end(), remarks_.begin(), remarks_.end());
     return all;
   }
 
  private:
   std::vector<CycleRecord> cycles_;
   std::vector<measure::Count> faults_;
+  std::vector<measure::Count> remarks_;
   std::uint64_t data_ = 0;
   std::uint64_t service_ = 0;
   std::uint64_t unserved_ = 0;

@@ -181,6 +181,7 @@ class SignalRun final : private ExchangeWatcher {
     record_.settings = settings_;
     record_.trains = trains_;
     record_.delivery_faults = network_.delivery_faults();
+    record_.remarks = network_.remarks();
     record_.has_stopped = network_.state() != State::exchanging;
     for (const Watched& watched : watched_) {
       record_.paths.push_back({watched.path, measure::edge_skew(watched.recorder, settings_.phase_during),

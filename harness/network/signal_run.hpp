@@ -59,6 +59,7 @@ struct SignalRecord {
   std::uint64_t unserved_exchanges = 0;
   std::uint64_t retries = 0;
   std::vector<measure::Count> delivery_faults;
+  std::vector<measure::Count> remarks;
   // A disturbance has stopped the network: it exchanges no data at the end.
   bool has_stopped = false;
 };

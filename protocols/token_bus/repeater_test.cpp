@@ -14,30 +14,44 @@ class TwoSegments {
     return kernel::kStart + kernel::levels_duration(bits, Rules{}.phy_bit_rate);
   }
   // What arrives at the other side.
-  std::vector<line::Waveform> through(std::vector<line::Waveform> waves, const CableRules& cable = {}) {
-    class Arrivals final : public segment::Tap {
-     public:
-      void on_wave(const line::Waveform& wave) override { waves.push_back(wave); }
-      std::vector<line::Waveform> waves;
-    } arrivals;
-    segment::Segment segment;
-    const kernel::Random random(1);
-    segment::Medium left(segment, "left", segment::ContentionRule::noise, random);
-    segment::Medium right(segment, "right", segment::ContentionRule::noise, random);
-    Repeater repeater(Rules{}, cable, left.listen("repeater, left", {}), right.listen("repeater, right", {}));
-    std::deque<segment::MediumPort*> from;
-    for (std::size_t n = 0; n < waves.size(); ++n) {
-      from.push_back(&left.listen("station " + std::to_string(n), {}));
-      repeater.hear(Repeater::Side::left, *from.back(), {});
-    }
-    right.listen("there", {}).tap_arrived(arrivals);
-    for (std::size_t n = 0; n < waves.size(); ++n) from[n]->drive(waves[n]);
-    segment.run_for(50 * kernel::kMillisecond);
-    return arrivals.waves;
+  std::vector<line::Waveform> through(std::vector<line::Waveform> waves) {
+    Repeater repeater(Rules{}, CableRules{}, of_left_, of_right_);
+    return through(repeater, std::move(waves));
+  }
+  std::vector<line::Waveform> through_joint(line::Waveform wave, std::vector<Joint::Cut> cuts) {
+    Joint joint(of_left_, of_right_);
+    joint.set_cuts(std::move(cuts));
+    return through(joint, {std::move(wave)});
   }
   line::Waveform wave(line::Levels half_bits, std::int64_t begin = 0) const {
     return {at(begin), 2 * Rules{}.phy_bit_rate, std::move(half_bits)};
   }
+
+ private:
+  class Arrivals final : public segment::Tap {
+   public:
+    void on_wave(const line::Waveform& wave) override { waves.push_back(wave); }
+    std::vector<line::Waveform> waves;
+  };
+
+  std::vector<line::Waveform> through(Divider& divider, std::vector<line::Waveform> waves) {
+    Arrivals arrivals;
+    right_.listen("there", {}).tap_arrived(arrivals);
+    for (std::size_t n = 0; n < waves.size(); ++n) {
+      segment::MediumPort& from = left_.listen("station " + std::to_string(n), {});
+      divider.hear(Divider::Side::left, from, {});
+      from.drive(waves[n]);
+    }
+    segment_.run_for(50 * kernel::kMillisecond);
+    return arrivals.waves;
+  }
+
+  segment::Segment segment_;
+  kernel::Random random_{1};
+  segment::Medium left_{segment_, "left", segment::ContentionRule::noise, random_};
+  segment::Medium right_{segment_, "right", segment::ContentionRule::noise, random_};
+  segment::MediumPort& of_left_ = left_.listen("divider, left", {});
+  segment::MediumPort& of_right_ = right_.listen("divider, right", {});
 };
 
 Frame datum(std::size_t octets) {
@@ -87,10 +101,10 @@ TEST(Repeater, LetsCollisionsThrough) {
 }
 
 TEST(Repeater, CutsJabber) {
-  TwoSegments segments;
   const Rules rules;
   // 5 ms are 50,000 bits: 3125 octets with preamble and delimiters.
   for (const std::size_t octets : {3'125U - 15U, 3'125U - 14U}) {
+    TwoSegments segments;
     const auto arrived = segments.through({segments.wave(levels_of(datum(octets), rules))});
     ASSERT_EQ(arrived.size(), 1U);
     const ReceptionKind kind = FrameReader(rules).read(arrived.front()).front().kind;
@@ -99,6 +113,21 @@ TEST(Repeater, CutsJabber) {
   }
   EXPECT_LE(frame_time(rules, CableRules{}.most_octets_with_repeaters), 4 * kernel::kMillisecond)
       << "the least after which such a protection may act, from memory";
+}
+
+TEST(Joint, PassesWhatComesWhileTheCableIsWhole) {
+  TwoSegments segments;
+  const auto arrived = segments.through_joint(segments.wave(levels_of(datum(20), Rules{})),
+                                              {{segments.at(10), segments.at(20)},
+                                               {segments.at(300), segments.at(500)},
+                                               {segments.at(600), segments.at(700)}});
+  ASSERT_EQ(arrived.size(), 3U);
+  EXPECT_EQ(arrived[0].start, segments.at(0));
+  EXPECT_EQ(arrived[0].end(), segments.at(10));
+  EXPECT_EQ(arrived[1].start, segments.at(20));
+  EXPECT_EQ(arrived[1].end(), segments.at(300));
+  EXPECT_EQ(arrived[2].start, segments.at(500));
+  EXPECT_EQ(arrived[2].end(), segments.at(560));
 }
 
 // ---- in a ring ----

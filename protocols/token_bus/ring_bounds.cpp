@@ -129,6 +129,12 @@ std::optional<Duration> access_of(const RingDescription& ring, RingService servi
 
 }  // namespace
 
+Duration longest_disturbed_rotation(const RingDescription& ring) {
+  const Duration token = slots(ring.rules, 1) + with_gap(ring.rules, frame_time(ring.rules, 0));
+  const auto is_confirmed = [](const RingData& data) { return data.service == RingService::confirmed; };
+  return longest_rotation(ring) + std::max(token, longest_of(ring, is_confirmed));
+}
+
 Duration least_rotation(const RingDescription& ring) {
   return static_cast<std::int64_t>(ring.stations.size()) * with_gap(ring.rules, frame_time(ring.rules, 0));
 }

@@ -31,8 +31,7 @@
 // lower class what a longest round leaves of its target rotation time. Else there is no bound.
 namespace fieldproof::token_bus {
 
-// Of a response: what the application of a station says.
-inline constexpr std::size_t kResponseOctets = 3;
+inline constexpr std::size_t kResponseOctets = 3;  // of response_of
 
 struct RingBounds {
   kernel::Duration rotation{};
@@ -44,6 +43,8 @@ RingBounds bounds_of(const RingDescription& ring);
 inline kernel::Duration longest_rotation(const RingDescription& ring) {
   return bounds_of(ring).rotation;
 }
+// The most of a round in which a transmission is lost: a token or a request is repeated.
+kernel::Duration longest_disturbed_rotation(const RingDescription& ring);
 // The least: nothing but tokens.
 kernel::Duration least_rotation(const RingDescription& ring);
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr unsigned kMostRingStations = 64;
 constexpr std::size_t kMostFlows = 256;
+constexpr std::size_t kMostCuts = 64;
 constexpr double kLongestCable = 100'000;  // m: more is a slip of the pen
 constexpr kernel::Duration kShortestPeriod = 100 * kernel::kMicrosecond;
 constexpr kernel::Duration kLongestPeriod = 100 * kernel::kSecond;
@@ -42,6 +43,24 @@ void read_cable(config::ObjectReader& object, RingDescription& ring) {
   for (const config::Value& one : repeaters->as_array(1, ring.cable.most_repeaters))
     ring.repeaters_m.push_back(one.as_length_m(0, kLongestCable));
   ring.rules.most_octets = ring.cable.most_octets_with_repeaters;
+}
+
+RingCut read_cut(const config::Value& value) {
+  return config::read_object(value, [](config::ObjectReader& object) {
+    RingCut cut;
+    cut.channel = object.required("channel").as_choice<Channel>({{"A", Channel::a}, {"B", Channel::b}});
+    cut.at = object.required("at").as_duration({}, kLongestPeriod);
+    cut.lasts = object.required("lasts").as_duration(kernel::kPicosecond, kLongestPeriod);
+    cut.after = object.required("after").as_integer<Address>();
+    return cut;
+  });
+}
+
+void read_channels(config::ObjectReader& object, RingDescription& ring) {
+  if (const auto channels = object.optional("channels")) ring.channels = channels->as_integer<unsigned>(1, 2);
+  const auto cuts = object.optional("cuts");
+  if (!cuts) return;
+  for (const config::Value& one : cuts->as_array(1, kMostCuts)) ring.cuts.push_back(read_cut(one));
 }
 
 void read_ring_rules(config::ObjectReader& object, Rules& rules) {
@@ -84,6 +103,20 @@ std::optional<std::string> violation_of_data(const RingDescription& ring, const 
   return std::nullopt;
 }
 
+std::optional<std::string> violation_of_cuts(const RingDescription& ring) {
+  if (!ring.cuts.empty() && ring.channels != 2) return "a ring with \"cuts\" has \"channels\": 2";
+  kernel::Duration repaired{};
+  for (const RingCut& cut : ring.cuts) {
+    if (!is_in(ring.stations, cut.after) || cut.after == ring.stations.back())
+      return fmt::format("a cut after station {}: write one of \"stations\" that is not the last", cut.after);
+    if (cut.at < repaired)
+      return fmt::format("a cut at {}: the one before it is repaired at {}; cuts come one after the other",
+                         kernel::describe(cut.at), kernel::describe(repaired));
+    repaired = cut.at + cut.lasts;
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> violation_of_cable(const RingDescription& ring) {
   double begin = 0;
   std::vector<double> ends = ring.repeaters_m;
@@ -99,10 +132,11 @@ std::optional<std::string> violation_of_cable(const RingDescription& ring) {
   }
   if (ring.rules.slot_time_octets < needed_slot_octets(ring))
     return fmt::format(
-        "a slot time of {} octets: a path of {} with {} repeaters needs slot_time_octets of {} at least, "
+        "a slot time of {} octets: a path of {} with {} repeaters{} needs slot_time_octets of {} at least, "
         "twice the path and the {} of a station",
         ring.rules.slot_time_octets, kernel::describe(path_delay(ring)), ring.repeaters_m.size(),
-        needed_slot_octets(ring), kernel::describe(ring.cable.station_delay));
+        ring.channels == 2 ? " and a selection of channels" : "", needed_slot_octets(ring),
+        kernel::describe(ring.cable.station_delay));
   return std::nullopt;
 }
 
@@ -127,9 +161,18 @@ kernel::Duration cable_delay(const RingDescription& ring, double length_m) {
   return kernel::Duration{std::llround(length_m * static_cast<double>(ring.cable.cable_delay_ps_per_m))};
 }
 
+std::size_t stations_before(const RingDescription& ring, const RingCut& cut) {
+  return static_cast<std::size_t>(std::ranges::find(ring.stations, cut.after) - ring.stations.begin()) + 1;
+}
+
+kernel::Duration selection_delay(const RingDescription& ring) {
+  return ring.channels == 1 ? kernel::Duration{} : mac_symbols(ring.rules, ChannelRules{}.skew_symbols);
+}
+
 kernel::Duration path_delay(const RingDescription& ring) {
   const auto bits = static_cast<std::int64_t>(ring.repeaters_m.size() * ring.cable.repeater_delay_bits);
-  return cable_delay(ring, ring.cable_m) + kernel::levels_duration(bits, ring.rules.phy_bit_rate);
+  return cable_delay(ring, ring.cable_m) + kernel::levels_duration(bits, ring.rules.phy_bit_rate) +
+         selection_delay(ring);
 }
 
 unsigned needed_slot_octets(const RingDescription& ring) {
@@ -158,6 +201,7 @@ RingDescription RingDescription::read(const config::Value& root) {
     for (const config::Value& one : object.required("data").as_array(1, kMostFlows))
       read.data.push_back(read_ring_data(one));
     read_cable(object, read);
+    read_channels(object, read);
     read_ring_rules(object, read.rules);
     return read;
   });
@@ -173,6 +217,7 @@ RingDescription RingDescription::load(const std::filesystem::path& path) {
 std::optional<std::string> violation_of(const RingDescription& ring) {
   if (auto sentence = impossible(ring.rules)) return sentence;
   if (auto sentence = violation_of_stations(ring)) return sentence;
+  if (auto sentence = violation_of_cuts(ring)) return sentence;
   if (auto sentence = violation_of_cable(ring)) return sentence;
   for (const RingData& data : ring.data) {
     if (auto sentence = violation_of_data(ring, data)) return sentence;

@@ -10,6 +10,7 @@
 
 #include "harness/config/document.hpp"
 #include "protocols/token_bus/cable_rules.hpp"
+#include "protocols/token_bus/channel_selection.hpp"
 #include "protocols/token_bus/frame.hpp"
 
 // A ring of the token bus as a file describes it: stations, and data that go between them by the services of
@@ -57,12 +58,22 @@ struct RingData {
   kernel::Duration mean_gap() const;
 };
 
+// The cable of a channel is cut, and repaired.
+struct RingCut {
+  Channel channel = Channel::a;
+  kernel::Duration at{};  // since all data have come once
+  kernel::Duration lasts{};
+  Address after = 0;  // between this station and the next one on the cable
+};
+
 struct RingDescription {
   std::string name;
   std::vector<Address> stations;  // even: addresses of individuals
   std::vector<RingData> data;
   double cable_m = 0;                 // along which the stations stand evenly, in their order
   std::vector<double> repeaters_m{};  // from its begin, ascending
+  unsigned channels = 1;              // 2: each station has a dual channel manager
+  std::vector<RingCut> cuts{};        // with two channels; of one of them at a time, in the order of time
   Rules rules{};
   CableRules cable{};
 
@@ -79,7 +90,11 @@ std::optional<std::string> violation_of(const RingDescription& ring);
 // ---- the line ----
 double position_m(const RingDescription& ring, std::size_t station);
 kernel::Duration cable_delay(const RingDescription& ring, double length_m);
-// From one end to the other, repeaters included.
+// How many stations stand before the place of a cut.
+std::size_t stations_before(const RingDescription& ring, const RingCut& cut);
+// That a channel manager takes to select.
+kernel::Duration selection_delay(const RingDescription& ring);
+// From one end to the other, repeaters and channel managers included.
 kernel::Duration path_delay(const RingDescription& ring);
 // The least slot time: there and back, two stations, and a symbol.
 unsigned needed_slot_octets(const RingDescription& ring);

@@ -16,16 +16,6 @@ using kernel::Time;
 
 // A window opens after so many tokens of a station at most.
 constexpr std::int64_t kTokensUntilWindow = 20;
-// Rounds of the token after which a datum that was not sent is missing.
-constexpr std::int64_t kRoundsWaited = 2;
-// A round that is longer for another reason than data: a contest, a lost token.
-constexpr std::size_t kRotation = 0;
-
-// What the application of a station answers confirmed data with.
-Octets response_of(Address address) {
-  return {0xFF, static_cast<std::uint8_t>(address >> 8), static_cast<std::uint8_t>(address)};
-}
-
 std::string unbounded_because(RingService service) {
   return service == RingService::urgent
              ? "no bound: data come oftener than each other round, or outlast the hold time"
@@ -40,9 +30,14 @@ RingNetwork::RingNetwork(const RingDescription& description, std::uint64_t seed,
     : description_(description),
       bounds_(bounds_of(description)),
       random_(seed),
-      line_(segment_, description_, "line", random_),
+      channel_reader_(description.rules),
       tester_(description.rules) {
   FIELDPROOF_CHECK(!violation_of(description_), "a ring that runs is one within its limits");
+  for (unsigned n = 0; n < description_.channels; ++n) {
+    const std::string name =
+        description_.channels == 1 ? "line" : fmt::format("line {}", text_of(kChannels[n]));
+    lines_.emplace_back(segment_, description_, kChannels[n], name, random_);
+  }
   // A word that waits for a token outlives each one that is lost: it is late, not wrong.
   constexpr unsigned kMostWaiting = 16;
   for (const RingData& data : description_.data) {
@@ -55,6 +50,10 @@ RingNetwork::RingNetwork(const RingDescription& description, std::uint64_t seed,
   }
   for (std::size_t n = 0; n < description_.stations.size(); ++n)
     add(description_.stations[n], n + 1, stations);
+  list_cycles();
+}
+
+void RingNetwork::list_cycles() {
   cycles_.push_back({.name = "token rotation",
                      .theory = bounds_.rotation,
                      .form = "all data or what the timers leave, and a response window of each station",
@@ -71,6 +70,13 @@ RingNetwork::RingNetwork(const RingDescription& description, std::uint64_t seed,
          .is_bound = true,
          .is_delay = true});
   }
+  if (description_.cuts.empty()) return;
+  cut_kind_ = cycles_.size();
+  cycles_.push_back({.name = "round with a cut",
+                     .theory = longest_disturbed_rotation(description_),
+                     .form = "a round, and a token or a request that is repeated",
+                     .is_bound = true,
+                     .is_delay = true});
 }
 
 void RingNetwork::add(Address address, std::size_t position, const RingStations& stations) {
@@ -83,16 +89,41 @@ void RingNetwork::add(Address address, std::size_t position, const RingStations&
   seat.user = std::make_unique<User>(*this, address);
   const std::string name = fmt::format("station@{}", position);
   seat.number = segment_.attach(*seat.device, name);
-  segment::MediumPort& place = line_.attach(name + "/in", seat.number, 0, position - 1);
+  connect(seat, name, position, is_under_test);
+}
+
+segment::MediumPort& RingNetwork::attach(const std::string& name, std::size_t station, Channel channel,
+                                         std::size_t position) {
+  const auto port = static_cast<segment::PortIndex>(channel);
+  segment::MediumPort& place = lines_[port].attach(name, station, port, position - 1);
   place.sense_activity();
-  place.tap_driven(*this);
-  if (is_under_test) place.tap_driven(attendance_.expect(name));
-  seat.device->wire(place, *seat.user);
   // Levels are half bits.
   places_.push_back({.name = place.name(),
                      .receiver = &place,
                      .trace_channel = place.trace_channel(),
                      .level_rate = 2 * description_.rules.phy_bit_rate});
+  return place;
+}
+
+void RingNetwork::connect(Seat& seat, const std::string& name, std::size_t position, bool is_under_test) {
+  segment::MediumPort* first = nullptr;  // what is driven is the same on both
+  if (description_.channels == 1) {
+    first = &attach(name + "/in", seat.number, Channel::a, position);
+    seat.device->wire(*first, *seat.user);
+  } else {
+    const auto on_event = [this, &seat](const ChannelEvent& event, Time) {
+      if (event.kind != ChannelEventKind::clean && came_up_at_)
+        ++seat.faults[static_cast<std::size_t>(event.channel)];
+    };
+    seat.channels =
+        std::make_unique<ChannelPair>(segment_, seat.number, description_.rules, channel_reader_, on_event);
+    const std::size_t number = segment_.attach(*seat.channels, name + " channels");
+    first = &attach(name + "/A", number, Channel::a, position);
+    seat.channels->wire(*first, attach(name + "/B", number, Channel::b, position));
+    seat.device->wire(*seat.channels, *seat.user);
+  }
+  first->tap_driven(*this);
+  if (is_under_test) first->tap_driven(attendance_.expect(name));
 }
 
 void RingNetwork::start() {
@@ -101,6 +132,7 @@ void RingNetwork::start() {
   started_ = segment_.now();
   is_on_ = true;
   for (Seat& seat : seats_) {
+    if (seat.channels) seat.channels->reset();
     seat.device->start(started_);
     const bool confirms = std::ranges::any_of(description_.data, [&](const RingData& data) {
       return data.to == seat.address && data.service == RingService::confirmed;
@@ -117,6 +149,7 @@ void RingNetwork::stop() {
   is_on_ = false;
   last_token_ = 0;
   last_token_at_.reset();
+  begin_cuts(std::nullopt);
   for (Seat& seat : seats_) {
     seat.device->stop(segment_.now());
     seat.has_had_token = false;
@@ -187,6 +220,10 @@ std::vector<measure::Condition> RingNetwork::conditions() const {
   std::vector<measure::Condition> conditions{{"stations", fmt::format("{}", seats_.size())},
                                              {"slot time", kernel::describe(slots(description_.rules, 1))},
                                              {"a word is sampled", "when its datum is given to the MAC"}};
+  if (description_.channels == 2) {
+    conditions.push_back({"channels", fmt::format("2, cut {} times; their selection is this project's choice",
+                                                  description_.cuts.size())});
+  }
   if (description_.cable_m > 0) {
     conditions.push_back(
         {"path from end to end",
@@ -212,6 +249,29 @@ std::vector<measure::Count> RingNetwork::delivery_faults() const {
 // What a check of 32 bits cannot see has no closed form here: it is counted over 2^32 words of the dual code.
 std::vector<network::ProtectedFrame> RingNetwork::protected_frames() const {
   return {};
+}
+
+std::vector<measure::Count> RingNetwork::remarks() const {
+  std::vector<measure::Count> remarks{{"tokens that were passed again", repeated_tokens_, 0},
+                                      {"claims of the token", claims_, 0}};
+  if (description_.channels == 1) return remarks;
+  for (const Channel channel : kChannels) {
+    std::uint64_t faults = 0;
+    std::uint64_t finders = 0;
+    std::uint64_t left = 0;
+    for (const Seat& seat : seats_) {
+      const std::uint64_t its = seat.faults[static_cast<std::size_t>(channel)];
+      faults += its;
+      finders += its > 0 ? 1U : 0U;
+      left += seat.channels->has_fault(channel) ? 1U : 0U;
+    }
+    remarks.push_back({fmt::format("faults of channel {} that were reported", text_of(channel)), faults, 0});
+    remarks.push_back({fmt::format("stations that reported faults of channel {}", text_of(channel)), finders,
+                       seats_.size()});
+    remarks.push_back({fmt::format("stations for which channel {} has a fault still", text_of(channel)), left,
+                       seats_.size()});
+  }
+  return remarks;
 }
 
 void RingNetwork::set_source(std::size_t signal, std::uint16_t word) {
@@ -244,145 +304,6 @@ std::vector<network::CopiedPath> RingNetwork::paths() const {
 
 void RingNetwork::end() {
   for (const Seat& seat : seats_) seat.device->end();
-}
-
-// ---- the lower tester and the applications ----
-
-RingNetwork::Seat& RingNetwork::seat_of(Address address) {
-  return *std::ranges::find(seats_, address, &Seat::address);
-}
-
-// One datum at a time: what waits for a token goes first.
-void RingNetwork::give(std::size_t signal, Time now) {
-  RingFlow& flow = flows_[signal];
-  if (!flow.may_give() || words_.is_called(signal)) return;
-  const auto datum = flow.next_datum(words_.sample(signal, now));
-  const RingData& data = flow.data();
-  Seat& seat = seat_of(data.from);
-  const bool is_taken = seat.device->submit({.action = action_of(data.service),
-                                             .priority = priority_of(data.service),
-                                             .destination = data.to,
-                                             .data = octets_of(*datum, data.octets)},
-                                            now);
-  segment_.refresh(seat.number);
-  if (!is_taken) return flow.on_done();
-  deliveries_.give(*datum);
-  words_.call(signal, now, now + kRoundsWaited * bounds_.rotation);
-}
-
-void RingNetwork::on_wave(const line::Waveform& wave) {
-  for (const Reception& one : tester_.read(wave)) {
-    const auto frame =
-        one.kind == ReceptionKind::frame ? frame_of(one.octets, description_.rules) : std::nullopt;
-    if (!frame) continue;
-    if (frame->kind == FrameKind::token) on_token(frame->destination, wave.start);
-    if (frame->kind == FrameKind::data) on_datum(*frame, wave.start, wave.end());
-  }
-}
-
-void RingNetwork::on_token(Address destination, Time begin) {
-  last_token_at_ = begin;
-  // A token that is repeated begins no other round.
-  const bool is_next = std::exchange(last_token_, destination) != destination;
-  if (is_next && destination == description_.stations.front()) words_.begin_cycle(kRotation, begin);
-  const auto seat = std::ranges::find(seats_, destination, &Seat::address);
-  if (seat == seats_.end()) return;
-  const bool is_first = !std::exchange(seat->has_had_token, true);
-  for (std::size_t n = 0; n < flows_.size(); ++n) {
-    RingFlow& flow = flows_[n];
-    if (flow.data().from != destination) continue;
-    if (is_first) flow.begin(begin);
-    if (words_.is_called(n) && words_.is_sent(n) && flow.data().is_under_each_token()) close(n, begin);
-    if (words_.is_called(n)) {
-      // What is due under each token has missed one.
-      const bool is_retry = !is_next || flow.data().is_under_each_token();
-      if (is_retry && !words_.is_sent(n)) words_.call_again(n, begin);
-    } else if (flow.given()) {
-      words_.call(n, begin, begin + kRoundsWaited * bounds_.rotation);
-    } else if (flow.data().is_under_each_token()) {
-      flow.request(begin);
-      give(n, begin);
-    }
-  }
-  set_wake();
-}
-
-void RingNetwork::on_datum(const Frame& frame, Time begin, Time end) {
-  const auto datum = datum_of(frame.data);
-  if (!datum || datum->flow >= flows_.size()) return;
-  const std::size_t signal = datum->flow;
-  RingFlow& flow = flows_[signal];
-  const RingData& data = flow.data();
-  if (frame.source != data.from || !flow.given() || flow.given()->datum != *datum) return;
-  if (const auto requested = flow.on_sent(*datum)) {
-    words_.end_delay(delay_kinds_[static_cast<std::size_t>(data.service)], *requested, end);
-  } else if (words_.is_called(signal)) {
-    words_.call_again(signal, begin);
-  }
-  Duration due = slots(description_.rules, 1);
-  if (data.service == RingService::confirmed) {
-    seat_of(data.from).asks = signal;
-    due += slots(description_.rules, description_.rules.response_wait_slots) +
-           frame_time(description_.rules, kResponseOctets);
-  } else {
-    flow.on_done();
-  }
-  words_.on_sent(signal, end + due);
-  set_wake();
-}
-
-void RingNetwork::on_data(Address at, const Frame& frame, Time when) {
-  if (frame.action == Action::response) return on_response(seat_of(at), frame, when);
-  const auto datum = datum_of(frame.data);
-  if (!datum || datum->flow >= flows_.size()) return count(Delivery::wrong);
-  const RingData& data = flows_[datum->flow].data();
-  const bool is_its = data.to == at && data.from == frame.source && data.octets == frame.data.size();
-  const Delivery delivery = is_its ? deliveries_.get(*datum) : Delivery::wrong;
-  const bool is_repetition = data.service == RingService::confirmed && delivery == Delivery::twice;
-  if (is_repetition) return;
-  count(delivery);
-  if (delivery == Delivery::first) words_.on_got(datum->flow, datum->word, when);
-}
-
-void RingNetwork::on_response(Seat& seat, const Frame& frame, Time when) {
-  if (!seat.asks || flows_[*seat.asks].data().to != frame.source) return;
-  if (frame.data != response_of(frame.source)) return count(Delivery::wrong);
-  close(*std::exchange(seat.asks, std::nullopt), when);
-}
-
-void RingNetwork::on_event(Address at, const Event& event, Time when) {
-  Seat& seat = seat_of(at);
-  const bool is_about_it =
-      event.kind == EventKind::response_missing && seat.asks && flows_[*seat.asks].data().to == event.address;
-  if (is_about_it) close(*std::exchange(seat.asks, std::nullopt), when);
-}
-
-// Nothing more comes of what was sent; the next one may go.
-void RingNetwork::close(std::size_t signal, Time now) {
-  if (words_.is_called(signal)) words_.close(signal, now);
-  after_close(signal, now);
-}
-
-void RingNetwork::after_close(std::size_t signal, Time now) {
-  RingFlow& flow = flows_[signal];
-  if (flow.given() && flow.given()->is_sent) flow.on_done();
-  give(signal, now);
-  set_wake();
-}
-
-void RingNetwork::set_wake() {
-  wakes_at_ = words_.next_close();
-  for (const RingFlow& flow : flows_) wakes_at_ = std::min(wakes_at_, flow.next_request());
-  if (has_tester_) segment_.refresh(tester_number_);
-}
-
-void RingNetwork::on_time(Time now) {
-  words_.close_due(now, [&](std::size_t signal) { after_close(signal, now); });
-  for (std::size_t n = 0; n < flows_.size(); ++n) {
-    flows_[n].take_due(now);
-    give(n, now);
-  }
-  set_wake();
 }
 
 }  // namespace fieldproof::token_bus

@@ -14,6 +14,7 @@
 #include "harness/network/network.hpp"
 #include "harness/network/word_exchanges.hpp"
 #include "harness/segment/segment.hpp"
+#include "protocols/token_bus/channel_pair.hpp"
 #include "protocols/token_bus/device.hpp"
 #include "protocols/token_bus/ring_bounds.hpp"
 #include "protocols/token_bus/ring_flow.hpp"
@@ -49,6 +50,7 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   std::span<const network::Place> places() const override { return places_; }
   std::span<const network::CycleKind> cycles() const override { return cycles_; }
   std::vector<measure::Count> delivery_faults() const override;
+  std::vector<measure::Count> remarks() const override;
   network::RecoveryLimit recovery_limit() const override;
   network::ExchangeWords exchange_words() const override {
     return {"data of the services", "", "data that were lost"};
@@ -80,12 +82,18 @@ class RingNetwork final : public network::Network, private segment::Station, pri
     Address address = 0;
     std::unique_ptr<StationDevice> device;
     std::unique_ptr<User> user;
+    std::unique_ptr<ChannelPair> channels;                 // where there are two
+    std::array<std::uint64_t, kChannels.size()> faults{};  // of each, reported since all data have come once
     std::size_t number = 0;
     bool has_had_token = false;            // since the start
     std::optional<std::size_t> asks = {};  // the flow whose confirmed datum was sent last
   };
 
+  void list_cycles();
   void add(Address address, std::size_t position, const RingStations& stations);
+  segment::MediumPort& attach(const std::string& name, std::size_t station, Channel channel,
+                              std::size_t position);
+  void connect(Seat& seat, const std::string& name, std::size_t position, bool is_under_test);
   void receive(segment::PortIndex, const line::Waveform&) override {}
   void on_time(kernel::Time now) override;
   kernel::Time next_time() const override { return wakes_at_; }
@@ -99,6 +107,8 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   void close(std::size_t signal, kernel::Time now);
   void after_close(std::size_t signal, kernel::Time now);
   void count(Delivery delivery) { ++deliveries_by_kind_[static_cast<std::size_t>(delivery)]; }
+  void begin_round(kernel::Time now);
+  void begin_cuts(std::optional<kernel::Time> from);
   void set_wake();
   Seat& seat_of(Address address);
   kernel::Duration longest_period() const;
@@ -107,7 +117,8 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   RingBounds bounds_;
   kernel::Random random_;
   segment::Segment segment_;
-  RingLine line_;
+  std::deque<RingLine> lines_;  // A, and B where there are two channels
+  ChannelReader channel_reader_;
   FrameReader tester_;
   network::Attendance attendance_;
   std::deque<Seat> seats_;
@@ -120,6 +131,11 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   Deliveries deliveries_;
   std::array<std::uint64_t, kDeliveries> deliveries_by_kind_{};
   std::optional<kernel::Time> last_token_at_{};
+  std::optional<kernel::Time> last_round_at_{};
+  std::optional<kernel::Time> came_up_at_{};
+  std::size_t cut_kind_ = 0;           // of rounds in which a channel was cut or repaired; 0: none is
+  std::uint64_t repeated_tokens_ = 0;  // since then, too
+  std::uint64_t claims_ = 0;
   std::size_t tester_number_ = 0;
   bool has_tester_ = false;
   bool is_on_ = false;

@@ -24,6 +24,10 @@ std::optional<ServiceDatum> datum_of(const Octets& octets) {
   return octets_of(datum, octets.size()) == octets ? std::optional(datum) : std::nullopt;
 }
 
+Octets response_of(Address address) {
+  return {0xFF, static_cast<std::uint8_t>(address >> 8), static_cast<std::uint8_t>(address)};
+}
+
 void Deliveries::give(const ServiceDatum& datum) {
   flows_.at(datum.flow).given[datum.number % kKnown] = datum;
 }

@@ -25,6 +25,9 @@ Octets octets_of(const ServiceDatum& datum, std::size_t length);
 // Nothing where these octets were made of no datum.
 std::optional<ServiceDatum> datum_of(const Octets& octets);
 
+// What the application of a station answers confirmed data with.
+Octets response_of(Address address);
+
 enum class Delivery : std::uint8_t {
   first,  // as it is due; others may have been lost before
   twice,
