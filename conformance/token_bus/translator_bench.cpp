@@ -57,7 +57,7 @@ void TranslatorBench::command(SideCommand command, std::size_t symbols) {
   segment().run_until(drive_request(request_levels_of(command, symbols)));
 }
 
-void TranslatorBench::receive(const SideBits& bits) {
+void TranslatorBench::carry(const SideBits& bits) {
   segment().run_until(drive_bits(bits));
 }
 

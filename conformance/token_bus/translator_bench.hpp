@@ -31,9 +31,9 @@ class TranslatorBench final
   void command(SideCommand command, std::size_t symbols);
 
   // ---- lower tester; each runs until what is received is over ----
-  void receive(const SideBits& bits);
+  void carry(const SideBits& bits);
   // As a repeater or another station sends it.
-  void receive(std::string_view bits) { receive(side_bits_of(bits)); }
+  void carry(std::string_view bits) { carry(side_bits_of(bits)); }
   // Both at once: what the IUT receives while something is requested of it.
   void request_and_receive(std::string_view symbols, const SideBits& bits);
   void command_and_receive(SideCommand command, std::size_t symbols, const SideBits& bits);

@@ -23,7 +23,7 @@ void receive_with_echo(TranslatorScene& scene, std::int64_t symbols, bool more_f
   scene.requested = frame_text(scene.octets, more_follows);
   scene.receive(encoded(scene.requested));
   scene.bench.wait(scene.bench.symbols(symbols));
-  scene.bench.receive(side_bits_of(kEcho));
+  scene.bench.carry(side_bits_of(kEcho));
 }
 
 void expect_frame_alone(TranslatorScene& scene, std::string_view reason) {
@@ -63,7 +63,7 @@ void send_with_heartbeat(TranslatorScene& scene) {
 
 void receive_heartbeat(TranslatorScene& scene) {
   scene.bench.clear();
-  scene.bench.receive(heartbeat(scene.round % 2 == 1));
+  scene.bench.carry(heartbeat(scene.round % 2 == 1));
 }
 
 void receive_collision_while_sending(TranslatorScene& scene) {

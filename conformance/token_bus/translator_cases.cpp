@@ -9,7 +9,7 @@ TranslatorCase translator_canary() {
   return {canary_of("token_bus/translator", token_sources::own("rules of the suite"), "A preamble.",
                     "the case asks for a symbol that no translator indicates."),
           [](TranslatorBench& bench, CaseJudge& judge) {
-            bench.receive("10101010");
+            bench.carry("10101010");
             bench.settle();
             judge.expect(bench.indicated().text().find('P') != std::string::npos, "canary", "pad_idle",
                          "none");

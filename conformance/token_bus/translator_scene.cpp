@@ -27,7 +27,7 @@ void TranslatorScene::request(std::string symbols) {
 void TranslatorScene::receive(const SideBits& bits) {
   bench.clear();
   begin = bench.now();
-  bench.receive(bits);
+  bench.carry(bits);
 }
 
 std::string TranslatorScene::answers_to(SideCommand command) {

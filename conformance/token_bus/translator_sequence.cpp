@@ -146,11 +146,11 @@ class TranslatorSequenceRun {
           bench.command(one, kCommandSymbols);
         return;
       case TranslatorWord::receive:
-        return bench.receive(with_bit_faults(encoded(translated_frame(numbers[0], numbers[2] == 1))
-                                                 .substr(static_cast<std::size_t>(numbers[1])),
-                                             command.faults));
+        return bench.carry(with_bit_faults(encoded(translated_frame(numbers[0], numbers[2] == 1))
+                                               .substr(static_cast<std::size_t>(numbers[1])),
+                                           command.faults));
       case TranslatorWord::receive_cut:
-        return bench.receive(
+        return bench.carry(
             with_bit_faults(encoded(frame).substr(0, static_cast<std::size_t>(numbers[1])), command.faults));
       case TranslatorWord::collide:
         return bench.request_and_receive(frame, with_bit_faults(encoded(frame), command.faults));

@@ -202,11 +202,11 @@ std::string without_end(std::string text, char idle) {
 Mismatch difference(const std::string& right, const std::string& seen) {
   const auto [at_right, at_seen] = std::ranges::mismatch(right, seen);
   const auto at = static_cast<std::size_t>(at_right - right.begin());
-  constexpr std::size_t kMostShown = 60;
+  constexpr std::size_t kMostUnits = 60;
   const std::size_t first = at - std::min<std::size_t>(at, 8);
   const auto part = [&](const std::string& text) {
     return fmt::format("from {} on: {}", first,
-                       first < text.size() ? text.substr(first, kMostShown) : "nothing");
+                       first < text.size() ? text.substr(first, kMostUnits) : "nothing");
   };
   Mismatch made{{part(right)}, part(seen)};
   made.first_difference = fmt::format("unit {}", at);

@@ -264,7 +264,10 @@ void add_counts(std::vector<measure::Count>& sums, const std::vector<measure::Co
     sums = counts;
     return;
   }
-  for (std::size_t n = 0; n < sums.size(); ++n) sums[n].count += counts[n].count;
+  for (std::size_t n = 0; n < sums.size(); ++n) {
+    sums[n].count += counts[n].count;
+    sums[n].of += counts[n].of;
+  }
 }
 
 // The cycles of all signals together, a series for each kind.
