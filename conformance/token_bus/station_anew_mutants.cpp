@@ -29,6 +29,7 @@ std::vector<TokenMutants::Row> token_anew_rows() {
       {"group_is_successor", "", "takes a group that is named for its successor", mutant<GroupIsSuccessor>()},
       {"successor_of_another_taken", "", "takes the successor that is named to another",
        mutant<SuccessorOfAnotherTaken>()},
+      {"members_do_not_contend", "", "contends outside of the ring only", mutant<MembersDoNotContend>()},
       {"responds_in_the_ring_only", "", "responds in the ring only", mutant<RespondsInTheRingOnly>()},
       {"responds_for_groups", "", "responds to requests for groups", mutant<RespondsForGroups>()},
       {"hold_begins_with_the_first_frame", "", "counts the hold time from its first frame on",

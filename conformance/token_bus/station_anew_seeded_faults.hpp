@@ -95,6 +95,15 @@ class SuccessorOfAnotherTaken : public TokenStation {
   }
 };
 
+class MembersDoNotContend : public TokenStation {
+  using TokenStation::TokenStation;
+  std::optional<Frame> understood(const Octets& octets) const override {
+    auto frame = TokenStation::understood(octets);
+    const bool is_contest = frame && frame->kind == FrameKind::resolve_contention;
+    return is_contest && is_in_ring() ? std::nullopt : frame;
+  }
+};
+
 inline bool is_request(const std::optional<Frame>& frame) {
   return frame && frame->kind == FrameKind::data && frame->action == token_bus::Action::request_with_response;
 }

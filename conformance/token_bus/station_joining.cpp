@@ -168,15 +168,26 @@ std::vector<TokenCase> token_joining_cases() {
       on_chart(
           token_must("joining/answers_for_its_predecessor", "TB-23",
                      "When a token passer asks who follows a station, the one whose predecessor that is "
-                     "answers; nobody else does.",
-                     standard("who_follows"), {{"answers_as_the_lost_one", "answers_unasked"}}),
+                     "answers, and contends as any that has answered; nobody else does.",
+                     standard("who_follows"),
+                     {{"answers_as_the_lost_one", "answers_unasked"},
+                      {"members_do_not_contend", "contest_missing"}}),
           {{},
            {joined(), who_follows(kOwnAddress),
             silence(2 * 28, "answers_unasked", "its predecessor is another"), who_follows(TokenBench::kBelow),
             silence(2 * 28, "answers_unasked", "its predecessor is another"), who_follows(TokenBench::kAbove),
             says("set_successor to 0020 with its own address",
                  {TokenControl::set_successor, TokenBench::kStranger, kOwnAddress}, at_once(),
-                 "answer_missing", "answer_wrong")}}),
+                 "answer_missing", "answer_wrong"),
+            wait(8),
+            send("0020 resolves contention",
+                 [](TokenScene& scene) {
+                   return scene.bench.frame(TokenControl::resolve, TokenBench::kStranger,
+                                            TokenBench::kStranger);
+                 }),
+            says("set_successor to 0020 after three slot times, by the pair 00",
+                 {TokenControl::set_successor, TokenBench::kStranger, kOwnAddress}, in_window(3),
+                 "contest_missing", "answer_wrong")}}),
       on_chart(token_must("joining/a_station_that_has_nothing_to_send_stays_outside", "TB-17",
                           "A station that is not to be in the ring and has nothing to send answers no "
                           "solicitation; with data it does.",
