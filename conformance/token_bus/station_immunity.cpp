@@ -84,6 +84,48 @@ void pass_under_stress(TokenScene& scene, TokenBurstLedger& ledger) {
                      "it is neither used nor counted");
 }
 
+// A frame that asks it for set_successor: nothing, where it has counted a faulty reception instead.
+bool answers_under_stress(TokenScene& scene, TokenControl asks, std::uint64_t destination,
+                          const TokenSpan& span) {
+  TokenBench& bench = scene.bench;
+  const std::uint64_t changed = bench.stressed_transmissions();
+  const std::uint64_t counted = faults_counted(bench);
+  scene.send(bench.frame(asks, destination, TokenBench::kAbove));
+  const auto one = bench.next(bench.now() + span.latest + bench.octets(8));
+  if (faults_counted(bench) > counted) {
+    scene.judge.expect(!one, "answers_unasked", "silence: nobody asked that it has understood", "an answer");
+    return false;
+  }
+  scene.judge.expect(one || bench.stressed_transmissions() > changed, "does_not_recover",
+                     "an answer to what arrives as it was sent", "silence");
+  scene.judge.expect(one.has_value(), "loss_not_counted", "an answer, or a faulty reception", "neither");
+  scene.expect_right(*one, {TokenControl::set_successor, TokenBench::kAbove, kOwnAddress}, span,
+                     "set_successor to 000E", "answer_wrong");
+  return true;
+}
+
+void joining_under_bursts(TokenScene& scene) {
+  TokenBench& bench = scene.bench;
+  for (int round = 0; round < bench.volume(1, 20); ++round) {
+    for (const fault::Stress& stress : bench.stresses()) {
+      bench.begin_stress(stress);
+      const kernel::Time until = bench.now() + stress.duration;
+      while (bench.now() < until) {
+        const bool has_answered =
+            answers_under_stress(scene, TokenControl::solicit_1, TokenBench::kBelow, scene.at_once());
+        bench.wait(bench.octets(8));
+        // The first two bits of its address are 00.
+        if (has_answered)
+          answers_under_stress(scene, TokenControl::resolve, TokenBench::kAbove, scene.in_window(3));
+        bench.wait(bench.octets(8));
+      }
+      bench.end_stress();
+    }
+  }
+  if (bench.stressed_transmissions() == 0)
+    scene.judge.inconclusive("nothing_was_hit", {{"bursts change frames"}, "none arrived otherwise"});
+}
+
 void ring_under_bursts(TokenScene& scene) {
   TokenBench& bench = scene.bench;
   TokenBurstLedger ledger;
@@ -120,17 +162,33 @@ std::vector<TokenCase> token_immunity_cases() {
        {"claims_after_faults", "second_token"}},
       {{mib("faulty receptions"), {"loss_not_counted"}}});
   test_case.tags.emplace_back(kStressTag);
-  return {on_chart(
-      std::move(test_case),
-      {{},
-       {joined(),
-        TokenStep{
-            "bursts of IEC 61000-4-4, 5 and 100 kHz, both polarities, the two highest levels, while the "
-            "token goes round, and data with it",
-            "the token is used or counted as a faulty reception, and nothing is sent without it",
-            ring_under_bursts},
-        says("the first claim of a token that is lost then", {TokenControl::claim}, after_slots(7),
-             "claim_missing", "claim_wrong")}})};
+  TestCase joining = token_must("immunity/bursts_let_nobody_answer_unasked", "",
+                                "Under bursts a station outside of the ring answers the solicitations and "
+                                "contests that arrive whole, and "
+                                "nothing else; after them it joins.",
+                                standard("response windows"), {{"faults_are_contests", "answers_unasked"}},
+                                {{mib("faulty receptions"), {"loss_not_counted"}}});
+  joining.tags.emplace_back(kStressTag);
+  return {
+      on_chart(std::move(joining),
+               {{},
+                {wait(10),
+                 TokenStep{"bursts of IEC 61000-4-4 while 000E solicits the station, and resolves contention "
+                           "when it answers",
+                           "set_successor to what arrives whole, and a faulty reception counted otherwise",
+                           joining_under_bursts},
+                 joined(), serves()}}),
+      on_chart(
+          std::move(test_case),
+          {{},
+           {joined(),
+            TokenStep{
+                "bursts of IEC 61000-4-4, 5 and 100 kHz, both polarities, the two highest levels, while the "
+                "token goes round, and data with it",
+                "the token is used or counted as a faulty reception, and nothing is sent without it",
+                ring_under_bursts},
+            says("the first claim of a token that is lost then", {TokenControl::claim}, after_slots(7),
+                 "claim_missing", "claim_wrong")}})};
 }
 
 }  // namespace fieldproof::conformance

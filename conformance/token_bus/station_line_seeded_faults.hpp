@@ -121,6 +121,21 @@ class DeafAfterManyFaults : public TokenStation {
   unsigned faults_ = 0;
 };
 
+// Takes what it has not understood for resolve_contention when it has answered.
+class FaultsAreContests : public TokenStation {
+  using TokenStation::TokenStation;
+  std::vector<Reception> received(const line::Waveform& wave) const override {
+    std::vector<Reception> all = TokenStation::received(wave);
+    const bool is_faulty = !all.empty() && all.front().kind != ReceptionKind::frame;
+    if (is_faulty && state() == AccessState::demand_in) {
+      const Frame contest{.kind = FrameKind::resolve_contention, .destination = 0, .source = kSolicitor};
+      all.push_back({.kind = ReceptionKind::frame, .octets = token_bus::octets_of(contest, rules())});
+    }
+    return all;
+  }
+  static constexpr Address kSolicitor = 0x000E;
+};
+
 // Takes the token for lost when it has not understood anybody for a while, though the line was not silent.
 class ClaimsAfterFaults : public TokenStation {
   using TokenStation::TokenStation;

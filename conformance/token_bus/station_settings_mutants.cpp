@@ -114,6 +114,7 @@ std::vector<TokenMutants::Row> token_line_rows() {
       {"counts_to_nine", "", "counts nine faulty receptions of a kind at most", mutant<CountsToNine>()},
       {"deaf_after_many_faults", "", "understands no frame after 80 faulty receptions",
        mutant<DeafAfterManyFaults>()},
+      {"faults_are_contests", "", "contends when it has not understood a frame", mutant<FaultsAreContests>()},
       {"claims_after_faults", "", "claims early when the last receptions were faulty",
        mutant<ClaimsAfterFaults>()},
   };
