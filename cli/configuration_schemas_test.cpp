@@ -76,6 +76,12 @@ TEST(TokenNetworkSchemaTest, TakesTheNetworkOfTheExamples) {
   expect_all("protocols/fieldbus_dll/token_network", {kSourceFolder / "examples/foundation.json"}, "valid");
 }
 
+TEST(RingNetworkSchemaTest, TakesTheNetworksOfTheExamples) {
+  expect_all("protocols/token_bus/ring_network",
+             {kSourceFolder / "examples/picnet.json", kSourceFolder / "examples/picnet_channels.json"},
+             "valid");
+}
+
 TEST(BandwidthNetworkSchemaTest, TakesTheNetworkOfTheExamples) {
   expect_all("protocols/bandwidth/bandwidth_network", {kSourceFolder / "examples/bandwidth.json"}, "valid");
 }

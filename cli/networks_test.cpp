@@ -83,6 +83,38 @@ TEST_F(Networks, JudgeTheReferenceOutsideAsInside) {
   }
 }
 
+// A source of confirmed data, and who confirms them: through the user's port alone.
+TEST_F(Networks, CarryTheServicesOfAStationOutsideAsOfTheReference) {
+  const auto write_ring = [&](const std::string& channels) {
+    write("ring.json", R"({"name": "services", "stations": [2, 4, 6], )" + channels + R"( "data": [
+        {"from": 2, "to": 4, "service": "urgent", "every": "5 ms"},
+        {"from": 4, "to": 2, "service": "periodic", "every": "7 ms", "octets": 32},
+        {"from": 2, "to": 6, "service": "confirmed", "every": "10 ms", "octets": 64},
+        {"from": 4, "to": 6, "service": "bulk", "load": "200 kbit/s", "octets": 300}]})");
+  };
+  const auto ledger = [&](const std::string& iut) {
+    const Called called = emc({"token_bus", "--network", "ring.json", "--duration", "300ms", "--iut",
+                               "station@1=" + iut, "--iut", "station@3=" + iut});
+    EXPECT_EQ(called.exit_code, 0) << iut << called.out << called.err;
+    return only_test().at("ledger");
+  };
+  for (const char* channels : {"", R"("channels": 2, )"}) {
+    write_ring(channels);
+    EXPECT_EQ(ledger("exec:'" FIELDPROOF_EXE "' station token_bus/station"), ledger("ref")) << channels;
+  }
+}
+
+TEST_F(Networks, SayHowLongDataOfAServiceWait) {
+  const Called called = call({"measure", "token_bus", "--network", example("picnet.json"), "--signal", "20Hz",
+                              "--duration", "300ms", "--quiet"});
+  EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
+  for (const char* row : {"longest token rotation, at most", "longest access delay, urgent, at most",
+                          "longest access delay, periodic, at most", "data delivered twice",
+                          "access delay, bulk, us", "class 6, this project's choice"})
+    EXPECT_HOLDS(called.out, row);
+  EXPECT_EQ(called.out.find("differs"), std::string::npos) << called.out;
+}
+
 TEST_F(Networks, SayWhichNumbersDecide) {
   const Called called = emc({"interbus", "--duration", "1s"});
   EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
