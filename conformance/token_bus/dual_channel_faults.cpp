@@ -23,7 +23,9 @@ void expect_reported_in_time(ManagerScene& scene) {
 // Bad signal on A so many symbols after the start delimiter of B; less on B.
 void spoil(ManagerScene& scene, std::size_t at, std::size_t on_b = 0) {
   constexpr std::size_t kDelimiter = 40;
-  const std::string frame = scene.frame(scene.bench.configuration().rules.slot_time_octets + 32);
+  const token_bus::Rules& rules = scene.bench.configuration().rules;
+  const std::string frame =
+      scene.frame(std::min<std::size_t>(rules.slot_time_octets + 32, token_bus::most_data(rules)));
   std::string spoiled_a = frame;
   std::string spoiled_b = frame;
   spoiled_a.replace(kDelimiter + at, 4, "BBBB");

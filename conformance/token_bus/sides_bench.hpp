@@ -50,7 +50,7 @@ class SidesBench : public CaseBench, private segment::Station {
   template <typename Setting>
   SidesBench(const Configuration& configuration, const Setting& setting, const std::string& name)
       : CaseBench(setting.seed, setting.volume, setting.stresses,
-                  LineWatch(token_bus::mac_symbols(configuration.rules, 1))),
+                  LineWatch(token_bus::mac_symbols(configuration.rules, 1) / 2)),
         configuration_(configuration),
         device_(setting.make_device(configuration)),
         tester_(segment().attach(*this, "tester")),

@@ -260,13 +260,14 @@ void leave_open(measure::Measurement& measurement, std::string_view why) {
 
 // The same ones of each signal.
 void add_counts(std::vector<measure::Count>& sums, const std::vector<measure::Count>& counts) {
-  if (sums.empty()) {
-    sums = counts;
-    return;
-  }
-  for (std::size_t n = 0; n < sums.size(); ++n) {
-    sums[n].count += counts[n].count;
-    sums[n].of += counts[n].of;
+  for (const measure::Count& one : counts) {
+    const auto sum = std::ranges::find(sums, one.what, &measure::Count::what);
+    if (sum == sums.end()) {
+      sums.push_back(one);
+    } else {
+      sum->count += one.count;
+      sum->of += one.of;
+    }
   }
 }
 

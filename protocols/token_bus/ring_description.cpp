@@ -65,9 +65,9 @@ void read_channels(config::ObjectReader& object, RingDescription& ring) {
 
 void read_ring_rules(config::ObjectReader& object, Rules& rules) {
   if (const auto slot = object.optional("slot_time_octets"))
-    rules.slot_time_octets = slot->as_integer<unsigned>();
+    rules.slot_time_octets = slot->as_integer<unsigned>(12, 1'362);
   if (const auto hold = object.optional("high_priority_hold_octets"))
-    rules.high_priority_hold_octets = hold->as_integer<std::uint32_t>();
+    rules.high_priority_hold_octets = hold->as_integer<std::uint32_t>(0, 65'535);
   if (const auto targets = object.optional("target_rotation_octets")) {
     const std::vector<config::Value> values = targets->as_array(3, 3);
     for (std::size_t n = 0; n < values.size(); ++n)
@@ -90,12 +90,27 @@ std::optional<std::string> violation_of_stations(const RingDescription& ring) {
   return std::nullopt;
 }
 
+// A frame begins a gap after the token, and only while its class has time left.
+std::optional<std::string> why_it_never_goes(const Rules& rules, const RingData& data) {
+  if (data.service == RingService::urgent) {
+    if (rules.high_priority_hold_octets > rules.response_gap_octets) return std::nullopt;
+    return fmt::format("high_priority_hold_octets is {}, and a frame begins {} octets after the token",
+                       rules.high_priority_hold_octets, rules.response_gap_octets);
+  }
+  const std::size_t place = static_cast<std::size_t>(data.service) - 1;
+  if (rules.target_rotation_octets.at(place) > rules.response_gap_octets) return std::nullopt;
+  return fmt::format("target_rotation_octets/{} is {}, so {} data are never served", place,
+                     rules.target_rotation_octets[place], text_of(data.service));
+}
+
 std::optional<std::string> violation_of_data(const RingDescription& ring, const RingData& data) {
   if (!is_in(ring.stations, data.from) || !is_in(ring.stations, data.to) || data.from == data.to)
     return fmt::format("data from {} to {}: write two different addresses of \"stations\"", data.from,
                        data.to);
   if (data.every != kernel::Duration{} && data.load != 0)
     return fmt::format("data from {} to {}: they have a period or a load, not both", data.from, data.to);
+  if (const auto why = why_it_never_goes(ring.rules, data))
+    return fmt::format("data from {} to {} never go: {}", data.from, data.to, *why);
   if (data.octets < kLeastDatum || data.octets > most_data(ring.rules))
     return fmt::format("data from {} to {}: {} octets, and a frame carries {} to {}{}", data.from, data.to,
                        data.octets, kLeastDatum, most_data(ring.rules),

@@ -39,7 +39,12 @@ void RingFlow::take_due(kernel::Time now) {
 }
 
 void RingFlow::request(kernel::Time when) {
-  if (waiting_.size() < kMostWaiting) waiting_.push_back(when);
+  ++requests_;
+  if (waiting_.size() < kMostWaiting) {
+    waiting_.push_back(when);
+  } else {
+    ++refused_;
+  }
 }
 
 std::optional<ServiceDatum> RingFlow::next_datum(std::uint16_t word) {

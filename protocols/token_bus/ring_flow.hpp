@@ -43,6 +43,9 @@ class RingFlow {
   // It is on the line, for the first time or again. When it was requested, the first time.
   std::optional<kernel::Time> on_sent(const ServiceDatum& datum);
   void on_done() { given_.reset(); }
+  // Of all requests, those that were not taken: they come faster than the ring carries data.
+  std::uint64_t requests() const { return requests_; }
+  std::uint64_t refused() const { return refused_; }
 
  private:
   static constexpr std::size_t kMostWaiting = 16;
@@ -55,6 +58,8 @@ class RingFlow {
   std::deque<kernel::Time> waiting_{};
   std::optional<Given> given_{};
   std::uint16_t number_ = 0;
+  std::uint64_t requests_ = 0;
+  std::uint64_t refused_ = 0;
 };
 
 }  // namespace fieldproof::token_bus

@@ -254,6 +254,12 @@ std::vector<network::ProtectedFrame> RingNetwork::protected_frames() const {
 std::vector<measure::Count> RingNetwork::remarks() const {
   std::vector<measure::Count> remarks{{"tokens that were passed again", repeated_tokens_, 0},
                                       {"claims of the token", claims_, 0}};
+  for (std::size_t n = 0; n < flows_.size(); ++n) {
+    if (flows_[n].refused() > 0)
+      remarks.push_back({fmt::format("requests that the ring has no room for, {} ({})", signals_[n].name,
+                                     text_of(flows_[n].data().service)),
+                         flows_[n].refused(), flows_[n].requests()});
+  }
   if (description_.channels == 1) return remarks;
   for (const Channel channel : kChannels) {
     std::uint64_t faults = 0;

@@ -211,13 +211,35 @@ TEST(RingNetwork, SeesDataThatComeTwiceOrLateOrOtherwise) {
 
 TEST(RingNetwork, NamesTheDataThatHaveNoRoom) {
   RingDescription description = RingDescription::built_in(2);
-  description.rules.target_rotation_octets = {0, 0, 0};
+  description.rules.target_rotation_octets = {50, 50, 50};
   description.data.push_back({.from = 2, .to = 4, .service = RingService::bulk, .load = 1'000});
   RingNetwork ring(description, 1);
   ring.start();
   ring.segment().run_for(kernel::kSecond);
   EXPECT_EQ(ring.state(), network::State::coming_up);
   EXPECT_EQ(ring.complaint(), "no word of station 2 at station 4 (bulk) since power-up");
+}
+
+// More than it carries: what it does carry comes right, and the rest is said.
+TEST(RingNetwork, SaysHowManyRequestsItHasNoRoomFor) {
+  const auto refused_under = [](std::int64_t load) {
+    RingDescription description = RingDescription::built_in(2);
+    description.data.push_back({.from = 2, .to = 4, .service = RingService::urgent, .load = load});
+    RingNetwork ring(description, 1);
+    ring.start();
+    ring.segment().run_for(kernel::kSecond / 5);
+    std::uint64_t refused = 0;
+    for (const measure::Count& remark : ring.remarks()) {
+      if (!remark.what.starts_with("requests that the ring has no room for")) continue;
+      EXPECT_NE(remark.what.find("word of station 2 at station 4 (urgent)"), std::string::npos)
+          << remark.what;
+      EXPECT_LE(remark.count, remark.of);
+      refused += remark.count;
+    }
+    return refused;
+  };
+  EXPECT_GT(refused_under(10'000'000), 1'000U);
+  EXPECT_EQ(refused_under(10'000), 0U);
 }
 
 constexpr kernel::Time kDead = kernel::kStart + kernel::kSecond;
@@ -276,22 +298,26 @@ TEST(RingDescriptionReader, RefusesWhatIsNoRing) {
     return RingDescription::read(document.root());
   };
   EXPECT_EQ(read(R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})").stations.size(), 2U);
-  for (const char* text :
-       {R"({"name": "", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})",
-        R"({"name": "a", "stations": [2], "data": [{"from": 2, "to": 4}]})",
-        R"({"name": "a", "stations": [2, 3], "data": [{"from": 2, "to": 3}]})",
-        R"({"name": "a", "stations": [2, 2], "data": [{"from": 2, "to": 2}]})",
-        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 6}]})",
-        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 2}]})",
-        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 4}]})",
-        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 8183}]})",
-        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "every": "1 us"}]})",
-        R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "service": "slow"}]})",
-        R"({"name": "a", "stations": [2, 4],
+  for (
+      const char* text :
+      {R"({"name": "", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})",
+       R"({"name": "a", "stations": [2], "data": [{"from": 2, "to": 4}]})",
+       R"({"name": "a", "stations": [2, 3], "data": [{"from": 2, "to": 3}]})",
+       R"({"name": "a", "stations": [2, 2], "data": [{"from": 2, "to": 2}]})",
+       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 6}]})",
+       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4}], "high_priority_hold_octets": 6})",
+       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "service": "bulk", "every": "1 s"}],
+            "target_rotation_octets": [9000, 9000, 0]})",
+       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 2}]})",
+       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 4}]})",
+       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 8183}]})",
+       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "every": "1 us"}]})",
+       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "service": "slow"}]})",
+       R"({"name": "a", "stations": [2, 4],
                                "data": [{"from": 2, "to": 4, "every": "1 ms", "load": "1 kbit/s"}]})",
-        R"({"name": "a", "stations": [2, 4], "slot_time_octets": 7,
+       R"({"name": "a", "stations": [2, 4], "slot_time_octets": 7,
                                "data": [{"from": 2, "to": 4}]})",
-        R"({"name": "a", "stations": [2, 4], "data": []})"}) {
+       R"({"name": "a", "stations": [2, 4], "data": []})"}) {
     EXPECT_THROW(read(text), kernel::Error) << text;
   }
 }
