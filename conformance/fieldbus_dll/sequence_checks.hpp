@@ -80,7 +80,9 @@ class SequenceChecks {
  private:
   static constexpr std::uint64_t kFixedSeed = 1;
 
-  static std::uint64_t fewer_if_slow(std::uint64_t count) { return kernel::kIsSanitized ? count / 10 : count; }
+  static std::uint64_t fewer_if_slow(std::uint64_t count) {
+    return kernel::kIsSanitized ? count / 10 : count;
+  }
   // Each fourth of them: what a sanitizer looks for does not depend on who plays.
   static std::vector<std::string> fewer_if_slow(std::vector<std::string> names) {
     constexpr std::size_t kEach = 4;
