@@ -9,18 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "bench/ns3_queue.hpp"
 #include "bench/rows.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/measure/distribution.hpp"
 #include "harness/traffic/poisson_arrivals.hpp"
 #include "harness/traffic/timed_token.hpp"
 #include "harness/traffic/token_loads.hpp"
-
-#ifdef FIELDPROOF_HAVE_NS3
-#include <ns3/nstime.h>
-#include <ns3/object-factory.h>
-#include <ns3/simulator.h>
-#endif
 
 namespace fieldproof::bench {
 namespace {
@@ -63,27 +58,20 @@ TokenFigures by_model() {
 }
 
 #ifdef FIELDPROOF_HAVE_NS3
-// Each visit of the token, each end of a frame and each arrival is an event of ns-3's simulator. A step of
-// its time is a picosecond here.
+// Each visit of the token, each end of a frame and each arrival is an event of ns-3's simulator.
 class TimedOnNs3 {
  public:
-  explicit TimedOnNs3(const char* queue) {
-    ns3::ObjectFactory factory;
-    factory.SetTypeId(queue);
-    ns3::Simulator::SetScheduler(factory);
+  explicit TimedOnNs3(const char* queue) : simulation_(queue) {
     const kernel::Random random(kSeed);
     for (std::size_t place = 0; place < traffic::kAccessClasses; ++place) {
       if (kFrames.per_ms[place] == 0) continue;
       const kernel::Random of_class = random.split(traffic::name_of(static_cast<AccessClass>(place)));
       for (unsigned n = 0; n < kTokenStations; ++n) {
-        queues_[place].emplace_back(kFrames.per_ms[place], of_class.split(n));
-        queues_[place].back().expect();
+        queues_[place].emplace_back(kFrames.per_ms[place], of_class.split(n), Ns3Arrivals::events);
+        queues_[place].back().begin();
       }
     }
   }
-  ~TimedOnNs3() { ns3::Simulator::Destroy(); }
-  TimedOnNs3(const TimedOnNs3&) = delete;
-  TimedOnNs3& operator=(const TimedOnNs3&) = delete;
 
   TokenFigures run() {
     ns3::Simulator::Schedule(ns3::TimeStep(0), &TimedOnNs3::on_token, this);
@@ -92,51 +80,24 @@ class TimedOnNs3 {
   }
 
  private:
-  static kernel::Time now() { return kernel::kStart + Duration{ns3::Simulator::Now().GetTimeStep()}; }
-  static ns3::Time step(Duration duration) {
-    return ns3::TimeStep(static_cast<std::uint64_t>(duration.count()));
-  }
-
-  class Queue {
-   public:
-    Queue(double per_ms, const kernel::Random& random) : arrivals_(per_ms, random) {}
-    // Those of this instant have come.
-    void expect() { ns3::Simulator::Schedule(step(arrivals_.next() - now()), &Queue::on_arrival, this); }
-    std::optional<kernel::Time> take() {
-      if (waiting_.empty()) return std::nullopt;
-      const kernel::Time first = waiting_.front();
-      waiting_.pop_front();
-      return first;
-    }
-
-   private:
-    void on_arrival() {
-      waiting_.push_back(arrivals_.next());
-      arrivals_.draw();
-      expect();
-    }
-
-    traffic::PoissonArrivals arrivals_;
-    std::deque<kernel::Time> waiting_;
-  };
-
   void on_token() {
     if (visits_++ == kVisits) {
       ns3::Simulator::Stop();
       return;
     }
-    if (const auto arrived = std::exchange(arrived_[station_], now())) rotations_.add(now() - *arrived);
+    if (const auto arrived = std::exchange(arrived_[station_], ns3_now()))
+      rotations_.add(ns3_now() - *arrived);
     place_ = 0;
-    end_ = now() + kTimed.hold;
+    end_ = ns3_now() + kTimed.hold;
     serve();
   }
 
   void serve() {
     for (;;) {
-      if (now() < end_ && !queues_[place_].empty()) {
+      if (ns3_now() < end_ && !queues_[place_].empty()) {
         if (const auto arrived = queues_[place_][station_].take()) {
-          if (place_ == 0) delays_.add(now() + kFrames.frame - *arrived);
-          ns3::Simulator::Schedule(step(kFrames.frame), &TimedOnNs3::serve, this);
+          if (place_ == 0) delays_.add(ns3_now() + kFrames.frame - *arrived);
+          ns3::Simulator::Schedule(ns3_step(kFrames.frame), &TimedOnNs3::serve, this);
           return;
         }
       }
@@ -145,14 +106,15 @@ class TimedOnNs3 {
       } while (place_ < traffic::kAccessClasses && kTimed.targets[place_ - 1] == Duration::zero());
       if (place_ == traffic::kAccessClasses) break;
       auto& run_out = run_out_[station_][place_ - 1];
-      end_ = run_out ? *run_out : now();
-      run_out = now() + kTimed.targets[place_ - 1];
+      end_ = run_out ? *run_out : ns3_now();
+      run_out = ns3_now() + kTimed.targets[place_ - 1];
     }
     station_ = (station_ + 1) % kTokenStations;
-    ns3::Simulator::Schedule(step(kTimed.pass), &TimedOnNs3::on_token, this);
+    ns3::Simulator::Schedule(ns3_step(kTimed.pass), &TimedOnNs3::on_token, this);
   }
 
-  std::array<std::deque<Queue>, traffic::kAccessClasses> queues_;
+  Ns3Simulation simulation_;
+  std::array<std::deque<Ns3Queue>, traffic::kAccessClasses> queues_;
   std::array<std::array<std::optional<kernel::Time>, 3>, kTokenStations> run_out_{};
   std::array<std::optional<kernel::Time>, kTokenStations> arrived_{};
   measure::Distribution delays_;
@@ -167,11 +129,6 @@ template <const char* queue>
 TokenFigures timed_by_ns3() {
   return TimedOnNs3(queue).run();
 }
-
-constexpr char kMap[] = "ns3::MapScheduler";
-constexpr char kHeap[] = "ns3::HeapScheduler";
-constexpr char kPriority[] = "ns3::PriorityQueueScheduler";
-constexpr char kCalendar[] = "ns3::CalendarScheduler";
 #endif
 
 Row timed_row(const char* name, const char* against, double target, TokenFigures (*simulate)()) {
@@ -188,10 +145,10 @@ Row timed_row(const char* name, const char* against, double target, TokenFigures
 std::vector<Row> rows_of_timed_token() {
   std::vector<Row> rows;
 #ifdef FIELDPROOF_HAVE_NS3
-  rows.push_back(timed_row("ns-3, map (its default)", "", 0, &timed_by_ns3<kMap>));
-  rows.push_back(timed_row("ns-3, heap", "", 0, &timed_by_ns3<kHeap>));
-  rows.push_back(timed_row("ns-3, priority queue", "", 0, &timed_by_ns3<kPriority>));
-  rows.push_back(timed_row("ns-3, calendar", "", 0, &timed_by_ns3<kCalendar>));
+  rows.push_back(timed_row("ns-3, map (its default)", "", 0, &timed_by_ns3<kMapQueue>));
+  rows.push_back(timed_row("ns-3, heap", "", 0, &timed_by_ns3<kHeapQueue>));
+  rows.push_back(timed_row("ns-3, priority queue", "", 0, &timed_by_ns3<kPriorityQueue>));
+  rows.push_back(timed_row("ns-3, calendar", "", 0, &timed_by_ns3<kCalendarQueue>));
 #endif
   rows.push_back(timed_row("the traffic model", "ns-3", 5, &by_model));
   return rows;

@@ -8,17 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/ns3_queue.hpp"
 #include "bench/rows.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/traffic/milliseconds.hpp"
 #include "harness/traffic/poisson_arrivals.hpp"
 #include "harness/traffic/token_rotation.hpp"
-
-#ifdef FIELDPROOF_HAVE_NS3
-#include <ns3/nstime.h>
-#include <ns3/object-factory.h>
-#include <ns3/simulator.h>
-#endif
 
 namespace fieldproof::bench {
 namespace {
@@ -104,33 +99,21 @@ double by_scheduler() {
 }
 
 #ifdef FIELDPROOF_HAVE_NS3
-// Each visit of the token and each end of an urgent transmission is an event of ns-3's simulator, and so is
-// each arrival, as users of ns-3 write it; or arrivals are drawn when the token looks at them, as ours are. A
-// step of its time is a picosecond here.
-enum class Ns3Arrivals { events, drawn_at_visits };
-
+// Each visit of the token and each end of an urgent transmission is an event of ns-3's simulator.
 class OnNs3 {
  public:
   OnNs3(const UrgentTraffic& traffic, const char* queue, Ns3Arrivals arrivals)
-      : traffic_(traffic), has_events_(arrivals == Ns3Arrivals::events) {
-    ns3::ObjectFactory factory;
-    factory.SetTypeId(queue);
-    ns3::Simulator::SetScheduler(factory);
+      : simulation_(queue), traffic_(traffic) {
     const kernel::Random random(kRun.seed);
     for (std::uint64_t n = 0; n < kNs3Nodes; ++n) {
-      urgent_.emplace_back(traffic.urgent_per_ms, random.split("urgent").split(n));
-      available_.emplace_back(traffic.available_per_ms, random.split("time-available").split(n));
+      urgent_.emplace_back(traffic.urgent_per_ms, random.split("urgent").split(n), arrivals);
+      available_.emplace_back(traffic.available_per_ms, random.split("time-available").split(n), arrivals);
     }
   }
-  ~OnNs3() { ns3::Simulator::Destroy(); }
-  OnNs3(const OnNs3&) = delete;
-  OnNs3& operator=(const OnNs3&) = delete;
 
   double mean_delay() {
-    if (has_events_) {
-      for (Queue& queue : urgent_) queue.expect();
-      for (Queue& queue : available_) queue.expect();
-    }
+    for (Ns3Queue& queue : urgent_) queue.begin();
+    for (Ns3Queue& queue : available_) queue.begin();
     schedule(overhead_, &OnNs3::on_token);
     ns3::Simulator::Run();
     return sum_ / static_cast<double>(count_);
@@ -139,62 +122,25 @@ class OnNs3 {
  private:
   static constexpr std::size_t kNs3Nodes = 16;
 
-  static kernel::Time now() { return kernel::kStart + kernel::Duration{ns3::Simulator::Now().GetTimeStep()}; }
-
-  class Queue {
-   public:
-    Queue(double per_ms, const kernel::Random& random) : arrivals_(per_ms, random) {}
-    void expect() {
-      const kernel::Duration until = arrivals_.next() - now();
-      ns3::Simulator::Schedule(ns3::TimeStep(static_cast<std::uint64_t>(until.count())), &Queue::on_arrival,
-                               this);
-    }
-    // Is there a packet, and have those come that come without an event?
-    bool is_empty(bool has_events) {
-      for (; !has_events && arrivals_.next() <= now(); arrivals_.draw()) waiting_.push_back(arrivals_.next());
-      return waiting_.empty();
-    }
-    kernel::Time take() {
-      const kernel::Time first = waiting_.front();
-      waiting_.pop_front();
-      return first;
-    }
-
-   private:
-    void on_arrival() {
-      waiting_.push_back(arrivals_.next());
-      arrivals_.draw();
-      expect();
-    }
-
-    traffic::PoissonArrivals arrivals_;
-    std::deque<kernel::Time> waiting_;
-  };
-
   void schedule(kernel::Duration after, void (OnNs3::*what)()) {
-    ns3::Simulator::Schedule(ns3::TimeStep(static_cast<std::uint64_t>(after.count())), what, this);
+    ns3::Simulator::Schedule(ns3_step(after), what, this);
   }
 
   void on_token() {
-    if (urgent_[at_].is_empty(has_events_)) {
+    const auto arrived = urgent_[at_].take();
+    if (!arrived) {
       on_urgent_sent();
       return;
     }
-    const kernel::Time arrived = urgent_[at_].take();
     if (rotation_ >= kRun.warm_up_rotations) {
-      sum_ += traffic::ms(now() + traffic_.urgent_length - arrived);
+      sum_ += traffic::ms(ns3_now() + traffic_.urgent_length - *arrived);
       if (++count_ == kRun.urgent_packets) ns3::Simulator::Stop();
     }
     schedule(traffic_.urgent_length, &OnNs3::on_urgent_sent);
   }
 
   void on_urgent_sent() {
-    if (!admits_all_ || available_[at_].is_empty(has_events_)) {
-      leave({});
-      return;
-    }
-    available_[at_].take();
-    leave(traffic_.available_length);
+    leave(admits_all_ && available_[at_].take() ? traffic_.available_length : kernel::Duration{});
   }
 
   // The next visit, when this transmission is over.
@@ -202,17 +148,17 @@ class OnNs3 {
     if (++at_ == kNs3Nodes) {
       at_ = 0;
       ++rotation_;
-      const kernel::Time end = now() + transmission;
+      const kernel::Time end = ns3_now() + transmission;
       admits_all_ = end - start_ < traffic_.target_rotation;
       start_ = end;
     }
     schedule(transmission + overhead_, &OnNs3::on_token);
   }
 
+  Ns3Simulation simulation_;
   UrgentTraffic traffic_;
-  bool has_events_;
   kernel::Duration overhead_ = traffic_.empty_rotation / std::int64_t{kNs3Nodes};
-  std::vector<Queue> urgent_, available_;
+  std::vector<Ns3Queue> urgent_, available_;
   std::size_t at_ = 0;
   std::uint64_t rotation_ = 0;
   bool admits_all_ = true;
@@ -225,11 +171,6 @@ template <const char* queue, Ns3Arrivals arrivals = Ns3Arrivals::events>
 double by_ns3() {
   return OnNs3(traffic_of_the_paper(), queue, arrivals).mean_delay();
 }
-
-constexpr char kMapQueue[] = "ns3::MapScheduler";
-constexpr char kHeapQueue[] = "ns3::HeapScheduler";
-constexpr char kPriorityQueue[] = "ns3::PriorityQueueScheduler";
-constexpr char kCalendarQueue[] = "ns3::CalendarScheduler";
 #endif
 
 Row row(const char* name, const char* against, double target, double (*simulate)()) {
