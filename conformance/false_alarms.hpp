@@ -14,19 +14,25 @@ namespace fieldproof::conformance {
 
 inline constexpr std::uint64_t kManySeeds = kernel::kIsSanitized ? 1 : 100;
 
-// The cases that the references of a suite do not pass with a seed, at quick volume.
+// The cases in which the references of a suite get such a verdict.
+template <typename IsSuch>
+std::vector<std::string> cases_where(const Suite& suite, const Setup& setup, IsSuch is_such) {
+  std::vector<std::string> cases;
+  for (const TestCase& test_case : suite.cases()) {
+    if (is_canary(test_case)) continue;
+    const judge::CaseResult result = run_case({&suite, &test_case}, setup).outcome.result;
+    if (is_such(result.verdict))
+      cases.push_back(fmt::format("{} seed {}: {}", test_case.id, setup.seed, result.reason));
+  }
+  return cases;
+}
+
+// The cases that they do not pass with a seed, at quick volume.
 inline std::vector<std::string> false_alarms(const Suite& suite, std::uint64_t seed) {
   Setup setup;
   setup.seed = seed;
   setup.volume = Volume::quick;
-  std::vector<std::string> alarms;
-  for (const TestCase& test_case : suite.cases()) {
-    if (is_canary(test_case)) continue;
-    const CaseRun done = run_case({&suite, &test_case}, setup);
-    if (done.outcome.result.verdict == judge::Verdict::pass) continue;
-    alarms.push_back(fmt::format("{} seed {}: {}", test_case.id, seed, done.outcome.result.reason));
-  }
-  return alarms;
+  return cases_where(suite, setup, [](judge::Verdict verdict) { return verdict != judge::Verdict::pass; });
 }
 
 }  // namespace fieldproof::conformance

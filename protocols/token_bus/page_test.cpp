@@ -5,13 +5,16 @@
 
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "harness/field/json_schema.hpp"
 #include "harness/field/written_table.hpp"
 #include "protocols/token_bus/cable_rules.hpp"
 #include "protocols/token_bus/device.hpp"
 #include "protocols/token_bus/dual_channel_settings.hpp"
+#include "protocols/token_bus/rules_table.hpp"
 #include "protocols/token_bus/station_settings.hpp"
 #include "protocols/token_bus/translator_settings.hpp"
 
@@ -83,6 +86,20 @@ TEST(TokenBusPage, HasEveryFrame) {
                         describe(frame, rules));
   }
   expect_on_token_bus_page(text);
+}
+
+// In a file of a ring the same numbers have the same ranges.
+TEST(RingSchema, HasTheRangesOfTheRules) {
+  std::ifstream file(FIELDPROOF_SOURCE_DIR "/protocols/token_bus/ring_network.schema.json");
+  const auto shipped = nlohmann::ordered_json::parse(file)["properties"];
+  const auto wanted = field::properties_of(kRulesInARingFile);
+  ASSERT_EQ(wanted.size(), 3U);
+  for (const auto& [name, property] : wanted.items()) {
+    ASSERT_TRUE(shipped.contains(name)) << name;
+    const auto of_numbers = [](const auto& one) { return one.contains("items") ? one["items"] : one; };
+    for (const char* end : {"minimum", "maximum"})
+      EXPECT_EQ(of_numbers(shipped[name])[end], of_numbers(property)[end]) << name << " " << end;
+  }
 }
 
 }  // namespace

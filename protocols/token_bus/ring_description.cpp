@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "harness/config/name.hpp"
+#include "harness/field/json_reader.hpp"
+#include "protocols/token_bus/rules_table.hpp"
 
 namespace fieldproof::token_bus {
 namespace {
@@ -61,18 +63,6 @@ void read_channels(config::ObjectReader& object, RingDescription& ring) {
   const auto cuts = object.optional("cuts");
   if (!cuts) return;
   for (const config::Value& one : cuts->as_array(1, kMostCuts)) ring.cuts.push_back(read_cut(one));
-}
-
-void read_ring_rules(config::ObjectReader& object, Rules& rules) {
-  if (const auto slot = object.optional("slot_time_octets"))
-    rules.slot_time_octets = slot->as_integer<unsigned>(12, 1'362);
-  if (const auto hold = object.optional("high_priority_hold_octets"))
-    rules.high_priority_hold_octets = hold->as_integer<std::uint32_t>(0, 65'535);
-  if (const auto targets = object.optional("target_rotation_octets")) {
-    const std::vector<config::Value> values = targets->as_array(3, 3);
-    for (std::size_t n = 0; n < values.size(); ++n)
-      rules.target_rotation_octets[n] = values[n].as_integer<std::uint32_t>(0, 2'097'151);
-  }
 }
 
 bool is_in(const std::vector<Address>& stations, Address address) {
@@ -217,7 +207,7 @@ RingDescription RingDescription::read(const config::Value& root) {
       read.data.push_back(read_ring_data(one));
     read_cable(object, read);
     read_channels(object, read);
-    read_ring_rules(object, read.rules);
+    field::read_members(object, kRulesInARingFile, read.rules);
     return read;
   });
   if (const auto violation = violation_of(ring)) config::fail(root, *violation);

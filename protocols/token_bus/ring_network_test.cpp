@@ -33,6 +33,16 @@ class RingLedger final : public network::ExchangeWatcher {
   std::array<std::vector<kernel::Duration>, 5> delays{};
 };
 
+// A station of another kind at this position.
+template <typename Other>
+RingStations with_at(std::size_t wanted) {
+  return {.make = [wanted](std::size_t position,
+                           const StationConfiguration& configuration) -> std::unique_ptr<StationDevice> {
+    if (position != wanted) return nullptr;
+    return std::make_unique<Other>(configuration);
+  }};
+}
+
 // Runs until data are exchanged, or not any more.
 void bring_up(RingNetwork& ring) {
   ring.start();
@@ -94,12 +104,7 @@ TEST(RingNetwork, AStationThatIsSilentKeepsItFromComingUp) {
     using TokenStation::TokenStation;
     bool start(kernel::Time) override { return false; }
   };
-  RingNetwork ring(RingDescription::built_in(3), 1,
-                   {.make = [](std::size_t position,
-                               const StationConfiguration& configuration) -> std::unique_ptr<StationDevice> {
-                     if (position == 2) return std::make_unique<Silent>(configuration);
-                     return nullptr;
-                   }});
+  RingNetwork ring(RingDescription::built_in(3), 1, with_at<Silent>(2));
   ring.start();
   ring.segment().run_for(kernel::kSecond);
   EXPECT_EQ(ring.state(), network::State::coming_up);
@@ -159,12 +164,7 @@ TEST(RingNetwork, GoesOnWhereNobodyConfirms) {
   RingDescription description = RingDescription::built_in(3);
   description.data.push_back(
       {.from = 2, .to = 4, .service = RingService::confirmed, .every = 5 * kernel::kMillisecond});
-  RingNetwork ring(description, 1,
-                   {.make = [](std::size_t position,
-                               const StationConfiguration& configuration) -> std::unique_ptr<StationDevice> {
-                     if (position == 2) return std::make_unique<Mute>(configuration);
-                     return nullptr;
-                   }});
+  RingNetwork ring(description, 1, with_at<Mute>(2));
   bring_up(ring);
   RingLedger ledger;
   ring.watch(ledger);
@@ -198,12 +198,7 @@ TEST(RingNetwork, SeesDataThatComeTwiceOrLateOrOtherwise) {
   };
   RingDescription description = RingDescription::built_in(3);
   description.data = {{.from = 2, .to = 4, .every = 5 * kernel::kMillisecond, .octets = 9}};
-  RingNetwork ring(description, 1,
-                   {.make = [](std::size_t position,
-                               const StationConfiguration& configuration) -> std::unique_ptr<StationDevice> {
-                     if (position == 1) return std::make_unique<Spoils>(configuration);
-                     return nullptr;
-                   }});
+  RingNetwork ring(description, 1, with_at<Spoils>(1));
   ring.start();
   ring.segment().run_for(kernel::kSecond);
   for (const measure::Count& fault : ring.delivery_faults()) EXPECT_GT(fault.count, 0U) << fault.what;
@@ -278,12 +273,7 @@ TEST(RingNetwork, StopsWhenAStationDies) {
   };
   RingDescription slow = RingDescription::built_in(3);
   slow.rules.phy_bit_rate = 1'000'000;  // fewer frames in the time for which nobody is missed
-  RingNetwork ring(slow, 1,
-                   {.make = [](std::size_t position,
-                               const StationConfiguration& configuration) -> std::unique_ptr<StationDevice> {
-                     if (position == 2) return std::make_unique<Dies>(configuration);
-                     return nullptr;
-                   }});
+  RingNetwork ring(slow, 1, with_at<Dies>(2));
   ring.start();
   ring.segment().run_until(kDead);
   EXPECT_EQ(ring.state(), network::State::exchanging);

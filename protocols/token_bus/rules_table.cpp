@@ -26,6 +26,16 @@ constexpr field::About memory(field::Unit unit, field::Range range, std::string_
   return {unit, range, meaning, kSourceMemory, Standing::memory};
 }
 
+// What a file of a ring may say of them.
+constexpr field::Row kSlotTimeRow = row<&Rules::slot_time_octets>(
+    {kOctets, {12, 1'362}, "slot_time, the same for all", kSlotSpan, Standing::searched});
+constexpr field::Row kHoldRow = row<&Rules::high_priority_hold_octets>(
+    {kOctets, {0, 65'535}, "hi_pri_token_hold_time, of class 6", kSourceController, Standing::searched});
+constexpr field::Row kTargetsRow = field::list<&Rules::target_rotation_octets>(
+    kRotationTable, 3,
+    {kOctets, {}, "target_rotation_time of the classes 4, 2, 0", kSourceController, Standing::searched});
+constexpr std::array kRingRows{kSlotTimeRow, kHoldRow, kTargetsRow};
+
 constexpr auto kRows = field::rows<Rules>(
     row<&Rules::phy_bit_rate>({field::kBitRate,
                                {1'000'000, 100'000'000},
@@ -46,8 +56,7 @@ constexpr auto kRows = field::rows<Rules>(
         memory(kSymbols, {24, 32}, "after a transmission, in which the receiver reports silence")),
     row<&Rules::address_length>(
         {field::kBits, {}, "of all addresses of the network", kSourceStandard, Standing::sure, kLengths}),
-    row<&Rules::slot_time_octets>(
-        {kOctets, {12, 1'362}, "slot_time, the same for all", kSlotSpan, Standing::searched}),
+    kSlotTimeRow,
     row<&Rules::most_octets>({kOctets,
                               {64, 8'191},
                               "most octets between the delimiters of a frame",
@@ -71,11 +80,7 @@ constexpr auto kRows = field::rows<Rules>(
                                           Standing::searched}),
     row<&Rules::transmitter_fault_limit>(
         memory({}, {1, 64}, "failures in a row to pass the token, then the station goes offline")),
-    row<&Rules::high_priority_hold_octets>(
-        {kOctets, {0, 65'535}, "hi_pri_token_hold_time, of class 6", kSourceController, Standing::searched}),
-    field::list<&Rules::target_rotation_octets>(
-        kRotationTable, 3,
-        {kOctets, {}, "target_rotation_time of the classes 4, 2, 0", kSourceController, Standing::searched}),
+    kHoldRow, kTargetsRow,
     row<&Rules::ring_maintenance_octets>(
         {kOctets, kRotations, "target_rotation_time of ring maintenance: a slower ring opens no window",
          kSourceController, Standing::searched}),
@@ -88,5 +93,6 @@ constexpr auto kRows = field::rows<Rules>(
 }  // namespace
 
 constexpr field::Table<Rules> kRulesTable = field::table<Rules>(kRows);
+constexpr field::Table<Rules> kRulesInARingFile = field::table<Rules>(kRingRows);
 
 }  // namespace fieldproof::token_bus

@@ -7,6 +7,8 @@
 namespace fieldproof::token_bus {
 
 extern const field::Table<Rules> kRulesTable;
+// Of these, the ones that a file of a ring may give.
+extern const field::Table<Rules> kRulesInARingFile;
 
 inline constexpr std::string_view kSourcePaper =
     "Lee, Moon, Moon, Kwon, Lee and Park, token bus on IEEE 802.3";
