@@ -8,15 +8,12 @@ namespace {
 
 constexpr std::size_t kHalfBitsOfDelimiter = 32;
 
-bool are_same(const line::Levels& one, const line::Levels& other) {
-  return one.size() == other.size() && std::equal(one.words(), one.words() + one.word_count(), other.words());
-}
-
 }  // namespace
 
 const ChannelReader::Shown& ChannelReader::read(const line::Waveform& wave) {
-  if (!last_.empty() && wave.rate == 2 * rules_.phy_bit_rate && are_same(wave.levels, last_)) return shown_;
-  last_ = wave.rate == 2 * rules_.phy_bit_rate ? wave.levels : line::Levels{};
+  const bool is_as_driven = wave.rate == 2 * rules_.phy_bit_rate;
+  if (!last_.empty() && is_as_driven && wave.levels == last_) return shown_;
+  last_ = is_as_driven ? wave.levels : line::Levels{};
   shown_ = {};
   const std::vector<Indication> indications = indications_in(wave, rules_.phy_bit_rate);
   const std::vector<Reception> receptions = reader_.read(indications);
