@@ -171,16 +171,16 @@ TEST(BurstMutants, ReferencesHaveNoneOfTheSigns) {
 }
 
 TEST(BurstMutants, MastersAreSeen) {
-  for (const Row& row : kOfMasters) {
-    if (is_left_out(row)) continue;
+  for (kernel::FewerIfSanitized few(3); const Row& row : kOfMasters) {
+    if (is_left_out(row) || few.leaves_out()) continue;
     EXPECT_TRUE(shows(row.sign, run_immunity(row.line, with_master(row.mutant)), reference(row.line)))
         << row.mutant;
   }
 }
 
 TEST(BurstMutants, SlavesAreSeenAtOneOfTheTwoPlaces) {
-  for (const Row& row : kOfSlaves) {
-    if (is_left_out(row)) continue;
+  for (kernel::FewerIfSanitized few(3); const Row& row : kOfSlaves) {
+    if (is_left_out(row) || few.leaves_out()) continue;
     const auto is_seen = [&](int at) {
       return shows(row.sign, run_immunity(row.line, with_slave(at, row.mutant)), reference(row.line));
     };

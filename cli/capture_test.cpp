@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/probe/capture_fixture.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -172,12 +173,14 @@ TEST_F(Capture, OfDisturbedLinesIsTakenApartWithoutAMalformedPacket) {
   call({"run", "interbus/slave/telegram/**", "interbus/slave/immunity/**", "interbus/slave/timing/**",
         "interbus/master/rejection/**", "--volume", "quick", "--record", "all", "--out", "run", "--quiet"});
   std::size_t captures = 0;
+  kernel::FewerIfSanitized few(4);
   for (const auto& entry : fs::directory_iterator(folder_ / "run" / "cases")) {
     if (!fs::exists(entry.path() / "trace.pcapng")) continue;
+    ++captures;
+    if (few.leaves_out()) continue;
     const reports::Reading reading =
         reports::read_with_tshark(kSourceFolder, entry.path() / "trace.pcapng", kFields);
     if (!reading.is_available) GTEST_SKIP() << reading.output;
-    ++captures;
     for (const Packet& packet : packets_in(reading.output)) {
       EXPECT_FALSE(packet.is_malformed) << entry.path();
       EXPECT_EQ(packet.has_error_flag, packet.wrong_checks > 0) << entry.path();

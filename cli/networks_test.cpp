@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/probe/program_fixture.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -68,9 +69,11 @@ TEST_F(Networks, OneThatCannotBeAttachedEndsTheCall) {
 }
 
 TEST_F(Networks, JudgeTheReferenceOutsideAsInside) {
-  for (const char* role :
+  for (kernel::FewerIfSanitized few(3);
+       const char* role :
        {"fieldbus_dll/isa_dle", "fieldbus_dll/isa_las", "fieldbus_dll/ff_device", "fieldbus_dll/ff_las",
         "valve_bus/node", "valve_bus/host", "interbus/slave", "interbus/master", "token_bus/station"}) {
+    if (few.leaves_out()) continue;
     const std::string path = role;
     const std::string protocol = path.substr(0, path.find('/'));
     const std::string name = path.substr(path.find('/') + 1);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/probe/program_fixture.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -143,7 +144,8 @@ TEST_F(BandwidthPlan, IsNotProvenWhereTheClosedFormIsOverTheSlot) {
 }
 
 TEST_F(BandwidthPlan, IsNotProvenWhereRealTimeQueuesGrow) {
-  for (const char* gap : {"300 us", "1 ps"}) {
+  for (kernel::FewerIfSanitized few(2); const char* gap : {"300 us", "1 ps"}) {
+    if (few.leaves_out()) continue;
     const Called called = plan_loops(
         kTwoLoops, std::string(R"(, "real_time": [{"first": 8, "last": 8, "mean_gap": ")") + gap + R"("}])");
     EXPECT_EQ(called.exit_code, 1) << gap << called.err;

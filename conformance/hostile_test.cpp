@@ -18,6 +18,7 @@
 #include "conformance/runner.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "harness/iut/pool.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -182,7 +183,8 @@ class HostileStation : public testing::TestWithParam<Attack> {
 
 TEST_P(HostileStation, CostsItsOwnVerdictAndNoOther) {
   const std::size_t descriptors = open_descriptors();
-  for (const Worst& worst : worst_acts()) {
+  for (kernel::FewerIfSanitized few(3); const Worst& worst : worst_acts()) {
+    if (few.leaves_out()) continue;
     // After the end of a case nobody asks for a next time.
     if (worst.act.starts_with("time_") && GetParam().call == "end") continue;
     SCOPED_TRACE(fmt::format("{} in {}", worst.act, GetParam().call));

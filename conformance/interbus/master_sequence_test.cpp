@@ -57,7 +57,8 @@ TEST(MasterSequence, TheReferenceIsNeverAccused) {
 
 TEST(MasterSequence, FindsEachMasterForCheckWithAtMostFiveCommands) {
   ASSERT_EQ(masters(true).size(), 6U);
-  for (const std::string& name : masters(true)) {
+  for (kernel::FewerIfSanitized few(3); const std::string& name : masters(true)) {
+    if (few.leaves_out()) continue;
     const SequenceSearchResult result = search(master_search_of("mutant:" + name, 5'000));
     ASSERT_TRUE(result.found) << name;
     EXPECT_TRUE(result.found->is_confirmed) << name;

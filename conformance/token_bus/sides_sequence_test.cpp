@@ -73,9 +73,10 @@ TEST(SidesSequence, NeitherTheReferenceNorAQuickOneIsAccused) {
 
 TEST(SidesSequence, FindsEachMutantForCheckWithFewCommands) {
   unsigned found = 0;
+  kernel::FewerIfSanitized few(3);
   for (const SidesRole& role : kSidesRoles) {
     for (const Mutant& mutant : sides_suite().mutants()) {
-      if (!mutant.is_for_check || mutant.role != role.name) continue;
+      if (!mutant.is_for_check || mutant.role != role.name || few.leaves_out()) continue;
       const SequenceSearchResult result = searched_sides(role, "mutant:" + mutant.name, 2'000);
       ASSERT_TRUE(result.found) << mutant.name;
       EXPECT_TRUE(result.found->is_confirmed) << mutant.name;
@@ -84,7 +85,7 @@ TEST(SidesSequence, FindsEachMutantForCheckWithFewCommands) {
       ++found;
     }
   }
-  EXPECT_EQ(found, 3U);
+  EXPECT_EQ(found, kernel::kIsSanitized ? 1U : 3U);
 }
 
 }  // namespace

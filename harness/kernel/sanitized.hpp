@@ -12,4 +12,17 @@ inline constexpr bool kIsSanitized = __has_feature(address_sanitizer) || __has_f
 inline constexpr bool kIsSanitized = false;
 #endif
 
+// Of many alike a sanitizer sees each `one_of`th, beginning with the first; without one all are seen:
+//     for (FewerIfSanitized few(4); const Mutant& mutant : mutants) {
+//       if (few.leaves_out()) continue;
+class FewerIfSanitized {
+ public:
+  explicit constexpr FewerIfSanitized(unsigned one_of) : one_of_(one_of) {}
+  constexpr bool leaves_out() { return kIsSanitized && next_++ % one_of_ != 0; }
+
+ private:
+  unsigned one_of_;
+  unsigned next_ = 0;
+};
+
 }  // namespace fieldproof::kernel
