@@ -41,9 +41,9 @@ function(fieldproof_library name folder)
   if(sources)
     add_library(${name} STATIC ${sources})
     set_target_properties(${name} PROPERTIES UNITY_BUILD ${FIELDPROOF_UNITY} UNITY_BUILD_BATCH_SIZE 16)
-    # Tables of rows and networks of unlike protocols name their parts alike: each is compiled alone.
+    # Tables of rows name their parts alike: each is compiled alone. They take a second each.
     foreach(source IN LISTS sources)
-      if(source MATCHES "(_settings|_table|_network|rule_members)\\.cpp$")
+      if(source MATCHES "/protocols/.*(_settings|_table|rule_members)\\.cpp$")
         set_source_files_properties("${source}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
       endif()
     endforeach()

@@ -5,7 +5,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-[[noreturn]] void refuse(const std::string& sentence) {
+[[noreturn]] void refuse_place(const std::string& sentence) {
   throw kernel::Error(kernel::ErrorKind::usage, "--iut: " + sentence);
 }
 
@@ -15,16 +15,16 @@ void expect_roles(const NetworkRequest& request, std::span<const std::string_vie
   for (const Assignment& one : request.implementations) {
     if (one.uri == kReferenceUri && one.role.empty()) continue;
     if (std::ranges::find(roles, one.role) != roles.end()) continue;
-    refuse(fmt::format("'{}' has no place in this network; write {}=URI or {}@N=URI", one.uri,
-                       fmt::join(roles, "=URI, "), roles.front()));
+    refuse_place(fmt::format("'{}' has no place in this network; write {}=URI or {}@N=URI", one.uri,
+                             fmt::join(roles, "=URI, "), roles.front()));
   }
 }
 
 void expect_place(const Assignment& assignment, std::string_view role, std::size_t position,
                   std::size_t places) {
   if (position <= places) return;
-  refuse(fmt::format("'{}': the network has {} {}; write {}@1 to {}@{}", assignment.uri, places, role, role,
-                     role, places));
+  refuse_place(fmt::format("'{}': the network has {} {}; write {}@1 to {}@{}", assignment.uri, places, role,
+                           role, role, places));
 }
 
 iut::Attachment attached_to_network(const NetworkRequest& request, const iut::RoleName& role,

@@ -105,7 +105,7 @@ traffic::TimedToken ring_of(unsigned stations, Duration hold, bool has_lower_cla
 // ---- both ways of access ----
 
 constexpr unsigned kStations = 16;
-constexpr std::uint64_t kFrames = 100'000;
+constexpr std::uint64_t kFramesPerPoint = 100'000;
 
 struct Access {
   double median = 0, mean = 0, rare = 0, longest = 0;  // ms; `rare`: one frame in 10,000 takes longer
@@ -132,18 +132,18 @@ class BothAccesses {
     traffic::QueuedFrames frames(token,
                                  {.frame = token.longest_frame, .per_ms = {of_a_station}, .bound = bound},
                                  kernel::Random(seed));
-    const auto rotations =
-        static_cast<std::uint64_t>(static_cast<double>(kFrames) / per_ms * traffic::kPicosecondsPerMs /
-                                   static_cast<double>((token.stations * token.pass).count()));
+    const auto rotations = static_cast<std::uint64_t>(
+        static_cast<double>(kFramesPerPoint) / per_ms * traffic::kPicosecondsPerMs /
+        static_cast<double>((token.stations * token.pass).count()));
     traffic::rotate_timed_token(token, frames,
-                                std::max<std::uint64_t>(rotations, kFrames / 10) * token.stations);
+                                std::max<std::uint64_t>(rotations, kFramesPerPoint / 10) * token.stations);
     token_ = access_of(frames.delays(traffic::AccessClass::six), frames.beyond(), 0);
 
     const auto octet = [](unsigned count) { return count * 800 * kernel::kNanosecond; };
     constexpr unsigned kAroundPayload = 8 + 14 + 4;  // preamble with SFD, header, check
     const traffic::CsmaFigures csma = traffic::run_csma_cd(
         {.stations = kStations, .per_ms = of_a_station, .frame = octet(kAroundPayload + kPayload)},
-        {.seed = seed, .frames = kFrames, .bound = bound});
+        {.seed = seed, .frames = kFramesPerPoint, .bound = bound});
     csma_ = access_of(csma.delays, csma.beyond, csma.given_up);
   }
 

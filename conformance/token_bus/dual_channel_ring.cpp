@@ -12,8 +12,8 @@ namespace {
 using namespace manager_chart;
 
 constexpr std::uint8_t kStation = 0x0A;
-constexpr std::uint8_t kAbove = 0x0E;
-constexpr std::uint8_t kBelow = 0x04;
+constexpr std::uint8_t kRingAbove = 0x0E;
+constexpr std::uint8_t kRingBelow = 0x04;
 constexpr unsigned kMostLost = 1;
 
 struct RingScene : ManagerScene {
@@ -46,9 +46,9 @@ struct RingScene : ManagerScene {
   // The token goes round once: the station has it, and passes it on.
   bool rotates() {
     constexpr std::int64_t kWithWindow = 6;
-    send(control(TokenControl::token, kStation, kAbove));
-    if (!comes(control(TokenControl::token, kBelow, kStation), kWithWindow)) return false;
-    send(control(TokenControl::token, kAbove, kBelow));
+    send(control(TokenControl::token, kStation, kRingAbove));
+    if (!comes(control(TokenControl::token, kRingBelow, kStation), kWithWindow)) return false;
+    send(control(TokenControl::token, kRingAbove, kRingBelow));
     return true;
   }
   void rotate(unsigned times) {
@@ -60,7 +60,7 @@ void begin_ring(RingScene& scene) {
   scene.power_anew();
   scene.is_a_cut = false;
   scene.bench.begin_ring(kStation);
-  scene.send(RingScene::control(TokenControl::solicit_1, kBelow, kAbove));
+  scene.send(RingScene::control(TokenControl::solicit_1, kRingBelow, kRingAbove));
   scene.bench.wait(2 * scene.bench.slot());
   scene.lost = 0;
   scene.rotate(4);
@@ -73,7 +73,7 @@ void begin_ring(RingScene& scene) {
 void cut_a_of_ring(RingScene& scene) {
   scene.is_a_cut = true;
   if (scene.round % 3 != 1) return;
-  const std::string token = RingScene::control(TokenControl::token, kStation, kAbove);
+  const std::string token = RingScene::control(TokenControl::token, kStation, kRingAbove);
   scene.bench.carry({token.substr(0, 60)}, {token});
   scene.bench.wait(2 * scene.bench.slot());
   scene.lost = 1;

@@ -12,7 +12,7 @@ using Frame = std::vector<std::uint8_t>;
 
 constexpr unsigned kCommandBits = 8 * valve_bus::kCommandOctets;
 
-Frame wrong_bit(NodeScene& scene) {
+Frame one_wrong_bit(NodeScene& scene) {
   const auto& rules = scene.bench.rules();
   Frame frame = scene.command(scene.round < kCommandBits ? rules.write_command : rules.read_command);
   invert(frame, scene.round % kCommandBits);
@@ -79,17 +79,18 @@ std::vector<NodeCase> node_check_cases() {
   using namespace node_chart;
   const NodeStep no_check = ignored("acts_on_wrong_check", "the check is no exclusive or");
   return {
-      on_chart({.id = "valve_bus/node/check/single_bit_errors_are_refused",
-                .purpose = "RN-09",
-                .requirement = "A frame whose block check does not fit is ignored.",
-                .reference = valve_sources::paper("node on a wrong block check"),
-                .tags = {"must"},
-                .catches = {{"read_not_checked", "acts_on_wrong_check"},
-                            {"write_not_checked", "acts_on_wrong_check"},
-                            {"valves_off_on_wrong_check", "acts_on_wrong_check"}}},
-               {{2 * kCommandBits, 2 * kCommandBits},
-                {valves_on(), sent("a write, then a read, with each of its 40 bits wrong in turn", wrong_bit),
-                 ignored("acts_on_wrong_check", "one bit is wrong"), serves()}}),
+      on_chart(
+          {.id = "valve_bus/node/check/single_bit_errors_are_refused",
+           .purpose = "RN-09",
+           .requirement = "A frame whose block check does not fit is ignored.",
+           .reference = valve_sources::paper("node on a wrong block check"),
+           .tags = {"must"},
+           .catches = {{"read_not_checked", "acts_on_wrong_check"},
+                       {"write_not_checked", "acts_on_wrong_check"},
+                       {"valves_off_on_wrong_check", "acts_on_wrong_check"}}},
+          {{2 * kCommandBits, 2 * kCommandBits},
+           {valves_on(), sent("a write, then a read, with each of its 40 bits wrong in turn", one_wrong_bit),
+            ignored("acts_on_wrong_check", "one bit is wrong"), serves()}}),
       on_chart(
           {.id = "valve_bus/node/check/double_errors_show_the_exclusive_or",
            .purpose = "RN-10",

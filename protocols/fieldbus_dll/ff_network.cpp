@@ -17,7 +17,7 @@ constexpr std::uint8_t kFirstSelector = 0x20;
 constexpr std::size_t kWordOctets = 2;
 
 // Addresses beyond the last station are not polled: V(FUN) and V(NUN).
-FfRules rules_of(const LinkDescription& link) {
+FfRules ff_rules_of(const LinkDescription& link) {
   FfRules rules;
   rules.link.bit_rate = link.bit_rate;
   std::uint8_t last = 0;
@@ -40,7 +40,7 @@ FfDlpdu word_dlpdu() {
 }  // namespace
 
 FfNetwork::FfNetwork(const LinkDescription& description, std::uint64_t seed, const FfStations& stations)
-    : LinkNetwork(description, rules_of(description).link, seed), rules_(rules_of(description)) {
+    : LinkNetwork(description, ff_rules_of(description).link, seed), rules_(ff_rules_of(description)) {
   find_addresses();
   for (std::size_t n = 0; n < description.masters.size(); ++n) {
     add(description.masters[n], n + 1, fmt::format("ff_las@{}", n + 1), stations.make_master, true);

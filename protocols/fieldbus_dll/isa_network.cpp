@@ -17,7 +17,7 @@ using kernel::Time;
 constexpr std::size_t kDataOctets = 3;
 constexpr unsigned kMarginOctets = 8;
 
-IsaRules rules_of(const LinkDescription& link) {
+IsaRules isa_rules_of(const LinkDescription& link) {
   IsaRules rules;
   rules.link.bit_rate = link.bit_rate;
   return rules;
@@ -34,7 +34,7 @@ std::string why_silent(const LinkDescription& link, std::uint8_t node) {
 }  // namespace
 
 IsaNetwork::IsaNetwork(const LinkDescription& description, std::uint64_t seed, const IsaStations& stations)
-    : LinkNetwork(description, rules_of(description).link, seed), rules_(rules_of(description)) {
+    : LinkNetwork(description, isa_rules_of(description).link, seed), rules_(isa_rules_of(description)) {
   for (std::size_t n = 0; n < description.masters.size(); ++n) {
     add(description.masters[n], n + 1, fmt::format("isa_las@{}", n + 1), stations.make_master, true);
   }

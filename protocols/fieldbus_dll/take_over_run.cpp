@@ -28,7 +28,7 @@ FfSchedule schedule() {
   return all;
 }
 
-FfRules rules_at(std::int64_t bit_rate) {
+FfRules ff_rules_at(std::int64_t bit_rate) {
   FfRules rules;
   rules.link.bit_rate = bit_rate;
   return rules;
@@ -94,13 +94,13 @@ bool is_answered(const std::vector<Driven>& driven, const Driven& cd, const FfRu
 }  // namespace
 
 kernel::Duration take_over_silence(std::int64_t bit_rate) {
-  const FfRules rules = rules_at(bit_rate);
+  const FfRules rules = ff_rules_at(bit_rate);
   return octets(rules.link,
                 std::int64_t{kMasters[1]} * rules.link.slot_time_octets + rules.claim_delay_octets);
 }
 
 TakeOver run_take_over(const TakeOverSetting& setting) {
-  const FfRules rules = rules_at(setting.bit_rate);
+  const FfRules rules = ff_rules_at(setting.bit_rate);
   kernel::Random random(setting.seed);
   FfLink link(rules, random.split("link"), setting.disturb);
   std::vector<Driven> driven;

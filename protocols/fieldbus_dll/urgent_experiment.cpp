@@ -14,7 +14,7 @@ namespace {
 
 using traffic::ms;
 
-constexpr std::uint8_t kFirstNode = 0x11;
+constexpr std::uint8_t kFirstPacketNode = 0x11;
 // Queues begin empty, and those near what the token carries are long in filling.
 constexpr kernel::Duration kShortestWarmUp = 3 * kernel::kSecond;
 constexpr double kBatchesOfRun = 40;  // about
@@ -100,12 +100,12 @@ class Experiment {
         delays_(batch_of(ms(duration) * kExperimentNodes * traffic.urgent_per_ms)),
         rotations_(batch_of(ms(duration) / (ms(traffic.empty_rotation) / (1 - traffic.load())))) {
     link_.on_driven([this](const FfDriven& one) { hear(one); });
-    FfConfiguration scheduler{.rules = rules_, .node = kFirstNode - 1};
+    FfConfiguration scheduler{.rules = rules_, .node = kFirstPacketNode - 1};
     scheduler.begins_as_scheduler = true;
     link_.add_master(scheduler, nobody_);
     const kernel::Random random(seed);
     for (unsigned n = 0; n < kExperimentNodes; ++n) {
-      link_.add_device({.rules = rules_, .node = static_cast<std::uint8_t>(kFirstNode + n)}, nobody_);
+      link_.add_device({.rules = rules_, .node = static_cast<std::uint8_t>(kFirstPacketNode + n)}, nobody_);
       urgent_.emplace_back(traffic.urgent_per_ms, random.split("urgent").split(n));
       available_.emplace_back(traffic.available_per_ms, random.split("time-available").split(n));
     }
@@ -132,12 +132,12 @@ class Experiment {
  private:
   void hear(const FfDriven& one) {
     if (one.dlpdu.type == FfType::pt) on_token(one);
-    if (one.dlpdu.type == FfType::dt1 && one.node >= kFirstNode) on_packet(one);
+    if (one.dlpdu.type == FfType::dt1 && one.node >= kFirstPacketNode) on_packet(one);
   }
 
   void on_token(const FfDriven& pt) {
     if (pt.dlpdu.begins_circulation) begin_rotation(pt);
-    const unsigned n = pt.dlpdu.node - kFirstNode;
+    const unsigned n = pt.dlpdu.node - kFirstPacketNode;
     // A station looks at what waits when it may begin to send.
     const kernel::Time looks = pt.end + octets(rules_.link, kSilence);
     give(n, urgent_[n], Priority::urgent, kUrgentData, looks);
@@ -154,12 +154,12 @@ class Experiment {
 
   void give(unsigned n, PacketQueue& queue, Priority priority, std::size_t size, kernel::Time now) {
     if (!queue.gives(now)) return;
-    const auto node = static_cast<std::uint8_t>(kFirstNode + n);
-    link_.submit(node, {priority, address_of(kFirstNode - 1, 0x20), Octets(size, node)});
+    const auto node = static_cast<std::uint8_t>(kFirstPacketNode + n);
+    link_.submit(node, {priority, address_of(kFirstPacketNode - 1, 0x20), Octets(size, node)});
   }
 
   void on_packet(const FfDriven& dt1) {
-    const unsigned n = dt1.node - kFirstNode;
+    const unsigned n = dt1.node - kFirstPacketNode;
     if (dt1.dlpdu.priority != Priority::urgent) {
       available_[n].leave();
       return;
