@@ -32,7 +32,7 @@ SequenceFile target_of(const Session& session) {
   target.setup.limits = limits_from(settings);
   if (settings.is_set("pics")) {
     target.setup.pics = load_pics(settings.text("pics"), session.catalogue.pics_items());
-    expect_items_of({role_path(*target.role)}, *target.setup.pics, settings.text("pics"));
+    expect_items_of({role_path(*target.role)}, *target.setup.pics, settings.text("pics"), session.catalogue);
   }
   assign_implementations(session, target);
   target.suite->check(target.role->test_case, target.setup);

@@ -84,6 +84,8 @@ TEST_F(OfInterbus, PicsItemsOfARoleHaveTheirDefaults) {
   EXPECT_HOLDS(slave.out, "words  a whole number from 0 to 256, otherwise 2  ");
   EXPECT_EQ(slave.out.find("loss_limit"), std::string::npos);
   EXPECT_HOLDS(real({"list", "pics", "valve_bus/node"}).out, "loss_limit  ");
+  EXPECT_HOLDS(real({"list", "pics", "token_bus/translator"}).out,
+               "blanking_symbols  a whole number from 24 to 32, otherwise 28  ");
   EXPECT_HOLDS(real({"list", "pics", "interbus/slav"}).err, "'interbus/slave'");
 }
 

@@ -74,17 +74,16 @@ std::string answer_text(const judge::Pics::Answer& answer) {
 }
 
 // The items of one role, with what is taken where a PICS does not answer.
-std::vector<Row> pics_rows_of(const Role& role, Terminal& terminal) {
+std::vector<Row> pics_rows_of(const Role& role, const Session& session) {
   std::vector<Row> rows;
-  if (role.pics_items == nullptr) {
-    terminal.log(fmt::format("{} has no items of a PICS", role.path()));
-    return rows;
-  }
-  const judge::Pics declared = role.declared();
-  for (const judge::PicsItem& item : role.pics_items()) {
+  const auto& of_protocol = session.catalogue.suite(role.protocol).role_rows();
+  const auto& of_role = *std::ranges::find(of_protocol, role.name, &conformance::RoleRow::name);
+  if (of_role.pics_items.empty()) session.terminal.log(fmt::format("{} has no items of a PICS", role.path()));
+  const auto& usual = of_role.usual_answers.items();
+  for (const judge::PicsItem& item : of_role.pics_items) {
     Row row = row_of(item);
-    const auto answer = declared.items().find(item.name);
-    if (answer != declared.items().end()) {
+    const auto answer = usual.find(item.name);
+    if (answer != usual.end()) {
       const std::string text = answer_text(answer->second);
       row.json["default"] = text;
       row.text =
@@ -141,12 +140,12 @@ std::vector<Row> rows_of(Session& session) {
     return rows;
   }
   if (session.operands.size() == 2 && session.operands.front() == "pics")
-    return pics_rows_of(role_named(session.operands.back()), session.terminal);
+    return pics_rows_of(role_named(session.operands.back()), session);
   conformance::Setup setup;
   const std::vector<conformance::Entry> selected = session.catalogue.select(session.operands);
   if (session.settings.is_set("pics")) {
     setup.pics = load_pics(session.settings.text("pics"), items);
-    expect_items_of(roles_of(selected), *setup.pics, session.settings.text("pics"));
+    expect_items_of(roles_of(selected), *setup.pics, session.settings.text("pics"), session.catalogue);
   }
   for (const conformance::Entry& entry : shard_of(session.settings, selected)) {
     rows.push_back(row_of(entry, setup));

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/catalogue.hpp"
 #include "harness/judge/pics.hpp"
 
 namespace fieldproof::cli {
@@ -12,6 +13,6 @@ namespace fieldproof::cli {
 // would ask for it. `roles` are paths, PROTOCOL/ROLE; one without items of its own, a network, has those
 // of its protocol.
 void expect_items_of(const std::vector<std::string>& roles, const judge::Pics& pics,
-                     const std::string& pics_file);
+                     const std::string& pics_file, const conformance::Catalogue& catalogue);
 
 }  // namespace fieldproof::cli

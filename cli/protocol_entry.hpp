@@ -43,9 +43,6 @@ struct Role {
   std::span<const iut::Item> inputs{};
   // What a station without an upper channel is told, from the answers of a PICS; null: it cannot play alone.
   iut::CaseBegin (*alone)(const judge::Pics&) = nullptr;
-  // What a PICS of the role may answer, and what is taken where it does not; null: nothing.
-  std::vector<judge::PicsItem> (*pics_items)() = nullptr;
-  judge::Pics (*declared)() = nullptr;
 
   std::string path() const { return std::string(protocol) + "/" + std::string(name); }
 };

@@ -166,40 +166,20 @@ constexpr Role with_uart(Role role, iut::MakeUartLine uart, decltype(Role::on_li
   return role;
 }
 
-constexpr Role with_pics(Role role, decltype(Role::pics_items) items, decltype(Role::declared) declared) {
-  role.pics_items = items;
-  role.declared = declared;
-  return role;
-}
-
-// As the bench's own network has it.
-judge::Pics declared_usual_slave() {
-  interbus::SlaveConfiguration usual;
-  usual.id_code = 0x0203;
-  usual.words = 2;
-  return conformance::declared_slave(usual);
-}
-
 constexpr auto kInItsUnit = iut::UnitOffer::in_its_unit;
 constexpr auto kCharactersToo = iut::UnitOffer::in_characters_too;
 
 constexpr std::array kInterbusRoles{
-    with_pics(
-        with_telegrams(row<interbus::SlaveRole, interbus::Slave, &conformance::slave_mutants>(kInItsUnit),
-                       &in_telegrams<3>),
-        conformance::slave_pics_items, declared_usual_slave),
-    with_pics(with_telegrams(
-                  row<interbus::MasterRole, interbus::Master, &conformance::master_mutants>(kCharactersToo),
-                  &in_telegrams<1>),
-              conformance::master_pics_items, conformance::declared_master),
+    with_telegrams(row<interbus::SlaveRole, interbus::Slave, &conformance::slave_mutants>(kInItsUnit),
+                   &in_telegrams<3>),
+    with_telegrams(row<interbus::MasterRole, interbus::Master, &conformance::master_mutants>(kCharactersToo),
+                   &in_telegrams<1>),
 };
 constexpr std::array kValveBusRoles{
-    with_pics(with_uart(row<valve_bus::NodeRole, valve_bus::Node, &conformance::node_mutants>(kInItsUnit),
-                        node_uart, node_on_line, kNodeInputs, node_alone),
-              conformance::node_pics_items, conformance::declared_node),
-    with_pics(with_uart(row<valve_bus::HostRole, valve_bus::Host, &conformance::host_mutants>(kCharactersToo),
-                        host_uart, host_on_line, kHostInputs),
-              conformance::host_pics_items, conformance::declared_host),
+    with_uart(row<valve_bus::NodeRole, valve_bus::Node, &conformance::node_mutants>(kInItsUnit), node_uart,
+              node_on_line, kNodeInputs, node_alone),
+    with_uart(row<valve_bus::HostRole, valve_bus::Host, &conformance::host_mutants>(kCharactersToo),
+              host_uart, host_on_line, kHostInputs),
 };
 constexpr std::array kFieldbusDllRoles{
     row<fieldbus_dll::IsaDleRole, fieldbus_dll::IsaDle, &conformance::isa_dle_mutants>(kCharactersToo),

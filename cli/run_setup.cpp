@@ -59,7 +59,7 @@ conformance::Setup setup_from(const Settings& settings, const conformance::Catal
   setup.plan_file = settings.text("faults");
   if (settings.is_set("pics")) {
     setup.pics = load_pics(settings.text("pics"), catalogue.pics_items());
-    expect_items_of(roles_of(selected), *setup.pics, settings.text("pics"));
+    expect_items_of(roles_of(selected), *setup.pics, settings.text("pics"), catalogue);
   }
   setup.limits = limits_from(settings);
   setup.implementations = parse_implementations(settings.list("iut"), catalogue, selected);

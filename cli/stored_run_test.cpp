@@ -71,7 +71,10 @@ TEST_F(Stored, ReplayTellsWhatDiffers) {
 TEST_F(Stored, PlanAndPicsTravelWithTheCase) {
   write("plan.json", "{\"rules\": [{\"effect\": {\"drop\": {}}}]}");
   write("pics.json", "{\"items\": {\"x\": true, \"n\": 4, \"s\": \"zero\"}}");
-  EXPECT_EQ(code({"run", "odd/end/fails", "--faults", "plan.json", "--pics", "pics.json", "--out", "a"}), 1);
+  const char* failing = "probe/station/time/answer_is_in_time";
+  EXPECT_EQ(code({"run", failing, "--iut", "mutant:late", "--faults", "plan.json", "--pics", "pics.json",
+                  "--out", "a"}),
+            1);
   fs::remove(folder_ / "plan.json");
   fs::remove(folder_ / "pics.json");
   fs::rename(folder_ / "a", folder_ / "moved");

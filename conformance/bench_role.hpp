@@ -41,7 +41,9 @@ struct CaseRole {
   };
   // The answers of the setup, completed by those of the bench; null: nothing completes them.
   judge::Pics (*declared_pics)(const Case&, const Setting&) = nullptr;
+  // What a PICS of the role may answer, and what is taken where it does not.
   std::vector<judge::PicsItem> (*pics_items)() = nullptr;
+  judge::Pics (*usual_answers)() = nullptr;
   const field::AnyTable* settings = nullptr;
   std::optional<SequenceRow<Case>> sequences{};
 
@@ -84,7 +86,10 @@ RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
   // Two roles of one bench may have one list of cases.
   for (const Case& one : role.cases())
     if (one.test_case.role() == role.name) row.cases.push_back(one.test_case);
-  if (role.pics_items != nullptr) row.pics_items = role.pics_items();
+  if (role.pics_items != nullptr) {
+    row.pics_items = role.pics_items();
+    row.usual_answers = role.usual_answers();
+  }
   row.settings = role.settings;
   const auto run_case = [role, play](const Case& one, RunningCase& run, bool has_to_drive) {
     Setting setting = role.setting(run);

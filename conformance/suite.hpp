@@ -34,7 +34,9 @@ struct RoleRow {
   std::function<void(const std::string& uri, RunningCase&)> try_out{};
   // Null: the answers of the setup, with what is known of a station on a real line.
   std::function<std::optional<judge::Pics>(const TestCase&, RunningCase&)> declared_pics{};
+  // What a PICS of the role may answer, and what is taken where it does not.
   std::vector<judge::PicsItem> pics_items{};
+  judge::Pics usual_answers{};
   const field::AnyTable* settings = nullptr;
   std::optional<SequenceRole> sequences{};
   std::function<Outcome(const Sequence&, RunningCase&)> run_sequence{};
@@ -76,6 +78,7 @@ class Suite {
   // Whether the program brought an implementation of this role along, with the URI `own`.
   bool has_own(std::string_view role) const { return given_.own.has(role); }
   int last_position() const { return rows_.last_position; }
+  const std::vector<RoleRow>& role_rows() const { return rows_.roles; }
   // What a PICS of this protocol may answer.
   std::vector<judge::PicsItem> pics_items() const;
   // The settings of each role, by its name, and the numbers of the protocol.

@@ -61,6 +61,14 @@ void expect_one_slave(const SlaveCase& slave_case, const SlaveSetting& setting, 
   slave_network(slave_case.needs, setting);
 }
 
+// As the bench's own network has it.
+judge::Pics declared_usual_slave() {
+  interbus::SlaveConfiguration usual;
+  usual.id_code = 0x0203;
+  usual.words = 2;
+  return declared_slave(usual);
+}
+
 RoleRow slave_row() {
   return row_of<interbus::SlaveRole, interbus::Slave>(
       kSlaves,
@@ -73,6 +81,7 @@ RoleRow slave_row() {
           .declared_pics = [](const SlaveCase& one,
                               const SlaveSetting& setting) { return SlaveBench(one.needs, setting).pics(); },
           .pics_items = slave_pics_items,
+          .usual_answers = declared_usual_slave,
           .settings = &interbus::kSlaveTable,
           .sequences = SequenceRow<SlaveCase>{slave_sequence_role, run_slave_sequence}});
 }
@@ -92,6 +101,7 @@ RoleRow master_row() {
                     .cases = master_cases,
                     .check = expect_nothing_else,
                     .pics_items = master_pics_items,
+                    .usual_answers = declared_master,
                     .settings = &interbus::kMasterTable,
                     .sequences = SequenceRow<MasterCase>{master_sequence_role, run_master_sequence}});
 }

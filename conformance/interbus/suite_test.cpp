@@ -60,6 +60,10 @@ TEST(InterbusSuite, CanariesFail) {
   EXPECT_EQ(canaries, 3);
 }
 
+TEST(InterbusSuite, AnswersAtTheEndsOfTheirRangesAccuseNoReference) {
+  EXPECT_THAT(false_alarms_at_ends(suite(), 4), testing::IsEmpty());
+}
+
 TEST(InterbusSuite, TheMatrixHasNoHole) {
   if (kernel::kIsSanitized)
     GTEST_SKIP()

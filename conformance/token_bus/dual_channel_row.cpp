@@ -19,6 +19,7 @@ RoleRow channel_manager_row() {
       Cases{.name = "channel_manager",
             .cases = manager_cases,
             .pics_items = [] { return field::pics_items_of(token_bus::kChannelManagerTable); },
+            .usual_answers = [] { return field::declared_by(token_bus::kChannelManagerTable, {}); },
             .settings = &token_bus::kChannelManagerTable,
             .sequences =
                 SequenceRow<ManagerCase>{channel_manager_sequence_role, run_channel_manager_sequence}});

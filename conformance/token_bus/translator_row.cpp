@@ -18,6 +18,7 @@ RoleRow translator_row() {
       Cases{.name = "translator",
             .cases = translator_cases,
             .pics_items = [] { return field::pics_items_of(token_bus::kTranslatorTable); },
+            .usual_answers = [] { return field::declared_by(token_bus::kTranslatorTable, {}); },
             .settings = &token_bus::kTranslatorTable,
             .sequences = SequenceRow<TranslatorCase>{translator_sequence_role, run_translator_sequence}});
 }

@@ -30,4 +30,12 @@ inline Applicability for_item(std::string item, bool is_supported, judge::Pics d
   };
 }
 
+// Where both say so.
+inline Applicability for_both(Applicability one, Applicability other) {
+  return [one = std::move(one), other = std::move(other)](const judge::Pics& pics) {
+    auto why_not = one(pics);
+    return why_not ? why_not : other(pics);
+  };
+}
+
 }  // namespace fieldproof::conformance

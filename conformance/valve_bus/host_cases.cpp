@@ -59,8 +59,26 @@ const std::vector<HostCase>& host_cases() {
   return cases;
 }
 
+Applicability for_switched_power() {
+  return for_item("power_can_be_switched", true, declared_host(),
+                  "the bench cannot switch the supply of the host");
+}
+
 Applicability for_settable_dip() {
-  return for_item("dip_can_be_set", true, declared_host(), "the bench cannot turn the host's DIP switches");
+  return for_both(
+      for_item("dip_can_be_set", true, declared_host(), "the bench cannot turn the host's DIP switches"),
+      for_switched_power());
+}
+
+Applicability for_quick_frames(unsigned requests) {
+  return [requests](const judge::Pics& pics) -> std::optional<std::string> {
+    valve_bus::Rules rules = host_configuration({}, pics.completed_by(declared_host())).rules;
+    rules.bit_rate = valve_bus::dip_bit_rates()[static_cast<std::size_t>(pics.number("dip", 0))];
+    constexpr std::int64_t kFrameBits = 11 * valve_bus::kCommandOctets;
+    if (requests * (valve_bus::bits(rules, kFrameBits) + valve_bus::delimiter(rules)) < rules.refresh)
+      return std::nullopt;
+    return "at this bit rate what was written is sent again meanwhile";
+  };
 }
 
 Applicability for_plain_writes() {

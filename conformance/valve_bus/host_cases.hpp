@@ -28,6 +28,10 @@ std::vector<HostCase> host_immunity_cases();
 
 // Applies only to a host whose switches the bench can set.
 Applicability for_settable_dip();
+// So many requests take less than the time after which a write is sent again.
+Applicability for_quick_frames(unsigned requests);
+// The bench can switch its supply.
+Applicability for_switched_power();
 // Applies only to a host that sends a write and does not look after it.
 Applicability for_plain_writes();
 

@@ -249,14 +249,11 @@ std::vector<HostCase> host_cycle_cases() {
                                "all; then an error is reported to the PC.",
                 .reference = valve_sources::own("option: nodes acknowledge writes"),
                 .tags = {"must", "option"},
-                .catches = {{"acknowledge_not_awaited", "no_retry"}}},
+                .catches = {{"acknowledge_not_awaited", "no_retry"}},
+                .not_applicable = for_both(for_switched_power(), for_quick_frames(4))},
                {{2, 50},
                 {// Refreshes want to be acknowledged as well: each round begins without any.
-                 stimulus("power goes off and comes",
-                          [](HostScene& scene) {
-                            scene.bench.restart(static_cast<unsigned>(scene.bench.pics().number("dip", 0)));
-                          }),
-                 write(), answer("the node acknowledges it", written_data(true)),
+                 power_cycled(), write(), answer("the node acknowledges it", written_data(true)),
                  nothing_reported("acknowledge_told", "the write was acknowledged"), write(),
                  stimulus("no node acknowledges it", [](HostScene&) {}), sent_again, sent_again,
                  error(HostErrorKind::not_acknowledged)}},

@@ -59,10 +59,7 @@ unsigned turned_to(const HostScene& scene) {
 
 std::vector<HostCase> host_dip_cases() {
   using namespace host_chart;
-  const auto with_switches = [](const judge::Pics& pics) {
-    const auto why_not = for_plain_writes()(pics);
-    return why_not ? why_not : for_settable_dip()(pics);
-  };
+  const auto with_switches = for_both(for_plain_writes(), for_settable_dip());
   return {
       on_chart(
           {.id = "valve_bus/host/dip/each_position_is_a_bit_rate",

@@ -81,6 +81,12 @@ HostStep served_read() {
           [](HostScene& scene) { scene.known = expect_read_served(scene.bench, scene.judge, scene.id); }};
 }
 
+HostStep power_cycled() {
+  return stimulus("power goes off and comes", [](HostScene& scene) {
+    scene.bench.restart(static_cast<unsigned>(scene.bench.pics().number("dip", 0)));
+  });
+}
+
 HostStep powered_up_at_each_position() {
   return stimulus("power goes off and comes with the DIP switches in each position in turn",
                   [](HostScene& scene) { scene.bench.restart(dip_of(scene)); });

@@ -67,6 +67,8 @@ HostStep read();
 HostStep write();
 // A read, answered with random data, which the PC gets: what is known of the node from then on.
 HostStep served_read();
+// Power goes off and comes: nothing is refreshed any more.
+HostStep power_cycled();
 // Power goes off and comes with the next position of the DIP switches, another one in each round.
 HostStep powered_up_at_each_position();
 unsigned dip_positions();

@@ -69,6 +69,7 @@ RoleRow node_row() {
           .cases = node_cases,
           .check = expect_judgeable,
           .pics_items = node_pics_items,
+          .usual_answers = declared_node,
           .settings = &valve_bus::kNodeTable,
           .sequences = SequenceRow<NodeCase>{node_sequence_role, run_node_sequence}});
 }
@@ -82,6 +83,7 @@ RoleRow host_row() {
           .name = "host",
           .cases = host_cases,
           .pics_items = host_pics_items,
+          .usual_answers = declared_host,
           .settings = &valve_bus::kHostTable,
           .sequences = SequenceRow<HostCase>{host_sequence_role, run_host_sequence}});
 }

@@ -18,5 +18,22 @@ TEST(ValveBusSuite, ReferencesPassInManySeedsWithoutAFalseAlarm) {
   EXPECT_THAT(false_alarms(*suite, 1094), testing::IsEmpty());
 }
 
+TEST(ValveBusSuite, AnswersAtTheEndsOfTheirRangesAccuseNoReference) {
+  EXPECT_THAT(false_alarms_at_ends(*valve_bus_suite(), 4), testing::IsEmpty());
+}
+
+// Each position of the switches is a bit rate; refreshes come within exchanges at the lowest.
+TEST(ValveBusSuite, NoBitRateAccusesTheHost) {
+  const auto suite = valve_bus_suite();
+  for (kernel::FewerIfSanitized few(4); const std::int64_t dip : {1, 2, 3, 4, 5, 6, 7}) {
+    if (few.leaves_out()) continue;
+    conformance::Setup setup;
+    setup.volume = Volume::quick;
+    setup.pics.emplace().declare("dip", dip);
+    const auto is_accused = [](judge::Verdict verdict) { return verdict >= judge::Verdict::fail; };
+    EXPECT_THAT(cases_where(*suite, setup, is_accused), testing::IsEmpty()) << dip;
+  }
+}
+
 }  // namespace
 }  // namespace fieldproof::conformance
