@@ -131,6 +131,10 @@ void declare_station(interbus::StationDescription& station, const judge::Pics& p
         length_code(station.id_code), station.id_code));
   }
   station.words = coded.value_or(words);
+  for (const std::string_view data : {"inputs", "outputs"}) {
+    if (station.words == 0 && pics.supports(data))
+      refuse(fmt::format("a register of 0 words has no {}; declare \"{}\": false, or \"words\"", data, data));
+  }
   station.has_branch = pics.supports("has_branch");
 }
 

@@ -101,6 +101,9 @@ ManagerNeeds with_a_slot_for_rings() {
     one.rules.address_length = token_bus::AddressLength::bits_16;
     one.rules.slot_time_octets = std::max(one.rules.slot_time_octets, usual.slot_time_octets);
     one.rules.most_octets = usual.most_octets;
+    // Of its station, which shall not claim while a pass is repeated.
+    one.rules.bus_idle_slots = usual.bus_idle_slots;
+    one.rules.lowest_bus_idle_slots = usual.lowest_bus_idle_slots;
   }};
 }
 
