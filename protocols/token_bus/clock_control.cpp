@@ -16,7 +16,7 @@ void ClockControl::notice_bits() {
 void ClockControl::follow(MacSymbol symbol) {
   zeros_ = symbol == MacSymbol::zero ? zeros_ + 1 : 0;
   ones_ = symbol == MacSymbol::one ? ones_ + 1 : 0;
-  if (symbol == MacSymbol::non_data || ones_ >= 2) phase_ = Phase::locked;
+  if (locks_after(symbol, ones_)) phase_ = Phase::locked;
   if (!may_slip() || !slips_after(zeros_)) return;
   to_drop_ = slip_bits();
   ++slips_;

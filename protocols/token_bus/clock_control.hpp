@@ -22,7 +22,7 @@ class ClockControl {
   virtual ~ClockControl() = default;
 
   // The line is silent: the phase of the next transmission is another one.
-  void lose_lock();
+  virtual void lose_lock();
   // A pair with bits in it: a transmission begins where none is under way.
   void notice_bits();
   // What was indicated for a pair.
@@ -36,6 +36,9 @@ class ClockControl {
  protected:
   // ---- decisions ----
   virtual bool slips_after(unsigned zeros_in_a_row) const { return zeros_in_a_row >= 2; }
+  virtual bool locks_after(MacSymbol symbol, unsigned ones_in_a_row) const {
+    return symbol == MacSymbol::non_data || ones_in_a_row >= 2;
+  }
   virtual bool may_slip() const { return is_hunting(); }
   virtual unsigned slip_bits() const { return 1; }
 

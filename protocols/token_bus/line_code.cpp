@@ -191,7 +191,7 @@ MacSymbol MacDecoder::indicate(PhyPair pair, LineStatus status) {
     return symbol;
   }
   if (pair.first != idl || pair.second != idl) clock_->notice_bits();
-  expects_second_ = symbol == MacSymbol::non_data && !expects_second_;
+  expects_second_ = expects_second_after(symbol);
   clock_->follow(symbol);
   return symbol;
 }

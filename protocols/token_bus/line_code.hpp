@@ -96,7 +96,7 @@ class MacDecoder {
   // The next bit of the line; a symbol where it is the second one of a pair. A signal error in one of both is
   // one of the pair; whether there is a carrier, the second says.
   std::optional<MacSymbol> take(PhySymbol bit, LineStatus status = {});
-  void reset();
+  virtual void reset();
 
   bool is_within_pair() const { return first_.has_value(); }
   bool is_hunting() const { return clock_->is_hunting(); }
@@ -106,6 +106,10 @@ class MacDecoder {
  protected:
   // ---- decisions ----
   virtual MacSymbol indication(PhyPair pair, LineStatus status) const;
+  // In the symbol after the first one, and in no other.
+  virtual bool expects_second_after(MacSymbol symbol) const {
+    return symbol == MacSymbol::non_data && !expects_second_;
+  }
 
  private:
   struct First {

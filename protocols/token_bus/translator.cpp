@@ -23,8 +23,7 @@ void Translator::set_power(bool is_on, kernel::Time now) {
   blocks_.jabber->reset();
   requested_until_ = pair_begin_ = now;
   last_bit_ = {now, now, 1};
-  // Nothing was transmitted that a test of the transceiver would follow.
-  transmitted_until_ = kernel::kStart - kernel::kSecond;
+  transmissions_.clear();
 }
 
 void Translator::receive(segment::PortIndex port, const line::Waveform& reception) {
@@ -64,10 +63,14 @@ void Translator::on_time(kernel::Time now) {
   indications_.drive(now);
 }
 
+unsigned Translator::delay_symbols() const {
+  return std::min(configuration_.delay_symbols, configuration_.answer_symbols);
+}
+
 // One symbol less than the delay: the clock of a side may be a little slow.
 kernel::Time Translator::next_time() const {
   if (!is_powered_) return kernel::kNever;
-  const std::size_t symbols = configuration_.delay_symbols - 1;
+  const std::size_t symbols = delay_symbols() - 1;
   kernel::Time next = half_pair_until();
   if (!requests_.empty()) next = std::min(next, requests_.end_of_piece(symbols));
   if (!bits_.empty()) next = std::min(next, bits_.end_of_piece(2 * symbols));
@@ -107,14 +110,15 @@ void Translator::manage(const ServiceUnit& unit, ManagementCommand command) {
 }
 
 void Translator::request(const ServiceUnit& unit, MacSymbol symbol) {
-  if (blocks_.jabber->is_too_long(symbol, configuration_)) blocks_.manager->on_jabber();
+  if (blocks_.jabber->is_too_long(symbol, blocks_.manager->may_transmit(), configuration_))
+    blocks_.manager->on_jabber();
   const PhyPair pair = blocks_.transmitter->encode(symbol);
   const bool is_on = symbol != MacSymbol::silence;
   if (is_on && blocks_.manager->may_transmit()) {
     const std::uint64_t first = levels_of(PhyCell{pair.first, {}});
     const std::uint64_t second = levels_of(PhyCell{pair.second, {}});
     signals_.append(unit.begin + delay(), 2 * unit.rate, first | second << kUnitLevels, 2 * kUnitLevels);
-    transmitted_until_ = unit.end + delay();
+    note_transmission(unit.begin + delay(), unit.end + delay());
   }
   if (!blocks_.manager->is_looped_back()) return;
   const kernel::Time middle = unit.begin + (unit.end - unit.begin) / 2;
@@ -130,11 +134,27 @@ bool Translator::is_error_masked(kernel::Duration after_own_transmission) const 
          after_own_transmission < mac_symbols(configuration_.rules, configuration_.error_mask_symbols);
 }
 
+void Translator::note_transmission(kernel::Time begin, kernel::Time end) {
+  const kernel::Duration tolerance = mac_symbols(configuration_.rules, 1) / 4;
+  if (!transmissions_.empty() && begin < transmissions_.back().end + tolerance) {
+    transmissions_.back().end = end;
+  } else {
+    transmissions_.push_back({begin, end});
+  }
+}
+
+// Within one it is negative. Without one it is long ago: no test of the transceiver follows.
+kernel::Duration Translator::after_own_transmission(kernel::Time at) {
+  while (transmissions_.size() > 1 && transmissions_[1].begin <= at) transmissions_.pop_front();
+  if (transmissions_.empty() || transmissions_.front().begin > at) return kernel::kSecond;
+  return at - transmissions_.front().end;
+}
+
 void Translator::follow_phy() {
   const ServiceUnit unit = bits_.front();
   PhyCell cell = phy_cell_at(bits_.levels(), bits_.number());
   bits_.pop();
-  const kernel::Duration after = unit.begin - transmitted_until_;
+  const kernel::Duration after = after_own_transmission(unit.begin);
   if (!takes_line(blocks_.manager->is_looped_back(), after < kernel::Duration{})) return;
   if (is_error_masked(after)) cell.status.has_signal_error = false;
   decode({unit.begin, unit.end, unit.rate / 2}, cell.symbol, cell.status);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 
 #include "protocols/token_bus/service_units.hpp"
 #include "protocols/token_bus/translator_blocks.hpp"
@@ -44,8 +45,17 @@ class Translator : public TranslatorDevice {
     std::int64_t rate;
   };
 
-  kernel::Duration delay() const { return mac_symbols(configuration_.rules, configuration_.delay_symbols); }
+  struct Transmission {
+    kernel::Time begin;
+    kernel::Time end;
+  };
+
+  // The same for all that comes out: an answer overtakes no symbol.
+  unsigned delay_symbols() const;
+  kernel::Duration delay() const { return mac_symbols(configuration_.rules, delay_symbols()); }
   kernel::Time half_pair_until() const;
+  void note_transmission(kernel::Time begin, kernel::Time end);
+  kernel::Duration after_own_transmission(kernel::Time at);
   bool is_management_within(kernel::Time begin, kernel::Time end) const;
   void follow_request();
   void follow_phy();
@@ -63,8 +73,8 @@ class Translator : public TranslatorDevice {
   ServiceOutput indications_;
   ServiceOutput signals_;
   kernel::Time requested_until_ = kernel::kStart;
-  kernel::Time transmitted_until_ = kernel::kStart;
-  Bit last_bit_{};  // at the decoder
+  std::deque<Transmission> transmissions_;  // own ones: the last that has begun, and what is to go out
+  Bit last_bit_{};                          // at the decoder
   kernel::Time pair_begin_ = kernel::kStart;
 };
 

@@ -61,8 +61,9 @@ MacSymbol ReceiverBlanking::pass(MacSymbol symbol, kernel::Time begin, kernel::T
 
 // ---- MACTX ----
 
-bool Jabber::is_too_long(MacSymbol symbol, const TranslatorConfiguration& configuration) {
-  symbols_ = symbol == MacSymbol::silence ? 0 : symbols_ + 1;
+bool Jabber::is_too_long(MacSymbol symbol, bool is_transmitter_on,
+                         const TranslatorConfiguration& configuration) {
+  symbols_ = counts(symbol, is_transmitter_on) ? symbols_ + 1 : 0;
   return symbols_ > most_symbols(configuration);
 }
 

@@ -27,8 +27,8 @@ class StationManager {
   void on_jabber() { has_jabbered_ = true; }
 
   bool is_management(kernel::Time at) const { return at < managed_until_; }
-  bool is_looped_back() const { return is_looped_back_; }
-  bool may_transmit() const { return is_transmitter_enabled_ && !has_jabbered_; }
+  virtual bool is_looped_back() const { return is_looped_back_; }
+  virtual bool may_transmit() const { return is_transmitter_enabled_ && !has_jabbered_; }
 
  protected:
   bool has_jabbered() const { return has_jabbered_; }
@@ -69,9 +69,9 @@ class ReceiverBlanking {
   ReceiverBlanking& operator=(const ReceiverBlanking&) = delete;
   virtual ~ReceiverBlanking() = default;
 
-  void reset();
+  virtual void reset();
   // What is indicated of a symbol.
-  MacSymbol pass(MacSymbol symbol, kernel::Time begin, kernel::Time end, const Rules& rules);
+  virtual MacSymbol pass(MacSymbol symbol, kernel::Time begin, kernel::Time end, const Rules& rules);
 
  protected:
   // ---- decisions ----
@@ -92,18 +92,22 @@ class Jabber {
   Jabber& operator=(const Jabber&) = delete;
   virtual ~Jabber() = default;
 
-  void reset() { symbols_ = 0; }
+  virtual void reset() { symbols_ = 0; }
   // True from the symbol on that is too much.
-  bool is_too_long(MacSymbol symbol, const TranslatorConfiguration& configuration);
+  bool is_too_long(MacSymbol symbol, bool is_transmitter_on, const TranslatorConfiguration& configuration);
 
  protected:
   // ---- decisions ----
+  // As one more symbol of a transmission; else there is none.
+  virtual bool counts(MacSymbol symbol, bool is_transmitter_on) {
+    return symbol != MacSymbol::silence && is_transmitter_on;
+  }
   virtual unsigned most_symbols(const TranslatorConfiguration& configuration) const {
     return configuration.jabber_symbols;
   }
 
  private:
-  unsigned symbols_ = 0;  // since silence was requested
+  unsigned symbols_ = 0;  // of the transmission
 };
 
 struct TranslatorBlocks {

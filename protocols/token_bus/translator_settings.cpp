@@ -16,7 +16,7 @@ constexpr auto kRows = field::rows<TranslatorConfiguration>(
     row<&TranslatorConfiguration::delay_symbols>(
         {kSymbols, {2, 64}, "most, from a symbol on one side to what it becomes on the other", kSourceOwn}),
     row<&TranslatorConfiguration::answer_symbols>(
-        {kSymbols, {1, 256}, "most, from a management command to its answer", kSourceOwn}),
+        {kSymbols, {2, 256}, "most, from a management command to its answer", kSourceOwn}),
     row<&TranslatorConfiguration::error_mask_symbols>(
         {kSymbols,
          {0, 64},

@@ -152,6 +152,31 @@ TEST(Translator, ASignalErrorAfterAnOwnTransmissionIsMasked) {
   }
 }
 
+// The next one is requested, and not on the line yet: no collision.
+TEST(Translator, ASignalErrorBetweenTwoOwnTransmissionsIsMasked) {
+  TestTranslator test({.delay_symbols = 16});
+  test.bring_up();
+  test.request(mac_symbols_of("PPPPPPPP"));
+  test.wait(16);
+  test.take_indications();
+  test.drive(kMacSide, [] {
+    line::Levels levels;
+    for (unsigned n = 0; n < 8; ++n) append(levels, MacRequest{MacSymbol::pad_idle, {}});
+    return levels;
+  }());
+  // It is sent from the 16th symbol on.
+  test.receive_cells(std::vector<PhyCell>(2 * 20, {PhySymbol::idl, {.has_signal_error = true}}));
+  test.wait(60);
+  EXPECT_EQ(test.take_indications(), "BBBB");
+}
+
+TEST(Translator, AnAnswerIsAsLateAsItMayBeAtMost) {
+  TestTranslator test({.delay_symbols = 64, .answer_symbols = 2});
+  test.manage(reset, 8);
+  test.wait(10);
+  EXPECT_EQ(test.take_indications(), "aaaaaaaa");
+}
+
 TEST(Translator, NoSymbolLeaksIntoManagementMode) {
   TestTranslator test;
   test.bring_up();
@@ -172,6 +197,14 @@ TEST(Translator, AJabberingTransmitterIsOffUntilReset) {
   test.wait(200);
   EXPECT_EQ(test.take_phy().size(), 200U);
   EXPECT_EQ(test.answers_to({idle, enable_transmitter, reset, idle}), "physical error NACK ACK IDLE");
+}
+
+TEST(Translator, WhatItDoesNotSendIsNoJabber) {
+  TestTranslator test({.jabber_symbols = 100});
+  test.request(MacSymbols(120, MacSymbol::pad_idle));
+  test.wait(60);
+  test.take_indications();
+  EXPECT_EQ(test.answers_to({idle, enable_transmitter}), "IDLE ACK");
 }
 
 TEST(Translator, WithoutPowerItKnowsNothing) {
