@@ -41,7 +41,15 @@ void TranslatorBench::ask() {
 
 kernel::Time TranslatorBench::drive_request(line::Levels levels) {
   return drive(mac_in_, now(), kUnitLevels * token_bus::mac_symbol_rate(configuration().rules),
-               std::move(levels));
+               std::move(levels), mac_parts_per_million_);
+}
+
+// By the rate of the levels, to which the deviation of the clock applies.
+kernel::Duration TranslatorBench::requested_symbols(std::size_t count) const {
+  constexpr std::int64_t kMillion = 1'000'000;
+  const std::int64_t rate = kUnitLevels * token_bus::mac_symbol_rate(configuration().rules);
+  return kernel::levels_duration(kUnitLevels * static_cast<std::int64_t>(count),
+                                 rate + rate / kMillion * mac_parts_per_million_);
 }
 
 kernel::Time TranslatorBench::drive_bits(const SideBits& bits) {
@@ -62,8 +70,10 @@ void TranslatorBench::carry(const SideBits& bits) {
 }
 
 void TranslatorBench::request_and_receive(std::string_view symbols, const SideBits& bits) {
-  const kernel::Time end = drive_request(request_levels_of(symbols));
-  segment().run_until(std::max(end, drive_bits(bits)));
+  kernel::Time end = now();
+  if (!symbols.empty()) end = drive_request(request_levels_of(symbols));
+  if (!bits.empty()) end = std::max(end, drive_bits(bits));
+  segment().run_until(end);
 }
 
 void TranslatorBench::command_and_receive(SideCommand command, std::size_t symbols, const SideBits& bits) {

@@ -38,6 +38,9 @@ class TranslatorBench final
   void request_and_receive(std::string_view symbols, const SideBits& bits);
   void command_and_receive(SideCommand command, std::size_t symbols, const SideBits& bits);
   void set_line_clock(std::int64_t parts_per_million) { parts_per_million_ = parts_per_million; }
+  void set_mac_clock(std::int64_t parts_per_million) { mac_parts_per_million_ = parts_per_million; }
+  // So many symbols as the MAC counts them.
+  kernel::Duration requested_symbols(std::size_t count) const;
 
   // Until everything that was given has come out, and what that comes too late, too.
   void settle() { wait(4 * delay() + symbols(4)); }
@@ -65,6 +68,7 @@ class TranslatorBench final
   segment::Link& phy_out_;
   segment::Link& mac_out_;
   std::int64_t parts_per_million_ = 0;
+  std::int64_t mac_parts_per_million_ = 0;
 };
 
 }  // namespace fieldproof::conformance

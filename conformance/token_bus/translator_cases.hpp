@@ -16,9 +16,16 @@ const std::vector<TranslatorCase>& translator_cases();
 
 // The chapters, each in its own file.
 std::vector<TranslatorCase> translator_encoding_cases();
+std::vector<TranslatorCase> translator_vocabulary_cases();
 std::vector<TranslatorCase> translator_locking_cases();
+std::vector<TranslatorCase> translator_phase_cases();
 std::vector<TranslatorCase> translator_decoding_cases();
 std::vector<TranslatorCase> translator_blanking_cases();
+std::vector<TranslatorCase> translator_end_cases();
+std::vector<TranslatorCase> translator_mask_cases();
 std::vector<TranslatorCase> translator_management_cases();
+std::vector<TranslatorCase> translator_command_cases();
+std::vector<TranslatorCase> translator_jabber_cases();
+std::vector<TranslatorCase> translator_settings_cases();
 
 }  // namespace fieldproof::conformance

@@ -190,21 +190,22 @@ std::vector<TranslatorCase> mode_cases() {
           {{2, 10},
            {on_line(), power_failure(), frame_requested(),
             nothing_sent("sends_unasked", "nobody has enabled the transmitter since"), pause()}}),
-      on_chart(translator_must("management/jabber_ends", "",
-                               "A transmission that does not end is cut off; the transmitter stays off, and "
-                               "says so, until RESET.",
-                               memory("jabber inhibit and physical error"),
-                               {{"jabbers_for_ever", "jabbers"},
-                                {"jabber_is_not_reported", "answer_wrong"},
-                                {"jabber_outlives_reset", "answer_wrong"}}),
-               {{1, 2},
-                {on_line(), does("66000 + 2000 symbols of pad_idle are requested", request_jabber),
-                 requires_that("it is cut off", expect_jabber_ends), pause(), frame_requested(),
-                 nothing_sent("sends_after_jabber", "it is off until RESET"),
-                 answers(idle, 'e', "answer_wrong"), answers(enable_transmitter, 'n', "answer_wrong"),
-                 answers(reset, 'a', "answer_wrong"), answers(enable_transmitter, 'a', "answer_wrong"),
-                 pause(), frame_requested(), is_sent("does_not_recover"), pause()}},
-               with_short_jabber()),
+      on_chart(
+          translator_must("management/jabber_ends", "",
+                          "A transmission that does not end is cut off; the transmitter stays off, and "
+                          "says so, until RESET.",
+                          memory("jabber inhibit and physical error"),
+                          {{"jabbers_for_ever", "jabbers"},
+                           {"jabber_is_not_reported", "answer_wrong"},
+                           {"jabber_outlives_reset", "answer_wrong"}}),
+          {{1, 2},
+           {on_line(), does("66000 + 2000 symbols of pad_idle are requested", request_jabber),
+            requires_that("it is cut off", expect_jabber_ends), pause(), frame_requested(),
+            nothing_sent("sends_after_jabber", "it is off until RESET"), answers(idle, 'e', "answer_wrong"),
+            answers(enable_transmitter, 'n', "answer_wrong"), answers(reset, 'a', "answer_wrong"),
+            answers(disable_loopback, 'a', "answer_wrong"), answers(enable_transmitter, 'a', "answer_wrong"),
+            pause(), frame_requested(), is_sent("does_not_recover"), pause()}},
+          with_short_jabber()),
   };
 }
 

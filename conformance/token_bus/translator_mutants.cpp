@@ -1,5 +1,6 @@
 #include "conformance/token_bus/translator_mutants.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "conformance/token_bus/translator_seeded_faults.hpp"
@@ -10,26 +11,10 @@ namespace {
 using namespace token_bus;
 using TranslatorMutant = TranslatorMutants::Row;
 
-// The reference with one block of its own.
-template <auto member, typename Block, typename... More>
-auto with_block(More... more) {
-  return [=](const TranslatorConfiguration& configuration) {
-    TranslatorBlocks blocks;
-    blocks.*member = std::make_unique<Block>(more...);
-    return std::make_unique<Translator>(configuration, std::move(blocks));
-  };
-}
-template <typename Clock, typename... More>
-auto with_clock(More... more) {
-  return [=](const TranslatorConfiguration& configuration) {
-    TranslatorBlocks blocks;
-    blocks.receiver = std::make_unique<MacDecoder>(std::make_unique<Clock>(more...));
-    return std::make_unique<Translator>(configuration, std::move(blocks));
-  };
-}
 auto with_delay_tripled() {
   return [](TranslatorConfiguration configuration) {
     configuration.delay_symbols *= 3;
+    configuration.answer_symbols = std::max(configuration.answer_symbols, configuration.delay_symbols);
     return std::make_unique<Translator>(configuration);
   };
 }
@@ -175,8 +160,9 @@ std::vector<TranslatorMutant> translator_check_rows() {
 }  // namespace
 
 const TranslatorMutants& translator_mutants() {
-  static const TranslatorMutants table("translator", {encoding_rows, locking_rows, decoding_rows,
-                                                      blanking_rows, management_rows, translator_check_rows});
+  static const TranslatorMutants table(
+      "translator", {encoding_rows, locking_rows, decoding_rows, blanking_rows, management_rows,
+                     translator_circuit_rows, translator_edge_rows, translator_check_rows});
   return table;
 }
 

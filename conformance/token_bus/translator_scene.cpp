@@ -30,6 +30,15 @@ void TranslatorScene::receive(const SideBits& bits) {
   bench.carry(bits);
 }
 
+void TranslatorScene::exchange(std::string script, SideBits bits) {
+  if (bits.size() % 2 == 1) bits.push_back({'I', false, false});
+  bench.clear();
+  begin = bench.now();
+  requested = std::move(script);
+  bench.request_and_receive(requested, bits);
+  bench.settle();
+}
+
 std::string TranslatorScene::answers_to(SideCommand command) {
   const std::size_t length = 2 * std::size_t{bench.configuration().answer_symbols};
   bench.clear();
@@ -64,13 +73,22 @@ void TranslatorScene::rest() {
 
 void TranslatorScene::expect_sent(const std::string& bits, std::string_view reason) {
   bench.settle();
-  judge.expect(bench.sent().text() == bits, reason, [&] { return difference(bits, bench.sent().text()); });
-  const kernel::Duration took = bench.sent().begin() - begin;
-  judge.expect(took <= bench.delay() + kernel::kNanosecond, "sent_too_late", [&] {
-    return Mismatch{
-        {fmt::format("the first bit at most {} after its request", kernel::describe(bench.delay()))},
-        kernel::describe(took)};
-  });
+  const std::string& text = bench.sent().text();
+  const std::string right = without_ends(bits, 'I');
+  judge.expect(without_ends(text, 'I') == right, reason,
+               [&] { return difference(right, without_ends(text, 'I')); });
+  if (right.empty()) return;
+  const auto expect_in_time = [&](std::size_t symbol, std::size_t bit, std::string_view which) {
+    const kernel::Duration took = bench.sent().time_of(bit) - begin - bench.requested_symbols(symbol);
+    judge.expect(took <= bench.delay() + kernel::kNanosecond, "sent_too_late", [&] {
+      return Mismatch{
+          {fmt::format("the {} bit at most {} after its request", which, kernel::describe(bench.delay()))},
+          kernel::describe(took)};
+    });
+  };
+  constexpr std::string_view kSent = "01PpNn";
+  expect_in_time(requested.find_first_of(kSent), text.find_first_not_of('I'), "first");
+  expect_in_time(requested.find_last_of(kSent), text.find_last_not_of('I') - 1, "last");
 }
 
 void TranslatorScene::expect_nothing_sent(std::string_view reason, std::string_view why) {
@@ -94,6 +112,19 @@ void TranslatorScene::expect_content(const std::string& symbols, std::string_vie
   const std::string& text = bench.indicated().text();
   judge.expect(text.substr(0, text.find('N')).find_first_not_of("01S") == std::string::npos, reason, [&] {
     return Mismatch{{"zeros, ones and silence before the start delimiter"}, text.substr(0, kMostShown)};
+  });
+}
+
+std::string TranslatorScene::indicated() const {
+  return without_ends(bench.indicated().text(), 'S');
+}
+
+void TranslatorScene::expect_indicated(const std::vector<std::string>& right, std::string_view reason) {
+  const std::string seen = indicated();
+  judge.expect(std::ranges::find(right, seen) != right.end(), reason, [&] {
+    Mismatch made = difference(right.front(), seen);
+    for (std::size_t n = 1; n < right.size(); ++n) made.expected.push_back(right[n]);
+    return made;
   });
 }
 

@@ -25,6 +25,9 @@ struct TranslatorScene : Scene<TranslatorBench> {
   void request(std::string symbols);
   void receive(std::string_view bits) { receive(side_bits_of(bits)); }
   void receive(const SideBits& bits);
+  // Symbols and commands of the MAC, and bits of the line, both from now on, until all of it has come out. It
+  // takes whole symbols, so that what comes next is in the same phase.
+  void exchange(std::string script, SideBits bits = {});
   // What a command is answered with while it stands, its idle before that left out: "a", "ian".
   std::string answers_to(SideCommand command);
   // On line, as the MAC brings it there: `answer_wrong`; without an answer `precondition_not_met`.
@@ -32,7 +35,7 @@ struct TranslatorScene : Scene<TranslatorBench> {
   // So long a silence that no transmission has to do with the next one.
   void rest();
 
-  // Exactly these bits, and when they begin.
+  // Exactly these bits, idle ones around them left out, and when they begin and end.
   void expect_sent(const std::string& bits, std::string_view reason);
   void expect_nothing_sent(std::string_view reason, std::string_view why);
   // From the first non_data on; in front of it zeros, ones and silence. Silence at the end is nothing.
@@ -40,6 +43,10 @@ struct TranslatorScene : Scene<TranslatorBench> {
   void expect_nothing_indicated(std::string_view reason, std::string_view why);
   // What was indicated from the first non_data on.
   std::string content() const;
+  // What was indicated, silence around it left out.
+  std::string indicated() const;
+  // One of these, silence around it left out.
+  void expect_indicated(const std::vector<std::string>& right, std::string_view reason);
 };
 
 using TranslatorStep = ChartStep<TranslatorScene>;

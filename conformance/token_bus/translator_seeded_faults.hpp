@@ -406,12 +406,17 @@ class CommandsAreSent final : public Translator {
   }
   void receive(segment::PortIndex port, const line::Waveform& reception) override {
     Translator::receive(port, reception);
-    if (port != kMacSide || mac_request_at(reception.levels, 0).command != ManagementCommand::idle) return;
-    const kernel::Duration delay = mac_symbols(configuration().rules, configuration().delay_symbols);
-    line::Waveform wave{reception.start + delay, phy_side_rate(configuration().rules.phy_bit_rate), {}};
-    for (std::size_t n = 0; n < units_in(reception.levels); ++n)
+    if (port != kMacSide) return;
+    for (std::size_t n = 0; n < units_in(reception.levels); ++n) {
+      const auto command = mac_request_at(reception.levels, n).command;
+      if (command != ManagementCommand::idle && command != ManagementCommand::disable_loopback) continue;
+      const std::int64_t later = static_cast<std::int64_t>(n) + configuration().delay_symbols;
+      line::Waveform wave{reception.start + mac_symbols(configuration().rules, later),
+                          phy_side_rate(configuration().rules.phy_bit_rate),
+                          {}};
       append(wave.levels, PhyCell{PhySymbol::cd0, {}});
-    phy_->drive(wave);
+      phy_->drive(wave);
+    }
   }
 
  private:

@@ -18,11 +18,16 @@ struct Code {
   std::string_view circuits;  // SM*, symbol 2, symbol 1, symbol 0
 };
 
-constexpr std::array<Code, 5> kRequests{
-    {{'S', "1111"}, {'P', "1010"}, {'0', "1000"}, {'1', "1001"}, {'N', "1100"}}};
-
 // The last circuit of some codes is anything.
-constexpr std::array<Code, 16> kIndications{{{'0', "1000"},
+constexpr std::array<Code, 8> kRequests{{{'S', "1111"},
+                                         {'s', "1110"},
+                                         {'P', "1010"},
+                                         {'p', "1011"},
+                                         {'0', "1000"},
+                                         {'1', "1001"},
+                                         {'N', "1100"},
+                                         {'n', "1101"}}};
+constexpr std::array<Code, 12> kIndications{{{'0', "1000"},
                                              {'1', "1001"},
                                              {'B', "1010"},
                                              {'B', "1011"},
@@ -30,13 +35,9 @@ constexpr std::array<Code, 16> kIndications{{{'0', "1000"},
                                              {'N', "1101"},
                                              {'S', "1110"},
                                              {'S', "1111"},
-                                             {'i', "0000"},
                                              {'i', "0001"},
-                                             {'a', "0010"},
                                              {'a', "0011"},
-                                             {'n', "0100"},
                                              {'n', "0101"},
-                                             {'e', "0110"},
                                              {'e', "0111"}}};
 
 struct CommandCode {
@@ -52,7 +53,7 @@ constexpr std::array<CommandCode, 5> kCommands{{{"RESET", 'r', "0111"},
 
 char indication_of(std::string_view circuits) {
   const auto* const code = std::ranges::find(kIndications, circuits, &Code::circuits);
-  return code->letter;
+  return code == kIndications.end() ? '?' : code->letter;
 }
 
 char request_of(std::string_view circuits) {
@@ -97,9 +98,10 @@ std::string_view text_of(SideCommand command) {
 line::Levels request_levels_of(std::string_view symbols) {
   std::string text;
   for (const char letter : symbols) {
+    const auto* const command = std::ranges::find(kCommands, letter, &CommandCode::letter);
     const auto* const code = std::ranges::find(kRequests, letter, &Code::letter);
-    FIELDPROOF_CHECK(code != kRequests.end(), "each letter can be requested");
-    text += code->circuits;
+    FIELDPROOF_CHECK(command != kCommands.end() || code != kRequests.end(), "each letter can be requested");
+    text += command != kCommands.end() ? command->circuits : code->circuits;
   }
   return line::Levels::of_text(text);
 }
@@ -130,13 +132,14 @@ std::string encoded(std::string_view symbols) {
   std::string bits;
   bool is_second = false;
   for (const char letter : symbols) {
-    if (letter == 'N') {
+    if (letter == 'N' || letter == 'n') {
       bits += is_second ? "00" : "11";
       is_second = !is_second;
       continue;
     }
     is_second = false;
-    bits += letter == 'S' ? "II" : letter == '0' ? "01" : "10";
+    const bool is_one = letter == '1' || letter == 'P' || letter == 'p';
+    bits += letter == 'B' ? "00" : letter == '0' ? "01" : is_one ? "10" : "II";
   }
   return bits;
 }
@@ -170,15 +173,19 @@ std::string indicated_as(std::string requested) {
 void SideLog::on_wave(const line::Waveform& wave) {
   const std::string levels = wave.levels.text();
   const kernel::Duration unit = kernel::levels_duration(1, unit_rate_);
+  constexpr std::int64_t kPartsOfTolerance = 1'000;
+  const std::int64_t right_rate = static_cast<std::int64_t>(kUnit) * unit_rate_;
+  const bool is_clocked = std::abs(wave.rate - right_rate) <= right_rate / kPartsOfTolerance;
   if (text_.empty()) begin_ = end_ = wave.start;
   for (; end_ + unit * 3 / 4 < wave.start; end_ += unit) {
-    text_ += side_ == Side::phy ? 'I' : 'S';
+    text_ += idle();
     times_.push_back(end_);
   }
   for (std::size_t n = 0; n < levels.size(); n += kUnit) {
     std::string circuits = levels.substr(n, kUnit);
     circuits.resize(kUnit, '1');
-    text_ += side_ == Side::phy   ? phy_letter_of(circuits)
+    text_ += !is_clocked          ? '?'
+             : side_ == Side::phy ? phy_letter_of(circuits)
              : side_ == Side::mac ? indication_of(circuits)
                                   : request_of(circuits);
     times_.push_back(wave.time_of(n));
@@ -192,11 +199,23 @@ void SideLog::clear() {
   begin_ = end_ = kernel::kNever;
 }
 
+bool SideLog::was_driven(kernel::Time from, kernel::Time until) const {
+  const auto first = std::ranges::lower_bound(times_, from - kernel::kNanosecond);
+  for (auto at = first; at != times_.end() && *at < until - kernel::kNanosecond; ++at)
+    if (text_.at(static_cast<std::size_t>(at - times_.begin())) != idle()) return true;
+  return false;
+}
+
 // ---- two texts ----
 
 std::string without_end(std::string text, char idle) {
   while (text.ends_with(idle)) text.pop_back();
   return text;
+}
+
+std::string without_ends(std::string text, char idle) {
+  text = without_end(std::move(text), idle);
+  return text.substr(std::min(text.find_first_not_of(idle), text.size()));
 }
 
 Mismatch difference(const std::string& right, const std::string& seen) {

@@ -15,7 +15,8 @@
 //   MAC side       S silence, P pad_idle, 0, 1, N non_data, B bad_signal; in management mode the answers
 //                  i IDLE, a ACK, n NACK, e physical error
 //   MAC's requests P in the place of B, and the commands r RESET, l DISABLE LOOPBACK, t ENABLE TRANSMITTER,
-//                  i SM idle, d serial data; ? is none
+//                  i SM idle, d serial data; ? is none. s, p, n: the same symbols, the circuit that may be
+//                  anything the other way round
 //   physical side  1 CD1, 0 CD0, I IDL
 namespace fieldproof::conformance {
 
@@ -35,6 +36,7 @@ line::Levels phy_levels_of(const SideBits& bits);
 enum class SideCommand : std::uint8_t { reset, disable_loopback, enable_transmitter, idle, serial_data };
 std::string_view text_of(SideCommand command);
 
+// Symbols and commands.
 line::Levels request_levels_of(std::string_view symbols);
 line::Levels request_levels_of(SideCommand command, std::size_t symbols);
 char letter_of(SideCommand command);
@@ -43,7 +45,7 @@ line::Levels indication_levels_of(std::string_view symbols);
 
 // ---- what follows from the tables of the paper ----
 
-// Two bits for each symbol that is requested.
+// Two bits for each symbol that is requested; a command is silence, and B two bits that are none.
 std::string encoded(std::string_view symbols);
 // Octets between the delimiters.
 inline constexpr std::size_t kLongestFrame = 8'191;
@@ -70,12 +72,16 @@ class SideLog final : public segment::Tap {
   void clear();
   const std::string& text() const { return text_; }
   bool empty() const { return text_.empty(); }
+  // Anything but idle in units that begin in this span.
+  bool was_driven(kernel::Time from, kernel::Time until) const;
   // Of the first unit since `clear`.
   kernel::Time begin() const { return begin_; }
   // Of unit n.
   kernel::Time time_of(std::size_t n) const { return times_.at(n); }
 
  private:
+  char idle() const { return side_ == Side::phy ? 'I' : 'S'; }
+
   Side side_;
   std::int64_t unit_rate_;
   std::string text_;
@@ -87,6 +93,7 @@ class SideLog final : public segment::Tap {
 // ---- two texts ----
 
 std::string without_end(std::string text, char idle);
+std::string without_ends(std::string text, char idle);
 // Both from shortly in front of where they differ.
 Mismatch difference(const std::string& right, const std::string& seen);
 

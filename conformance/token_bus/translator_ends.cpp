@@ -1,0 +1,250 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "conformance/token_bus/translator_scene.hpp"
+
+// Where a pair of non_data, an end delimiter and the blanking after it end, to the symbol.
+namespace fieldproof::conformance {
+namespace {
+
+using namespace translator_chart;
+using token_sources::derived;
+using token_sources::memory;
+using token_sources::own;
+using token_sources::standard;
+
+constexpr unsigned kAfterwards = 60;  // symbols, longer than any blanking
+
+std::string begin_of(TranslatorScene& scene) {
+  const std::string frame = frame_text(scene.octets);
+  return frame.substr(0, frame.size() - end_delimiter_text().size());
+}
+std::string many_ones() {
+  return std::string(kAfterwards, '1');
+}
+std::string after_blanking(TranslatorScene& scene, std::string what) {
+  std::string seen = std::move(what);
+  seen.replace(0, scene.bench.configuration().rules.blanking_symbols,
+               std::string(scene.bench.configuration().rules.blanking_symbols, 'S'));
+  return seen;
+}
+
+// The start delimiter, and on from there; an answer in between hides the symbol in whose place it is.
+void expect_from_delimiter(TranslatorScene& scene, const std::string& right, std::string_view reason) {
+  std::string seen = scene.content();
+  const std::string wanted = right.substr(right.find('N'));
+  for (std::size_t n = 0; n < std::min(seen.size(), wanted.size()); ++n)
+    if (std::string_view("ian").find(seen[n]) != std::string_view::npos) seen[n] = wanted[n];
+  scene.judge.expect(seen == wanted, reason, [&] { return difference(wanted, seen); });
+}
+
+// ---- end delimiters ----
+
+// I = 0 and E in turn; then ones without a pause.
+void receive_last_frame(TranslatorScene& scene) {
+  const std::string frame = begin_of(scene) + "NN1NN10" + (scene.round % 2 == 0 ? "0" : "1");
+  scene.exchange("", side_bits_of(encoded(frame + many_ones())));
+  expect_from_delimiter(scene, frame + after_blanking(scene, many_ones()), "blanking_wrong");
+}
+
+// The same while it is the translator's own frame that comes back.
+void receive_own_frame(TranslatorScene& scene) {
+  const std::string frame = frame_text(scene.octets);
+  scene.exchange(frame, side_bits_of(encoded(frame + many_ones())));
+  expect_from_delimiter(scene, frame + after_blanking(scene, many_ones()), "blanking_wrong");
+}
+
+// One symbol of an end delimiter is another one; silence in the middle of it is one symbol.
+constexpr std::array<std::string_view, 13> kNoEnds{
+    "11NN100",  "1BNN100",  "NN0NN100", "NN1NN110", "NN1NN111",  "NN101100", "NN1BB100",
+    "NN1NN000", "NN1NN1B0", "NN1NN1NN", "0NN100",   "NNSNN1100", "NN1SNN100"};
+
+void receive_no_end(TranslatorScene& scene) {
+  const std::string text = begin_of(scene) + std::string(kNoEnds.at(scene.round % kNoEnds.size()));
+  scene.exchange("", side_bits_of(encoded(text + many_ones())));
+  expect_from_delimiter(scene, text + many_ones(), "blanked_without_an_end");
+}
+
+// ---- within the blanking ----
+
+struct Within {
+  std::string symbols;  // from the end delimiter on
+  std::size_t error_from = 0;
+  std::size_t error_until = 0;
+  std::string_view managed{};  // by this so many symbols after it
+};
+const std::vector<Within>& withins() {
+  static const std::vector<Within> rows{{"1111BBBB" + many_ones()},     {many_ones(), 4, 20},
+                                        {"SSSS" + many_ones()},         {many_ones(), 0, 0, "i"},
+                                        {many_ones(), 0, 0, "ld"},      {"SSSSNN0NN000" + many_ones()},
+                                        {many_ones() + "000000" + "11"}};
+  return rows;
+}
+
+void receive_within(TranslatorScene& scene) {
+  const Within& row = withins().at(scene.round % withins().size());
+  const std::string frame = frame_text(scene.octets);
+  SideBits bits = side_bits_of(encoded(frame + row.symbols));
+  for (std::size_t n = row.error_from; n < row.error_until; ++n)
+    bits.at(2 * frame.size() + n).has_error = true;
+  const std::string script = row.managed.empty() ? "" : std::string(frame.size() + 2, 'S');
+  scene.exchange(script + std::string(row.managed), bits);
+  expect_from_delimiter(scene, frame + after_blanking(scene, row.symbols), "blanking_wrong");
+}
+
+// The phase is found while nothing is indicated.
+void receive_other_phase_within(TranslatorScene& scene) {
+  const std::string frame = frame_text(scene.octets);
+  scene.exchange(
+      "", side_bits_of(encoded(frame) + "II" + (scene.round % 2 == 0 ? "0" : "I") + encoded(many_ones())));
+  std::string seen = scene.content();
+  seen.erase(0, frame.size() - frame.find('N'));
+  scene.judge.expect(seen.find_first_not_of("S1") == std::string::npos && seen.ends_with("1111"),
+                     "phase_lost_in_blanking", "silence, and ones", seen);
+}
+
+// RESET, or a failure of the supply, in the blanking; then ones, long before it would be over.
+void begin_anew_within(TranslatorScene& scene) {
+  scene.exchange("rrrrllll");
+  scene.rest();
+  const std::string frame = frame_text(scene.octets);
+  scene.bench.request_and_receive(
+      scene.round % 2 == 0 ? std::string(frame.size() + 1, 'S') + "rlS" : std::string(frame.size() + 1, 'S'),
+      side_bits_of(encoded(frame)));
+  if (scene.round % 2 == 1) {
+    scene.bench.set_power(false);
+    scene.bench.wait(scene.bench.symbols(1));
+    scene.bench.set_power(true);
+    scene.bench.request("l");
+  }
+  scene.bench.clear();
+  scene.exchange("", side_bits_of(encoded(std::string(kAfterwards, '1'))));
+  // Answers that are still to come hide ones.
+  std::string seen = scene.indicated();
+  std::ranges::replace(seen, 'a', '1');
+  const std::size_t shown = seen.size() - without_end(seen, '1').size();
+  // Two zeros, and a half, in the other phase.
+  constexpr std::size_t kMostLost = 3;
+  scene.judge.expect(shown + kMostLost >= kAfterwards, "still_blanked", fmt::format("{} ones", kAfterwards),
+                     seen);
+  scene.bring_up();
+}
+
+// ---- pairs of non_data ----
+
+// A first non_data, a pair in the place of the second, and CD0,CD0 after it.
+struct AfterPair {
+  std::string_view pair;
+  char due;
+};
+constexpr std::array<AfterPair, 8> kAfterPairs{
+    {{"10", 'B'}, {"01", 'B'}, {"11", 'B'}, {"00", 'N'}, {"II", 'S'}, {"I1", 'S'}, {"1I", 'B'}, {"0I", 'B'}}};
+
+void receive_after_pair(TranslatorScene& scene) {
+  const AfterPair& row = kAfterPairs.at(scene.round / 3 % kAfterPairs.size());
+  const unsigned error = scene.round % 3;  // in the first or second bit of the pair
+  const std::string begin = frame_text({}, false, 4).substr(0, 40) + "0110N";
+  SideBits bits = side_bits_of(encoded(begin));
+  for (unsigned n = 0; n < 2; ++n) bits.push_back({row.pair[n], true, error == n + 1});
+  const std::string rest = "BB11NN0110";
+  for (const SideBit& one : side_bits_of(encoded(rest))) bits.push_back(one);
+  scene.exchange("", bits);
+  expect_from_delimiter(scene, begin + std::string(1, error != 0 ? 'B' : row.due) + rest, "cell_wrong");
+}
+
+void lose_carrier_within_pair(TranslatorScene& scene) {
+  const std::string begin = frame_text({}, false, 4).substr(0, 40) + "0110";
+  SideBits bits = side_bits_of(encoded(begin));
+  const std::string pair = encoded(scene.round % 3 == 0 ? "0" : scene.round % 3 == 1 ? "1" : "N");
+  bits.push_back({pair[0], true, false});
+  bits.push_back({pair[1], false, false});
+  scene.exchange("", bits);
+  const std::string seen = scene.content();
+  const std::string right = begin.substr(begin.find('N'));
+  scene.judge.expect(seen == right || seen == right + "B", "carrier_not_looked_at",
+                     [&] { return difference(right, seen); });
+}
+
+}  // namespace
+
+std::vector<TranslatorCase> translator_end_cases() {
+  const auto within = static_cast<unsigned>(withins().size());
+  constexpr auto kEnds = static_cast<unsigned>(kNoEnds.size());
+  return {
+      on_chart(
+          translator_must("blanking/lasts_its_symbols", "PST-11",
+                          "The symbols that begin within blanking_symbols of an end delimiter with I = 0 are "
+                          "silence, those after them are indicated; whatever E is, whoever has sent it.",
+                          memory("blanking follows the end of a transmission"),
+                          {{"blanking_of_27_symbols", "blanking_wrong"},
+                           {"blanking_of_29_symbols", "blanking_wrong"},
+                           {"no_blanking_after_an_error", "blanking_wrong"},
+                           {"blanks_while_carrier", "blanking_wrong"}}),
+          {{4, 40},
+           {{"a frame with E = 0 and 1 in turn, and 60 ones at once", "blanking_symbols of silence, and ones",
+             receive_last_frame},
+            pause(),
+            {"a frame that is requested comes from the line, and 60 ones at once",
+             "blanking_symbols of silence, and ones", receive_own_frame},
+            pause()},
+           {on_line()}}),
+      on_chart(translator_must("blanking/follows_nothing_but_an_end", "PST-12",
+                               "Where one symbol of an end delimiter is another one, or silence is in it, "
+                               "nothing is blanked.",
+                               standard("end delimiter N N 1 N N 1 I E"),
+                               {{"short_end_delimiter", "blanked_without_an_end"},
+                                {"end_delimiter_over_silence", "blanked_without_an_end"},
+                                {"blanks_after_every_frame", "blanked_without_an_end"}}),
+               {{kEnds, 3 * kEnds},
+                {{"a frame with an end delimiter that is none, and 60 ones", "all of it", receive_no_end},
+                 pause()},
+                {on_line()}}),
+      on_chart(translator_must(
+                   "blanking/nothing_ends_it_early", "PST-11",
+                   "bad_signal, a signal error, a start delimiter, silence and commands other than "
+                   "RESET change nothing in the blanking, and it changes nothing but what is indicated.",
+                   own("blanking of indications"),
+                   {{"bad_signal_within_blanking", "blanking_wrong"},
+                    {"command_ends_blanking", "blanking_wrong"},
+                    {"blanking_ends_with_silence", "phase_lost_in_blanking"}}),
+               {{within, 3 * within},
+                {{"a frame, and symbols of all kinds in the blanking", "silence, and what is left of them",
+                  receive_within},
+                 pause(),
+                 {"a frame, and ones in the other phase in the blanking", "silence, and ones",
+                  receive_other_phase_within},
+                 pause()},
+                {on_line()}}),
+      on_chart(
+          translator_must("blanking/ends_with_reset_and_supply", "PST-11",
+                          "RESET clears the blanking, and so does a failure of the supply.",
+                          own("what the commands do"), {{"blanking_outlives_reset", "still_blanked"}}),
+          {{4, 20},
+           {{"a frame, then in the blanking RESET or a failure of the supply, DISABLE LOOPBACK, and ones",
+             "the ones", begin_anew_within},
+            pause()},
+           {on_line()}}),
+      on_chart(translator_must("decoding/a_pair_of_non_data_is_two_symbols", "PST-07",
+                               "The second non_data is due in the symbol after the first, and in no other, "
+                               "whatever comes in its place.",
+                               derived("non_data in pairs"), {{"due_until_it_comes", "cell_wrong"}}),
+               {{24, 72},
+                {{"one non_data, each pair of bits, without and with a signal error, and CD0,CD0",
+                  "its symbol, and bad_signal", receive_after_pair},
+                 pause()},
+                {on_line()}}),
+      on_chart(
+          translator_must("decoding/a_carrier_lost_within_a_pair", "PST-09",
+                          "A pair whose second bit has no carrier is silence or bad_signal, and no data.",
+                          own("table of decoding"), {{"carrier_ignored", "carrier_not_looked_at"}}),
+          {{3, 30},
+           {{"a frame that ends with half a symbol, and the other half without carrier", "no symbol of it",
+             lose_carrier_within_pair},
+            pause()},
+           {on_line()}}),
+  };
+}
+
+}  // namespace fieldproof::conformance
