@@ -71,7 +71,7 @@ TranslatorCase where(std::optional<std::string> (*not_applicable)(const judge::P
 void send_with_heartbeat(TranslatorScene& scene) {
   scene.request("PPPPPPPPPPPPPPPPPPPPPPPP");
   scene.bench.wait(scene.bench.delay());
-  const bool was_sent = !scene.bench.sent().empty();
+  const bool was_sent = !scene.sent().empty();
   scene.judge.expect(was_sent, "nothing_sent", "a preamble", "nothing");
 }
 

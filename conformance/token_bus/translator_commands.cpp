@@ -117,7 +117,7 @@ void expect_switches(TranslatorScene& scene, const std::string& script) {
   // Whether loopback also sends is left open.
   if (right.is_looped_back && right.is_transmitter_on) return;
   const std::string bits = right.is_transmitter_on ? encoded(asked() + silence + asked()) : std::string();
-  const std::string sent = without_ends(scene.bench.sent().text(), 'I');
+  const std::string sent = scene.sent();
   scene.judge.expect(sent == bits, "switched_wrong", [&] {
     Mismatch made = difference(bits, sent);
     made.expected.front() = said + ": " + made.expected.front();
@@ -144,7 +144,7 @@ void reset_shortly(TranslatorScene& scene) {
       side_bits_of(std::string(scene.round / 4 % 2, 'I') + encoded(carried() + std::string(64, '0')));
   scene.exchange(script, bits);
   // What is still to go out by then may be cut off.
-  const std::string sent = without_ends(scene.bench.sent().text(), 'I');
+  const std::string sent = scene.sent();
   scene.judge.expect(encoded(without_ends(before, 'S')).starts_with(sent), "sends_after_reset",
                      "nothing from RESET on", sent);
   const std::string right = indicated_as(asked()).substr(asked().find('N'));

@@ -38,7 +38,7 @@ TranslatorStep is_encoded(std::string reason) {
 
 void expect_first_bits(TranslatorScene& scene) {
   scene.bench.settle();
-  const std::string& sent = scene.bench.sent().text();
+  const std::string sent = scene.sent();
   scene.judge.expect(sent.substr(0, 66) == repeated_bits(32) + "11", "preamble_is_no_sfd",
                      "32 times 10, and 11", sent.substr(0, 66));
 }

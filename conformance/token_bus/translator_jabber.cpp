@@ -49,7 +49,7 @@ TranslatorStep goes_out_whole(std::string text, std::string script) {
 TranslatorStep is_cut_off(std::string text, std::size_t symbols) {
   return {std::move(text), "it is cut off at the limit", [=](TranslatorScene& scene) {
             scene.exchange(pads(symbols));
-            const std::size_t bits = scene.bench.sent().text().size();
+            const std::size_t bits = scene.sent().size();
             scene.judge.expect(
                 bits >= 2 * std::size_t{kJabberSymbols} && bits <= 2 * std::size_t{kJabberSymbols} + 2,
                 "jabbers", fmt::format("{} symbols", kJabberSymbols), fmt::format("{} bits", bits));

@@ -94,7 +94,7 @@ void request_jabber(TranslatorScene& scene) {
 
 void expect_jabber_ends(TranslatorScene& scene) {
   scene.bench.settle();
-  const std::size_t bits = scene.bench.sent().text().size();
+  const std::size_t bits = scene.sent().size();
   constexpr std::size_t kMargin = 2'000;
   scene.judge.expect(bits > 0 && bits < 2 * std::size_t{kJabberSymbols} + kMargin, "jabbers",
                      fmt::format("{} symbols at most", kJabberSymbols), fmt::format("{} bits", bits));

@@ -75,8 +75,7 @@ void TranslatorScene::expect_sent(const std::string& bits, std::string_view reas
   bench.settle();
   const std::string& text = bench.sent().text();
   const std::string right = without_ends(bits, 'I');
-  judge.expect(without_ends(text, 'I') == right, reason,
-               [&] { return difference(right, without_ends(text, 'I')); });
+  judge.expect(sent() == right, reason, [&] { return difference(right, sent()); });
   if (right.empty()) return;
   const auto expect_in_time = [&](std::size_t symbol, std::size_t bit, std::string_view which) {
     const kernel::Duration took = bench.sent().time_of(bit) - begin - bench.requested_symbols(symbol);
@@ -93,8 +92,8 @@ void TranslatorScene::expect_sent(const std::string& bits, std::string_view reas
 
 void TranslatorScene::expect_nothing_sent(std::string_view reason, std::string_view why) {
   bench.settle();
-  judge.expect(bench.sent().empty(), reason, [&] {
-    return Mismatch{{fmt::format("nothing is sent: {}", why)}, bench.sent().text().substr(0, kMostShown)};
+  judge.expect(sent().empty(), reason, [&] {
+    return Mismatch{{fmt::format("nothing is sent: {}", why)}, sent().substr(0, kMostShown)};
   });
 }
 
@@ -115,8 +114,26 @@ void TranslatorScene::expect_content(const std::string& symbols, std::string_vie
   });
 }
 
+std::string TranslatorScene::sent() const {
+  return without_ends(bench.sent().text(), 'I');
+}
+
 std::string TranslatorScene::indicated() const {
   return without_ends(bench.indicated().text(), 'S');
+}
+
+std::string TranslatorScene::without_answers(std::string seen, const std::string& right,
+                                             std::size_t first) const {
+  constexpr std::string_view kCommands = "rltid";
+  const std::size_t command = requested.find_first_of(kCommands);
+  if (command == std::string::npos) return seen;
+  const std::size_t end = requested.find_last_of(kCommands) + 1 + bench.configuration().answer_symbols;
+  for (std::size_t n = command; n < end; ++n) {
+    if (n < first || n - first >= std::min(seen.size(), right.size())) continue;
+    char& one = seen[n - first];
+    if (std::string_view("Sian").find(one) != std::string_view::npos) one = right[n - first];
+  }
+  return seen;
 }
 
 void TranslatorScene::expect_indicated(const std::vector<std::string>& right, std::string_view reason) {

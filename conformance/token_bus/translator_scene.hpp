@@ -43,8 +43,12 @@ struct TranslatorScene : Scene<TranslatorBench> {
   void expect_nothing_indicated(std::string_view reason, std::string_view why);
   // What was indicated from the first non_data on.
   std::string content() const;
-  // What was indicated, silence around it left out.
+  // What was sent, and what was indicated, idle bits and silence around it left out.
+  std::string sent() const;
   std::string indicated() const;
+  // The same with the symbols of `right`, which begins with symbol `first` of what was exchanged, where a
+  // command or its answer may hide them.
+  std::string without_answers(std::string seen, const std::string& right, std::size_t first) const;
   // One of these, silence around it left out.
   void expect_indicated(const std::vector<std::string>& right, std::string_view reason);
 };
