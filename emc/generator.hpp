@@ -40,13 +40,14 @@ class Level {
   // Level X with a voltage between these, else a usage error.
   static Level free(double open_circuit_volts);
 
+  unsigned number() const { return number_; }  // 0: X
   double open_circuit_volts() const { return volts_; }
   std::string text() const;  // "3 (1000 V)", "X (4500 V)"
 
  private:
   Level(unsigned number, double volts) : number_(number), volts_(volts) {}
 
-  unsigned number_;  // 0: X
+  unsigned number_;
   double volts_;
 };
 

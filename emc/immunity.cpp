@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "emc/burst_clamp.hpp"
+#include "harness/fault/plan.hpp"
 #include "harness/segment/segment.hpp"
 
 namespace fieldproof::emc {
@@ -25,11 +26,11 @@ constexpr Duration kSlice = 5 * kMillisecond;
 // Counts what a channel of any kind does.
 class CountedChannel final : public fault::Channel {
  public:
-  explicit CountedChannel(std::unique_ptr<fault::Channel> channel) : channel_(std::move(channel)) {}
+  explicit CountedChannel(fault::Channel& channel) : channel_(channel) {}
 
   bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
     ++statistics_.transmissions;
-    const bool is_changed = channel_->pass(sent, arrivals);
+    const bool is_changed = channel_.pass(sent, arrivals);
     if (is_changed) {
       ++statistics_.hit_transmissions;
       ++statistics_.changed_transmissions;
@@ -40,7 +41,7 @@ class CountedChannel final : public fault::Channel {
   const BurstStatistics& statistics() const { return statistics_; }
 
  private:
-  std::unique_ptr<fault::Channel> channel_;
+  fault::Channel& channel_;
   BurstStatistics statistics_;
 };
 
@@ -63,7 +64,8 @@ class Run final : private network::ExchangeWatcher {
     result_.came_up = true;
     // What was not served while stations were still being found is no error.
     bad_run_ = result_.longest_bad_run = 0;
-    on_ = segment_.now();
+    first_trouble_.reset();
+    on_ = result_.on = segment_.now();
     off_ = on_ + settings_.duration;
     couple(response);
     statistics_.begin();
@@ -71,6 +73,7 @@ class Run final : private network::ExchangeWatcher {
     recover();
     sum_up();
     network_.end();
+    result_.fingerprint = segment_.trace().fingerprint();
   }
 
   const ImmunityResult& result() const { return result_; }
@@ -95,19 +98,38 @@ class Run final : private network::ExchangeWatcher {
   }
 
   void couple(const LineResponse& response) {
-    if (settings_.make_channel) {
-      const kernel::Random random = random_.split("channels");
-      for (const network::Place& place : network_.places()) {
-        if (!place.is_exposed) continue;
-        counted_.emplace_back(settings_.make_channel(random.split(counted_.size())));
-        place.receiver->set_channel(&counted_.back());
-      }
-      return;
+    if (settings_.plan || settings_.make_channel) {
+      put_channels();
+    } else {
+      const BurstSettings& bursts = settings_.bursts;
+      clamp_.emplace(bursts, response.wrong_output(bursts.level.open_circuit_volts(), bursts.polarity),
+                     random_.split("bursts"), network_.recovery_limit().time);
+      clamp_->couple(network_, segment_.now(), off_);
     }
-    const BurstSettings& bursts = settings_.bursts;
-    clamp_.emplace(bursts, response.wrong_output(bursts.level.open_circuit_volts(), bursts.polarity),
-                   random_.split("bursts"), network_.recovery_limit().time);
-    clamp_->couple(network_, segment_.now(), off_);
+    if (!settings_.around) return;
+    for (const network::Place& place : network_.places()) {
+      fault::Channel* const channel = place.receiver->channel();
+      if (place.is_exposed && channel != nullptr)
+        place.receiver->set_channel(&owned(settings_.around(*channel, place)));
+    }
+  }
+
+  fault::Channel& owned(std::unique_ptr<fault::Channel> channel) {
+    return *channels_.emplace_back(std::move(channel));
+  }
+
+  void put_channels() {
+    const kernel::Random random = random_.split("channels");
+    if (settings_.plan) installed_.emplace(*settings_.plan, segment_.trace(), random);
+    for (const network::Place& place : network_.places()) {
+      if (!place.is_exposed) continue;
+      fault::Channel* const channel =
+          installed_ ? installed_->channel_for({place.name, place.trace_channel, place.level_rate})
+                     : &owned(settings_.make_channel(random.split(counted_.size())));
+      if (channel == nullptr) continue;
+      counted_.emplace_back(*channel);
+      place.receiver->set_channel(&counted_.back());
+    }
   }
 
   void suffer() {
@@ -115,8 +137,8 @@ class Run final : private network::ExchangeWatcher {
       segment_.run_until(std::min(segment_.now() + kSlice, off_));
       restart_if_stopped();
     }
-    // Bursts know themselves when they end.
-    if (!settings_.make_channel) return;
+    // Bursts and plans know themselves when they end.
+    if (clamp_ || installed_) return;
     for (const network::Place& place : network_.places()) {
       if (place.is_exposed) place.receiver->set_channel(nullptr);
     }
@@ -124,7 +146,10 @@ class Run final : private network::ExchangeWatcher {
 
   void restart_if_stopped() {
     if (network_.state() != State::stopped) return;
-    if (result_.stops == 0) why_stopped_ = network_.complaint();
+    if (result_.stops == 0) {
+      why_stopped_ = network_.complaint();
+      first_stop_ = segment_.now();
+    }
     ++result_.stops;
     start();
   }
@@ -163,6 +188,7 @@ class Run final : private network::ExchangeWatcher {
       is_exchanging_ = true;
     }
     bad_run_ = is_served ? 0 : bad_run_ + 1;
+    if (!first_trouble_ && (!is_served || exchange.retries > 0)) first_trouble_ = exchange.end;
     result_.longest_bad_run = std::max(result_.longest_bad_run, bad_run_);
     result_.poor_quality = result_.poor_quality || network_.reports_poor_quality();
     if (is_recovering_) ++recovery_exchanges_;
@@ -202,6 +228,7 @@ class Run final : private network::ExchangeWatcher {
 
   void sum_up() {
     result_.counts = statistics_.counts();
+    result_.first_wrong = statistics_.first_wrong();
     for_each_statistics([&](const BurstStatistics& one) {
       ++result_.receivers;
       result_.line += one;
@@ -213,35 +240,45 @@ class Run final : private network::ExchangeWatcher {
   Criterion criterion() {
     const std::uint64_t limit = network_.recovery_limit().exchanges;
     const std::uint64_t wrong = result_.counts.accepted_wrong();
-    if (wrong > 0)
-      return because(Criterion::d, fmt::format("{} words were accepted and nobody had sent them", wrong));
+    if (wrong > 0) {
+      return because(Criterion::d, "wrong_word_accepted",
+                     fmt::format("{} words were accepted and nobody had sent them", wrong),
+                     result_.first_wrong->when);
+    }
     for (const measure::Count& fault : network_.delivery_faults()) {
-      if (fault.count > 0) return because(Criterion::d, fmt::format("{}: {}", fault.what, fault.count));
+      if (fault.count > 0)
+        return because(Criterion::d, fault.what, fmt::format("{}: {}", fault.what, fault.count));
     }
     if (!result_.recovered_by_itself && !result_.recovered_after_start) {
-      return because(Criterion::d, "not all words arrived after a start (least_bring_up, limits_waited)");
+      return because(Criterion::d, "dead_after_start",
+                     "not all words arrived after a start (least_bring_up, limits_waited)");
     }
     if (result_.stops > 0) {
       const std::string why = why_stopped_.empty() ? fmt::format("no exchange for silence_cycles = {}",
                                                                  acceptance_.silence_cycles)
                                                    : why_stopped_;
-      return because(Criterion::c, fmt::format("it stopped {} times: {}", result_.stops, why));
+      return because(Criterion::c, "stopped", fmt::format("it stopped {} times: {}", result_.stops, why),
+                     first_stop_);
     }
     if (!result_.recovered_by_itself) {
-      return because(Criterion::c,
+      return because(Criterion::c, "start_needed",
                      fmt::format("not all words arrived within limits_waited = {} and a start mended it",
                                  acceptance_.limits_waited));
     }
     if (result_.recovery_exchanges > limit) {
-      return because(Criterion::c,
+      return because(Criterion::c, "recovery_too_long",
                      fmt::format("recovery took {} exchanges, and recovery_cycles = {} allow {}",
                                  result_.recovery_exchanges, acceptance_.recovery_cycles, limit));
     }
-    return result_.longest_bad_run > 0 || result_.counts.retried > 0 ? Criterion::b : Criterion::a;
+    if (result_.longest_bad_run == 0 && result_.counts.retried == 0) return Criterion::a;
+    return because(Criterion::b, "exchange_not_served_at_once", {}, first_trouble_);
   }
 
-  Criterion because(Criterion criterion, std::string why) {
+  Criterion because(Criterion criterion, std::string_view reason, std::string why,
+                    std::optional<Time> when = std::nullopt) {
+    result_.reason = reason;
     result_.decided_by = std::move(why);
+    result_.decided_at = when;
     return criterion;
   }
 
@@ -252,13 +289,17 @@ class Run final : private network::ExchangeWatcher {
   network::ExchangeStatistics statistics_;
   const ImmunitySettings& settings_;
   std::optional<BurstClamp> clamp_;
+  std::optional<fault::InstalledPlan> installed_;
+  std::vector<std::unique_ptr<fault::Channel>> channels_;
   std::deque<CountedChannel> counted_;
   Time on_{};
   Time off_{};
   bool is_exchanging_ = false;  // a served exchange of data since the last start, seen on the line as well
   bool is_recovering_ = false;
   std::uint64_t recovery_exchanges_ = 0;
-  std::string why_stopped_;  // the first time, where the network can say so
+  Time first_stop_{};
+  std::optional<Time> first_trouble_;  // an exchange that was not served, or not at the first attempt
+  std::string why_stopped_;            // the first time, where the network can say so
   std::uint64_t bad_run_ = 0;
   std::uint64_t changed_before_ = 0;
   std::vector<std::optional<Time>> last_begin_;  // by kind of cycle

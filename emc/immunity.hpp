@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "emc/coupling.hpp"
 #include "emc/generator.hpp"
 #include "harness/fault/channel.hpp"
+#include "harness/fault/plan.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/time.hpp"
 #include "harness/measure/phase.hpp"
@@ -32,6 +34,11 @@ struct ImmunitySettings {
   BurstSettings bursts;  // `on` and `off` are the run's own
   // Where it is set, each receiver gets one of these instead of the bursts.
   std::function<std::unique_ptr<fault::Channel>(kernel::Random)> make_channel;
+  // Where it is set, what is declared is on the lines instead, from when bursts would come on.
+  std::optional<fault::Plan> plan{};
+  // Where it is set, what a receiver gets through is this, which asks the channel given: to watch it, or to
+  // leave out some of what it does.
+  std::function<std::unique_ptr<fault::Channel>(fault::Channel&, const network::Place&)> around{};
   kernel::Duration duration = 60 * kernel::kSecond;
   std::uint64_t seed = 1;
   // A run that is asked to stop ends at once, and says so by `is_complete`.
@@ -54,7 +61,12 @@ struct ImmunityResult {
   bool came_up = false;   // on the quiet line; nothing else says anything if not
   std::string complaint;  // where it did not
   Criterion criterion = Criterion::d;
-  std::string decided_by;             // of C and D: which number, in words
+  std::string reason;      // of B, C and D: one word for what decided, however often it happened
+  std::string decided_by;  // of C and D: which number, in words
+  std::optional<kernel::Time> decided_at;  // when it happened first, where it has an instant
+  std::optional<network::WrongWord> first_wrong;
+  kernel::Time on{};                  // bursts may come from here on
+  std::uint64_t fingerprint = 0;      // of the trace
   network::ErrorStatistics counts;    // from the first pulse that can come to the end of the recovery
   std::uint64_t longest_bad_run = 0;  // exchanges of either kind that were not served
   // After the last pulse until every signal has been delivered once, that exchange included.

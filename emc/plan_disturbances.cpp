@@ -12,8 +12,7 @@
 
 #include "emc/burst_stress.hpp"
 #include "emc/effective_time.hpp"
-#include "emc/generator.hpp"
-#include "emc/profile.hpp"
+#include "emc/planned_bursts.hpp"
 #include "emc/random_flips.hpp"
 
 namespace fieldproof::emc {
@@ -25,68 +24,6 @@ using fault::DisturbanceModel;
 using Json = nlohmann::ordered_json;
 
 // ---- bursts ----
-
-struct PlannedBursts {
-  BurstSettings settings;
-  std::optional<unsigned> level;
-  Profile profile = Profile::named("A");
-};
-
-Level read_level(ObjectReader& object, PlannedBursts& bursts) {
-  const auto level = object.optional("level");
-  const auto volts = object.optional("volts");
-  if (level.has_value() == volts.has_value()) {
-    config::fail(object.value(),
-                 "how strong the bursts are is not clear; write either \"level\" or \"volts\"");
-  }
-  if (volts) return Level::free(volts->as_number(Level::kLeastVolts, Level::kMostVolts));
-  bursts.level = level->as_integer<unsigned>(1, 4);
-  return Level::standard(PortKind::signal, *bursts.level);
-}
-
-Profile read_profile(const Value& value) {
-  return value.is_string() ? Profile::named(value) : Profile::read(value);
-}
-
-PlannedBursts read_bursts(const Value& value) {
-  return config::read_object(value, [](ObjectReader& object) {
-    PlannedBursts bursts;
-    bursts.settings.level = read_level(object, bursts);
-    if (const auto repetition = object.optional("repetition")) {
-      bursts.settings.repetition = repetition->as_choice<Repetition>(
-          {{word_of(Repetition::khz_5), Repetition::khz_5},
-           {word_of(Repetition::khz_100), Repetition::khz_100},
-           {word_of(Repetition::khz_2_5_edition_1), Repetition::khz_2_5_edition_1}});
-    }
-    if (const auto polarity = object.optional("polarity")) {
-      bursts.settings.polarity =
-          polarity->as_choice<Polarity>({{word_of(Polarity::positive), Polarity::positive},
-                                         {word_of(Polarity::negative), Polarity::negative}});
-    }
-    if (const auto first = object.optional("first_burst")) {
-      bursts.settings.first_burst = first->as_duration({}, kernel::kSecond);
-    }
-    if (const auto profile = object.optional("profile")) bursts.profile = read_profile(*profile);
-    return bursts;
-  });
-}
-
-Json json_of(const PlannedBursts& bursts) {
-  const BurstSettings usual;
-  Json json = Json::object();
-  if (bursts.level) {
-    json["level"] = *bursts.level;
-  } else {
-    json["volts"] = bursts.settings.level.open_circuit_volts();
-  }
-  if (bursts.settings.repetition != usual.repetition) {
-    json["repetition"] = word_of(bursts.settings.repetition);
-  }
-  if (bursts.settings.polarity != usual.polarity) json["polarity"] = word_of(bursts.settings.polarity);
-  if (bursts.settings.first_burst) json["first_burst"] = kernel::describe(*bursts.settings.first_burst);
-  if (bursts.profile.name != "A") json["profile"] = Json::parse(json_text(bursts.profile));
-  return json;
-}
 
 DisturbanceModel read_burst_model(const Value& value) {
   const PlannedBursts bursts = read_bursts(value);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +19,7 @@
 #include "harness/network/acceptance.hpp"
 #include "harness/segment/receiver.hpp"
 #include "harness/segment/segment.hpp"
+#include "harness/trace/dissector.hpp"
 #include "harness/trace/trace.hpp"
 
 // A running installation of stations on a segment, whatever its protocol: what a burst campaign and a
@@ -192,6 +194,8 @@ class Network {
   // What a reader of a measurement has to know: options, other closed forms.
   virtual std::vector<measure::Condition> conditions() const { return {}; }
   virtual std::vector<ProtectedFrame> protected_frames() const = 0;
+  // What is on its lines, in words; null: not known.
+  virtual std::shared_ptr<const trace::Dissector> dissector() const { return nullptr; }
 
   virtual std::span<const Signal> signals() const = 0;
   virtual void set_source(std::size_t signal, std::uint16_t word) = 0;

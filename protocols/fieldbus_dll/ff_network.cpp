@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "protocols/fieldbus_dll/ff_las.hpp"
+#include "protocols/fieldbus_dll/link_dissector.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
@@ -121,6 +122,10 @@ std::vector<network::CycleKind> FfNetwork::kinds() const {
        "empty tokens to all stations, a probe, a distribution of time, over the share of the line that the "
        "schedule leaves",
        true}};
+}
+
+std::shared_ptr<const trace::Dissector> FfNetwork::dissector() const {
+  return std::make_shared<LinkDissector>(rules_);
 }
 
 std::vector<network::ProtectedFrame> FfNetwork::protected_frames() const {

@@ -26,6 +26,7 @@ class FfNetwork final : public LinkNetwork {
   FfNetwork(const LinkDescription& description, std::uint64_t seed, const FfStations& stations = {});
 
   std::vector<network::ProtectedFrame> protected_frames() const override;
+  std::shared_ptr<const trace::Dissector> dissector() const override;
 
  private:
   // The applications of one station.

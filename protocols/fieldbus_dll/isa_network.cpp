@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "protocols/fieldbus_dll/isa_las.hpp"
+#include "protocols/fieldbus_dll/link_dissector.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
@@ -83,6 +84,10 @@ std::vector<network::CycleKind> IsaNetwork::kinds() const {
   return {{"macrocycle", description().macrocycle, "period of the schedule", false, jitter},
           {"token rotation", description().macrocycle,
            "the schedule delegates the token for the first word once in a period", false, jitter}};
+}
+
+std::shared_ptr<const trace::Dissector> IsaNetwork::dissector() const {
+  return std::make_shared<LinkDissector>(rules_);
 }
 
 std::vector<network::ProtectedFrame> IsaNetwork::protected_frames() const {

@@ -28,6 +28,7 @@ class IsaNetwork final : public LinkNetwork {
 
   // A station without a token takes part by a word that it gets.
   std::vector<network::ProtectedFrame> protected_frames() const override;
+  std::shared_ptr<const trace::Dissector> dissector() const override;
 
  private:
   class User final : public IsaUser {

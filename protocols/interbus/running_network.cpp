@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "harness/line/frame_check.hpp"
+#include "protocols/interbus/cycle_dissector.hpp"
 #include "protocols/interbus/cycle_frame.hpp"
 #include "protocols/interbus/latching_slave.hpp"
 #include "protocols/interbus/master.hpp"
@@ -177,6 +178,10 @@ std::vector<measure::Condition> RunningNetwork::conditions() const {
            time(cycle_time(network.formula, timing_input(network)))},
           {"cycle time by the structure of the frame", time(structural_cycle_time(network))},
           {"cycle time requested", network.cycle_time ? time(*network.cycle_time) : "the shortest"}};
+}
+
+std::shared_ptr<const trace::Dissector> RunningNetwork::dissector() const {
+  return std::make_shared<CycleDissector>(description_.rules);
 }
 
 std::vector<network::ProtectedFrame> RunningNetwork::protected_frames() const {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "harness/kernel/check.hpp"
+#include "protocols/token_bus/dissector.hpp"
 #include "protocols/token_bus/token_station.hpp"
 
 namespace fieldproof::token_bus {
@@ -247,6 +248,10 @@ std::vector<measure::Count> RingNetwork::delivery_faults() const {
 }
 
 // What a check of 32 bits cannot see has no closed form here: it is counted over 2^32 words of the dual code.
+std::shared_ptr<const trace::Dissector> RingNetwork::dissector() const {
+  return std::make_shared<BusDissector>(description_.rules);
+}
+
 std::vector<network::ProtectedFrame> RingNetwork::protected_frames() const {
   return {};
 }

@@ -57,6 +57,7 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   }
   std::vector<measure::Condition> conditions() const override;
   std::vector<network::ProtectedFrame> protected_frames() const override;
+  std::shared_ptr<const trace::Dissector> dissector() const override;
   std::span<const network::Signal> signals() const override { return signals_; }
   void set_source(std::size_t signal, std::uint16_t word) override;
   void set_source_function(std::size_t signal, std::function<std::uint16_t(kernel::Time)> word) override;

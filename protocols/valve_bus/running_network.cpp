@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "harness/kernel/check.hpp"
+#include "protocols/valve_bus/dissector.hpp"
 #include "protocols/valve_bus/host.hpp"
 #include "protocols/valve_bus/node.hpp"
 #include "protocols/valve_bus/timing.hpp"
@@ -246,6 +247,10 @@ std::vector<measure::Condition> RunningNetwork::conditions() const {
                    kernel::describe(poll.turnaround_time), kernel::describe(poll.response),
                    kernel::describe(poll.silence), kernel::describe(poll.way))},
       {"write to the first node", kernel::describe(reference_write_time(rules, seats_.front().way))}};
+}
+
+std::shared_ptr<const trace::Dissector> RunningNetwork::dissector() const {
+  return std::make_shared<FrameDissector>(rules_on_line());
 }
 
 std::vector<network::ProtectedFrame> RunningNetwork::protected_frames() const {

@@ -56,6 +56,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   network::ExchangeWords exchange_words() const override;
   std::vector<measure::Condition> conditions() const override;
   std::vector<network::ProtectedFrame> protected_frames() const override;
+  std::shared_ptr<const trace::Dissector> dissector() const override;
   std::span<const network::Signal> signals() const override { return signals_; }
   void set_source(std::size_t signal, std::uint16_t word) override;
   void set_source_function(std::size_t signal, std::function<std::uint16_t(kernel::Time)> word) override;
