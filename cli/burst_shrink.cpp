@@ -2,31 +2,25 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 
+#include "cli/bits_that_matter.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/flipped_bits.hpp"
 #include "cli/interruption.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/stored_sequence.hpp"
-#include "conformance/minimise.hpp"
-#include "harness/fault/plan_file.hpp"
 #include "harness/kernel/error.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
 namespace fieldproof::cli {
 namespace {
-
-// A plan lists no more.
-constexpr std::size_t kMostBits = 10'000;
 
 // A folder of this process for what is tried; what is found goes where the caller said.
 class TriedPlan {
@@ -50,19 +44,6 @@ class TriedPlan {
  private:
   std::filesystem::path folder_;
 };
-
-// The last bits, at most so many of them and no more than a plan can list.
-FlippedBits last_bits(const FlippedBits& struck, std::size_t most) {
-  std::set<std::pair<kernel::Time, std::string>> disturbances;
-  std::size_t count = 0;
-  while (count < std::min({most, struck.size(), kMostBits})) {
-    const StruckBit& one = struck[struck.size() - 1 - count];
-    disturbances.emplace(one.from, one.receiver);
-    if (disturbances.size() > fault::kMostDisturbances) break;
-    ++count;
-  }
-  return {struck.end() - static_cast<std::ptrdiff_t>(count), struck.end()};
-}
 
 // The case with all its disturbances, and a note of what they struck until it failed.
 struct DisturbedRun {
@@ -90,15 +71,7 @@ class BurstShrink {
 
   // The smallest; nothing when bits alone do not make it fail.
   std::optional<FlippedBits> run(const FlippedBits& struck) {
-    // The run ended where it failed, so what mattered lies near the end.
-    for (std::size_t last = 1;; last *= 2) {
-      FlippedBits bits = last_bits(struck, last);
-      const std::size_t count = bits.size();
-      if (still_fails(bits)) {
-        return simplest_of(bits, struck);
-      }
-      if (count < last) return std::nullopt;
-    }
+    return bits_that_matter(struck, [this](const FlippedBits& some) { return still_fails(some); });
   }
 
   // With these bits, in a plan that is left there.
@@ -111,20 +84,6 @@ class BurstShrink {
   std::size_t runs() const { return runs_; }
 
  private:
-  // Bits that only bring another one to its place are left when each is taken away alone: so one alone of all
-  // that were struck is tried, too, from the last one on.
-  FlippedBits simplest_of(const FlippedBits& bits, const FlippedBits& struck) {
-    constexpr std::size_t kMostTried = 256;
-    FlippedBits fewest =
-        conformance::fewest(bits, [this](const FlippedBits& some) { return still_fails(some); });
-    if (fewest.size() == 1) return fewest;
-    for (std::size_t n = 0; n < std::min(struck.size(), kMostTried); ++n) {
-      FlippedBits alone{struck[struck.size() - 1 - n]};
-      if (still_fails(alone)) return alone;
-    }
-    return fewest;
-  }
-
   static CaseFile quiet_of(CaseFile stored) {
     stored.is_quiet = true;
     return stored;
@@ -143,16 +102,6 @@ class BurstShrink {
   std::stop_token stop_;
   std::size_t runs_ = 0;
 };
-
-std::string bit_lines(const FlippedBits& bits) {
-  std::string text;
-  for (const StruckBit& one : bits) {
-    text += fmt::format("  {} {} of transmission {} from {} on, as {} receives it\n",
-                        one.is_level ? "level" : "bit", one.bit, one.transmission, kernel::describe(one.from),
-                        one.receiver);
-  }
-  return text;
-}
 
 int nothing_to_shrink(Session& session, std::string_view reason) {
   session.terminal.print(

@@ -64,7 +64,7 @@ ordered_json case_json(const conformance::CaseRun& done, std::uint64_t run_seed,
   json["run_seed"] = std::to_string(run_seed);
   json["case_seed"] = std::to_string(result.seed);
   json["volume"] = conformance::name(done.setup.volume);
-  json["implementations"] = ordered_json::parse(implementations_json(done.setup));
+  json["implementations"] = ordered_json::parse(implementations_json(done.setup.implementations));
   if (!kept.network.empty()) json["network"] = kept.network;
   if (!kept.plan.empty()) json["plan"] = kept.plan;
   if (!kept.pics.empty()) json["pics"] = kept.pics;
@@ -90,7 +90,7 @@ void store_recording(const reports::RunDirectory& directory, const conformance::
   directory.write_case(id, "trace.txt", fmt::format("{}\n", fmt::join(recording.lines(), "\n")));
   directory.write_case(id, "timeline.json",
                        reports::timeline_json(outcome.result, recording.trace, recording.told_in()));
-  directory.write_case(id, "trace.pcapng", capture_of(done));
+  directory.write_case(id, "trace.pcapng", capture_of(recording, id));
 }
 
 std::string path_from(const std::optional<config::Value>& value, const std::filesystem::path& folder) {
@@ -159,16 +159,17 @@ CaseFile read_case(config::ObjectReader& reader, const std::filesystem::path& fo
 
 }  // namespace
 
-std::string implementations_json(const conformance::Setup& setup) {
+std::string implementations_json(std::span<const conformance::Assignment> implementations) {
   ordered_json list = ordered_json::array();
-  for (const conformance::Assignment& assignment : setup.implementations) {
+  for (const conformance::Assignment& assignment : implementations) {
     list.push_back({{"role", assignment.role}, {"position", assignment.position}, {"uri", assignment.uri}});
   }
   return list.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 std::vector<conformance::Assignment> implementations_from(const config::Value& list,
-                                                          const conformance::Suite& suite) {
+                                                          const conformance::Suite& suite,
+                                                          std::size_t last_position) {
   std::vector<conformance::Assignment> implementations;
   for (const config::Value& element : list.as_array()) {
     implementations.push_back(config::read_object(element, [](config::ObjectReader& reader) {
@@ -178,7 +179,8 @@ std::vector<conformance::Assignment> implementations_from(const config::Value& l
       assignment.uri = reader.required("uri").as_string();
       return assignment;
     }));
-    if (const auto why = reason_not_runnable(implementations.back(), suite)) config::fail(element, *why);
+    if (const auto why = reason_not_runnable(implementations.back(), suite, last_position))
+      config::fail(element, *why);
   }
   return implementations;
 }
@@ -205,13 +207,12 @@ void write_quiet_case(const std::filesystem::path& file, const conformance::Case
   reports::write_text_file(file.string(), text_of(case_json(done, stored.setup.seed, files, true)));
 }
 
-std::string capture_of(const conformance::CaseRun& done) {
-  const conformance::Recording& recording = done.outcome.recording;
-  return reports::pcapng(recording.trace, recording.told_in(), program_name(), done.outcome.result.id);
+std::string capture_of(const conformance::Recording& recording, const std::string& id) {
+  return reports::pcapng(recording.trace, recording.told_in(), program_name(), id);
 }
 
-std::string wave_dump_of(const conformance::CaseRun& done) {
-  return reports::vcd(done.outcome.recording.trace, program_name(), done.outcome.result.id);
+std::string wave_dump_of(const conformance::Recording& recording, const std::string& id) {
+  return reports::vcd(recording.trace, program_name(), id);
 }
 
 StoredEntry::StoredEntry(const CaseFile& stored, const Session& session) {

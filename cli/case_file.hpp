@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,8 @@ void write_quiet_case(const std::filesystem::path& file, const conformance::Case
                       const CaseFile& stored);
 
 // What was recorded of a case, for programs of others: a pcapng capture, and a value change dump.
-std::string capture_of(const conformance::CaseRun& done);
-std::string wave_dump_of(const conformance::CaseRun& done);
+std::string capture_of(const conformance::Recording& recording, const std::string& id);
+std::string wave_dump_of(const conformance::Recording& recording, const std::string& id);
 
 // The case, its implementations and its PICS are looked up in the catalogue.
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue);
@@ -62,8 +63,9 @@ class StoredEntry {
 };
 
 // The member "implementations" of files that are run again.
-std::string implementations_json(const conformance::Setup& setup);
+std::string implementations_json(std::span<const conformance::Assignment> implementations);
 std::vector<conformance::Assignment> implementations_from(const config::Value& list,
-                                                          const conformance::Suite& suite);
+                                                          const conformance::Suite& suite,
+                                                          std::size_t last_position = 0);
 
 }  // namespace fieldproof::cli

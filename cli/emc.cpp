@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -12,6 +13,8 @@
 #include <vector>
 
 #include "cli/burst_options.hpp"
+#include "cli/emc_case.hpp"
+#include "cli/emc_run.hpp"
 #include "cli/emc_text.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
@@ -20,7 +23,6 @@
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "conformance/ordered_work.hpp"
-#include "emc/random_flips.hpp"
 #include "emc/residual/residual_error.hpp"
 #include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/error.hpp"
@@ -96,15 +98,29 @@ std::vector<EmcTest> tests_from(const Settings& settings, bool has_bursts) {
   return tests;
 }
 
+// On a channel of the textbooks wrong data are no failure, more of them than the theory allows are, and so is
+// a network that does not work again.
+bool is_failure(const EmcTest& test, std::size_t worst_allowed) {
+  constexpr double kRefuted = 1e-3;
+  if (!test.result.came_up) return false;
+  if (test.has_bursts()) return static_cast<std::size_t>(test.result.criterion) > worst_allowed;
+  const bool works_again = test.result.recovered_by_itself || test.result.recovered_after_start;
+  return (test.has_theory() && test.chance_of_count() < kRefuted) || !works_again;
+}
+
 // Runs the tests over the threads; a test is told when all before it are done.
 class Campaign {
  public:
   explicit Campaign(Session& session)
       : session_(session),
         interruption_(session.settings.duration("max-time")),
-        row_(network_entry_of(session, "emc")),
-        network_(plan_network(session, row_)) {
+        row_(network_entry_of(session, "emc")) {
     const Settings& settings = session.settings;
+    stored_.protocol = &row_;
+    stored_.request = network_request(session, row_);
+    stored_.network = row_.network.plan(stored_.request);
+    if (row_.network.has_latch_models) stored_.latch = settings.text("latch");
+    network_ = stored_.network.get();
     done_.protocol = row_.name;
     done_.network = network_->name();
     done_.exchange = network_->exchange();
@@ -113,7 +129,9 @@ class Campaign {
                         ? emc::Profile::named(network_->default_profile())
                         : profile_from(settings);
     done_.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
-    done_.duration = virtual_time_from(settings);
+    done_.duration = stored_.duration = virtual_time_from(settings);
+    stored_.bursts.profile = done_.profile;
+    stored_.worst = static_cast<emc::Criterion>(settings.choice("worst"));
     done_.has_bursts = wants_bursts(settings);
     if (!row_.undetected.caveat.empty()) done_.channel_caveats.emplace_back(row_.undetected.caveat);
     network_->make(done_.seed);  // who cannot take part ends the call, and is no verdict
@@ -122,6 +140,7 @@ class Campaign {
       if (test.has_bursts() || row_.undetected.parts == nullptr) continue;
       test.undetected = row_.undetected.parts(settings.text("network"), test.flip_probability);
     }
+    if (settings.is_set("out")) prepare_folder(settings.text("out"));
   }
 
   void run() {
@@ -134,7 +153,7 @@ class Campaign {
     work.count = planned_.size();
     work.threads = jobs_from(session_.settings);
     work.stop = interruption_.token();
-    work.work = [&](std::size_t n) { return run_one(response, settings_of(n)); };
+    work.work = [&](std::size_t n) { return run_one(response, case_of(n)); };
     work.deliver = [&](std::size_t n, Ran&& ran) {
       if (!ran.result.is_complete) return false;
       planned_[n].result = std::move(ran.result);
@@ -142,6 +161,7 @@ class Campaign {
       done_.tests.push_back(planned_[n]);
       if (done_.places.empty()) describe(ran);
       session_.terminal.print(emc_line(done_.tests.back()));
+      if (!folder_.empty()) store(response, n);
       return true;
     };
     work.idle = [&](std::size_t finished) { session_.terminal.progress(finished); };
@@ -164,10 +184,11 @@ class Campaign {
     std::vector<network::ProtectedFrame> frames;
   };
 
-  Ran run_one(const emc::LineResponse& response, const emc::ImmunitySettings& settings) const {
+  Ran run_one(const emc::LineResponse& response, const EmcCase& test) const {
     Ran ran;
+    const emc::ImmunitySettings settings = immunity_settings(test, interruption_.token());
     try {
-      const std::unique_ptr<network::Network> network = network_->make(settings.seed);
+      const std::unique_ptr<network::Network> network = network_->make(test.seed);
       for (const network::Place& place : network->places()) {
         ran.places.push_back({place.name, place.is_exposed, std::string(place.why_not)});
       }
@@ -176,10 +197,7 @@ class Campaign {
       ran.frames = network->protected_frames();
       ran.result = emc::run_immunity(*network, response, settings);
     } catch (const iut::Misbehaviour& misbehaviour) {
-      // It takes part no more: the installation does not work again.
-      ran.result.came_up = true;
-      ran.result.criterion = emc::Criterion::d;
-      ran.result.complaint = fmt::format("{}: {}", misbehaviour.reason(), misbehaviour.what());
+      ran.result = end_by(misbehaviour);
     }
     return ran;
   }
@@ -196,39 +214,57 @@ class Campaign {
     }
   }
 
-  emc::ImmunitySettings settings_of(std::size_t n) const {
-    emc::ImmunitySettings settings;
-    settings.bursts.level = planned_[n].level;
-    settings.bursts.repetition = planned_[n].repetition;
-    settings.bursts.polarity = planned_[n].polarity;
-    if (const double flips = planned_[n].flip_probability; flips > 0) {
-      settings.make_channel = [flips](kernel::Random random) {
-        return std::make_unique<emc::BernoulliChannel>(flips, random);
-      };
-    }
-    settings.duration = done_.duration;
-    settings.seed = kernel::Random(done_.seed).split(n).seed();
-    settings.stop = interruption_.token();
-    return settings;
+  EmcCase case_of(std::size_t n) const {
+    EmcCase test = stored_;
+    test.bursts.settings.level = planned_[n].level;
+    test.bursts.settings.repetition = planned_[n].repetition;
+    test.bursts.settings.polarity = planned_[n].polarity;
+    test.flip_probability = planned_[n].flip_probability;
+    test.seed = kernel::Random(done_.seed).split(n).seed();
+    return test;
+  }
+
+  // A folder that is moved still has the network of its cases.
+  void prepare_folder(const std::filesystem::path& folder) {
+    folder_ = folder;
+    reports::check_writable(folder_ / "case.json");
+    if (stored_.request.file.empty()) return;
+    const std::filesystem::path copy = folder_ / "network.json";
+    reports::write_text_file(copy, reports::read_text_file(stored_.request.file));
+    stored_.request.file = copy.string();
+  }
+
+  // A test that fails; and the first wrong word of the campaign, in a test that ends where it was accepted.
+  void store(const emc::LineResponse& response, std::size_t n) {
+    EmcCase test = case_of(n);
+    const emc::ImmunityResult& result = planned_[n].result;
+    test.end = end_of(result);
+    const std::string name = fmt::format("{}-{}-{}", row_.name, done_.seed, n + 1);
+    if (is_failure(planned_[n], static_cast<std::size_t>(test.worst))) keep(test, name);
+    if (has_first_wrong_ || !result.first_wrong) return;
+    const kernel::Duration until = result.first_wrong->when - result.on + kernel::kPicosecond;
+    test.duration = std::min(test.duration, until);
+    test.end = end_of(run_emc_case(test, response).result);
+    has_first_wrong_ = true;
+    keep(test, name + "-first_wrong");
+  }
+
+  void keep(const EmcCase& test, const std::string& name) {
+    const std::filesystem::path file = folder_ / (name + ".case.json");
+    write_emc_case(file, test);
+    session_.terminal.print(fmt::format("    stored: {}\n", file.string()));
   }
 
   Session& session_;
   Interruption interruption_;
   const ProtocolEntry& row_;
-  std::unique_ptr<conformance::PlannedNetwork> network_;
+  const conformance::PlannedNetwork* network_ = nullptr;
+  EmcCase stored_;                // what all tests have in common
+  std::filesystem::path folder_;  // of what is stored; empty: nothing is
+  bool has_first_wrong_ = false;
   std::vector<EmcTest> planned_;
   EmcCampaign done_;
 };
-
-// On a channel of the textbooks wrong data are no failure, more of them than the theory allows are, and so is
-// a network that does not work again.
-bool is_failure(const EmcTest& test, std::size_t worst_allowed) {
-  constexpr double kRefuted = 1e-3;
-  if (!test.result.came_up) return false;
-  if (test.has_bursts()) return static_cast<std::size_t>(test.result.criterion) > worst_allowed;
-  const bool works_again = test.result.recovered_by_itself || test.result.recovered_after_start;
-  return (test.has_theory() && test.chance_of_count() < kRefuted) || !works_again;
-}
 
 // Where no burst met a receiver, or a channel disturbed hardly any exchange, nothing is shown. Bursts that
 // are too weak to be seen are something else: that is an A.

@@ -26,12 +26,12 @@ bool level_at(const line::Waveforms& waves, std::size_t first, kernel::Time time
 // Writes down what another channel does.
 class WatchedChannel final : public fault::Channel {
  public:
-  WatchedChannel(std::unique_ptr<fault::Channel> channel, const fault::StressPlace& place,
-                 std::shared_ptr<FlippedBits> struck)
+  WatchedChannel(std::unique_ptr<fault::Channel> channel, std::string receiver, kernel::Time from,
+                 std::int64_t bit_rate, std::shared_ptr<FlippedBits> struck)
       : channel_(std::move(channel)),
-        receiver_(place.trace.channel_name(place.channel)),
-        from_(place.from),
-        bit_rate_(place.bit_rate),
+        receiver_(std::move(receiver)),
+        from_(from),
+        bit_rate_(bit_rate),
         struck_(std::move(struck)) {}
 
   bool pass(const line::Waveform& sent, line::Waveforms& arrivals) override {
@@ -46,9 +46,11 @@ class WatchedChannel final : public fault::Channel {
   void note(const line::Waveform& sent, const line::Waveforms& arrivals, std::size_t first) {
     const bool is_level = sent.rate > bit_rate_ && sent.rate % bit_rate_ == 0;
     const std::int64_t rate = is_level ? sent.rate : bit_rate_;
+    constexpr std::array kSamples{7U, 8U, 9U};
+    const std::span<const unsigned> samples = std::span(kSamples).subspan(is_level ? 1 : 0, is_level ? 1 : 3);
     for (unsigned bit = 0; middle_of(sent, bit, 8, rate) < sent.end(); ++bit) {
       int others = 0;
-      for (const unsigned sixteenth : {7U, 8U, 9U}) {
+      for (const unsigned sixteenth : samples) {
         const kernel::Time time = middle_of(sent, bit, sixteenth, rate);
         others += level_at(arrivals, first, time) == sent.at(time) ? -1 : 1;
       }
@@ -81,11 +83,18 @@ ordered_json disturbances_of(std::span<const StruckBit> struck) {
       list.push_back({{"transmission", transmission}, {std::get<bool>(place) ? "levels" : "bits", bits}});
     }
     const auto& [from, receiver, is_level] = place;
-    disturbances.push_back({{"receiver", receiver},
-                            {"from", kernel::describe(from - kernel::kStart)},
-                            {is_level ? "flipped_levels" : "flipped_bits", std::move(list)}});
+    ordered_json& one = disturbances.emplace_back(ordered_json{{"receiver", receiver}});
+    if (from != kernel::kStart) one["from"] = kernel::describe(from - kernel::kStart);
+    one[is_level ? "flipped_levels" : "flipped_bits"] = std::move(list);
   }
   return disturbances;
+}
+
+std::unique_ptr<fault::Channel> watched_at(const fault::StressPlace& place,
+                                           std::unique_ptr<fault::Channel> channel,
+                                           const std::shared_ptr<FlippedBits>& struck) {
+  return std::make_unique<WatchedChannel>(std::move(channel), place.trace.channel_name(place.channel),
+                                          place.from, place.bit_rate, struck);
 }
 
 using MakeChannel = decltype(fault::Stress::make_channel);
@@ -103,20 +112,24 @@ void change_stresses(conformance::Disturbances& all, Change change) {
 
 conformance::Disturbances watched(conformance::Disturbances all, const std::shared_ptr<FlippedBits>& struck) {
   change_stresses(all, [&struck](const MakeChannel& make) {
-    return [make, struck](const fault::StressPlace& place) {
-      return std::make_unique<WatchedChannel>(make(place), place, struck);
-    };
+    return [make, struck](const fault::StressPlace& place) { return watched_at(place, make(place), struck); };
   });
   for (fault::DisturbanceKind& kind : all.of_plans) {
     kind.read = [read = kind.read, struck](const config::Value& value) {
       fault::DisturbanceModel model = read(value);
       model.make_channel = [make = model.make_channel, struck](const fault::StressPlace& place) {
-        return std::make_unique<WatchedChannel>(make(place), place, struck);
+        return watched_at(place, make(place), struck);
       };
       return model;
     };
   }
   return all;
+}
+
+std::unique_ptr<fault::Channel> watched(std::unique_ptr<fault::Channel> channel, std::string receiver,
+                                        std::int64_t bit_rate, const std::shared_ptr<FlippedBits>& struck) {
+  return std::make_unique<WatchedChannel>(std::move(channel), std::move(receiver), kernel::kStart, bit_rate,
+                                          struck);
 }
 
 conformance::Disturbances without_stresses(conformance::Disturbances all) {

@@ -2,9 +2,9 @@
 //
 // Contract: a struck bit is one that a receiver of the declared bit rate, which takes the majority of three
 // samples, hears otherwise than it was sent. Where a sender drives levels that are finer than bits, as
-// Manchester code does, each of them is looked at: half a bit that is wrong breaks the code. What a
-// disturbance does beyond that (a pulse that is no bit to such a receiver) is not kept, so who replays the
-// bits looks whether they do what the disturbance did.
+// Manchester code does, each of them is looked at, once in its middle: half a bit that is wrong breaks the
+// code. What a disturbance does beyond that (a pulse that is no bit to such a receiver) is not kept, so who
+// replays the bits looks whether they do what the disturbance did.
 #pragma once
 
 #include <compare>
@@ -34,6 +34,10 @@ using FlippedBits = std::vector<StruckBit>;
 
 // The same disturbances, with a note in `struck` of all that they do.
 conformance::Disturbances watched(conformance::Disturbances all, const std::shared_ptr<FlippedBits>& struck);
+
+// The same for one channel of a receiver, whose transmissions are counted from its first one on.
+std::unique_ptr<fault::Channel> watched(std::unique_ptr<fault::Channel> channel, std::string receiver,
+                                        std::int64_t bit_rate, const std::shared_ptr<FlippedBits>& struck);
 
 // The same for plans; stresses disturb nothing, for as long as those do.
 conformance::Disturbances without_stresses(conformance::Disturbances all);

@@ -192,15 +192,18 @@ std::vector<Assignment> parse_implementations(std::span<const std::string> texts
   return implementations;
 }
 
-std::optional<std::string> reason_not_runnable(const Assignment& assignment, const Suite& suite) {
+std::optional<std::string> reason_not_runnable(const Assignment& assignment, const Suite& suite,
+                                               std::size_t last_position) {
   const std::vector<std::string> roles = suite.roles();
   if (!assignment.role.empty() && std::find(roles.begin(), roles.end(), assignment.role) == roles.end()) {
     return fmt::format("the protocol has no role '{}'; write one of '{}'", assignment.role,
                        fmt::join(roles, "', '"));
   }
-  if (assignment.position > suite.last_position()) {
+  const std::size_t last =
+      last_position != 0 ? last_position : static_cast<std::size_t>(suite.last_position());
+  if (static_cast<std::size_t>(assignment.position) > last) {
     return fmt::format("the position {} is out of range; a network has at most {} stations",
-                       assignment.position, suite.last_position());
+                       assignment.position, last);
   }
   const Suite* const only = &suite;
   if (assignment.uri == "ref" || is_attachment(assignment.uri) || is_own(assignment, std::span(&only, 1))) {

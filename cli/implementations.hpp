@@ -29,6 +29,7 @@ inline constexpr std::size_t kAnyPosition = 1'000'000;
 
 // The same for an assignment that a case file of this suite stores: why it cannot be served, or nothing.
 std::optional<std::string> reason_not_runnable(const conformance::Assignment& assignment,
-                                               const conformance::Suite& suite);
+                                               const conformance::Suite& suite,
+                                               std::size_t last_position = 0);
 
 }  // namespace fieldproof::cli

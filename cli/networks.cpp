@@ -26,19 +26,27 @@ const ProtocolEntry& network_entry_of(const Session& session, std::string_view v
                                                             verb, protocol, fmt::join(names, "', '")));
 }
 
-std::unique_ptr<conformance::PlannedNetwork> plan_network(const Session& session,
-                                                          const ProtocolEntry& entry) {
+conformance::NetworkRequest network_request(const Session& session, const ProtocolEntry& entry) {
   const Settings& settings = session.settings;
   if (!entry.network.has_latch_models && settings.origin("latch") == Origin::command_line) {
     settings.refuse("latch", "the stations of this network have no latch model; leave it out");
   }
-  const auto entries = session.catalogue.select(std::vector{session.operands.front() + "/**"});
-  return entry.network.plan({.file = settings.text("network"),
-                             .implementations = parse_implementations(settings.list("iut"), session.catalogue,
-                                                                      entries, kAnyPosition),
-                             .limits = limits_from(settings),
-                             .attach = attachments(),
-                             .latch = settings.choice("latch")});
+  return {.file = settings.text("network"),
+          .implementations = network_implementations(session, entry),
+          .limits = limits_from(settings),
+          .attach = attachments(),
+          .latch = settings.choice("latch")};
+}
+
+std::vector<conformance::Assignment> network_implementations(const Session& session,
+                                                             const ProtocolEntry& entry) {
+  const auto entries = session.catalogue.select(std::vector{std::string(entry.name) + "/**"});
+  return parse_implementations(session.settings.list("iut"), session.catalogue, entries, kAnyPosition);
+}
+
+std::unique_ptr<conformance::PlannedNetwork> plan_network(const Session& session,
+                                                          const ProtocolEntry& entry) {
+  return entry.network.plan(network_request(session, entry));
 }
 
 }  // namespace fieldproof::cli

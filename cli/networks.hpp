@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include "cli/verbs.hpp"
 #include "conformance/planned_network.hpp"
@@ -12,6 +13,11 @@ namespace fieldproof::cli {
 // The row of the protocol that the call names; a usage error that lists them where it has no network.
 const ProtocolEntry& network_entry_of(const Session& session, std::string_view verb);
 
+// Whom `--iut` puts into it.
+std::vector<conformance::Assignment> network_implementations(const Session& session,
+                                                             const ProtocolEntry& entry);
+// What the call says of the network that it wants.
+conformance::NetworkRequest network_request(const Session& session, const ProtocolEntry& entry);
 // The network of the call, with whoever `--iut` puts into it.
 std::unique_ptr<conformance::PlannedNetwork> plan_network(const Session& session, const ProtocolEntry& entry);
 

@@ -20,6 +20,7 @@ constexpr std::array kOptions = {
     Option{"pics", value, "FILE", "", "run verify list check station fuzz", "what the implementation declares about itself", false, true},
     Option{"jobs", value, "N", "all cores", "run verify matrix emc", "threads; the results are the same for any number"},
     Option{"out", value, "DIR", "runs/<utc>-<seed>", "run", "directory of the run"},
+    Option{"out", value, "DIR", "", "emc", "where each test that fails, and the first wrong word, leave a file for replay and shrink"},
     Option{"record", value, "none|failed|all", "failed", "run", "which cases keep their trace"},
     Option{"junit", value, "FILE", "", "run", "also write the JUnit report here"},
     Option{"html", value, "FILE", "", "run report", "also write the report as one HTML page here"},

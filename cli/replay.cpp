@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <filesystem>
+#include <string>
+#include <utility>
 
 #include "cli/case_file.hpp"
+#include "cli/emc_case.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/implementations.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/sequence_file.hpp"
+#include "cli/shown_recording.hpp"
+#include "cli/stored_emc.hpp"
 #include "cli/stored_sequence.hpp"
 #include "cli/verbs.hpp"
-#include "harness/judge/result_json.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
@@ -37,57 +39,12 @@ reports::RunIdentity identity_for(Session& session, const CaseFile& stored) {
   return identity;
 }
 
-struct Export {
-  const char* option;
-  std::string (*write)(const conformance::CaseRun&);
-};
-
-constexpr std::array kExports = {Export{"pcapng", capture_of}, Export{"vcd", wave_dump_of}};
-
-// Also by another path, or through a link.
-bool is_one_file(const std::string& one, const std::string& other) {
-  std::error_code failure;
-  const auto path_of = [&](const std::string& name) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(name), failure);
-  };
-  return one == other || path_of(one) == path_of(other);
-}
-
-// Refused before the case is run.
-void check_exports(const Settings& settings) {
-  for (const Export& one : kExports) {
-    if (!settings.is_set(one.option)) continue;
-    for (const Export& other : kExports) {
-      if (&other == &one) break;
-      if (settings.is_set(other.option) &&
-          is_one_file(settings.text(other.option), settings.text(one.option)))
-        settings.refuse(one.option,
-                        fmt::format("--{} is written to the same file; name another", other.option));
-    }
-    reports::check_writable(settings.text(one.option));
-  }
-}
-
-void show_recording(Session& session, const conformance::CaseRun& done) {
-  const conformance::Recording& recording = done.outcome.recording;
-  bool is_shown = session.settings.is_set("bits");
-  if (is_shown) {
-    for (const std::string& line : recording.lines())
-      session.terminal.print(reports::escaped_line(line) + "\n");
-  }
-  for (const Export& one : kExports) {
-    if (!session.settings.is_set(one.option)) continue;
-    reports::write_text_file(session.settings.text(one.option), one.write(done));
-    is_shown = true;
-  }
-  if (is_shown && recording.truncated) session.terminal.log("the recording is not whole: it has a bound");
-}
-
 }  // namespace
 
 int replay(Session& session) {
   check_exports(session.settings);
   if (is_sequence_file(session.operands.front())) return replay_sequence(session);
+  if (has_schema(session.operands.front(), kEmcCaseSchema)) return replay_emc(session);
   CaseFile stored = load_case(session.operands.front(), session.catalogue);
   stored.setup.limits = limits_from(session.settings);
   const StoredEntry stored_entry(stored, session);
@@ -102,7 +59,7 @@ int replay(Session& session) {
   session.terminal.print(reports::run_header(run.identity, manifest_of(session, 1)));
   const conformance::CaseRun done =
       conformance::run_case(entry, stored.setup, {conformance::KeptRecordings::all});
-  show_recording(session, done);
+  show_recording(session, done.outcome.recording, done.outcome.result.id);
   const judge::CaseResult& result = done.outcome.result;
   run.cases = {result};
   reports::TextOptions options;

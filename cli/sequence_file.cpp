@@ -61,7 +61,7 @@ std::string sequence_file_text(const SequenceFile& file) {
   json["schema"] = kSequenceSchema;
   json["role"] = role_path(*file.role);
   json["seed"] = std::to_string(file.setup.seed);
-  json["implementations"] = ordered_json::parse(implementations_json(file.setup));
+  json["implementations"] = ordered_json::parse(implementations_json(file.setup.implementations));
   if (file.setup.pics) json["pics"] = ordered_json::parse(pics_text(*file.setup.pics)).at("items");
   json["commands"] = ordered_json::parse(conformance::sequence_json(file.commands, file.role->vocabulary));
   add_end(json, file.end);
@@ -69,15 +69,7 @@ std::string sequence_file_text(const SequenceFile& file) {
 }
 
 bool is_sequence_file(const std::filesystem::path& file) {
-  try {
-    const config::Document document = config::Document::load(file);
-    return config::read_open_object(document.root(), [](config::ObjectReader& reader) {
-      const auto schema = reader.optional("schema");
-      return schema && schema->is_string() && schema->as_string() == kSequenceSchema;
-    });
-  } catch (const kernel::Error&) {
-    return false;
-  }
+  return has_schema(file, kSequenceSchema);
 }
 
 SequenceFile load_sequence_file(const std::filesystem::path& file, const conformance::Catalogue& catalogue) {

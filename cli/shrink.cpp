@@ -2,9 +2,11 @@
 
 #include "cli/burst_shrink.hpp"
 #include "cli/case_file.hpp"
+#include "cli/emc_case.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/stored_emc.hpp"
 #include "cli/stored_sequence.hpp"
 #include "cli/verbs.hpp"
 #include "reports/run_directory.hpp"
@@ -49,6 +51,7 @@ int shrink(Session& session) {
   const std::string path = smaller_path(session);
   if (is_sequence_file(file))
     return shrink_sequence(session, load_sequence_file(file, session.catalogue), path);
+  if (has_schema(file, kEmcCaseSchema)) return shrink_emc(session, path);
   CaseFile stored = load_case(file, session.catalogue);
   stored.setup.limits = limits_from(session.settings);
   reports::check_writable(path);

@@ -59,7 +59,7 @@ constexpr std::array kHelp = {
     VerbHelp{"shrink", kAgain, {{
         {"shrink found.case.json", "the fewest commands, faults and flipped bits that still fail"},
         {"shrink found.case.json --case small.json", "written there"},
-        {"shrink found.case.json --max-time 5min", "with a limit of time"}}}},
+        {"shrink bursts/{protocol}-1-1.case.json", "a test of emc: the shortest time, the fewest bursts and bits"}}}},
     VerbHelp{"diff", kAgain, {{
         {"diff runs/before runs/after", "new failures, fixed ones, drifted measurements"},
         {"diff runs/before runs/latest --json diff.json", "the same as JSON"},
@@ -71,7 +71,7 @@ constexpr std::array kHelp = {
     VerbHelp{"emc", kNetwork, {{
         {"emc {protocol} --iut {name}@2=exec:./device", "burst immunity of a network with your device in it"},
         {"emc {protocol} --test-levels 1..4 --json emc.json", "all levels, as JSON for report"},
-        {"emc {protocol} --network network.json --worst B", "a network of yours; C fails"}}}},
+        {"emc {protocol} --network network.json --worst B --out bursts", "a network of yours; C fails, and is stored for replay and shrink"}}}},
     VerbHelp{"measure", kNetwork, {{
         {"measure {protocol} --iut {name}@2=exec:./device", "cycle time, jitter and skew with your device in the network"},
         {"measure {protocol} --network network.json --json measure.json", "of a network of yours"},
