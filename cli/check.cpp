@@ -76,7 +76,7 @@ std::string passed_text(const conformance::SequenceSearchResult& result, std::ui
 int keep_found(Session& session, SequenceFile& target, const std::string& path,
                const conformance::SequenceFound& found, std::uint64_t run, const Interruption& interruption) {
   // Of one that does not do the same again the file keeps what was seen.
-  target.commands = found.is_confirmed ? found.smallest : found.drawn;
+  target.sequence = found.is_confirmed ? found.smallest : found.drawn;
   keep_sequence(session, target, found.is_confirmed ? found.outcome.result : found.first, path);
   session.terminal.print(fmt::format("sequence {} failed; {}", run + 1,
                                      shrunk_text(found.drawn, found.smallest, found.shrinking_runs)));

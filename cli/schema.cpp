@@ -27,7 +27,6 @@ void add_files(std::vector<NamedText>& all) {
                                    {"configuration", configuration_schema},
                                    {"emc_case", emc_case_schema},
                                    {"matrix", matrix_schema},
-                                   {"sequence", sequence_schema},
                                    {"faults", fault::plan_schema},
                                    {"profile", emc::profile_schema},
                                    {"diff", reports::diff_schema},
@@ -70,6 +69,7 @@ std::vector<NamedText> named_schemas(const conformance::Catalogue& catalogue) {
   std::vector<NamedText> all;
   add_files(all);
   all.push_back({"pics", pics_schema_text(catalogue)});
+  all.push_back({"sequence", sequence_schema_text(catalogue)});
   for (const auto& suite : catalogue.suites()) {
     for (const field::NamedSchema& file : suite->schemas()) {
       all.push_back({fmt::format("{}/{}", suite->protocol(), file.name), std::string(file.text)});

@@ -30,7 +30,7 @@ SequenceFile read_sequence_file(config::ObjectReader& reader, const conformance:
   read.setup.seed = judge::unsigned_from(reader.required("seed"));
   read.setup.implementations = implementations_from(reader.required("implementations"), *read.suite);
   if (const auto pics = reader.optional("pics")) read.setup.pics = pics_from(*pics, catalogue.pics_items());
-  read.commands = conformance::read_sequence(reader.required("commands"), read.role->vocabulary);
+  read.sequence = conformance::read_sequence(reader, read.role->vocabulary);
   read.end = end_from(reader);
   return read;
 }
@@ -63,7 +63,7 @@ std::string sequence_file_text(const SequenceFile& file) {
   json["seed"] = std::to_string(file.setup.seed);
   json["implementations"] = ordered_json::parse(implementations_json(file.setup.implementations));
   if (file.setup.pics) json["pics"] = ordered_json::parse(pics_text(*file.setup.pics)).at("items");
-  json["commands"] = ordered_json::parse(conformance::sequence_json(file.commands, file.role->vocabulary));
+  json.update(ordered_json::parse(conformance::sequence_json(file.sequence, file.role->vocabulary)));
   add_end(json, file.end);
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

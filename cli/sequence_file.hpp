@@ -19,7 +19,7 @@ struct SequenceFile {
   const conformance::Suite* suite = nullptr;
   const conformance::SequenceRole* role = nullptr;
   conformance::Setup setup;  // with the seed of the run
-  conformance::Sequence commands;
+  conformance::Sequence sequence;
   StoredEnd end;
 };
 

@@ -32,12 +32,12 @@ int shrink_sequence(Session& session, SequenceFile stored, const std::string& pa
   session.terminal.print(reports::run_header(identity_of(session, stored.setup, 1), manifest_of(session, 1)));
   const Interruption interruption(session.settings.duration("max-time"));
   const auto found =
-      conformance::shrink(*stored.suite, *stored.role, stored.commands, stored.setup, interruption.token());
+      conformance::shrink(*stored.suite, *stored.role, stored.sequence, stored.setup, interruption.token());
   if (!found) {
     session.terminal.print("the stored commands do not fail: nothing to make smaller\n");
     return kDiffers;
   }
-  stored.commands = found->smallest;
+  stored.sequence = found->smallest;
   keep_sequence(session, stored, found->outcome.result, path);
   session.terminal.print(shrunk_text(found->drawn, found->smallest, found->shrinking_runs));
   if (interruption.signal() != 0) return kSignalBase + interruption.signal();

@@ -16,15 +16,21 @@ std::string size_text(const conformance::Sequence& sequence) {
   const auto counted = [](std::size_t count, std::string_view what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
-  return fmt::format("{}, {} ({})", counted(sequence.size(), "command"),
+  const std::size_t settings = sequence.settings.size();
+  return fmt::format("{}{}, {} ({})", settings == 0 ? "" : counted(settings, "setting") + ", ",
+                     counted(sequence.commands.size(), "command"),
                      counted(conformance::faults_in(sequence), "fault"),
                      counted(conformance::flips_in(sequence), "flipped bit"));
 }
 
-std::string command_lines(const SequenceFile& file) {
-  std::string text = "  commands\n";
+std::string lines_of(const SequenceFile& file) {
+  const conformance::SequenceVocabulary& vocabulary = file.role->vocabulary;
+  std::string text;
+  if (!file.sequence.settings.empty())
+    text += fmt::format("  settings\n    {}\n", settings_text(file.sequence.settings, vocabulary));
+  text += "  commands\n";
   std::size_t number = 0;
-  for (const std::string& line : conformance::sequence_lines(file.commands, file.role->vocabulary)) {
+  for (const std::string& line : command_lines(file.sequence, vocabulary)) {
     text += fmt::format("    {}. {}\n", ++number, line);
   }
   return text;
@@ -56,7 +62,7 @@ std::string sequence_text(const Session& session, const SequenceFile& file, cons
   reports::TextOptions options;
   options.colour = session.terminal.has_colour();
   options.reproduce = reproduce;
-  return reports::finding_text(identity_of(session, file.setup, 1), result, options) + command_lines(file);
+  return reports::finding_text(identity_of(session, file.setup, 1), result, options) + lines_of(file);
 }
 
 void keep_sequence(Session& session, SequenceFile file, const judge::CaseResult& result,
@@ -87,7 +93,7 @@ int replay_sequence(Session& session) {
   conformance::Setup recorded = stored.setup;
   recorded.record = true;
   const conformance::Outcome outcome =
-      conformance::run_sequence(*stored.suite, *stored.role, stored.commands, recorded);
+      conformance::run_sequence(*stored.suite, *stored.role, stored.sequence, recorded);
   const judge::CaseResult& result = outcome.result;
   if (session.settings.is_set("bits")) {
     for (const std::string& line : outcome.recording.lines())

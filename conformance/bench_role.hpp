@@ -13,6 +13,7 @@
 #include "conformance/bench_case.hpp"
 #include "conformance/running_case.hpp"
 #include "conformance/suite.hpp"
+#include "harness/field/pics.hpp"
 
 // Rows of a suite for roles whose cases run on a bench.
 //
@@ -45,6 +46,8 @@ struct CaseRole {
   std::vector<judge::PicsItem> (*pics_items)() = nullptr;
   judge::Pics (*usual_answers)() = nullptr;
   const field::AnyTable* settings = nullptr;
+  // The items of its PICS are its settings: what a sequence begins with is declared.
+  bool are_settings_declared = false;
   std::optional<SequenceRow<Case>> sequences{};
 
   // The same but for who plays.
@@ -56,6 +59,15 @@ struct CaseRole {
     made.stresses = disturbances.stresses;
     if constexpr (requires { made.link_stresses; }) made.link_stresses = &disturbances.link_stresses;
     if constexpr (requires { made.pics; }) made.pics = run_of_case.pics();
+    if constexpr (requires { made.settings; }) {
+      const field::Settings& given = run_of_case.setup().settings;
+      if (are_settings_declared && !given.empty()) {
+        if (!made.pics) made.pics.emplace();
+        field::declare_settings(*settings, given, *made.pics);
+      } else {
+        made.settings = given;
+      }
+    }
     if constexpr (requires { made.plan; }) made.plan = run_of_case.plan();
     if (run_of_case.is_recorded()) {
       made.make_recorder = [&run_of_case](const trace::Trace& trace, const auto& rules) {
@@ -117,7 +129,10 @@ RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
     row.sequences = role.sequences->role();
     row.run_sequence = [role, run_case](const Sequence& sequence, RunningCase& run) {
       Case one = role.find(run.test_case());
-      one.procedure = [&sequence, run_sequence = role.sequences->run](auto& bench, CaseJudge& judge) {
+      one.procedure = [&sequence, &vocabulary = role.sequences->role().vocabulary,
+                       run_sequence = role.sequences->run](auto& bench, CaseJudge& judge) {
+        if (!sequence.settings.empty())
+          judge.begin_step("with " + settings_text(sequence.settings, vocabulary));
         run_sequence(sequence, bench, judge);
       };
       // Who searches counts the silent ones.

@@ -13,6 +13,7 @@
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
 #include "harness/fault/plan.hpp"
+#include "harness/field/settings.hpp"
 #include "harness/judge/pics.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/segment/segment.hpp"
@@ -31,6 +32,7 @@ struct BenchSetting {
   std::uint64_t seed = 1;
   Volume volume = Volume::full;
   std::optional<judge::Pics> pics{};
+  field::Settings settings{};  // what the configuration has otherwise than PICS and case have it
   std::span<const fault::Stress> stresses{};
   // Makes the recorder of the bench's trace; null: nothing is recorded. It must outlive the bench.
   std::function<trace::Recorder*(const trace::Trace&, const Rules&)> make_recorder{};

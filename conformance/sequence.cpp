@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/field/words.hpp"
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -81,11 +83,33 @@ SequenceCommand read_command(const config::Value& value, const SequenceVocabular
   });
 }
 
+field::Settings read_settings(const config::Value& value, const SequenceVocabulary& vocabulary) {
+  field::Settings settings = config::read_object(value, [&](config::ObjectReader& reader) {
+    field::Settings read;
+    for (const SequenceSetting& one : vocabulary.settings) {
+      if (const auto number = reader.optional(one.name))
+        read.emplace_back(one.name, number->as_integer<std::int64_t>(one.least, one.most));
+    }
+    return read;
+  });
+  if (const auto why_not = vocabulary.objection_to(settings)) config::fail(value, *why_not);
+  return settings;
+}
+
 }  // namespace
 
 const SequenceWord* SequenceVocabulary::find(std::string_view word) const {
   const auto found = std::ranges::find(words, word, &SequenceWord::word);
   return found == words.end() ? nullptr : &*found;
+}
+
+const SequenceSetting* SequenceVocabulary::find_setting(std::string_view name) const {
+  const auto found = std::ranges::find(settings, name, &SequenceSetting::name);
+  return found == settings.end() ? nullptr : &*found;
+}
+
+std::optional<std::string> SequenceVocabulary::objection_to(const field::Settings& given) const {
+  return given.empty() || !objection ? std::nullopt : objection(given);
 }
 
 std::size_t units_of(const SequenceWord& word, const SequenceCommand& command) {
@@ -94,22 +118,40 @@ std::size_t units_of(const SequenceWord& word, const SequenceCommand& command) {
 
 std::size_t faults_in(const Sequence& sequence) {
   std::size_t count = 0;
-  for (const SequenceCommand& command : sequence) count += command.faults.size();
+  for (const SequenceCommand& command : sequence.commands) count += command.faults.size();
   return count;
 }
 
 std::size_t flips_in(const Sequence& sequence) {
   std::size_t count = 0;
-  for (const SequenceCommand& command : sequence) {
+  for (const SequenceCommand& command : sequence.commands) {
     count += static_cast<std::size_t>(
         std::ranges::count(command.faults, SequenceFaultKind::flip, &SequenceFault::kind));
   }
   return count;
 }
 
+std::string settings_text(const field::Settings& settings, const SequenceVocabulary& vocabulary) {
+  std::string text;
+  for (const auto& [name, value] : settings) {
+    const SequenceSetting* const setting = vocabulary.find_setting(name);
+    const std::string number =
+        setting == nullptr ? std::to_string(value) : field::text_of(*setting->row, value);
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, number);
+  }
+  return text;
+}
+
 std::vector<std::string> sequence_lines(const Sequence& sequence, const SequenceVocabulary& vocabulary) {
+  std::vector<std::string> lines = command_lines(sequence, vocabulary);
+  if (!sequence.settings.empty())
+    lines.insert(lines.begin(), "settings " + settings_text(sequence.settings, vocabulary));
+  return lines;
+}
+
+std::vector<std::string> command_lines(const Sequence& sequence, const SequenceVocabulary& vocabulary) {
   std::vector<std::string> lines;
-  for (const SequenceCommand& command : sequence) {
+  for (const SequenceCommand& command : sequence.commands) {
     const SequenceWord& word = vocabulary.words.at(command.word);
     std::string line(word.word);
     for (std::size_t n = 0; n < word.numbers.size(); ++n) {
@@ -124,7 +166,7 @@ std::vector<std::string> sequence_lines(const Sequence& sequence, const Sequence
 
 std::string sequence_json(const Sequence& sequence, const SequenceVocabulary& vocabulary) {
   ordered_json list = ordered_json::array();
-  for (const SequenceCommand& command : sequence) {
+  for (const SequenceCommand& command : sequence.commands) {
     const SequenceWord& word = vocabulary.words.at(command.word);
     ordered_json json;
     json["do"] = word.word;
@@ -137,13 +179,18 @@ std::string sequence_json(const Sequence& sequence, const SequenceVocabulary& vo
     }
     list.push_back(std::move(json));
   }
-  return list.dump();
+  ordered_json json;
+  for (const auto& [name, value] : sequence.settings) json["settings"][name] = value;
+  json["commands"] = std::move(list);
+  return json.dump();
 }
 
-Sequence read_sequence(const config::Value& value, const SequenceVocabulary& vocabulary) {
+Sequence read_sequence(config::ObjectReader& reader, const SequenceVocabulary& vocabulary) {
   Sequence sequence;
-  for (const config::Value& command : value.as_array(0, kMostCommands)) {
-    sequence.push_back(read_command(command, vocabulary));
+  if (const auto settings = reader.optional("settings"))
+    sequence.settings = read_settings(*settings, vocabulary);
+  for (const config::Value& command : reader.required("commands").as_array(0, kMostCommands)) {
+    sequence.commands.push_back(read_command(command, vocabulary));
   }
   return sequence;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,10 +9,16 @@
 #include <vector>
 
 #include "harness/config/document.hpp"
+#include "harness/field/field.hpp"
+#include "harness/field/settings.hpp"
 
 // Sequences of commands to an implementation, as values: what `check` draws at random, makes smaller and
 // stores, and what `replay` runs again. Which commands there are is the vocabulary of a role; a bench of that
 // role knows how to do them, and a model of it what must come of them.
+//
+// A sequence may begin with settings, by the names and numbers of the Field table of the role: what the
+// implementation is given at the beginning of its case besides what the bench has for it, and the references
+// that it is compared with, too.
 //
 // A number of a command lies between the limits of its vocabulary, whoever made the sequence: drawing and
 // reading both see to that, so a bench need not.
@@ -51,14 +58,34 @@ struct SequenceWord {
   unsigned weight = 1;          // how often it is drawn, beside the others
 };
 
+// A setting that a sequence may begin with: a number with a name and a list of its own.
+struct SequenceSetting {
+  std::string name;
+  const field::Row* row = nullptr;
+  std::int64_t least = 0;
+  std::int64_t most = 0;
+  std::int64_t simple = 0;             // what the bench gives when nothing is said
+  std::vector<std::int64_t> likely{};  // others than that: both ends and their neighbours
+  bool is_likely_only = false;         // a choice
+
+  SequenceNumber number() const { return {name, least, most, simple, likely, is_likely_only}; }
+};
+
+// Why a role cannot be judged with these, as a sentence; nothing: it can.
+using SettingsObjection = std::function<std::optional<std::string>(const field::Settings&)>;
+
 struct SequenceVocabulary {
   std::vector<SequenceWord> words;
   std::string_view unit = "character";
   unsigned levels_per_unit = 11;
   std::span<const std::int64_t> gaps{};  // bits of silence that are drawn
   std::size_t most_commands = 20;        // in a drawn sequence
+  std::vector<SequenceSetting> settings{};
+  SettingsObjection objection{};  // null: there is none
 
   const SequenceWord* find(std::string_view word) const;
+  const SequenceSetting* find_setting(std::string_view name) const;
+  std::optional<std::string> objection_to(const field::Settings& given) const;
 };
 
 struct SequenceCommand {
@@ -70,18 +97,28 @@ struct SequenceCommand {
   friend bool operator==(const SequenceCommand&, const SequenceCommand&) = default;
 };
 
-using Sequence = std::vector<SequenceCommand>;
+struct Sequence {
+  std::vector<SequenceCommand> commands{};
+  // In the order of the vocabulary; those that are not here are as the bench has them.
+  field::Settings settings{};
+
+  friend bool operator==(const Sequence&, const Sequence&) = default;
+};
 
 // Units of the transmission of a command, without its faults.
 std::size_t units_of(const SequenceWord& word, const SequenceCommand& command);
 std::size_t flips_in(const Sequence& sequence);
 std::size_t faults_in(const Sequence& sequence);
 
+// "loss_limit 0 s, boards 1".
+std::string settings_text(const field::Settings& settings, const SequenceVocabulary& vocabulary);
 // One line for each command: "write data0 165 data1 60 silence 45; bit 3 of character 2 flipped".
+std::vector<std::string> command_lines(const Sequence& sequence, const SequenceVocabulary& vocabulary);
+// The same after a line for the settings, where it begins with some.
 std::vector<std::string> sequence_lines(const Sequence& sequence, const SequenceVocabulary& vocabulary);
 
-// The value of "commands" in a case file. Reading is strict: an error names line and pointer.
+// The members "settings" and "commands" of a case file. Reading is strict: an error names line and pointer.
 std::string sequence_json(const Sequence& sequence, const SequenceVocabulary& vocabulary);
-Sequence read_sequence(const config::Value& value, const SequenceVocabulary& vocabulary);
+Sequence read_sequence(config::ObjectReader& reader, const SequenceVocabulary& vocabulary);
 
 }  // namespace fieldproof::conformance

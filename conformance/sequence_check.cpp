@@ -64,7 +64,8 @@ class SameFailure {
 SequenceSearchResult search(const SequenceSearch& search) {
   const Suite& suite = *search.suite;
   const SequenceRole& role = *search.role;
-  const SequenceSource source(role.vocabulary, search.setup.seed);
+  const SequenceVocabulary vocabulary = suite.vocabulary(role, search.setup);
+  const SequenceSource source(vocabulary, search.setup.seed);
   SequenceSearchResult result;
   for (; result.run < search.cases && !search.stop.stop_requested(); ++result.run) {
     if (search.on_progress) search.on_progress(result.run);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "conformance/sequence_settings.hpp"
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -14,6 +16,10 @@ constexpr unsigned kFaultyPerCent = 30;      // of the commands
 constexpr std::size_t kMostDrawnFaults = 3;  // of one command
 constexpr unsigned kRepeatedPerCent = 15;
 constexpr unsigned kLikelyPerCent = 60;
+constexpr unsigned kSetOfThree = 1;  // sequences that begin with settings
+constexpr unsigned kSecondSettingPerCent = 25;
+constexpr unsigned kMostDrawnSettings = 3;
+constexpr unsigned kLikelySettingPerCent = 80;
 constexpr unsigned kMostSteps = 200;  // that fail to fail, before RapidCheck's part is over
 
 template <typename T>
@@ -25,8 +31,8 @@ bool chance(unsigned per_cent) {
   return *rc::gen::inRange(0U, kPerCent) < per_cent;
 }
 
-std::int64_t draw_number(const SequenceNumber& number) {
-  if (!number.likely.empty() && (number.is_likely_only || chance(kLikelyPerCent))) {
+std::int64_t draw_number(const SequenceNumber& number, unsigned likely_per_cent = kLikelyPerCent) {
+  if (!number.likely.empty() && (number.is_likely_only || chance(likely_per_cent))) {
     return std::clamp(chosen(number.likely), number.least, number.most);
   }
   return *rc::gen::inRange(number.least, number.most + 1);
@@ -75,13 +81,24 @@ rc::Gen<SequenceCommand> command_of(const SequenceVocabulary& vocabulary) {
 }
 
 // What comes twice is what implementations take a short cut for.
-Sequence with_repetitions(const std::vector<std::pair<SequenceCommand, unsigned>>& drawn) {
-  Sequence sequence;
+std::vector<SequenceCommand> with_repetitions(
+    const std::vector<std::pair<SequenceCommand, unsigned>>& drawn) {
+  std::vector<SequenceCommand> commands;
   for (const auto& [command, die] : drawn) {
-    const bool is_repeated = !sequence.empty() && die >= kPerCent - kRepeatedPerCent;
-    sequence.push_back(is_repeated ? SequenceCommand(sequence.back()) : command);
+    const bool is_repeated = !commands.empty() && die >= kPerCent - kRepeatedPerCent;
+    commands.push_back(is_repeated ? SequenceCommand(commands.back()) : command);
   }
-  return sequence;
+  return commands;
+}
+
+field::Settings draw_settings(const SequenceVocabulary& vocabulary) {
+  std::vector<SettingChoice> drawn;
+  if (vocabulary.settings.empty() || *rc::gen::inRange(0U, 3U) >= kSetOfThree) return {};
+  do {
+    const auto which = *rc::gen::inRange<std::size_t>(0, vocabulary.settings.size());
+    drawn.push_back({which, draw_number(vocabulary.settings[which].number(), kLikelySettingPerCent)});
+  } while (drawn.size() < kMostDrawnSettings && chance(kSecondSettingPerCent));
+  return settings_of(drawn, vocabulary);
 }
 
 rc::Shrinkable<Sequence> drawn(const SequenceVocabulary& vocabulary, std::uint64_t seed, std::uint64_t n) {
@@ -90,8 +107,14 @@ rc::Shrinkable<Sequence> drawn(const SequenceVocabulary& vocabulary, std::uint64
   const auto one = rc::gen::pair(command_of(vocabulary), rc::gen::inRange(0U, kPerCent));
   const auto commands = rc::gen::container<std::vector<std::pair<SequenceCommand, unsigned>>>(
       rc::gen::resize(rc::kNominalSize, one));
-  return rc::gen::map(rc::gen::resize(most, commands),
-                      with_repetitions)(rc::Random(rc::Random::Key{seed, n, 0, 0}));
+  // Drawn apart from the commands, which are those of the seed with any settings.
+  const field::Settings settings =
+      rc::gen::exec([&] { return draw_settings(vocabulary); })(rc::Random(rc::Random::Key{seed, n, 1, 0}))
+          .value();
+  const auto together = [settings](const std::vector<std::pair<SequenceCommand, unsigned>>& of) {
+    return Sequence{with_repetitions(of), settings};
+  };
+  return rc::gen::map(rc::gen::resize(most, commands), together)(rc::Random(rc::Random::Key{seed, n, 0, 0}));
 }
 
 }  // namespace

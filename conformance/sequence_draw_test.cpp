@@ -36,8 +36,8 @@ TEST(SequenceDraw, StaysWithinTheVocabularyAndUsesAllOfIt) {
     std::size_t faults = 0;
     for (std::uint64_t n = 0; n < 500; ++n) {
       const Sequence drawn = source.draw(n);
-      EXPECT_LE(drawn.size(), vocabulary.most_commands);
-      for (const SequenceCommand& command : drawn) {
+      EXPECT_LE(drawn.commands.size(), vocabulary.most_commands);
+      for (const SequenceCommand& command : drawn.commands) {
         expect_within_limits(vocabulary, command);
         words.insert(command.word);
       }
@@ -67,12 +67,12 @@ TEST(SequenceShrink, LeavesTheFewestCommandsFaultsAndSimpleNumbers) {
   };
   // Fails with a write of at least 7 that has a flip, somewhere in front of a read.
   const SequenceFails fails = [&](const Sequence& sequence) {
-    const auto write = std::ranges::find_if(sequence, [&](const SequenceCommand& command) {
-      return command.word == word_at("write") && command.numbers[0] >= 7 && flips_in({command}) > 0;
+    const auto write = std::ranges::find_if(sequence.commands, [&](const SequenceCommand& command) {
+      return command.word == word_at("write") && command.numbers[0] >= 7 && flips_in({{command}}) > 0;
     });
-    return std::find_if(write, sequence.end(), [&](const SequenceCommand& command) {
+    return std::find_if(write, sequence.commands.end(), [&](const SequenceCommand& command) {
              return command.word == word_at("read");
-           }) != sequence.end();
+           }) != sequence.commands.end();
   };
   const SequenceSource source(vocabulary, 3);
   std::size_t found = 0;
@@ -80,11 +80,11 @@ TEST(SequenceShrink, LeavesTheFewestCommandsFaultsAndSimpleNumbers) {
     if (!fails(source.draw(n))) continue;
     ++found;
     const Sequence smallest = shrunk(source.smaller(n, fails), vocabulary, fails);
-    ASSERT_EQ(smallest.size(), 2U);
-    EXPECT_EQ(smallest[0].numbers, (std::vector<std::int64_t>{7, 0, 45}));
-    EXPECT_EQ(smallest[0].faults.size(), 1U);
-    EXPECT_EQ(smallest[1].numbers, (std::vector<std::int64_t>{0, 0, 45}));
-    EXPECT_TRUE(smallest[1].faults.empty());
+    ASSERT_EQ(smallest.commands.size(), 2U);
+    EXPECT_EQ(smallest.commands[0].numbers, (std::vector<std::int64_t>{7, 0, 45}));
+    EXPECT_EQ(smallest.commands[0].faults.size(), 1U);
+    EXPECT_EQ(smallest.commands[1].numbers, (std::vector<std::int64_t>{0, 0, 45}));
+    EXPECT_TRUE(smallest.commands[1].faults.empty());
   }
   EXPECT_GT(found, 5U);
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "conformance/sequence_settings.hpp"
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -10,12 +12,15 @@ constexpr unsigned kOwnValue = 0x80;     // of a selector: the value follows
 constexpr unsigned kFirstFaulty = 0xA0;  // of the count of faults: below it there are none
 constexpr unsigned kMostFaultsOfAStep = 3;
 constexpr unsigned kFaultKinds = 3;
+constexpr unsigned kSettings = 0xF0;  // no word is written so
+constexpr unsigned kMostSettings = 0x10;
 
 class Reader {
  public:
   explicit Reader(std::span<const std::uint8_t> octets) : left_(octets) {}
 
   bool is_empty() const { return left_.empty(); }
+  bool begins_with(unsigned least) const { return !left_.empty() && left_.front() >= least; }
   unsigned octet() {
     if (left_.empty()) return 0;
     const std::uint8_t first = left_.front();
@@ -70,6 +75,27 @@ void write_number(Writer& writer, const SequenceNumber& number, std::int64_t val
   writer.number_below(static_cast<std::uint64_t>(value - number.least), values_of(number));
 }
 
+field::Settings read_settings(Reader& reader, const SequenceVocabulary& vocabulary) {
+  if (vocabulary.settings.empty() || !reader.begins_with(kSettings)) return {};
+  std::vector<SettingChoice> chosen;
+  for (unsigned left = 1 + reader.octet() % kMostSettings; left > 0; --left) {
+    const std::size_t which = reader.octet() % vocabulary.settings.size();
+    chosen.push_back({which, read_number(reader, vocabulary.settings[which].number())});
+  }
+  return settings_of(chosen, vocabulary);
+}
+
+void write_settings(Writer& writer, const field::Settings& settings, const SequenceVocabulary& vocabulary) {
+  if (settings.empty()) return;
+  const std::size_t count = std::min<std::size_t>(settings.size(), kMostSettings);
+  writer.octet(kSettings + count - 1);
+  for (std::size_t n = 0; n < count; ++n) {
+    const SequenceSetting* setting = vocabulary.find_setting(settings[n].first);
+    writer.octet(static_cast<std::size_t>(setting - vocabulary.settings.data()));
+    write_number(writer, setting->number(), settings[n].second);
+  }
+}
+
 SequenceFault read_fault(Reader& reader, const SequenceVocabulary& vocabulary, std::size_t units) {
   SequenceFault fault;
   fault.kind = static_cast<SequenceFaultKind>(reader.octet() % kFaultKinds);
@@ -97,7 +123,8 @@ void write_fault(Writer& writer, const SequenceFault& fault, const SequenceVocab
 Sequence sequence_of_octets(std::span<const std::uint8_t> octets, const SequenceVocabulary& vocabulary) {
   Reader reader(octets);
   Sequence sequence;
-  while (!reader.is_empty() && sequence.size() < kMostFuzzedCommands) {
+  sequence.settings = read_settings(reader, vocabulary);
+  while (!reader.is_empty() && sequence.commands.size() < kMostFuzzedCommands) {
     SequenceCommand command;
     command.word = reader.octet() % vocabulary.words.size();
     const SequenceWord& word = vocabulary.words[command.word];
@@ -114,14 +141,15 @@ Sequence sequence_of_octets(std::span<const std::uint8_t> octets, const Sequence
     std::ranges::sort(command.faults);
     const auto doubled = std::ranges::unique(command.faults);
     command.faults.erase(doubled.begin(), doubled.end());
-    sequence.push_back(std::move(command));
+    sequence.commands.push_back(std::move(command));
   }
   return sequence;
 }
 
 std::vector<std::uint8_t> octets_of_sequence(const Sequence& sequence, const SequenceVocabulary& vocabulary) {
   Writer writer;
-  for (const SequenceCommand& command : sequence) {
+  write_settings(writer, sequence.settings, vocabulary);
+  for (const SequenceCommand& command : sequence.commands) {
     const SequenceWord& word = vocabulary.words[command.word];
     writer.octet(command.word);
     for (std::size_t n = 0; n < word.numbers.size(); ++n)

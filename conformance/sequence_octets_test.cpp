@@ -6,6 +6,7 @@
 #include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/sequence_draw.hpp"
+#include "conformance/token_bus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 
 namespace fieldproof::conformance {
@@ -13,7 +14,7 @@ namespace {
 
 std::vector<SequenceRole> all_roles() {
   std::vector<SequenceRole> roles;
-  for (const auto& suite : {valve_bus_suite(), interbus_suite(), fieldbus_dll_suite()}) {
+  for (const auto& suite : {valve_bus_suite(), interbus_suite(), fieldbus_dll_suite(), token_bus_suite()}) {
     for (const SequenceRole& role : suite->sequence_roles()) roles.push_back(role);
   }
   return roles;
@@ -31,16 +32,32 @@ TEST(SequenceOctets, EachDrawnSequenceIsItsOctets) {
   }
 }
 
+// Stored inputs begin with a word: they have no settings, and mean what they did.
+TEST(SequenceOctets, OnlyAnOctetFromF0OnBringsSettings) {
+  for (const SequenceRole& role : all_roles()) {
+    ASSERT_LT(role.vocabulary.words.size(), 0xF0U);
+    for (unsigned first = 0; first < 0x100; ++first) {
+      const std::vector<std::uint8_t> octets{static_cast<std::uint8_t>(first), 0x01, 0x00};
+      const Sequence sequence = sequence_of_octets(octets, role.vocabulary);
+      EXPECT_TRUE(first >= 0xF0 || sequence.settings.empty()) << role.test_case.id << " " << first;
+      EXPECT_FALSE(role.vocabulary.objection_to(sequence.settings));
+    }
+  }
+}
+
 // A number outside of its limits would be refused by the reader of case files.
 RC_GTEST_PROP(SequenceOctets, EachInputIsASequenceThatCanBeStored, (std::vector<std::uint8_t> octets)) {
   static const std::vector<SequenceRole> roles = all_roles();
   for (const SequenceRole& role : roles) {
     const Sequence sequence = sequence_of_octets(octets, role.vocabulary);
-    RC_ASSERT(sequence.size() <= kMostFuzzedCommands);
-    RC_ASSERT(sequence.empty() == octets.empty());
+    RC_ASSERT(sequence.commands.size() <= kMostFuzzedCommands);
+    RC_ASSERT(!octets.empty() || sequence.commands.empty());
     const config::Document document =
         config::Document::parse(sequence_json(sequence, role.vocabulary), "sequence");
-    RC_ASSERT(read_sequence(document.root(), role.vocabulary) == sequence);
+    const Sequence again = config::read_object(document.root(), [&](config::ObjectReader& reader) {
+      return read_sequence(reader, role.vocabulary);
+    });
+    RC_ASSERT(again == sequence);
   }
 }
 

@@ -79,11 +79,22 @@ Outcome Suite::run(const TestCase& test_case, const Setup& setup) const {
   return outcome;
 }
 
+SequenceVocabulary Suite::vocabulary(const SequenceRole& role, const Setup& setup) const {
+  const RunningCase run = begin(role.test_case, setup);
+  SequenceVocabulary vocabulary = role.vocabulary;
+  std::erase_if(vocabulary.settings, [&](const SequenceSetting& one) {
+    return run.is_on_real_line() || (setup.pics && setup.pics->items().contains(one.name));
+  });
+  return vocabulary;
+}
+
 Outcome Suite::run_sequence(const SequenceRole& role, const Sequence& sequence, const Setup& setup) const {
   const RoleRow& row = row_of(role.test_case);
   FIELDPROOF_CHECK(bool(row.run_sequence),
                    "a suite runs sequences of the roles that it names: " + role.test_case.id);
-  RunningCase run = begin(role.test_case, setup);
+  Setup with_settings = setup;
+  with_settings.settings = sequence.settings;
+  RunningCase run = begin(role.test_case, with_settings);
   Outcome outcome = row.run_sequence(sequence, run);
   outcome.happens_once = run.is_on_real_line();
   return outcome;

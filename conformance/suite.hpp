@@ -93,6 +93,9 @@ class Suite {
 
   // What `check` draws sequences of, by role.
   std::span<const SequenceRole> sequence_roles() const { return sequence_roles_; }
+  // What may be drawn under this setup: a setting that the PICS declares is as it says, and a station on a
+  // real line is given none.
+  SequenceVocabulary vocabulary(const SequenceRole& role, const Setup& setup) const;
   // One run of a sequence of one of these roles on a bench of its own; as for `run`, the seed of the setup is
   // that of the case.
   Outcome run_sequence(const SequenceRole& role, const Sequence& sequence, const Setup& setup) const;

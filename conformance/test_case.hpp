@@ -103,6 +103,7 @@ struct Setup {
   std::string network_file;  // empty: the suite's own network
   std::string plan_file;     // additional declared faults; empty: none
   std::optional<judge::Pics> pics;
+  field::Settings settings{};  // of a sequence
   Volume volume = Volume::full;
   iut::PeerLimits limits{};  // of implementations in other processes
   bool record = false;       // keep the trace and what the implementations did (bounded) in the outcome

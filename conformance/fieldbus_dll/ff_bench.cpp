@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocols/fieldbus_dll/ff_settings.hpp"
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -21,6 +23,7 @@ FfConfiguration configuration_of(const FfNeeds& needs, const FfSetting& setting)
     configuration.subscribed = {FfBench::kSubscribed};
   }
   if (needs.change != nullptr) needs.change(configuration);
+  field::take_settings(fieldbus_dll::kFfTable, setting.settings, configuration);
   return configuration;
 }
 

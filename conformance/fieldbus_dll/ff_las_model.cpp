@@ -20,7 +20,6 @@ using kernel::Time;
 
 constexpr std::int64_t kMostSilentSlots = 16;
 constexpr std::size_t kMostCirculations = 2;
-constexpr unsigned kMissesOfNoNode = 3;
 
 constexpr unsigned kLongOfLas = 0x08;
 
@@ -65,7 +64,7 @@ Time FfLasModel::silent_until() const {
 }
 
 bool FfLasModel::is_open(std::uint8_t node) const {
-  return nodes_.at(node).is_live && nodes_.at(node).most_misses >= kMissesOfNoNode;
+  return nodes_.at(node).is_live && nodes_.at(node).most_misses >= misses_of_no_node();
 }
 
 bool FfLasModel::is_polled(unsigned node) const {
@@ -120,7 +119,7 @@ void FfLasModel::remove(std::uint8_t node) {
 
 void FfLasModel::show_live(std::uint8_t node) {
   unsigned& misses = nodes_.at(node).most_misses;
-  misses = std::min(misses, kMissesOfNoNode - 1);
+  misses = std::min(misses, misses_of_no_node() - 1);
 }
 
 void FfLasModel::count_token(const Question& token) {
@@ -128,7 +127,7 @@ void FfLasModel::count_token(const Question& token) {
   const bool is_missed = !token.is_heard && !token.is_noisy;
   node.fewest_misses = is_missed ? node.fewest_misses + 1 : 0;
   node.most_misses = token.is_heard ? 0 : node.most_misses + 1;
-  if (node.fewest_misses >= kMissesOfNoNode) remove(token.node);
+  if (node.fewest_misses >= misses_of_no_node()) remove(token.node);
 }
 
 FfLasModel::Found FfLasModel::pass_over(unsigned first, unsigned behind_last) {
@@ -239,10 +238,17 @@ FfLasModel::Found FfLasModel::check_grant(const DrivenDlpdu& pt) const {
   return std::nullopt;
 }
 
+bool FfLasModel::has_to_probe() const {
+  for (unsigned node = rules().first_node; node <= rules().last_node; ++node) {
+    if (is_polled(node) && node != configuration_.node && !nodes_.at(node).is_live) return true;
+  }
+  return false;
+}
+
 FfLasModel::Found FfLasModel::begin_circulation(const DrivenDlpdu& pt) {
   if (last_token_) {
     if (auto left_out = pass_over(*last_token_ + 1U, kNodes)) return left_out;
-    if (probes_ == 0) return LinkObjection{"no_probe", "a PN between two circulations"};
+    if (probes_ == 0 && has_to_probe()) return LinkObjection{"no_probe", "a PN between two circulations"};
   }
   const bool is_first = circulations_++ == 0;
   if (auto left_out = pass_over(0, pt.octet(1))) return left_out;
@@ -261,6 +267,11 @@ FfLasModel::Found FfLasModel::begin_circulation(const DrivenDlpdu& pt) {
 std::vector<Priority> FfLasModel::priorities_behind(Duration rotation) const {
   const Duration target = rules().target_rotation;
   std::vector<Priority> all;
+  if (!rules().steers_by_three_steps) {
+    if (rotation > target - times(1)) all.push_back(Priority::urgent);
+    if (rotation < target + times(1)) all.push_back(Priority::time_available);
+    return all;
+  }
   if (rotation > target - times(1))
     all.push_back(*priority_ == Priority::time_available ? Priority::normal : Priority::urgent);
   if (rotation < target + times(1))

@@ -23,9 +23,9 @@
 //   tokens from V(DMDT) to V(DTHT) that end before the next item, once in a circulation to each live node,
 //   in the order of addresses, the first one marked, with the priority that the rotations before lead to
 //   between two circulations a probe, ascending, of nodes that are not live and may be polled
-//   who misses three tokens in a row is not live any more; who answers a probe is, from the next circulation
-//   on; both is told within two circulations
-//   link time goes on in what is told of it, once in V(TDP) and to who asks
+//   who misses so many tokens in a row is not live any more; who answers a probe is, from the next
+//   circulation on; both is told within two circulations link time goes on in what is told of it, once in
+//   V(TDP) and to who asks
 //
 // A faulty answer may be taken for an answer or for none; the model holds the scheduler to neither, until it
 // shows which.
@@ -81,11 +81,14 @@ class FfLasModel {
   };
 
   const fieldbus_dll::FfRules& rules() const { return configuration_.rules; }
+  // No token that is answered is a miss.
+  unsigned misses_of_no_node() const { return std::max(rules().misses_until_removal, 1U); }
   kernel::Duration times(std::int64_t octets) const;
   kernel::Time due() const;
   // It may have been removed, and may not.
   bool is_open(std::uint8_t node) const;
   bool is_polled(unsigned node) const;
+  bool has_to_probe() const;
 
   Found close_question(kernel::Time now);
   void count_token(const Question& token);

@@ -13,6 +13,9 @@
 #include "conformance/fieldbus_dll/ff_expect.hpp"
 #include "conformance/fieldbus_dll/ff_las_model.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
+#include "conformance/sequence_settings.hpp"
+#include "harness/kernel/error.hpp"
+#include "protocols/fieldbus_dll/ff_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -73,7 +76,31 @@ SequenceNumber las_delay() {
   return {"later", 0, 20, 0, kLasDelays};
 }
 
+// The schedule of the tester is for this rate, and has room for so much between two items; nobody waits for
+// what comes once an hour, and what is told oftener than an item takes cannot be told in time.
+constexpr std::array kBoundsOfLas{
+    SettingBound{"bit_rate", {31'250, 31'250}}, SettingBound{"slot_time_octets", {1, 16}},
+    SettingBound{"least_token_octets", {32, 200}}, SettingBound{"scheduling_overhead_octets", {0, 24}},
+    SettingBound{"time_distribution_period", field::between(kernel::kSecond, 3'600 * kernel::kSecond)}};
+
+void expect_judgeable_las(const FfConfiguration& las) {
+  expect_time_for_answers(las.rules.link);
+  const fieldbus_dll::LinkRules& link = las.rules.link;
+  const auto latest = static_cast<unsigned>(kLasDelays.back());
+  const unsigned taken = link.inter_pdu_delay_octets + std::max(latest, las.rules.scheduling_overhead_octets);
+  if (link.response_delay_slots * link.slot_time_octets >= taken + octets_around(link) + 1 &&
+      las.rules.least_token_octets <= las.rules.token_holding_octets)
+    return;
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format("within V(MRD) x V(ST) lie V(MID), V(MSO) and the {} octets after which nodes of "
+                  "sequences answer; V(DMDT) is at most V(DTHT)",
+                  latest));
+}
+
 SequenceVocabulary ff_las_vocabulary() {
+  fieldbus_dll::FfConfiguration as_given;
+  network_of_las(as_given);
   // In the order of LasWord.
   return {.words = {{.word = "obey",
                      .meaning = "so many DLPDUs of the scheduler are answered as nodes do",
@@ -117,7 +144,9 @@ SequenceVocabulary ff_las_vocabulary() {
                      .numbers = {{"priority", 1, 3, 3}, {"size", 2, 66, 8, kLasSizes}},
                      .weight = 4}},
           .unit = "octet",
-          .levels_per_unit = kFlipsOfAnOctet};
+          .levels_per_unit = kFlipsOfAnOctet,
+          .settings = sequence_settings(fieldbus_dll::kFfTable, &as_given, kFixedOfLink, kBoundsOfLas),
+          .objection = objection_of(fieldbus_dll::kFfTable, as_given, expect_judgeable_las)};
 }
 
 class FfLasSequenceRun {
@@ -126,7 +155,7 @@ class FfLasSequenceRun {
       : bench_(bench), judge_(judge), model_(bench.configuration()) {}
 
   void run(const Sequence& sequence) {
-    for (const SequenceCommand& command : sequence) execute(command);
+    for (const SequenceCommand& command : sequence.commands) execute(command);
     const kernel::Time end = bench_.now() + 3 * std::int64_t{kMacrocycleOfLas} * fieldbus_dll::kTick;
     while (bench_.now() < end) answer(next_said());
     object(model_.end(), "silence", bench_.now());

@@ -286,6 +286,9 @@ std::vector<FfRow> ff_claim_rows() {
 std::vector<FfRow> ff_las_sequence_rows() {
   using namespace ff_seeded_faults;
   return FfMutants::for_check({
+      {"removal_after_one_ignored", "", "removes a node after two missed tokens where it is set to one",
+       with_rules<FfLas>(
+           [](FfRules& rules) { rules.misses_until_removal = std::max(rules.misses_until_removal, 2U); })},
       {"misses_of_all_count", "", "counts the tokens that nodes miss in a row, whoever they are",
        mutant<MissesOfAllCount>()},
       {"misses_forgiven_by_others", "", "forgets all misses when any node uses its token",

@@ -9,6 +9,8 @@
 #include "conformance/fieldbus_dll/ff_cases.hpp"
 #include "conformance/fieldbus_dll/ff_model.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
+#include "conformance/sequence_settings.hpp"
+#include "protocols/fieldbus_dll/ff_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -40,7 +42,12 @@ SequenceNumber ff_priority(std::string_view name = "priority") {
   return {name, 1, 3, 1};
 }
 
+void expect_judgeable_device(const fieldbus_dll::FfConfiguration& device) {
+  expect_time_for_answers(device.rules.link);
+}
+
 SequenceVocabulary ff_device_vocabulary() {
+  const fieldbus_dll::FfConfiguration as_made;
   // In the order of FfWord.
   return {
       .words = {{.word = "token",
@@ -92,7 +99,9 @@ SequenceVocabulary ff_device_vocabulary() {
                  .numbers = {{"octets", 1, 10'000, 40, kFfWaits}},
                  .weight = 1}},
       .unit = "octet",
-      .levels_per_unit = kFlipsOfAnOctet};
+      .levels_per_unit = kFlipsOfAnOctet,
+      .settings = sequence_settings(fieldbus_dll::kFfTable, &as_made, kFixedOfLink),
+      .objection = objection_of(fieldbus_dll::kFfTable, as_made, expect_judgeable_device)};
 }
 
 class FfSequenceRun {
@@ -104,7 +113,7 @@ class FfSequenceRun {
   }
 
   void run(const Sequence& sequence) {
-    for (const SequenceCommand& command : sequence) execute(command);
+    for (const SequenceCommand& command : sequence.commands) execute(command);
     await_response_window();
     judge_user();
   }

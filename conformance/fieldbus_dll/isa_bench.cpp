@@ -2,6 +2,10 @@
 
 #include <algorithm>
 
+#include "conformance/fieldbus_dll/link_sequence.hpp"
+#include "harness/kernel/error.hpp"
+#include "protocols/fieldbus_dll/isa_settings.hpp"
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -13,10 +17,26 @@ IsaConfiguration configuration_of(const IsaNeeds& needs, const IsaSetting& setti
   configuration.address = setting.address;
   configuration.schedule = needs.schedule;
   configuration.begins_as_scheduler = needs.is_scheduler;
+  field::take_settings(fieldbus_dll::kIsaTable, setting.settings, configuration);
   return configuration;
 }
 
 }  // namespace
+
+void expect_judgeable_isa(const IsaConfiguration& station) {
+  const fieldbus_dll::IsaRules& rules = station.rules;
+  expect_time_for_answers(rules.link);
+  const unsigned patience = 2 * rules.link.response_delay_slots * rules.link.slot_time_octets;
+  if (rules.link.inter_pdu_delay_octets < rules.reply_forming_octets &&
+      rules.reply_forming_octets < rules.reply_wait_octets &&
+      rules.reply_wait_octets + octets_around(rules.link) + rules.link.inter_pdu_delay_octets < patience)
+    return;
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format("a reply begins after V(MID), within V(FD), and is waited for longer, but not "
+                  "twice V(MRD) x V(ST): V(MID) is {} octets, V(FD) {} and V(RR) {}",
+                  rules.link.inter_pdu_delay_octets, rules.reply_forming_octets, rules.reply_wait_octets));
+}
 
 bool IsaUpperTester::was_delivered(const Octets& data) const {
   return std::ranges::any_of(deliveries, [&](const Delivery& one) { return one.dlpdu.data == data; });

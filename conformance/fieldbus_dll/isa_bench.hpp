@@ -28,6 +28,9 @@ struct IsaSetting : PlannedSetting<fieldbus_dll::IsaDevice, fieldbus_dll::IsaCon
   const LinkStresses* link_stresses = nullptr;  // must outlive the bench
 };
 
+// Throws kernel::Error(configuration) where no reply can come in time.
+void expect_judgeable_isa(const fieldbus_dll::IsaConfiguration& station);
+
 // The IUT's user.
 class IsaUpperTester final : public fieldbus_dll::IsaUser {
  public:

@@ -9,6 +9,8 @@
 #include "conformance/fieldbus_dll/isa_cases.hpp"
 #include "conformance/fieldbus_dll/isa_las_acceptor.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
+#include "conformance/sequence_settings.hpp"
+#include "protocols/fieldbus_dll/isa_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -62,7 +64,13 @@ SequenceNumber size_of_holder() {
   return {"size", 0, 30, 8, kIsaLasSizes};
 }
 
+// Holders of sequences leave room for a station that says something else, and for a reply that does not come.
+constexpr std::array kBoundsOfIsaLas{SettingBound{"preamble_octets", {1, 2}},
+                                     SettingBound{"inter_pdu_delay_octets", {2, 8}},
+                                     SettingBound{"reply_wait_octets", {32, 40}}};
+
 SequenceVocabulary isa_las_vocabulary() {
+  const fieldbus_dll::IsaConfiguration as_made;
   // In the order of IsaLasWord.
   return {
       .words = {{.word = "obey",
@@ -106,7 +114,9 @@ SequenceVocabulary isa_las_vocabulary() {
                  .meaning = "the link is handed back by a TL, first to another",
                  .weight = 6}},
       .unit = "octet",
-      .levels_per_unit = kFlipsOfAnOctet};
+      .levels_per_unit = kFlipsOfAnOctet,
+      .settings = sequence_settings(fieldbus_dll::kIsaTable, &as_made, kFixedOfLink, kBoundsOfIsaLas),
+      .objection = objection_of(fieldbus_dll::kIsaTable, as_made, expect_judgeable_isa)};
 }
 
 IsaConfiguration configuration_of_isa_las(const IsaBench& bench) {
@@ -123,7 +133,7 @@ class IsaLasSequenceRun {
       : bench_(bench), judge_(judge), acceptor_(configuration_of_isa_las(bench), bench.now()) {}
 
   void run(const Sequence& sequence) {
-    for (const SequenceCommand& command : sequence) execute(command);
+    for (const SequenceCommand& command : sequence.commands) execute(command);
     const kernel::Time end = bench_.now() + 2 * kPeriodOfIsaLas * kOctetAt31250;
     while (bench_.now() < end) obey();
     std::vector<Octets> delivered;

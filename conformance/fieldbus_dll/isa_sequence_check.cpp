@@ -8,6 +8,8 @@
 #include "conformance/fieldbus_dll/isa_cases.hpp"
 #include "conformance/fieldbus_dll/isa_model.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
+#include "conformance/sequence_settings.hpp"
+#include "protocols/fieldbus_dll/isa_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -41,7 +43,11 @@ SequenceNumber isa_priority(std::string_view name = "priority") {
   return {name, 1, 3, 1};
 }
 
+// The tester does not wait longer for who waits for a reply.
+constexpr std::array kBoundsOfIsaDle{SettingBound{"reply_wait_octets", {1, kLinkSettles / 2}}};
+
 SequenceVocabulary isa_dle_vocabulary() {
+  const fieldbus_dll::IsaConfiguration as_made;
   // In the order of IsaWord.
   return {
       .words = {{.word = "single",
@@ -95,7 +101,9 @@ SequenceVocabulary isa_dle_vocabulary() {
                  .numbers = {{"octets", 1, 10'000, 40, kIsaWaits}},
                  .weight = 1}},
       .unit = "octet",
-      .levels_per_unit = kFlipsOfAnOctet};
+      .levels_per_unit = kFlipsOfAnOctet,
+      .settings = sequence_settings(fieldbus_dll::kIsaTable, &as_made, kFixedOfLink, kBoundsOfIsaDle),
+      .objection = objection_of(fieldbus_dll::kIsaTable, as_made, expect_judgeable_isa)};
 }
 
 class IsaSequenceRun {
@@ -104,7 +112,7 @@ class IsaSequenceRun {
       : bench_(bench), judge_(judge), model_(bench.rules(), bench.address()) {}
 
   void run(const Sequence& sequence) {
-    for (const SequenceCommand& command : sequence) execute(command);
+    for (const SequenceCommand& command : sequence.commands) execute(command);
     await_response_window();
     std::vector<Octets> delivered;
     for (const auto& one : bench_.user().deliveries) delivered.push_back(one.dlpdu.data);

@@ -1,7 +1,11 @@
 #include "conformance/fieldbus_dll/link_sequence.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <utility>
+
+#include "harness/kernel/error.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -19,6 +23,15 @@ void flip(line::Levels& half_bits, std::size_t first, std::uint32_t what, int& b
 }
 
 }  // namespace
+
+void expect_time_for_answers(const fieldbus_dll::LinkRules& link) {
+  const unsigned most = (link.response_delay_slots - 1) * link.slot_time_octets;
+  if (link.inter_pdu_delay_octets > 0 && link.inter_pdu_delay_octets <= most) return;
+  throw kernel::Error(kernel::ErrorKind::configuration,
+                      fmt::format("\"inter_pdu_delay_octets\" is {}; it is from 1, so that two DLPDUs are "
+                                  "not one, to (V(MRD) - 1) x V(ST), {} octets",
+                                  link.inter_pdu_delay_octets, most));
+}
 
 SequenceNumber link_silence() {
   return {"silence", 0, kLinkSettles, kLinkSettles, kLinkSilences, true};

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "conformance/fieldbus_dll/link_bench.hpp"
 #include "conformance/sequence.hpp"
@@ -18,6 +20,14 @@ inline constexpr unsigned kFlipsOfAnOctet = kHalfBitsOfAnOctet + 8;
 // The tester waits until the station has nothing more to say. Else it goes on after so many octet durations,
 // less than V(MID), before the station may begin.
 inline constexpr std::int64_t kLinkSettles = 100;
+
+// Who is on the link and what a DLPDU is called is the tester's, too.
+inline constexpr std::array<std::string_view, 9> kFixedOfLink{
+    "code_*", "first_node", "last_node",  "first_address",      "last_address",
+    "node",   "address",    "schedule_*", "begins_as_scheduler"};
+
+// Throws kernel::Error(configuration) where a station may not begin within the time in which it has to.
+void expect_time_for_answers(const fieldbus_dll::LinkRules& link);
 
 // After what the command sends, to the next.
 SequenceNumber link_silence();

@@ -99,6 +99,22 @@ std::uint16_t id_code_for(unsigned words, const interbus::Rules& rules) {
 
 }  // namespace
 
+void expect_time_for_silences(const interbus::Rules& rules) {
+  constexpr std::int64_t kTelegrams = 20;
+  const std::int64_t silent_bits =
+      kTelegrams * line::kDataTelegramLevels +
+      std::max<std::int64_t>(rules.status_pitch_bits, rules.telegram_gap_millibits / 1'000) +
+      rules.forward_delay_half_bits + rules.return_delay_half_bits;
+  const kernel::Duration silent = kernel::levels_duration(silent_bits, rules.bit_rate);
+  if (rules.silence_limit - rules.silence_tolerance > silent) return;
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format("\"silence_limit\" is {} with a tolerance of {}, and a line is silent for {} between and "
+                  "after telegrams",
+                  kernel::describe(rules.silence_limit), kernel::describe(rules.silence_tolerance),
+                  kernel::describe(silent)));
+}
+
 std::vector<judge::PicsItem> slave_pics_items() {
   return field::pics_items_of(kSlave);
 }

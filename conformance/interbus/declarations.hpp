@@ -24,6 +24,10 @@ struct SlaveDeclaration {
 };
 
 // What a PICS of a slave may answer.
+// Throws kernel::Error(configuration) for rules by which what no line can do without, the silence within a
+// cycle and after it, is a reset already.
+void expect_time_for_silences(const interbus::Rules& rules);
+
 std::vector<judge::PicsItem> slave_pics_items();
 // What a station of the bench declares about itself: an answer to each of these items.
 judge::Pics declared_slave(const interbus::SlaveConfiguration& configuration);

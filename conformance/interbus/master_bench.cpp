@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocols/interbus/master_settings.hpp"
 #include "protocols/interbus/network.hpp"
 #include "protocols/interbus/observation.hpp"
 #include "protocols/interbus/timing.hpp"
@@ -26,6 +27,8 @@ MasterBench::MasterBench(const NoNeeds&, const MasterSetting& setting)
                 LineWatch(interbus::shortest_telegram(interbus::Rules{}))),
       make_master_(setting.make_device),
       pics_(setting.pics.value_or(judge::Pics{})) {
+  field::take_settings(interbus::kMasterTable, setting.settings, configuration_);
+  rules_ = configuration_.rules;
   start_recording(setting, rules_);
 }
 
@@ -93,13 +96,24 @@ void MasterBench::bring_up(CaseJudge& judge, std::vector<VirtualStation> ring) {
   });
 }
 
-// A cycle with every octet that the ring can need, with time for all delays.
+// A cycle with every octet that the ring can need, with time for all delays: before it runs, for those of the
+// longest cable.
 kernel::Duration MasterBench::longest_cycle() const {
   const auto octets =
       static_cast<std::int64_t>(16 + 2 * std::max(ring_->stations().size() + 1, ring_->word_count()));
-  return kernel::levels_duration(octets * 18, rules_.bit_rate) + rules_.software_time +
-         kernel::levels_duration(static_cast<std::int64_t>(ring_->stations().size()) * 3, rules_.bit_rate) +
-         kernel::kMillisecond + configuration_.cycle_time;
+  const std::int64_t telegram = std::max<std::int64_t>(18, 15 + rules_.telegram_gap_millibits / 1'000);
+  const kernel::Duration cables{2 * std::int64_t{rules_.max_cable_m} * rules_.cable_delay_ps_per_m};
+  const auto stations = static_cast<std::int64_t>(ring_->stations().size());
+  // The master may take it for longer than it is.
+  const std::int64_t delay =
+      (std::int64_t{rules_.forward_delay_half_bits} + rules_.return_delay_half_bits) / 2 * (stations + 2);
+  return kernel::levels_duration((octets + rules_.end_telegrams) * telegram, rules_.bit_rate) +
+         rules_.software_time +
+         kernel::levels_duration(
+             std::max(stations * 3,
+                      rules_.forward_delay_half_bits > 3 || rules_.return_delay_half_bits > 3 ? delay : 0),
+             rules_.bit_rate) +
+         std::max<kernel::Duration>(kernel::kMillisecond, cables) + configuration_.cycle_time;
 }
 
 bool MasterBench::wait_for_run() {

@@ -116,6 +116,10 @@ std::vector<MasterMutants::Row> master_rows() {
 std::vector<MasterMutants::Row> master_check_rows() {
   using namespace seeded_faults;
   return MasterMutants::for_check({
+      {"stop_after_one_ignored", "", "stops the bus after two bad cycles where it is set to one",
+       with_rules<interbus::Master>([](interbus::Rules& rules) {
+         rules.stop_after_bad_cycles = std::max(rules.stop_after_bad_cycles, 2U);
+       })},
       {"second_mark_accepted", "", "takes a marked status word when the one before was marked, too",
        mutant<SecondMarkAccepted>()},
       {"stop_one_early_after_restart", "", "once stopped and started, stops the bus one bad cycle too early",

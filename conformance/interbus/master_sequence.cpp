@@ -42,28 +42,25 @@ constexpr EventKind kInputs{"verdicts", "no_data_cycle", "cycle_unasked", "input
 constexpr EventKind kReports{"reports", "no_data_cycle", "cycle_unasked", "report_wrong", report_text};
 constexpr EventKind kStates{"states", "state_missing", "state_unasked", "state_wrong", state_text};
 
-// As many as a sequence has: the printed window takes a million cycles.
-constexpr unsigned kQualityBadCycles = 3;
-constexpr unsigned kQualityWindow = 20;
-
 class MasterSequenceRun {
  public:
-  MasterSequenceRun(MasterBench& bench, CaseJudge& judge)
+  MasterSequenceRun(MasterBench& bench, CaseJudge& judge, const field::Settings& settings)
       : judge_(judge),
         twin_(NoNeeds{},
               {.make_device = std::make_unique<interbus::Master, const interbus::MasterConfiguration&>,
-               .volume = Volume::quick}),
+               .volume = Volume::quick,
+               .settings = settings}),
         sides_{MasterSide(bench, &judge), MasterSide(twin_, nullptr)} {
     judge.use_decode([&bench] { return bench.ring().describe_last(6); });
     for (MasterSide& side : sides_) {
-      side.bench().rules().quality_bad_cycles = kQualityBadCycles;
-      side.bench().rules().quality_window_cycles = kQualityWindow;
+      side.bench().configuration() = configuration_of_sequence(settings);
+      side.bench().rules() = side.bench().configuration().rules;
     }
   }
 
   void run(const Sequence& sequence) {
     power({.ring = ring_of(0)});
-    for (const SequenceCommand& command : sequence) {
+    for (const SequenceCommand& command : sequence.commands) {
       for (MasterSide& side : sides_) execute(side, command);
       compare();
     }
@@ -155,7 +152,7 @@ const SequenceRole& master_sequence_role() {
 }
 
 void run_master_sequence(const Sequence& sequence, MasterBench& bench, CaseJudge& judge) {
-  MasterSequenceRun(bench, judge).run(sequence);
+  MasterSequenceRun(bench, judge, sequence.settings).run(sequence);
 }
 
 }  // namespace fieldproof::conformance

@@ -3,7 +3,10 @@
 #include <array>
 #include <utility>
 
+#include "conformance/interbus/declarations.hpp"
+#include "conformance/sequence_settings.hpp"
 #include "harness/line/telegram.hpp"
+#include "protocols/interbus/master_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -122,11 +125,43 @@ std::vector<SequenceWord> words_of_rings() {
            .weight = 1}};
 }
 
+// As many as a sequence has: the printed window takes a million cycles.
+constexpr unsigned kQualityBadCycles = 3;
+constexpr unsigned kQualityWindow = 20;
+
+// The bits of a word each have a place of their own.
+constexpr std::array<std::string_view, 3> kFixedOfMaster{"status_*", "control_*", "message_*"};
+
+// Cycles that a sequence lives to see: a pause of a second has some 20 thousand status telegrams. The
+// shortest has one, which shows the ring that a cycle is over.
+constexpr std::int64_t kShortestPause = kernel::Duration{100 * kernel::kMicrosecond}.count();
+constexpr std::int64_t kLongestPause = kernel::Duration{20 * kernel::kMillisecond}.count();
+constexpr std::array kBoundsOfMaster{SettingBound{"cycle_time", {0, kLongestPause}},
+                                     SettingBound{"software_time", {kShortestPause, kLongestPause}},
+                                     SettingBound{"cable_delay_ps_per_m", {0, 100'000}},
+                                     SettingBound{"max_cable_m", {0, 100'000}},
+                                     SettingBound{"stop_after_bad_cycles", {1, 20}},
+                                     SettingBound{"quality_bad_cycles", {1, 100}},
+                                     SettingBound{"quality_window_cycles", {1, 100}}};
+
 }  // namespace
+
+interbus::MasterConfiguration configuration_of_sequence(const field::Settings& settings) {
+  interbus::MasterConfiguration configuration;
+  configuration.rules.quality_bad_cycles = kQualityBadCycles;
+  configuration.rules.quality_window_cycles = kQualityWindow;
+  field::take_settings(interbus::kMasterTable, settings, configuration);
+  return configuration;
+}
 
 SequenceVocabulary master_vocabulary() {
   SequenceVocabulary vocabulary{
       .words = words_of_answers(), .unit = "telegram", .levels_per_unit = line::kDataTelegramLevels};
+  const interbus::MasterConfiguration as_given = configuration_of_sequence({});
+  vocabulary.settings = sequence_settings(interbus::kMasterTable, &as_given, kFixedOfMaster, kBoundsOfMaster);
+  vocabulary.objection = objection_of([](const field::Settings& settings) {
+    expect_time_for_silences(configuration_of_sequence(settings).rules);
+  });
   for (auto group : {words_of_users, words_of_rings}) {
     for (SequenceWord& word : group()) vocabulary.words.push_back(std::move(word));
   }

@@ -30,6 +30,8 @@ enum class MasterWord : std::uint8_t {
 };
 
 SequenceVocabulary master_vocabulary();
+// What a master of a sequence is given.
+interbus::MasterConfiguration configuration_of_sequence(const field::Settings& settings);
 
 // The rings that masters find, by number.
 std::vector<interbus::VirtualStation> ring_of(std::int64_t number);

@@ -30,7 +30,7 @@ std::uint16_t ReturnedLine::word(std::size_t n) const {
 
 Arrival ReturnedLine::judge(const interbus::SeenCycle& sent, kernel::Time verdict) {
   if (receiver_.pending_until() <= verdict) flush();
-  const std::size_t count = sent.transfer_octets + kCheckAndStatus;
+  const std::size_t count = sent.transfer_octets + kCheckAndStatus + rules_.end_telegrams;
   if (sent.transfer_octets < 2 || received_.size() < count) return Arrival::wrong;
   if (!is_cycle(sent.transfer_octets, sent.is_id_cycle)) return Arrival::wrong;
   if (received_.size() == count) return Arrival::right;
@@ -40,7 +40,7 @@ Arrival ReturnedLine::judge(const interbus::SeenCycle& sent, kernel::Time verdic
 // The loopback word comes back last; in an ID cycle, where the register ends.
 bool ReturnedLine::is_cycle(std::size_t transfer, bool is_id_cycle) const {
   std::vector<std::uint8_t> octets;
-  for (std::size_t n = 0; n < transfer + kCheckAndStatus; ++n) {
+  for (std::size_t n = 0; n < transfer + kCheckAndStatus + rules_.end_telegrams; ++n) {
     unsigned header = line::kDataTelegram;
     if (is_id_cycle) header |= line::kSelect;
     if (n >= transfer) header |= line::kControl;

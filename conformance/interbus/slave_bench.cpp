@@ -4,11 +4,13 @@
 
 #include <algorithm>
 
+#include "harness/field/pics.hpp"
 #include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/interbus/cycle_fields.hpp"
 #include "protocols/interbus/network.hpp"
+#include "protocols/interbus/slave_settings.hpp"
 #include "protocols/interbus/timing.hpp"
 
 namespace fieldproof::conformance {
@@ -38,13 +40,18 @@ interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveS
         fmt::format("there is no slave at position {}: {} {}", setting.position,
                     setting.network ? "the network has" : "a network has at most (max_stations)", available));
   }
-  const judge::Pics pics = setting.pics.value_or(judge::Pics{});
+  judge::Pics pics = setting.pics.value_or(judge::Pics{});
+  field::declare_settings(interbus::kSlaveTable, setting.settings, pics);
   if (setting.network) {
     expect_as_declared(ring_order(network)[static_cast<std::size_t>(setting.position - 1)], pics);
     return network;
   }
   network.name = "slave bench";
   if (needs.change_rules != nullptr) needs.change_rules(network.rules);
+  interbus::SlaveConfiguration iut;
+  iut.rules = network.rules;
+  field::take_settings(interbus::kSlaveTable, setting.settings, iut);
+  network.rules = iut.rules;
   const int stations = std::max(setting.stations, setting.position);
   for (int position = 1; position <= stations; ++position) {
     const bool is_iut = position == setting.position;
@@ -132,7 +139,10 @@ void SlaveBench::install(const fault::Plan& plan) {
   kernel::Duration cables{};
   for (segment::Link* link : ring_.links()) cables += link->delay();
   // What went out comes back after the delays of all stations and cables; a cut telegram ends one later.
-  settling_ = cables + bits(4 * static_cast<std::int64_t>(ring_.size()) + 4 * line::kDataTelegramLevels);
+  const std::int64_t station = std::max<std::int64_t>(
+      4, (std::int64_t{rules().forward_delay_half_bits} + rules().return_delay_half_bits) / 2 + 1);
+  settling_ =
+      cables + bits(station * static_cast<std::int64_t>(ring_.size()) + 4 * line::kDataTelegramLevels);
 }
 
 void SlaveBench::begin_stress(const fault::Stress& stress) {

@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <array>
 
+#include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/slave_arrivals.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_expect.hpp"
+#include "conformance/sequence_settings.hpp"
+#include "harness/kernel/error.hpp"
+#include "protocols/interbus/network.hpp"
+#include "protocols/interbus/slave_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -21,7 +26,22 @@ SequenceNumber word(std::string_view name) {
 
 enum class SlaveWord : std::uint8_t { data, id, status, inputs };
 
+// The bits of a word each have a place of their own.
+constexpr std::array<std::string_view, 3> kFixedOfSlave{"status_*", "control_*", "message_*"};
+
+// A network within its limits, on which no tester is silent for too long.
+void expect_judgeable_slave(const field::Settings& settings) {
+  SlaveSetting setting;
+  setting.settings = settings;
+  const interbus::NetworkDescription network = slave_network({}, setting);
+  if (const auto violation = interbus::check(network))
+    throw kernel::Error(kernel::ErrorKind::configuration, violation->sentence);
+  expect_time_for_silences(network.rules);
+}
+
 SequenceVocabulary slave_vocabulary() {
+  const interbus::SlaveConfiguration as_made =
+      SlaveBench(SlaveNeeds{}, SlaveSetting{}).ring().configuration(1);
   // In the order of SlaveWord. Telegrams of a cycle: loopback word, register, check and status word.
   return {.words = {{.word = "data",
                      .meaning = "a data cycle",
@@ -38,7 +58,9 @@ SequenceVocabulary slave_vocabulary() {
                      .numbers = {word("word0"), word("word1")},
                      .weight = 1}},
           .unit = "telegram",
-          .levels_per_unit = line::kDataTelegramLevels};
+          .levels_per_unit = line::kDataTelegramLevels,
+          .settings = sequence_settings(interbus::kSlaveTable, &as_made, kFixedOfSlave),
+          .objection = objection_of(expect_judgeable_slave)};
 }
 
 class SlaveSequenceRun {
@@ -47,7 +69,7 @@ class SlaveSequenceRun {
 
   void run(const Sequence& sequence) {
     bench_.bring_up();
-    for (const SequenceCommand& command : sequence) execute(command);
+    for (const SequenceCommand& command : sequence.commands) execute(command);
   }
 
  private:

@@ -21,6 +21,7 @@ RoleRow channel_manager_row() {
             .pics_items = [] { return field::pics_items_of(token_bus::kChannelManagerTable); },
             .usual_answers = [] { return field::declared_by(token_bus::kChannelManagerTable, {}); },
             .settings = &token_bus::kChannelManagerTable,
+            .are_settings_declared = true,
             .sequences =
                 SequenceRow<ManagerCase>{channel_manager_sequence_role, run_channel_manager_sequence}});
 }

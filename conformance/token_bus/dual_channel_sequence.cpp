@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "conformance/sequence_settings.hpp"
 #include "conformance/token_bus/driven_frames.hpp"
 #include "conformance/token_bus/dual_channel_cases.hpp"
 #include "conformance/token_bus/sides_sequence.hpp"
@@ -34,6 +35,7 @@ enum class ManagerWord : std::uint8_t {
 };
 
 SequenceVocabulary channel_manager_vocabulary() {
+  const token_bus::ChannelManagerConfiguration as_made;
   const SequenceNumber on{"channel", 0, 1, 0};
   const SequenceNumber late{"late", 0, 160, 0, kLates, true};
   const SequenceNumber content{"content", 0, 255, 0x42};
@@ -85,7 +87,8 @@ SequenceVocabulary channel_manager_vocabulary() {
                 {.word = "wait", .meaning = "silence of so many slot times", .numbers = {{"slots", 1, 9, 1}}},
                 {.word = "power", .meaning = "the supply is switched off and on"}},
       .unit = "symbol",
-      .levels_per_unit = 2};
+      .levels_per_unit = 2,
+      .settings = sequence_settings(token_bus::kChannelManagerTable, &as_made)};
 }
 
 std::string framed(std::int64_t content, bool more_follows = false) {
@@ -106,7 +109,7 @@ class ManagerSequenceRun {
             bench.configuration(), token_bus::kChannelManagerTable)) {}
 
   void run(const Sequence& sequence) {
-    for (const SequenceCommand& command : sequence) {
+    for (const SequenceCommand& command : sequence.commands) {
       for (ManagerBench* one : {&bench_, &twin_}) {
         one->clear();
         execute(command, *one);

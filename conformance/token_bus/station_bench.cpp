@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "harness/line/frame_check.hpp"
+#include "protocols/token_bus/station_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -22,10 +23,12 @@ LineWatch line_watch_of(const token_bus::Rules& rules) {
 
 }  // namespace
 
-token_bus::StationConfiguration token_configuration(const TokenNeeds& needs, std::uint64_t seed) {
+token_bus::StationConfiguration token_configuration(const TokenNeeds& needs, std::uint64_t seed,
+                                                    const field::Settings& settings) {
   token_bus::StationConfiguration configuration;
   kernel::Random random = kernel::Random(seed).split("settings");
   if (needs.adjust) needs.adjust(configuration, random);
+  field::take_settings(token_bus::kStationTable, settings, configuration);
   return configuration;
 }
 

@@ -54,7 +54,8 @@ class TokenUser final : public token_bus::StationUser {
   std::vector<Reported> all_events;
 };
 
-token_bus::StationConfiguration token_configuration(const TokenNeeds& needs, std::uint64_t seed);
+token_bus::StationConfiguration token_configuration(const TokenNeeds& needs, std::uint64_t seed,
+                                                    const field::Settings& settings = {});
 
 class TokenBench final : public LineBench {
  public:
@@ -64,7 +65,7 @@ class TokenBench final : public LineBench {
   static constexpr std::uint64_t kStranger = 0x0020;
 
   TokenBench(const TokenNeeds& needs, const TokenSetting& setting)
-      : TokenBench(token_configuration(needs, setting.seed), needs.is_powered, setting) {}
+      : TokenBench(token_configuration(needs, setting.seed, setting.settings), needs.is_powered, setting) {}
 
   const token_bus::Rules& rules() const { return configuration_.rules; }
   std::uint64_t address() const { return configuration_.address; }

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 
+#include "conformance/sequence_settings.hpp"
 #include "conformance/token_bus/station_cases.hpp"
 #include "conformance/token_bus/station_twin.hpp"
+#include "protocols/token_bus/station_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -36,7 +38,11 @@ enum class TokenWord : std::uint8_t {
   peer
 };
 
+// Other stations of the tester lie above and below it.
+constexpr std::array<std::string_view, 1> kFixedOfStation{"address"};
+
 SequenceVocabulary token_station_vocabulary() {
+  const token_bus::StationConfiguration as_made;
   // In the order of TokenWord.
   return {
       .words =
@@ -99,7 +105,8 @@ SequenceVocabulary token_station_vocabulary() {
             .numbers = {{"does", 0, 1, 1}},
             .weight = 2}},
       .unit = "octet",
-      .levels_per_unit = kHalfBitsOfOctet};
+      .levels_per_unit = kHalfBitsOfOctet,
+      .settings = sequence_settings(token_bus::kStationTable, &as_made, kFixedOfStation)};
 }
 
 std::string octets_in_words(std::span<const std::int64_t> values) {
@@ -118,7 +125,7 @@ class TokenSequenceRun {
       : bench_(bench), judge_(judge), twin_(bench.configuration(), bench.tester_place(), bench.now()) {}
 
   void run(const Sequence& sequence) {
-    for (const SequenceCommand& command : sequence) {
+    for (const SequenceCommand& command : sequence.commands) {
       execute(command);
       settle();
       compare();

@@ -20,6 +20,7 @@ RoleRow translator_row() {
             .pics_items = [] { return field::pics_items_of(token_bus::kTranslatorTable); },
             .usual_answers = [] { return field::declared_by(token_bus::kTranslatorTable, {}); },
             .settings = &token_bus::kTranslatorTable,
+            .are_settings_declared = true,
             .sequences = SequenceRow<TranslatorCase>{translator_sequence_role, run_translator_sequence}});
 }
 

@@ -1,5 +1,6 @@
 #include "conformance/token_bus/translator_sequence.hpp"
 
+#include "conformance/sequence_settings.hpp"
 #include "conformance/token_bus/driven_frames.hpp"
 #include "conformance/token_bus/sides_sequence.hpp"
 #include "conformance/token_bus/translator_cases.hpp"
@@ -27,6 +28,7 @@ enum class TranslatorWord : std::uint8_t {
 };
 
 SequenceVocabulary translator_vocabulary() {
+  const token_bus::TranslatorConfiguration as_made;
   const SequenceNumber content{"content", 0, 255, 0x42};
   const SequenceNumber more{"more", 0, 1, 0};
   const SequenceNumber lost{"lost", 0, 15, 0};
@@ -69,7 +71,8 @@ SequenceVocabulary translator_vocabulary() {
            {.word = "wait", .meaning = "silence of so many symbols", .numbers = {{"symbols", 1, 200, 50}}},
            {.word = "power", .meaning = "the supply is switched off and on"}},
       .unit = "bit",
-      .levels_per_unit = 3};
+      .levels_per_unit = 3,
+      .settings = sequence_settings(token_bus::kTranslatorTable, &as_made)};
 }
 
 std::string translated_frame(std::int64_t content, bool more_follows = false) {
@@ -102,7 +105,7 @@ class TranslatorSequenceRun {
         quick_(twin_of(quickest(bench.configuration()))) {}
 
   void run(const Sequence& sequence) {
-    for (const SequenceCommand& command : sequence) {
+    for (const SequenceCommand& command : sequence.commands) {
       for (TranslatorBench* one : {&bench_, &slow_, &quick_}) {
         one->clear();
         execute(command, *one);

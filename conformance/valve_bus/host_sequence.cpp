@@ -7,9 +7,11 @@
 #include <array>
 #include <optional>
 
+#include "conformance/sequence_settings.hpp"
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_side.hpp"
 #include "harness/iut/misbehaviour.hpp"
+#include "protocols/valve_bus/host_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -64,7 +66,11 @@ enum class HostWord : std::uint8_t {
   power
 };
 
+// There are no words for nodes that acknowledge writes.
+constexpr std::array<std::string_view, 1> kFixedOfHost{"answers_writes"};
+
 SequenceVocabulary host_vocabulary() {
+  const valve_bus::HostConfiguration host = host_configuration({}, declared_host());
   // In the order of HostWord.
   return {
       .words = {{.word = "read", .meaning = "the PC orders a read", .numbers = {node()}, .weight = 6},
@@ -111,7 +117,8 @@ SequenceVocabulary host_vocabulary() {
                  .weight = 1}},
       .unit = "character",
       .levels_per_unit = 11,
-      .gaps = kGaps};
+      .gaps = kGaps,
+      .settings = sequence_settings(valve_bus::kHostTable, &host, kFixedOfHost)};
 }
 
 std::string request_text(std::span<const std::int64_t> octets) {
@@ -157,9 +164,9 @@ class HostSequenceRun {
         sides_{HostSide(bench, &judge), HostSide(twin_, nullptr)} {}
 
   void run(const Sequence& sequence) {
-    for (const SequenceCommand& command : sequence) {
+    for (const SequenceCommand& command : sequence.commands) {
       for (HostSide& side : sides_) execute(side, command);
-      if (!compare(false)) return;
+      if (is_late_ || !compare(false)) return;
     }
     for (HostSide& side : sides_) side.drain();
     if (compare(true)) compare_counters();
@@ -209,10 +216,14 @@ class HostSequenceRun {
     }
   }
 
-  static void answer(HostSide& side, std::span<const std::uint8_t> octets, const SequenceCommand& command) {
+  void answer(HostSide& side, std::span<const std::uint8_t> octets, const SequenceCommand& command) {
     if (!side.await_request() || octets.empty()) return;
     const line::Levels levels = levels_with_faults(side.bench(), octets, command.faults);
-    side.answer(levels, side.bench().bits(command.numbers.back()), command.faults.empty());
+    const kernel::Duration turnaround_time = side.bench().bits(command.numbers.back());
+    side.answer(levels, turnaround_time, command.faults.empty());
+    // At a slow rate the time-out is hardly longer than a delimiter: what comes after it ends the sequence.
+    const kernel::Duration answer = side.bench().bits(static_cast<std::int64_t>(levels.size()));
+    is_late_ |= turnaround_time + answer >= side.bench().time_out();
   }
 
   static void restart(HostSide& side, bool is_open) {
@@ -245,6 +256,7 @@ class HostSequenceRun {
   CaseJudge& judge_;
   HostBench twin_;  // with the reference
   std::array<HostSide, 2> sides_;
+  bool is_late_ = false;
 };
 
 std::vector<PartialSource> host_sequence_details() {

@@ -57,8 +57,8 @@ TEST(HostSequence, FindsEachHostForCheckWithAtMostFiveCommands) {
     const SequenceSearchResult result = search(host_search_of("mutant:" + mutant.name, 5'000));
     ASSERT_TRUE(result.found) << mutant.name;
     EXPECT_TRUE(result.found->is_confirmed) << mutant.name;
-    EXPECT_LE(result.found->smallest.size(), 5U) << mutant.name << "\n" << host_lines(result);
-    EXPECT_GE(result.found->smallest.size(), 2U) << mutant.name << "\n" << host_lines(result);
+    EXPECT_LE(result.found->smallest.commands.size(), 5U) << mutant.name << "\n" << host_lines(result);
+    EXPECT_GE(result.found->smallest.commands.size(), 2U) << mutant.name << "\n" << host_lines(result);
     ++found;
   }
   EXPECT_EQ(found, 6U);

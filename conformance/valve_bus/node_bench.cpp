@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/iut/misbehaviour.hpp"
+#include "harness/kernel/error.hpp"
 #include "protocols/valve_bus/node.hpp"
 
 namespace fieldproof::conformance {
@@ -38,7 +39,42 @@ LineWatch watch_of(const valve_bus::Rules& rules) {
   return LineWatch(valve_bus::bits(rules, 1), delimiter(rules) + turnaround_time_span(rules) + answer);
 }
 
+// The cases speak to the ID that the node has.
+void expect_an_id(const valve_bus::NodeConfiguration& node) {
+  constexpr unsigned kDigits = 10;
+  const bool are_digits = node.address_tens < kDigits && node.address_units < kDigits;
+  if (are_digits && node.address_tens + node.address_units > 0) return;
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format("address switches at {} and {} give no ID, so nothing can be sent to this node; "
+                  "declare \"address_tens\" and \"address_units\" of 0 to 9, one of them above 0",
+                  node.address_tens, node.address_units));
+}
+
+// A command, what follows from it and a wrong frame have to fit within the time after which its valves go
+// off.
+void expect_time_for_commands(const valve_bus::NodeConfiguration& node) {
+  constexpr std::int64_t kExchanges = 40;
+  constexpr std::int64_t kFrameBits = 11 * valve_bus::kCommandOctets;
+  const valve_bus::Rules& rules = node.rules;
+  const kernel::Duration least =
+      kExchanges * (valve_bus::bits(rules, kFrameBits) + valve_bus::delimiter(rules) +
+                    valve_bus::turnaround_time_span(rules));
+  if (rules.loss_limit == kernel::Duration{} || rules.loss_limit >= least) return;
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format(
+          "with a \"loss_limit\" of {} the valves of this node go off within what cases do between two "
+          "commands; at {} bit/s it can be judged from {} on",
+          kernel::describe(rules.loss_limit), rules.bit_rate, kernel::describe(least)));
+}
+
 }  // namespace
+
+void expect_judgeable(const NodeConfiguration& node) {
+  expect_an_id(node);
+  expect_time_for_commands(node);
+}
 
 NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& pics) {
   NodeConfiguration configuration = node_declared_in(pics).configuration;

@@ -43,6 +43,8 @@ using NodeSetting = PlannedSetting<valve_bus::NodeDevice, valve_bus::NodeConfigu
 
 // The configuration of the IUT under these needs; `pics` has an answer to each item.
 valve_bus::NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& pics);
+// Throws kernel::Error(configuration) for a node that cases cannot judge.
+void expect_judgeable(const valve_bus::NodeConfiguration& node);
 
 // The instants that a case has judged.
 struct InstantLedger {

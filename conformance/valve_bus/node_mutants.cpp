@@ -172,6 +172,10 @@ std::vector<NodeRow> node_sequence_rows() {
   return NodeMutants::for_check({
       {"refused_write_kept", "", "drives the data of a write that it refused at the next read",
        mutant<RefusedWriteKept>()},
+      {"least_rate_doubled", "", "works at twice the rate where it is set to 1200 bit/s",
+       with_rules<valve_bus::Node>([](valve_bus::Rules& rules) {
+         if (rules.bit_rate == 1'200) rules.bit_rate *= 2;
+       })},
       {"check_not_reset", "", "goes on with the block check of a frame that was wrong",
        mutant<CheckNotReset>()},
       {"check_skipped_behind_error", "", "does not check the frame after a wrong one",

@@ -42,7 +42,7 @@ class NodeSequenceRun final : private segment::Tap {
   ~NodeSequenceRun() override { bench_.arrivals().pass_to(nullptr); }
 
   void run(const Sequence& sequence) {
-    for (const SequenceCommand& command : sequence) {
+    for (const SequenceCommand& command : sequence.commands) {
       execute(command);
       if (is_over_) return;
     }

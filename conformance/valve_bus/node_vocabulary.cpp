@@ -2,6 +2,9 @@
 
 #include <array>
 
+#include "conformance/sequence_settings.hpp"
+#include "protocols/valve_bus/node_settings.hpp"
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -26,6 +29,7 @@ SequenceNumber silence() {
 }  // namespace
 
 SequenceVocabulary node_vocabulary() {
+  const valve_bus::NodeConfiguration node = node_configuration({}, declared_node());
   // In the order of NodeWord.
   return {.words = {{.word = "write",
                      .meaning = "a write of the node's own",
@@ -71,7 +75,9 @@ SequenceVocabulary node_vocabulary() {
                      .weight = 2}},
           .unit = "character",
           .levels_per_unit = 11,
-          .gaps = kGaps};
+          .gaps = kGaps,
+          .settings = sequence_settings(valve_bus::kNodeTable, &node),
+          .objection = objection_of(valve_bus::kNodeTable, node, expect_judgeable)};
 }
 
 std::vector<std::uint8_t> octets_of(NodeWord word, const SequenceCommand& command, const NodeBench& bench) {

@@ -90,12 +90,13 @@ conformance::SequenceFound made_smaller(const SequenceFuzz& fuzz, const conforma
 }  // namespace
 
 SequenceFuzzResult search(const SequenceFuzz& fuzz) {
-  Pool pool(fuzz.role->vocabulary, fuzz.setup.seed);
+  const conformance::SequenceVocabulary vocabulary = fuzz.suite->vocabulary(*fuzz.role, fuzz.setup);
+  Pool pool(vocabulary, fuzz.setup.seed);
   SequenceFuzzResult result;
   for (; result.run < fuzz.runs && !fuzz.stop.stop_requested(); ++result.run) {
     if (fuzz.on_progress) fuzz.on_progress(result.run);
     Octets octets = pool.next();
-    const auto sequence = conformance::sequence_of_octets(octets, fuzz.role->vocabulary);
+    const auto sequence = conformance::sequence_of_octets(octets, vocabulary);
     begin_coverage();
     conformance::Outcome outcome = conformance::run_sequence(*fuzz.suite, *fuzz.role, sequence, fuzz.setup);
     const std::size_t edges = take_new_coverage();

@@ -33,15 +33,14 @@ judge::PicsItem item_of(const Leaf& leaf) {
   return item;
 }
 
-judge::Pics::Answer answer_of(const Leaf& leaf) {
-  const std::int64_t number = leaf.number();
-  switch (leaf.row.kind) {
+judge::Pics::Answer answer_of(const Row& row, std::int64_t number) {
+  switch (row.kind) {
     case Kind::truth:
       return number != 0;
     case Kind::duration:
       return kernel::Duration{number};
     case Kind::choice: {
-      const auto& choices = leaf.row.about.choices;
+      const auto& choices = row.about.choices;
       return std::string(std::ranges::find(choices, number, &Choice::value)->name);
     }
     default:
@@ -70,9 +69,17 @@ std::vector<judge::PicsItem> pics_items_of(const AnyTable& table) {
 judge::Pics declared_by_any(const AnyTable& table, const void* object) {
   judge::Pics pics;
   walk(table, object, [&](const Leaf& leaf) {
-    if (is_asked(leaf.row)) pics.declare(leaf.name, answer_of(leaf));
+    if (is_asked(leaf.row)) pics.declare(leaf.name, answer_of(leaf.row, leaf.number()));
   });
   return pics;
+}
+
+void declare_settings(const AnyTable& table, const Settings& settings, judge::Pics& pics) {
+  const GivenSettings given(settings);
+  walk(table, [&](const Leaf& leaf) {
+    if (!is_asked(leaf.row)) return;
+    if (const auto number = given.find(leaf.name)) pics.declare(leaf.name, answer_of(leaf.row, *number));
+  });
 }
 
 void take_pics_of_any(const AnyTable& table, const judge::Pics& pics, void* object) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "harness/field/field.hpp"
+#include "harness/field/settings.hpp"
 #include "harness/judge/pics.hpp"
 
 namespace fieldproof::field {
@@ -13,6 +14,8 @@ std::vector<judge::PicsItem> pics_items_of(const AnyTable& table);
 
 judge::Pics declared_by_any(const AnyTable& table, const void* object);
 void take_pics_of_any(const AnyTable& table, const judge::Pics& pics, void* object);
+// What these settings are, as answers; of numbers, truths, choices and durations, as above.
+void declare_settings(const AnyTable& table, const Settings& settings, judge::Pics& pics);
 
 // All items as the object has them.
 template <typename T>

@@ -398,12 +398,12 @@ bool FfLas::use_own_turn(kernel::Time now) {
 }
 
 bool FfLas::probe(kernel::Time now) {
-  if (!probes_now()) {
+  const std::uint8_t node = next_probe(last_probe_);
+  if (!probes_now() || node == this->node()) {
     // Without anything on the line a circulation would take no time.
     say({.type = FfType::idle}, now);
     return true;
   }
-  const std::uint8_t node = next_probe(last_probe_);
   const FfDlpdu pn{.type = FfType::pn, .node = node};
   const FfDlpdu pr{.type = FfType::pr, .node = node};
   const kernel::Duration answer =
@@ -423,7 +423,7 @@ std::uint8_t FfLas::next_probe(std::uint8_t last) const {
         node >= rules().first_unpolled && node < rules().first_unpolled + rules().unpolled;
     if (!is_unpolled && !live_[node]) return static_cast<std::uint8_t>(node);
   }
-  return node();
+  return node();  // all are live
 }
 
 void FfLas::keep_active(kernel::Time now) {
