@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,8 @@ struct TranslatorScene : Scene<TranslatorBench> {
 };
 
 using TranslatorStep = ChartStep<TranslatorScene>;
+// g++ 12 fails at a step in braces where it has not looked before at how one is made.
+static_assert(std::is_default_constructible_v<TranslatorStep>);
 
 inline TranslatorCase on_chart(TestCase test_case, Chart<TranslatorScene> chart, TranslatorNeeds needs = {}) {
   return charted<TranslatorCase>(std::move(test_case), std::move(chart), needs);
