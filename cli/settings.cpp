@@ -14,6 +14,7 @@
 #include "harness/config/nearest.hpp"
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 #include "reports/results.hpp"
 
 namespace fieldproof::cli {
@@ -156,7 +157,7 @@ std::vector<std::string> unknown_variables(const char* const* variables) {
     if (!name.starts_with(kVariablePrefix) || std::ranges::find(known, name) != known.end()) continue;
     const auto nearest = config::nearest(name, std::span<const std::string>(known), 1);
     sentences.push_back(fmt::format("the variable {} sets nothing; the nearest one that does is {}",
-                                    reports::escaped_line(name), nearest.front()));
+                                    kernel::escaped_line(name), nearest.front()));
   }
   return sentences;
 }

@@ -10,13 +10,8 @@ using namespace translator_chart;
 using token_sources::memory;
 using token_sources::own;
 
-constexpr unsigned kJabberSymbols = 66'000;
 constexpr std::size_t kMoreThanHalf = 40'000;
 constexpr std::string_view kOnLine = "rrrrllllttttSSSS";
-
-TranslatorNeeds with_short_jabber() {
-  return {.adjust = [](token_bus::TranslatorConfiguration& one) { one.jabber_symbols = kJabberSymbols; }};
-}
 
 std::string pads(std::size_t symbols) {
   return std::string(symbols, 'P');

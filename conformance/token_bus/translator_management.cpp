@@ -14,7 +14,6 @@ using token_sources::own;
 using token_sources::paper;
 using enum SideCommand;
 
-constexpr unsigned kJabberSymbols = 66'000;
 
 std::string_view text_of_answer(char answer) {
   constexpr std::string_view kLetters = "iane";
@@ -98,10 +97,6 @@ void expect_jabber_ends(TranslatorScene& scene) {
   constexpr std::size_t kMargin = 2'000;
   scene.judge.expect(bits > 0 && bits < 2 * std::size_t{kJabberSymbols} + kMargin, "jabbers",
                      fmt::format("{} symbols at most", kJabberSymbols), fmt::format("{} bits", bits));
-}
-
-TranslatorNeeds with_short_jabber() {
-  return {.adjust = [](token_bus::TranslatorConfiguration& one) { one.jabber_symbols = kJabberSymbols; }};
 }
 
 std::vector<TranslatorCase> command_cases() {

@@ -162,6 +162,10 @@ TestCase translator_must(const std::string& id, std::string purpose, std::string
 
 namespace translator_chart {
 
+TranslatorNeeds with_short_jabber() {
+  return {.adjust = [](token_bus::TranslatorConfiguration& one) { one.jabber_symbols = kJabberSymbols; }};
+}
+
 TranslatorStep on_line() {
   return does(
       "the MAC brings the translator on line: RESET, DISABLE LOOPBACK, ENABLE TRANSMITTER, END PHYSICAL",

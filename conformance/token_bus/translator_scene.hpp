@@ -68,6 +68,10 @@ TestCase translator_must(const std::string& id, std::string purpose, std::string
 
 namespace translator_chart {
 
+// A jabber that is over soon, and longer than a counter of 16 bits.
+inline constexpr unsigned kJabberSymbols = 66'000;
+TranslatorNeeds with_short_jabber();
+
 // RESET, DISABLE LOOPBACK, ENABLE TRANSMITTER, END PHYSICAL.
 TranslatorStep on_line();
 TranslatorStep pause();
