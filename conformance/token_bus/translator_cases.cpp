@@ -29,10 +29,11 @@ const std::vector<PartialSource>& translator_details() {
 const std::vector<TranslatorCase>& translator_cases() {
   static const std::vector<TranslatorCase> cases = [] {
     static constexpr std::array kChapters{
-        translator_encoding_cases, translator_vocabulary_cases, translator_locking_cases,
-        translator_phase_cases,    translator_decoding_cases,   translator_blanking_cases,
-        translator_end_cases,      translator_mask_cases,       translator_management_cases,
-        translator_command_cases,  translator_jabber_cases,     translator_settings_cases};
+        translator_encoding_cases,   translator_vocabulary_cases, translator_locking_cases,
+        translator_phase_cases,      translator_decoding_cases,   translator_blanking_cases,
+        translator_pair_cases,       translator_end_cases,        translator_mask_cases,
+        translator_management_cases, translator_command_cases,    translator_jabber_cases,
+        translator_settings_cases};
     auto all = cases_of<TranslatorCase>(kChapters, translator_details());
     all.push_back(translator_canary());
     return all;

@@ -20,6 +20,7 @@ std::vector<TranslatorCase> translator_vocabulary_cases();
 std::vector<TranslatorCase> translator_locking_cases();
 std::vector<TranslatorCase> translator_phase_cases();
 std::vector<TranslatorCase> translator_decoding_cases();
+std::vector<TranslatorCase> translator_pair_cases();
 std::vector<TranslatorCase> translator_blanking_cases();
 std::vector<TranslatorCase> translator_end_cases();
 std::vector<TranslatorCase> translator_mask_cases();

@@ -106,6 +106,8 @@ Rows receiver_rows() {
   return {
       {"silent_until_it_is_locked", "", "indicates no symbol until its phase is sure",
        with_block<&Blocks::receiver, SilentUntilLocked>()},
+      {"third_pair_is_bad_signal", "", "takes two pairs of non_data in a row at most",
+       with_block<&Blocks::receiver, ThirdPairIsBadSignal>()},
       {"due_until_it_comes", "", "awaits the second non_data over other symbols",
        with_block<&Blocks::receiver, DueOtherwise>(due_until_it_comes)},
       {"no_blanking_after_an_error", "", "blanks nothing where E is 1",

@@ -113,6 +113,16 @@ class SilentUntilLocked final : public MacDecoder {
   }
 };
 
+class ThirdPairIsBadSignal final : public MacDecoder {
+  MacSymbol indication(PhyPair pair, LineStatus status) const override {
+    const MacSymbol right = MacDecoder::indication(pair, status);
+    in_a_row_ = right == MacSymbol::non_data ? in_a_row_ + 1 : 0;
+    return in_a_row_ > 4 ? MacSymbol::bad_signal : right;
+  }
+
+  mutable unsigned in_a_row_ = 0;
+};
+
 using Due = bool (*)(MacSymbol symbol, bool is_due);
 
 class DueOtherwise final : public MacDecoder {

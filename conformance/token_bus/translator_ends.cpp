@@ -5,12 +5,11 @@
 
 #include "conformance/token_bus/translator_scene.hpp"
 
-// Where a pair of non_data, an end delimiter and the blanking after it end, to the symbol.
+// Where an end delimiter and the blanking after it end, to the symbol.
 namespace fieldproof::conformance {
 namespace {
 
 using namespace translator_chart;
-using token_sources::derived;
 using token_sources::memory;
 using token_sources::own;
 using token_sources::standard;
@@ -31,27 +30,25 @@ std::string after_blanking(TranslatorScene& scene, std::string what) {
   return seen;
 }
 
-// The start delimiter, and on from there.
-void expect_from_delimiter(TranslatorScene& scene, const std::string& right, std::string_view reason) {
-  const std::string wanted = right.substr(right.find('N'));
-  const std::string seen = scene.without_answers(scene.content(), wanted, right.find('N'));
-  scene.judge.expect(seen == wanted, reason, [&] { return difference(wanted, seen); });
-}
-
 // ---- end delimiters ----
 
-// I = 0 and E in turn; then ones without a pause.
+// I = 0 and E in turn, alone, after five others, or without an octet; then ones without a pause.
 void receive_last_frame(TranslatorScene& scene) {
-  const std::string frame = begin_of(scene) + "NN1NN10" + (scene.round % 2 == 0 ? "0" : "1");
+  const std::string last = scene.round % 2 == 0 ? "NN1NN100" : "NN1NN101";
+  std::string more;
+  for (unsigned n = 0; n < 5 && scene.round / 2 % 3 == 1; ++n) more += frame_text(scene.octets, true);
+  const std::string begin =
+      scene.round / 2 % 3 == 2 ? std::string(16, '1') + start_delimiter_text() : begin_of(scene);
+  const std::string frame = indicated_as(more + begin) + last;
   scene.exchange("", side_bits_of(encoded(frame + many_ones())));
-  expect_from_delimiter(scene, frame + after_blanking(scene, many_ones()), "blanking_wrong");
+  scene.expect_from_delimiter(frame + after_blanking(scene, many_ones()), "blanking_wrong");
 }
 
 // The same while it is the translator's own frame that comes back.
 void receive_own_frame(TranslatorScene& scene) {
   const std::string frame = frame_text(scene.octets);
   scene.exchange(frame, side_bits_of(encoded(frame + many_ones())));
-  expect_from_delimiter(scene, frame + after_blanking(scene, many_ones()), "blanking_wrong");
+  scene.expect_from_delimiter(frame + after_blanking(scene, many_ones()), "blanking_wrong");
 }
 
 // One symbol of an end delimiter is another one; silence in the middle of it is one symbol.
@@ -62,7 +59,7 @@ constexpr std::array<std::string_view, 13> kNoEnds{
 void receive_no_end(TranslatorScene& scene) {
   const std::string text = begin_of(scene) + std::string(kNoEnds.at(scene.round % kNoEnds.size()));
   scene.exchange("", side_bits_of(encoded(text + many_ones())));
-  expect_from_delimiter(scene, text + many_ones(), "blanked_without_an_end");
+  scene.expect_from_delimiter(text + many_ones(), "blanked_without_an_end");
 }
 
 // ---- within the blanking ----
@@ -89,7 +86,7 @@ void receive_within(TranslatorScene& scene) {
     bits.at(2 * frame.size() + n).has_error = true;
   const std::string script = row.managed.empty() ? "" : std::string(frame.size() + 2, 'S');
   scene.exchange(script + std::string(row.managed), bits);
-  expect_from_delimiter(scene, frame + after_blanking(scene, row.symbols), "blanking_wrong");
+  scene.expect_from_delimiter(frame + after_blanking(scene, row.symbols), "blanking_wrong");
 }
 
 // The phase is found while nothing is indicated.
@@ -132,41 +129,6 @@ void begin_anew_within(TranslatorScene& scene) {
   scene.bring_up();
 }
 
-// ---- pairs of non_data ----
-
-// A first non_data, a pair in the place of the second, and CD0,CD0 after it.
-struct AfterPair {
-  std::string_view pair;
-  char due;
-};
-constexpr std::array<AfterPair, 8> kAfterPairs{
-    {{"10", 'B'}, {"01", 'B'}, {"11", 'B'}, {"00", 'N'}, {"II", 'S'}, {"I1", 'S'}, {"1I", 'B'}, {"0I", 'B'}}};
-
-void receive_after_pair(TranslatorScene& scene) {
-  const AfterPair& row = kAfterPairs.at(scene.round / 3 % kAfterPairs.size());
-  const unsigned error = scene.round % 3;  // in the first or second bit of the pair
-  const std::string begin = frame_text({}, false, 4).substr(0, 40) + "0110N";
-  SideBits bits = side_bits_of(encoded(begin));
-  for (unsigned n = 0; n < 2; ++n) bits.push_back({row.pair[n], true, error == n + 1});
-  const std::string rest = "BB11NN0110";
-  for (const SideBit& one : side_bits_of(encoded(rest))) bits.push_back(one);
-  scene.exchange("", bits);
-  expect_from_delimiter(scene, begin + std::string(1, error != 0 ? 'B' : row.due) + rest, "cell_wrong");
-}
-
-void lose_carrier_within_pair(TranslatorScene& scene) {
-  const std::string begin = frame_text({}, false, 4).substr(0, 40) + "0110";
-  SideBits bits = side_bits_of(encoded(begin));
-  const std::string pair = encoded(scene.round % 3 == 0 ? "0" : scene.round % 3 == 1 ? "1" : "N");
-  bits.push_back({pair[0], true, false});
-  bits.push_back({pair[1], false, false});
-  scene.exchange("", bits);
-  const std::string seen = scene.content();
-  const std::string right = begin.substr(begin.find('N'));
-  scene.judge.expect(seen == right || seen == right + "B", "carrier_not_looked_at",
-                     [&] { return difference(right, seen); });
-}
-
 }  // namespace
 
 std::vector<TranslatorCase> translator_end_cases() {
@@ -182,9 +144,11 @@ std::vector<TranslatorCase> translator_end_cases() {
                            {"blanking_of_29_symbols", "blanking_wrong"},
                            {"no_blanking_after_an_error", "blanking_wrong"},
                            {"blanks_while_carrier", "blanking_wrong"}}),
-          {{4, 40},
-           {{"a frame with E = 0 and 1 in turn, and 60 ones at once", "blanking_symbols of silence, and ones",
-             receive_last_frame},
+          {{6, 60},
+           {{"a frame with E = 0 and 1 in turn, alone, after five others, and without an octet, and 60 ones "
+             "at "
+             "once",
+             "blanking_symbols of silence, and ones", receive_last_frame},
             pause(),
             {"a frame that is requested comes from the line, and 60 ones at once",
              "blanking_symbols of silence, and ones", receive_own_frame},
@@ -224,24 +188,6 @@ std::vector<TranslatorCase> translator_end_cases() {
           {{4, 20},
            {{"a frame, then in the blanking RESET or a failure of the supply, DISABLE LOOPBACK, and ones",
              "the ones", begin_anew_within},
-            pause()},
-           {on_line()}}),
-      on_chart(translator_must("decoding/a_pair_of_non_data_is_two_symbols", "PST-07",
-                               "The second non_data is due in the symbol after the first, and in no other, "
-                               "whatever comes in its place.",
-                               derived("non_data in pairs"), {{"due_until_it_comes", "cell_wrong"}}),
-               {{24, 72},
-                {{"one non_data, each pair of bits, without and with a signal error, and CD0,CD0",
-                  "its symbol, and bad_signal", receive_after_pair},
-                 pause()},
-                {on_line()}}),
-      on_chart(
-          translator_must("decoding/a_carrier_lost_within_a_pair", "PST-09",
-                          "A pair whose second bit has no carrier is silence or bad_signal, and no data.",
-                          own("table of decoding"), {{"carrier_ignored", "carrier_not_looked_at"}}),
-          {{3, 30},
-           {{"a frame that ends with half a symbol, and the other half without carrier", "no symbol of it",
-             lose_carrier_within_pair},
             pause()},
            {on_line()}}),
   };

@@ -17,14 +17,15 @@ std::string pads(std::size_t symbols) {
   return std::string(symbols, 'P');
 }
 
-// What is answered to commands of four symbols each.
-TranslatorStep then_answers(std::string script, std::string answers, std::string reason) {
+// What is answered to commands of so many symbols each.
+TranslatorStep then_answers(std::string script, std::string answers, std::string reason,
+                            std::size_t symbols = 4) {
   return {fmt::format("the commands {}", script), fmt::format("the answers {}", answers),
           [=](TranslatorScene& scene) {
             std::string commands;
             std::string right;
-            for (const char one : script) commands += std::string(4, one);
-            for (const char one : answers) right += std::string(4, one);
+            for (const char one : script) commands += std::string(symbols, one);
+            for (const char one : answers) right += std::string(symbols, one);
             scene.exchange(commands);
             scene.expect_indicated({right}, reason);
           }};
@@ -126,7 +127,7 @@ std::vector<TranslatorCase> translator_jabber_cases() {
                  then_answers("it", "ia", "answer_wrong"), pause(),
                  is_cut_off("68000 symbols of pad_idle", kJabberSymbols + 2'000), comes_on_line(kOnLine),
                  is_cut_off("66001 symbols of pad_idle", kJabberSymbols + 1),
-                 then_answers("ir", "ea", "answer_wrong")}},
+                 then_answers("iri", "eai", "answer_wrong", 1)}},
                with_short_jabber()),
   };
 }

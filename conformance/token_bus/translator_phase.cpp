@@ -40,6 +40,9 @@ const std::vector<PhaseRow>& hunting_rows() {
       {"a one, two zeros, and a bit", encoded("100") + slipped, "100" + ones(16)},
       {"bad_signal, two zeros, and a bit", encoded("B00") + slipped, "B00" + ones(16)},
       {"two bad_signals, two zeros, and a bit", encoded("BB00") + slipped, "BB00" + ones(16)},
+      {"a signal error, two zeros, and a bit", "x0" + encoded("00") + slipped, "B00" + ones(16)},
+      {"a zero, a signal error, two zeros, and a bit", encoded("0") + "x0" + encoded("00") + slipped,
+       "0B00" + ones(16)},
       {"one zero", encoded("0") + preamble_bits(16), "0" + ones(16)},
       {"a zero, a bad_signal and a zero", encoded("0B01") + preamble_bits(4), "0B01" + ones(4)},
       {"zeros and ones in turn", encoded(alternating(4)) + preamble_bits(4), alternating(4) + ones(4)},
@@ -101,8 +104,12 @@ void expect_once_of_three(TranslatorScene& scene, const SideBits& bits, const st
   scene.judge.expect(false, reason, [&] { return difference(right, seen); });
 }
 
+// A bit x is one with a signal error.
 SideBits with_frame(const std::string& bits, TranslatorScene& scene) {
-  return side_bits_of(bits + encoded(frame_text(scene.octets, false, 0)));
+  SideBits made = side_bits_of(bits + encoded(frame_text(scene.octets, false, 0)));
+  for (SideBit& one : made)
+    if (one.symbol == 'x') one = {'1', true, true};
+  return made;
 }
 std::string frame_after(const std::string& symbols, TranslatorScene& scene) {
   return symbols + frame_text(scene.octets, false, 0);

@@ -136,6 +136,13 @@ std::string TranslatorScene::without_answers(std::string seen, const std::string
   return seen;
 }
 
+void TranslatorScene::expect_from_delimiter(const std::string& right, std::string_view reason) {
+  const std::size_t first = right.find('N');
+  const std::string wanted = right.substr(first);
+  const std::string seen = without_answers(content(), wanted, first);
+  judge.expect(seen == wanted, reason, [&] { return difference(wanted, seen); });
+}
+
 void TranslatorScene::expect_indicated(const std::vector<std::string>& right, std::string_view reason) {
   const std::string seen = indicated();
   judge.expect(std::ranges::find(right, seen) != right.end(), reason, [&] {

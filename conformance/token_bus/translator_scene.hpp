@@ -50,6 +50,8 @@ struct TranslatorScene : Scene<TranslatorBench> {
   // The same with the symbols of `right`, which begins with symbol `first` of what was exchanged, where a
   // command or its answer may hide them.
   std::string without_answers(std::string seen, const std::string& right, std::size_t first) const;
+  // From the first non_data of `right` on, which begins with the first symbol that was exchanged.
+  void expect_from_delimiter(const std::string& right, std::string_view reason);
   // One of these, silence around it left out.
   void expect_indicated(const std::vector<std::string>& right, std::string_view reason);
 };
