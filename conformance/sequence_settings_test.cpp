@@ -104,7 +104,8 @@ TEST(SequenceSettings, AreDrawnWithinTheVocabularyMostlyAtItsEnds) {
       EXPECT_LT(set, 600U) << role.test_case.id;
       EXPECT_LT(several, set / 2) << role.test_case.id;
       EXPECT_GT(likely, (set - several) / 2) << role.test_case.id;
-      EXPECT_EQ(names.size(), role.vocabulary.settings.size()) << role.test_case.id;
+      // One may be objected to but for some values of another.
+      EXPECT_GE(names.size() + 1, role.vocabulary.settings.size()) << role.test_case.id;
     }
   }
 }
@@ -120,8 +121,8 @@ TEST(SequenceSettings, WhatIsObjectedToIsLeftOut) {
   };
   // As it is anyway; twice, the first counts; no ID.
   const std::vector<SettingChoice> chosen{
-      {place("boards"), 2}, {place("loss_limit"), 0}, {place("loss_limit"), 5}, {place("address_units"), 15}};
-  EXPECT_EQ(settings_of(chosen, node), (field::Settings{{"loss_limit", 0}}));
+      {place("loss_limit"), 0}, {place("boards"), 1}, {place("boards"), 2}, {place("address_units"), 15}};
+  EXPECT_EQ(settings_of(chosen, node), (field::Settings{{"boards", 1}}));
   EXPECT_THAT(node.objection_to({{"address_units", 15}}).value_or(""), HasSubstr("give no ID"));
   EXPECT_FALSE(node.objection_to({{"boards", 1}}));
 }
@@ -160,7 +161,7 @@ TEST(SequenceSettings, ShrinkToTheFewestAndTheNearestToTheirDefaults) {
 TEST(SequenceSettings, AreReadInWordsAndNamedByAFinding) {
   const SequenceVocabulary& node = node_with_settings().vocabulary;
   const Sequence sequence{{}, {{"loss_limit", 0}, {"boards", 1}}};
-  EXPECT_EQ(sequence_lines(sequence, node).front(), "settings loss_limit 0 s, boards 1");
+  EXPECT_EQ(sequence_lines(sequence, node).front(), "settings loss_limit valves hold, boards 1");
 }
 
 }  // namespace

@@ -186,10 +186,12 @@ std::vector<TokenRow> token_reception_rows() {
 std::vector<TokenRow> token_check_rows() {
   using namespace token_seeded_faults;
   return TokenMutants::for_check({
-      {"shortest_silence_longer", "",
-       "claims the token after three slot times of silence where it is set to two",
-       with_rules<token_bus::TokenStation>(
-           [](token_bus::Rules& rules) { rules.bus_idle_slots = std::max(rules.bus_idle_slots, 3U); })},
+      {"no_holding_time_ignored", "",
+       "sends urgent data as long as it may by default where it may not at all",
+       with_rules<token_bus::TokenStation>([](token_bus::Rules& rules) {
+         if (rules.high_priority_hold_octets == 0)
+           rules.high_priority_hold_octets = token_bus::Rules{}.high_priority_hold_octets;
+       })},
       {"deaf_after_fault", "", "misses what comes after a faulty reception", mutant<DeafAfterFault>()},
       {"answers_one_solicitation", "", "answers the first solicitation only", mutant<AnswersOnce>()},
       {"same_response_empty", "", "responds without data where the response is that of before",

@@ -122,7 +122,7 @@ const SequenceRole& sequences() {
 }
 
 void run_sequence(const Sequence& sequence, PollBench& bench, CaseJudge& judge) {
-  for (const SequenceCommand& command : sequence) {
+  for (const SequenceCommand& command : sequence.commands) {
     Octets request = request_to(static_cast<std::uint8_t>(command.numbers[0]));
     request[1] ^= static_cast<std::uint8_t>(command.numbers[1]);
     if (request == bench.right_request()) {
