@@ -70,6 +70,23 @@ TEST_F(FfLasTest, FindsTheNodesOfItsLinkAndPassesThemTheToken) {
   EXPECT_NE(all.find("PT time-available 13 for 280 octets\n"), std::string::npos);
 }
 
+// All addresses that are polled are live: it probes nobody, and not itself.
+TEST_F(FfLasTest, ProbesNobodyWhereAllAreLive) {
+  FfConfiguration las = master(0x10, true);
+  las.rules.first_unpolled = 0x15;
+  las.rules.unpolled = 228;
+  las.rules.last_node = 0xF8;
+  las.live = {0x11, 0x12, 0x13, 0x14};
+  add_master(las);
+  for (const std::uint8_t node : las.live) add_device(node);
+  // Two circulations: who was not activated misses its tokens, and is looked for later on.
+  link_.run_to(380);
+  const std::string all = link_.heard();
+  EXPECT_EQ(count(all, " PN "), 0U) << all;
+  EXPECT_GE(count(all, " PT "), 5U) << all;
+  EXPECT_GE(count(all, " IDLE"), 1U) << all;
+}
+
 TEST_F(FfLasTest, CompelsByItsScheduleToTheTick) {
   FfConfiguration configuration = master(0x10, true);
   configuration.live = {0x11, 0x12};
