@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -9,7 +11,9 @@
 #include <vector>
 
 #include "conformance/case_bench.hpp"
+#include "conformance/running_case.hpp"
 #include "harness/field/pics.hpp"
+#include "harness/kernel/error.hpp"
 #include "protocols/token_bus/rules.hpp"
 
 // The bench of an implementation whose ports are circuits between two chips: testers at the other end of
@@ -25,6 +29,21 @@ Configuration sides_configuration(const Needs& needs, const Setting& setting,
       field::declared_in(table, setting.pics.value_or(judge::Pics{}).completed_by(reference));
   if (needs.adjust != nullptr) needs.adjust(configuration);
   return configuration;
+}
+
+// Throws kernel::Error(configuration) where half bits of the declared rate are no whole number of
+// picoseconds: what begins at the very limit of a time, as cases let it, would be rounded to either side.
+template <typename Case, typename Setting>
+void expect_whole_half_bits(const Case&, const Setting& setting, const RunningCase&) {
+  const std::int64_t usual = token_bus::Rules{}.phy_bit_rate;
+  const std::int64_t rate = setting.pics.value_or(judge::Pics{}).number("phy_bit_rate", usual);
+  if (kernel::kSecond.count() % (2 * rate) == 0) return;
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format(
+          "at a \"phy_bit_rate\" of {} bit/s a half bit is no whole number of picoseconds; declare one "
+          "that divides 500 GHz, as 10000000 does",
+          rate));
 }
 
 template <typename Device, typename Configuration>
