@@ -49,6 +49,16 @@ class Value;
 // Refuses a value for a reason that its type does not show: "the ring has no station 7; it has 0 to 5".
 [[noreturn]] void fail(const Value& value, std::string_view sentence);
 
+// What a file describes and cannot be, and where it says so: `at` is a pointer (RFC 6901) below what was
+// read,
+// "/data/3/to".
+struct Violation {
+  std::string at;
+  std::string sentence;
+};
+// Refuses what the pointer names, or the nearest that is there above it.
+[[noreturn]] void fail(const Value& root, const Violation& violation);
+
 enum class ValueKind : std::uint8_t { null, boolean, integer, number, string, array, object };
 
 // One value of a document together with its place. Cheap to copy.

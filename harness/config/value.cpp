@@ -72,6 +72,38 @@ void fail(const Value& value, std::string_view sentence) {
       fmt::format("{}:{}: {}: {}", value.source_->name, value.line(), shown(value.pointer()), sentence));
 }
 
+namespace {
+
+std::optional<Value> part_of(const Value& whole, std::string_view key) {
+  if (whole.is_object()) {
+    for (const Member& member : whole.as_members())
+      if (member.key == key) return member.value;
+  }
+  if (whole.is_array()) {
+    const std::vector<Value> elements = whole.as_array();
+    std::size_t place = elements.size();
+    std::from_chars(key.data(), key.data() + key.size(), place);
+    if (place < elements.size()) return elements[place];
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void fail(const Value& root, const Violation& violation) {
+  Value nearest = root;
+  std::string_view rest = violation.at;
+  while (rest.starts_with('/')) {
+    rest.remove_prefix(1);
+    const std::string_view key = rest.substr(0, rest.find('/'));
+    const auto part = part_of(nearest, key);
+    if (!part) break;
+    nearest = *part;
+    rest.remove_prefix(key.size());
+  }
+  fail(nearest, violation.sentence);
+}
+
 std::string Value::pointer() const {
   return source_->pointer(node_);
 }

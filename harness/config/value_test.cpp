@@ -268,6 +268,24 @@ TEST(Value, ASemanticErrorHasItsPlaceToo) {
             "x.json:6: /stations/3/x: the ring has no station 7; it has 0 to 5");
 }
 
+TEST(Value, AViolationIsThatOfTheNearestPlaceThatIsThere) {
+  const Document document = Document::parse("{\"data\":\n [{\"to\": 4},\n {\"to\": 5}]}", "x.json");
+  const auto error_at = [&](const char* at) {
+    try {
+      fail(document.root(), Violation{at, "no"});
+    } catch (const kernel::Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(error_at("/data/1/to"), "x.json:3: /data/1/to: no");
+  EXPECT_EQ(error_at("/data/1/from"), "x.json:3: /data/1: no");
+  EXPECT_EQ(error_at("/data/2/to"), "x.json:2: /data: no");
+  EXPECT_EQ(error_at("/data/x"), "x.json:2: /data: no");
+  EXPECT_EQ(error_at("/cable"), "x.json:1: the top level: no");
+  EXPECT_EQ(error_at(""), "x.json:1: the top level: no");
+}
+
 TEST(Value, LongWordsAreCutAtACharacter) {
   std::string word = "\"";
   for (int n = 0; n < 100; ++n) word += "\xE2\x82\xAC";

@@ -53,22 +53,29 @@ bool has(const std::vector<std::uint8_t>& nodes, std::uint8_t node) {
   return std::ranges::find(nodes, node) != nodes.end();
 }
 
-std::optional<std::string> violation_of_stations(const LinkDescription& link) {
-  if (link.masters.empty()) return "no link master: one must schedule the link";
+std::optional<config::Violation> violation_of_stations(const LinkDescription& link) {
+  if (link.masters.empty()) return {{"/masters", "no link master: one must schedule the link"}};
   if (link.masters.size() + link.devices.size() > kMostStations) {
-    return fmt::format("{} stations: a link has at most {}, because nodes have the addresses {} to {}",
-                       link.masters.size() + link.devices.size(), kMostStations, kFirstNode, kLastNode);
+    return {{"/devices",
+             fmt::format("{} stations: a link has at most {}, because nodes have the addresses {} to {}",
+                         link.masters.size() + link.devices.size(), kMostStations, kFirstNode, kLastNode)}};
   }
   std::vector<std::uint8_t> all = link.masters;
   all.insert(all.end(), link.devices.begin(), link.devices.end());
-  std::ranges::sort(all);
   for (std::size_t n = 0; n < all.size(); ++n) {
+    const std::size_t masters = link.masters.size();
+    const std::string at =
+        n < masters ? fmt::format("/masters/{}", n) : fmt::format("/devices/{}", n - masters);
     if (all[n] < kFirstNode || all[n] > kLastNode)
-      return fmt::format("node {}: a node has an address from {} to {}", all[n], kFirstNode, kLastNode);
-    if (n > 0 && all[n] == all[n - 1]) return fmt::format("node {} is there twice; each has its own", all[n]);
+      return {
+          {at, fmt::format("node {}: a node has an address from {} to {}", all[n], kFirstNode, kLastNode)}};
+    if (std::count(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n), all[n]) > 0)
+      return {{at, fmt::format("node {} is there twice; each has its own", all[n])}};
   }
-  for (const std::uint8_t node : link.not_exposed) {
-    if (!has(all, node)) return fmt::format("node {} is not exposed, and no station has it", node);
+  for (std::size_t n = 0; n < link.not_exposed.size(); ++n) {
+    if (!has(all, link.not_exposed[n]))
+      return {{fmt::format("/not_exposed/{}", n),
+               fmt::format("node {} is not exposed, and no station has it", link.not_exposed[n])}};
   }
   return std::nullopt;
 }
@@ -123,26 +130,30 @@ Duration needed_by_item(const LinkDescription& link) {
   return octets(rules_at(link.bit_rate), kItemOctets);
 }
 
-std::optional<std::string> violation_of(const LinkDescription& link) {
+std::optional<config::Violation> violation_of(const LinkDescription& link) {
   if (auto violation = violation_of_stations(link)) return violation;
   if (link.macrocycle % kTick != Duration{})
-    return "the macrocycle is no multiple of 1/32 ms, in which link time counts";
+    return {{"/macrocycle", "the macrocycle is no multiple of 1/32 ms, in which link time counts"}};
   std::vector<std::uint8_t> all = link.masters;
   all.insert(all.end(), link.devices.begin(), link.devices.end());
   for (std::size_t n = 0; n < link.data.size(); ++n) {
     const DataDescription& item = link.data[n];
+    const std::string at = fmt::format("/data/{}", n);
     if (!has(all, item.from) || !has(all, item.to) || item.from == item.to)
-      return fmt::format("data from {} to {}: both are stations of the link, and two", item.from, item.to);
+      return {
+          {at + (has(all, item.from) ? "/to" : "/from"),
+           fmt::format("data from {} to {}: both are stations of the link, and two", item.from, item.to)}};
     if (link.profile == LinkProfile::isa && !has(link.devices, item.from))
-      return fmt::format("data from {}: the token is delegated to devices", item.from);
+      return {{at + "/from", fmt::format("data from {}: the token is delegated to devices", item.from)}};
     if (item.at % kTick != Duration{})
-      return "an instant is no multiple of 1/32 ms, in which link time counts";
+      return {{at + "/at", "an instant is no multiple of 1/32 ms, in which link time counts"}};
     const Time next = kernel::kStart + (n + 1 < link.data.size() ? link.data[n + 1].at : link.macrocycle);
     if (kernel::kStart + item.at + needed_by_item(link) > next) {
-      return fmt::format(
-          "data from {} at {}: an item of the schedule takes {}, and then the next one begins or "
-          "the macrocycle is over",
-          item.from, kernel::describe(item.at), kernel::describe(needed_by_item(link)));
+      return {{at + "/at",
+               fmt::format(
+                   "data from {} at {}: an item of the schedule takes {}, and then the next one begins or "
+                   "the macrocycle is over",
+                   item.from, kernel::describe(item.at), kernel::describe(needed_by_item(link)))}};
     }
   }
   return std::nullopt;

@@ -55,7 +55,7 @@ struct LinkDescription {
 };
 
 // The first thing in a description that no link has, as a sentence with what would be right.
-std::optional<std::string> violation_of(const LinkDescription& link);
+std::optional<config::Violation> violation_of(const LinkDescription& link);
 // What one item of the schedule needs until the next may begin.
 kernel::Duration needed_by_item(const LinkDescription& link);
 

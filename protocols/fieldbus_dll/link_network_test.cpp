@@ -387,7 +387,7 @@ TEST(LinkDescriptionTest, TheLargestLinkHas232Stations) {
   EXPECT_FALSE(violation_of(link).has_value());
   LinkDescription more = link;
   more.masters.push_back(0x0F);
-  EXPECT_NE(violation_of(more)->find("at most 232"), std::string::npos);
+  EXPECT_NE(violation_of(more)->sentence.find("at most 232"), std::string::npos);
 }
 
 }  // namespace

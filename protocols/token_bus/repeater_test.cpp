@@ -148,7 +148,7 @@ TEST(LongRing, NeedsASlotTimeThatHoldsItsPath) {
   EXPECT_EQ(needed_slot_octets(ring), 37U);  // 58.76 us
   EXPECT_FALSE(violation_of(ring));
   ring.rules.slot_time_octets = 36;
-  EXPECT_EQ(violation_of(ring).value_or(""),
+  EXPECT_EQ(violation_of(ring).value_or(config::Violation{}).sentence,
             "a slot time of 36 octets: a path of 9.280 us with 2 repeaters needs slot_time_octets of 37 at "
             "least, twice the path and the 20.000 us of a station");
   EXPECT_EQ(needed_slot_octets(RingDescription::built_in()), 26U);
@@ -158,7 +158,7 @@ TEST(LongRing, RefusesWhatNoLineIs) {
   const auto sentence = [](auto change) {
     RingDescription ring = long_ring();
     change(ring);
-    return violation_of(ring).value_or("");
+    return violation_of(ring).value_or(config::Violation{}).sentence;
   };
   EXPECT_NE(sentence([](RingDescription& ring) { ring.repeaters_m = {400}; }).find("a segment of 800 m"),
             std::string::npos);

@@ -150,7 +150,7 @@ TEST_F(TwoChannels, AreWhatCutsNeed) {
     RingDescription description = ring_of(4);
     description.cuts = {{Channel::a, {}, kMillisecond, 4}};
     change(description);
-    return violation_of(description).value_or("");
+    return violation_of(description).value_or(config::Violation{}).sentence;
   };
   EXPECT_EQ(sentence([](RingDescription&) {}), "");
   EXPECT_EQ(sentence([](RingDescription& ring) { ring.channels = 1; }),

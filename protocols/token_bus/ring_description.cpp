@@ -69,13 +69,16 @@ bool is_in(const std::vector<Address>& stations, Address address) {
   return std::ranges::find(stations, address) != stations.end();
 }
 
-std::optional<std::string> violation_of_stations(const RingDescription& ring) {
-  for (const Address address : ring.stations) {
+std::optional<config::Violation> violation_of_stations(const RingDescription& ring) {
+  for (std::size_t n = 0; n < ring.stations.size(); ++n) {
+    const Address address = ring.stations[n];
+    const std::string at = fmt::format("/stations/{}", n);
     if (address == 0 || is_group(address) || address > broadcast(ring.rules))
-      return fmt::format("station {}: an address is even, from 2 to 65534, because an odd one is a group's",
-                         address);
-    if (std::ranges::count(ring.stations, address) > 1)
-      return fmt::format("station {} is there twice; each has its own address", address);
+      return {
+          {at, fmt::format("station {}: an address is even, from 2 to 65534, because an odd one is a group's",
+                           address)}};
+    if (std::ranges::find(ring.stations, address) - ring.stations.begin() < static_cast<std::ptrdiff_t>(n))
+      return {{at, fmt::format("station {} is there twice; each has its own address", address)}};
   }
   return std::nullopt;
 }
@@ -93,55 +96,70 @@ std::optional<std::string> why_it_never_goes(const Rules& rules, const RingData&
                      rules.target_rotation_octets[place], text_of(data.service));
 }
 
-std::optional<std::string> violation_of_data(const RingDescription& ring, const RingData& data) {
-  if (!is_in(ring.stations, data.from) || !is_in(ring.stations, data.to) || data.from == data.to)
-    return fmt::format("data from {} to {}: write two different addresses of \"stations\"", data.from,
-                       data.to);
+std::optional<config::Violation> violation_of_data(const RingDescription& ring, std::size_t n) {
+  const RingData& data = ring.data[n];
+  const std::string at = fmt::format("/data/{}", n);
+  const std::string who = fmt::format("data from {} to {}", data.from, data.to);
+  const bool is_from_nobody = !is_in(ring.stations, data.from);
+  if (is_from_nobody || !is_in(ring.stations, data.to) || data.from == data.to)
+    return {
+        {at + (is_from_nobody ? "/from" : "/to"), who + ": write two different addresses of \"stations\""}};
   if (data.every != kernel::Duration{} && data.load != 0)
-    return fmt::format("data from {} to {}: they have a period or a load, not both", data.from, data.to);
+    return {{at + "/load", who + ": they have a period or a load, not both"}};
   if (const auto why = why_it_never_goes(ring.rules, data))
-    return fmt::format("data from {} to {} never go: {}", data.from, data.to, *why);
+    return {{at, fmt::format("{} never go: {}", who, *why)}};
   if (data.octets < kLeastDatum || data.octets > most_data(ring.rules))
-    return fmt::format("data from {} to {}: {} octets, and a frame carries {} to {}{}", data.from, data.to,
-                       data.octets, kLeastDatum, most_data(ring.rules),
-                       ring.repeaters_m.empty() ? "" : ", because a repeater cuts what is longer");
+    return {{at + "/octets",
+             fmt::format("{}: {} octets, and a frame carries {} to {}{}", who, data.octets, kLeastDatum,
+                         most_data(ring.rules),
+                         ring.repeaters_m.empty() ? "" : ", because a repeater cuts what is longer")}};
   return std::nullopt;
 }
 
-std::optional<std::string> violation_of_cuts(const RingDescription& ring) {
-  if (!ring.cuts.empty() && ring.channels != 2) return "a ring with \"cuts\" has \"channels\": 2";
+std::optional<config::Violation> violation_of_cuts(const RingDescription& ring) {
+  if (!ring.cuts.empty() && ring.channels != 2)
+    return {{"/channels", "a ring with \"cuts\" has \"channels\": 2"}};
   kernel::Duration repaired{};
-  for (const RingCut& cut : ring.cuts) {
+  for (std::size_t n = 0; n < ring.cuts.size(); ++n) {
+    const RingCut& cut = ring.cuts[n];
     if (!is_in(ring.stations, cut.after) || cut.after == ring.stations.back())
-      return fmt::format("a cut after station {}: write one of \"stations\" that is not the last", cut.after);
+      return {
+          {fmt::format("/cuts/{}/after", n),
+           fmt::format("a cut after station {}: write one of \"stations\" that is not the last", cut.after)}};
     if (cut.at < repaired)
-      return fmt::format("a cut at {}: the one before it is repaired at {}; cuts come one after the other",
-                         kernel::describe(cut.at), kernel::describe(repaired));
+      return {{fmt::format("/cuts/{}/at", n),
+               fmt::format("a cut at {}: the one before it is repaired at {}; cuts come one after the other",
+                           kernel::describe(cut.at), kernel::describe(repaired))}};
     repaired = cut.at + cut.lasts;
   }
   return std::nullopt;
 }
 
-std::optional<std::string> violation_of_cable(const RingDescription& ring) {
+std::optional<config::Violation> violation_of_cable(const RingDescription& ring) {
   double begin = 0;
   std::vector<double> ends = ring.repeaters_m;
   ends.push_back(ring.cable_m);
-  for (const double end : ends) {
+  for (std::size_t n = 0; n < ends.size(); ++n) {
+    const double end = ends[n];
     if (end < begin || (end == begin && ends.size() > 1))
-      return fmt::format("a repeater at {:g} m: they stand in the order of the cable, which ends at {:g} m",
-                         begin, ring.cable_m);
+      return {{fmt::format("/repeaters/{}", n == 0 ? 0 : n - 1),
+               fmt::format("a repeater at {:g} m: they stand in the order of the cable, which ends at {:g} m",
+                           begin, ring.cable_m)}};
     if (end - begin > ring.cable.longest_segment_m)
-      return fmt::format("a segment of {:g} m: {} m is the longest; put a repeater into it", end - begin,
-                         ring.cable.longest_segment_m);
+      return {{n + 1 < ends.size() ? fmt::format("/repeaters/{}", n) : "/cable",
+               fmt::format("a segment of {:g} m: {} m is the longest; put a repeater into it", end - begin,
+                           ring.cable.longest_segment_m)}};
     begin = end;
   }
   if (ring.rules.slot_time_octets < needed_slot_octets(ring))
-    return fmt::format(
-        "a slot time of {} octets: a path of {} with {} repeaters{} needs slot_time_octets of {} at least, "
-        "twice the path and the {} of a station",
-        ring.rules.slot_time_octets, kernel::describe(path_delay(ring)), ring.repeaters_m.size(),
-        ring.channels == 2 ? " and a selection of channels" : "", needed_slot_octets(ring),
-        kernel::describe(ring.cable.station_delay));
+    return {{"/slot_time_octets",
+             fmt::format("a slot time of {} octets: a path of {} with {} repeater{}{} needs slot_time_octets "
+                         "of {} at least, "
+                         "twice the path and the {} of a station",
+                         ring.rules.slot_time_octets, kernel::describe(path_delay(ring)),
+                         ring.repeaters_m.size(), ring.repeaters_m.size() == 1 ? "" : "s",
+                         ring.channels == 2 ? " and a selection of channels" : "", needed_slot_octets(ring),
+                         kernel::describe(ring.cable.station_delay))}};
   return std::nullopt;
 }
 
@@ -219,13 +237,13 @@ RingDescription RingDescription::load(const std::filesystem::path& path) {
   return read(document.root());
 }
 
-std::optional<std::string> violation_of(const RingDescription& ring) {
-  if (auto sentence = impossible(ring.rules)) return sentence;
-  if (auto sentence = violation_of_stations(ring)) return sentence;
-  if (auto sentence = violation_of_cuts(ring)) return sentence;
-  if (auto sentence = violation_of_cable(ring)) return sentence;
-  for (const RingData& data : ring.data) {
-    if (auto sentence = violation_of_data(ring, data)) return sentence;
+std::optional<config::Violation> violation_of(const RingDescription& ring) {
+  if (auto sentence = impossible(ring.rules)) return {{"", std::move(*sentence)}};
+  if (auto violation = violation_of_stations(ring)) return violation;
+  if (auto violation = violation_of_cuts(ring)) return violation;
+  if (auto violation = violation_of_cable(ring)) return violation;
+  for (std::size_t n = 0; n < ring.data.size(); ++n) {
+    if (auto violation = violation_of_data(ring, n)) return violation;
   }
   return std::nullopt;
 }

@@ -85,7 +85,7 @@ struct RingDescription {
 };
 
 // The first thing in a description that no ring has, as a sentence with what would be right.
-std::optional<std::string> violation_of(const RingDescription& ring);
+std::optional<config::Violation> violation_of(const RingDescription& ring);
 
 // ---- the line ----
 double position_m(const RingDescription& ring, std::size_t station);

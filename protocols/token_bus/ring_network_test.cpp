@@ -288,28 +288,44 @@ TEST(RingDescriptionReader, RefusesWhatIsNoRing) {
     return RingDescription::read(document.root());
   };
   EXPECT_EQ(read(R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})").stations.size(), 2U);
-  for (
-      const char* text :
-      {R"({"name": "", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})",
-       R"({"name": "a", "stations": [2], "data": [{"from": 2, "to": 4}]})",
-       R"({"name": "a", "stations": [2, 3], "data": [{"from": 2, "to": 3}]})",
-       R"({"name": "a", "stations": [2, 2], "data": [{"from": 2, "to": 2}]})",
-       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 6}]})",
-       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4}], "high_priority_hold_octets": 6})",
-       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "service": "bulk", "every": "1 s"}],
-            "target_rotation_octets": [9000, 9000, 0]})",
-       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 2}]})",
-       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 4}]})",
-       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 8183}]})",
-       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "every": "1 us"}]})",
-       R"({"name": "a", "stations": [2, 4], "data": [{"from": 2, "to": 4, "service": "slow"}]})",
-       R"({"name": "a", "stations": [2, 4],
-                               "data": [{"from": 2, "to": 4, "every": "1 ms", "load": "1 kbit/s"}]})",
-       R"({"name": "a", "stations": [2, 4], "slot_time_octets": 7,
-                               "data": [{"from": 2, "to": 4}]})",
-       R"({"name": "a", "stations": [2, 4], "data": []})"}) {
-    EXPECT_THROW(read(text), kernel::Error) << text;
+  struct Bad {
+    const char* place;
+    const char* rest;
+  };
+  for (const Bad& bad :
+       {Bad{"/stations", R"("stations": [2], "data": [{"from": 2, "to": 4}])"},
+        {"/stations/1", R"("stations": [2, 3], "data": [{"from": 2, "to": 3}])"},
+        {"/stations/1", R"("stations": [2, 2], "data": [{"from": 2, "to": 2}])"},
+        {"/data/0/to", R"("stations": [2, 4], "data": [{"from": 2, "to": 6}])"},
+        {"/data/1/from", R"("stations": [2, 4], "data": [{"from": 2, "to": 4}, {"from": 8, "to": 4}])"},
+        {"/data/0", R"("stations": [2, 4], "data": [{"from": 2, "to": 4}], "high_priority_hold_octets": 6)"},
+        {"/data/0", R"("stations": [2, 4], "data": [{"from": 2, "to": 4, "service": "bulk", "every": "1 s"}],
+                              "target_rotation_octets": [9000, 9000, 0])"},
+        {"/data/0/to", R"("stations": [2, 4], "data": [{"from": 2, "to": 2}])"},
+        {"/data/0/octets", R"("stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 4}])"},
+        {"/data/0/octets", R"("stations": [2, 4], "data": [{"from": 2, "to": 4, "octets": 8183}])"},
+        {"/data/0/every", R"("stations": [2, 4], "data": [{"from": 2, "to": 4, "every": "1 us"}])"},
+        {"/data/0/service", R"("stations": [2, 4], "data": [{"from": 2, "to": 4, "service": "slow"}])"},
+        {"/data/0/load", R"("stations": [2, 4],
+                              "data": [{"from": 2, "to": 4, "every": "1 ms", "load": "1 kbit/s"}])"},
+        {"/slot_time_octets", R"("stations": [2, 4], "slot_time_octets": 7, "data": [{"from": 2, "to": 4}])"},
+        {"/repeaters/1",
+         R"("stations": [2, 4], "cable": "800 m", "repeaters": ["400 m", "300 m"], "slot_time_octets": 90,
+                              "data": [{"from": 2, "to": 4}])"},
+        {"/cable",
+         R"("stations": [2, 4], "cable": "800 m", "slot_time_octets": 90, "data": [{"from": 2, "to": 4}])"},
+        {"/cuts/0/after", R"("stations": [2, 4], "channels": 2, "data": [{"from": 2, "to": 4}],
+                              "cuts": [{"channel": "A", "at": "0 s", "lasts": "1 s", "after": 4}])"},
+        {"/data", R"("stations": [2, 4], "data": [])"}}) {
+    try {
+      read(std::string(R"({"name": "a", )") + bad.rest + "}");
+      ADD_FAILURE() << bad.rest;
+    } catch (const kernel::Error& error) {
+      EXPECT_NE(std::string(error.what()).find(std::string(": ") + bad.place + ": "), std::string::npos)
+          << bad.rest << error.what();
+    }
   }
+  EXPECT_THROW(read(R"({"name": "", "stations": [2, 4], "data": [{"from": 2, "to": 4}]})"), kernel::Error);
 }
 
 }  // namespace

@@ -49,27 +49,32 @@ bool has(const NetworkDescription& network, unsigned address) {
   return std::ranges::find(network.nodes, address, &NodeDescription::address) != network.nodes.end();
 }
 
-std::optional<std::string> violation_of_nodes(const NetworkDescription& network) {
+std::optional<config::Violation> violation_of_nodes(const NetworkDescription& network) {
   const Rules& rules = network.rules;
   const unsigned most = rules.last_address - rules.first_address + 1;
   if (network.nodes.empty() || network.nodes.size() > most) {
-    return fmt::format("{} nodes: a bus has 1 to {}, because two decimal switches set addresses {} to {}",
-                       network.nodes.size(), most, rules.first_address, rules.last_address);
+    return {{"/nodes",
+             fmt::format("{} nodes: a bus has 1 to {}, because two decimal switches set addresses {} to {}",
+                         network.nodes.size(), most, rules.first_address, rules.last_address)}};
   }
   std::set<unsigned> seen;
   double before = 0;
-  for (const NodeDescription& node : network.nodes) {
+  for (std::size_t n = 0; n < network.nodes.size(); ++n) {
+    const NodeDescription& node = network.nodes[n];
+    const std::string at = fmt::format("/nodes/{}", n);
     if (node.address < rules.first_address || node.address > rules.last_address) {
-      return fmt::format("address {}: a node has one from {} to {}", node.address, rules.first_address,
-                         rules.last_address);
+      return {{at + "/address", fmt::format("address {}: a node has one from {} to {}", node.address,
+                                            rules.first_address, rules.last_address)}};
     }
     if (!seen.insert(node.address).second)
-      return fmt::format("address {} is there already; each node has its own", node.address);
+      return {
+          {at + "/address", fmt::format("address {} is there already; each node has its own", node.address)}};
     if (node.at_m < before || node.at_m > network.length_m) {
-      return fmt::format(
-          "the node with address {} lies at {} m; nodes are named in the order of the cable, "
-          "and it ends at {} m",
-          node.address, node.at_m, network.length_m);
+      return {
+          {at + "/at",
+           fmt::format("the node with address {} lies at {} m; nodes are named in the order of the cable, "
+                       "and it ends at {} m",
+                       node.address, node.at_m, network.length_m)}};
     }
     before = node.at_m;
   }
@@ -85,7 +90,7 @@ NetworkDescription NetworkDescription::even(unsigned dip, unsigned nodes, double
   network.length_m = length_m;
   network.nodes = spread_evenly(nodes, length_m);
   if (const auto violation = violation_of(network)) {
-    throw kernel::Error(kernel::ErrorKind::configuration, *violation);
+    throw kernel::Error(kernel::ErrorKind::configuration, violation->sentence);
   }
   network.rules.bit_rate = dip_bit_rates()[dip];
   return network;
@@ -140,26 +145,32 @@ NetworkDescription NetworkDescription::load(const std::filesystem::path& path) {
   return read(document.root());
 }
 
-std::optional<std::string> violation_of(const NetworkDescription& network) {
+std::optional<config::Violation> violation_of(const NetworkDescription& network) {
   if (network.dip >= dip_bit_rates().size()) {
-    return fmt::format("position {} of the bit-rate switches is none; positions 0 to {} are", network.dip,
-                       dip_bit_rates().size() - 1);
+    return {{"/bit_rate_switches",
+             fmt::format("position {} of the bit-rate switches is none; positions 0 to {} are", network.dip,
+                         dip_bit_rates().size() - 1)}};
   }
   if (auto violation = violation_of_nodes(network)) return violation;
   const Rules& rules = network.rules;
   const double segments = 1 + repeaters_before(rules, network.nodes.size() - 1);
   if (network.length_m > rules.max_length_m * segments) {
-    return fmt::format("a cable of {} m: {:g} segments of RS-485 reach {:g} m ({} m each, {} unit loads)",
-                       network.length_m, segments, rules.max_length_m * segments, rules.max_length_m,
-                       rules.unit_loads);
+    return {{"/cable",
+             fmt::format("a cable of {} m: {:g} segments of RS-485 reach {:g} m ({} m each, {} unit loads)",
+                         network.length_m, segments, rules.max_length_m * segments, rules.max_length_m,
+                         rules.unit_loads)}};
   }
   std::set<unsigned> written;
-  for (const CopyRule& rule : network.copy) {
-    for (const unsigned address : {rule.from, rule.to}) {
-      if (!has(network, address)) return fmt::format("a copy names address {}, which no node has", address);
+  for (std::size_t n = 0; n < network.copy.size(); ++n) {
+    const CopyRule& rule = network.copy[n];
+    for (const auto& [key, address] : {std::pair{"from", rule.from}, std::pair{"to", rule.to}}) {
+      if (!has(network, address))
+        return {{fmt::format("/copy/{}/{}", n, key),
+                 fmt::format("a copy names address {}, which no node has", address)}};
     }
     if (!written.insert(rule.to).second)
-      return fmt::format("the valves of address {} are written by two copies; leave one", rule.to);
+      return {{fmt::format("/copy/{}/to", n),
+               fmt::format("the valves of address {} are written by two copies; leave one", rule.to)}};
   }
   return std::nullopt;
 }

@@ -51,7 +51,7 @@ struct NetworkDescription {
 };
 
 // The first thing in a description that no bus has, as a sentence with what would be right.
-std::optional<std::string> violation_of(const NetworkDescription& network);
+std::optional<config::Violation> violation_of(const NetworkDescription& network);
 
 // Repeaters between the host and the node with this index: after each 30 nodes (31 on the host's segment).
 unsigned repeaters_before(const Rules& rules, std::size_t node);
