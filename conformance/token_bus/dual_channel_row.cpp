@@ -18,7 +18,7 @@ RoleRow channel_manager_row() {
       {.what = "channel manager of the token bus", .mutants = channel_manager_mutants},
       Cases{.name = "channel_manager",
             .cases = manager_cases,
-            .check = expect_whole_half_bits<ManagerCase, ManagerSetting>,
+            .check = expect_judgeable_sides<ManagerCase, ManagerSetting>,
             .pics_items = [] { return field::pics_items_of(token_bus::kChannelManagerTable); },
             .usual_answers = [] { return field::declared_by(token_bus::kChannelManagerTable, {}); },
             .settings = &token_bus::kChannelManagerTable,

@@ -8,6 +8,7 @@
 #include "conformance/sequence_settings.hpp"
 #include "conformance/token_bus/driven_frames.hpp"
 #include "conformance/token_bus/dual_channel_cases.hpp"
+#include "conformance/token_bus/judgeable_rules.hpp"
 #include "conformance/token_bus/sides_sequence.hpp"
 #include "protocols/token_bus/dual_channel.hpp"
 #include "protocols/token_bus/dual_channel_settings.hpp"
@@ -88,7 +89,10 @@ SequenceVocabulary channel_manager_vocabulary() {
                 {.word = "power", .meaning = "the supply is switched off and on"}},
       .unit = "symbol",
       .levels_per_unit = 2,
-      .settings = sequence_settings(token_bus::kChannelManagerTable, &as_made)};
+      .settings = sequence_settings(token_bus::kChannelManagerTable, &as_made),
+      .objection = objection_of(
+          token_bus::kChannelManagerTable, as_made,
+          +[](const token_bus::ChannelManagerConfiguration& one) { expect_whole_half_bits(one.rules); })};
 }
 
 std::string framed(std::int64_t content, bool more_follows = false) {

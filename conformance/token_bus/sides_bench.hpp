@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -12,8 +10,8 @@
 
 #include "conformance/case_bench.hpp"
 #include "conformance/running_case.hpp"
+#include "conformance/token_bus/judgeable_rules.hpp"
 #include "harness/field/pics.hpp"
-#include "harness/kernel/error.hpp"
 #include "protocols/token_bus/rules.hpp"
 
 // The bench of an implementation whose ports are circuits between two chips: testers at the other end of
@@ -31,19 +29,12 @@ Configuration sides_configuration(const Needs& needs, const Setting& setting,
   return configuration;
 }
 
-// Throws kernel::Error(configuration) where half bits of the declared rate are no whole number of
-// picoseconds: what begins at the very limit of a time, as cases let it, would be rounded to either side.
+// Throws kernel::Error for declared numbers that cannot be judged.
 template <typename Case, typename Setting>
-void expect_whole_half_bits(const Case&, const Setting& setting, const RunningCase&) {
-  const std::int64_t usual = token_bus::Rules{}.phy_bit_rate;
-  const std::int64_t rate = setting.pics.value_or(judge::Pics{}).number("phy_bit_rate", usual);
-  if (kernel::kSecond.count() % (2 * rate) == 0) return;
-  throw kernel::Error(
-      kernel::ErrorKind::configuration,
-      fmt::format(
-          "at a \"phy_bit_rate\" of {} bit/s a half bit is no whole number of picoseconds; declare one "
-          "that divides 500 GHz, as 10000000 does",
-          rate));
+void expect_judgeable_sides(const Case&, const Setting& setting, const RunningCase&) {
+  token_bus::Rules rules;
+  rules.phy_bit_rate = setting.pics.value_or(judge::Pics{}).number("phy_bit_rate", rules.phy_bit_rate);
+  expect_whole_half_bits(rules);
 }
 
 template <typename Device, typename Configuration>

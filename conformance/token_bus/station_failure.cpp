@@ -63,6 +63,8 @@ std::vector<TokenStep> becomes_faulty() {
 template <unsigned limit>
 void fault_limit(token_bus::StationConfiguration& configuration, kernel::Random&) {
   configuration.rules.transmitter_fault_limit = limit;
+  // No window is due before the last of them.
+  configuration.rules.max_inter_solicit_count = 255;
 }
 
 TokenStep reports_each_joining() {

@@ -127,7 +127,10 @@ std::vector<TokenCase> token_line_cases() {
                              {drive("a token for the station that has lost one to fifteen bits of its "
                                     "preamble, in turn",
                                     without_front),
-                              passes_on(), taken()})}}),
+                              passes_on(), taken()})}},
+          // No window is due meanwhile.
+          {.adjust = [](token_bus::StationConfiguration& one,
+                        kernel::Random&) { one.rules.max_inter_solicit_count = 255; }}),
       on_chart(token_must("line/four_frames_in_one_transmission", "TB-34",
                           "Each frame of a transmission is received; the last says that no other follows.",
                           standard("end delimiter"), {{"two_frames_only", "not_delivered"}}),

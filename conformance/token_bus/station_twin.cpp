@@ -66,6 +66,10 @@ Observations TokenTwin::frames() const {
   return frames_of(driven_.all());
 }
 
+kernel::Time TokenTwin::last_begin() const {
+  return driven_.all().empty() ? kernel::kStart : driven_.all().back().begin;
+}
+
 Observations TokenTwin::indications() const {
   return indications_of(user_, rules_);
 }

@@ -22,6 +22,8 @@ class TokenTwin final : private segment::Tap, private segment::Station {
 
   // What it has driven, and what it has reported to its user.
   Observations frames() const;
+  // When it has begun to drive the last of these.
+  kernel::Time last_begin() const;
   Observations indications() const;
 
  private:

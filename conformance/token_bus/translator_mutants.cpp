@@ -76,12 +76,11 @@ std::vector<TranslatorMutant> locking_rows() {
 
 std::vector<TranslatorMutant> decoding_rows() {
   using namespace translator_seeded_faults;
-  using Blocks = TranslatorBlocks;
   return {
       {"carrier_ignored", "", "does not look at CARRIER_STATUS",
-       with_block<&Blocks::receiver, LooksAtLess<true>>()},
+       with_block<&TranslatorBlocks::receiver, LooksAtLess<true>>()},
       {"error_not_looked_at", "", "does not look at SIGNAL_STATUS",
-       with_block<&Blocks::receiver, LooksAtLess<false>>()},
+       with_block<&TranslatorBlocks::receiver, LooksAtLess<false>>()},
       {"error_is_silence", "TB-28", "indicates silence for a signal error",
        with_indications(error_is_silence)},
       {"cut_pair_is_silence", "", "indicates silence for a pair whose second bit is missing",
@@ -95,9 +94,9 @@ std::vector<TranslatorMutant> decoding_rows() {
       {"non_data_pair_read_swapped", "TB-25", "has CD0,CD0 for the first non_data",
        with_indications(non_data_pair_read_swapped)},
       {"error_loses_the_lock", "", "indicates bad_signal from a signal error to the next silence",
-       with_block<&Blocks::receiver, ErrorLosesTheLock>()},
+       with_block<&TranslatorBlocks::receiver, ErrorLosesTheLock>()},
       {"deaf_after_error", "", "indicates nothing after a collision",
-       with_block<&Blocks::receiver, DeafAfterError>()},
+       with_block<&TranslatorBlocks::receiver, DeafAfterError>()},
   };
 }
 

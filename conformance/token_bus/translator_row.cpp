@@ -17,7 +17,7 @@ RoleRow translator_row() {
       {.what = "translator of the token bus", .mutants = translator_mutants},
       Cases{.name = "translator",
             .cases = translator_cases,
-            .check = expect_whole_half_bits<TranslatorCase, TranslatorSetting>,
+            .check = expect_judgeable_sides<TranslatorCase, TranslatorSetting>,
             .pics_items = [] { return field::pics_items_of(token_bus::kTranslatorTable); },
             .usual_answers = [] { return field::declared_by(token_bus::kTranslatorTable, {}); },
             .settings = &token_bus::kTranslatorTable,

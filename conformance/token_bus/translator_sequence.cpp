@@ -2,6 +2,7 @@
 
 #include "conformance/sequence_settings.hpp"
 #include "conformance/token_bus/driven_frames.hpp"
+#include "conformance/token_bus/judgeable_rules.hpp"
 #include "conformance/token_bus/sides_sequence.hpp"
 #include "conformance/token_bus/translator_cases.hpp"
 #include "protocols/token_bus/translator.hpp"
@@ -72,7 +73,10 @@ SequenceVocabulary translator_vocabulary() {
            {.word = "power", .meaning = "the supply is switched off and on"}},
       .unit = "bit",
       .levels_per_unit = 3,
-      .settings = sequence_settings(token_bus::kTranslatorTable, &as_made)};
+      .settings = sequence_settings(token_bus::kTranslatorTable, &as_made),
+      .objection = objection_of(
+          token_bus::kTranslatorTable, as_made,
+          +[](const token_bus::TranslatorConfiguration& one) { expect_whole_half_bits(one.rules); })};
 }
 
 std::string translated_frame(std::int64_t content, bool more_follows = false) {
