@@ -277,6 +277,38 @@ TEST_F(Attachments, InterbusMasterInPythonPassesInTelegrams) {
   expect_passes("master=" + uri, "interbus/network/");
 }
 
+// Written from the pages of the roles; each of their faults is found by the case that it names.
+class TokenBusInPython : public Attachments, public testing::WithParamInterface<const char*> {};
+
+TEST_P(TokenBusInPython, PassesAndBreaksAsItsFaultsSay) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const std::string role = GetParam();
+  const fs::path file = kSourceFolder / "examples/token_bus" / (role + ".py");
+  const std::string program = in_quotes(python) + " " + in_quotes(file);
+  const std::string suite = "token_bus/" + role + "/";
+  // What a sanitizer looks at is the same in each case.
+  if (!kernel::kIsSanitized) expect_passes("exec:" + program, suite);
+  const std::unique_ptr<FILE, int (*)(FILE*)> list(popen((program + " --list-faults").c_str(), "r"), pclose);
+  ASSERT_NE(list, nullptr);
+  std::array<char, 256> line{};
+  unsigned faults = 0;
+  for (kernel::FewerIfSanitized few(4); std::fgets(line.data(), line.size(), list.get()) != nullptr;) {
+    std::istringstream words(line.data());
+    std::string name;
+    std::string test_case;
+    words >> name >> test_case;
+    ++faults;
+    if (few.leaves_out()) continue;
+    const Cases cases = judged("exec:" + program + " --fault " + name, test_case, {}, {}, suite);
+    EXPECT_EQ(cases.at(test_case).verdict, "fail") << name;
+  }
+  EXPECT_GE(faults, 7U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Roles, TokenBusInPython, testing::Values("station", "translator", "channel_manager"),
+                         [](const auto& one) { return std::string(one.param); });
+
 // It hears frames; no case of its role drives anything else.
 TEST_F(Attachments, FfDeviceInPythonPasses) {
   const std::string python = installed("python3");

@@ -103,8 +103,13 @@ def serve(role, make, asks_for=b""):
 
 def implementation(faults, faultless):
     """What the command line asks for: `faultless`, or with --fault NAME what faults[NAME] has, (class, what it does,
-    the case that finds it)."""
+    the case that finds it). --list-faults prints these."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--fault", choices=faults, help="; ".join(f"{name}: {row[1]}" for name, row in faults.items()))
-    fault = parser.parse_args().fault
-    return faults[fault][0] if fault else faultless
+    parser.add_argument("--list-faults", action="store_true", help="name, case that finds it, what it does")
+    asked = parser.parse_args()
+    if asked.list_faults:
+        for name, (_, what, case) in faults.items():
+            print(name, case, what)
+        sys.exit(0)
+    return faults[asked.fault][0] if asked.fault else faultless
