@@ -20,6 +20,10 @@ std::vector<ManagerCase> manager_management_cases();
 std::vector<ManagerCase> manager_selection_cases();
 std::vector<ManagerCase> manager_inside_cases();
 std::vector<ManagerCase> manager_fault_cases();
+std::vector<ManagerCase> manager_limit_cases();
+std::vector<ManagerCase> manager_verdict_cases();
+std::vector<ManagerCase> manager_symbol_cases();
+std::vector<ManagerCase> manager_series_cases();
 std::vector<ManagerCase> manager_ring_cases();
 
 }  // namespace fieldproof::conformance

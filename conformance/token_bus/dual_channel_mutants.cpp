@@ -18,17 +18,19 @@ auto with_selection(More... more) {
                                             std::make_unique<Selection>(configuration, more...));
   };
 }
-auto with_errors_in_a_row(unsigned count) {
-  return [count](ChannelManagerConfiguration configuration) {
-    configuration.channels.errors_in_a_row = count;
+// The reference with settings of its own.
+template <typename Change>
+auto with_settings(Change change) {
+  return [change](ChannelManagerConfiguration configuration) {
+    change(configuration);
     return std::make_unique<ChannelManager>(configuration);
   };
 }
+auto with_errors_in_a_row(unsigned count) {
+  return with_settings([count](auto& configuration) { configuration.channels.errors_in_a_row = count; });
+}
 auto with_clean_in_a_row(unsigned count) {
-  return [count](ChannelManagerConfiguration configuration) {
-    configuration.channels.clean_in_a_row = count;
-    return std::make_unique<ChannelManager>(configuration);
-  };
+  return with_settings([count](auto& configuration) { configuration.channels.clean_in_a_row = count; });
 }
 // After so many slot times and symbols without a start delimiter.
 auto missing_after(std::int64_t slot_times, std::int64_t symbols) {
@@ -165,6 +167,62 @@ std::vector<ManagerMutant> fault_rows() {
   };
 }
 
+// Limits that are a symbol off, what is counted beside what, and settings that are not looked at.
+std::vector<ManagerMutant> count_rows() {
+  using namespace dual_channel_seeded_faults;
+  return {
+      {"skew_a_symbol_long", "", "waits a symbol too long for the preferred channel",
+       with_selection<WaitsForMore>(1)},
+      {"skew_a_symbol_short", "", "waits a symbol too short for the preferred channel",
+       with_selection<WaitsForMore>(-1)},
+      {"slot_a_symbol_long", "", "misses a start delimiter a symbol too late", missing_after(1, 1)},
+      {"slot_a_symbol_short", "", "misses a start delimiter a symbol too early", missing_after(1, -1)},
+      {"collisions_a_symbol_long", "", "has a collision a symbol more than the skew apart",
+       with_selection<CollidesForMore>(1)},
+      {"collisions_a_symbol_short", "", "has a collision a symbol less than the skew apart alone",
+       with_selection<CollidesForMore>(-1)},
+      {"bad_signal_a_symbol_long", "", "finds a fault in bad_signal a symbol after the slot time",
+       with_selection<CountsBadSignalForMore>(1)},
+      {"bad_signal_a_symbol_short", "", "finds no fault in bad_signal in the last symbol of the slot time",
+       with_selection<CountsBadSignalForMore>(-1)},
+      {"misses_within_a_frame", "", "misses a start delimiter within a frame",
+       with_selection<MissesWithinFrames>()},
+      {"start_delimiter_of_six", "", "takes six symbols for a start delimiter",
+       mutant<ReadsOtherwise>(end_start_delimiters)},
+      {"ends_with_silence_alone", "", "does not end a transmission with its end delimiter",
+       mutant<ReadsOtherwise>(set_all_i)},
+      {"circuit_that_is_anything_is_looked_at", "",
+       "takes a symbol for another by a circuit that is anything",
+       mutant<ReadsOtherwise>(look_at_any_circuit)},
+      {"both_spoiled_ends_a_row", "", "counts errors anew after what both channels spoil",
+       with_selection<CountsErrorsOtherwise>(errors_until_both)},
+      {"neither_ends_a_row", "", "counts errors anew after an E bit of 1",
+       with_selection<CountsErrorsOtherwise>(errors_until_neither)},
+      {"error_beside_neither_counts", "", "counts an error where the other channel has an E bit of 1",
+       with_selection<CountsErrorsOtherwise>(errors_beside_neither)},
+      {"neither_is_clean", "", "counts a frame with an E bit of 1 as clean",
+       with_selection<CountsCleanOtherwise>(neither_is_clean)},
+      {"neither_begins_clean_ones_anew", "", "counts clean ones anew after an E bit of 1",
+       with_selection<CountsCleanOtherwise>(clean_until_neither)},
+      {"knows_no_most_octets", "", "has no frame that is too long",
+       with_settings([](auto& configuration) { configuration.rules.most_octets = Rules{}.most_octets; })},
+      {"takes_all_addresses_for_short", "", "takes frames for whole that are too short with 48 bits",
+       with_settings(
+           [](auto& configuration) { configuration.rules.address_length = AddressLength::bits_16; })},
+      {"counts_in_four_bits", "", "keeps the settings of its counts in four bits",
+       with_settings([](auto& configuration) {
+         configuration.channels.errors_in_a_row &= 15U;
+         configuration.channels.clean_in_a_row &= 15U;
+       })},
+      {"knows_no_slot_time", "", "counts with the usual slot time, whatever is set",
+       with_settings(
+           [](auto& configuration) { configuration.rules.slot_time_octets = Rules{}.slot_time_octets; })},
+      {"knows_no_skew", "", "counts with the usual skew, whatever is set",
+       with_settings(
+           [](auto& configuration) { configuration.channels.skew_symbols = ChannelRules{}.skew_symbols; })},
+  };
+}
+
 std::vector<ManagerMutant> manager_check_rows() {
   using namespace dual_channel_seeded_faults;
   return ChannelManagerMutants::for_check({
@@ -178,8 +236,8 @@ std::vector<ManagerMutant> manager_check_rows() {
 }  // namespace
 
 const ChannelManagerMutants& channel_manager_mutants() {
-  static const ChannelManagerMutants table(
-      "channel_manager", {request_rows, selection_rows, inside_rows, fault_rows, manager_check_rows});
+  static const ChannelManagerMutants table("channel_manager", {request_rows, selection_rows, inside_rows,
+                                                               fault_rows, count_rows, manager_check_rows});
   return table;
 }
 

@@ -82,6 +82,12 @@ void ManagerScene::expect_events(const std::vector<std::string>& events, std::st
   judge.expect(bench.events() == events, reason, written(events), written(bench.events()));
 }
 
+void ManagerScene::expect_event_of(Channel channel, std::string_view kind, std::string_view reason) {
+  expect_events(kind.empty() ? std::vector<std::string>{}
+                             : std::vector<std::string>{fmt::format("{}: {}", text_of(channel), kind)},
+                reason);
+}
+
 void ManagerScene::expect_on_both_channels(const std::string& symbols, std::string_view reason) {
   bench.settle();
   for (const Channel channel : token_bus::kChannels) {

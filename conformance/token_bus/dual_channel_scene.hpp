@@ -40,6 +40,18 @@ struct ManagerScene : Scene<ManagerBench> {
     const std::string one = frame();
     carry({one}, {one});
   }
+  // `here` carries the one, the other channel the other.
+  void carry_from(Channel here, ChannelText on_it, ChannelText on_the_other) {
+    if (here == Channel::b) std::swap(on_it, on_the_other);
+    carry(std::move(on_it), std::move(on_the_other));
+  }
+  // Each channel in turn.
+  Channel here() const { return token_bus::kChannels.at(round % 2); }
+  // The other channel is preferred from then on.
+  void prefer(Channel channel) {
+    power_anew();
+    if (channel == Channel::b) carry_on(channel);
+  }
   void carry_on(Channel channel) { channel == Channel::a ? carry({frame()}, {}) : carry({}, {frame()}); }
   // Off, and on again: channel A is preferred, and nothing is known of either.
   void power_anew();
@@ -50,9 +62,15 @@ struct ManagerScene : Scene<ManagerBench> {
   // From its start delimiter on.
   void expect_from_delimiter_of(Channel channel, std::string_view reason);
   void expect_indicated(const std::string& symbols, std::string_view reason);
+  // "clean again" of the channel; nothing where the kind is empty.
+  void expect_event_of(Channel channel, std::string_view kind, std::string_view reason);
   void expect_events(const std::vector<std::string>& events, std::string_view reason);
   void expect_on_both_channels(const std::string& symbols, std::string_view reason);
 };
+
+// Symbols in front of the octets: the preamble of what testers drive, and a start delimiter.
+inline constexpr std::int64_t kManagerPreamble = 32;
+inline constexpr std::size_t kManagerHead = 40;
 
 using ManagerStep = ChartStep<ManagerScene>;
 

@@ -73,6 +73,47 @@ class BeginsOtherwise final : public ChannelSelection {
   }
 };
 
+// ---- the selection: limits that are some symbols off ----
+
+class WaitsForMore final : public ChannelSelection {
+ public:
+  WaitsForMore(const ChannelManagerConfiguration& of, std::int64_t symbols)
+      : ChannelSelection(of.rules, of.channels), more_(mac_symbols(of.rules, symbols)) {}
+
+ private:
+  kernel::Duration waits_for_preferred() const override { return skew() + more_; }
+
+  kernel::Duration more_;
+};
+
+class CountsBadSignalForMore final : public ChannelSelection {
+ public:
+  CountsBadSignalForMore(const ChannelManagerConfiguration& of, std::int64_t symbols)
+      : ChannelSelection(of.rules, of.channels), more_(mac_symbols(of.rules, symbols)) {}
+
+ private:
+  kernel::Duration bad_signal_counts_for() const override { return slot() + more_; }
+
+  kernel::Duration more_;
+};
+
+// The selection keeps to the skew.
+class CollidesForMore final : public ChannelSelection {
+ public:
+  CollidesForMore(const ChannelManagerConfiguration& of, int symbols)
+      : ChannelSelection(of.rules, with_skew_of(of.channels, symbols)),
+        waits_(mac_symbols(of.rules, of.channels.skew_symbols)) {}
+
+ private:
+  static ChannelRules with_skew_of(ChannelRules rules, int more) {
+    rules.skew_symbols = static_cast<unsigned>(static_cast<int>(rules.skew_symbols) + more);
+    return rules;
+  }
+  kernel::Duration waits_for_preferred() const override { return waits_; }
+
+  kernel::Duration waits_;
+};
+
 // ---- the selection: faults ----
 
 class MissingOtherwise final : public ChannelSelection {
@@ -84,6 +125,15 @@ class MissingOtherwise final : public ChannelSelection {
   kernel::Duration missing_after() const override { return after_; }
 
   kernel::Duration after_;
+};
+
+class MissesWithinFrames final : public ChannelSelection {
+ public:
+  explicit MissesWithinFrames(const ChannelManagerConfiguration& of)
+      : ChannelSelection(of.rules, of.channels) {}
+
+ private:
+  bool is_missed_by(Channel, kernel::Time) const override { return true; }
 };
 
 // By whether the other channel has bad_signal, too.
@@ -139,6 +189,19 @@ inline unsigned errors_of_senders_too(unsigned errors, Carried carried, Carried 
   return other == Carried::clean ? errors + 1 : errors;
 }
 
+inline unsigned errors_until_both(unsigned errors, Carried carried, Carried other) {
+  if (carried == Carried::clean || (carried == Carried::spoiled && other == Carried::spoiled)) return 0;
+  return carried == Carried::spoiled && other == Carried::clean ? errors + 1 : errors;
+}
+inline unsigned errors_until_neither(unsigned errors, Carried carried, Carried other) {
+  if (carried != Carried::spoiled) return 0;
+  return other == Carried::clean ? errors + 1 : errors;
+}
+inline unsigned errors_beside_neither(unsigned errors, Carried carried, Carried other) {
+  if (carried == Carried::clean) return 0;
+  return carried == Carried::spoiled && other != Carried::spoiled ? errors + 1 : errors;
+}
+
 using Clean = unsigned (*)(unsigned clean, Carried carried);
 
 class CountsCleanOtherwise final : public ChannelSelection {
@@ -159,6 +222,13 @@ inline unsigned clean_whatever_it_is(unsigned clean, Carried) {
 }
 inline unsigned clean_for_ever(unsigned clean, Carried carried) {
   return carried == Carried::clean ? clean + 1 : clean;
+}
+
+inline unsigned neither_is_clean(unsigned clean, Carried carried) {
+  return carried == Carried::spoiled ? 0 : clean + 1;
+}
+inline unsigned clean_until_neither(unsigned clean, Carried carried) {
+  return carried == Carried::clean ? clean + 1 : 0;
 }
 
 using Reported = ChannelEvent (*)(ChannelEvent right);
@@ -377,6 +447,43 @@ class TakesApart final : public ChannelManager {
   std::size_t lost_;
   std::size_t most_;
 };
+
+// The symbols of a channel, as the text of their levels.
+using Rewrite = void (*)(std::string& levels);
+
+class ReadsOtherwise final : public ChannelManager {
+ public:
+  ReadsOtherwise(const ChannelManagerConfiguration& configuration, Rewrite rewrite)
+      : ChannelManager(configuration), rewrite_(rewrite) {}
+
+ private:
+  void receive(segment::PortIndex port, const line::Waveform& reception) override {
+    std::string levels = reception.levels.text();
+    if (port != kTowardsMac) rewrite_(levels);
+    ChannelManager::receive(port, {reception.start, reception.rate, line::Levels::of_text(levels)});
+  }
+
+  Rewrite rewrite_;
+};
+inline void put_behind(std::string& levels, std::string_view what, std::string_view then) {
+  for (std::size_t at = levels.find(what); at != std::string::npos; at = levels.find(what, at + 1)) {
+    const std::size_t behind = at + what.size();
+    if (at % kUnitLevels == 0 && behind + then.size() <= levels.size())
+      levels.replace(behind, then.size(), then);
+  }
+}
+inline void end_start_delimiters(std::string& levels) {
+  put_behind(levels, "110011001000110011001000", "10001000");
+}
+inline void set_all_i(std::string& levels) {
+  put_behind(levels, "110011001001110011001001", "1001");
+}
+inline void look_at_any_circuit(std::string& levels) {
+  for (std::size_t at = 0; at + kUnitLevels <= levels.size(); at += kUnitLevels) {
+    const std::string_view unit = std::string_view(levels).substr(at, kUnitLevels);
+    if (unit == "1101" || unit == "1011") levels.replace(at, kUnitLevels, "1001");
+  }
+}
 
 class RemembersChannels final : public ChannelManager {
   using ChannelManager::ChannelManager;

@@ -12,7 +12,7 @@ namespace {
 using namespace token_bus;
 using namespace translator_seeded_faults;
 using Rows = std::vector<TranslatorMutants::Row>;
-using Blocks = TranslatorBlocks;
+using EdgeBlocks = TranslatorBlocks;
 
 template <typename Change>
 auto with_settings(Change change) {
@@ -51,7 +51,7 @@ auto with_mask_of(MaskOtherwise::Length length) {
 template <auto block>
 auto with_commands_that_reset() {
   return [](const TranslatorConfiguration& configuration) {
-    Blocks blocks;
+    EdgeBlocks blocks;
     auto& one = *(blocks.*block);
     blocks.manager = std::make_unique<CommandResets<std::remove_reference_t<decltype(one)>>>(one);
     return std::make_unique<Translator>(configuration, std::move(blocks));
@@ -105,37 +105,37 @@ Rows clock_rows() {
 Rows receiver_rows() {
   return {
       {"silent_until_it_is_locked", "", "indicates no symbol until its phase is sure",
-       with_block<&Blocks::receiver, SilentUntilLocked>()},
+       with_block<&EdgeBlocks::receiver, SilentUntilLocked>()},
       {"third_pair_is_bad_signal", "", "takes two pairs of non_data in a row at most",
-       with_block<&Blocks::receiver, ThirdPairIsBadSignal>()},
+       with_block<&EdgeBlocks::receiver, ThirdPairIsBadSignal>()},
       {"due_until_it_comes", "", "awaits the second non_data over other symbols",
-       with_block<&Blocks::receiver, DueOtherwise>(due_until_it_comes)},
+       with_block<&EdgeBlocks::receiver, DueOtherwise>(due_until_it_comes)},
       {"no_blanking_after_an_error", "", "blanks nothing where E is 1",
-       with_block<&Blocks::blanking, NoBlankingAfterAnError>()},
+       with_block<&EdgeBlocks::blanking, NoBlankingAfterAnError>()},
       {"blanking_outlives_reset", "", "goes on with its blanking after RESET and a failure of the supply",
-       with_block<&Blocks::blanking, BlankingOutlivesReset>()},
+       with_block<&EdgeBlocks::blanking, BlankingOutlivesReset>()},
       {"short_end_delimiter", "", "takes half an end delimiter for one",
-       with_block<&Blocks::blanking, ShortEndDelimiter>()},
+       with_block<&EdgeBlocks::blanking, ShortEndDelimiter>()},
       {"end_delimiter_over_silence", "", "takes an end delimiter with silence in it for one",
-       with_block<&Blocks::blanking, EndDelimiterOverSilence>()},
+       with_block<&EdgeBlocks::blanking, EndDelimiterOverSilence>()},
       {"bad_signal_within_blanking", "", "indicates bad_signal in its blanking",
-       with_block<&Blocks::blanking, BadSignalWithinBlanking>()},
+       with_block<&EdgeBlocks::blanking, BadSignalWithinBlanking>()},
       {"blanks_while_carrier", "", "blanks as long as there is anything",
-       with_block<&Blocks::blanking, BlanksWhileCarrier>()},
+       with_block<&EdgeBlocks::blanking, BlanksWhileCarrier>()},
       {"blanking_ends_with_silence", "", "ends its blanking when the line is silent",
-       with_block<&Blocks::blanking, BlankingEndsWithSilence>()},
+       with_block<&EdgeBlocks::blanking, BlankingEndsWithSilence>()},
       {"command_ends_blanking", "", "ends its blanking by any command",
-       with_commands_that_reset<&Blocks::blanking>()},
+       with_commands_that_reset<&EdgeBlocks::blanking>()},
       {"command_loses_the_phase", "", "forgets its phase by any command",
-       with_commands_that_reset<&Blocks::receiver>()},
+       with_commands_that_reset<&EdgeBlocks::receiver>()},
   };
 }
 
 auto with_blanking_of(unsigned symbols) {
-  return with_block<&Blocks::blanking, BlankingOtherwise>(symbols);
+  return with_block<&EdgeBlocks::blanking, BlankingOtherwise>(symbols);
 }
 auto with_jabber_of(unsigned symbols) {
-  return with_block<&Blocks::jabber, JabberOtherwise>(symbols);
+  return with_block<&EdgeBlocks::jabber, JabberOtherwise>(symbols);
 }
 
 Rows number_rows() {
@@ -196,27 +196,28 @@ Rows translator_circuit_rows() {
       {"answers_too_late", "", "answers 60 us late",
        mutant<DrivesOtherwise>(as_it_is, 60 * kernel::kMicrosecond)},
       {"enable_toggles", "", "disables its transmitter by a second ENABLE TRANSMITTER",
-       with_block<&Blocks::manager, EnableToggles>()},
+       with_block<&EdgeBlocks::manager, EnableToggles>()},
       {"disable_toggles", "", "loops back by a second DISABLE LOOPBACK",
-       with_block<&Blocks::manager, DisableToggles>()},
+       with_block<&EdgeBlocks::manager, DisableToggles>()},
       {"enable_disables_loopback", "", "ends loopback by ENABLE TRANSMITTER",
-       with_block<&Blocks::manager, EnableDisablesLoopback>()},
+       with_block<&EdgeBlocks::manager, EnableDisablesLoopback>()},
       {"on_the_line_at_power_up", "", "is on the line from power-up",
-       with_block<&Blocks::manager, OnTheLineAtPowerUp>()},
+       with_block<&EdgeBlocks::manager, OnTheLineAtPowerUp>()},
       {"enabled_after_a_jabber", "", "sends again after ENABLE TRANSMITTER though it has jabbered",
-       with_block<&Blocks::manager, EnabledAfterAJabber>()},
+       with_block<&EdgeBlocks::manager, EnabledAfterAJabber>()},
       {"disable_refused_after_a_jabber", "", "refuses DISABLE LOOPBACK after a jabber",
-       with_block<&Blocks::manager, AnswersOtherwise>(disable_refused_after_jabber)},
-      {"jabber_loops_back", "", "loops back after a jabber", with_block<&Blocks::manager, JabberLoopsBack>()},
+       with_block<&EdgeBlocks::manager, AnswersOtherwise>(disable_refused_after_jabber)},
+      {"jabber_loops_back", "", "loops back after a jabber",
+       with_block<&EdgeBlocks::manager, JabberLoopsBack>()},
       {"jabber_outlives_supply", "", "remembers a jabber over a failure of the supply",
-       with_block<&Blocks::manager, JabberOutlivesSupply>()},
+       with_block<&EdgeBlocks::manager, JabberOutlivesSupply>()},
       {"jabber_over_one_silence", "", "counts on over one symbol of silence",
-       with_block<&Blocks::jabber, JabberOverOneSilence>()},
+       with_block<&EdgeBlocks::jabber, JabberOverOneSilence>()},
       {"jabber_over_a_command", "", "counts on over a command",
-       with_block<&Blocks::jabber, JabberOverACommand>()},
+       with_block<&EdgeBlocks::jabber, JabberOverACommand>()},
       {"jabber_without_transmitter", "", "takes what it does not send for a jabber",
-       with_block<&Blocks::jabber, JabberWithoutTransmitter>()},
-      {"one_jabber_only", "", "cuts off one jabber only", with_block<&Blocks::jabber, OneJabberOnly>()},
+       with_block<&EdgeBlocks::jabber, JabberWithoutTransmitter>()},
+      {"one_jabber_only", "", "cuts off one jabber only", with_block<&EdgeBlocks::jabber, OneJabberOnly>()},
   };
 }
 

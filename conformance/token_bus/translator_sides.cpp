@@ -40,6 +40,9 @@ constexpr std::array<Code, 12> kIndications{{{'0', "1000"},
                                              {'n', "0101"},
                                              {'e', "0111"}}};
 
+// The same symbols as a tester may drive them, the circuit that is anything the other way round.
+constexpr std::array<Code, 3> kOtherIndications{{{'b', "1011"}, {'m', "1101"}, {'s', "1110"}}};
+
 struct CommandCode {
   std::string_view text;
   char letter;
@@ -120,8 +123,10 @@ line::Levels indication_levels_of(std::string_view symbols) {
   std::string text;
   for (const char letter : symbols) {
     const auto* const code = std::ranges::find(kIndications, letter, &Code::letter);
-    FIELDPROOF_CHECK(code != kIndications.end(), "each letter can be indicated");
-    text += code->circuits;
+    const auto* const other = std::ranges::find(kOtherIndications, letter, &Code::letter);
+    FIELDPROOF_CHECK(code != kIndications.end() || other != kOtherIndications.end(),
+                     "each letter can be indicated");
+    text += code != kIndications.end() ? code->circuits : other->circuits;
   }
   return line::Levels::of_text(text);
 }

@@ -17,6 +17,7 @@
 //   MAC's requests P in the place of B, and the commands r RESET, l DISABLE LOOPBACK, t ENABLE TRANSMITTER,
 //                  i SM idle, d serial data; ? is none. s, p, n: the same symbols, the circuit that may be
 //                  anything the other way round
+//                  to a manager testers indicate b, m, s, too: B, N, S with that circuit the other way round
 //   physical side  1 CD1, 0 CD0, I IDL
 namespace fieldproof::conformance {
 
