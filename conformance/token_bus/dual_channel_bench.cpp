@@ -46,7 +46,11 @@ void ManagerBench::ask() {
 }
 
 void ManagerBench::request(std::string_view symbols) {
-  segment().run_until(drive(mac_in_, now(), rate(), request_levels_of(symbols)));
+  segment().run_until(begin_request(symbols));
+}
+
+kernel::Time ManagerBench::begin_request(std::string_view symbols) {
+  return drive(mac_in_, now(), rate(), request_levels_of(symbols));
 }
 
 void ManagerBench::command(SideCommand command, std::size_t symbols) {
@@ -73,14 +77,18 @@ void ManagerBench::on_driven(segment::PortIndex port, const line::Waveform& wave
 }
 
 void ManagerBench::carry(const ChannelText& on_a, const ChannelText& on_b) {
+  segment().run_until(begin_carrying(on_a, on_b));
+}
+
+kernel::Time ManagerBench::begin_carrying(const ChannelText& on_a, const ChannelText& on_b) {
   const kernel::Time begin = now();
   kernel::Time end = begin;
   for (const auto& [link, text] : {std::pair(channel_in_[0], &on_a), std::pair(channel_in_[1], &on_b)}) {
     if (text->symbols.empty()) continue;
-    end = std::max(end,
-                   drive(*link, begin + symbols(text->later), rate(), indication_levels_of(text->symbols)));
+    end = std::max(end, drive(*link, begin + symbols(text->later), rate(),
+                              indication_levels_of(text->symbols), text->parts_per_million));
   }
-  segment().run_until(end);
+  return end;
 }
 
 void ManagerBench::clear_requests() {

@@ -30,6 +30,7 @@ using ManagerSetting =
 struct ChannelText {
   std::string symbols{};
   std::int64_t later = 0;
+  std::int64_t parts_per_million = 0;  // of its clock
 };
 
 class ManagerBench final
@@ -47,12 +48,15 @@ class ManagerBench final
   // ---- the MAC; each runs until what is requested is over ----
   void request(std::string_view symbols);
   void command(SideCommand command, std::size_t symbols);
+  // And does not wait for the end; the same of what channels carry.
+  kernel::Time begin_request(std::string_view symbols);
 
   // A station of a ring in the place of the MAC, from now on; it begins anew.
   void begin_ring(token_bus::Address address);
 
   // ---- both channels, until what they carry is over ----
   void carry(const ChannelText& on_a, const ChannelText& on_b);
+  kernel::Time begin_carrying(const ChannelText& on_a, const ChannelText& on_b);
 
   // Until everything has come out, and each fault has been found, though it be late.
   void settle() { wait(2 * slot() + 4 * indication_delay()); }

@@ -22,9 +22,9 @@ ManagerCase manager_canary() {
 const std::vector<ManagerCase>& manager_cases() {
   static const std::vector<ManagerCase> cases = [] {
     static constexpr std::array kChapters{
-        manager_request_cases, manager_management_cases, manager_selection_cases,
-        manager_inside_cases,  manager_fault_cases,      manager_limit_cases,
-        manager_verdict_cases, manager_symbol_cases,     manager_ring_cases};
+        manager_request_cases, manager_management_cases, manager_selection_cases, manager_inside_cases,
+        manager_fault_cases,   manager_limit_cases,      manager_verdict_cases,   manager_symbol_cases,
+        manager_series_cases,  manager_ring_cases};
     auto all = cases_of<ManagerCase>(kChapters, {});
     all.push_back(manager_canary());
     return all;

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 
 #include "conformance/token_bus/dual_channel_scene.hpp"
@@ -49,6 +51,34 @@ void command_all(ManagerScene& scene) {
   scene.bench.command(command, kCommandSymbols);
 }
 
+template <unsigned skew, unsigned delay>
+ManagerCase together_case() {
+  return on_chart(manager_must(fmt::format("requests/together_with_{}_and_{}", skew, delay), "",
+                               fmt::format("The channels begin at most the skew apart, here {}, each within "
+                                           "the delay, here {}.",
+                                           skew, delay),
+                               "skew of an octet at most",
+                               {{"b_is_20_symbols_later", skew < 20 ? "channels_apart" : "sent_too_late"}}),
+                  {{2, 20},
+                   {frame_requested(),
+                    requires_that("both channels are requested it in time, and together", expect_together)}},
+                  {.adjust = [](token_bus::ChannelManagerConfiguration& one) {
+                    one.channels.skew_symbols = skew;
+                    one.delay_symbols = delay;
+                  }});
+}
+
+// Each answer of one channel alone, then, while nothing else is on, of the other one.
+void answer_in_turn(ManagerScene& scene) {
+  constexpr std::string_view kAnswers = "iane";
+  const std::size_t other = scene.round / 2 / kAnswers.size();
+  const std::string first(kCommandSymbols, kAnswers[scene.round / 2 % kAnswers.size()]);
+  const std::string second(kCommandSymbols, kAnswers[other % kAnswers.size()]);
+  constexpr std::int64_t kPause = 40;
+  scene.carry_from(scene.here(), {first}, {second, kCommandSymbols + kPause});
+  scene.expect_indicated(first + std::string(kPause, 'S') + second, "answer_wrong");
+}
+
 ManagerStep answered(std::string text, std::string on_a, std::string on_b, std::string indicated,
                      std::string reason) {
   return {std::move(text), "it is indicated", [=](ManagerScene& scene) {
@@ -84,6 +114,8 @@ std::vector<ManagerCase> manager_request_cases() {
           {{3, 30},
            {frame_requested(),
             requires_that("both channels are requested it in time, and together", expect_together)}}),
+      together_case<1, 64>(),
+      together_case<32, 2>(),
       on_chart(manager_must("requests/the_longest_frame_goes_out", "",
                             "A frame of 8191 octets goes out whole on both channels.",
                             "a manager knows no length", {{"gives_up_after_50000", "not_on_both"}}),
@@ -106,6 +138,23 @@ std::vector<ManagerCase> manager_request_cases() {
 
 std::vector<ManagerCase> manager_management_cases() {
   return {
+      on_chart(manager_must("management/commands_after_a_fault", "",
+                            "A channel with a fault is given commands all the same.",
+                            "who has a fault is sent to", {{"silent_on_a_faulty_channel", "not_on_both"}}),
+               {{5, 25},
+                {powered_anew(), b_serves(), does("each command of the management mode in turn", command_all),
+                 on_both("not_on_both")}}),
+      on_chart(manager_must("management/each_answer_of_either", "",
+                            "Each answer is indicated where the other channel gives none, whether that one "
+                            "has answered before, and whether a channel has a fault.",
+                            "whose answer counts", {{"answers_of_the_preferred_alone", "answer_wrong"}}),
+               {{32, 64},
+                {powered_anew(),
+                 {"a channel answers, each answer in turn, and later the other one, each answer in turn",
+                  "both answers are indicated", answer_in_turn},
+                 does("a channel alone carries a frame",
+                      [](ManagerScene& scene) { scene.carry_on(scene.here()); }),
+                 {"the same answers", "both are indicated", answer_in_turn}}}),
       on_chart(manager_must("management/commands_go_to_both", "",
                             "Commands of the management mode are requested of both channels as they are.",
                             "both translators are brought on line together",

@@ -485,6 +485,52 @@ inline void look_at_any_circuit(std::string& levels) {
   }
 }
 
+// What it is given on its sides, and when.
+enum class Receives : std::uint8_t { at_its_own_rate, nothing_while_it_sends, anew_each_time };
+
+template <Receives how>
+class ReceivesOtherwise final : public ChannelManager {
+  using ChannelManager::ChannelManager;
+  void receive(segment::PortIndex port, const line::Waveform& reception) override {
+    line::Waveform given = reception;
+    if (how == Receives::at_its_own_rate) given.rate = mac_side_rate(configuration().rules.phy_bit_rate);
+    if (how == Receives::anew_each_time) set_power(true, reception.start);
+    if (port == kTowardsMac) sends_until_ = reception.end();
+    const bool is_deaf = how == Receives::nothing_while_it_sends && port != kTowardsMac;
+    if (!is_deaf || reception.start >= sends_until_) ChannelManager::receive(port, given);
+  }
+
+  kernel::Time sends_until_ = kernel::kStart;
+};
+
+// So many reports, and none after a time.
+class ReportsUntil final : public ChannelManager {
+ public:
+  ReportsUntil(const ChannelManagerConfiguration& configuration, unsigned most, kernel::Duration last)
+      : ChannelManager(configuration), gate_(most, last) {}
+  void wire(segment::Port& mac, segment::Port& a, segment::Port& b,
+            token_bus::ChannelListener& listener) override {
+    gate_.listener = &listener;
+    ChannelManager::wire(mac, a, b, gate_);
+  }
+
+ private:
+  struct Gate final : token_bus::ChannelListener {
+    Gate(unsigned most, kernel::Duration last_) : left(most), last(last_) {}
+    void on_channel_event(const ChannelEvent& event, kernel::Time when) override {
+      if (left == 0 || when > kernel::kStart + last) return;
+      --left;
+      listener->on_channel_event(event, when);
+    }
+
+    unsigned left;
+    kernel::Duration last;
+    token_bus::ChannelListener* listener = nullptr;
+  };
+
+  Gate gate_;
+};
+
 class RemembersChannels final : public ChannelManager {
   using ChannelManager::ChannelManager;
   void set_power(bool is_on, kernel::Time now) override {
