@@ -3,6 +3,7 @@
 #include <array>
 
 #include "conformance/token_bus/station_life.hpp"
+#include "conformance/token_bus/station_vocabulary.hpp"
 
 // How a station outside of the ring comes into it, and what it answers for its predecessor.
 namespace fieldproof::conformance {
@@ -43,18 +44,6 @@ TokenStep solicitation(std::string text, const std::array<Solicitation, count>& 
 
 Octets resolve(TokenScene& scene) {
   return scene.bench.frame(TokenControl::resolve, TokenBench::kAbove, TokenBench::kAbove);
-}
-
-TokenStep solicited() {
-  return send("000E solicits a successor between it and 0004", [](TokenScene& scene) {
-    return scene.bench.frame(TokenControl::solicit_1, TokenBench::kBelow, TokenBench::kAbove);
-  });
-}
-
-TokenStep answers_above(SpanOf span) {
-  return says("set_successor to 000E with its own address",
-              {TokenControl::set_successor, TokenBench::kAbove, kOwnAddress}, std::move(span),
-              "answer_missing", "answer_wrong");
 }
 
 TokenStep who_follows(std::uint64_t lost) {
@@ -104,7 +93,7 @@ std::vector<TokenCase> token_joining_cases() {
                    {solicitation("a solicitation whose range does not have the station, each of seven",
                                  kOutOfRange),
                     silence(2 * 28 + 10, "answers_unasked", "its address is not solicited")}),
-            solicited(), answers_above(at_once())}}),
+            solicited(), answers(TokenBench::kAbove, at_once())}}),
       on_chart(token_must(
                    "joining/second_window_is_used_after_a_silent_first", "TB-18",
                    "A station above the highest address answers in the second window, and only when the "
@@ -147,7 +136,7 @@ std::vector<TokenCase> token_joining_cases() {
                      "In a contest a station that receives another before its own delay is over gives up.",
                      standard("resolve_contention"), {{"yields_to_nobody", "answers_after_another"}}),
           {{},
-           {wait(10), solicited(), answers_above(at_once()), wait(6),
+           {wait(10), solicited(), answers(TokenBench::kAbove, at_once()), wait(6),
             send("000E resolves contention", resolve), wait(6), noise(15),
             silence(4 * 28, "answers_after_another", "another has answered sooner")}}),
       on_chart(token_must("joining/the_token_makes_it_a_member", "TB-16",
@@ -161,7 +150,7 @@ std::vector<TokenCase> token_joining_cases() {
                            {"events_twice", "reported_twice"},
                            {"reports_about_a_stranger", "not_reported"}}),
                {{},
-                {wait(10), solicited(), answers_above(at_once()), wait(6), token(),
+                {wait(10), solicited(), answers(TokenBench::kAbove, at_once()), wait(6), token(),
                  says("the token to 0004", {TokenControl::token, TokenBench::kBelow}, at_once(),
                       "token_missing", "token_wrong"),
                  reported("that it has joined", token_bus::EventKind::joined, TokenBench::kAbove)}}),
@@ -196,7 +185,7 @@ std::vector<TokenCase> token_joining_cases() {
                 {stimulus<TokenScene>("the user does not want the station in the ring",
                                       [](TokenScene& scene) { scene.bench.set_in_ring_desired(false); }),
                  wait(10), solicited(), silence(2 * 28, "answers_unasked", "it has no reason to join"),
-                 submit({6}, 4), solicited(), answers_above(at_once())}}),
+                 submit({6}, 4), solicited(), answers(TokenBench::kAbove, at_once())}}),
   };
 }
 

@@ -12,6 +12,7 @@ std::vector<TokenMutants::Row> token_settings_rows();
 std::vector<TokenMutants::Row> token_line_rows();
 std::vector<TokenMutants::Row> token_host_rows();
 std::vector<TokenMutants::Row> token_anew_rows();
+std::vector<TokenMutants::Row> token_vocabulary_rows();
 
 // Stations of the token bus with one seeded fault each.
 const TokenMutants& token_station_mutants();
