@@ -35,15 +35,15 @@ void judge_end(TokenBench& bench, CaseJudge& judge) {
 
 const std::vector<TokenCase>& token_cases() {
   static const std::vector<TokenCase> cases = [] {
-    static constexpr std::array kChapters{token_initialisation_cases, token_joining_cases,
-                                          token_passing_cases,        token_failure_cases,
-                                          token_holding_cases,        token_reception_cases,
-                                          token_line_cases,           token_event_cases,
-                                          token_anew_cases,           token_user_cases,
-                                          token_supply_cases,         token_address_cases,
-                                          token_request_cases,        token_dropping_cases,
-                                          token_settings_cases,       token_rotation_settings_cases,
-                                          token_long_address_cases,   token_immunity_cases};
+    static constexpr std::array kChapters{
+        token_initialisation_cases, token_joining_cases,    token_passing_cases,
+        token_failure_cases,        token_holding_cases,    token_reception_cases,
+        token_line_cases,           token_event_cases,      token_anew_cases,
+        token_user_cases,           token_supply_cases,     token_address_cases,
+        token_request_cases,        token_dropping_cases,   token_class_cases,
+        token_alone_cases,          token_membership_cases, token_kind_cases,
+        token_many_cases,           token_settings_cases,   token_rotation_settings_cases,
+        token_long_address_cases,   token_immunity_cases};
     auto all = cases_of<TokenCase>(kChapters, token_details());
     all.push_back(canary());
     return all;

@@ -22,9 +22,9 @@ TokenStep ignored(std::string reason, std::string why) {
 }
 
 TokenStep counted(std::string name, Counted which, std::uint32_t count) {
-  return require(
-      fmt::format("{} counted: {}", name, count),
-      [=](TokenScene& scene) { return scene.bench.counters().at(which) == count; }, "counter_wrong");
+  return expected<TokenScene>(fmt::format("{} counted: {}", name, count), [=](TokenScene& scene) {
+    scene.judge.expect_equal(scene.bench.counters().at(which), count, "counter_wrong", name + " counted");
+  });
 }
 
 TokenStep delivered(std::string what, std::size_t count) {

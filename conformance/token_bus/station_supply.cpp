@@ -2,6 +2,7 @@
 
 #include "conformance/token_bus/station_life.hpp"
 #include "conformance/token_bus/station_listening.hpp"
+#include "conformance/token_bus/station_vocabulary.hpp"
 
 // What is left of a station after a loss of supply: nothing.
 namespace fieldproof::conformance {
@@ -10,27 +11,12 @@ namespace {
 using namespace token_chart;
 using token_sources::own;
 
-TokenStep loses_supply() {
-  return stimulus<TokenScene>("the supply of the station fails, and returns 10 octet durations later",
-                              [](TokenScene& scene) {
-                                scene.bench.set_power(false);
-                                scene.bench.wait(scene.bench.octets(10));
-                                scene.bench.set_power(true);
-                                scene.since = scene.bench.now();
-                              });
-}
-
 TokenStep powered(bool is_on) {
   return stimulus<TokenScene>(is_on ? "the supply of the station returns" : "the supply of the station fails",
                               [is_on](TokenScene& scene) {
                                 scene.bench.set_power(is_on);
                                 scene.since = scene.bench.now();
                               });
-}
-
-TokenStep user_wants_it_outside() {
-  return stimulus<TokenScene>("the user does not want the station in the ring",
-                              [](TokenScene& scene) { scene.bench.set_in_ring_desired(false); });
 }
 
 TokenStep response_is_ready() {
@@ -50,18 +36,18 @@ std::vector<TokenCase> token_supply_cases() {
   return {
       on_chart(supply_must("waiting_data_are_gone", "Data that waited when the supply failed are not sent.",
                            {{"queues_kept", "token_wrong"}}),
-               {{}, {joined(), submit({6, 4, 2, 0}, 10), loses_supply(), joined(), token(), passes_on()}}),
+               {{}, {joined(), submit({6, 4, 2, 0}, 10), starts_anew(), joined(), token(), passes_on()}}),
       on_chart(
           supply_must("counters_begin_anew", "Counters of faulty receptions are 0 after a loss of supply.",
                       {{"counters_kept", "counter_wrong"}}),
           {{},
            {joined(), repeat({3, 3}, {noise(8), wait(10)}), counted("non-silence", kNonSilence, 3),
-            loses_supply(), wait(10), noise(8), wait(10), counted("non-silence", kNonSilence, 1), joined()}}),
+            starts_anew(), wait(10), noise(8), wait(10), counted("non-silence", kNonSilence, 1), joined()}}),
       on_chart(supply_must("its_neighbours_are_unknown",
                            "After a loss of supply a station is outside of the ring, and knows no neighbour.",
                            {{"ring_kept", "answers_unasked"}}),
                {{},
-                {joined(), loses_supply(), wait(10),
+                {joined(), starts_anew(), wait(10),
                  send("0020 asks who follows 000E",
                       [](TokenScene& scene) {
                         return scene.bench.frame(TokenControl::who_follows, TokenBench::kAbove,
@@ -81,14 +67,14 @@ std::vector<TokenCase> token_supply_cases() {
                       "loss of supply.",
                       {{"ring_kept", "begins_too_early"}}),
           {{},
-           {joined_as_lowest(), loses_supply(),
+           {joined_as_lowest(), starts_anew(),
             says("the first claim after seven slot times", {TokenControl::claim}, after_slots(7),
                  "claim_missing", "claim_wrong")}}),
       on_chart(supply_must("its_response_is_gone",
                            "A request is not answered by the response of before the loss of supply.",
                            {{"response_kept", "responds_unasked"}}),
                {{},
-                {joined(), response_is_ready(), loses_supply(), wait(10),
+                {joined(), response_is_ready(), starts_anew(), wait(10),
                  send("000E sends a request for the station",
                       [](TokenScene& scene) {
                         return scene.bench.data_frame(kRequest, kOwnAddress, TokenBench::kAbove, {7});
@@ -98,7 +84,7 @@ std::vector<TokenCase> token_supply_cases() {
                            "After a loss of supply in_ring_desired is again what the settings say.",
                            {{"wish_kept", "claim_missing"}}),
                {{},
-                {joined(), user_wants_it_outside(), loses_supply(),
+                {joined(), desired(false), starts_anew(),
                  says("the first claim after seven slot times", {TokenControl::claim}, after_slots(7),
                       "claim_missing", "claim_wrong")}}),
       on_chart(supply_must("without_supply_it_is_silent",

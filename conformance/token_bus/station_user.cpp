@@ -5,6 +5,7 @@
 #include "conformance/token_bus/station_life.hpp"
 #include "conformance/token_bus/station_listening.hpp"
 #include "conformance/token_bus/station_visits.hpp"
+#include "conformance/token_bus/station_vocabulary.hpp"
 
 // What the user of a station asks of it: what is refused, responses, when it is to be in the ring.
 namespace fieldproof::conformance {
@@ -37,13 +38,6 @@ TokenStep is_refused() {
         scene.judge.expect(!scene.bench.submit(refused_requests().at(scene.turn)), "data_not_refused",
                            "it is refused", "it is accepted");
       }};
-}
-
-TokenStep wants_in_ring(bool is_desired) {
-  return stimulus<TokenScene>(
-      is_desired ? "the user wants the station in the ring"
-                 : "the user does not want the station in the ring",
-      [is_desired](TokenScene& scene) { scene.bench.set_in_ring_desired(is_desired); });
 }
 
 TokenStep response_of(std::size_t size) {
@@ -111,7 +105,7 @@ std::vector<TokenCase> token_user_cases() {
                           {{"follows_outside_of_the_ring", "speaks_after_leaving"},
                            {"wish_taken_once", "answer_missing"}}),
                {{},
-                {joined(), wants_in_ring(false), token(),
+                {joined(), desired(false), token(),
                  says("set_successor to 000E with 0004",
                       {TokenControl::set_successor, TokenBench::kAbove, TokenBench::kBelow}, at_once(),
                       "leaving_missing", "leaving_wrong"),
@@ -121,8 +115,8 @@ std::vector<TokenCase> token_user_cases() {
                         return scene.bench.frame(TokenControl::who_follows, TokenBench::kAbove,
                                                  TokenBench::kStranger, TokenBench::kAbove);
                       }),
-                 silence(2 * 28, "speaks_after_leaving", "it is not in the ring"), wants_in_ring(true),
-                 joined(), token(), passes_on()}}),
+                 silence(2 * 28, "speaks_after_leaving", "it is not in the ring"), desired(true), joined(),
+                 token(), passes_on()}}),
       on_chart(token_must("user/it_responds_outside_of_the_ring", "TB-27",
                           "A station answers a request with response whether it is in the ring or not, and "
                           "none for a group.",
@@ -142,7 +136,7 @@ std::vector<TokenCase> token_user_cases() {
                      "when they are sent.",
                      standard("in_ring_desired"), {{"leaves_with_data_left", "leaves_with_data"}}),
           {{},
-           {joined(), submit({6, 6, 6}, 20), wants_in_ring(false), token(),
+           {joined(), submit({6, 6, 6}, 20), desired(false), token(),
             sends("what has time: one frame", {6}, "leaves_with_data", "data_missing"), taken(), token(),
             sends("one more", {6}, "leaves_with_data", "data_missing"), taken(), token(),
             says("the last", {TokenControl{0x62}, TokenBench::kBelow}, at_once(), "data_missing",

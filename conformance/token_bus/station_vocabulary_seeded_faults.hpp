@@ -84,6 +84,13 @@ inline bool costly_solicitation_unanswered(Frame& frame, const TokenStation& sta
   return true;
 }
 
+inline bool data_of_members(Frame& frame, const TokenStation& station) {
+  return frame.kind != FrameKind::data || station.is_in_ring();
+}
+inline bool asked_responses(Frame& frame, const TokenStation& station) {
+  return !is_response(frame) || waits_for_response(station);
+}
+
 // ---- what becomes of an event ----
 
 // Something happens in it that should not: its station is like new, but for what is kept.

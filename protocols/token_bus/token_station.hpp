@@ -109,6 +109,7 @@ class TokenStation : public StationDevice {
   virtual unsigned demand_bits(unsigned pass) { return contest_bits(pass); }
   virtual unsigned demand_slots(unsigned bits) const { return 3 - bits; }
   virtual bool yields_in_delay() const { return true; }
+  virtual bool forgets_offer() const { return true; }
   virtual bool follows(const Frame& who_follows) const {
     return is_in_ring_ && address_of(who_follows.data) == predecessor_;
   }
