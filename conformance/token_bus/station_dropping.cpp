@@ -19,9 +19,9 @@ std::vector<TokenStep> window_opened() {
 }
 
 TokenStep stranger_asks() {
-  return send("0020 sends a request with response to the station", [](TokenScene& scene) {
+  return send("0020 sends a request of priority 0 with response to the station", [](TokenScene& scene) {
     scene.bench.wait(scene.bench.octets(8));
-    return scene.bench.data_frame(0x72, scene.bench.address(), TokenBench::kStranger, {7});
+    return scene.bench.data_frame(0x12, scene.bench.address(), TokenBench::kStranger, {7});
   });
 }
 
@@ -79,7 +79,7 @@ std::vector<TokenCase> drops() {
                 and_then({stimulus<TokenScene>("its user has a response ready",
                                                [](TokenScene& scene) { scene.bench.set_response({1}); })},
                          window_opened(),
-                         {stranger_asks(), says("the response", {TokenControl{0x6A}, TokenBench::kStranger},
+                         {stranger_asks(), says("the response", {TokenControl{0x0A}, TokenBench::kStranger},
                                                 at_once(), "response_missing", "response_wrong")})}),
       on_chart(
           token_must("dropping/a_solicitation_is_answered", "TB-26",
