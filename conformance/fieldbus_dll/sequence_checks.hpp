@@ -45,7 +45,8 @@ class SequenceChecks {
       EXPECT_TRUE(result.found->is_confirmed) << name;
       EXPECT_LE(result.found->smallest.commands.size(), most_commands) << name << "\n" << told(result);
       const Sequence& smallest = result.found->smallest;
-      EXPECT_TRUE(smallest.commands.size() >= 2 || !smallest.settings.empty()) << name << "\n" << told(result);
+      EXPECT_TRUE(smallest.commands.size() >= 2 || !smallest.settings.empty()) << name << "\n"
+                                                                               << told(result);
     }
   }
 

@@ -108,9 +108,9 @@ SequenceVocabulary token_station_vocabulary() {
       .unit = "octet",
       .levels_per_unit = kHalfBitsOfOctet,
       .settings = sequence_settings(token_bus::kStationTable, &as_made, kFixedOfStation),
-      .objection =
-          objection_of(token_bus::kStationTable, as_made,
-                       +[](const token_bus::StationConfiguration& one) { expect_possible(one.rules); })};
+      .objection = objection_of(
+          token_bus::kStationTable, as_made,
+          +[](const token_bus::StationConfiguration& one) { expect_possible(one.rules); })};
 }
 
 std::string octets_in_words(std::span<const std::int64_t> values) {

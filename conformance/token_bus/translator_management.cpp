@@ -14,7 +14,6 @@ using token_sources::own;
 using token_sources::paper;
 using enum SideCommand;
 
-
 std::string_view text_of_answer(char answer) {
   constexpr std::string_view kLetters = "iane";
   constexpr std::array<std::string_view, 4> kTexts{"IDLE", "ACK", "NACK", "a physical error"};

@@ -296,8 +296,8 @@ void TokenStation::on_notice(kernel::Time now) {
 void TokenStation::on_deadline(kernel::Time now) {
   switch (state_) {
     case AccessState::demand_in:
-      // A token that comes now was not solicited.
-      offered_successor_.reset();
+      // Nobody gave it the token: it is as before.
+      if (forgets_offer()) offered_successor_.reset();
       go_idle();
       break;
     case AccessState::demand_delay:
