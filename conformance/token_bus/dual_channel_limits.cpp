@@ -59,17 +59,23 @@ void select_at_the_skew(ManagerScene& scene) {
 void copy_at_the_slot(ManagerScene& scene) {
   const Channel late = scene.here();
   const std::string frame = scene.frame();
+  const std::int64_t later = scene.slot_symbols() + limit_place(scene);
+  const std::string first = late == Channel::a ? from_delimiter(frame) : frame;
   scene.power_anew();
-  scene.carry_from(late, {frame, scene.slot_symbols() + limit_place(scene)}, {frame});
+  scene.carry_from(late, {frame, later}, {frame});
   if (!is_over_limit(scene)) {
     scene.expect_events({}, "reported_without_fault");
-    return scene.expect_indicated(late == Channel::a ? from_delimiter(frame) : frame, "wrong_channel");
+    return scene.expect_indicated(first, "wrong_channel");
   }
   scene.bench.settle();
   const std::string missing = fmt::format("{}: no start delimiter", text_of(late));
   const auto& events = scene.bench.events();
   scene.judge.expect(!events.empty() && events.front() == missing, "report_wrong", missing,
                      events.empty() ? "nothing" : events.front());
+  const std::int64_t between = later + kManagerPreamble - std::ssize(frame);
+  if (between <= 0) return;
+  const std::string silence(static_cast<std::size_t>(between), 'S');
+  scene.expect_indicated(first + silence + from_delimiter(frame), "wrong_channel");
 }
 
 std::string spoiled_at(std::string frame, std::size_t at) {
@@ -128,7 +134,9 @@ const std::vector<Limit>& limit_rows() {
        "a channel carries the frame of the other one a symbol less than a slot time, a slot time and a "
        "symbol "
        "more later, on each channel",
-       "up to the slot time it is not indicated, and nothing is reported; later, no start delimiter is",
+       "up to the slot time it is not indicated, and nothing is reported; later, no start delimiter is, and "
+       "it is "
+       "indicated where the other one is over",
        copy_at_the_slot,
        {{"slot_a_symbol_long", "report_wrong"}, {"slot_a_symbol_short", "reported_without_fault"}},
        {{"knows_no_slot_time", "report_wrong"}}},

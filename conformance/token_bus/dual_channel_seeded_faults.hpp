@@ -127,13 +127,18 @@ class MissingOtherwise final : public ChannelSelection {
   kernel::Duration after_;
 };
 
-class MissesWithinFrames final : public ChannelSelection {
+// Within a transmission always, or never though it is spoiled.
+class MissesWithinOtherwise final : public ChannelSelection {
  public:
-  explicit MissesWithinFrames(const ChannelManagerConfiguration& of)
-      : ChannelSelection(of.rules, of.channels) {}
+  MissesWithinOtherwise(const ChannelManagerConfiguration& of, bool misses)
+      : ChannelSelection(of.rules, of.channels), misses_(misses) {}
 
  private:
-  bool is_missed_by(Channel, kernel::Time) const override { return true; }
+  bool is_missed_by(Channel other, kernel::Time) const override {
+    return misses_ || !is_within_transmission(other);
+  }
+
+  bool misses_;
 };
 
 // By whether the other channel has bad_signal, too.

@@ -199,6 +199,15 @@ void carry_two_within_one(ManagerScene& scene) {
   scene.expect_indicated(on_a, "wrong_channel");
 }
 
+// The same, but that of A has bad_signal later than a slot time.
+void carry_two_within_what_is_spoiled(ManagerScene& scene) {
+  const std::string on_b = scene.frame() + std::string(20, 'S') + scene.frame();
+  std::string on_a = scene.frame(on_b.size() / 8);
+  on_a.at(kManagerHead + static_cast<std::size_t>(scene.slot_symbols()) + 20) = 'B';
+  scene.carry({on_a}, {on_b});
+  scene.expect_events({"A: no start delimiter"}, "report_wrong");
+}
+
 std::vector<ManagerCase> beside_cases() {
   return {
       on_chart(
@@ -225,21 +234,27 @@ std::vector<ManagerCase> beside_cases() {
             powered_anew(),
             {"both carry a frame, one with bad_signal in its preamble, the other one in its octets",
              "bad signal of the other one is reported", carry_bad_signal_before}}}),
-      on_chart(manager_must("symbols/a_frame_under_way", "",
-                            "On a channel where a frame is under way no start delimiter is due, and no other "
-                            "transmission is selected; bad_signal before its start delimiter says nothing.",
-                            "what cannot complete is no transmission",
-                            {{"misses_within_a_frame", "reported_without_fault"},
-                             {"selects_each_frame_anew", "wrong_channel"}}),
-               {{2, 20},
-                {powered_anew(),
-                 {"A carries a long frame, with bad_signal in its preamble, B two short ones meanwhile",
-                  "that of A is indicated, and nothing is reported", carry_two_within_one}}},
-               {.adjust =
-                    [](token_bus::ChannelManagerConfiguration& one) {
-                      one.rules.slot_time_octets = 12;
-                      one.rules.most_octets = token_bus::Rules{}.most_octets;
-                    }}),
+      on_chart(
+          manager_must(
+              "symbols/a_frame_under_way", "",
+              "On a channel where a frame is under way that is not spoiled no start delimiter is due, "
+              "and no other transmission is selected; bad_signal before its start delimiter says nothing.",
+              "what cannot complete is no transmission",
+              {{"misses_within_a_frame", "reported_without_fault"},
+               {"selects_each_frame_anew", "wrong_channel"},
+               {"misses_nothing_within_a_transmission", "report_wrong"}}),
+          {{2, 20},
+           {powered_anew(),
+            {"A carries a long frame, with bad_signal in its preamble, B two short ones meanwhile",
+             "that of A is indicated, and nothing is reported", carry_two_within_one},
+            powered_anew(),
+            {"the same, but that of A is spoiled later than a slot time after its start delimiter",
+             "A has no start delimiter", carry_two_within_what_is_spoiled}}},
+          {.adjust =
+               [](token_bus::ChannelManagerConfiguration& one) {
+                 one.rules.slot_time_octets = 12;
+                 one.rules.most_octets = token_bus::Rules{}.most_octets;
+               }}),
   };
 }
 
@@ -259,6 +274,8 @@ void carry_endless(ManagerScene& scene) {
   on_a.resize(on_b.symbols.size() + 8 * (scene.bench.configuration().rules.slot_time_octets + 4U), '1');
   scene.carry({on_a}, on_b);
   scene.expect_events({"A: no start delimiter"}, "report_wrong");
+  const std::size_t second = 8 * (octets + 6) + kManagerPreamble;
+  scene.expect_indicated(on_a.substr(0, second) + on_b.symbols.substr(second), "wrong_channel");
 }
 
 void carry_longest(ManagerScene& scene) {
@@ -285,7 +302,7 @@ ManagerCase longest_case(std::vector<MustCatch> catches) {
         powered_anew(),
         {"A carries ones for ever after a start delimiter, B a short frame and another one later than the "
          "longest frame",
-         "A has no start delimiter", carry_endless}}},
+         "A has no start delimiter, and the second one of B is selected", carry_endless}}},
       {.adjust = [](token_bus::ChannelManagerConfiguration& one) {
         one.rules.slot_time_octets = 12;
         one.rules.most_octets = octets;

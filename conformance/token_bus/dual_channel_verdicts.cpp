@@ -216,6 +216,17 @@ void count_to_the_limits(ManagerScene& scene) {
     scene.carry_on_both();
     scene.expect_event_of(here, n == channels.clean_in_a_row ? "clean again" : "", "report_wrong");
   }
+  if (channels.clean_in_a_row == 1) return;
+  // Clean while the other channel is silent, whose fault that is.
+  scene.carry_on(other_than(here));
+  for (unsigned n = 1; n <= channels.clean_in_a_row; ++n) {
+    scene.carry_on(here);
+    scene.expect_event_of(n == 1 ? other_than(here) : here,
+                          n == 1                         ? "no start delimiter"
+                          : n == channels.clean_in_a_row ? "clean again"
+                                                         : "",
+                          "report_wrong");
+  }
 }
 
 template <unsigned count>
@@ -227,7 +238,8 @@ ManagerCase counts_case(std::vector<MustCatch> catches) {
                                count),
                    "spoiled transmissions in a row", std::move(catches)),
       {{2, 20},
-       {{"a channel has as many errors as make a fault, then both are clean as often as end it",
+       {{"a channel has as many errors as make a fault, then both are clean as often as end it; it has "
+         "another fault, and carries clean frames alone",
          "each is reported with the last of them", count_to_the_limits}}},
       counting<count, count>());
 }
@@ -285,6 +297,10 @@ void spoil_apart(ManagerScene& scene) {
   scene.power_anew();
   scene.carry_from(scene.here(), {wrong, is_first ? 0 : later}, {scene.frame(), is_first ? later : 0});
   scene.expect_event_of(scene.here(), "frame errors", "report_wrong");
+  // Beside silence it is none.
+  scene.power_anew();
+  scene.carry_from(scene.here(), {wrong}, {});
+  scene.expect_event_of(other_than(scene.here()), "no start delimiter", "reported_without_fault");
 }
 
 void spoil_a_long_frame(ManagerScene& scene) {
@@ -312,7 +328,9 @@ std::vector<ManagerCase> length_verdict_cases() {
           {{20, 100},
            {{"both carry a frame, one with a wrong check, at once, a symbol, the skew, a symbol more and "
              "a slot time apart, each channel first",
-             "frame errors are reported", spoil_apart}}},
+             "frame errors are reported; where the other channel is silent only that it has no start "
+             "delimiter",
+             spoil_apart}}},
           needs),
       on_chart(manager_must("verdicts/of_long_frames", "PST-17",
                             "A wrong bit is an error wherever it is, in frames of any length.",
