@@ -309,7 +309,7 @@ TEST(RingDescriptionReader, RefusesWhatIsNoRing) {
         {"/data/0/load", R"("stations": [2, 4],
                               "data": [{"from": 2, "to": 4, "every": "1 ms", "load": "1 kbit/s"}])"},
         {"/slot_time_octets", R"("stations": [2, 4], "slot_time_octets": 7, "data": [{"from": 2, "to": 4}])"},
-        {"/repeaters/1",
+        {"/repeaters/0",
          R"("stations": [2, 4], "cable": "800 m", "repeaters": ["400 m", "300 m"], "slot_time_octets": 90,
                               "data": [{"from": 2, "to": 4}])"},
         {"/cable",
