@@ -17,7 +17,7 @@ TEST(TokenBusSuite, ReferencesPassInManySeedsWithoutAFalseAlarm) {
 }
 
 TEST(TokenBusSuite, NoTwoAnswersOfAPicsAccuseAReference) {
-  EXPECT_THAT(false_alarms_of_answers(*token_bus_suite(), 16), testing::IsEmpty());
+  EXPECT_THAT(false_alarms_of_answers(*token_bus_suite(), 64), testing::IsEmpty());
 }
 
 }  // namespace
