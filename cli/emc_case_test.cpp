@@ -53,7 +53,7 @@ TEST_F(StoredEmc, IsMadeSmallInEachProtocol) {
         Campaign{"valve_bus", "node@3=mutant:write_not_checked", bursts("5s", "-"), "wrong_word_accepted"},
         Campaign{"fieldbus_dll",
                  "ff_device@1=mutant:takes_violated_frames",
-                 {"--channel", "bsc:0.002", "--duration", "20s"},
+                 {"--channel", "bsc:0.003", "--duration", "40s"},
                  "wrong_word_accepted"},
         Campaign{"token_bus",
                  "station@1=ref",
