@@ -4,12 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "cli/build_info.hpp"
+#include "cli/emc_case.hpp"
 #include "cli/flipped_bits.hpp"
 #include "cli/implementations.hpp"
 #include "cli/pics_file.hpp"
+#include "cli/sequence_file.hpp"
 #include "harness/config/document.hpp"
 #include "harness/judge/result_json.hpp"
 #include "harness/kernel/error.hpp"
@@ -130,10 +133,17 @@ const conformance::Entry& entry_from(const config::Value& id, const conformance:
   }
 }
 
+void expect_case(const config::Value& schema) {
+  constexpr std::array kSchemas{kSchema, kSequenceSchema, kEmcCaseSchema};
+  if (schema.as_choice(kSchemas) == 0) return;
+  config::fail(schema,
+               "this is no case of a suite; 'fieldproof replay' and 'fieldproof shrink' take such a file");
+}
+
 CaseFile read_case(config::ObjectReader& reader, const std::filesystem::path& folder,
                    const conformance::Catalogue& catalogue) {
   CaseFile read;
-  reader.required("schema").as_choice(std::array{kSchema});
+  expect_case(reader.required("schema"));
   const conformance::Entry& entry = entry_from(reader.required("case"), catalogue);
   read.id = entry.test_case->id;
   read.setup.seed = judge::unsigned_from(reader.required("run_seed"));

@@ -138,6 +138,9 @@ TEST_F(StoredEmc, RefusesWhatIsNoTest) {
     EXPECT_EQ(call({"shrink", "bad.json"}).exit_code, kBadFile) << change;
     return called.err;
   };
+  EXPECT_HOLDS(call({"verify", "out/interbus-1-1.case.json"}).err,
+               "'fieldproof replay' and 'fieldproof shrink'");
+  EXPECT_HOLDS(refusal({{"schema", "fieldproof/emc_case/2"}}), "fieldproof/emc_case/1");
   EXPECT_HOLDS(refusal({{"protocol", "profibus"}}), "/protocol");
   EXPECT_HOLDS(refusal({{"bursts", nullptr}}), R"(write either "bursts" or "binary_symmetric")");
   EXPECT_HOLDS(refusal({{"duration", "2 h"}}), "/duration");

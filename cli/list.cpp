@@ -62,17 +62,6 @@ Row row_of(const judge::PicsItem& item) {
   return row;
 }
 
-std::string answer_text(const judge::Pics::Answer& answer) {
-  const auto text = [](const auto& value) {
-    using Value = std::decay_t<decltype(value)>;
-    if constexpr (std::is_same_v<Value, kernel::Duration>) return kernel::describe(value);
-    if constexpr (std::is_same_v<Value, std::string>) return fmt::format("\"{}\"", value);
-    if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, std::int64_t>)
-      return fmt::format("{}", value);
-  };
-  return std::visit(text, answer);
-}
-
 // The items of one role, with what is taken where a PICS does not answer.
 std::vector<Row> pics_rows_of(const Role& role, const Session& session) {
   std::vector<Row> rows;
@@ -84,7 +73,7 @@ std::vector<Row> pics_rows_of(const Role& role, const Session& session) {
     Row row = row_of(item);
     const auto answer = usual.find(item.name);
     if (answer != usual.end()) {
-      const std::string text = answer_text(answer->second);
+      const std::string text = judge::answer_text(answer->second);
       row.json["default"] = text;
       row.text =
           fmt::format("{}  {}, otherwise {}  {}", item.name, judge::answers_text(item), text, item.meaning);

@@ -52,7 +52,10 @@ class OpenPairs {
   }
   void set(Value one, Value other, bool is_open) {
     is_open_[place(one, other)] = is_open_[place(other, one)] = is_open;
-    count_ += is_open ? 1 : std::size_t(-1);
+    if (is_open)
+      ++count_;
+    else
+      --count_;
   }
 
   const std::vector<std::size_t>& values_;
@@ -62,8 +65,8 @@ class OpenPairs {
   std::size_t count_ = 0;
 };
 
-// The values of the pair, and of each other factor, in random order, the one that closes most; where several
-// do, and in every second row that was refused, any.
+// A row with the values of a pair. Of each other factor, in random order, it has the value that closes most
+// pairs, any of them where several do; or any value at all.
 class Filling {
  public:
   Filling(const std::vector<std::size_t>& values, const OpenPairs& open, kernel::Random& random)

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "conformance/answer_pairs.hpp"
 #include "conformance/catalogue.hpp"
 #include "conformance/false_alarms.hpp"
 #include "conformance/matrix.hpp"
@@ -61,7 +62,15 @@ TEST(InterbusSuite, CanariesFail) {
 }
 
 TEST(InterbusSuite, NoTwoAnswersOfAPicsAccuseAReference) {
-  EXPECT_THAT(false_alarms_of_answers(suite(), 8), testing::IsEmpty());
+  const std::vector<AnswerPairs> roles = pairs_of_answers(suite(), kernel::kIsSanitized ? 8 : 1);
+  ASSERT_EQ(roles.size(), 1U);  // what masters declare are texts
+  for (const AnswerPairs& one : roles) {
+    EXPECT_THAT(one.accused, testing::IsEmpty()) << one.role;
+    EXPECT_GT(one.declarations, 0U) << one.role;
+    EXPECT_LT(one.refused, one.pairs / 2) << one.role;
+    RecordProperty(one.role, std::to_string(one.declarations) + " declarations of " +
+                                 std::to_string(one.pairs) + " pairs");
+  }
 }
 
 TEST(InterbusSuite, TheMatrixHasNoHole) {

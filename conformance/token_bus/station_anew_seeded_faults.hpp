@@ -160,29 +160,24 @@ class LeavesWithDataLeft : public TokenStation {
 // ---- what is reported ----
 
 // One event of a kind, or no data that cost it the token.
-class ReportsLess : public TokenStation, private token_bus::StationUser {
+class ReportsLess : public BetweenUser<TokenStation> {
  public:
   ReportsLess(const StationConfiguration& configuration, EventKind kind, bool is_about_data)
-      : TokenStation(configuration), kind_(kind), is_about_data_(is_about_data) {}
-  void wire(segment::Port& line, token_bus::StationUser& user) override {
-    user_ = &user;
-    TokenStation::wire(line, *this);
-  }
+      : BetweenUser(configuration), kind_(kind), is_about_data_(is_about_data) {}
 
  private:
   void on_data(const Frame& frame, Time when) override {
-    if (!is_about_data_ || last_ != when) user_->on_data(frame, when);
+    if (!is_about_data_ || last_ != when) user().on_data(frame, when);
   }
   void on_event(const token_bus::Event& event, Time when) override {
     if (event.kind == kind_) last_ = when;
     if (event.kind == kind_ && !is_about_data_ && std::exchange(has_one_, true)) return;
-    user_->on_event(event, when);
+    user().on_event(event, when);
   }
   EventKind kind_;
   bool is_about_data_;
   bool has_one_ = false;
   Time last_ = kernel::kNever;
-  token_bus::StationUser* user_ = nullptr;
 };
 
 }  // namespace fieldproof::conformance::token_seeded_faults

@@ -188,18 +188,12 @@ class BroadcastOnly : public TokenStation {
   }
 };
 
-class EventsTwice : public TokenStation, private token_bus::StationUser {
-  using TokenStation::TokenStation;
-  void wire(segment::Port& line, token_bus::StationUser& user) override {
-    user_ = &user;
-    TokenStation::wire(line, *this);
-  }
-  void on_data(const Frame& frame, Time when) override { user_->on_data(frame, when); }
+class EventsTwice : public BetweenUser<TokenStation> {
+  using BetweenUser::BetweenUser;
   void on_event(const token_bus::Event& event, Time when) override {
-    user_->on_event(event, when);
-    user_->on_event(event, when);
+    user().on_event(event, when);
+    user().on_event(event, when);
   }
-  token_bus::StationUser* user_ = nullptr;
 };
 
 class FirstResponseKept : public TokenStation {

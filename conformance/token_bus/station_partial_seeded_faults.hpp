@@ -29,21 +29,15 @@ class NthDatumLost : public TokenStation {
   unsigned data_ = 0;
 };
 
-class EqualDataOnce : public TokenStation, private token_bus::StationUser {
-  using TokenStation::TokenStation;
-  void wire(segment::Port& line, token_bus::StationUser& user) override {
-    user_ = &user;
-    TokenStation::wire(line, *this);
-  }
+class EqualDataOnce : public BetweenUser<TokenStation> {
+  using BetweenUser::BetweenUser;
   void on_data(const Frame& frame, Time when) override {
     const bool is_again = last_ && last_->data == frame.data && last_->action == frame.action &&
                           last_->priority == frame.priority && last_->source == frame.source;
     last_ = frame;
-    if (!is_again) user_->on_data(frame, when);
+    if (!is_again) user().on_data(frame, when);
   }
-  void on_event(const token_bus::Event& event, Time when) override { user_->on_event(event, when); }
   std::optional<Frame> last_;
-  token_bus::StationUser* user_ = nullptr;
 };
 
 class CountsInOctets : public TokenStation {

@@ -27,6 +27,25 @@ using token_bus::Rules;
 using token_bus::StationConfiguration;
 using token_bus::TokenStation;
 
+// Stands between its station and the user of it; what is not overridden is passed on.
+template <typename Station = TokenStation>
+class BetweenUser : public Station, protected token_bus::StationUser {
+ public:
+  using Station::Station;
+  void wire(segment::Port& line, token_bus::StationUser& user) override {
+    user_ = &user;
+    Station::wire(line, *this);
+  }
+
+ protected:
+  void on_data(const Frame& frame, Time when) override { user_->on_data(frame, when); }
+  void on_event(const token_bus::Event& event, Time when) override { user_->on_event(event, when); }
+  token_bus::StationUser& user() { return *user_; }
+
+ private:
+  token_bus::StationUser* user_ = nullptr;
+};
+
 // ---- initialisation ----
 
 class ClaimsLeastPairFirst : public TokenStation {
@@ -460,32 +479,27 @@ class WritesOtherwise : public TokenStation {
 };
 
 // What it has right, its user gets otherwise; an event may be kept from it.
-class ReportsOtherwise : public TokenStation, private token_bus::StationUser {
+class ReportsOtherwise : public BetweenUser<TokenStation> {
  public:
   struct Change {
     void (*of_data)(Frame&, const TokenStation&) = nullptr;
     bool (*of_event)(token_bus::Event&) = nullptr;  // false: it is kept
   };
   ReportsOtherwise(const StationConfiguration& configuration, Change change)
-      : TokenStation(configuration), change_(change) {}
-  void wire(segment::Port& line, token_bus::StationUser& user) override {
-    user_ = &user;
-    TokenStation::wire(line, *this);
-  }
+      : BetweenUser(configuration), change_(change) {}
 
  private:
   void on_data(const Frame& frame, Time when) override {
     Frame other = frame;
     if (change_.of_data != nullptr) change_.of_data(other, *this);
-    user_->on_data(other, when);
+    user().on_data(other, when);
   }
   void on_event(const token_bus::Event& event, Time when) override {
     token_bus::Event other = event;
-    if (change_.of_event == nullptr || change_.of_event(other)) user_->on_event(other, when);
+    if (change_.of_event == nullptr || change_.of_event(other)) user().on_event(other, when);
   }
 
   Change change_;
-  token_bus::StationUser* user_ = nullptr;
 };
 
 // Its octets go most significant bit first.

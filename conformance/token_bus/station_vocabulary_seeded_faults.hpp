@@ -94,40 +94,28 @@ inline bool asked_responses(Frame& frame, const TokenStation& station) {
 // ---- what becomes of an event ----
 
 // Something happens in it that should not: its station is like new, but for what is kept.
-class BeginsAnewWith : public KeptOverLoss, private token_bus::StationUser {
+class BeginsAnewWith : public BetweenUser<KeptOverLoss> {
  public:
   BeginsAnewWith(const StationConfiguration& configuration, EventKind kind, Kept kept)
-      : KeptOverLoss(configuration, kept), kind_(kind) {}
-  void wire(segment::Port& line, token_bus::StationUser& user) override {
-    user_ = &user;
-    KeptOverLoss::wire(line, *this);
-  }
+      : BetweenUser(configuration, kept), kind_(kind) {}
 
  private:
-  void on_data(const Frame& frame, Time when) override { user_->on_data(frame, when); }
   void on_event(const token_bus::Event& event, Time when) override {
-    user_->on_event(event, when);
+    user().on_event(event, when);
     if (event.kind != kind_) return;
     stop(when);
     start(when);
   }
   EventKind kind_;
-  token_bus::StationUser* user_ = nullptr;
 };
 
-class BothFailuresReported : public TokenStation, private token_bus::StationUser {
-  using TokenStation::TokenStation;
-  void wire(segment::Port& line, token_bus::StationUser& user) override {
-    user_ = &user;
-    TokenStation::wire(line, *this);
-  }
-  void on_data(const Frame& frame, Time when) override { user_->on_data(frame, when); }
+class BothFailuresReported : public BetweenUser<TokenStation> {
+  using BetweenUser::BetweenUser;
   void on_event(const token_bus::Event& event, Time when) override {
     if (event.kind == EventKind::faulty_transmitter)
-      user_->on_event({EventKind::pass_failed, address()}, when);
-    user_->on_event(event, when);
+      user().on_event({EventKind::pass_failed, address()}, when);
+    user().on_event(event, when);
   }
-  token_bus::StationUser* user_ = nullptr;
 };
 
 class MissingResponseEndsUse : public TokenStation {
@@ -162,21 +150,15 @@ class OfflineForEver : public TokenStation {
 };
 
 // The limit is as low as the failures before have left it.
-class FailuresKept : public TokenStation, private token_bus::StationUser {
-  using TokenStation::TokenStation;
-  void wire(segment::Port& line, token_bus::StationUser& user) override {
-    user_ = &user;
-    TokenStation::wire(line, *this);
-  }
-  void on_data(const Frame& frame, Time when) override { user_->on_data(frame, when); }
+class FailuresKept : public BetweenUser<TokenStation> {
+  using BetweenUser::BetweenUser;
   void on_event(const token_bus::Event& event, Time when) override {
     token_bus::Event other = event;
     if (event.kind == EventKind::pass_failed && ++failures_ >= rules().transmitter_fault_limit)
       other.kind = EventKind::faulty_transmitter;
-    user_->on_event(other, when);
+    user().on_event(other, when);
   }
   unsigned failures_ = 0;
-  token_bus::StationUser* user_ = nullptr;
 };
 
 }  // namespace fieldproof::conformance::token_seeded_faults

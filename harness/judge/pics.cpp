@@ -43,6 +43,17 @@ PicsKind kind_of(const Pics::Answer& answer) {
   return static_cast<PicsKind>(answer.index());
 }
 
+std::string answer_text(const Pics::Answer& answer) {
+  const auto text = [](const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, kernel::Duration>) return kernel::describe(value);
+    if constexpr (std::is_same_v<Value, std::string>) return fmt::format("\"{}\"", value);
+    if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, std::int64_t>)
+      return fmt::format("{}", value);
+  };
+  return std::visit(text, answer);
+}
+
 std::string answers_text(const PicsItem& item) {
   switch (item.kind) {
     case PicsKind::truth:

@@ -41,6 +41,9 @@ enum class PicsKind : std::uint8_t { truth, number, text, duration };
 
 PicsKind kind_of(const Pics::Answer& answer);
 
+// "true", "64", "\"held\"", "1.000 ms".
+std::string answer_text(const Pics::Answer& answer);
+
 // One row of the list of items that a suite knows. An item that no row names is a misspelling: nobody would
 // ask for it, and what it was meant to switch on would silently not apply.
 struct PicsItem {
