@@ -60,7 +60,7 @@ struct CaseRole {
     if constexpr (requires { made.link_stresses; }) made.link_stresses = &disturbances.link_stresses;
     if constexpr (requires { made.pics; }) made.pics = run_of_case.pics();
     if constexpr (requires { made.settings; }) {
-      const field::Settings& given = run_of_case.setup().settings;
+      const field::Settings& given = run_of_case.settings();
       if (are_settings_declared && !given.empty()) {
         if (!made.pics) made.pics.emplace();
         field::declare_settings(*settings, given, *made.pics);
@@ -106,14 +106,14 @@ RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
   const auto run_case = [role, play](const Case& one, RunningCase& run, bool has_to_drive) {
     Setting setting = role.setting(run);
     play(setting, run);
-    Outcome outcome;
-    outcome.result = role.run(one, setting);
-    if (has_to_drive) require_driven(one, setting, outcome.result);
-    run.keep(outcome);
-    return outcome;
+    judge::CaseResult result = role.run(one, setting);
+    if (has_to_drive) require_driven(one, setting, result);
+    return result;
   };
   row.run = [role, run_case](const TestCase& test_case, RunningCase& run) {
-    return run_case(role.find(test_case), run, true);
+    Outcome outcome{run_case(role.find(test_case), run, true), {}};
+    run.keep(outcome);
+    return outcome;
   };
   row.check = [role](const TestCase& test_case, RunningCase& run) {
     const Setting setting = role.setting(run);

@@ -10,6 +10,7 @@ RunningCase::RunningCase(const TestCase& test_case, const Setup& setup, const Su
       setup_(setup),
       given_(given),
       telegrams_(telegrams),
+      settings_(setup.settings),
       assigned_(assigned_to(test_case, setup)),
       on_real_line_(given.on_real_line ? given.on_real_line(assigned_.uri, test_case.id) : std::nullopt),
       devices_(test_case, setup, given.attach) {}

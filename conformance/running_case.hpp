@@ -32,6 +32,9 @@ class RunningCase {
   const TestCase& test_case() const { return test_case_; }
   const Setup& setup() const { return setup_; }
   const SuiteGiven& given() const { return given_; }
+  // What the implementation is given from the next bench on: those of the setup, or of a sequence.
+  const field::Settings& settings() const { return settings_; }
+  void use_settings(field::Settings settings) { settings_ = std::move(settings); }
   // Who plays the role of the case.
   const Assignment& assigned() const { return assigned_; }
   // The answers of the setup, completed by what is known of a station on a real line.
@@ -71,6 +74,7 @@ class RunningCase {
   const Setup& setup_;
   const SuiteGiven& given_;
   const line::TelegramCode* telegrams_;
+  field::Settings settings_;
   Assignment assigned_;
   std::optional<judge::Pics> on_real_line_;
   CaseDevices devices_;

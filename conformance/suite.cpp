@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "conformance/derived_cases.hpp"
 #include "conformance/running_case.hpp"
 #include "conformance/stressed_receiver.hpp"
 #include "harness/kernel/check.hpp"
@@ -33,7 +34,10 @@ Suite::Suite(SuiteRows rows, SuiteGiven given) : rows_(std::move(rows)), given_(
       if (is_named_in(left_out, one) && !is_named_in(cases_, one)) continue;
       mutants_.push_back(std::move(one));
     }
-    if (row.sequences) sequence_roles_.push_back(*row.sequences);
+    if (row.sequences) {
+      sequence_roles_.push_back(*row.sequences);
+      for (TestCase& one : derived_cases(*row.sequences)) cases_.push_back(std::move(one));
+    }
     row.cases.clear();
     row.mutants.clear();
   }
@@ -74,7 +78,13 @@ Outcome Suite::run(const TestCase& test_case, const Setup& setup) const {
   const RoleRow& row = row_of(test_case);
   RunningCase run = begin(test_case, setup);
   check_setup(row, test_case, run);
-  Outcome outcome = row.run(test_case, run);
+  Outcome outcome;
+  if (const auto kind = derived_kind(test_case)) {
+    outcome.result = run_derived(row, *kind, run);
+    run.keep(outcome);
+  } else {
+    outcome = row.run(test_case, run);
+  }
   outcome.happens_once = run.is_on_real_line();
   return outcome;
 }
@@ -92,12 +102,26 @@ Outcome Suite::run_sequence(const SequenceRole& role, const Sequence& sequence, 
   const RoleRow& row = row_of(role.test_case);
   FIELDPROOF_CHECK(bool(row.run_sequence),
                    "a suite runs sequences of the roles that it names: " + role.test_case.id);
-  Setup with_settings = setup;
-  with_settings.settings = sequence.settings;
-  RunningCase run = begin(role.test_case, with_settings);
-  Outcome outcome = row.run_sequence(sequence, run);
+  RunningCase run = begin(role.test_case, setup);
+  run.use_settings(sequence.settings);
+  Outcome outcome{row.run_sequence(sequence, run), {}};
+  run.keep(outcome);
   outcome.happens_once = run.is_on_real_line();
   return outcome;
+}
+
+judge::CaseResult Suite::run_derived(const RoleRow& row, DerivedKind kind, RunningCase& run) const {
+  const SequenceVocabulary vocabulary = this->vocabulary(*row.sequences, run.setup());
+  const std::size_t most =
+      run.is_on_real_line() ? kDerivedOnRealLine : derived_count(kind, run.setup().volume);
+  const DerivedSequences derived =
+      derived_sequences(kind, vocabulary, most, kernel::Random(run.setup().seed).split("derived"));
+  DerivedResult all(run.test_case(), derived, vocabulary);
+  for (const Sequence& sequence : derived.sequences) {
+    run.use_settings(sequence.settings);
+    if (!all.add(sequence, row.run_sequence(sequence, run))) break;
+  }
+  return all.take();
 }
 
 void Suite::check(const TestCase& test_case, const Setup& setup) const {

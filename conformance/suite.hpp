@@ -39,7 +39,8 @@ struct RoleRow {
   judge::Pics usual_answers{};
   const field::AnyTable* settings = nullptr;
   std::optional<SequenceRole> sequences{};
-  std::function<Outcome(const Sequence&, RunningCase&)> run_sequence{};
+  // On a bench of its own; a run of a case may consist of many.
+  std::function<judge::CaseResult(const Sequence&, RunningCase&)> run_sequence{};
 };
 
 struct SuiteRows {
@@ -113,6 +114,7 @@ class Suite {
   RunningCase begin(const TestCase& test_case, const Setup& setup) const;
   const line::TelegramCode* telegrams(const Setup& setup) const;
   void check_setup(const RoleRow& row, const TestCase& test_case, RunningCase& run) const;
+  judge::CaseResult run_derived(const RoleRow& row, DerivedKind kind, RunningCase& run) const;
 
   SuiteRows rows_;
   SuiteGiven given_;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/derived_sequences.hpp"
 #include "conformance/sequence.hpp"
 #include "harness/iut/limits.hpp"
 #include "harness/judge/finding.hpp"
@@ -132,10 +133,17 @@ struct Outcome {
   bool happens_once = false;  // on a real line: a second run is another one, and has another fingerprint
 };
 
+// A mutant that a case of derived sequences must catch.
+struct DerivedCatch {
+  DerivedKind kind;
+  MustCatch caught;
+};
+
 // A role that has commands and a model.
 struct SequenceRole {
   TestCase test_case;  // "PROTOCOL/ROLE/check/follows_the_model"
   SequenceVocabulary vocabulary;
+  std::vector<DerivedCatch> derived_catches{};
 };
 
 }  // namespace fieldproof::conformance

@@ -278,7 +278,12 @@ const SequenceRole& ff_device_sequence_role() {
        .expected = "What a model of the rules says.",
        .tags = {},
        .catches = {}},
-      ff_device_vocabulary()};
+      ff_device_vocabulary(),
+      {{DerivedKind::values, {"tells_twice", "data_not_delivered"}},
+       {DerivedKind::faults, {"tells_live_lists", "data_not_delivered"}},
+       {DerivedKind::words, {"subscribed_to_none", "published_not_delivered"}},
+       {DerivedKind::repetitions, {"tells_other_source", "told_otherwise"}},
+       {DerivedKind::settings, {"tells_no_writes", "told_otherwise"}}}};
   return role;
 }
 

@@ -320,7 +320,12 @@ const SequenceRole& isa_las_sequence_role() {
        .expected = "What an acceptor of the rules allows.",
        .tags = {},
        .catches = {}},
-      isa_las_vocabulary()};
+      isa_las_vocabulary(),
+      {{DerivedKind::values, {"schedule_late", "line_left_silent"}},
+       {DerivedKind::faults, {"schedule_not_begun", "line_left_silent"}},
+       {DerivedKind::words, {"schedule_early", "delegation_early"}},
+       {DerivedKind::repetitions, {"waits_out_duration", "line_left_silent"}},
+       {DerivedKind::settings, {"transfer_without_version", "transfer_wrong"}}}};
   return role;
 }
 

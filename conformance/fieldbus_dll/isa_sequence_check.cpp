@@ -271,7 +271,12 @@ const SequenceRole& isa_dle_sequence_role() {
        .expected = "What a model of the rules says.",
        .tags = {},
        .catches = {}},
-      isa_dle_vocabulary()};
+      isa_dle_vocabulary(),
+      {{DerivedKind::values, {"no_end_when_empty", "token_not_returned"}},
+       {DerivedKind::faults, {"short_silence", "answers_too_early"}},
+       {DerivedKind::words, {"sends_no_preamble", "frame_malformed"}},
+       {DerivedKind::repetitions, {"tells_other_source", "told_otherwise"}},
+       {DerivedKind::settings, {"takes_any_token", "speaks_unasked"}}}};
   return role;
 }
 

@@ -83,6 +83,7 @@ void MasterBench::write_output(unsigned word, std::uint16_t value) {
 }
 
 void MasterBench::request_id_cycle() {
+  ++ordered_id_cycles_;
   master_->request_id_cycle(now());
   segment().refresh(master_seat_);
 }
@@ -167,7 +168,8 @@ bool MasterBench::run_cycle() {
     segment().step();
   }
   id_cycles_in_a_row_ = finished_.is_data ? 0 : id_cycles_in_a_row_ + 1;
-  return id_cycles_in_a_row_ <= kMostIdCycles + 8 * ring_->stations().size();
+  if (finished_.is_data) ordered_id_cycles_ = 0;
+  return id_cycles_in_a_row_ <= kMostIdCycles + 8 * ring_->stations().size() + ordered_id_cycles_;
 }
 
 void MasterBench::run_data_cycles(CaseJudge& judge, std::uint64_t count) {

@@ -140,6 +140,7 @@ class MasterBench final : public CaseBench {
   trace::Channel master_place_ = 0;
   static constexpr std::size_t kMostIdCycles = 64;
   std::size_t id_cycles_in_a_row_ = 0;
+  std::size_t ordered_id_cycles_ = 0;  // since the last data cycle
   FinishedCycle finished_;
   std::function<void()> on_cycle_;
   interbus::RingEmulator::Script script_;

@@ -178,7 +178,12 @@ const SequenceRole& slave_sequence_role() {
        .expected = "What a model of the rules says.",
        .tags = {},
        .catches = {}},
-      slave_vocabulary()};
+      slave_vocabulary(),
+      {{DerivedKind::values, {"sends_check_of_received_bits", "check_wrong"}},
+       {DerivedKind::faults, {"id_register_in_data_cycle", "register_content_wrong"}},
+       {DerivedKind::words, {"output_octets_swapped", "wrong_value_latched"}},
+       {DerivedKind::repetitions, {"latches_5_ms_late", "valid_cycle_rejected"}},
+       {DerivedKind::settings, {"input_bit_stuck", "register_content_wrong"}}}};
   return role;
 }
 

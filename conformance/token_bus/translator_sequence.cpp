@@ -206,7 +206,12 @@ const SequenceRole& translator_sequence_role() {
            "disagree, the sequence ends.",
        .tags = {},
        .catches = {}},
-      translator_vocabulary()};
+      translator_vocabulary(),
+      {{DerivedKind::values, {"reset_not_acknowledged", "indication_other"}},
+       {DerivedKind::faults, {"silent_until_it_is_locked", "indication_other"}},
+       {DerivedKind::words, {"reset_enables_transmitter", "sent_other"}},
+       {DerivedKind::repetitions, {"zero_and_one_exchanged", "indication_other"}},
+       {DerivedKind::settings, {"transmitter_on_from_the_start", "sent_other"}}}};
   return role;
 }
 

@@ -280,7 +280,12 @@ const SequenceRole& host_sequence_role() {
        .expected = "What the reference sends and reports when it is ordered and answered the same.",
        .tags = {},
        .catches = {}},
-      host_vocabulary()};
+      host_vocabulary(),
+      {{DerivedKind::values, {"request_check_is_sum", "check_wrong"}},
+       {DerivedKind::faults, {"write_waits_for_answer", "counters_wrong"}},
+       {DerivedKind::words, {"request_check_without_id", "check_wrong"}},
+       {DerivedKind::repetitions, {"two_attempts", "no_request"}},
+       {DerivedKind::settings, {"silence_told_as_data", "indication_wrong"}}}};
   return role;
 }
 

@@ -258,7 +258,12 @@ const SequenceRole& node_sequence_role() {
        .expected = "What the reference does with what arrived, within the times of the rules.",
        .tags = {},
        .catches = {}},
-      node_vocabulary()};
+      node_vocabulary(),
+      {{DerivedKind::values, {"turns_round_a_tenth_early", "answer_too_early"}},
+       {DerivedKind::faults, {"turns_round_late", "answer_too_late"}},
+       {DerivedKind::words, {"turns_round_a_tenth_late", "answer_too_late"}},
+       {DerivedKind::repetitions, {"valves_set_at_power_up", "valves_wrong"}},
+       {DerivedKind::settings, {"switch_bit_stuck", "answer_data_wrong"}}}};
   return role;
 }
 

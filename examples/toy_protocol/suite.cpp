@@ -113,11 +113,14 @@ const SequenceRole& sequences() {
       poll_case("check/follows_the_rules", "Right requests of its own are answered, and nothing else.",
                 "Requests at random.", {}, nullptr)
           .test_case,
-      {.words = {
-           {.word = "request",
-            .meaning = "a request, its check inverted in the bits of the flaw",
-            .numbers = {
-                {"address", 0, 255, 7, kLikely}, {"flaw", 0, 255, 0, kLikely}, {"value", 0, 255, 0}}}}}};
+      {.words = {{.word = "request",
+                  .meaning = "a request, its check inverted in the bits of the flaw",
+                  .numbers = {{"address", 0, 255, 7, kLikely},
+                              {"flaw", 0, 255, 0, kLikely},
+                              {"value", 0, 255, 0}}}}},
+      {{DerivedKind::values, {"check_ignored", "answers_what_it_must_not"}},
+       {DerivedKind::words, {"answers_for_all", "answers_what_it_must_not"}},
+       {DerivedKind::repetitions, {"answers_late", "answers_late"}}}};
   return role;
 }
 

@@ -1,0 +1,143 @@
+#include "conformance/derived_cases.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "conformance/judging.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using judge::Verdict;
+
+constexpr std::string_view kFolder = "/derived/";
+constexpr std::size_t kMostSaid = 10;  // commands of a sequence, in a finding
+constexpr std::size_t kQuick = 60;
+constexpr std::size_t kFewest = 10;  // of a kind that costs much
+constexpr std::size_t kFull = 1'500;
+constexpr std::uint64_t kFingerprintFactor = 0x100'0000'01B3;  // of FNV-1a
+
+TestCase derived_case(const SequenceRole& role, const DerivedRow& row, std::size_t singles) {
+  const std::string& id = role.test_case.id;
+  TestCase one = role.test_case;
+  one.id = fmt::format("{}{}{}", id.substr(0, id.find('/', id.find('/') + 1)), kFolder, row.name);
+  one.purpose = "derived";
+  one.stimulus =
+      fmt::format("{} There are {} sequences about one thing; quick takes {} of all, full {}.", row.stimulus,
+                  singles, derived_count(row.kind, Volume::quick), derived_count(row.kind, Volume::full));
+  one.tags = {"derived"};
+  one.catches.clear();
+  for (const DerivedCatch& derived : role.derived_catches)
+    if (derived.kind == row.kind) one.catches.push_back(derived.caught);
+  return one;
+}
+
+// What comes several times in a row is said once; of a long sequence its end, which is what failed.
+std::string commands_text(const Sequence& sequence, const SequenceVocabulary& vocabulary) {
+  std::vector<std::string> said;
+  std::size_t times = 1;
+  std::string last;
+  const auto say = [&] {
+    if (!last.empty()) said.push_back(times == 1 ? last : fmt::format("{} times {}", times, last));
+  };
+  for (std::string& line : sequence_lines(sequence, vocabulary)) {
+    if (line == last) {
+      ++times;
+      continue;
+    }
+    say();
+    last = std::move(line);
+    times = 1;
+  }
+  say();
+  if (said.size() <= kMostSaid) return fmt::format("{}", fmt::join(said, " / "));
+  const std::size_t left_out = said.size() - kMostSaid;
+  said.erase(said.begin(), said.begin() + static_cast<std::ptrdiff_t>(left_out));
+  return fmt::format("{} others / {}", left_out, fmt::join(said, " / "));
+}
+
+}  // namespace
+
+std::size_t derived_count(DerivedKind kind, Volume volume) {
+  const auto row = std::ranges::find(kDerivedRows, kind, &DerivedRow::kind);
+  return volume == Volume::quick ? std::max(kQuick / row->cost, kFewest) : kFull / row->cost;
+}
+
+std::vector<TestCase> derived_cases(const SequenceRole& role) {
+  std::vector<TestCase> all;
+  for (const DerivedRow& row : kDerivedRows) {
+    const DerivedSequences derived = derived_sequences(row.kind, role.vocabulary, 1, kernel::Random(0));
+    if (!derived.sequences.empty()) all.push_back(derived_case(role, row, derived.singles));
+  }
+  return all;
+}
+
+std::optional<DerivedKind> derived_kind(const TestCase& test_case) {
+  if (!has_tag(test_case, "derived")) return std::nullopt;
+  const auto row = std::ranges::find_if(kDerivedRows, [&](const DerivedRow& one) {
+    return test_case.id.ends_with(fmt::format("{}{}", kFolder, one.name));
+  });
+  if (row == kDerivedRows.end()) return std::nullopt;
+  return row->kind;
+}
+
+DerivedResult::DerivedResult(const TestCase& test_case, const DerivedSequences& derived,
+                             const SequenceVocabulary& vocabulary)
+    : test_case_(test_case), derived_(derived), vocabulary_(vocabulary) {
+  worst_ = CaseJudge(test_case_).run_procedure([](CaseJudge&) {});
+  worst_.has_driven = false;
+}
+
+bool DerivedResult::add(const Sequence& sequence, judge::CaseResult one) {
+  ++run_;
+  worst_.fingerprint = (worst_.fingerprint ^ one.fingerprint) * kFingerprintFactor;
+  worst_.virtual_time += one.virtual_time;
+  worst_.has_driven = worst_.has_driven || one.has_driven;
+  worst_.planned_hits.resize(std::max(worst_.planned_hits.size(), one.planned_hits.size()));
+  for (std::size_t n = 0; n < one.planned_hits.size(); ++n) worst_.planned_hits[n] += one.planned_hits[n];
+  worst_.seed = one.seed;
+  if (one.verdict == Verdict::not_applicable) {
+    if (++not_applicable_ == 1) why_not_ = std::move(one.reason);
+    return true;
+  }
+  if (one.verdict <= worst_.verdict) return true;
+  const std::string which = fmt::format("sequence {} of {}: {}", run_, derived_.sequences.size(),
+                                        commands_text(sequence, vocabulary_));
+  for (judge::Finding& finding : one.findings) finding.step = which;
+  worst_.verdict = one.verdict;
+  worst_.reason = std::move(one.reason);
+  worst_.reference = std::move(one.reference);
+  worst_.findings = std::move(one.findings);
+  return worst_.verdict < Verdict::fail;
+}
+
+void DerivedResult::measure(std::string name, std::size_t count) {
+  const auto value = static_cast<double>(count);
+  worst_.measurements.push_back({std::move(name), "", value, value, value});
+}
+
+judge::CaseResult DerivedResult::take() {
+  if (worst_.verdict == Verdict::pass && not_applicable_ == run_) {
+    worst_.verdict = Verdict::not_applicable;
+    worst_.reason = std::move(why_not_);
+    return std::move(worst_);
+  }
+  if (worst_.verdict == Verdict::pass && !worst_.has_driven) {
+    judge::CaseResult silent = CaseJudge(test_case_).run_procedure([](CaseJudge& judge) {
+      judge.inconclusive("precondition_not_met", {{"an implementation that drives its line"},
+                                                  "it has driven nothing in any of the sequences"});
+    });
+    worst_.verdict = silent.verdict;
+    worst_.reason = std::move(silent.reason);
+    worst_.findings = std::move(silent.findings);
+  }
+  measure("sequences", run_);
+  measure("about one thing", derived_.taken);
+  measure("about one thing there are", derived_.singles);
+  return std::move(worst_);
+}
+
+}  // namespace fieldproof::conformance

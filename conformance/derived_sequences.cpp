@@ -1,0 +1,339 @@
+#include "conformance/derived_sequences.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "conformance/sequence_settings.hpp"
+
+namespace fieldproof::conformance {
+
+const std::array<DerivedRow, 5> kDerivedRows{{
+    {DerivedKind::values, "each_number_at_its_boundaries",
+     "Each number of each command at both ends, beside them, at each power of two and at what the rules "
+     "name, "
+     "between other commands; and two numbers at once."},
+    {DerivedKind::faults, "each_unit_spoilt",
+     "Each unit of each transmission lost, each of its levels inverted, each gap after it, between the same "
+     "transmission unspoilt; and two faults at once."},
+    {DerivedKind::words, "each_three_commands_in_each_order",
+     "Each three commands, usual and unusual, one after the other."},
+    {DerivedKind::repetitions, "the_same_many_times",
+     "Each command again and again, two commands in turn, and others after them.", 15},
+    {DerivedKind::settings, "each_setting_at_its_ends",
+     "Each setting at both ends of its range and beside them, and one of each command; and two settings at "
+     "once."},
+}};
+
+namespace {
+
+constexpr std::array<std::size_t, 3> kRepetitions{2, 20, 130};
+constexpr std::size_t kManyRepetitions = 300;
+constexpr std::size_t kOrder = 3;       // words of which all orders occur
+constexpr std::size_t kNewOfWalk = 4;   // words that a walk has beyond those it shares with the one before
+constexpr std::size_t kTourLength = 5;  // commands with a setting
+
+void add_once(std::vector<std::int64_t>& values, std::int64_t value) {
+  if (std::ranges::find(values, value) == values.end()) values.push_back(value);
+}
+
+// What makes sequences of one vocabulary.
+class Derivation {
+ public:
+  Derivation(const SequenceVocabulary& vocabulary, kernel::Random random)
+      : vocabulary_(vocabulary), random_(random) {
+    for (std::size_t word = 0; word < vocabulary.words.size(); ++word) {
+      if (vocabulary.words[word].weight == 0) continue;
+      words_.push_back(word);
+      letters_.push_back(simple(word));
+      SequenceCommand unusual = drawn(word);
+      if (unusual != letters_.back()) letters_.push_back(std::move(unusual));
+    }
+  }
+
+  // About one thing, by its number.
+  std::vector<std::function<Sequence()>> singles(DerivedKind kind) const {
+    switch (kind) {
+      case DerivedKind::values:
+        return values();
+      case DerivedKind::faults:
+        return faults();
+      case DerivedKind::words:
+        return walks();
+      case DerivedKind::repetitions:
+        return repetitions();
+      case DerivedKind::settings:
+        return settings();
+    }
+    return {};
+  }
+
+  // About two things, drawn; with no commands where there is nothing to draw.
+  Sequence of_two(DerivedKind kind) {
+    switch (kind) {
+      case DerivedKind::values:
+        return between_others({drawn(any_word())});
+      case DerivedKind::faults:
+        return two_faults();
+      case DerivedKind::words:
+        return {{any_letter(), any_letter(), any_letter(), drawn(any_word()), any_letter(), any_letter()}};
+      case DerivedKind::repetitions:
+        return in_turn();
+      case DerivedKind::settings:
+        return two_settings();
+    }
+    return {};
+  }
+
+ private:
+  using Makers = std::vector<std::function<Sequence()>>;
+
+  SequenceCommand simple(std::size_t word) const {
+    const SequenceWord& of = vocabulary_.words[word];
+    SequenceCommand command{.word = word, .numbers = {}};
+    for (const SequenceNumber& number : of.numbers) command.numbers.push_back(number.simple);
+    if (of.most_octets > 0) command.octets.assign(std::min<std::size_t>(of.most_octets, 4), 0x5A);
+    return command;
+  }
+
+  // Each number at any of its values.
+  SequenceCommand drawn(std::size_t word) {
+    const SequenceWord& of = vocabulary_.words[word];
+    SequenceCommand command{.word = word, .numbers = {}};
+    for (const SequenceNumber& number : of.numbers) {
+      const std::vector<std::int64_t> values = derived_values(number);
+      command.numbers.push_back(values[random_.below(values.size())]);
+    }
+    const std::size_t octets = of.most_octets == 0 ? 0 : 1 + random_.below(of.most_octets);
+    for (std::size_t n = 0; n < octets; ++n)
+      command.octets.push_back(static_cast<std::uint8_t>(random_.below(256)));
+    return command;
+  }
+
+  const SequenceCommand& letter(std::size_t n) const { return letters_[n % letters_.size()]; }
+  std::size_t any_word() { return words_[random_.below(words_.size())]; }
+  SequenceCommand any_letter() { return letters_[random_.below(letters_.size())]; }
+
+  // The n-th has something else around it than the one before.
+  Sequence within(std::size_t n, std::vector<SequenceCommand> about) const {
+    Sequence sequence;
+    if (n % 2 == 1) sequence.commands.push_back(letter(n / 2));
+    for (SequenceCommand& one : about) sequence.commands.push_back(std::move(one));
+    sequence.commands.push_back(simple(words_[n % words_.size()]));
+    sequence.commands.push_back(simple(words_[(n + 1 + n / words_.size()) % words_.size()]));
+    return sequence;
+  }
+  Sequence between_others(std::vector<SequenceCommand> about) {
+    return within(random_.below(letters_.size() * words_.size() * 2), std::move(about));
+  }
+
+  Makers values() const {
+    Makers all;
+    const auto add = [&](SequenceCommand command) {
+      all.push_back([this, n = all.size(), command = std::move(command)] { return within(n, {command}); });
+    };
+    for (const std::size_t word : words_) {
+      const SequenceCommand usual = simple(word);
+      const SequenceWord& of = vocabulary_.words[word];
+      for (std::size_t n = 0; n < of.numbers.size(); ++n) {
+        for (const std::int64_t value : derived_values(of.numbers[n])) {
+          add(usual);
+          SequenceCommand other = usual;
+          other.numbers[n] = value;
+          if (other != usual) add(std::move(other));
+        }
+      }
+      for (std::size_t count = 1; count <= of.most_octets; ++count) {
+        SequenceCommand other = usual;
+        other.octets.assign(count, static_cast<std::uint8_t>(count * 0x11));
+        add(std::move(other));
+      }
+    }
+    return all;
+  }
+
+  // Of one transmission.
+  std::vector<SequenceFault> faults_of(const SequenceCommand& command) const {
+    std::vector<SequenceFault> all;
+    const std::size_t units = units_of(vocabulary_.words[command.word], command);
+    for (std::uint32_t unit = 0; unit < units; ++unit) {
+      all.push_back({SequenceFaultKind::drop, unit, 0});
+      for (std::uint32_t level = 0; level < vocabulary_.levels_per_unit; ++level)
+        all.push_back({SequenceFaultKind::flip, unit, level});
+      for (const std::int64_t gap : vocabulary_.gaps)
+        all.push_back({SequenceFaultKind::gap, unit, static_cast<std::uint32_t>(gap)});
+    }
+    return all;
+  }
+
+  static SequenceCommand spoilt(SequenceCommand command, std::vector<SequenceFault> faults) {
+    std::ranges::sort(faults);
+    const auto doubled = std::ranges::unique(faults);
+    faults.erase(doubled.begin(), doubled.end());
+    command.faults = std::move(faults);
+    return command;
+  }
+
+  // The same unspoilt on both sides: a receiver that takes it at all, and takes the next one.
+  Makers faults() const {
+    Makers all;
+    for (const SequenceCommand& command : letters_) {
+      for (const SequenceFault& fault : faults_of(command)) {
+        all.push_back([this, n = all.size(), command, fault] {
+          std::vector<SequenceCommand> about{spoilt(command, {fault}), command};
+          if (n % 3 == 0) about.insert(about.begin(), command);
+          return within(n, std::move(about));
+        });
+      }
+    }
+    return all;
+  }
+
+  Sequence two_faults() {
+    std::vector<std::size_t> sent = words_;
+    std::erase_if(sent, [&](std::size_t word) { return faults_of(simple(word)).empty(); });
+    if (sent.empty()) return {};
+    const std::size_t word = sent[random_.below(sent.size())];
+    const SequenceCommand command = drawn(word);
+    const std::vector<SequenceFault> of = faults_of(command);
+    const SequenceFault& one = of[random_.below(of.size())];
+    // As often close together as anywhere: what a check finds depends on that.
+    SequenceFault other = of[random_.below(of.size())];
+    if (random_.chance(0.5)) {
+      other = one;
+      (one.kind == SequenceFaultKind::flip && random_.chance(0.5) ? other.value : other.unit) += 1;
+    }
+    return between_others({spoilt(command, {one, other}), simple(word)});
+  }
+
+  // All orders of three letters, each once: a de Bruijn sequence (of Lyndon words), cut into pieces that
+  // share two letters with the next.
+  Makers walks() const {
+    std::vector<std::size_t> round;
+    std::vector<std::size_t> word(kOrder + 1, 0);
+    const std::function<void(std::size_t, std::size_t)> append = [&](std::size_t at, std::size_t period) {
+      if (at > kOrder) {
+        if (kOrder % period == 0)
+          round.insert(round.end(), word.begin() + 1, word.begin() + 1 + static_cast<std::ptrdiff_t>(period));
+        return;
+      }
+      word[at] = word[at - period];
+      append(at + 1, period);
+      for (std::size_t next = word[at - period] + 1; next < letters_.size(); ++next) {
+        word[at] = next;
+        append(at + 1, at);
+      }
+    };
+    append(1, 1);
+    Makers all;
+    for (std::size_t from = 0; from < round.size(); from += kNewOfWalk) {
+      std::vector<std::size_t> piece;
+      for (std::size_t n = 0; n < kNewOfWalk + kOrder - 1; ++n)
+        piece.push_back(round[(from + n) % round.size()]);
+      all.push_back([this, piece = std::move(piece)] {
+        Sequence sequence;
+        for (const std::size_t one : piece) sequence.commands.push_back(letters_[one]);
+        return sequence;
+      });
+    }
+    return all;
+  }
+
+  Makers repetitions() const {
+    Makers all;
+    for (const SequenceCommand& command : letters_) {
+      for (const std::size_t count : kRepetitions) {
+        all.push_back([this, n = all.size(), command, count] {
+          return within(2 * n, std::vector<SequenceCommand>(count, command));
+        });
+      }
+    }
+    return all;
+  }
+
+  Sequence in_turn() {
+    const std::vector<SequenceCommand> both{any_letter(), any_letter()};
+    std::vector<SequenceCommand> about;
+    for (std::size_t n = 0; n < kManyRepetitions; ++n) about.push_back(both[n % 2]);
+    return between_others(std::move(about));
+  }
+
+  // Commands for whatever settings: the n-th some, the next the next.
+  std::vector<SequenceCommand> tour(std::size_t n) const {
+    std::vector<SequenceCommand> commands;
+    for (std::size_t m = 0; m < kTourLength; ++m) commands.push_back(letter(n * kTourLength + m));
+    return commands;
+  }
+
+  Makers settings() const {
+    Makers all;
+    const std::size_t tours = (letters_.size() + kTourLength - 1) / kTourLength;
+    for (std::size_t which = 0; which < vocabulary_.settings.size(); ++which) {
+      for (const std::int64_t value : vocabulary_.settings[which].likely) {
+        for (std::size_t n = 0; n < tours; ++n) {
+          all.push_back([this, which, value, n] {
+            const std::array<SettingChoice, 1> chosen{{{which, value}}};
+            return Sequence{tour(n), settings_of(chosen, vocabulary_)};
+          });
+        }
+      }
+    }
+    return all;
+  }
+
+  SettingChoice any_setting() {
+    const std::size_t which = random_.below(vocabulary_.settings.size());
+    const SequenceSetting& setting = vocabulary_.settings[which];
+    if (setting.likely.empty()) return {which, setting.simple};
+    return {which, setting.likely[random_.below(setting.likely.size())]};
+  }
+  Sequence two_settings() {
+    if (vocabulary_.settings.empty()) return {};
+    const std::array<SettingChoice, 2> chosen{any_setting(), any_setting()};
+    std::vector<SequenceCommand> commands = tour(random_.below(letters_.size()));
+    commands.push_back(drawn(any_word()));
+    return {std::move(commands), settings_of(chosen, vocabulary_)};
+  }
+
+  const SequenceVocabulary& vocabulary_;
+  kernel::Random random_;
+  std::vector<std::size_t> words_;
+  std::vector<SequenceCommand> letters_;  // of each word a usual command and another
+};
+
+}  // namespace
+
+std::vector<std::int64_t> derived_values(const SequenceNumber& number) {
+  std::vector<std::int64_t> values{number.simple};
+  for (const std::int64_t likely : number.likely)
+    add_once(values, std::clamp(likely, number.least, number.most));
+  if (number.is_likely_only) return values;
+  for (const std::int64_t end : {number.least, number.least + 1, number.most - 1, number.most})
+    if (number.least <= end && end <= number.most) add_once(values, end);
+  for (std::int64_t power = 1; power <= number.most / 2; power *= 2) {
+    for (const std::int64_t value : {power * 2 - 1, power * 2})
+      if (number.least <= value && value <= number.most) add_once(values, value);
+  }
+  return values;
+}
+
+DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
+                                   kernel::Random random) {
+  Derivation derivation(vocabulary, random.split("of_two"));
+  auto singles = derivation.singles(kind);
+  DerivedSequences derived{.sequences = {}, .singles = singles.size()};
+  if (singles.size() > most) {
+    random.split("singles").shuffle(singles);
+    singles.resize(most);
+  }
+  derived.taken = singles.size();
+  for (const auto& make : singles) derived.sequences.push_back(make());
+  for (std::size_t n = singles.size(); n < most; ++n) {
+    Sequence another = derivation.of_two(kind);
+    if (another.commands.empty()) break;
+    derived.sequences.push_back(std::move(another));
+  }
+  return derived;
+}
+
+}  // namespace fieldproof::conformance

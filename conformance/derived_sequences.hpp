@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/sequence.hpp"
+#include "harness/kernel/random.hpp"
+
+// Sequences that are derived from the vocabulary of a role instead of being listed or drawn: each number of
+// each word at its boundaries, each unit of each transmission spoilt, each setting at its ends, each three
+// words in each order, the same many times. A new word, number or setting gets all of it by its row.
+//
+// Whatever a sequence is about stands between others: in front of it a word that leaves something behind,
+// after it words that show what it has left behind.
+namespace fieldproof::conformance {
+
+enum class DerivedKind : std::uint8_t { values, faults, words, repetitions, settings };
+
+struct DerivedRow {
+  DerivedKind kind;
+  std::string_view name;  // of its case, after "PROTOCOL/ROLE/derived/"
+  std::string_view stimulus;
+  std::size_t cost = 1;  // a sequence takes as long as so many of the others
+};
+extern const std::array<DerivedRow, 5> kDerivedRows;
+
+// What may be chosen for a number of a command: both ends, their neighbours, powers of two and their
+// neighbours, and what the vocabulary names; each once, what is simple first.
+std::vector<std::int64_t> derived_values(const SequenceNumber& number);
+
+struct DerivedSequences {
+  std::vector<Sequence> sequences;
+  std::size_t singles = 0;  // one thing at a time: how many there are,
+  std::size_t taken = 0;    // and how many of them are here
+};
+
+// All sequences about one thing when `most` is enough for them, else as many of them, drawn; what is left of
+// `most` is drawn of those about two things. The same stream gives the same sequences.
+DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
+                                   kernel::Random random);
+
+}  // namespace fieldproof::conformance

@@ -1,0 +1,170 @@
+// Subject: derived_sequences.hpp and derived_cases.hpp
+#include "conformance/derived_sequences.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "conformance/derived_cases.hpp"
+#include "conformance/invented_case.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr std::array<std::int64_t, 1> kLikely{40};
+constexpr std::array<std::int64_t, 2> kGaps{11, 45};
+
+SequenceVocabulary two_words() {
+  return {.words = {{.word = "say",
+                     .meaning = "says a number",
+                     .numbers = {{"value", 0, 255, 90, kLikely}},
+                     .units = 3},
+                    {.word = "wait", .meaning = "waits", .numbers = {{"ms", 1, 3, 2, {}, true}}}},
+          .levels_per_unit = 11,
+          .gaps = kGaps};
+}
+
+DerivedSequences all_of(DerivedKind kind, const SequenceVocabulary& vocabulary) {
+  return derived_sequences(kind, vocabulary, 10'000, kernel::Random(1));
+}
+
+TEST(DerivedSequences, ANumberHasItsEndsTheirNeighboursPowersOfTwoAndWhatIsNamed) {
+  EXPECT_THAT(derived_values({"value", 0, 255, 90, kLikely}),
+              ElementsAre(90, 40, 0, 1, 254, 255, 2, 3, 4, 7, 8, 15, 16, 31, 32, 63, 64, 127, 128));
+  EXPECT_THAT(derived_values({"value", 0, 255, 90, kLikely, true}), ElementsAre(90, 40));
+  EXPECT_THAT(derived_values({"value", -1, 1, 0}), ElementsAre(0, -1, 1));
+  EXPECT_THAT(derived_values({"value", 5, 5, 5}), ElementsAre(5));
+}
+
+TEST(DerivedSequences, EachNumberTakesEachOfItsValues) {
+  const SequenceVocabulary vocabulary = two_words();
+  std::set<std::int64_t> said;
+  for (const Sequence& sequence : all_of(DerivedKind::values, vocabulary).sequences)
+    for (const SequenceCommand& command : sequence.commands)
+      if (command.word == 0) said.insert(command.numbers[0]);
+  for (const std::int64_t value : derived_values(vocabulary.words[0].numbers[0]))
+    EXPECT_THAT(said, Contains(value));
+}
+
+TEST(DerivedSequences, EachUnitIsSpoiltInEachWay) {
+  std::set<SequenceFault> alone;
+  for (const Sequence& sequence : all_of(DerivedKind::faults, two_words()).sequences)
+    for (const SequenceCommand& command : sequence.commands)
+      if (command.faults.size() == 1) alone.insert(command.faults[0]);
+  for (std::uint32_t unit = 0; unit < 3; ++unit) {
+    EXPECT_THAT(alone, Contains(SequenceFault{SequenceFaultKind::drop, unit, 0}));
+    for (std::uint32_t level = 0; level < 11; ++level)
+      EXPECT_THAT(alone, Contains(SequenceFault{SequenceFaultKind::flip, unit, level}));
+    for (const std::int64_t gap : kGaps)
+      EXPECT_THAT(alone,
+                  Contains(SequenceFault{SequenceFaultKind::gap, unit, static_cast<std::uint32_t>(gap)}));
+  }
+}
+
+TEST(DerivedSequences, EachThreeWordsFollowEachOtherInEachOrder) {
+  std::set<std::array<std::size_t, 3>> orders;
+  for (const Sequence& sequence : all_of(DerivedKind::words, two_words()).sequences)
+    for (std::size_t n = 0; n + 2 < sequence.commands.size(); ++n)
+      orders.insert(
+          {sequence.commands[n].word, sequence.commands[n + 1].word, sequence.commands[n + 2].word});
+  EXPECT_EQ(orders.size(), 8U);
+}
+
+TEST(DerivedSequences, AreTheSameForOneStreamAndOthersForAnother) {
+  const SequenceVocabulary vocabulary = two_words();
+  for (const DerivedRow& row : kDerivedRows) {
+    const auto derived = [&](std::uint64_t seed) {
+      return derived_sequences(row.kind, vocabulary, 20, kernel::Random(seed)).sequences;
+    };
+    EXPECT_EQ(derived(1), derived(1)) << row.name;
+    if (row.kind != DerivedKind::settings) {
+      EXPECT_EQ(derived(1).size(), 20U) << row.name;
+      EXPECT_NE(derived(1), derived(2)) << row.name;
+    }
+  }
+}
+
+TEST(DerivedSequences, SaysHowManyThereAreAndHowManyItTook) {
+  const SequenceVocabulary vocabulary = two_words();
+  const DerivedSequences all = all_of(DerivedKind::faults, vocabulary);
+  EXPECT_EQ(all.taken, all.singles);
+  EXPECT_EQ(all.sequences.size(), 10'000U);
+  const DerivedSequences few = derived_sequences(DerivedKind::faults, vocabulary, 7, kernel::Random(1));
+  EXPECT_EQ(few.taken, 7U);
+  EXPECT_EQ(few.singles, all.singles);
+  EXPECT_EQ(few.sequences.size(), 7U);
+}
+
+TEST(DerivedCases, ARoleWithoutSettingsHasNoCaseOfThem) {
+  const SequenceRole role{invented_case("p/role/check/follows_the_reference"), two_words()};
+  std::vector<std::string> ids;
+  for (const TestCase& one : derived_cases(role)) {
+    ids.push_back(one.id);
+    EXPECT_TRUE(derived_kind(one)) << one.id;
+  }
+  EXPECT_THAT(ids, Contains("p/role/derived/each_unit_spoilt"));
+  EXPECT_THAT(ids, Not(Contains("p/role/derived/each_setting_at_its_ends")));
+  EXPECT_FALSE(derived_kind(role.test_case));
+}
+
+// What a case says of its sequences.
+class DerivedVerdict : public testing::Test {
+ protected:
+  judge::CaseResult one(judge::Verdict verdict, std::string reason = {}, bool has_driven = true) const {
+    judge::CaseResult result;
+    result.verdict = verdict;
+    result.reason = std::move(reason);
+    result.has_driven = has_driven;
+    if (verdict >= judge::Verdict::fail) result.findings.resize(1);
+    return result;
+  }
+
+  SequenceVocabulary vocabulary_ = two_words();
+  TestCase case_ = invented_case("p/role/derived/each_unit_spoilt");
+  DerivedSequences derived_ = derived_sequences(DerivedKind::faults, vocabulary_, 3, kernel::Random(1));
+  DerivedResult all_{case_, derived_, vocabulary_};
+};
+
+TEST_F(DerivedVerdict, IsThatOfTheFirstThatFailsAndNamesItsCommands) {
+  EXPECT_TRUE(all_.add(derived_.sequences[0], one(judge::Verdict::pass)));
+  EXPECT_FALSE(all_.add(derived_.sequences[1], one(judge::Verdict::fail, "valves_wrong")));
+  const judge::CaseResult result = all_.take();
+  EXPECT_EQ(result.verdict, judge::Verdict::fail);
+  EXPECT_EQ(result.reason, "valves_wrong");
+  EXPECT_THAT(result.findings.at(0).step, HasSubstr("sequence 2 of 3: "));
+  EXPECT_THAT(result.findings.at(0).step, HasSubstr("say value 90"));
+}
+
+TEST_F(DerivedVerdict, IsNoPassWhenNothingWasDriven) {
+  all_.add(derived_.sequences[0], one(judge::Verdict::pass, {}, false));
+  const judge::CaseResult result = all_.take();
+  EXPECT_EQ(result.verdict, judge::Verdict::inconclusive);
+  EXPECT_THAT(result.findings, Not(IsEmpty()));
+}
+
+TEST_F(DerivedVerdict, IsNotApplicableWhenNoneOfThemCanBeDone) {
+  all_.add(derived_.sequences[0], one(judge::Verdict::not_applicable, "nobody sees its valves", false));
+  const judge::CaseResult result = all_.take();
+  EXPECT_EQ(result.verdict, judge::Verdict::not_applicable);
+  EXPECT_EQ(result.reason, "nobody sees its valves");
+}
+
+TEST_F(DerivedVerdict, IsAPassWhenSomeCanBeDoneAndPass) {
+  all_.add(derived_.sequences[0], one(judge::Verdict::not_applicable, "nobody sees its valves", false));
+  all_.add(derived_.sequences[1], one(judge::Verdict::pass));
+  EXPECT_EQ(all_.take().verdict, judge::Verdict::pass);
+}
+
+}  // namespace
+}  // namespace fieldproof::conformance
