@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "conformance/derived_cases.hpp"
 #include "conformance/ordered_work.hpp"
 #include "conformance/runner.hpp"
 
@@ -35,25 +36,27 @@ RoleMatrix blank_role(const Suite& suite, const std::string& role) {
   return matrix;
 }
 
+std::string declared_reason(const TestCase& test_case, const Mutant* mutant) {
+  if (mutant == nullptr) return {};
+  const auto found = std::find_if(test_case.catches.begin(), test_case.catches.end(),
+                                  [&](const MustCatch& caught) { return caught.mutant == mutant->name; });
+  return found == test_case.catches.end() ? std::string{} : found->reason;
+}
+
 std::vector<PlannedRun> planned_runs(Matrix& matrix) {
   std::vector<PlannedRun> runs;
   for (std::size_t role = 0; role < matrix.roles.size(); ++role) {
     RoleMatrix& block = matrix.roles[role];
     for (std::size_t row = 0; row < block.cases.size(); ++row) {
       runs.push_back({role, row, nullptr, &block.reference[row]});
+      const bool is_derived = derived_kind(*block.cases[row]).has_value();
       for (std::size_t column = 0; column < block.mutants.size(); ++column) {
+        if (is_derived && declared_reason(*block.cases[row], block.mutants[column]).empty()) continue;
         runs.push_back({role, row, block.mutants[column], &block.cells[row][column]});
       }
     }
   }
   return runs;
-}
-
-std::string declared_reason(const TestCase& test_case, const Mutant* mutant) {
-  if (mutant == nullptr) return {};
-  const auto found = std::find_if(test_case.catches.begin(), test_case.catches.end(),
-                                  [&](const MustCatch& caught) { return caught.mutant == mutant->name; });
-  return found == test_case.catches.end() ? std::string{} : found->reason;
 }
 
 bool has_failing_finding(const judge::CaseResult& result, const std::string& reason) {

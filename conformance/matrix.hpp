@@ -5,7 +5,8 @@
 // for another reason proves nothing about the case's purpose.
 //
 // Contract: the same matrix for one seed, whatever the number of jobs. Canaries are left out: they fail by
-// design. A mutant column costs one run per case of the role. kernel::Error of the suite passes through.
+// design. A mutant column costs one run per case of the role; of derived cases, which are many in one, only
+// those are run that declare to catch it. kernel::Error of the suite passes through.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +23,7 @@
 namespace fieldproof::conformance {
 
 enum class CellKind : std::uint8_t {
-  not_run,            // the matrix was stopped before
+  not_run,            // the matrix was stopped before, or a derived case declares nothing about it
   not_applicable,     // the case does not apply to this implementation
   passed,             // not caught, and not declared to be
   caught,             // fails for the declared reason

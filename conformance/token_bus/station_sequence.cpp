@@ -205,11 +205,11 @@ const SequenceRole& token_station_sequence_role() {
        .tags = {},
        .catches = {}},
       token_station_vocabulary(),
-      {{DerivedKind::values, {"delivers_from_another", "indication_other"}},
-       {DerivedKind::faults, {"data_of_members_only", "indication_missing"}},
-       {DerivedKind::words, {"delivers_with_another_priority", "indication_other"}},
-       {DerivedKind::repetitions, {"most_significant_bit_first", "check_wrong"}},
-       {DerivedKind::settings, {"responds_in_the_ring_only", "indication_missing"}}}};
+      {{DerivedKind::values, {"reports_about_a_stranger", "event_other"}},
+       {DerivedKind::faults, {"noise_reported", "event_unasked"}},
+       {DerivedKind::words, {"noise_not_counted", "counters_wrong"}},
+       {DerivedKind::repetitions, {"whole_preamble_needed", "counters_wrong"}},
+       {DerivedKind::settings, {"successor_with_each_token", "event_unasked"}}}};
   return role;
 }
 
