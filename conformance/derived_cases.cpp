@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "conformance/judging.hpp"
+#include "conformance/sequence_shrink.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -14,7 +15,8 @@ namespace {
 using judge::Verdict;
 
 constexpr std::string_view kFolder = "/derived/";
-constexpr std::size_t kMostSaid = 10;  // commands of a sequence, in a finding
+constexpr std::string_view kOfImplementation = "implementation_";  // reasons begin so: it crashed, it hangs
+constexpr std::size_t kMostSaid = 10;                              // commands of a sequence, in a finding
 constexpr std::size_t kQuick = 60;
 constexpr std::size_t kFewest = 10;  // of a kind that costs much
 constexpr std::size_t kFull = 1'500;
@@ -59,6 +61,105 @@ std::string commands_text(const Sequence& sequence, const SequenceVocabulary& vo
   return fmt::format("{} others / {}", left_out, fmt::join(said, " / "));
 }
 
+// What comes of the sequences of one case.
+class DerivedResult {
+ public:
+  explicit DerivedResult(const DerivedRun& given) : given_(given) {
+    worst_ = CaseJudge(given.test_case).run_procedure([](CaseJudge&) {});
+    worst_.has_driven = false;
+  }
+
+  // False: it fails, and nothing needs to be run any more.
+  bool add(const Sequence& sequence) {
+    ++run_;
+    judge::CaseResult one = run(sequence);
+    if (one.verdict == Verdict::not_applicable) {
+      if (++not_applicable_ == 1) why_not_ = std::move(one.reason);
+      return true;
+    }
+    if (one.verdict > worst_.verdict) report(sequence, std::move(one));
+    if (worst_.verdict < Verdict::fail) return true;
+    make_smaller(sequence);
+    return false;
+  }
+
+  judge::CaseResult take() {
+    if (worst_.verdict == Verdict::pass && not_applicable_ == run_) {
+      worst_.verdict = Verdict::not_applicable;
+      worst_.reason = std::move(why_not_);
+      return std::move(worst_);
+    }
+    if (worst_.verdict == Verdict::pass && !worst_.has_driven) doubt_silence();
+    measure("sequences", run_);
+    measure("about one thing", given_.derived.taken);
+    measure("about one thing there are", given_.derived.singles);
+    return std::move(worst_);
+  }
+
+ private:
+  // Every run counts, whatever for.
+  judge::CaseResult run(const Sequence& sequence) {
+    judge::CaseResult one = given_.run(sequence);
+    worst_.fingerprint = (worst_.fingerprint ^ one.fingerprint) * kFingerprintFactor;
+    worst_.virtual_time += one.virtual_time;
+    worst_.has_driven = worst_.has_driven || one.has_driven;
+    worst_.planned_hits.resize(std::max(worst_.planned_hits.size(), one.planned_hits.size()));
+    for (std::size_t n = 0; n < one.planned_hits.size(); ++n) worst_.planned_hits[n] += one.planned_hits[n];
+    worst_.seed = one.seed;
+    return one;
+  }
+
+  void report(const Sequence& sequence, judge::CaseResult one) {
+    for (judge::Finding& finding : one.findings) {
+      finding.step = fmt::format("sequence {} of {}: {}", run_, given_.derived.sequences.size(),
+                                 commands_text(sequence, given_.vocabulary));
+    }
+    worst_.verdict = one.verdict;
+    worst_.reason = std::move(one.reason);
+    worst_.reference = std::move(one.reference);
+    worst_.findings = std::move(one.findings);
+  }
+
+  // One that crashes or hangs is not made to do it again and again.
+  void make_smaller(const Sequence& sequence) {
+    if (worst_.verdict != Verdict::fail || worst_.reason.starts_with(kOfImplementation)) return;
+    std::size_t left = given_.most_shrinking_commands;
+    const std::string reason = worst_.reason;
+    const auto fails = [&](const Sequence& candidate) {
+      const std::size_t cost = candidate.commands.size() + 1;
+      if (cost > left) return false;
+      left -= cost;
+      const judge::CaseResult one = run(candidate);
+      return one.verdict == Verdict::fail && one.reason == reason;
+    };
+    const Sequence smallest = shrunk(sequence, given_.vocabulary, fails);
+    judge::CaseResult last = run(smallest);
+    // What does not repeat itself is reported as it came first.
+    if (last.verdict == Verdict::fail && last.reason == reason) report(smallest, std::move(last));
+  }
+
+  void doubt_silence() {
+    judge::CaseResult silent = CaseJudge(given_.test_case).run_procedure([](CaseJudge& judge) {
+      judge.inconclusive("precondition_not_met", {{"an implementation that drives its line"},
+                                                  "it has driven nothing in any of the sequences"});
+    });
+    worst_.verdict = silent.verdict;
+    worst_.reason = std::move(silent.reason);
+    worst_.findings = std::move(silent.findings);
+  }
+
+  void measure(std::string name, std::size_t count) {
+    const auto value = static_cast<double>(count);
+    worst_.measurements.push_back({std::move(name), "", value, value, value});
+  }
+
+  const DerivedRun& given_;
+  judge::CaseResult worst_;
+  std::size_t run_ = 0;
+  std::size_t not_applicable_ = 0;
+  std::string why_not_;  // the first of them
+};
+
 }  // namespace
 
 std::size_t derived_count(DerivedKind kind, Volume volume) {
@@ -84,60 +185,11 @@ std::optional<DerivedKind> derived_kind(const TestCase& test_case) {
   return row->kind;
 }
 
-DerivedResult::DerivedResult(const TestCase& test_case, const DerivedSequences& derived,
-                             const SequenceVocabulary& vocabulary)
-    : test_case_(test_case), derived_(derived), vocabulary_(vocabulary) {
-  worst_ = CaseJudge(test_case_).run_procedure([](CaseJudge&) {});
-  worst_.has_driven = false;
-}
-
-bool DerivedResult::add(const Sequence& sequence, judge::CaseResult one) {
-  ++run_;
-  worst_.fingerprint = (worst_.fingerprint ^ one.fingerprint) * kFingerprintFactor;
-  worst_.virtual_time += one.virtual_time;
-  worst_.has_driven = worst_.has_driven || one.has_driven;
-  worst_.planned_hits.resize(std::max(worst_.planned_hits.size(), one.planned_hits.size()));
-  for (std::size_t n = 0; n < one.planned_hits.size(); ++n) worst_.planned_hits[n] += one.planned_hits[n];
-  worst_.seed = one.seed;
-  if (one.verdict == Verdict::not_applicable) {
-    if (++not_applicable_ == 1) why_not_ = std::move(one.reason);
-    return true;
-  }
-  if (one.verdict <= worst_.verdict) return true;
-  const std::string which = fmt::format("sequence {} of {}: {}", run_, derived_.sequences.size(),
-                                        commands_text(sequence, vocabulary_));
-  for (judge::Finding& finding : one.findings) finding.step = which;
-  worst_.verdict = one.verdict;
-  worst_.reason = std::move(one.reason);
-  worst_.reference = std::move(one.reference);
-  worst_.findings = std::move(one.findings);
-  return worst_.verdict < Verdict::fail;
-}
-
-void DerivedResult::measure(std::string name, std::size_t count) {
-  const auto value = static_cast<double>(count);
-  worst_.measurements.push_back({std::move(name), "", value, value, value});
-}
-
-judge::CaseResult DerivedResult::take() {
-  if (worst_.verdict == Verdict::pass && not_applicable_ == run_) {
-    worst_.verdict = Verdict::not_applicable;
-    worst_.reason = std::move(why_not_);
-    return std::move(worst_);
-  }
-  if (worst_.verdict == Verdict::pass && !worst_.has_driven) {
-    judge::CaseResult silent = CaseJudge(test_case_).run_procedure([](CaseJudge& judge) {
-      judge.inconclusive("precondition_not_met", {{"an implementation that drives its line"},
-                                                  "it has driven nothing in any of the sequences"});
-    });
-    worst_.verdict = silent.verdict;
-    worst_.reason = std::move(silent.reason);
-    worst_.findings = std::move(silent.findings);
-  }
-  measure("sequences", run_);
-  measure("about one thing", derived_.taken);
-  measure("about one thing there are", derived_.singles);
-  return std::move(worst_);
+judge::CaseResult run_derived_case(const DerivedRun& given) {
+  DerivedResult all(given);
+  for (const Sequence& sequence : given.derived.sequences)
+    if (!all.add(sequence)) break;
+  return all.take();
 }
 
 }  // namespace fieldproof::conformance

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "conformance/derived_sequences.hpp"
@@ -22,27 +22,21 @@ std::vector<TestCase> derived_cases(const SequenceRole& role);
 // Nothing: a case of its own.
 std::optional<DerivedKind> derived_kind(const TestCase& test_case);
 
-// What comes of the sequences of one case.
-class DerivedResult {
- public:
-  // All must outlive it.
-  DerivedResult(const TestCase& test_case, const DerivedSequences& derived,
-                const SequenceVocabulary& vocabulary);
+// Commands that are run to find the smallest sequence that fails as the first one does.
+inline constexpr std::size_t kShrinkingCommands = 2'000;
 
-  // False: it fails, and nothing needs to be run any more.
-  bool add(const Sequence& sequence, judge::CaseResult one);
-  judge::CaseResult take();
-
- private:
-  void measure(std::string name, std::size_t count);
-
-  const TestCase& test_case_;
-  const DerivedSequences& derived_;
-  const SequenceVocabulary& vocabulary_;
-  judge::CaseResult worst_;
-  std::size_t run_ = 0;
-  std::size_t not_applicable_ = 0;
-  std::string why_not_{};  // the first of them
+// One run of a case; all must outlive it.
+struct DerivedRun {
+  const TestCase& test_case;
+  const DerivedSequences& derived;
+  const SequenceVocabulary& vocabulary;
+  std::function<judge::CaseResult(const Sequence&)> run;  // on a bench of its own
+  std::size_t most_shrinking_commands = kShrinkingCommands;
 };
+
+// Runs the sequences up to the first that fails, and makes that one smaller: what is reported is the
+// smallest, and it is the last that is run. Where no sequence can be done the case does not apply; where the
+// implementation drives nothing in any it is inconclusive.
+judge::CaseResult run_derived_case(const DerivedRun& given);
 
 }  // namespace fieldproof::conformance

@@ -18,6 +18,7 @@ namespace {
 
 using testing::Contains;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -130,40 +131,63 @@ class DerivedVerdict : public testing::Test {
     return result;
   }
 
+  judge::CaseResult run(std::vector<judge::CaseResult> answers) {
+    std::size_t next = 0;
+    return run_derived_case({case_, derived_, vocabulary_,
+                             [&](const Sequence&) { return answers[std::min(next++, answers.size() - 1)]; }});
+  }
+
   SequenceVocabulary vocabulary_ = two_words();
   TestCase case_ = invented_case("p/role/derived/each_unit_spoilt");
   DerivedSequences derived_ = derived_sequences(DerivedKind::faults, vocabulary_, 3, kernel::Random(1));
-  DerivedResult all_{case_, derived_, vocabulary_};
 };
 
-TEST_F(DerivedVerdict, IsThatOfTheFirstThatFailsAndNamesItsCommands) {
-  EXPECT_TRUE(all_.add(derived_.sequences[0], one(judge::Verdict::pass)));
-  EXPECT_FALSE(all_.add(derived_.sequences[1], one(judge::Verdict::fail, "valves_wrong")));
-  const judge::CaseResult result = all_.take();
+TEST_F(DerivedVerdict, IsThatOfTheFirstThatFails) {
+  const judge::CaseResult result =
+      run({one(judge::Verdict::pass), one(judge::Verdict::fail, "valves_wrong"), one(judge::Verdict::pass)});
   EXPECT_EQ(result.verdict, judge::Verdict::fail);
   EXPECT_EQ(result.reason, "valves_wrong");
   EXPECT_THAT(result.findings.at(0).step, HasSubstr("sequence 2 of 3: "));
-  EXPECT_THAT(result.findings.at(0).step, HasSubstr("say value 90"));
+}
+
+TEST_F(DerivedVerdict, ShowsTheSmallestSequenceThatFailsForThatReason) {
+  const auto fails_on_a_number_above_63 = [&](const Sequence& sequence) {
+    const bool fails = std::ranges::any_of(sequence.commands, [](const SequenceCommand& command) {
+      return command.word == 0 && command.numbers[0] > 63;
+    });
+    return fails ? one(judge::Verdict::fail, "valves_wrong") : one(judge::Verdict::pass);
+  };
+  const judge::CaseResult result =
+      run_derived_case({case_, derived_, vocabulary_, fails_on_a_number_above_63});
+  EXPECT_THAT(result.findings.at(0).step, EndsWith(": say value 90"));
+}
+
+TEST_F(DerivedVerdict, OfOneThatHangsItDoesNotAskAgain) {
+  std::size_t runs = 0;
+  run_derived_case({case_, derived_, vocabulary_, [&](const Sequence&) {
+                      ++runs;
+                      return one(judge::Verdict::fail, "implementation_hangs");
+                    }});
+  EXPECT_EQ(runs, 1U);
 }
 
 TEST_F(DerivedVerdict, IsNoPassWhenNothingWasDriven) {
-  all_.add(derived_.sequences[0], one(judge::Verdict::pass, {}, false));
-  const judge::CaseResult result = all_.take();
+  const judge::CaseResult result = run({one(judge::Verdict::pass, {}, false)});
   EXPECT_EQ(result.verdict, judge::Verdict::inconclusive);
   EXPECT_THAT(result.findings, Not(IsEmpty()));
 }
 
 TEST_F(DerivedVerdict, IsNotApplicableWhenNoneOfThemCanBeDone) {
-  all_.add(derived_.sequences[0], one(judge::Verdict::not_applicable, "nobody sees its valves", false));
-  const judge::CaseResult result = all_.take();
+  const judge::CaseResult result =
+      run({one(judge::Verdict::not_applicable, "nobody sees its valves", false)});
   EXPECT_EQ(result.verdict, judge::Verdict::not_applicable);
   EXPECT_EQ(result.reason, "nobody sees its valves");
 }
 
 TEST_F(DerivedVerdict, IsAPassWhenSomeCanBeDoneAndPass) {
-  all_.add(derived_.sequences[0], one(judge::Verdict::not_applicable, "nobody sees its valves", false));
-  all_.add(derived_.sequences[1], one(judge::Verdict::pass));
-  EXPECT_EQ(all_.take().verdict, judge::Verdict::pass);
+  const judge::CaseResult result =
+      run({one(judge::Verdict::not_applicable, "nobody sees its valves", false), one(judge::Verdict::pass)});
+  EXPECT_EQ(result.verdict, judge::Verdict::pass);
 }
 
 }  // namespace

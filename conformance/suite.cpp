@@ -116,12 +116,15 @@ judge::CaseResult Suite::run_derived(const RoleRow& row, DerivedKind kind, Runni
       run.is_on_real_line() ? kDerivedOnRealLine : derived_count(kind, run.setup().volume);
   const DerivedSequences derived =
       derived_sequences(kind, vocabulary, most, kernel::Random(run.setup().seed).split("derived"));
-  DerivedResult all(run.test_case(), derived, vocabulary);
-  for (const Sequence& sequence : derived.sequences) {
-    run.use_settings(sequence.settings);
-    if (!all.add(sequence, row.run_sequence(sequence, run))) break;
-  }
-  return all.take();
+  return run_derived_case({.test_case = run.test_case(),
+                           .derived = derived,
+                           .vocabulary = vocabulary,
+                           .run =
+                               [&](const Sequence& sequence) {
+                                 run.use_settings(sequence.settings);
+                                 return row.run_sequence(sequence, run);
+                               },
+                           .most_shrinking_commands = run.is_on_real_line() ? 0 : kShrinkingCommands});
 }
 
 void Suite::check(const TestCase& test_case, const Setup& setup) const {
