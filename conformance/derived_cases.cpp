@@ -19,7 +19,7 @@ constexpr std::string_view kOfImplementation = "implementation_";  // reasons be
 constexpr std::size_t kMostSaid = 10;                              // commands of a sequence, in a finding
 constexpr std::size_t kQuick = 60;
 constexpr std::size_t kFewest = 10;  // of a kind that costs much
-constexpr std::size_t kFull = 1'500;
+constexpr std::size_t kFull = 1'000;
 constexpr std::uint64_t kFingerprintFactor = 0x100'0000'01B3;  // of FNV-1a
 
 TestCase derived_case(const SequenceRole& role, const DerivedRow& row, std::size_t singles) {
