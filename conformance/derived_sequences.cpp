@@ -317,6 +317,13 @@ std::vector<std::int64_t> derived_values(const SequenceNumber& number) {
   return values;
 }
 
+bool has_derived(DerivedKind kind, const SequenceVocabulary& vocabulary) {
+  if (kind == DerivedKind::settings) return !vocabulary.settings.empty();
+  return std::ranges::any_of(vocabulary.words, [&](const SequenceWord& word) {
+    return word.weight > 0 && (kind != DerivedKind::faults || word.most_octets > 0 || word.units > 0);
+  });
+}
+
 DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
                                    kernel::Random random) {
   Derivation derivation(vocabulary, random.split("of_two"));
