@@ -37,6 +37,14 @@ void add_once(std::vector<std::int64_t>& values, std::int64_t value) {
   if (std::ranges::find(values, value) == values.end()) values.push_back(value);
 }
 
+SequenceCommand simple_of(const SequenceVocabulary& vocabulary, std::size_t word) {
+  const SequenceWord& of = vocabulary.words[word];
+  SequenceCommand command{.word = word, .numbers = {}};
+  for (const SequenceNumber& number : of.numbers) command.numbers.push_back(number.simple);
+  if (of.most_octets > 0) command.octets.assign(std::min<std::size_t>(of.most_octets, 4), 0x5A);
+  return command;
+}
+
 // What makes sequences of one vocabulary.
 class Derivation {
  public:
@@ -76,7 +84,7 @@ class Derivation {
       case DerivedKind::faults:
         return two_faults();
       case DerivedKind::words:
-        return {{any_letter(), any_letter(), any_letter(), drawn(any_word()), any_letter(), any_letter()}};
+        return walk_with(drawn(any_word()));
       case DerivedKind::repetitions:
         return in_turn();
       case DerivedKind::settings:
@@ -88,13 +96,7 @@ class Derivation {
  private:
   using Makers = std::vector<std::function<Sequence()>>;
 
-  SequenceCommand simple(std::size_t word) const {
-    const SequenceWord& of = vocabulary_.words[word];
-    SequenceCommand command{.word = word, .numbers = {}};
-    for (const SequenceNumber& number : of.numbers) command.numbers.push_back(number.simple);
-    if (of.most_octets > 0) command.octets.assign(std::min<std::size_t>(of.most_octets, 4), 0x5A);
-    return command;
-  }
+  SequenceCommand simple(std::size_t word) const { return simple_of(vocabulary_, word); }
 
   // Each number at any of its values.
   SequenceCommand drawn(std::size_t word) {
@@ -114,9 +116,15 @@ class Derivation {
   std::size_t any_word() { return words_[random_.below(words_.size())]; }
   SequenceCommand any_letter() { return letters_[random_.below(letters_.size())]; }
 
+  // Each state in turn, the first as the station is made.
+  std::vector<SequenceCommand> beginning(std::size_t n) const {
+    const std::size_t which = n % (vocabulary_.beginnings.size() + 1);
+    return which == 0 ? std::vector<SequenceCommand>{} : vocabulary_.beginnings[which - 1];
+  }
+
   // The n-th has something else around it than the one before.
   Sequence within(std::size_t n, std::vector<SequenceCommand> about) const {
-    Sequence sequence;
+    Sequence sequence{beginning(n)};
     if (n % 2 == 1) sequence.commands.push_back(letter(n / 2));
     for (SequenceCommand& one : about) sequence.commands.push_back(std::move(one));
     sequence.commands.push_back(simple(words_[n % words_.size()]));
@@ -230,13 +238,21 @@ class Derivation {
       std::vector<std::size_t> piece;
       for (std::size_t n = 0; n < kNewOfWalk + kOrder - 1; ++n)
         piece.push_back(round[(from + n) % round.size()]);
-      all.push_back([this, piece = std::move(piece)] {
-        Sequence sequence;
+      all.push_back([this, n = all.size(), piece = std::move(piece)] {
+        Sequence sequence{beginning(n)};
         for (const std::size_t one : piece) sequence.commands.push_back(letters_[one]);
         return sequence;
       });
     }
     return all;
+  }
+
+  Sequence walk_with(SequenceCommand command) {
+    Sequence sequence{beginning(random_.below(vocabulary_.beginnings.size() + 1))};
+    for (std::size_t n = 0; n < kOrder; ++n) sequence.commands.push_back(any_letter());
+    sequence.commands.push_back(std::move(command));
+    for (std::size_t n = 1; n < kOrder; ++n) sequence.commands.push_back(any_letter());
+    return sequence;
   }
 
   Makers repetitions() const {
@@ -260,7 +276,7 @@ class Derivation {
 
   // Commands for whatever settings: the n-th some, the next the next.
   std::vector<SequenceCommand> tour(std::size_t n) const {
-    std::vector<SequenceCommand> commands;
+    std::vector<SequenceCommand> commands = beginning(n);
     for (std::size_t m = 0; m < kTourLength; ++m) commands.push_back(letter(n * kTourLength + m));
     return commands;
   }
@@ -315,6 +331,13 @@ std::vector<std::int64_t> derived_values(const SequenceNumber& number) {
       if (number.least <= value && value <= number.most) add_once(values, value);
   }
   return values;
+}
+
+Sequence one_of_each(const SequenceVocabulary& vocabulary) {
+  Sequence sequence;
+  for (std::size_t word = 0; word < vocabulary.words.size(); ++word)
+    if (vocabulary.words[word].weight > 0) sequence.commands.push_back(simple_of(vocabulary, word));
+  return sequence;
 }
 
 bool has_derived(DerivedKind kind, const SequenceVocabulary& vocabulary) {

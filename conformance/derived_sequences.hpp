@@ -33,6 +33,9 @@ extern const std::array<DerivedRow, 5> kDerivedRows;
 // neighbours, and what the vocabulary names; each once, what is simple first.
 std::vector<std::int64_t> derived_values(const SequenceNumber& number);
 
+// One of each command, as simple as it can be.
+Sequence one_of_each(const SequenceVocabulary& vocabulary);
+
 // Whether there is any sequence of this kind.
 bool has_derived(DerivedKind kind, const SequenceVocabulary& vocabulary);
 

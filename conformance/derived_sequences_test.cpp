@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -80,6 +81,23 @@ TEST(DerivedSequences, EachThreeWordsFollowEachOtherInEachOrder) {
       orders.insert(
           {sequence.commands[n].word, sequence.commands[n + 1].word, sequence.commands[n + 2].word});
   EXPECT_EQ(orders.size(), 8U);
+}
+
+TEST(DerivedSequences, BeginInEachStateOfTheVocabulary) {
+  SequenceVocabulary vocabulary = two_words();
+  const SequenceCommand waits{.word = 1, .numbers = {3}};
+  vocabulary.beginnings = {{waits, waits, waits, waits}};
+  for (const DerivedRow& row : kDerivedRows) {
+    if (row.kind == DerivedKind::settings) continue;
+    const auto sequences = derived_sequences(row.kind, vocabulary, 1'000, kernel::Random(1)).sequences;
+    const auto begins_so = [&](const Sequence& one) {
+      return one.commands.size() > 4 &&
+             std::ranges::equal(std::span(one.commands).first(4), vocabulary.beginnings[0]);
+    };
+    const auto count = std::ranges::count_if(sequences, begins_so);
+    EXPECT_GT(count, 200) << row.name;
+    EXPECT_LT(count, 900) << row.name;
+  }
 }
 
 TEST(DerivedSequences, AreTheSameForOneStreamAndOthersForAnother) {

@@ -74,6 +74,15 @@ struct SequenceSetting {
 // Why a role cannot be judged with these, as a sentence; nothing: it can.
 using SettingsObjection = std::function<std::optional<std::string>(const field::Settings&)>;
 
+struct SequenceCommand {
+  std::size_t word = 0;                // of the vocabulary
+  std::vector<std::int64_t> numbers;   // as many as the word has
+  std::vector<std::uint8_t> octets{};  // at most as many as the word takes
+  std::vector<SequenceFault> faults{};
+
+  friend bool operator==(const SequenceCommand&, const SequenceCommand&) = default;
+};
+
 struct SequenceVocabulary {
   std::vector<SequenceWord> words;
   std::string_view unit = "character";
@@ -82,19 +91,13 @@ struct SequenceVocabulary {
   std::size_t most_commands = 20;        // in a drawn sequence
   std::vector<SequenceSetting> settings{};
   SettingsObjection objection{};  // null: there is none
+  // Commands that bring a station into each of its states, for sequences that are derived; that in which it
+  // begins need not be among them.
+  std::vector<std::vector<SequenceCommand>> beginnings{};
 
   const SequenceWord* find(std::string_view word) const;
   const SequenceSetting* find_setting(std::string_view name) const;
   std::optional<std::string> objection_to(const field::Settings& given) const;
-};
-
-struct SequenceCommand {
-  std::size_t word = 0;                // of the vocabulary
-  std::vector<std::int64_t> numbers;   // as many as the word has
-  std::vector<std::uint8_t> octets{};  // at most as many as the word takes
-  std::vector<SequenceFault> faults{};
-
-  friend bool operator==(const SequenceCommand&, const SequenceCommand&) = default;
 };
 
 struct Sequence {

@@ -5,6 +5,7 @@
 
 #include "conformance/interbus/declarations.hpp"
 #include "conformance/sequence_settings.hpp"
+#include "harness/kernel/error.hpp"
 #include "harness/line/telegram.hpp"
 #include "protocols/interbus/master_settings.hpp"
 
@@ -160,7 +161,11 @@ SequenceVocabulary master_vocabulary() {
   const interbus::MasterConfiguration as_given = configuration_of_sequence({});
   vocabulary.settings = sequence_settings(interbus::kMasterTable, &as_given, kFixedOfMaster, kBoundsOfMaster);
   vocabulary.objection = objection_of([](const field::Settings& settings) {
-    expect_time_for_silences(configuration_of_sequence(settings).rules);
+    const interbus::Rules rules = configuration_of_sequence(settings).rules;
+    expect_time_for_silences(rules);
+    if (kernel::kSecond.count() % rules.bit_rate != 0)
+      throw kernel::Error(kernel::ErrorKind::configuration,
+                          "a master of telegrams is asked at whole picoseconds: its bits are some");
   });
   for (auto group : {words_of_users, words_of_rings}) {
     for (SequenceWord& word : group()) vocabulary.words.push_back(std::move(word));

@@ -19,14 +19,6 @@ Observations indications_of(const TokenUser& user, const token_bus::Rules& rules
   return all;
 }
 
-Observations events_of(const TokenUser& user) {
-  Observations all;
-  for (const TokenUser::Reported& one : user.all_events)
-    all.push_back({{static_cast<std::int64_t>(one.event.kind), static_cast<std::int64_t>(one.event.address)},
-                   one.when});
-  return all;
-}
-
 TokenTwin::TokenTwin(const token_bus::StationConfiguration& configuration, segment::MediumPort& tester,
                      kernel::Time now)
     : line_(segment_, "line", segment::ContentionRule::noise, kernel::Random(1)),
@@ -67,16 +59,6 @@ void TokenTwin::set_in_ring_desired(bool is_desired, kernel::Time now) {
 void TokenTwin::set_response(const Octets& data, kernel::Time now) {
   run_until(now);
   station_.set_response(data, now);
-  segment_.refresh(seat_);
-}
-
-void TokenTwin::set_power(bool is_on, kernel::Time now) {
-  run_until(now);
-  if (is_on) {
-    station_.start(now);
-  } else {
-    station_.stop(now);
-  }
   segment_.refresh(seat_);
 }
 

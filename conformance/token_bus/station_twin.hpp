@@ -4,16 +4,11 @@
 #include "conformance/token_bus/station_bench.hpp"
 #include "protocols/token_bus/token_station.hpp"
 
-namespace fieldproof::conformance {
-
-Observations frames_of(std::span<const DrivenFrame> driven);
-Observations indications_of(const TokenUser& user, const token_bus::Rules& rules);
-// Kind and address.
-Observations events_of(const TokenUser& user);
-
 // A reference station on a line of its own, on which the tester drives what it drives to the station under
 // test, at the same instants: as the receiver of a station follows the begin of a transmission and not only
 // its end, it is the line that is copied, not what arrives.
+namespace fieldproof::conformance {
+
 class TokenTwin final : private segment::Tap, private segment::Station {
  public:
   // Powered at `now`; `tester` is the place on the line of the station under test.
@@ -24,15 +19,12 @@ class TokenTwin final : private segment::Tap, private segment::Station {
   bool submit(const token_bus::DataRequest& request, kernel::Time now);
   void set_in_ring_desired(bool is_desired, kernel::Time now);
   void set_response(const Octets& data, kernel::Time now);
-  void set_power(bool is_on, kernel::Time now);
 
   // What it has driven, and what it has reported to its user.
   Observations frames() const;
   // When it has begun to drive the last of these.
   kernel::Time last_begin() const;
   Observations indications() const;
-  Observations events() const { return events_of(user_); }
-  token_bus::Counters counters() const { return station_.counters(); }
 
  private:
   void on_wave(const line::Waveform& wave) override;
@@ -49,5 +41,8 @@ class TokenTwin final : private segment::Tap, private segment::Station {
   segment::MediumPort* tester_ = nullptr;
   std::size_t seat_ = 0;
 };
+
+Observations frames_of(std::span<const DrivenFrame> driven);
+Observations indications_of(const TokenUser& user, const token_bus::Rules& rules);
 
 }  // namespace fieldproof::conformance

@@ -55,7 +55,7 @@ SequenceVocabulary translator_vocabulary() {
             .units = kFrameBits,
             .weight = 10},
            {.word = "receive_cut",
-            .meaning = "so many bits of a frame come from the line",
+            .meaning = "so many bits of a frame, one more where they are odd, come from the line",
             .numbers = {content, {"bits", 1, 239, 100}},
             .units = kFrameBits,
             .weight = 4},
@@ -156,9 +156,11 @@ class TranslatorSequenceRun {
         return bench.carry(with_bit_faults(encoded(translated_frame(numbers[0], numbers[2] == 1))
                                                .substr(static_cast<std::size_t>(numbers[1])),
                                            command.faults));
-      case TranslatorWord::receive_cut:
-        return bench.carry(
-            with_bit_faults(encoded(frame).substr(0, static_cast<std::size_t>(numbers[1])), command.faults));
+      case TranslatorWord::receive_cut: {
+        // Whole pairs: what a single bit before the silence is the page says in two ways.
+        const auto bits = static_cast<std::size_t>(numbers[1] + numbers[1] % 2);
+        return bench.carry(with_bit_faults(encoded(frame).substr(0, bits), command.faults));
+      }
       case TranslatorWord::collide:
         return bench.request_and_receive(frame, with_bit_faults(encoded(frame), command.faults));
       case TranslatorWord::receive_managed:
