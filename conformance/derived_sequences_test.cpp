@@ -126,7 +126,9 @@ TEST(DerivedSequences, SaysHowManyThereAreAndHowManyItTook) {
 }
 
 TEST(DerivedCases, ARoleWithoutSettingsHasNoCaseOfThem) {
-  const SequenceRole role{invented_case("p/role/check/follows_the_reference"), two_words()};
+  const SequenceRole role{invented_case("p/role/check/follows_the_reference"),
+                          two_words(),
+                          {{DerivedKind::faults, {"mutant", "reason"}}}};
   std::vector<std::string> ids;
   for (const TestCase& one : derived_cases(role)) {
     ids.push_back(one.id);

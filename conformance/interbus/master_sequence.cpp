@@ -147,12 +147,7 @@ const SequenceRole& master_sequence_role() {
        .expected = "What the reference sends and reports when it is answered and ordered the same.",
        .tags = {},
        .catches = {}},
-      master_vocabulary(),
-      {{DerivedKind::values, {"select_dropped_in_check", "state_wrong"}},
-       {DerivedKind::faults, {"silence_taken_for_good", "wrong_cycle_accepted"}},
-       {DerivedKind::words, {"silent_after_error", "no_data_cycle"}},
-       {DerivedKind::repetitions, {"stop_one_late", "cycle_unasked"}},
-       {DerivedKind::settings, {"silent_after_first_data_cycle", "does_not_work_again"}}}};
+      master_vocabulary()};
   return role;
 }
 
