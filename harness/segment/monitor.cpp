@@ -32,7 +32,7 @@ std::string_view text_of(ViolationKind kind) {
 }
 
 LineMonitor::LineMonitor(const MonitorRules& rules, trace::Trace& trace, trace::Channel place)
-    : rules_(rules), trace_(trace), place_(place), begins_(rules.most_transmissions) {
+    : rules_(rules), trace_(trace), place_(place) {
   FIELDPROOF_CHECK((rules.most_transmissions > 0) == (rules.window > kernel::Duration{}),
                    "a monitor counts transmissions within a window, or not at all");
   violations_.reserve(kKept);
@@ -82,12 +82,15 @@ void LineMonitor::check_drive(kernel::Time start, kernel::Time end) {
 }
 
 void LineMonitor::check_number(kernel::Time start) {
-  kernel::Time& oldest = begins_[begun_ % begins_.size()];
-  if (begun_ >= begins_.size() && start - oldest < rules_.window) {
-    note(ViolationKind::too_many, start, start - oldest);
+  // It grows with the line: most cases are over long before there are too many.
+  if (begins_.size() < rules_.most_transmissions) {
+    begins_.push_back(start);
+    return;
   }
+  kernel::Time& oldest = begins_[oldest_];
+  if (start - oldest < rules_.window) note(ViolationKind::too_many, start, start - oldest);
   oldest = start;
-  ++begun_;
+  oldest_ = (oldest_ + 1) % begins_.size();
 }
 
 void LineMonitor::on_contention(const Contention& contention) {

@@ -82,7 +82,7 @@ class LineMonitor final : public Tap, public ContentionWatcher {
   kernel::Time drive_since_{};
   bool is_drive_told_ = false;
   std::vector<kernel::Time> begins_;  // the last ones, a ring
-  std::size_t begun_ = 0;
+  std::size_t oldest_ = 0;            // of them, when it is full
   std::int64_t known_rate_ = 0;
   kernel::Duration level_{};  // at that rate; zero when it is no whole number of picoseconds
   std::vector<Violation> violations_;
