@@ -3,7 +3,6 @@
 enum { WRITE = 0, READ = 1, COMMAND_OCTETS = 5 };
 
 static const int64_t processing = 120000;
-static const int64_t driver_ahead = 20000; /* the driver is switched on so long before the first start bit */
 
 void island_power(island* me, int is_on) {
   me->is_on = is_on;
@@ -51,8 +50,8 @@ void island_character(island* me, const island_board* board, uint8_t octet, int 
 
 void island_timer(island* me, const island_board* board, int64_t now) {
   if (now >= silence_known_at(me)) end_frame(me, board);
-  if (me->has_answer && now >= me->answer_at - driver_ahead) {
-    const int64_t start = me->answer_at > now + driver_ahead ? me->answer_at : now + driver_ahead;
+  if (me->has_answer && now >= me->answer_at - me->driver_ahead) {
+    const int64_t start = me->answer_at > now + me->driver_ahead ? me->answer_at : now + me->driver_ahead;
     me->has_answer = 0;
     me->sending_until = start + 3 * me->character;
     board->send(board->self, me->answer, start);
@@ -61,7 +60,7 @@ void island_timer(island* me, const island_board* board, int64_t now) {
 
 int64_t island_timer_at(const island* me) {
   const int64_t silence = silence_known_at(me);
-  const int64_t answer = me->has_answer ? me->answer_at - driver_ahead : ISLAND_NEVER;
+  const int64_t answer = me->has_answer ? me->answer_at - me->driver_ahead : ISLAND_NEVER;
   if (!me->is_on) return ISLAND_NEVER;
   return silence < answer ? silence : answer;
 }

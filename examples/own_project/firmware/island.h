@@ -17,7 +17,8 @@ typedef struct {
 
 typedef struct {
   /* As the DIP switches say. */
-  int64_t character; /* duration of one */
+  int64_t character;    /* duration of one */
+  int64_t driver_ahead; /* of the first start bit: the driver is switched on so long before it */
   uint8_t address;
   uint16_t fitted; /* which valves there are */
 

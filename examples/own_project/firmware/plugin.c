@@ -73,6 +73,7 @@ static int begin(void* self, const fieldproof_case* test_case, fieldproof_time* 
   me->ninth_bit = format == 0 ? 0x100 : 0;
   memset(&me->firmware, 0, sizeof me->firmware);
   me->firmware.character = INT64_C(1000000000) * (format == 2 ? 10 : 11) / bit_rate;
+  me->firmware.driver_ahead = nanoseconds(me->bit) + 1;
   me->firmware.address =
       (uint8_t)(10 * setting(test_case, "address_tens") + setting(test_case, "address_units"));
   me->firmware.fitted = setting(test_case, "boards") == 1 ? 0x00FF : 0xFFFF;
