@@ -109,7 +109,7 @@ class ProbesOtherwise : public FfLas {
   bool is_left_out(unsigned node) const {
     const bool is_unpolled =
         node >= rules().first_unpolled && node < rules().first_unpolled + rules().unpolled;
-    return is_unpolled || (live()[node] && !live_ones_too_);
+    return is_unpolled || node == this->node() || (live()[node] && !live_ones_too_);
   }
   int step_;
   bool live_ones_too_;
