@@ -143,9 +143,9 @@ class Derivation {
     for (const std::size_t word : words_) {
       const SequenceCommand usual = simple(word);
       const SequenceWord& of = vocabulary_.words[word];
+      add(usual);
       for (std::size_t n = 0; n < of.numbers.size(); ++n) {
         for (const std::int64_t value : derived_values(of.numbers[n])) {
-          add(usual);
           SequenceCommand other = usual;
           other.numbers[n] = value;
           if (other != usual) add(std::move(other));

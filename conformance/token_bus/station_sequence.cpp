@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "conformance/sequence_settings.hpp"
 #include "conformance/token_bus/judgeable_rules.hpp"
@@ -39,8 +40,27 @@ enum class TokenWord : std::uint8_t {
   peer
 };
 
-// Other stations of the tester lie above and below it.
-constexpr std::array<std::string_view, 1> kFixedOfStation{"address"};
+// Other stations of the tester lie above and below it; and it takes a station for silent after some slots,
+// so none of these waits may be longer. Cases of their own have them at their ends.
+constexpr std::array<std::string_view, 4> kFixedOfStation{"address", "demand_wait_slots", "bus_idle_slots",
+                                                          "lowest_bus_idle_slots"};
+
+SequenceCommand does(TokenWord word, std::vector<std::int64_t> numbers = {}) {
+  return {.word = static_cast<std::size_t>(word), .numbers = std::move(numbers)};
+}
+
+// What brings a station into the ring of the tester, and what it then has to do.
+std::vector<std::vector<SequenceCommand>> states_of_a_station() {
+  using enum TokenWord;
+  const SequenceCommand offered = does(solicit, {0});
+  const SequenceCommand passed = does(token);
+  const SequenceCommand urgent = does(submit, {6, 20});
+  const SequenceCommand bulk = does(submit, {0, 300});
+  return {{offered, passed},                            // a member
+          {urgent, bulk, offered, passed},              // that has had data of several classes
+          {does(respond, {10}), offered, passed},       // with a response
+          {offered, passed, does(peer, {0}), urgent}};  // among others that are silent
+}
 
 SequenceVocabulary token_station_vocabulary() {
   const token_bus::StationConfiguration as_made;
@@ -110,7 +130,8 @@ SequenceVocabulary token_station_vocabulary() {
       .settings = sequence_settings(token_bus::kStationTable, &as_made, kFixedOfStation),
       .objection = objection_of(
           token_bus::kStationTable, as_made,
-          +[](const token_bus::StationConfiguration& one) { expect_possible(one.rules); })};
+          +[](const token_bus::StationConfiguration& one) { expect_possible(one.rules); }),
+      .beginnings = states_of_a_station()};
 }
 
 std::string octets_in_words(std::span<const std::int64_t> values) {
@@ -326,8 +347,8 @@ const SequenceRole& token_station_sequence_role() {
       {{DerivedKind::values, {"delivers_from_another", "indication_other"}},
        {DerivedKind::faults, {"data_of_members_only", "indication_missing"}},
        {DerivedKind::words, {"delivers_with_another_priority", "indication_other"}},
-       {DerivedKind::repetitions, {"most_significant_bit_first", "check_wrong"}},
-       {DerivedKind::settings, {"responds_in_the_ring_only", "indication_missing"}}}};
+       {DerivedKind::repetitions, {"offer_kept", "frame_other"}},
+       {DerivedKind::settings, {"preamble_of_four_octets", "frame_missing"}}}};
   return role;
 }
 
