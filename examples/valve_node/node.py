@@ -10,7 +10,7 @@ import sys
 
 NEVER = 2**63 - 1
 SECOND = 10**12  # times are picoseconds
-HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE, ON_TIME = 1, 2, 3, 4, 5, 7
+HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE, ON_TIME, CASE_END = 1, 2, 3, 4, 5, 7, 8
 CAPABILITIES, ECHOED, DONE, UNSUPPORTED, CHARACTERS, WRITE, READ, DRIVER = 129, 130, 131, 132, 133, 135, 136, 137
 VALVES, LIMIT_SWITCHES = 0, 1
 
@@ -27,13 +27,21 @@ class Stream:
         self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
         self.sink.flush()
 
+    def read(self, item, now):
+        self.send(READ, "Hq", item, now)
+        return struct.unpack("<xQ", self.receive())[0]
+
+    def write(self, item, value, now):
+        self.send(WRITE, "HQq", item, value, now)
+
 
 class Node:
     def __init__(self, stream, settings):
         self.stream, self.settings, rate = stream, settings, settings.get("bit_rate") or 62500  # dip 2
         self.bit = SECOND // rate
         self.half = (10 if settings["characters"] == 2 else 11) * SECOND // (2 * rate)  # a character
-        self.address = 10 * settings["address_tens"] + settings["address_units"]
+        tens, units = settings["address_tens"], settings["address_units"]
+        self.address = 10 * tens + units if max(tens, units) <= 9 else 0
         self.power(False, 0)
 
     def power(self, is_on, now):
@@ -41,7 +49,7 @@ class Node:
         self.frame, self.is_spoilt, self.busy_until = [], False, 0
         self.answer, self.steps, self.driving_until = None, [], 0
 
-    def receive(self, start, busy_until, data, flags, now):  # a character that is over
+    def receive(self, _, start, busy_until, data, flags, now):  # a character that is over
         if not self.is_on:
             return
         gap = start - self.busy_until
@@ -84,7 +92,7 @@ class Node:
                 self.stream.send(CHARACTERS, "BqHH", 0, now, 1, ninth | octet)
         if now >= self.lost():
             self.last_command = now
-            self.stream.send(WRITE, "HQq", VALVES, 0, now)
+            self.stream.write(VALVES, 0, now)
 
     def end_frame(self, now):
         frame, is_spoilt, self.frame, self.is_spoilt = self.frame, self.is_spoilt, [], False
@@ -95,12 +103,11 @@ class Node:
         self.last_command = now
         boards = 0xFF if self.settings["boards"] == 1 else 0xFFFF
         if frame[1] == 0:
-            self.stream.send(WRITE, "HQq", VALVES, (frame[2] | frame[3] << 8) & boards, now)
+            self.stream.write(VALVES, (frame[2] | frame[3] << 8) & boards, now)
             if self.settings["answers_writes"]:
                 self.answer_with(frame[2], frame[3])
         elif frame[1] == 1:
-            self.stream.send(READ, "Hq", LIMIT_SWITCHES, now)
-            switches = struct.unpack("<xQ", self.stream.receive())[0] & boards
+            switches = self.stream.read(LIMIT_SWITCHES, now) & boards
             self.answer_with(switches & 0xFF, switches >> 8)
 
     def answer_with(self, data0, data1):
@@ -112,7 +119,8 @@ def text_at(content, at):
     return content[at + 2:end].decode(), end
 
 
-def node_for(stream, content):
+def case_of(content):
+    """The id of a case and its settings."""
     name, at = text_at(content, 1)
     settings, count = {}, struct.unpack_from("<8xH", content, at)[0]
     at += 10
@@ -120,47 +128,55 @@ def node_for(stream, content):
         key, at = text_at(content, at)
         settings[key] = struct.unpack_from("<q", content, at)[0]
         at += 8
-    return Node(stream, settings) if name.startswith("valve_bus/node/") else None
+    return name, settings
 
 
-def serve(stream):
-    node = None
+def serve(stream, role, make):
+    """Answers the bench until its end. make(stream, settings) is called for each case."""
+    device, name, role = None, f"valve {role} in Python".encode(), role.encode()
     while True:
         message = stream.receive()
         kind = message[0]
         if kind == HELLO:
-            stream.send(CAPABILITIES, "HBH20sHH9sH4s", 3, 1, 20, b"valve node in Python", 1, 9, b"valve_bus", 4, b"node")
+            stream.send(CAPABILITIES, f"HBH{len(name)}sHH9sH{len(role)}s", 3, 1, len(name), name, 1, 9, b"valve_bus",
+                        len(role), role)
             continue
         if kind == ECHO:
             stream.send(ECHOED, f"{len(message) - 1}s", message[1:])
             continue
         if kind == CASE_BEGIN:
-            node = node_for(stream, message)
+            case, settings = case_of(message)
+            device = make(stream, settings) if case.startswith("valve_bus/") else None
         elif kind == POWER:
-            node.power(*struct.unpack("<x?q", message))
+            device.power(*struct.unpack("<x?q", message))
         elif kind == RECEIVE:
-            now, count = struct.unpack_from("<xxqH", message)
+            port, now, count = struct.unpack_from("<xBqH", message)
             for n in range(count):
-                node.receive(*struct.unpack_from("<qqHB", message, 12 + 19 * n), now)
+                device.receive(port, *struct.unpack_from("<qqHB", message, 12 + 19 * n), now)
         elif kind == ON_TIME:
-            node.on_time(struct.unpack("<xq", message)[0])
-        if node is None:
+            device.on_time(struct.unpack("<xq", message)[0])
+        if device is None:
             stream.send(UNSUPPORTED)
         else:
-            stream.send(DONE, "q", node.next_time())
+            stream.send(DONE, "q", NEVER if kind == CASE_END else device.next_time())
 
 
 class Connection(socketserver.StreamRequestHandler):
     def handle(self):
-        serve(Stream(self.rfile, self.wfile))
+        serve(Stream(self.rfile, self.wfile), "node", Node)
 
 
-if len(sys.argv) > 1:  # cases may run side by side, each with a connection of its own
+def listen(path):  # cases may run side by side, each with a connection of its own
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())
     try:
-        socketserver.ThreadingUnixStreamServer(sys.argv[1], Connection).serve_forever()
+        socketserver.ThreadingUnixStreamServer(path, Connection).serve_forever()
     except KeyboardInterrupt:
         sys.exit()
     finally:  # the next one can take the path again
-        pathlib.Path(sys.argv[1]).unlink(missing_ok=True)
-serve(Stream(sys.stdin.buffer, sys.stdout.buffer))
+        pathlib.Path(path).unlink(missing_ok=True)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        listen(sys.argv[1])
+    serve(Stream(sys.stdin.buffer, sys.stdout.buffer), "node", Node)
