@@ -16,7 +16,7 @@ def run(program, faults):
         for name, (what, case, *_) in faults.items():
             print(name, case, what)
         return
-    path = pathlib.Path(__file__).resolve().parent / program
+    path = pathlib.Path(program)
     source = path.read_text()
     edits = iter(faults[asked.fault][2:] if asked.fault else ())
     for old, new in zip(edits, edits):

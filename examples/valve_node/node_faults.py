@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Nodes with one fault each, to see the bench find it: --iut 'exec:python3 node_faults.py --fault NAME'."""
+import pathlib
+
 from edits import run
 
 MOVES = "self.stream.write(VALVES, (frame[2] | frame[3] << 8) & boards, now)"
@@ -206,4 +208,4 @@ FAULTS = {name: (what, "?", *edits) for name, what, *edits in [
 FAULTS["one_board_reads_two"] = ("one board, and DATA1 of a response is not 0", "?", SWITCHES, SWITCHES.replace(" & boards", ""))
 
 if __name__ == "__main__":
-    run("node.py", FAULTS)
+    run(pathlib.Path(__file__).resolve().parent / "node.py", FAULTS)
