@@ -278,15 +278,19 @@ TEST_F(Attachments, InterbusMasterInPythonPassesInTelegrams) {
 }
 
 // Written from the pages of the roles; each of their faults is found by the case that it names.
-class TokenBusInPython : public Attachments, public testing::WithParamInterface<const char*> {};
+struct FaultyProgram {
+  std::string name;
+  std::string file;  // in examples
+  std::string suite;
+};
 
-TEST_P(TokenBusInPython, PassesAndBreaksAsItsFaultsSay) {
+class FaultsInPython : public Attachments, public testing::WithParamInterface<FaultyProgram> {};
+
+TEST_P(FaultsInPython, PassesAndBreaksAsItsFaultsSay) {
   const std::string python = installed("python3");
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
-  const std::string role = GetParam();
-  const fs::path file = kSourceFolder / "examples/token_bus" / (role + ".py");
-  const std::string program = in_quotes(python) + " " + in_quotes(file);
-  const std::string suite = "token_bus/" + role + "/";
+  const auto& [_, file, suite] = GetParam();
+  const std::string program = in_quotes(python) + " " + in_quotes(kSourceFolder / "examples" / file);
   // What a sanitizer looks at is the same in each case.
   if (!kernel::kIsSanitized) expect_passes("exec:" + program, suite);
   const std::unique_ptr<FILE, int (*)(FILE*)> list(popen((program + " --list-faults").c_str(), "r"), pclose);
@@ -306,8 +310,15 @@ TEST_P(TokenBusInPython, PassesAndBreaksAsItsFaultsSay) {
   EXPECT_GE(faults, 7U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Roles, TokenBusInPython, testing::Values("station", "translator", "channel_manager"),
-                         [](const auto& one) { return std::string(one.param); });
+INSTANTIATE_TEST_SUITE_P(
+    Roles, FaultsInPython,
+    testing::Values(FaultyProgram{"token_bus_station", "token_bus/station.py", "token_bus/station/"},
+                    FaultyProgram{"token_bus_translator", "token_bus/translator.py", "token_bus/translator/"},
+                    FaultyProgram{"token_bus_channel_manager", "token_bus/channel_manager.py",
+                                  "token_bus/channel_manager/"},
+                    FaultyProgram{"valve_node", "valve_node/node_faults.py", "valve_bus/node/"},
+                    FaultyProgram{"valve_host", "valve_host/host_faults.py", "valve_bus/host/"}),
+    [](const auto& one) { return one.param.name; });
 
 // It hears frames; no case of its role drives anything else.
 TEST_F(Attachments, FfDeviceInPythonPasses) {

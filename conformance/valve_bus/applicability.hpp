@@ -30,6 +30,16 @@ inline Applicability for_item(std::string item, bool is_supported, judge::Pics d
   };
 }
 
+// Where the item has this answer, or is not answered, so that the bench can give it.
+inline Applicability for_answer(std::string item, judge::Pics::Answer answer) {
+  return [item = std::move(item),
+          answer = std::move(answer)](const judge::Pics& pics) -> std::optional<std::string> {
+    const auto declared = pics.items().find(item);
+    if (declared == pics.items().end() || declared->second == answer) return std::nullopt;
+    return "the implementation does not declare \"" + item + "\" as " + judge::answer_text(answer);
+  };
+}
+
 // Where both say so.
 inline Applicability for_both(Applicability one, Applicability other) {
   return [one = std::move(one), other = std::move(other)](const judge::Pics& pics) {

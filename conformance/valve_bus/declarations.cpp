@@ -11,13 +11,16 @@ using field::part;
 using field::row;
 
 constexpr std::string_view kBench = "what the bench can do";
+constexpr field::Range kStartUp = field::between({}, 10 * kernel::kSecond);
 
-constexpr auto kNodeRows =
-    field::rows<NodeDeclaration>(part<&NodeDeclaration::configuration>(valve_bus::kNodeTable),
-                                 row<&NodeDeclaration::address_switches_can_be_set>(
-                                     {{}, {}, "the bench can give the node another address", kBench}),
-                                 row<&NodeDeclaration::power_can_be_switched>(
-                                     {{}, {}, "the bench can switch the supply of the station", kBench}));
+constexpr auto kNodeRows = field::rows<NodeDeclaration>(
+    part<&NodeDeclaration::configuration>(valve_bus::kNodeTable),
+    row<&NodeDeclaration::address_switches_can_be_set>(
+        {{}, {}, "the bench can give the node another address", kBench}),
+    row<&NodeDeclaration::start_up_time>(
+        {field::kTime, kStartUp, "from power-up to where the node receives", kBench}),
+    row<&NodeDeclaration::power_can_be_switched>(
+        {{}, {}, "the bench can switch the supply of the station", kBench}));
 constexpr auto kNode = field::table<NodeDeclaration>(kNodeRows);
 
 constexpr auto kHostRows =

@@ -12,6 +12,7 @@ namespace fieldproof::conformance {
 struct NodeDeclaration {
   valve_bus::NodeConfiguration configuration{.rules = {}, .address_tens = 0, .address_units = 5, .boards = 2};
   bool address_switches_can_be_set = true;
+  kernel::Duration start_up_time{};  // from power-up to where it hears the line
   bool power_can_be_switched = true;
 };
 

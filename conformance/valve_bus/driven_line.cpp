@@ -7,6 +7,8 @@ namespace {
 
 // Waves that follow each other have starts that are rounded each for itself.
 constexpr kernel::Duration kRoundedStart = kernel::kNanosecond;
+// Of a bit.
+constexpr std::int64_t kIdlePieces = 16;
 
 }  // namespace
 
@@ -27,6 +29,7 @@ kernel::Duration Transmission::longest_gap() const {
 std::vector<Transmission> DrivenLine::transmissions() {
   std::vector<Transmission> all;
   line::Waveform together;
+  const kernel::Duration pause = kernel::levels_duration(1, kIdlePieces * bit_rate_) + kRoundedStart;
   const auto finish = [&] {
     if (!together.levels.empty()) add(together, all.back());
     together.levels.clear();
@@ -36,7 +39,7 @@ std::vector<Transmission> DrivenLine::transmissions() {
                          std::chrono::abs(wave.start - together.end()) <= kRoundedStart;
     if (!follows) {
       finish();
-      if (all.empty() || wave.start - all.back().driver_off > kRoundedStart) {
+      if (all.empty() || wave.start - all.back().driver_off > pause) {
         all.push_back({wave.start, wave.end(), {}});
       }
       together.start = wave.start;

@@ -36,7 +36,8 @@ struct Transmission {
 
 class DrivenLine final : public segment::Tap {
  public:
-  DrivenLine(const line::CharacterFormat& format, std::int64_t bit_rate) : receiver_(format, bit_rate) {}
+  DrivenLine(const line::CharacterFormat& format, std::int64_t bit_rate)
+      : receiver_(format, bit_rate), bit_rate_(bit_rate) {}
 
   void on_wave(const line::Waveform& wave) override {
     waves_.push_back(wave);
@@ -53,15 +54,18 @@ class DrivenLine final : public segment::Tap {
   // From now on it expects characters of another kind.
   void listen(const line::CharacterFormat& format, std::int64_t bit_rate) {
     receiver_ = line::CharacterReceiver(format, bit_rate);
+    bit_rate_ = bit_rate;
   }
 
-  // Since the last clear. Waves that follow each other without a gap are one transmission.
+  // Since the last clear. Waves that follow each other without a gap are one transmission; idle levels are
+  // driven in pieces, of which the last one may end a little before the start bit.
   std::vector<Transmission> transmissions();
 
  private:
   void add(const line::Waveform& wave, Transmission& transmission);
 
   line::CharacterReceiver receiver_;
+  std::int64_t bit_rate_;
   std::vector<line::CharacterReceiver::Received> received_;
   std::vector<line::Waveform> waves_;
   std::size_t most_ = std::size_t{1} << 40U;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -111,6 +113,16 @@ class LosesPartsOfCommands : public CommandFifo {
   bool loses_whole_commands() const override { return false; }
 };
 
+// Gives all up with a part of a command.
+class PartTakesTheFifo : public Host {
+  using Host::Host;
+  void on_part(Octets part, Time now) override {
+    while (next_command()) {
+    }
+    Host::on_part(part, now);
+  }
+};
+
 // ---- what the PC is told ----
 
 class ToldTwice : public Host {
@@ -166,6 +178,142 @@ class SilenceToldAsData : public Host {
 class CountersShared : public Host {
   using Host::Host;
   std::size_t counters_place(std::uint8_t) const override { return 0; }
+};
+
+// ---- what it remembers ----
+
+class KindOfAnyAttempt : public Host {
+  using Host::Host;
+  void send(Time now) override {
+    Host::send(now);
+    if (exchange() && exchange()->attempt == 1) before_ = counted(last_id()).rejected;
+  }
+  void fail(HostErrorKind kind, Time now) override {
+    Host::fail(counted(last_id()).rejected > before_ ? HostErrorKind::bad_response : kind, now);
+  }
+  std::uint64_t before_ = 0;
+};
+
+class OldDataOfAnyNode : public Host {
+  using Host::Host;
+  void tell(const HostResponse& response, Time now) override {
+    last_ = response;
+    Host::tell(response, now);
+  }
+  void tell_old(std::uint8_t id, Time now) override {
+    if (known(id) && last_) Host::tell(HostResponse{id, last_->data0, last_->data1, true}, now);
+  }
+  using Host::tell;
+  std::optional<HostResponse> last_;
+};
+
+class OldDataToldOnce : public Host {
+  using Host::Host;
+  void tell_old(std::uint8_t id, Time now) override {
+    if (told_.insert(id).second) Host::tell_old(id, now);
+  }
+  std::set<std::uint8_t> told_;
+};
+
+class CountersOf8Bits : public Host {
+  using Host::Host;
+  HostCounters counters(std::uint8_t id) const override {
+    constexpr std::uint64_t kOctet = 0xFF;
+    const HostCounters all = Host::counters(id);
+    return {all.timeouts & kOctet, all.rejected & kOctet, all.late & kOctet, all.retries & kOctet};
+  }
+};
+
+// Adds what was counted before its supply was lost.
+class CountersOverPowerLoss : public Host {
+  using Host::Host;
+  void set_power(bool is_on, Time now) override {
+    if (!is_on)
+      for (unsigned id = 0; id < kept_.size(); ++id)
+        kept_[id] = counters(static_cast<std::uint8_t>(id)).timeouts;
+    Host::set_power(is_on, now);
+  }
+  HostCounters counters(std::uint8_t id) const override {
+    HostCounters all = Host::counters(id);
+    all.timeouts += kept_.at(id);
+    return all;
+  }
+  std::array<std::uint64_t, 256> kept_{};
+};
+
+class OverflowOverPowerLoss : public Host {
+  using Host::Host;
+  void set_power(bool is_on, Time now) override {
+    had_overflowed_ = had_overflowed_ || has_overflowed();
+    Host::set_power(is_on, now);
+  }
+  bool has_overflowed() const override { return had_overflowed_ || Host::has_overflowed(); }
+  bool had_overflowed_ = false;
+};
+
+// Writes to each node what it wrote before its supply was lost.
+class RefreshesOverPowerLoss : public Host {
+  using Host::Host;
+  void keep_write(const Command& command) override {
+    kept_ = command;
+    Host::keep_write(command);
+  }
+  void set_power(bool is_on, Time now) override {
+    Host::set_power(is_on, now);
+    if (is_on && kept_) write(std::array{kept_->id, kept_->command, kept_->data0, kept_->data1}, now);
+  }
+  std::optional<Command> kept_;
+};
+
+class EqualResponsesToldOnce : public Host {
+  using Host::Host;
+  void tell(const HostResponse& response, Time now) override {
+    if (std::exchange(last_, response) != response) Host::tell(response, now);
+  }
+  using Host::tell;
+  std::optional<HostResponse> last_;
+};
+
+class ZerosNotTold : public Host {
+  using Host::Host;
+  void tell(const HostResponse& response, Time now) override {
+    if (response.data0 != 0 || response.data1 != 0) Host::tell(response, now);
+  }
+  using Host::tell;
+};
+
+class EqualWritesSentOnce : public Host {
+  using Host::Host;
+  std::optional<Command> next_command() override {
+    const auto command = Host::next_command();
+    const bool is_write = command && command->command == rules().write_command;
+    if (is_write && std::exchange(last_, command) == command) return Host::next_command();
+    return command;
+  }
+  std::optional<Command> last_;
+};
+
+class VerifiesRefreshes : public Host {
+  using Host::Host;
+  void send(Time now) override {
+    const Command command = exchange()->command;
+    const bool is_refresh = exchange()->purpose == Purpose::refresh;
+    Host::send(now);
+    if (is_refresh && configuration().verifies_writes)
+      write(std::array{command.id, static_cast<std::uint8_t>(rules().read_command), command.data0,
+                       command.data1},
+            now);
+  }
+};
+
+class RefreshesWhenIdle : public Host {
+  using Host::Host;
+  bool may_refresh(bool) const override { return !fifo().has_command(); }
+};
+
+class RefreshesGoFirst : public Host {
+  using Host::Host;
+  bool may_refresh(bool) const override { return true; }
 };
 
 // ---- DIP switches ----

@@ -1,6 +1,7 @@
 #include "conformance/valve_bus/host_bench.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -155,6 +156,7 @@ void HostBench::restart(unsigned dip) {
 }
 
 void HostBench::write(std::span<const std::uint8_t> octets) {
+  note(Deed{now(), "PC ordered", {octets.begin(), octets.end()}});
   host_->write(octets, now());
   refresh_iut();
 }
@@ -244,6 +246,7 @@ HostFrame HostBench::frame_of(Transmission sent) {
 kernel::Time HostBench::answer(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time) {
   const kernel::Time start = std::max(now(), last_end_ + turnaround_time);
   const kernel::Time end = codec_.drive(tester(), octets, start, {});
+  note(Deed{start, "node drove", {octets.begin(), octets.end()}});
   said_.push_back({start, end});
   return end;
 }
@@ -254,12 +257,14 @@ void HostBench::answer_levels(const line::Levels& levels, kernel::Duration turna
   wave.rate = rules().bit_rate;
   wave.levels = levels;
   said_.push_back({wave.start, wave.end()});
+  note(Deed{wave.start, "node drove", {}, levels.size()});
   tester().drive(wave);
 }
 
 kernel::Time HostBench::say(std::span<const std::uint8_t> octets) {
   const kernel::Time end = codec_.drive(tester(), octets, now(), {});
   said_.push_back({now(), end});
+  note(Deed{now(), "node drove", {octets.begin(), octets.end()}});
   segment().run_until(end);
   return end;
 }
@@ -287,18 +292,35 @@ void HostBench::clear_observations() {
   arrived_.clear();
 }
 
-void HostBench::note(std::variant<HostFrame, HostEvent> seen) {
+void HostBench::note(Seen seen) {
   if (history_.size() == kHistoryLines) history_.pop_front();
   history_.push_back(std::move(seen));
 }
 
 std::vector<std::string> HostBench::decode_lines() const {
+  std::vector<Seen> all(history_.begin(), history_.end());
+  std::ranges::stable_sort(all, {}, &HostBench::time_of);
   std::vector<std::string> lines;
-  for (const auto& seen : history_) {
-    const auto* frame = std::get_if<HostFrame>(&seen);
-    lines.push_back(frame != nullptr ? frame_text(*frame) : text_of(std::get<HostEvent>(seen)));
-  }
+  for (const Seen& seen : all) lines.push_back(line_of(seen));
   return lines;
+}
+
+kernel::Time HostBench::time_of(const Seen& seen) {
+  if (const auto* frame = std::get_if<HostFrame>(&seen)) return frame->start;
+  if (const auto* event = std::get_if<HostEvent>(&seen)) return event->when;
+  return std::get<Deed>(seen).when;
+}
+
+std::string HostBench::line_of(const Seen& seen) {
+  if (const auto* frame = std::get_if<HostFrame>(&seen)) return frame_text(*frame);
+  if (const auto* event = std::get_if<HostEvent>(&seen)) return "PC was told: " + text_of(*event);
+  constexpr std::size_t kMostOctets = 12;
+  const Deed& deed = std::get<Deed>(seen);
+  const auto first = std::span(deed.octets).first(std::min(deed.octets.size(), kMostOctets));
+  const std::string what = deed.levels > 0 ? fmt::format("{} levels", deed.levels)
+                                           : fmt::format("{:02X}{}", fmt::join(first, " "),
+                                                         first.size() < deed.octets.size() ? " ..." : "");
+  return fmt::format("{} {}, at {}", deed.what, what, kernel::describe(deed.when));
 }
 
 }  // namespace fieldproof::conformance

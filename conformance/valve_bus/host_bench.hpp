@@ -148,7 +148,7 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
 
   // The case is over. What the IUT does then is still its verdict.
   void finish() { host_->end(); }
-  // The last frames of the IUT, and what the PC was told, in words.
+  // What the PC has ordered and was told, what the nodes and the IUT have driven: the last of it, in words.
   std::vector<std::string> decode_lines() const;
 
  private:
@@ -159,6 +159,16 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
     kernel::Time start;
     kernel::Time end;
   };
+  // What the tester did, as PC or as nodes.
+  struct Deed {
+    kernel::Time when;
+    std::string_view what;  // "PC ordered"
+    std::vector<std::uint8_t> octets{};
+    std::size_t levels = 0;  // in the place of octets
+  };
+  using Seen = std::variant<HostFrame, HostEvent, Deed>;
+  static kernel::Time time_of(const Seen& seen);
+  static std::string line_of(const Seen& seen);
 
   void on_response(const valve_bus::HostResponse& response, kernel::Time when) override;
   void on_error(const valve_bus::HostError& error, kernel::Time when) override;
@@ -169,7 +179,7 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   bool has_driven_by(kernel::Time limit);
   void collect();
   HostFrame frame_of(Transmission sent);
-  void note(std::variant<HostFrame, HostEvent> seen);
+  void note(Seen seen);
 
   judge::Pics pics_;
   valve_bus::HostConfiguration configuration_;
@@ -185,7 +195,7 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   kernel::Time last_end_{};  // of the last stop bit of the frame that was got last
   std::deque<HostEvent> told_;
   std::vector<std::optional<valve_bus::Command>> writes_;
-  std::deque<std::variant<HostFrame, HostEvent>> history_;  // the last of both
+  std::deque<Seen> history_;  // the last of all
 };
 
 }  // namespace fieldproof::conformance

@@ -23,6 +23,8 @@ std::vector<HostCase> host_fifo_cases();
 std::vector<HostCase> host_timing_cases();
 std::vector<HostCase> host_line_cases();
 std::vector<HostCase> host_cycle_cases();
+std::vector<HostCase> host_memory_cases();
+std::vector<HostCase> host_refresh_cases();
 std::vector<HostCase> host_dip_cases();
 std::vector<HostCase> host_immunity_cases();
 

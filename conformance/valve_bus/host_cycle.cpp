@@ -170,11 +170,12 @@ void expect_written_node_read(HostScene& scene) {
                      "no_verification", "a read of the node that was written to", text_of_command(read));
 }
 
-// What was written, as the node would give it: but for one bit of DATA1 when it is wrong.
+// What was written, as the node would give it: but for one bit of DATA1 or of DATA0 when it is wrong.
 host_chart::MakeOctets written_data(bool is_right) {
   return [is_right](HostScene& scene) {
-    const auto data1 = static_cast<std::uint8_t>(scene.command.data1 ^ (is_right ? 0U : 1U));
-    const auto octets = octets_of(Response{scene.command.data0, data1});
+    Response response{scene.command.data0, scene.command.data1};
+    if (!is_right) (scene.round % 2 == 0 ? response.data1 : response.data0) ^= 1U << scene.round % 8;
+    const auto octets = octets_of(response);
     return std::vector<std::uint8_t>(octets.begin(), octets.end());
   };
 }
@@ -186,6 +187,51 @@ void expect_write_repeated(HostScene& scene) {
   expect_form(scene.bench, scene.judge, *again);
   scene.judge.expect(again->command() == scene.command, "no_retry", text_of_command(scene.command),
                      text_of_command(again->command()));
+}
+
+// Of two writes that are ordered at once each is read back before the other is sent; a refresh is not.
+void expect_each_read_back_first(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  const std::array writes{bench.write_to(3), bench.write_to(4)};
+  for (const Command& write : writes) bench.order(write);
+  for (const Command& write : writes) {
+    expect_request(bench, scene.judge, write, "no_request");
+    scene.command = write;
+    expect_written_node_read(scene);
+    bench.answer(octets_of(Response{write.data0, write.data1}), bench.turnaround_time());
+  }
+  expect_nothing_told(bench, scene.judge, 2 * bench.time_out(), "right_readback_told",
+                      "the nodes have what was written");
+  const kernel::Time end = bench.now() + bench.rules().refresh * 3 / 2;
+  while (const auto frame = bench.next_frame(std::max(kernel::Duration{}, end - bench.now()))) {
+    scene.judge.expect(bench.is_refresh(frame->command()), "refresh_read_back", "refreshes alone",
+                       text_of_command(frame->command()));
+  }
+}
+
+// A read follows an acknowledge without the distance of a write.
+void expect_read_soon_after_acknowledge(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  const kernel::Time end =
+      bench.answer(octets_of(Response{scene.command.data0, scene.command.data1}), bench.turnaround_time());
+  const Command read = bench.read_of(scene.id = 9);
+  bench.order(read);
+  scene.request = expect_request(bench, scene.judge, read);
+  scene.command = read;
+  const kernel::Duration most = bench.delimiter() + 2 * character_notice(bench.rules()) + bench.bits(3);
+  scene.judge.expect_between("request after an acknowledge", "us", in_microseconds(scene.request.start - end),
+                             0, in_microseconds(most), "late_after_acknowledge");
+}
+
+void expect_refresh_acknowledged(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  bench.clear_observations();
+  const auto first = bench.next_frame(bench.rules().refresh * 3 / 2);
+  scene.judge.expect(first && bench.is_refresh(first->command()), "no_refresh", "the write is refreshed",
+                     "it is not");
+  const auto again = bench.next_frame(bench.time_out() * 3 / 2);
+  scene.judge.expect(again && again->command() == first->command(), "no_retry",
+                     "a refresh that is not acknowledged is sent again", "it is not");
 }
 
 }  // namespace
@@ -243,6 +289,47 @@ std::vector<HostCase> host_cycle_cases() {
                  answer("the node answers with one bit changed", written_data(false)),
                  error(HostErrorKind::readback_mismatch)}},
                {.acknowledged_writes = false, .verifies_writes = true}),
+      on_chart({.id = "valve_bus/host/cycle/verification_comes_first",
+                .purpose = "RH-31",
+                .requirement =
+                    "With the option, a write is read back before anything else is sent; a refresh is not.",
+                .reference = valve_sources::own("verification by a read"),
+                .tags = {"must", "option"},
+                .catches = {{"verifies_refreshes", "refresh_read_back"}},
+                .not_applicable = for_both(for_switched_power(), for_quick_frames(10))},
+               {{1, 20},
+                {power_cycled(),
+                 {"the PC orders two writes at once, which the nodes have when they are read",
+                  "each is read back before the next is sent, and what follows are refreshes alone",
+                  expect_each_read_back_first}}},
+               {.acknowledged_writes = false, .verifies_writes = true}),
+      on_chart({.id = "valve_bus/host/cycle/acknowledge_is_looked_at",
+                .purpose = "RH-18",
+                .requirement =
+                    "With the option, an acknowledge has the data of its write; it is no response to a read; "
+                    "refreshes are acknowledged as well.",
+                .reference = valve_sources::own("option: nodes acknowledge writes"),
+                .tags = {"must", "option", "timing"},
+                .catches = {{"any_acknowledge_taken", "no_retry"}, {"acknowledge_not_awaited", "no_retry"}},
+                .not_applicable = for_both(for_switched_power(), for_quick_frames(20))},
+               {{4, 40},
+                {power_cycled(),
+                 write(),
+                 answer("the node answers with one bit changed", written_data(false)),
+                 sent_again,
+                 {"the node acknowledges it, and the PC orders a read",
+                  "the read follows as after a response", expect_read_soon_after_acknowledge},
+                 stimulus("no node answers", [](HostScene&) {}),
+                 expected("it is polled again",
+                          [](HostScene& scene) {
+                            for (unsigned n = 1; n < scene.bench.rules().read_attempts; ++n)
+                              expect_retry(scene.bench, scene.judge, scene.request);
+                          }),
+                 error(HostErrorKind::no_response),
+                 nothing_reported(kernel::kMillisecond, "acknowledge_told", "nothing was read of the node"),
+                 expected("the write is refreshed, and again when it is not acknowledged",
+                          expect_refresh_acknowledged)}},
+               {.acknowledged_writes = true, .verifies_writes = false}),
       on_chart({.id = "valve_bus/host/cycle/write_is_acknowledged",
                 .purpose = "RH-18",
                 .requirement = "With the option, a write that is not acknowledged is sent three times in "

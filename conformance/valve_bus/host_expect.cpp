@@ -72,6 +72,11 @@ void expect_form(HostBench& bench, CaseJudge& judge, const HostFrame& frame) {
   judge.expect(octets.size() == valve_bus::kCommandOctets, "frame_length_wrong", sighting("five octets"));
   judge.expect(std::ranges::all_of(frame.sent.characters, &DrivenCharacter::is_good), "frame_garbled",
                sighting("characters with a right parity and a stop bit"));
+  judge.expect(std::ranges::all_of(frame.sent.characters,
+                                   [&](const DrivenCharacter& one) {
+                                     return one.data == uart(bench.rules()).character_of(one.octet());
+                                   }),
+               "ninth_bit_wrong", "a ninth bit of 1 in each character", "one of 0");
   const unsigned check = octets[0] ^ octets[1] ^ octets[2] ^ octets[3];
   judge.expect(octets[4] == check, "check_wrong", sighting("the exclusive or of the four octets after them"));
   const kernel::Duration gap = frame.sent.longest_gap();
@@ -175,6 +180,10 @@ void expect_nothing_told(HostBench& bench, CaseJudge& judge, kernel::Duration wi
   judge.expect(!told, reason, [&] {
     return Mismatch{{fmt::format("nothing is reported to the PC: {}", why_not)}, told_text(told), told->when};
   });
+}
+
+kernel::Duration latest_repetition(const HostBench& bench) {
+  return bench.time_out() * 105 / 100 + character_notice(bench.rules()) + bench.bits(3);
 }
 
 HostFrame expect_retry(HostBench& bench, CaseJudge& judge, const HostFrame& first) {

@@ -13,8 +13,8 @@ namespace fieldproof::conformance {
 double in_microseconds(kernel::Duration duration);
 std::string text_of_command(const valve_bus::Command& command);
 
-// The form of one frame: `frame_length_wrong`, `frame_garbled`, `check_wrong`, `gap_in_frame`,
-// `no_delimiter`, `driver_on_late`, `driver_released_early`, `driver_not_released`.
+// The form of one frame: `frame_length_wrong`, `frame_garbled`, `ninth_bit_wrong`, `check_wrong`,
+// `gap_in_frame`, `no_delimiter`, `driver_on_late`, `driver_released_early`, `driver_not_released`.
 void expect_form(HostBench& bench, CaseJudge& judge, const HostFrame& frame);
 
 // The IUT sends this command within its patience, in the right form; refreshes of what it has written before
@@ -47,6 +47,9 @@ void expect_old_if_known(HostBench& bench, CaseJudge& judge, std::uint8_t id);
 void expect_nothing_told(HostBench& bench, CaseJudge& judge, kernel::Duration within, std::string_view reason,
                          std::string_view why_not);
 
+// After the end of an attempt, the next one begins by then: a host knows of a start bit when its character is
+// over, and then switches its driver on.
+kernel::Duration latest_repetition(const HostBench& bench);
 // The IUT polls again after an attempt that has failed: `no_retry`.
 HostFrame expect_retry(HostBench& bench, CaseJudge& judge, const HostFrame& first);
 // A read of this node, with a random response, is served.

@@ -68,33 +68,49 @@ unsigned too_many(const HostScene& scene) {
   return scene.bench.volume(3U, 100U);
 }
 
-void overfill(HostScene& scene) {
-  HostBench& bench = scene.bench;
-  scene.judge.expect_equal(bench.has_overflowed(), false, "overflow_not_told", "overflow");
-  bench.write(stream_of(bench, 0, fitting(scene) + too_many(scene)));
-  scene.judge.expect_equal(bench.has_overflowed(), true, "overflow_not_told", "overflow");
+void expect_room(HostScene& scene, std::size_t commands) {
+  scene.judge.expect_equal(scene.bench.fifo_room(), kOctets * commands, "room_wrong",
+                           "octets that there is room for");
 }
 
-void expect_first_sent(HostScene& scene) {
+// While its response is awaited nothing is taken from the FIFO.
+void read_first(HostScene& scene) {
+  scene.bench.write(stream_of(scene.bench, 0, 1));
   expect_request(scene.bench, scene.judge, numbered_read(scene.bench, 0));
+  expect_room(scene, fitting(scene));
+}
+
+void overfill(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  bench.write(stream_of(bench, 1, fitting(scene)));
+  scene.judge.expect_equal(bench.has_overflowed(), false, "overflow_not_told", "overflow");
+  expect_room(scene, 0);
+  bench.write(stream_of(bench, 1 + fitting(scene), too_many(scene)));
+  scene.judge.expect_equal(bench.has_overflowed(), true, "overflow_not_told", "overflow");
+  expect_room(scene, 0);
 }
 
 void expect_each_lost_reported(HostScene& scene) {
-  for (unsigned n = fitting(scene); n < fitting(scene) + too_many(scene); ++n) {
+  for (unsigned n = 1 + fitting(scene); n < 1 + fitting(scene) + too_many(scene); ++n) {
     const HostError lost{numbered_read(scene.bench, n).id, HostErrorKind::fifo_overflow};
     expect_error(scene.bench, scene.judge, lost);
   }
 }
 
-// Of those that fit the first one has been sent.
+// There is room for each that has been sent; the overflow stays up.
 void expect_all_that_fit(HostScene& scene) {
   answer_numbered(scene.bench, scene.judge, 0);
-  expect_numbered(scene.bench, scene.judge, 1, fitting(scene) - 1);
+  for (unsigned n = 1; n <= fitting(scene); ++n) {
+    expect_request(scene.bench, scene.judge, numbered_read(scene.bench, n));
+    expect_room(scene, n);
+    answer_numbered(scene.bench, scene.judge, n);
+  }
+  scene.judge.expect_equal(scene.bench.has_overflowed(), true, "overflow_not_told", "overflow");
 }
 
 // The octets of the first command that does not fit, and of the next one.
 std::vector<std::uint8_t> two_too_many(const HostScene& scene) {
-  return stream_of(scene.bench, fitting(scene), 2);
+  return stream_of(scene.bench, 1 + fitting(scene), 2);
 }
 
 void lose_a_command(HostScene& scene) {
@@ -104,9 +120,59 @@ void lose_a_command(HostScene& scene) {
 }
 
 void write_the_rest_and_another(HostScene& scene) {
-  expect_first_sent(scene);
+  answer_numbered(scene.bench, scene.judge, 0);
+  expect_request(scene.bench, scene.judge, numbered_read(scene.bench, 1));
   const auto octets = two_too_many(scene);
   scene.bench.write(std::span(octets).subspan(1));
+}
+
+void expect_the_others_sent(HostScene& scene) {
+  answer_numbered(scene.bench, scene.judge, 1);
+  expect_numbered(scene.bench, scene.judge, 2, fitting(scene) - 1);
+  expect_numbered(scene.bench, scene.judge, fitting(scene) + 2);
+}
+
+void fill_behind_the_first(HostScene& scene) {
+  scene.bench.write(stream_of(scene.bench, 1, fitting(scene)));
+}
+
+// ---- octets one by one ----
+
+constexpr kernel::Duration kBetweenOctets = 80 * kernel::kMillisecond;
+
+void write_octet_by_octet(HostScene& scene) {
+  for (const std::uint8_t octet : stream_of(scene.bench, 7, 1)) {
+    scene.bench.wait(kBetweenOctets);
+    scene.bench.write({octet});
+  }
+  scene.judge.expect(!scene.bench.was_told(), "command_torn", "the command is waited for", "it was given up");
+  expect_numbered(scene.bench, scene.judge, 7);
+}
+
+// So many reads that nobody answers that they outlast a part of a command after them.
+void write_reads_and_a_part(HostScene& scene) {
+  auto octets = stream_of(scene.bench, 0, fitting(scene) - 1);
+  octets.push_back(99);
+  scene.bench.write(octets);
+}
+
+void expect_reads_sent_but_not_the_part(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  bool is_reported = false;
+  for (unsigned n = 0; n < fitting(scene) - 1; ++n) {
+    const HostFrame poll = expect_request(bench, scene.judge, numbered_read(bench, n));
+    for (unsigned attempt = 1; attempt < bench.rules().read_attempts; ++attempt) {
+      expect_retry(bench, scene.judge, poll);
+    }
+    while (const auto told = bench.next_told(2 * bench.time_out())) {
+      const auto* error = std::get_if<HostError>(&told->what);
+      is_reported |= error != nullptr && *error == HostError{99, HostErrorKind::part_of_command};
+      if (error != nullptr && error->kind == HostErrorKind::no_response) break;
+    }
+  }
+  scene.judge.expect(is_reported, "does_not_resync", "an error of 63: part of a command",
+                     "it was not reported");
+  expect_room(scene, fitting(scene));
 }
 
 void fill(HostScene& scene) {
@@ -150,6 +216,7 @@ HostStep nothing_sent(std::int64_t milliseconds, std::string reason, std::string
 std::vector<HostCase> host_fifo_cases() {
   using namespace host_chart;
   const HostStep fill_up = stimulus("the PC fills the FIFO with 512 octets", fill);
+  const HostStep first = {"the PC orders a read", "the host sends it, and awaits its response", read_first};
   const HostStep part = stimulus("the PC writes one, two or three octets of a command", write_part);
   const judge::Reference own = valve_sources::own("512 octets, the oldest are kept");
   const judge::Reference ring = valve_sources::paper("FIFO memory as a circular buffer");
@@ -164,21 +231,22 @@ std::vector<HostCase> host_fifo_cases() {
         .tags = {"must"},
         .catches = {{"loses_commands", "request_wrong"}, {"doubles_commands", "request_wrong"}}},
        a_burst_keeps_its_order},
-      on_chart({.id = "valve_bus/host/fifo/full_fifo_keeps_the_oldest",
-                .purpose = "RH-22",
-                .requirement = "When the FIFO is full the newest commands are lost, the PC gets a report of "
-                               "each, and those in the FIFO are sent.",
-                .reference = own,
-                .tags = {"must"},
-                .catches = {{"overflow_not_told", "overflow_not_told"},
-                            {"overflow_drops_oldest", "request_wrong"}}},
-               {{1, 1},
-                {{"the PC writes 100 commands more at once than fit", "the flag of the overflow goes up",
-                  overfill},
-                 expected("the first command is sent", expect_first_sent),
-                 expected("the PC gets an error for each that does not fit", expect_each_lost_reported),
-                 expected("all that fit are sent in their order", expect_all_that_fit),
-                 nothing_sent(20, "lost_command_sent", "the newest were lost")}}),
+      on_chart(
+          {.id = "valve_bus/host/fifo/full_fifo_keeps_the_oldest",
+           .purpose = "RH-22",
+           .requirement = "When the FIFO is full the newest commands are lost, the PC gets a report of "
+                          "each, and those in the FIFO are sent.",
+           .reference = own,
+           .tags = {"must"},
+           .catches = {{"overflow_not_told", "overflow_not_told"}, {"overflow_drops_oldest", "error_wrong"}}},
+          {{1, 1},
+           {first,
+            {"the PC writes as many commands as fit, and 100 more",
+             "the flag of the overflow goes up with these; there is no room any more", overfill},
+            expected("the PC gets an error for each that does not fit", expect_each_lost_reported),
+            expected("all that fit are sent in their order, each leaves room; the flag stays up",
+                     expect_all_that_fit),
+            nothing_sent(20, "lost_command_sent", "the newest were lost")}}),
       on_chart(
           {.id = "valve_bus/host/fifo/lost_command_is_lost_whole",
            .purpose = "RH-22",
@@ -188,18 +256,15 @@ std::vector<HostCase> host_fifo_cases() {
            .tags = {"must"},
            .catches = {{"overflow_drops_octets", "rest_of_lost_command_kept"}}},
           {{1, 1},
-           {fill_up,
+           {first,
+            stimulus("the PC fills the FIFO with 512 octets", fill_behind_the_first),
             {"the PC writes the first octet of a command more", "the PC gets an error: FIFO overflow",
              lose_a_command},
             {"the PC writes its other octets and another command, for which there is room now",
-             "the first command has been sent", write_the_rest_and_another},
+             "the next command has been sent", write_the_rest_and_another},
             nothing_reported(kernel::Duration{}, "rest_of_lost_command_kept",
                              "there is room for the next command"),
-            expected("all that fit are sent in their order, and the other command",
-                     [](HostScene& scene) {
-                       expect_all_that_fit(scene);
-                       expect_numbered(scene.bench, scene.judge, fitting(scene) + 1);
-                     }),
+            expected("all that fit are sent in their order, and the other command", expect_the_others_sent),
             nothing_sent(150, "part_sent", "nothing whole is left"),
             nothing_reported(kernel::kMillisecond, "part_told", "the command has been reported as lost")}}),
       on_chart({.id = "valve_bus/host/fifo/goes_round",
@@ -215,6 +280,27 @@ std::vector<HostCase> host_fifo_cases() {
                                      expect_numbered(scene.bench, scene.judge, scene.round * fitting(scene),
                                                      fitting(scene));
                                    })}}),
+      on_chart(
+          {.id = "valve_bus/host/fifo/rest_is_awaited_after_each_octet",
+           .purpose = "RH-24",
+           .requirement = "A command of which each octet comes within 100 ms of the one before is whole.",
+           .reference = valve_sources::own("a command that stays a part is given up"),
+           .tags = {"must", "timing"},
+           .catches = {{"resyncs_early", "command_torn"}}},
+          {{1, 5},
+           {{"the PC writes the octets of a command 80 ms apart", "the command is sent",
+             write_octet_by_octet}}}),
+      on_chart({.id = "valve_bus/host/fifo/part_takes_nothing_with_it",
+                .purpose = "RH-24",
+                .requirement = "When a part of a command is given up, the commands in front of it stay.",
+                .reference = valve_sources::own("a command that stays a part is given up"),
+                .tags = {"must", "timing"},
+                .catches = {{"part_takes_the_fifo", "no_request"}}},
+               {{1, 1},
+                {stimulus("the PC writes as many reads as leave room for one, and an octet; no node answers",
+                          write_reads_and_a_part),
+                 expected("all reads are sent; the PC gets an error: part of a command",
+                          expect_reads_sent_but_not_the_part)}}),
       on_chart({.id = "valve_bus/host/fifo/part_of_a_command_is_not_sent",
                 .purpose = "RH-24",
                 .requirement = "While the rest of a command has not come nothing is sent for it; after "

@@ -56,7 +56,9 @@ std::vector<HostCase> host_request_cases() {
                                "which the module adds, in five octets at most 1.5 characters apart.",
                 .reference = valve_sources::paper("frame of the host; check made in the module"),
                 .tags = {"must"},
-                .catches = {{"data_exchanged", "request_wrong"}, {"gap_in_request", "gap_in_frame"}},
+                .catches = {{"data_exchanged", "request_wrong"},
+                            {"gap_in_request", "gap_in_frame"},
+                            {"requests_without_ninth_bit", "ninth_bit_wrong"}},
                 .not_applicable = for_plain_writes()},
                {{10, 1'000}, {write()}}),
       on_chart(

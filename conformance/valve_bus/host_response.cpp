@@ -155,6 +155,17 @@ std::vector<HostCase> cases_of_octets() {
                  answer("the node answers rightly 2, 5 or 10 bits after the request", right_octets,
                         [](HostScene& scene) { return scene.bench.bits(kEarlyBits.at(scene.round % 3)); }),
                  refused("early_response_told", "it belongs to the frame of the request")}}),
+      on_chart({.id = "valve_bus/host/response/early_response_is_taken",
+                .purpose = "RH-10",
+                .requirement = "A response that begins 2 characters after the request is one.",
+                .reference = silence_ends_a_frame(),
+                .tags = {"must", "timing"},
+                .catches = {{"wants_a_delimiter_before_responses", "response_not_told"}}},
+               {{2, 50},
+                {read(),
+                 answer("the node answers rightly 2 characters after the request", right_octets,
+                        [](HostScene& scene) { return scene.bench.characters(2); }),
+                 reported()}}),
       on_chart({.id = "valve_bus/host/response/other_lengths_are_refused",
                 .purpose = "RH-11",
                 .requirement = "A response has three octets, no more and no less, also when three of "
@@ -173,25 +184,38 @@ std::vector<HostCase> cases_of_octets() {
   };
 }
 
+HostCase gaps_case(const std::string& name, std::vector<MustCatch> catches, Applicability not_applicable,
+                   HostNeeds needs) {
+  using namespace host_chart;
+  return on_chart({.id = "valve_bus/host/response/" + name,
+                   .purpose = "RH-12",
+                   .requirement = "Inside a response up to 1.5 characters of silence are allowed; more "
+                                  "spoil it.",
+                   .reference = silence_ends_a_frame(),
+                   .tags = {"must", "timing"},
+                   .catches = std::move(catches),
+                   .not_applicable = std::move(not_applicable)},
+                  {{2 * kResponseGaps.size(), 2 * kResponseGaps.size()},
+                   {read(),
+                    stimulus("the node answers with a gap of 0.5 to 3.4 characters in front of the "
+                             "second or the third octet",
+                             answer_with_a_gap),
+                    taken_if(
+                        "up to 1.4 characters", [](const HostScene& scene) { return gap_of(scene) < 1.5; },
+                        "short_gap_refused", "long_gap_taken", "1.6 characters or more are too many")}},
+                  std::move(needs));
+}
+
 std::vector<HostCase> cases_of_characters() {
   using namespace host_chart;
   return {
-      on_chart({.id = "valve_bus/host/response/gaps_inside_a_response",
-                .purpose = "RH-12",
-                .requirement = "Inside a response up to 1.5 characters of silence are allowed; more "
-                               "spoil it.",
-                .reference = silence_ends_a_frame(),
-                .tags = {"must", "timing"},
-                .catches = {{"response_gaps_of_three_characters", "long_gap_taken"},
-                            {"response_gaps_of_one_character", "short_gap_refused"}}},
-               {{2 * kResponseGaps.size(), 2 * kResponseGaps.size()},
-                {read(),
-                 stimulus("the node answers with a gap of 0.5 to 3.4 characters in front of the "
-                          "second or the third octet",
-                          answer_with_a_gap),
-                 taken_if(
-                     "up to 1.4 characters", [](const HostScene& scene) { return gap_of(scene) < 1.5; },
-                     "short_gap_refused", "long_gap_taken", "1.6 characters or more are too many")}}),
+      gaps_case("gaps_inside_a_response",
+                {{"response_gaps_of_three_characters", "long_gap_taken"},
+                 {"response_gaps_of_one_character", "short_gap_refused"}},
+                {}, {}),
+      gaps_case("gaps_between_characters_of_ten_bits",
+                {{"response_gaps_of_three_characters", "long_gap_taken"}}, for_characters("P2"),
+                {.characters = CharacterProfile::eight_bits}),
       on_chart(
           {.id = "valve_bus/host/response/two_nodes_at_once_are_refused",
            .purpose = "RH-29",

@@ -72,6 +72,18 @@ class WaitsLongBehindErrors : public Host {
   }
 };
 
+class WantsADelimiterBeforeResponses : public Host {
+  using Host::Host;
+  Duration shortest_turnaround_time() const override { return 3 * valve_bus::character_time(rules()); }
+};
+
+class BusyToldAsSilence : public Host {
+  using Host::Host;
+  void fail(HostErrorKind kind, Time now) override {
+    Host::fail(kind == HostErrorKind::line_busy ? HostErrorKind::no_response : kind, now);
+  }
+};
+
 class WaitsForSilence : public Host {
   using Host::Host;
   Duration longest_talk() const override { return 1000 * kernel::kSecond; }
@@ -154,6 +166,28 @@ class KeepsStrayOctets : public Host {
     return std::exchange(is_shifted_, false) ? std::nullopt : Host::response_in(frame);
   }
   mutable bool is_shifted_ = false;
+};
+
+// What answers a write is made to be what was written.
+class AnyAcknowledgeTaken : public Host {
+  using Host::Host;
+  std::optional<Response> response_in(const CollectedFrame& frame) const override {
+    const auto response = Host::response_in(frame);
+    const bool is_write = exchange() && exchange()->command.command == rules().write_command;
+    return response && is_write ? Response{exchange()->command.data0, exchange()->command.data1} : response;
+  }
+};
+
+class RightAfterWrongTaken : public Host {
+  using Host::Host;
+  void on_stray(const CollectedFrame& frame, Time now) override {
+    const auto response = response_in(frame);
+    if (response && state() == valve_bus::HostState::awaiting) {
+      accept(*response, now);
+    } else {
+      Host::on_stray(frame, now);
+    }
+  }
 };
 
 class StrayToldAsResponse : public Host {

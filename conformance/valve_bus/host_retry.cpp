@@ -15,11 +15,6 @@ kernel::Duration times(kernel::Duration duration, double factor) {
   return kernel::Duration{static_cast<std::int64_t>(static_cast<double>(duration.count()) * factor)};
 }
 
-// A host knows of a start bit when its character is over, and then switches its driver on.
-kernel::Duration latest_retry(const HostBench& bench) {
-  return times(bench.time_out(), 1 + kTolerance) + character_notice(bench.rules()) + bench.bits(3);
-}
-
 // The node is polled again as long after the last poll as the time-out is.
 HostStep polled_again_in_time() {
   return expected(
@@ -29,7 +24,7 @@ HostStep polled_again_in_time() {
         const kernel::Time since = scene.poll.end;
         scene.poll = expect_retry(scene.bench, scene.judge, scene.request);
         const double least = in_microseconds(times(scene.bench.time_out(), 1 - kTolerance));
-        const double most = in_microseconds(latest_retry(scene.bench));
+        const double most = in_microseconds(latest_repetition(scene.bench));
         const double measured = in_microseconds(scene.poll.start - since);
         scene.judge.expect_between("time-out", "us", measured, least, most,
                                    measured < least ? "time_out_too_short" : "time_out_too_long");
@@ -37,7 +32,7 @@ HostStep polled_again_in_time() {
 }
 
 void expect_error_in_time(HostScene& scene) {
-  const kernel::Time limit = scene.poll.end + latest_retry(scene.bench);
+  const kernel::Time limit = scene.poll.end + latest_repetition(scene.bench);
   const auto told = scene.bench.next_told(scene.bench.observation_timeout());
   scene.judge.expect(told && told->when <= limit, "error_late", [&] {
     return Mismatch{{fmt::format("an error at {} at the latest", kernel::describe(limit))},

@@ -60,12 +60,34 @@ NodeCase switch_case(unsigned tens, unsigned units, std::string mutant) {
       {.tens = tens, .units = units});
 }
 
+NodeStep without_address() {
+  return node_chart::ignored("answers_without_address", "its switches give no address");
+}
+
+NodeCase above_nine_case(unsigned tens, unsigned units, std::string mutant) {
+  return asked_with(
+      {.tens = 0, .units = 1},
+      on_chart({.id = fmt::format("valve_bus/node/address/switches_{:X}{:X}_never_answer", tens, units),
+                .purpose = "RN-07",
+                .requirement = "A node with a switch above 9 has no address.",
+                .reference = valve_sources::own("switches are decimal digits"),
+                .tags = {"must"},
+                .catches = {{std::move(mutant), "answers_without_address"}},
+                .not_applicable = with_settable_switches()},
+               {{256, 256},
+                {write_for(fmt::format("a write for each of the 256 IDs in turn; the switches are set to "
+                                       "{} and {}",
+                                       tens, units),
+                           id_of_round),
+                 without_address(), read_for("a read for it", id_of_round), without_address()}},
+               {.tens = tens, .units = units}));
+}
+
 }  // namespace
 
 std::vector<NodeCase> node_address_cases() {
   using namespace node_chart;
   const NodeStep foreign = ignored("acts_on_foreign_id", "the ID is not its own");
-  const NodeStep without_address = ignored("answers_without_address", "its switches are set to 00");
   return {
       on_chart({.id = "valve_bus/node/address/only_its_own_id_acts",
                 .purpose = "RN-06",
@@ -94,8 +116,12 @@ std::vector<NodeCase> node_address_cases() {
                            .not_applicable = with_settable_switches()},
                           {{256, 256},
                            {write_for("a write for each of the 256 IDs in turn", id_of_round),
-                            without_address, read_for("a read for it", id_of_round), without_address}},
+                            without_address(), read_for("a read for it", id_of_round), without_address()}},
                           {.tens = 0, .units = 0})),
+      above_nine_case(0, 10, "digits_above_nine_add_up"),
+      above_nine_case(10, 5, "digits_above_nine_wrap"),
+      above_nine_case(5, 15, "digits_above_nine_wrap"),
+      above_nine_case(15, 5, "digits_above_nine_wrap"),
       on_chart({.id = "valve_bus/node/command/undefined_commands_are_ignored",
                 .purpose = "RN-08",
                 .requirement = "Commands 2 to 255 are none: no action, no answer.",

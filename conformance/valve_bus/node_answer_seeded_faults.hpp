@@ -19,6 +19,29 @@ class AnswersTwice : public Node {
 };
 
 // Its own command comes back in front of the answer.
+class AnswerNotCancelled : public Node {
+  using Node::Node;
+  Response response(Time now) override { return waiting_.emplace(Node::response(now)); }
+  void on_character(const UartCharacter& character) override {
+    Node::on_character(character);
+    if (waiting_) answer_at(*waiting_, character.busy_until + turnaround_time());
+  }
+  void transmit(Octets octets, Time start) override {
+    waiting_.reset();
+    Node::transmit(octets, start);
+  }
+  std::optional<Response> waiting_;
+};
+
+class AcknowledgesWhatItDrives : public Node {
+  using Node::Node;
+  void on_command(const Command& command, Time now) override {
+    Command driven = command;
+    if (command.command == rules().write_command && configuration().boards == 1) driven.data1 = 0;
+    Node::on_command(driven, now);
+  }
+};
+
 class AnswersWithEcho : public Node {
   using Node::Node;
   void transmit(Octets octets, Time start) override {

@@ -81,7 +81,11 @@ NodeConfiguration node_configuration(const NodeNeeds& needs, const judge::Pics& 
   configuration.address_tens = needs.tens.value_or(configuration.address_tens);
   configuration.address_units = needs.units.value_or(configuration.address_units);
   configuration.boards = needs.boards.value_or(configuration.boards);
-  configuration.rules.characters = needs.characters.value_or(configuration.rules.characters);
+  valve_bus::Rules& rules = configuration.rules;
+  rules.characters = needs.characters.value_or(rules.characters);
+  rules.bit_rate = needs.bit_rate.value_or(rules.bit_rate);
+  rules.answers_writes = needs.answers_writes.value_or(rules.answers_writes);
+  rules.loss_limit = needs.loss_limit.value_or(rules.loss_limit);
   return configuration;
 }
 
@@ -119,7 +123,7 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting, judge::
   node_->wire(place(), boards_);
   if (distance_ > kernel::Duration{}) require(&iut::Capabilities::distance);
   if (!needs.is_powered) return;
-  set_power(true);
+  power_up();
   wait(kWarmUp);
   clear_observations();
 }
@@ -163,6 +167,11 @@ void NodeBench::set_power(bool is_on) {
   // Without supply no solenoid is held, whatever the node had driven.
   if (!is_on) boards_.drive_valves(0, now());
   refresh_iut();
+}
+
+void NodeBench::power_up() {
+  set_power(true);
+  wait(node_declared_in(pics_).start_up_time);
 }
 
 kernel::Time NodeBench::send(std::span<const std::uint8_t> octets) {

@@ -34,6 +34,9 @@ struct NodeNeeds {
   std::optional<unsigned> units{};
   std::optional<unsigned> boards{};
   std::optional<valve_bus::CharacterProfile> characters{};
+  std::optional<std::int64_t> bit_rate{};
+  std::optional<bool> answers_writes{};
+  std::optional<kernel::Duration> loss_limit{};
   kernel::Duration distance{};  // propagation between tester and IUT
   bool is_powered = true;       // when the case begins
 };
@@ -80,6 +83,8 @@ class NodeBench final : public LineBench {
   // The valves that DATA0 and DATA1 drive at this node.
   std::uint16_t valves_of(std::uint8_t data0, std::uint8_t data1) const;
   void set_power(bool is_on);
+  // Power comes, and the node has had the time to start that it declares.
+  void power_up();
 
   // ---- lower tester ----
   // The octets without a gap, from now on, and runs until they are over. Gives that instant.

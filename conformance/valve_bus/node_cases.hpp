@@ -27,6 +27,8 @@ std::vector<NodeCase> node_framing_cases();
 std::vector<NodeCase> node_timing_cases();
 std::vector<NodeCase> node_line_cases();
 std::vector<NodeCase> node_power_cases();
+std::vector<NodeCase> node_loss_cases();
+std::vector<NodeCase> node_settings_cases();
 std::vector<NodeCase> node_immunity_cases();
 std::vector<NodeCase> node_resonance_cases();
 

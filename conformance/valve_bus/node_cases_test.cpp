@@ -1,10 +1,14 @@
 #include "conformance/valve_bus/node_cases.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "protocols/valve_bus/node.hpp"
@@ -128,6 +132,128 @@ TEST(NodePower, AWrongFrameIsNoSignOfLife) {
   setting.pics = declaring({{"loss_limit", 100 * kernel::kMillisecond}});
   setting.make_device = &make<KeptAliveByAnyFrame>;
   EXPECT_EQ(run_on_bench(*one, setting).reason, "valves_hold_without_host");
+}
+
+NodeCase case_of(std::string_view id) {
+  return *std::ranges::find_if(node_cases(), [&](const NodeCase& each) { return each.test_case.id == id; });
+}
+
+// Hears nothing for a while after power-up.
+class StartsSlowly : public valve_bus::Node {
+ public:
+  using Node::Node;
+
+ private:
+  void on_power_up(kernel::Time now) override { hears_from_ = now + 10 * kernel::kMillisecond; }
+  void on_character(const line::UartCharacter& character) override {
+    if (character.start >= hears_from_) Node::on_character(character);
+  }
+  kernel::Time hears_from_{};
+};
+
+TEST(NodePower, ANodeHasTheTimeToStartThatItDeclares) {
+  const NodeCase one = case_of("valve_bus/node/power/power_lost_in_a_frame");
+  NodeSetting setting;
+  setting.make_device = &make<StartsSlowly>;
+  EXPECT_EQ(run_on_bench(one, setting).reason, "remembers_over_power_loss");
+  setting.pics = declaring({{"start_up_time", 10 * kernel::kMillisecond}});
+  EXPECT_EQ(run_on_bench(one, setting).verdict, judge::Verdict::pass);
+}
+
+// A node of which something cannot be seen or done; without its process side nobody sees its valves, and its
+// switches stand as they stand.
+template <bool iut::Capabilities::* kWhat>
+class NodeWithout : public valve_bus::Node, private valve_bus::NodeBoards {
+ public:
+  using Node::Node;
+  void wire(segment::Port& line, valve_bus::NodeBoards& boards) override {
+    Node::wire(line, kWhat == &iut::Capabilities::process_side ? *this : boards);
+  }
+  iut::Capabilities capabilities() const override {
+    iut::Capabilities all;
+    all.*kWhat = false;
+    return all;
+  }
+
+ private:
+  std::uint16_t limit_switches(kernel::Time) override { return 0x1234; }
+  void drive_valves(std::uint16_t, kernel::Time) override {}
+};
+
+template <bool iut::Capabilities::* kWhat>
+void expect_no_accusation_without() {
+  for (const NodeCase& one : node_cases()) {
+    if (is_canary(one.test_case) || has_tag(one.test_case, kStressTag)) continue;
+    NodeSetting setting;
+    setting.volume = Volume::quick;
+    setting.make_device = &make<NodeWithout<kWhat>>;
+    const judge::CaseResult result = run_on_bench(one, setting);
+    EXPECT_LT(result.verdict, judge::Verdict::warn) << result.id << ": " << result.reason;
+  }
+}
+
+// What a case needs and cannot have makes it not applicable; it accuses nobody.
+TEST(NodeCapabilities, WithheldOnesAccuseNobody) {
+  expect_no_accusation_without<&iut::Capabilities::process_side>();
+  expect_no_accusation_without<&iut::Capabilities::moving_inputs>();
+  expect_no_accusation_without<&iut::Capabilities::driver_control>();
+  expect_no_accusation_without<&iut::Capabilities::distance>();
+}
+
+// Drives its valves as two ports, one after the other.
+class TwoPorts : public valve_bus::Node {
+ public:
+  using Node::Node;
+
+ private:
+  void actuate(std::uint16_t valves, kernel::Time now) override {
+    constexpr kernel::Duration kBetween{83'000};
+    Node::actuate(static_cast<std::uint16_t>((this->valves() & 0xFF00U) | (valves & 0xFFU)), now);
+    Node::actuate(valves, now + kBetween);
+  }
+};
+
+TEST(NodeValves, TwoPortsWithinTheSkewAreOneMove) {
+  for (const NodeCase& one : node_cases()) {
+    if (is_canary(one.test_case) || has_tag(one.test_case, kStressTag)) continue;
+    NodeSetting setting;
+    setting.volume = Volume::quick;
+    setting.make_device = &make<TwoPorts>;
+    const judge::CaseResult result = run_on_bench(one, setting);
+    EXPECT_LT(result.verdict, judge::Verdict::warn) << result.id << ": " << result.reason;
+  }
+}
+
+// Whenever it moves them.
+class MovesLate : public valve_bus::Node {
+ public:
+  MovesLate(const valve_bus::NodeConfiguration& configuration, kernel::Duration later)
+      : Node(configuration), later_(later) {}
+
+ private:
+  void actuate(std::uint16_t valves, kernel::Time now) override { move_ = {valves, now + later_}; }
+  kernel::Time next_time() const override {
+    return move_ ? std::min(Node::next_time(), move_->second) : Node::next_time();
+  }
+  void on_time(kernel::Time now) override {
+    if (move_ && move_->second <= now) Node::actuate(std::exchange(move_, std::nullopt)->first, now);
+    Node::on_time(now);
+  }
+  kernel::Duration later_;
+  std::optional<std::pair<std::uint16_t, kernel::Time>> move_;
+};
+
+TEST(NodeValves, AreTooLateHoweverLate) {
+  for (const std::int64_t microseconds : {2'300, 2'690, 2'750, 9'000}) {
+    NodeSetting setting;
+    setting.make_device = [&](const valve_bus::NodeConfiguration& configuration) {
+      return std::make_unique<MovesLate>(configuration, microseconds * kernel::kMicrosecond);
+    };
+    const judge::CaseResult result = run_on_bench(case_of("valve_bus/node/write/drives_the_valves"), setting);
+    EXPECT_EQ(result.reason, "valves_too_late") << microseconds;
+    ASSERT_FALSE(result.findings.empty());
+    EXPECT_THAT(result.findings.front().actual, testing::HasSubstr("after it, to"));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(OfTheReference, DeclaredNodes, testing::ValuesIn(declared_nodes()),

@@ -122,7 +122,8 @@ std::vector<NodeCase> node_check_cases() {
             other_check("the negative of the sum", [](NodeScene& scene) { return -sum_of(scene); }), no_check,
             other_check("a random octet",
                         [](NodeScene& scene) { return unsigned{scene.bench.random_octet()}; }),
-            no_check, serves()}}),
+            no_check, other_check("FF", [](NodeScene&) { return 0xFFU; }), no_check,
+            other_check("0", [](NodeScene&) { return 0U; }), no_check, serves()}}),
   };
 }
 

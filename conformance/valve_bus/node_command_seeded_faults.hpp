@@ -100,6 +100,18 @@ class AddressSwitchesBinary : public Node {
   unsigned address_of(unsigned tens, unsigned units) const override { return tens << 4 | units; }
 };
 
+class DigitsAboveNine : public Node {
+ public:
+  DigitsAboveNine(const valve_bus::NodeConfiguration& configuration, unsigned modulus)
+      : Node(configuration), modulus_(modulus) {}
+
+ private:
+  unsigned address_of(unsigned tens, unsigned units) const override {
+    return 10 * (tens % modulus_) + units % modulus_;
+  }
+  unsigned modulus_;
+};
+
 class AddressZeroIsOne : public Node {
   using Node::Node;
   unsigned address_of(unsigned tens, unsigned units) const override {

@@ -16,6 +16,14 @@ std::string change_text(const Change& change) {
                      change.after >> 8, kernel::describe(change.when));
 }
 
+// What moves later than it may is looked for so much longer.
+constexpr kernel::Duration kLateMoves = 20 * kernel::kMillisecond;
+
+std::string move_text(const Change& change, kernel::Time since) {
+  return fmt::format("they moved {} after it, to {:02X} {:02X}", kernel::describe(change.when - since),
+                     change.after & 0xFF, change.after >> 8);
+}
+
 std::string octets_text(const std::vector<std::uint8_t>& octets) {
   return fmt::format("{:02X}", fmt::join(octets, " "));
 }
@@ -155,9 +163,17 @@ void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, 
   const std::uint16_t wanted = bench.valves_of(data0, data1);
   const kernel::Time arrived = end + bench.distance();
   const auto& changes = bench.boards().changes();
+  const kernel::Duration limit = bench.delimiter() + actuation_limit(bench.rules());
+  const auto in_time =
+      fmt::format("the valves move at most {} after the last stop bit", kernel::describe(limit));
   if (bench.valves() != wanted) {
-    judge.fail(changes.empty() ? "write_not_taken" : "valves_wrong",
-               {{valves_text(wanted)}, valves_text(bench.valves())});
+    bench.wait(kLateMoves);
+    const std::string_view reason = changes.empty()            ? "write_not_taken"
+                                    : bench.valves() == wanted ? "valves_too_late"
+                                                               : "valves_wrong";
+    judge.fail(reason, reason == "valves_too_late"
+                           ? Mismatch{{in_time}, move_text(changes.back(), arrived), changes.back().when}
+                           : Mismatch{{valves_text(wanted)}, valves_text(bench.valves())});
   }
   if (!changes.empty()) {
     const Change& first = changes.front();
@@ -165,13 +181,8 @@ void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, 
     judge.expect(first.when + doubt + kRounding >= arrived, "valves_too_early", [&] {
       return Mismatch{{"no valve moves before the check has come"}, change_text(first), first.when};
     });
-    const kernel::Duration limit = bench.delimiter() + actuation_limit(bench.rules());
-    judge.expect(last.when - arrived <= limit + kRounding, "valves_too_late", [&] {
-      return Mismatch{
-          {fmt::format("the valves move at most {} after the last stop bit", kernel::describe(limit))},
-          change_text(last),
-          last.when};
-    });
+    judge.expect(last.when - arrived <= limit + kRounding, "valves_too_late",
+                 [&] { return Mismatch{{in_time}, move_text(last, arrived), last.when}; });
     bench.note_instant(first.when + kRounding >= arrived && last.when + doubt - arrived <= limit + kRounding,
                        bench.uncertainty_of_valves());
     judge.expect(last.when - first.when <= bench.rules().output_skew, "valves_one_by_one", [&] {

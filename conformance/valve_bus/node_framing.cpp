@@ -10,6 +10,7 @@ namespace {
 
 using Frame = std::vector<std::uint8_t>;
 
+// Its check would fit after the same octets of the write before, too: all data bits of the two differ.
 Frame first_octets(NodeScene& scene) {
   Frame frame = scene.moving_write();
   frame.resize(1 + scene.round);
@@ -39,17 +40,32 @@ void send_two_writes(NodeScene& scene) {
             scene.write(0x0F, 0xF0));
 }
 
+// Changes within the skew of outputs are one move. Gives what the valves are after each.
+std::vector<std::uint16_t> moves_of(NodeBench& bench) {
+  std::vector<std::uint16_t> moves;
+  kernel::Time begun{};
+  for (const auto& change : bench.boards().changes()) {
+    if (moves.empty() || change.when - begun > bench.rules().output_skew) {
+      begun = change.when;
+      moves.push_back(change.after);
+    }
+    moves.back() = change.after;
+  }
+  return moves;
+}
+
 void expect_two_writes_taken(NodeScene& scene) {
   NodeBench& bench = scene.bench;
+  bench.require(&iut::Capabilities::process_side);
   const Frame first = scene.moving_write();
   const Frame back = scene.write(bench.valves(), bench.valves() >> 8U);
   bench.send(first);
   bench.wait_after_write();
   scene.send_next(back);
-  const auto& changes = bench.boards().changes();
-  scene.judge.expect(changes.size() == 2 && changes[0].after == bench.valves_of(first[2], first[3]),
+  const std::vector<std::uint16_t> moves = moves_of(bench);
+  scene.judge.expect(moves.size() == 2 && moves[0] == bench.valves_of(first[2], first[3]),
                      "misses_frames_behind_delimiter", "both writes are taken, one after the other",
-                     fmt::format("the valves moved {} times", changes.size()));
+                     fmt::format("the valves moved {} times", moves.size()));
   expect_valves(bench, scene.judge, scene.valves(), "misses_frames_behind_delimiter");
   bench.clear_observations();
 }
@@ -71,6 +87,23 @@ void expect_short_gaps_taken(NodeScene& scene) {
   } else {
     node_chart::ignored("takes_long_gap", "1.6 characters of silence or more are in the frame").run(scene);
   }
+}
+
+// Timers of 16 and of 32 bits begin anew after so long, in microseconds and in milliseconds.
+constexpr std::array kTimerPeriods{65'536 * kernel::kMicrosecond,
+                                   kernel::Duration{std::int64_t{1} << 31} * 1'000'000,
+                                   kernel::Duration{std::int64_t{1} << 32} * 1'000'000,
+                                   65'536 * kernel::kMillisecond, 256 * kernel::kMillisecond};
+
+// The other octets come when such a timer shows half a character.
+void send_around_a_timer(NodeScene& scene) {
+  const kernel::Duration period = kTimerPeriods.at(scene.round);
+  if (scene.bench.capabilities().is_wall_clock && period > kernel::kSecond)
+    throw iut::CannotBeDone("a real line takes as long as that");
+  const auto at = static_cast<std::ptrdiff_t>(1 + scene.round % 4);
+  const Frame all = scene.moving_write();
+  const kernel::Duration half = scene.bench.characters(0.5);
+  send_both(scene, {all.begin(), all.begin() + at}, period + half, {all.begin() + at, all.end()});
 }
 
 // A response and the poll that follows it, together, are a valid write to the node whose ID is the first
@@ -101,17 +134,18 @@ std::vector<NodeCase> node_framing_cases() {
   using namespace node_chart;
   const judge::Reference silence = valve_sources::own("silence of 3.5 characters ends a frame");
   return {
-      on_chart({.id = "valve_bus/node/framing/short_frames_are_discarded",
-                .purpose = "RN-12",
-                .requirement = "A frame of fewer than five octets is discarded when silence ends it, and "
-                               "leaves nothing after.",
-                .reference = silence,
-                .tags = {"must"},
-                .catches = {{"buffer_not_cleared", "does_not_recover"},
-                            {"takes_four_octets", "acts_on_short_frame"}}},
-               {{4, 4},
-                {sent("the first one, two, three, four octets of a write", first_octets),
-                 ignored("acts_on_short_frame", "the frame has fewer than five octets"), serves()}}),
+      on_chart(
+          {.id = "valve_bus/node/framing/short_frames_are_discarded",
+           .purpose = "RN-12",
+           .requirement = "A frame of fewer than five octets is discarded when silence ends it, and "
+                          "leaves nothing after.",
+           .reference = silence,
+           .tags = {"must"},
+           .catches = {{"buffer_not_cleared", "does_not_recover"},
+                       {"takes_four_octets", "acts_on_short_frame"}}},
+          {{4, 4},
+           {moving_write(), sent("the first one, two, three, four octets of another write", first_octets),
+            ignored("acts_on_short_frame", "the frame has fewer than five octets"), serves()}}),
       on_chart({.id = "valve_bus/node/framing/long_frames_are_discarded",
                 .purpose = "RN-13",
                 .requirement = "A frame of more than five octets is discarded, also when five of its "
@@ -152,6 +186,25 @@ std::vector<NodeCase> node_framing_cases() {
            {stimulus("a write with a gap of 0.5 to 10 characters in front of each octet", send_with_gap),
             expected("it is taken up to 1.4 characters, and ignored from 1.6 on", expect_short_gaps_taken),
             serves()}}),
+      on_chart(
+          {.id = "valve_bus/node/framing/long_silences_end_a_frame",
+           .purpose = "RN-15",
+           .requirement = "However long it lasts, silence ends a frame, and what comes then is a new one.",
+           .reference = silence,
+           .tags = {"must"},
+           .catches = {{"gap_timer_of_16_bits", "joins_frames"}, {"deaf_after_a_minute", "write_not_taken"}},
+           // Its valves stand still.
+           .not_applicable = for_answer("loss_limit", kernel::Duration{})},
+          {{kTimerPeriods.size(), kTimerPeriods.size()},
+           {stimulus(
+                "a write of all valves with 65.536 ms, 256 ms, 65.536 s, 2147.5 s or 4295.0 s and half a "
+                "character of silence in it",
+                send_around_a_timer),
+            ignored("joins_frames", "silence ends a frame"), valves_on(), taken(),
+            stimulus("as much silence",
+                     [](NodeScene& scene) { scene.bench.wait(kTimerPeriods.at(scene.round)); }),
+            serves()}},
+          {.loss_limit = kernel::Duration{}}),
       on_chart(
           {.id = "valve_bus/node/framing/joined_frames_are_no_write",
            .purpose = "RN-16",

@@ -69,6 +69,40 @@ class TakesOtherLengths : public Node {
 };
 
 // Hears nothing for a while after what it has just heard.
+class GapTimerOf16Bits : public Node {
+  using Node::Node;
+  void on_character(const UartCharacter& character) override {
+    constexpr Duration kPeriod = 65'536 * kernel::kMicrosecond;
+    const Duration gap = character.start - last_.busy_until;
+    if (gap >= kPeriod && gap % kPeriod <= valve_bus::longest_gap(rules())) {
+      for (UartCharacter one : frame_) {
+        one.start += gap - gap % kPeriod;
+        one.busy_until += gap - gap % kPeriod;
+        Node::on_character(one);
+      }
+    } else if (gap > valve_bus::longest_gap(rules())) {
+      frame_.clear();
+    }
+    frame_.push_back(character);
+    last_ = character;
+    Node::on_character(character);
+  }
+  UartCharacter last_{};
+  std::vector<UartCharacter> frame_;
+};
+
+class DeafAfterAMinute : public Node {
+  using Node::Node;
+  void on_character(const UartCharacter& character) override {
+    is_deaf_ = is_deaf_ || (last_ > Time{} && character.start - last_ > 60 * kernel::kSecond);
+    last_ = character.busy_until;
+    if (!is_deaf_) Node::on_character(character);
+  }
+  void on_power_up(Time) override { is_deaf_ = false; }
+  Time last_{};
+  bool is_deaf_ = false;
+};
+
 class DeafBehindResponse : public Node {
   using Node::Node;
   void on_frame(const CollectedFrame& frame, Time now) override {

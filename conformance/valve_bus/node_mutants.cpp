@@ -45,6 +45,8 @@ std::vector<NodeRow> node_command_rows() {
       {"address_switches_binary", "MN9", "reads its address switches as two halves of an octet",
        mutant<AddressSwitchesBinary>()},
       {"address_zero_is_one", "", "takes switches at 00 for address 1", mutant<AddressZeroIsOne>()},
+      {"digits_above_nine_add_up", "", "takes a switch above 9 as so many", mutant<DigitsAboveNine>(16U)},
+      {"digits_above_nine_wrap", "", "takes a switch at 10 for 0", mutant<DigitsAboveNine>(10U)},
       {"any_command_reads", "MN10", "takes every command but 0 for a read", mutant<AnyCommandReads>()},
       {"read_drives_valves", "MN11", "drives its valves with the data of a read", mutant<ReadDrivesValves>()},
       {"answers_writes", "MN5", "answers writes",
@@ -76,6 +78,8 @@ std::vector<NodeRow> node_answer_rows() {
   using namespace node_seeded_faults;
   using kernel::kMicrosecond;
   return {
+      {"answer_not_cancelled", "", "answers a read whatever is sent before it does",
+       mutant<AnswerNotCancelled>()},
       {"answers_twice", "MN22", "answers twice", mutant<AnswersTwice>()},
       {"answers_with_echo", "", "repeats the head of the command in front of its answer",
        mutant<AnswersWithEcho>()},
@@ -93,6 +97,8 @@ std::vector<NodeRow> node_answer_rows() {
        mutant<TurnsRoundLate>(3000 * kMicrosecond)},
       {"turn_round_drifts", "", "takes 150 us longer for each answer than for the one before",
        mutant<TurnRoundDrifts>()},
+      {"acknowledges_what_it_drives", "", "answers a write with what it drives of it",
+       mutant<AcknowledgesWhatItDrives>()},
       {"driver_not_released", "MN13", "keeps its driver on for 20 bits after an answer",
        mutant<DriverOtherwise>(1U, 20U)},
       {"driver_on_late", "", "switches its driver on with the start bit", mutant<DriverOtherwise>(0U, 1U)},
@@ -124,6 +130,20 @@ std::vector<NodeRow> node_frame_rows() {
        with_rules<valve_bus::Node>([](Rules& rules) { rules.longest_gap_half_characters = 6; })},
       {"gaps_of_one_character", "", "allows one character of silence inside a frame",
        with_rules<valve_bus::Node>([](Rules& rules) { rules.longest_gap_half_characters = 2; })},
+      {"gaps_of_one_bit_rate", "", "allows silences in a frame by the times of 375 kbit/s",
+       with_rules<valve_bus::Node>([](Rules& rules) {
+         if (rules.bit_rate < 375'000) rules.longest_gap_half_characters = 6;
+         if (rules.bit_rate > 375'000) rules.longest_gap_half_characters = 2;
+       })},
+      {"long_gaps_of_ten_bit_characters", "", "allows two characters of silence where they have ten bits",
+       with_rules<valve_bus::Node>([](Rules& rules) {
+         if (rules.characters == valve_bus::CharacterProfile::eight_bits)
+           rules.longest_gap_half_characters = 4;
+       })},
+      {"gap_timer_of_16_bits", "", "joins what comes 65.536 ms after an unfinished frame to it",
+       mutant<GapTimerOf16Bits>()},
+      {"deaf_after_a_minute", "", "receives nothing more after a minute of silence",
+       mutant<DeafAfterAMinute>()},
       {"deaf_behind_response", "", "does not receive the frame after the response of another node",
        mutant<DeafBehindResponse>()},
       {"deaf_behind_write", "", "receives nothing for 1 ms after a write", mutant<DeafBehindWrite>()},
@@ -158,7 +178,24 @@ std::vector<NodeRow> node_power_rows() {
   return {
       {"lets_go_after_5_s", "", "switches its valves off after 5 s without a command",
        with_rules<valve_bus::Node>([](Rules& rules) { rules.loss_limit = 5 * kernel::kSecond; })},
+      {"lets_go_after_half_an_hour", "", "holds its valves for half an hour at most",
+       with_rules<valve_bus::Node>([](Rules& rules) {
+         if (rules.loss_limit > kernel::Duration{})
+           rules.loss_limit = std::min(rules.loss_limit, 1'800 * kernel::kSecond);
+       })},
+      {"loss_limit_in_16_bits", "", "keeps the time without a host in 16 bits of milliseconds",
+       with_rules<valve_bus::Node>([](Rules& rules) { rules.loss_limit %= 65'536 * kernel::kMillisecond; })},
+      {"kept_alive_by_others", "", "takes commands for others for a sign of life",
+       mutant<KeptAliveByOthers>()},
+      {"kept_alive_by_wrong_frames", "", "takes a command with a wrong check for a sign of life",
+       mutant<KeptAliveByWrongFrames>()},
+      {"not_kept_alive_by_reads", "", "takes a read for no sign of life", mutant<NotKeptAliveByReads>()},
+      {"not_kept_alive_by_undefined_commands", "", "takes an undefined command for no sign of life",
+       mutant<NotKeptAliveByUndefinedCommands>()},
+      {"lets_go_once", "", "lets go of its valves once", mutant<LetsGoOnce>()},
+      {"lets_go_of_one_board", "", "lets go of the valves of its first board", mutant<LetsGoOfOneBoard>()},
       {"valves_set_at_power_up", "", "has a valve on at power-up", mutant<ValvesSetAtPowerUp>()},
+      {"works_without_supply", "", "works when its supply is off", mutant<WorksWithoutSupply>()},
       {"speaks_at_power_up", "", "says something at power-up", mutant<SpeaksAtPowerUp>()},
       {"keeps_octets_over_power_loss", "", "goes on with the frame in which power was lost",
        mutant<KeepsOctetsOverPowerLoss>()},

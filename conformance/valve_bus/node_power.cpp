@@ -32,7 +32,7 @@ void expect_let_go_as_declared(NodeScene& scene) {
 }
 
 void power_up(NodeScene& scene) {
-  scene.bench.set_power(true);
+  scene.bench.power_up();
   scene.bench.wait(200 * kernel::kMillisecond);
 }
 
@@ -46,8 +46,26 @@ void lose_power(NodeScene& scene) {
 
 void return_power(NodeScene& scene) {
   scene.bench.clear_observations();
-  scene.bench.set_power(true);
+  scene.bench.power_up();
   scene.bench.send(std::span(scene.frame).subspan(scene.round));
+  scene.bench.await_response_window();
+}
+
+// In front of its answer.
+void lose_power_after_a_read(NodeScene& scene) {
+  scene.bench.clear_observations();
+  scene.bench.read();
+  scene.bench.set_power(false);
+  scene.bench.wait(scene.bench.delimiter());
+  scene.bench.clear_observations();
+}
+
+void send_without_power(NodeScene& scene) {
+  for (unsigned n = 0; n < 2; ++n) {
+    scene.bench.send(scene.write(0x0F, 0xF0));
+    scene.bench.await_response_window();
+  }
+  scene.bench.read();
   scene.bench.await_response_window();
 }
 
@@ -96,6 +114,22 @@ std::vector<NodeCase> node_power_cases() {
                  no_valve_moved("valve_set_at_power_up", "no write has come"),
                  silent("speaks_at_power_up", "nobody asked it"), serves()}},
                {.is_powered = false}),
+      on_chart(
+          {.id = "valve_bus/node/power/nothing_is_done_without_it",
+           .purpose = "RN-44",
+           .requirement =
+               "Without supply a node does nothing, and after power-up nothing of what came before.",
+           .reference = valve_sources::own("safe state after power-up"),
+           .tags = {"must"},
+           .catches = {{"works_without_supply", "implementation_asks_the_impossible"},
+                       {"speaks_at_power_up", "speaks_at_power_up"}},
+           .not_applicable = with_switched_power},
+          {{2, 10},
+           {read(), answered(), stimulus("a read, and power goes before its answer", lose_power_after_a_read),
+            stimulus("two writes and a read", send_without_power),
+            ignored("acts_without_power", "it has no supply"),
+            stimulus("power comes; 200 ms of silence", power_up),
+            ignored("speaks_at_power_up", "nobody asked it"), serves()}}),
       on_chart(
           {.id = "valve_bus/node/power/power_lost_in_a_frame",
            .purpose = "RN-34",

@@ -22,6 +22,7 @@ constexpr kernel::Duration kHalfPeriod = 7 * kernel::kMicrosecond;
 
 // All switches change together, again and again: an answer has them all before or all after a change.
 void keep_switching(NodeScene& scene) {
+  scene.bench.require(&iut::Capabilities::process_side);
   scene.bench.require(&iut::Capabilities::moving_inputs);
   scene.bench.boards().set_signal(0, [](kernel::Time when) {
     return (when - kernel::kStart) / kHalfPeriod % 2 == 0 ? std::uint16_t{0x0000} : std::uint16_t{0xFFFF};

@@ -136,7 +136,7 @@ class NodeSequenceRun final : private segment::Tap {
     bench_.wait(off);
     expect_ignored(bench_, judge_, "acts_without_power", "it has no supply");
     bench_.clear_observations();
-    bench_.set_power(true);
+    bench_.power_up();
     for (NodeTwin& twin : twins_) twin.set_power(true, bench_.now());
     powered_at_ = bench_.now();
     begin_valves();

@@ -82,6 +82,32 @@ void write_and_read(NodeScene& scene) {
   expect_valves(bench, scene.judge, bench.valves_of(write[2], write[3]), "write_lost");
 }
 
+// What follows a read when it is over, and before anybody can be sure of that: of another node, of its own,
+// nothing whole.
+void send_in_front_of_the_answer(NodeScene& scene) {
+  NodeBench& bench = scene.bench;
+  bench.clear_observations();
+  scene.end = bench.read();
+  bench.wait(bench.delimiter() + bench.bits(1) / 4);
+  scene.judge.expect(!bench.has_driven(), "answer_too_early", "nobody is sure yet that the read is over",
+                     "the node drives the line");
+  const auto& rules = bench.rules();
+  const auto other = static_cast<unsigned>(bench.address() ^ 1U);
+  const std::array frames{scene.command(other, rules.write_command, 0x12, 0x34),
+                          scene.command(other, rules.read_command, 0, 0), scene.moving_write(),
+                          std::vector<std::uint8_t>{0x55}};
+  scene.send_next(frames.at(scene.round % frames.size()));
+}
+
+void expect_read_cancelled(NodeScene& scene) {
+  constexpr std::string_view kWhyNot = "something was sent before it had answered";
+  if (scene.frame.size() > 1 && scene.frame.front() == scene.bench.address()) {
+    node_chart::taken().run(scene);
+  } else {
+    expect_ignored(scene.bench, scene.judge, "answers_into_a_command", kWhyNot);
+  }
+}
+
 void read_without_a_pause(NodeScene& scene) {
   NodeBench& bench = scene.bench;
   bench.clear_observations();
@@ -183,6 +209,21 @@ std::vector<NodeCase> node_timing_cases() {
                {{5, 200},
                 {{"a write, a delimiter, a read", "the valves stand as the write says", write_and_read},
                  answered()}}),
+      on_chart(
+          {.id = "valve_bus/node/timing/what_follows_cancels_an_answer",
+           .purpose = "RN-43",
+           .requirement = "What is sent after a read, before its answer has begun, cancels this answer, and "
+                          "no other.",
+           .reference = valve_sources::own("a command before a response has begun cancels it"),
+           .tags = {"must", "timing"},
+           .catches = {{"answer_not_cancelled", "answers_into_a_command"}}},
+          {{8, 80},
+           {stimulus(
+                "3.5 characters after a read a write or a read for another node, a write for this one, an "
+                "octet",
+                send_in_front_of_the_answer),
+            expected("no answer; of its own a write is taken", expect_read_cancelled), read(), answered(),
+            serves()}}),
       on_chart({.id = "valve_bus/node/timing/reads_back_to_back_are_all_answered",
                 .purpose = "RN-30",
                 .requirement = "A node answers reads that follow each other as closely as a host can "
@@ -190,7 +231,7 @@ std::vector<NodeCase> node_timing_cases() {
                 .reference = valve_sources::derived("one host that polls its nodes in turn"),
                 .tags = {"must", "long"},
                 .catches = {{"falls_silent_after_400_reads", "no_answer"}}},
-               {{450, 100'000},
+               {{1'100, 100'000},
                 {stimulus("a read, a delimiter after the answer to the last", read_without_a_pause),
                  answered(), stimulus("a delimiter", wait_a_delimiter)}}),
       on_chart({.id = "valve_bus/node/timing/far_node_answers_in_time",

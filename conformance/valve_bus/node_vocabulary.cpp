@@ -13,9 +13,9 @@ constexpr std::array<std::int64_t, 8> kSilences{0, 11, 22, 33, 45, 45, 80, 500};
 constexpr std::array<std::int64_t, 5> kGaps{5, 13, 22, 33, 45};
 constexpr std::int64_t kDelimiterBits = 45;
 constexpr std::array<std::int64_t, 6> kData{0x00, 0xFF, 0x01, 0x05, 0x80, 0xA5};
-constexpr std::array<std::int64_t, 5> kIds{1, 0, 5, 69, 133};
-constexpr std::array<std::int64_t, 3> kCommands{0, 1, 2};
-constexpr std::array<std::int64_t, 4> kWaits{1, 10, 100, 1000};
+constexpr std::array<std::int64_t, 7> kIds{1, 0, 5, 69, 133, 4, 255};
+constexpr std::array<std::int64_t, 6> kCommands{0, 1, 2, 128, 129, 255};
+constexpr std::array<std::int64_t, 5> kWaits{1, 10, 66, 100, 1000};
 
 SequenceNumber octet(std::string_view name, std::span<const std::int64_t> likely = kData) {
   return {name, 0, 0xFF, 0, likely};

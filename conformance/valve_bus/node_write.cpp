@@ -17,20 +17,21 @@ std::vector<NodeCase> node_write_cases() {
                             {"valves_late", "valves_too_late"},
                             {"answers_writes", "write_answered"}}},
                {{3, 50}, {write(), taken()}}),
-      on_chart(
-          {.id = "valve_bus/node/write/every_value_is_driven_at_once",
-           .purpose = "RN-04",
-           .requirement = "Each bit of DATA0 and DATA1 drives its own solenoid, bit i number i + 1, "
-                          "and all that change do so together.",
-           .reference = valve_sources::derived("8 solenoids are switched together"),
-           .tags = {"must"},
-           .catches = {{"data_swapped", "valves_wrong"},
-                       {"bits_reversed", "valves_wrong"},
-                       {"valves_one_by_one", "valves_one_by_one"}}},
-          {{52, 256},
-           {sent("a write with each of the 256 values of DATA0 in turn, DATA1 random",
-                 [](NodeScene& scene) { return scene.write(5 * scene.round, scene.bench.random_octet()); }),
-            taken()}}),
+      on_chart({.id = "valve_bus/node/write/every_value_is_driven_at_once",
+                .purpose = "RN-04",
+                .requirement = "Each bit of DATA0 and DATA1 drives its own solenoid, bit i number i + 1, "
+                               "and all that change do so together.",
+                .reference = valve_sources::derived("8 solenoids are switched together"),
+                .tags = {"must"},
+                .catches = {{"data_swapped", "valves_wrong"},
+                            {"bits_reversed", "valves_wrong"},
+                            {"valves_one_by_one", "valves_one_by_one"}}},
+               {{1'100, 2'560},
+                {sent("a write with each of the 256 values of DATA0 in turn, again and again, DATA1 random",
+                      [](NodeScene& scene) {
+                        return scene.write(scene.round & 0xFFU, scene.bench.random_octet());
+                      }),
+                 taken()}}),
       on_chart(
           {.id = "valve_bus/node/write/repeated_write_does_not_glitch",
            .purpose = "RN-35",

@@ -41,7 +41,7 @@ const std::vector<PartialSource>& host_details() {
   static const std::vector<PartialSource> details{
       {own("silence inside a frame and in front of it"), {"gap_in_frame", "no_delimiter"}},
       {own("driver times"), {"driver_on_late", "driver_released_early", "driver_not_released"}},
-      {own("character formats"), {"frame_garbled"}},
+      {own("character formats"), {"frame_garbled", "ninth_bit_wrong"}},
       {own("a read that failed is repeated twice"), {"no_retry"}},
       {own("what is reported to the PC of a read"),
        {"told_as_old", "told_twice", "error_not_told", "error_wrong", "old_data_not_told", "old_data_wrong",

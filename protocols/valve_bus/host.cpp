@@ -97,9 +97,8 @@ std::optional<Command> Host::next_valid_command(kernel::Time now) {
   return std::nullopt;
 }
 
-// Refreshes that are due and commands of the PC take turns.
 std::optional<Host::Exchange> Host::next_exchange(kernel::Time now) {
-  if (refresh_due_at() <= now && !(was_refresh_ && fifo_->has_command())) {
+  if (refresh_due_at() <= now && may_refresh(was_refresh_)) {
     was_refresh_ = true;
     return Exchange{writes_[refresh_order_.front()].command, Purpose::refresh};
   }
@@ -224,6 +223,11 @@ std::uint8_t Host::request_check(const Command& command) const {
 
 bool Host::awaits_response(const Exchange& exchange) const {
   return exchange.command.command == rules_.read_command || rules_.answers_writes;
+}
+
+// Refreshes that are due and commands of the PC take turns.
+bool Host::may_refresh(bool was_refresh) const {
+  return !(was_refresh && fifo_->has_command());
 }
 
 bool Host::may_repeat(const Exchange& exchange) const {

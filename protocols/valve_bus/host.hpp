@@ -70,7 +70,7 @@ class Host : public HostDevice {
   const Rules& rules() const { return rules_; }
   CharacterCodec& codec() { return codec_; }
   FrameCollector& collector() { return collector_; }
-  CommandFifo& fifo() { return *fifo_; }
+  const CommandFifo& fifo() const { return *fifo_; }
   segment::Port& line() { return *line_; }
   const std::optional<Exchange>& exchange() const { return exchange_; }
   std::optional<Response> known(std::uint8_t id) const { return known_.at(id); }
@@ -95,6 +95,8 @@ class Host : public HostDevice {
   virtual kernel::Duration silence() const { return delimiter(rules_); }
   virtual bool awaits_response(const Exchange& exchange) const;
   virtual kernel::Duration time_out() const { return response_time_out(rules_); }
+  // One that is due, where the last exchange was one or was none.
+  virtual bool may_refresh(bool was_refresh) const;
   virtual bool may_repeat(const Exchange& exchange) const;
   // A line that is not silent for so long is not waited for.
   virtual kernel::Duration longest_talk() const { return time_out(); }
