@@ -76,20 +76,22 @@ class Reads {
     bench_.answer(response);
     expect_response(bench_, judge_, node.id, response);
     node.known = response;
+    last_right_ = response;
     return true;
   }
 
   void answer_wrongly(const ReadNode& node, const Response& response) {
     const auto right = octets_of(response);
     std::vector<std::uint8_t> octets(right.begin(), right.end());
-    const unsigned way = wrong_++ % 5;
+    // After a right one two octets that its check would make right.
+    const unsigned way = last_right_ ? 3 : wrong_++ % 5;
     if (way == 0) octets[2] ^= 0x80;
     if (way == 1) octets[2] ^= node.id;  // as if the ID were in its check
     if (way == 2) octets = {octets[0], octets[1], octets[2], 0};
     if (way == 3) octets.resize(2);
     if (way == 4) octets.resize(1);
-    // Two octets that the last one of the response before would make right.
-    if (way == 3 && node.known) octets = {node.known->data0, node.known->data1};
+    if (last_right_) octets = {last_right_->data0, last_right_->data1};
+    last_right_.reset();
     kernel::Time end = bench_.answer(octets, bench_.turnaround_time());
     if (way == 4) end = std::max(end, answer_after_a_fragment(response));
     latest_ = std::max(latest_, end + bench_.delimiter() + 2 * character_notice(bench_.rules()));
@@ -128,7 +130,8 @@ class Reads {
   std::array<ReadNode, 2> nodes_{ReadNode{9}, ReadNode{9 + 64}};
   unsigned reads_ = 0;
   unsigned wrong_ = 0;
-  kernel::Time latest_{};  // for the next attempt
+  std::optional<Response> last_right_{};  // where it was the last thing on the line from a node
+  kernel::Time latest_{};                 // for the next attempt
 };
 
 void read_with_each_outcome(HostBench& bench, CaseJudge& judge) {
