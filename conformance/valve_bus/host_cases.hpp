@@ -7,7 +7,7 @@
 #include "conformance/valve_bus/host_bench.hpp"
 #include "conformance/valve_bus/sources.hpp"
 
-// The test cases for a host module of the valve bus, RH-01 to RH-36 of the catalogue of test purposes, and a
+// The test cases for a host module of the valve bus, RH-01 to RH-40 of the catalogue of test purposes, and a
 // canary.
 namespace fieldproof::conformance {
 

@@ -214,7 +214,7 @@ void expect_read_soon_after_acknowledge(HostScene& scene) {
   HostBench& bench = scene.bench;
   const kernel::Time end =
       bench.answer(octets_of(Response{scene.command.data0, scene.command.data1}), bench.turnaround_time());
-  const Command read = bench.read_of(scene.id = 9);
+  const Command read = bench.read_of(scene.command.id);
   bench.order(read);
   scene.request = expect_request(bench, scene.judge, read);
   scene.command = read;

@@ -47,7 +47,7 @@ void expect_numbered(HostBench& bench, CaseJudge& judge, unsigned first, unsigne
 }
 
 void a_burst_keeps_its_order(HostBench& bench, CaseJudge& judge) {
-  const auto count = bench.volume(200U, 2'000U);
+  const auto count = bench.volume(1'100U, 2'000U);
   unsigned written = 0;
   for (unsigned sent = 0; sent < count; ++sent) {
     const auto room = static_cast<unsigned>(bench.fifo_room() / kOctets);
@@ -226,7 +226,7 @@ std::vector<HostCase> host_fifo_cases() {
         .requirement = "Commands that the PC writes as fast as there is room are sent in their order, each "
                        "once.",
         .reference = ring,
-        .stimulus = "200 commands (2000 at full volume), as many at a time as fit.",
+        .stimulus = "1100 commands (2000 at full volume), as many at a time as fit.",
         .expected = "They are on the line in their order, none lost, none twice.",
         .tags = {"must"},
         .catches = {{"loses_commands", "request_wrong"}, {"doubles_commands", "request_wrong"}}},

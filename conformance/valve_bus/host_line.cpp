@@ -55,13 +55,13 @@ void release(HostScene& scene) {
   scene.bench.wait(2 * scene.bench.observation_timeout());
 }
 
-// A node that talks on and on, with a write waiting.
+// A node that talks on and on, with a write or a read waiting, through all attempts.
 void talk_without_end(HostScene& scene) {
   HostBench& bench = scene.bench;
-  const auto count = 3 * bench.time_out() / bench.characters(1) + 20;
+  const auto count = 5 * bench.time_out() / bench.characters(1) + 20;
   bench.answer(std::vector<std::uint8_t>(static_cast<std::size_t>(count), 0x55), {});
   bench.wait(bench.characters(3));
-  scene.order(bench.write_to(3));
+  scene.order(scene.round % 2 == 0 ? bench.write_to(3) : bench.read_of(4));
   bench.note_write(scene.command);  // it is refreshed
 }
 
@@ -133,13 +133,13 @@ std::vector<HostCase> host_line_cases() {
       on_chart({.id = "valve_bus/host/line/talk_without_end_is_an_error",
                 .purpose = "RH-40",
                 .requirement =
-                    "A write that finds a line that is not silent for a time-out is reported as an error.",
+                    "A command that finds a line that is not silent for a time-out is reported as an error.",
                 .reference = valve_sources::own("the PC is never left without an answer"),
                 .tags = {"must", "timing"},
                 .catches = {{"waits_for_silence", "error_not_told"}, {"busy_told_as_silence", "error_wrong"}},
                 .not_applicable = for_plain_writes()},
-               {{1, 5},
-                {stimulus("octets follow each other for three time-outs, and the PC orders a write",
+               {{2, 10},
+                {stimulus("octets follow each other for five time-outs, and the PC orders a write, or a read",
                           talk_without_end),
                  error(valve_bus::HostErrorKind::line_busy), recovers()}}),
       on_chart({.id = "valve_bus/host/line/stuck_high_line_is_a_time_out",

@@ -7,7 +7,7 @@
 #include "conformance/valve_bus/node_bench.hpp"
 #include "conformance/valve_bus/sources.hpp"
 
-// The test cases for a local node of the valve bus, RN-01 to RN-40 of the catalogue of test purposes, and a
+// The test cases for a local node of the valve bus, RN-01 to RN-44 of the catalogue of test purposes, and a
 // canary.
 namespace fieldproof::conformance {
 
