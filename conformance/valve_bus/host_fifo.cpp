@@ -193,6 +193,8 @@ void write_rest(HostScene& scene) {
 }
 
 void write_another(HostScene& scene) {
+  scene.judge.expect_equal(scene.bench.fifo_room(), kOctets * fitting(scene), "does_not_resync",
+                           "octets that there is room for");
   scene.bench.write(stream_of(scene.bench, 70, 1));
   const HostError given_up{numbered_read(scene.bench, scene.round).id, HostErrorKind::part_of_command};
   const auto error = scene.bench.next_told(kernel::Duration{});

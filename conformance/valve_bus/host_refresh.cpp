@@ -69,12 +69,13 @@ void expect_refreshed_beside_reads(HostScene& scene) {
 // ---- many nodes ----
 
 constexpr int kFramesToATurn = 5;
+constexpr unsigned kLastNode = 99;
 constexpr unsigned kSomeNodes = 20;
 constexpr unsigned kManyNodes = 45;  // more than can be refreshed in time
 
 void write_to_nodes(HostScene& scene, unsigned first, unsigned last) {
   for (unsigned id = first; id <= last; ++id) {
-    scene.bench.order(scene.bench.write_to(100 - 2 * id));
+    scene.bench.order(scene.bench.write_to(kLastNode - 2 * (id - 1)));
     for (int frames = 1; scene.bench.fifo_room() < scene.bench.rules().fifo_octets; ++frames) {
       scene.judge.expect(frames <= kFramesToATurn, "command_waits_for_refreshes",
                          "refreshes and commands take turns", "a command waits for refreshes");

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string_view>
+
 #include "conformance/sequence_check.hpp"
+#include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "harness/kernel/sanitized.hpp"
 
@@ -38,6 +41,22 @@ TEST(HostSequence, TheReferenceIsNeverAccused) {
     const SequenceSearchResult result = search(one);
     EXPECT_EQ(result.passed, one.cases) << seed << "\n" << host_lines(result);
   }
+}
+
+// An octet that begins when the last stop bit of a refresh is over and the driver still on: no host hears it.
+TEST(HostSequence, AnOctetIntoTheDriverAccusesNobody) {
+  const SequenceVocabulary& vocabulary = host_sequence_role().vocabulary;
+  const auto word = [&](std::string_view name) {
+    return static_cast<std::size_t>(vocabulary.find(name) - vocabulary.words.data());
+  };
+  const Sequence sequence{
+      {{word("write"), {1, 0, 0}}, {word("write"), {2, 0, 0}}, {word("stray"), {0}, {0x00}}}};
+  const HostCase one{host_sequence_role().test_case,
+                     [&](HostBench& bench, CaseJudge& judge) { run_host_sequence(sequence, bench, judge); }};
+  HostSetting setting;
+  setting.pics.emplace().declare("dip", std::int64_t{7});
+  const judge::CaseResult result = run_on_bench(one, setting);
+  EXPECT_EQ(result.verdict, judge::Verdict::pass) << result.reason;
 }
 
 // Also with a host whose receiver stays on, or that reads after each write.

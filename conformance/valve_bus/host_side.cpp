@@ -107,8 +107,12 @@ void HostSide::take_indications() {
 }
 
 std::optional<valve_bus::Command> HostSide::note(const HostFrame& frame) {
-  const bool is_sure =
-      std::exchange(is_end_sure_, true) && (frame.start < unnoticed_from_ || frame.start >= unnoticed_until_);
+  // While its driver is on a host hears nothing of what begins then.
+  const bool was_deaf = before_on_ < unnoticed_until_ && before_off_ > unnoticed_from_;
+  before_on_ = frame.sent.driver_on;
+  before_off_ = frame.sent.driver_off;
+  const bool is_sure = std::exchange(is_end_sure_, true) && !was_deaf &&
+                       (frame.start < unnoticed_from_ || frame.start >= unnoticed_until_);
   if (judge_ != nullptr && is_sure) expect_form(bench_, *judge_, frame);
   const std::vector<std::uint8_t> octets = frame.sent.octets();
   std::optional<valve_bus::Command> command;

@@ -55,6 +55,8 @@ class HostSide {
   bool is_end_sure_ = true;        // of what was last said on the line
   kernel::Time unnoticed_from_{};  // of the last surprise on the line
   kernel::Time unnoticed_until_{};
+  kernel::Time before_on_{};  // of the driver, at the last frame
+  kernel::Time before_off_{};
 };
 
 }  // namespace fieldproof::conformance

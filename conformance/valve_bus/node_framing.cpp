@@ -17,7 +17,7 @@ Frame first_octets(NodeScene& scene) {
   return frame;
 }
 
-constexpr std::array<std::size_t, 8> kMoreOctets{1, 2, 3, 4, 5, 8, 100, 300};
+constexpr std::array<std::size_t, 9> kMoreOctets{1, 2, 3, 4, 5, 8, 100, 256, 300};
 
 Frame with_more_octets(NodeScene& scene) {
   Frame frame = scene.moving_write();
@@ -146,18 +146,19 @@ std::vector<NodeCase> node_framing_cases() {
           {{4, 4},
            {moving_write(), sent("the first one, two, three, four octets of another write", first_octets),
             ignored("acts_on_short_frame", "the frame has fewer than five octets"), serves()}}),
-      on_chart({.id = "valve_bus/node/framing/long_frames_are_discarded",
-                .purpose = "RN-13",
-                .requirement = "A frame of more than five octets is discarded, also when five of its "
-                               "octets are a valid command: an octet of zeros changes no exclusive or.",
-                .reference = silence,
-                .tags = {"must"},
-                .catches = {{"takes_first_five_octets", "acts_on_long_frame"},
-                            {"takes_last_five_octets", "acts_on_long_frame"}}},
-               {{2 * kMoreOctets.size(), 2 * kMoreOctets.size()},
-                {sent("a write with 1, 2, 3, 4, 5, 8, 100, 300 octets of zeros after it or in front of it",
-                      with_more_octets),
-                 ignored("acts_on_long_frame", "the frame has more than five octets"), serves()}}),
+      on_chart(
+          {.id = "valve_bus/node/framing/long_frames_are_discarded",
+           .purpose = "RN-13",
+           .requirement = "A frame of more than five octets is discarded, also when five of its "
+                          "octets are a valid command: an octet of zeros changes no exclusive or.",
+           .reference = silence,
+           .tags = {"must"},
+           .catches = {{"takes_first_five_octets", "acts_on_long_frame"},
+                       {"takes_last_five_octets", "acts_on_long_frame"}}},
+          {{2 * kMoreOctets.size(), 2 * kMoreOctets.size()},
+           {sent("a write with 1, 2, 3, 4, 5, 8, 100, 256, 300 octets of zeros after it or in front of it",
+                 with_more_octets),
+            ignored("acts_on_long_frame", "the frame has more than five octets"), serves()}}),
       on_chart({.id = "valve_bus/node/framing/frames_are_told_apart_by_silence",
                 .purpose = "RN-14",
                 .requirement = "Two frames with less than 3.5 characters of silence between them are "
@@ -203,7 +204,7 @@ std::vector<NodeCase> node_framing_cases() {
             ignored("joins_frames", "silence ends a frame"), valves_on(), taken(),
             stimulus("as much silence",
                      [](NodeScene& scene) { scene.bench.wait(kTimerPeriods.at(scene.round)); }),
-            serves()}},
+            read(), answered(), serves()}},
           {.loss_limit = kernel::Duration{}}),
       on_chart(
           {.id = "valve_bus/node/framing/joined_frames_are_no_write",
