@@ -51,13 +51,17 @@ void return_power(NodeScene& scene) {
   scene.bench.await_response_window();
 }
 
-// In front of its answer.
+// In front of its answer: at once, or when it is sure of the read. One that answers then has answered.
 void lose_power_after_a_read(NodeScene& scene) {
-  scene.bench.clear_observations();
-  scene.bench.read();
-  scene.bench.set_power(false);
-  scene.bench.wait(scene.bench.delimiter());
-  scene.bench.clear_observations();
+  NodeBench& bench = scene.bench;
+  bench.clear_observations();
+  bench.read();
+  if (scene.round % 2 == 1)
+    bench.wait(bench.delimiter() + character_notice(bench.rules()) + kernel::kMicrosecond);
+  if (bench.has_driven()) bench.await_response_window();
+  bench.set_power(false);
+  bench.wait(bench.delimiter());
+  bench.clear_observations();
 }
 
 void send_without_power(NodeScene& scene) {
