@@ -259,7 +259,7 @@ const SequenceRole& node_sequence_role() {
        .tags = {},
        .catches = {}},
       node_vocabulary(),
-      {{DerivedKind::values, {"turns_round_a_tenth_early", "answer_too_early"}},
+      {{DerivedKind::values, {"switch_bit_stuck", "answer_data_wrong"}},
        {DerivedKind::faults, {"turns_round_late", "answer_too_late"}},
        {DerivedKind::words, {"turns_round_a_tenth_late", "answer_too_late"}},
        {DerivedKind::repetitions, {"valves_set_at_power_up", "valves_wrong"}},
