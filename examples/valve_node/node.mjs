@@ -43,7 +43,8 @@ class Node {
     const rate = settings.bit_rate || 62500n; // dip 2
     Object.assign(this, { settings, bit: SECOND / rate });
     this.half = ((settings.characters === 2n ? 10n : 11n) * SECOND) / (2n * rate); // a character
-    this.address = Number(10n * settings.address_tens + settings.address_units);
+    const { address_tens: tens, address_units: units } = settings;
+    this.address = tens > 9n || units > 9n ? 0 : Number(10n * tens + units);
     this.boards = settings.boards === 1n ? 0xff : 0xffff;
     this.power(false, 0n);
   }

@@ -29,10 +29,11 @@ static fieldproof_time setting(const fieldproof_case* test_case, const char* nam
 fieldproof_time valve_node_begin(valve_node* node, const fieldproof_case* test_case) {
   const fieldproof_time told = setting(test_case, "bit_rate"), format = setting(test_case, "characters");
   const fieldproof_time rate = told > 0 ? told : 62500; /* dip 2 */
+  const fieldproof_time tens = setting(test_case, "address_tens"), units = setting(test_case, "address_units");
   node->bit = SECOND / rate;
   node->half = (format == 2 ? 10 : 11) * SECOND / (2 * rate);
   node->ninth_bit = format == 0 ? 0x100 : 0;
-  node->address = (unsigned)(10 * setting(test_case, "address_tens") + setting(test_case, "address_units"));
+  node->address = tens > 9 || units > 9 ? 0 : (unsigned)(10 * tens + units);
   node->boards = setting(test_case, "boards") == 1 ? 0x00FF : 0xFFFF;
   node->answers_writes = setting(test_case, "answers_writes") != 0 || node->mutant == ANSWERS_WRITES;
   node->loss_limit = setting(test_case, "loss_limit");

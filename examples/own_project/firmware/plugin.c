@@ -68,14 +68,15 @@ static int begin(void* self, const fieldproof_case* test_case, fieldproof_time* 
   device* me = self;
   const fieldproof_time format = setting(test_case, "characters");
   const fieldproof_time told = setting(test_case, "bit_rate");
+  const fieldproof_time tens = setting(test_case, "address_tens");
+  const fieldproof_time units = setting(test_case, "address_units");
   const fieldproof_time bit_rate = told > 0 ? told : 62500; /* dip 2 */
   me->bit = INT64_C(1000000000000) / bit_rate;
   me->ninth_bit = format == 0 ? 0x100 : 0;
   memset(&me->firmware, 0, sizeof me->firmware);
   me->firmware.character = INT64_C(1000000000) * (format == 2 ? 10 : 11) / bit_rate;
   me->firmware.driver_ahead = nanoseconds(me->bit) + 1;
-  me->firmware.address =
-      (uint8_t)(10 * setting(test_case, "address_tens") + setting(test_case, "address_units"));
+  me->firmware.address = (uint8_t)(tens > 9 || units > 9 ? 0 : 10 * tens + units);
   me->firmware.fitted = setting(test_case, "boards") == 1 ? 0x00FF : 0xFFFF;
   *next = next_time(me);
   return 1;
