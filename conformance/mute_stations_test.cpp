@@ -94,7 +94,7 @@ class MutedDevice final : public iut::Device, private iut::Bench {
   std::uint64_t read(iut::Item item, kernel::Time when) override { return bench_->read(item, when); }
 
   static constexpr std::int64_t kHeldRate = 1'000;
-  static constexpr std::size_t kHeldLevels = 10;
+  static constexpr std::size_t kHeldLevels = 300;  // longer than an answer at the lowest bit rate may take
 
   std::unique_ptr<iut::Device> device_;
   bool is_mute_;

@@ -92,15 +92,8 @@ Outcome Suite::run(const TestCase& test_case, const Setup& setup) const {
 SequenceVocabulary Suite::vocabulary(const SequenceRole& role, const Setup& setup) const {
   const RunningCase run = begin(role.test_case, setup);
   SequenceVocabulary vocabulary = role.vocabulary;
-  // What a product may do or not do is its vendor's to declare; who declares nothing does not do it.
-  const auto is_option = [&](std::string_view name) {
-    return std::ranges::any_of(row_of(role.test_case).pics_items, [&](const judge::PicsItem& item) {
-      return item.name == name && item.kind == judge::PicsKind::truth;
-    });
-  };
   std::erase_if(vocabulary.settings, [&](const SequenceSetting& one) {
-    return run.is_on_real_line() || is_option(one.name) ||
-           (setup.pics && setup.pics->items().contains(one.name));
+    return run.is_on_real_line() || (setup.pics && setup.pics->items().contains(one.name));
   });
   return vocabulary;
 }
