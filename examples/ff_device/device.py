@@ -3,17 +3,9 @@
 fieldproof run 'fieldbus_dll/ff_device/**' --iut 'exec:python3 device.py'
 
 harness/iut/README.md describes the messages, protocols/fieldbus_dll/README.md the device."""
-import struct
-import sys
+from messages import EVENT, NEVER, REFUSED, SECOND, USER, run
 
-NEVER = 2**63 - 1
-HELLO, ECHO, CASE_BEGIN, POWER, RECEIVE_OCTETS, RECEIVE_LEVELS, ON_TIME = range(1, 8)
-ACTIVITY = 10
-CAPABILITIES, ECHOED, DONE, UNSUPPORTED, OCTETS, TRANSMIT_LEVELS, WRITE = range(129, 136)
-LINE, USER = 0, 2  # ports
-ASKS_FOR_ACTIVITY = 1
-REFUSED, EVENT = 0, 1  # items
-SUBMIT, WRITE_BUFFER = 1, 2  # what the user asks for
+SUBMIT, WRITE_BUFFER = b"\1", b"\2"  # what the user asks for
 DATA, PUBLISHED = 1, 2  # what the user is told
 ACTIVATED = 0  # an event
 LONG, FINAL, PRIORITY = 8, 4, 3  # bits of a first octet
@@ -22,38 +14,10 @@ ACTIVATION = 1  # of the entities' own messages
 EVERYBODY = 0xFFFF
 
 
-def frame_check(octets):
-    """CRC-16/PROFIBUS."""
-    check = 0xFFFF
-    for octet in octets:
-        check ^= octet << 8
-        for _ in range(8):
-            check = (check << 1 ^ 0x1DCF if check & 0x8000 else check << 1) & 0xFFFF
-    return struct.pack(">H", check ^ 0xFFFF)
-
-
-class Stream:
-    def __init__(self, source, sink):
-        self.source, self.sink = source, sink
-
-    def receive(self):
-        head = self.source.read(4)
-        return self.source.read(struct.unpack("<I", head)[0]) if len(head) == 4 else sys.exit(0)
-
-    def send(self, kind, form="", *values):
-        content = struct.pack("<" + form, *values)
-        self.sink.write(struct.pack("<IB", len(content) + 1, kind) + content)
-        if kind not in (OCTETS, WRITE):  # behind these comes `done`
-            self.sink.flush()
-
-    def send_octets(self, port, when, octets):
-        self.send(OCTETS, f"BqH{len(octets)}H", port, when, len(octets), *octets)
-
-
 class Device:
     def __init__(self, stream, settings):
         self.stream, self.s, self.now = stream, settings, 0
-        self.octet = 8 * 10**12 // settings["bit_rate"]
+        self.octet = 8 * SECOND // settings["bit_rate"]
         self.node = settings["node"]
         self.code = {key[5:]: value for key, value in settings.items() if key.startswith("code_")}
         self.buffers = {settings[f"published_{n}"]: [None, 0] for n in range(settings["published"])}
@@ -76,41 +40,38 @@ class Device:
 
     def drive(self, octets):
         self.driven_until = self.now + self.time_of(octets)
-        self.stream.send_octets(LINE, self.now, octets + frame_check(octets))
+        self.stream.drive(self.now, octets, self.s)
 
     def on_activity(self, is_active, now):
         self.now, self.is_active = now, is_active
         if not is_active:
             self.heard_until = now
 
-    def hear(self, message):
-        port, self.now, count = struct.unpack_from("<xBqH", message)
-        characters = [message[12 + 19 * n:31 + 19 * n] for n in range(count)]
-        octets = bytes(character[16] for character in characters)
-        if port == USER:
-            self.ask(octets)
-        elif self.is_on and octets[-2:] == frame_check(octets[:-2]) and len(octets) > 2:
-            begin = struct.unpack("<q", characters[0][:8])[0]
-            begin -= (self.s["preamble_octets"] + 1) * self.octet
-            if begin >= self.driven_until:
-                self.take(octets[:-2])
+    def hear(self, octets, begin, now):
+        self.now = now
+        if self.is_on and begin >= self.driven_until:
+            self.take(octets)
 
     # ---- the user ----
 
-    def ask(self, request):
-        is_taken = False
-        if request[0] == SUBMIT:
-            priority, to, data = request[1], request[2:6], request[6:]
-            is_taken = len(data) <= self.s[f"most_data_{priority}"]
-            if is_taken:
-                self.queues[priority].append(self.dt1(priority, int.from_bytes(to, "big"), data))
-        elif request[0] == WRITE_BUFFER:
-            buffer, data = self.buffers.get(int.from_bytes(request[1:5], "big")), request[5:]
-            is_taken = buffer is not None and len(data) <= self.s["most_data_3"]
-            if is_taken:
-                buffer[:] = data, (buffer[1] + 1) % 256
-        if not is_taken:
-            self.stream.send(WRITE, "HQq", REFUSED, 1, self.now)
+    def ask(self, request, now):
+        self.now = now
+        service, content = request[:1], request[1:]
+        if not (service == SUBMIT and self.submit(content) or service == WRITE_BUFFER and self.write(content)):
+            self.stream.write(REFUSED, 1, now)
+
+    def submit(self, content):
+        if len(content) < 5 or content[0] not in self.queues or len(content) - 5 > self.s[f"most_data_{content[0]}"]:
+            return False
+        self.queues[content[0]].append(self.dt1(content[0], int.from_bytes(content[1:5], "big"), content[5:]))
+        return True
+
+    def write(self, content):
+        buffer, data = self.buffers.get(int.from_bytes(content[:4], "big")), content[4:]
+        if len(content) < 4 or buffer is None or len(data) > self.s["most_data_3"]:
+            return False
+        buffer[:] = data, (buffer[1] + 1) % 256
+        return True
 
     def dt1(self, priority, to, data):
         source = self.node << 8 | 1 | to & 0xFFFF0000
@@ -195,7 +156,7 @@ class Device:
             self.stream.send_octets(USER, self.now, bytes([DATA]) + octets)
         elif data[0] == ACTIVATION and not self.is_live and to != EVERYBODY:
             self.is_live = True
-            self.stream.send(WRITE, "HQq", EVENT, ACTIVATED | self.node << 8, self.now)
+            self.stream.write(EVENT, ACTIVATED | self.node << 8, self.now)
 
     def on_dt3(self, octets):
         if self.address(octets) in self.subscribed:
@@ -256,55 +217,10 @@ class Device:
         least_gap, slot = s["inter_pdu_delay_octets"], s["slot_time_octets"]
         self.is_on = is_on and least_gap <= min(120, (s["response_delay_slots"] - 1) * slot)
         if is_on and not self.is_on:
-            self.stream.send(WRITE, "HQq", REFUSED, 1, now)
-
-
-def text_at(content, at):
-    end = at + 2 + struct.unpack_from("<H", content, at)[0]
-    return content[at + 2:end].decode(), end
-
-
-def case_of(content):
-    """The id of a case and its settings."""
-    name, at = text_at(content, 1)
-    settings, count = {}, struct.unpack_from("<8xH", content, at)[0]
-    at += 10
-    for _ in range(count):
-        key, at = text_at(content, at)
-        settings[key] = struct.unpack_from("<q", content, at)[0]
-        at += 8
-    return name, settings
-
-
-def serve(stream):
-    device = None
-    while True:
-        message = stream.receive()
-        kind = message[0]
-        if kind == HELLO:
-            name = b"basic device in Python"
-            stream.send(CAPABILITIES, f"HBH{len(name)}sHH12sH9sB", 3, 3, len(name), name,
-                        1, 12, b"fieldbus_dll", 9, b"ff_device", ASKS_FOR_ACTIVITY)
-            continue
-        if kind == ECHO:
-            stream.send(ECHOED, f"{len(message) - 1}s", message[1:])
-            continue
-        if kind == CASE_BEGIN:
-            name, settings = case_of(message)
-            device = Device(stream, settings) if name.startswith("fieldbus_dll/ff_device/") else None
-        elif kind == POWER:
-            device.power(*struct.unpack("<x?q", message))
-        elif kind == RECEIVE_OCTETS:
-            device.hear(message)
-        elif kind == ACTIVITY:
-            device.on_activity(*struct.unpack("<xx?q", message))
-        elif kind == ON_TIME:
-            device.on_time(struct.unpack("<xq", message)[0])
-        if device is None:
-            stream.send(UNSUPPORTED)
-        else:
-            stream.send(DONE, "q", device.next_time())
+            self.stream.write(REFUSED, 1, now)
 
 
 if __name__ == "__main__":
-    serve(Stream(sys.stdin.buffer, sys.stdout.buffer))
+    from device_faults import FAULTS
+
+    run(__file__, "ff_device", "Device", FAULTS)
