@@ -96,7 +96,7 @@ def pass_on(station, message):
     elif kind == RECEIVE_LEVELS:
         start, rate, count = struct.unpack_from("<xxqqI", message)
         for octets in frames_in(half_bits_in(rate, count, message[22:], station.s["bit_rate"])):
-            station.hear(octets, start, start + count * SECOND // rate)
+            station.hear(octets, start, start + (count * SECOND + rate // 2) // rate)
     elif kind == ACTIVITY:
         station.on_activity(*struct.unpack("<xx?q", message))
     elif kind == ON_TIME:
@@ -140,22 +140,16 @@ def run(file, role, station, faults):
         for name, (what, case, *_) in faults.items():
             print(name, case, what)
         return
-    changed = {}
-    if asked.fault:
-        _, _, where, text, instead = faults[asked.fault]
-        changed[where] = text, instead
-    names = [name for name in ("frames", "messages") if name in changed] + [Path(file).stem]
-    for name in names:
+    where, text, instead = faults[asked.fault][2:] if asked.fault else ("", "", "")
+    # All of them anew, for each takes names from those before it.
+    for name in ("frames", "messages", "link_end", Path(file).stem):
+        path = next(one for one in (Path(file).with_name(name + ".py"), Path(__file__).with_name(name + ".py")) if one.exists())
+        source = path.read_text(encoding="utf-8")
+        if name == where:
+            if source.count(text) != 1:
+                sys.exit(f"{path} does not have once: {text}")
+            source = source.replace(text, instead)
         sys.modules[name] = module = types.ModuleType(name)
-        module.__file__ = str(Path(file).with_name(name + ".py"))
-        if not Path(module.__file__).exists():
-            module.__file__ = str(Path(__file__).with_name(name + ".py"))
-        source = Path(module.__file__).read_text(encoding="utf-8")
-        text, instead = changed.get(name, ("", ""))
-        if text and source.count(text) != 1:
-            sys.exit(f"{asked.fault}: {name}.py has {source.count(text)} times: {text}")
-        exec(compile(source.replace(text, instead) if text else source, module.__file__, "exec"), module.__dict__)
-    this = sys.modules.get("messages") or sys.modules[__name__]
-    this.serve(role, getattr(module, station), LEVELS if asked.units == "levels" else TELEGRAMS)
-
-
+        module.__file__ = str(path)
+        exec(compile(source, path, "exec"), module.__dict__)
+    sys.modules["messages"].serve(role, getattr(module, station), LEVELS if asked.units == "levels" else TELEGRAMS)
