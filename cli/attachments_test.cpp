@@ -234,8 +234,9 @@ TEST_F(Attachments, NodeInPythonPasses) {
 TEST_F(Attachments, FfDeviceWithAReceiverInPythonPasses) {
   const std::string python = installed("python3");
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
-  const fs::path device = kSourceFolder / "examples/ff_device/receiver.py";
-  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device), "fieldbus_dll/ff_device/");
+  const fs::path device = kSourceFolder / "examples/ff_device/device.py";
+  expect_passes("exec:" + in_quotes(python) + " " + in_quotes(device) + " --units levels",
+                "fieldbus_dll/ff_device/");
 }
 
 // Written from the page of the role.

@@ -1,5 +1,7 @@
 #include "conformance/fieldbus_dll/ff_bench.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -27,12 +29,11 @@ FfConfiguration configuration_of(const FfNeeds& needs, const FfSetting& setting)
   return configuration;
 }
 
-void append_address(Octets& octets, FfAddress address) {
-  const int size = fieldbus_dll::is_long(address) ? 4 : 2;
-  for (int n = size - 1; n >= 0; --n) octets.push_back(static_cast<std::uint8_t>(address >> (8 * n)));
-}
-
 }  // namespace
+
+void append_address(Octets& octets, FfAddress address, bool is_long) {
+  for (int n = is_long ? 3 : 1; n >= 0; --n) octets.push_back(static_cast<std::uint8_t>(address >> (8 * n)));
+}
 
 bool FfUpperTester::was_delivered(const Octets& octets) const {
   return std::ranges::any_of(data, [&](const fieldbus_dll::FfDlpdu& one) { return one.data == octets; });
@@ -56,6 +57,24 @@ FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
   const kernel::Time begin = now();
   while (next(begin)) {
   }
+}
+
+std::string FfReport::text() const {
+  if (kind == Kind::event) return fmt::format("{} of {:02X}", text_of(event.kind), event.node);
+  return describe(dlpdu);
+}
+
+void FfBench::set_supply(bool is_on) {
+  if (is_on) {
+    station_->start(now());
+  } else {
+    station_->stop(now());
+  }
+  refresh_iut();
+}
+
+std::string FfBench::words(const DrivenDlpdu& dlpdu) const {
+  return dlpdu.has_right_check ? words_of(dlpdu.octets, rules()) : dlpdu.text();
 }
 
 bool FfBench::submit(Priority priority, const Octets& data, FfAddress to) {

@@ -28,18 +28,45 @@ struct FfSetting : PlannedSetting<fieldbus_dll::FfDevice, fieldbus_dll::FfConfig
   const LinkStresses* link_stresses = nullptr;  // must outlive the bench
 };
 
+// The high octet first, four octets or two.
+void append_address(Octets& octets, fieldbus_dll::FfAddress address, bool is_long);
+inline void append_address(Octets& octets, fieldbus_dll::FfAddress address) {
+  append_address(octets, address, fieldbus_dll::is_long(address));
+}
+
+// What the IUT gives its user.
+struct FfReport {
+  enum class Kind : std::uint8_t { data, published, event };
+  Kind kind;
+  fieldbus_dll::FfDlpdu dlpdu{};
+  fieldbus_dll::FfEvent event{fieldbus_dll::FfEventKind::activated};
+
+  std::string text() const;
+  friend bool operator==(const FfReport&, const FfReport&) = default;
+};
+
 // The IUT's user.
 class FfUpperTester final : public fieldbus_dll::FfUser {
  public:
-  void on_data(const fieldbus_dll::FfDlpdu& dlpdu, kernel::Time) override { data.push_back(dlpdu); }
-  void on_published(const fieldbus_dll::FfDlpdu& dlpdu, kernel::Time) override { published.push_back(dlpdu); }
-  void on_event(const fieldbus_dll::FfEvent& event, kernel::Time) override { events.push_back(event); }
+  void on_data(const fieldbus_dll::FfDlpdu& dlpdu, kernel::Time) override {
+    data.push_back(dlpdu);
+    reports.push_back({FfReport::Kind::data, dlpdu});
+  }
+  void on_published(const fieldbus_dll::FfDlpdu& dlpdu, kernel::Time) override {
+    published.push_back(dlpdu);
+    reports.push_back({FfReport::Kind::published, dlpdu});
+  }
+  void on_event(const fieldbus_dll::FfEvent& event, kernel::Time) override {
+    events.push_back(event);
+    reports.push_back({FfReport::Kind::event, {}, event});
+  }
 
   bool was_delivered(const Octets& octets) const;
 
   std::vector<fieldbus_dll::FfDlpdu> data;
   std::vector<fieldbus_dll::FfDlpdu> published;
   std::vector<fieldbus_dll::FfEvent> events;
+  std::vector<FfReport> reports;  // all of these, in order
 };
 
 class FfBench final : public LinkBench {
@@ -60,6 +87,8 @@ class FfBench final : public LinkBench {
   const fieldbus_dll::FfConfiguration& configuration() const { return configuration_; }
   std::uint8_t node() const { return configuration_.node; }
   bool has_started() const { return has_started_; }
+  void set_supply(bool is_on);
+  std::string words(const DrivenDlpdu& dlpdu) const override;
 
   // ---- upper tester ----
   FfUpperTester& user() { return user_; }

@@ -42,7 +42,7 @@ bool is_same_address(fieldbus_dll::FfAddress one, fieldbus_dll::FfAddress other)
   return (one & kNodeAndSelector) == (other & kNodeAndSelector);
 }
 
-// Entities tell each other what no user is told.
+// Entities tell each other what no user is told; without data they tell nothing.
 bool is_between_entities(const AddressesOfDt1& addresses) {
   const auto is_of_entity = [](fieldbus_dll::FfAddress one) { return (one & 0xFF) == fieldbus_dll::kEntity; };
   return is_of_entity(addresses.from) &&
@@ -53,7 +53,7 @@ void judge_what_its_user_was_told(FfBench& bench, CaseJudge& judge) {
   const auto is_data = [&](const DrivenDlpdu& sent, const fieldbus_dll::FfDlpdu& told) {
     if (!is_dt1(bench, sent)) return false;
     const AddressesOfDt1 addresses = addresses_in(sent);
-    return !is_between_entities(addresses) && is_same_address(addresses.to, told.destination) &&
+    return (!is_between_entities(addresses) || dlsdu_of(sent).empty()) && is_same_address(addresses.to, told.destination) &&
            is_same_address(addresses.from, told.source) && priority_in(sent) == told.priority &&
            dlsdu_of(sent) == told.data;
   };

@@ -1,41 +1,51 @@
 #include "conformance/fieldbus_dll/ff_model.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <utility>
-
-#include "conformance/fieldbus_dll/link_bench.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
 using fieldbus_dll::FfAddress;
+using fieldbus_dll::FfDlpdu;
+using fieldbus_dll::FfRequest;
+using fieldbus_dll::FfType;
 using fieldbus_dll::Priority;
 using kernel::Time;
 
-constexpr std::array kPrioritiesOfFf{Priority::urgent, Priority::normal, Priority::time_available};
 constexpr unsigned kFinalUse = 0x04;
 constexpr unsigned kLongUse = 0x08;
-// Control octet and two short addresses.
-constexpr std::size_t kHeaderOfDt1 = 5;
 
 std::size_t number_of(Priority priority) {
   return static_cast<std::size_t>(priority);
 }
 
-std::string text_of_any(const std::vector<Octets>& all) {
+std::uint8_t control_of(unsigned code, Priority priority, FfAddress address) {
+  return static_cast<std::uint8_t>(code | number_of(priority) |
+                                   (fieldbus_dll::is_long(address) ? kLongUse : 0U));
+}
+
+std::string words_of_any(const std::vector<Octets>& all, const fieldbus_dll::FfRules& rules) {
   std::string text;
-  for (const Octets& one : all)
-    text += fmt::format("{}{:02X}", text.empty() ? "" : ", or ", fmt::join(one, " "));
+  for (const Octets& one : all) text += (text.empty() ? "" : ", or ") + words_of(one, rules);
   return text;
 }
 
 }  // namespace
 
-FfModel::FfModel(const fieldbus_dll::FfConfiguration& configuration) : configuration_(configuration) {
+FfModel::FfModel(const fieldbus_dll::FfConfiguration& configuration, bool is_live)
+    : configuration_(configuration), is_live_(is_live) {
   for (const FfAddress address : configuration.published) buffers_[address] = {};
+}
+
+void FfModel::set_supply(bool is_on) {
+  has_supply_ = is_on;
+  if (is_on) return;
+  is_live_ = false;
+  queues_ = {};
+  for (auto& [address, buffer] : buffers_) buffer = {};
+  token_.reset();
+  answer_.reset();
 }
 
 // ---- the user ----
@@ -44,17 +54,17 @@ std::size_t FfModel::most_data(Priority priority) const {
   return configuration_.rules.link.most_data.at(number_of(priority) - 1);
 }
 
-bool FfModel::submit(Priority priority, const Octets& data) {
-  if (data.size() > most_data(priority)) return false;
-  queues_.at(number_of(priority)).push_back(data);
+bool FfModel::submit(const FfRequest& request) {
+  if (number_of(request.priority) < 1 || number_of(request.priority) > 3) return false;
+  if (request.data.size() > most_data(request.priority)) return false;
+  queues_.at(number_of(request.priority)).push_back(request);
   return true;
 }
 
 bool FfModel::write(FfAddress address, const Octets& data) {
   const auto found = buffers_.find(address);
   if (found == buffers_.end() || data.size() > most_data(Priority::urgent)) return false;
-  found->second.data = data;
-  ++found->second.writes;
+  found->second = {data, found->second.writes + 1, true};
   // The device may have taken the buffer already, or may do so until it begins.
   if (answer_ && answer_->published == address) {
     answer_->allowed.push_back(dt3_of(address, answer_->priority));
@@ -65,54 +75,71 @@ bool FfModel::write(FfAddress address, const Octets& data) {
 
 // ---- what was heard ----
 
-void FfModel::hear_dlpdu(Time end) {
-  answer_.reset();
+void FfModel::hear(const Octets& octets, Time end) {
   silent_since_ = end;
-}
-
-void FfModel::hear_other(bool is_of_scheduler, Time end) {
-  hear_dlpdu(end);
-  if (is_of_scheduler) token_.reset();
-}
-
-void FfModel::hear_token(Priority least, unsigned duration, Time end) {
-  hear_dlpdu(end);
-  token_ = Token{least, end + fieldbus_dll::octets(configuration_.rules.link, duration)};
-}
-
-void FfModel::hear_probe(Time end) {
-  hear_other(true, end);
-  answer_ = Answer{{{configuration_.rules.codes.pr, configuration_.node}},
-                   "dlpdu_wrong",
-                   end + response_delay(configuration_.rules.link)};
-}
-
-void FfModel::hear_cd(FfAddress address, Priority priority, Time end) {
-  hear_other(true, end);
-  const auto& codes = configuration_.rules.codes;
+  const auto dlpdu = ff_dlpdu_of(octets, configuration_.rules);
+  if (!dlpdu || !has_supply_) return;
+  answer_.reset();
+  if (is_of_scheduler(dlpdu->type)) token_.reset();
   const Time until = end + response_delay(configuration_.rules.link);
-  const auto found = buffers_.find(address);
+  if (dlpdu->type == FfType::dt1) hear_data(*dlpdu);
+  if (dlpdu->type == FfType::dt3 && std::ranges::count(configuration_.subscribed, dlpdu->source) > 0)
+    reports_.push_back({FfReport::Kind::published, *dlpdu});
+  if (dlpdu->type == FfType::pn && dlpdu->node == configuration_.node)
+    answer_ = Answer{{{configuration_.rules.codes.pr, configuration_.node}}, "dlpdu_wrong", until};
+  if (!is_live_) return;
+  if (dlpdu->type == FfType::cd && is_mine(dlpdu->destination)) hear_cd(*dlpdu, until);
+  if (dlpdu->type == FfType::pt && dlpdu->node == configuration_.node)
+    token_ = Token{dlpdu->priority, end + fieldbus_dll::octets(configuration_.rules.link, dlpdu->duration)};
+}
+
+void FfModel::hear_data(const FfDlpdu& dlpdu) {
+  const bool is_for_all = dlpdu.destination == fieldbus_dll::kEverybody;
+  if (!is_for_all && !is_mine(dlpdu.destination)) return;
+  if (dlpdu.has_long_addresses && !configuration_.supports_long_addresses) return;
+  const auto is_of_entity = [](FfAddress one) { return (one & 0xFF) == fieldbus_dll::kEntity; };
+  const bool is_between_entities =
+      (is_for_all || is_of_entity(dlpdu.destination)) && is_of_entity(dlpdu.source) && !dlpdu.data.empty();
+  if (!is_between_entities) return reports_.push_back({FfReport::Kind::data, dlpdu});
+  const bool is_activation = dlpdu.data[0] == static_cast<std::uint8_t>(fieldbus_dll::SpduKind::activation);
+  if (!is_activation || is_for_all || is_live_) return;
+  is_live_ = true;
+  reports_.push_back(
+      {FfReport::Kind::event, {}, {fieldbus_dll::FfEventKind::activated, configuration_.node}});
+}
+
+void FfModel::hear_cd(const FfDlpdu& cd, Time until) {
+  const auto found = buffers_.find(cd.destination);
   const bool is_its_own = found != buffers_.end();
-  answer_ = Answer{.allowed = {}, .reason = "published_wrong", .until = until, .priority = priority};
-  if (is_its_own) answer_->published = address;
-  if (is_its_own && found->second.writes > 0) {
-    answer_->allowed = {dt3_of(address, priority)};
+  answer_ = Answer{.allowed = {}, .reason = "published_wrong", .until = until, .priority = cd.priority};
+  if (is_its_own) answer_->published = cd.destination;
+  if (is_its_own && found->second.is_written) {
+    answer_->allowed = {dt3_of(cd.destination, cd.priority)};
     return;
   }
   const std::uint8_t why = is_its_own ? 1 : 0;
-  answer_->allowed = {{static_cast<std::uint8_t>(codes.sr | kFinalUse), why}};
+  answer_->allowed = {{static_cast<std::uint8_t>(configuration_.rules.codes.sr | kFinalUse), why}};
   answer_->reason = "dlpdu_wrong";
-  answer_->may_be_left = true;
 }
 
 Octets FfModel::dt3_of(FfAddress address, Priority priority) const {
   const Buffer& buffer = buffers_.at(address);
-  Octets dt3{
-      static_cast<std::uint8_t>(configuration_.rules.codes.dt3 | kFinalUse | static_cast<unsigned>(priority)),
-      static_cast<std::uint8_t>(address >> 8), static_cast<std::uint8_t>(address & 0xFFU),
-      static_cast<std::uint8_t>(buffer.writes & 0xFFU)};
+  Octets dt3{control_of(configuration_.rules.codes.dt3 | kFinalUse, priority, address)};
+  append_address(dt3, address);
+  dt3.push_back(static_cast<std::uint8_t>(buffer.writes & 0xFFU));
   dt3.insert(dt3.end(), buffer.data.begin(), buffer.data.end());
   return dt3;
+}
+
+Octets FfModel::dt1_of(const FfRequest& request) const {
+  constexpr FfAddress kUser = 1;
+  constexpr FfAddress kLinkOfAddress = 0xFFFF0000U;
+  Octets dt1{control_of(configuration_.rules.codes.dt1, request.priority, request.destination)};
+  append_address(dt1, request.destination);
+  append_address(
+      dt1, (request.destination & kLinkOfAddress) | fieldbus_dll::address_of(configuration_.node, kUser));
+  dt1.insert(dt1.end(), request.data.begin(), request.data.end());
+  return dt1;
 }
 
 // ---- what is said ----
@@ -120,6 +147,12 @@ Octets FfModel::dt3_of(FfAddress address, Priority priority) const {
 Time FfModel::earliest() const {
   const auto& link = configuration_.rules.link;
   return silent_since_ + fieldbus_dll::octets(link, link.inter_pdu_delay_octets);
+}
+
+// Before anything was seen of it: a slot time.
+kernel::Duration FfModel::delay() const {
+  const auto& link = configuration_.rules.link;
+  return slowest_.value_or(fieldbus_dll::octets(link, link.slot_time_octets));
 }
 
 Time FfModel::latest_of_token() const {
@@ -131,16 +164,14 @@ Time FfModel::end_of(std::size_t octets, Time begin) const {
   return begin + frame_time(configuration_.rules.link, octets + kCheckOctets);
 }
 
-std::optional<FfModel::Next> FfModel::next_to_send() const {
-  for (const Priority priority : kPrioritiesOfFf) {
-    const auto& queue = queues_.at(number_of(priority));
-    if (priority >= token_->least && !queue.empty()) return Next{priority, queue.front()};
-  }
-  return std::nullopt;
+std::deque<FfRequest>* FfModel::next_to_send() {
+  for (std::size_t priority = 3; priority >= number_of(token_->least); --priority)
+    if (!queues_.at(priority).empty()) return &queues_.at(priority);
+  return nullptr;
 }
 
-bool FfModel::fits(const Next& next, Time begin) const {
-  return end_of(kHeaderOfDt1 + next.data.size(), begin) <= token_->ends;
+bool FfModel::fits(const FfRequest& next, Time begin) const {
+  return end_of(dt1_of(next).size(), begin) <= token_->ends;
 }
 
 std::optional<LinkObjection> FfModel::say(const DrivenDlpdu& dlpdu) {
@@ -148,6 +179,8 @@ std::optional<LinkObjection> FfModel::say(const DrivenDlpdu& dlpdu) {
   if (is_early) return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
   if (!answer_ && !token_)
     return LinkObjection{"speaks_unasked", "silence: nothing that it received asks for it"};
+  const kernel::Duration later = std::max(dlpdu.begin - earliest(), kernel::Duration{});
+  slowest_ = std::max(slowest_.value_or(later), later);
   auto objection = answer_ ? say_answer(dlpdu) : say_under_token(dlpdu);
   silent_since_ = dlpdu.end;
   return objection;
@@ -157,18 +190,8 @@ std::optional<LinkObjection> FfModel::say_answer(const DrivenDlpdu& dlpdu) {
   const Answer answer = *std::exchange(answer_, std::nullopt);
   if (dlpdu.begin > answer.until + kLinkRounding)
     return LinkObjection{"answers_too_late", "it begins within V(MRD) x V(ST), or is not sent"};
-  for (const Octets& allowed : answer.allowed) {
-    if (dlpdu.octets == allowed) return std::nullopt;
-    Octets without_final = allowed;
-    without_final[0] = static_cast<std::uint8_t>(without_final[0] & ~kFinalUse);
-    if (dlpdu.octets == without_final && dlpdu.octet(0) != allowed[0]) {
-      answer_ = Answer{{{configuration_.rules.codes.rt}},
-                       "token_not_returned",
-                       dlpdu.end + response_delay(configuration_.rules.link)};
-      return std::nullopt;
-    }
-  }
-  return LinkObjection{answer.reason, text_of_any(answer.allowed)};
+  if (std::ranges::count(answer.allowed, dlpdu.octets) > 0) return std::nullopt;
+  return LinkObjection{answer.reason, words_of_any(answer.allowed, configuration_.rules)};
 }
 
 std::optional<LinkObjection> FfModel::say_under_token(const DrivenDlpdu& dlpdu) {
@@ -179,54 +202,57 @@ std::optional<LinkObjection> FfModel::say_under_token(const DrivenDlpdu& dlpdu) 
                          "who holds the token is not silent for longer than V(MRD) x V(ST)"};
   const auto& codes = configuration_.rules.codes;
   if (dlpdu.octets == Octets{codes.rt}) return return_token(dlpdu);
-  constexpr std::size_t kRi = 3;
-  if (dlpdu.octet(0) == codes.ri && dlpdu.octets.size() == kRi) return std::nullopt;
   const unsigned free = kLongUse | kFinalUse | 0x03U;
   if ((dlpdu.octet(0) & ~free) == codes.dt1) return say_data(dlpdu);
   return LinkObjection{"unexpected_dlpdu", "DT1 or RT"};
 }
 
 std::optional<LinkObjection> FfModel::say_data(const DrivenDlpdu& dlpdu) {
-  const auto next = next_to_send();
-  if (!next) return LinkObjection{"sends_other_data", "RT: nothing may be sent under this token"};
-  const auto priority = static_cast<Priority>(dlpdu.octet(0) & 0x03U);
-  const Octets& octets = dlpdu.octets;
-  const bool is_next =
-      priority == next->priority && octets.size() >= kHeaderOfDt1 &&
-      std::equal(octets.begin() + kHeaderOfDt1, octets.end(), next->data.begin(), next->data.end());
-  if (!is_next) {
-    return LinkObjection{"sends_other_data",
-                         fmt::format("the most urgent that waits, {}: {:02X}", text_of(next->priority),
-                                     fmt::join(next->data, " "))};
-  }
-  queues_.at(number_of(priority)).pop_front();
-  if ((dlpdu.octet(0) & kFinalUse) == 0) return std::nullopt;
+  std::deque<FfRequest>* const next = next_to_send();
+  if (next == nullptr) return LinkObjection{"sends_other_data", "RT: nothing may be sent under this token"};
+  Octets expected = dt1_of(next->front());
+  const bool is_final = (dlpdu.octet(0) & kFinalUse) != 0;
+  if (is_final) expected[0] |= kFinalUse;
+  if (dlpdu.octets != expected)
+    return LinkObjection{"sends_other_data", words_of(expected, configuration_.rules)};
+  next->pop_front();
+  token_->is_used = true;
   // Who needs its time between two frames returns the token a little sooner.
-  const auto behind = next_to_send();
-  const Time again = dlpdu.end + response_delay(configuration_.rules.link);
-  const bool is_held_back = behind && fits(*behind, again);
-  token_.reset();
-  if (!is_held_back) return std::nullopt;
-  return LinkObjection{"data_held_back", "more data: there is some, and it fits"};
+  const std::deque<FfRequest>* const following = next_to_send();
+  const kernel::Duration gap =
+      fieldbus_dll::octets(configuration_.rules.link, configuration_.rules.link.inter_pdu_delay_octets);
+  const bool may_follow = following != nullptr && fits(following->front(), dlpdu.end + gap - kLinkRounding);
+  const bool must_follow = following != nullptr && fits(following->front(), dlpdu.end + gap + delay());
+  if (is_final) token_.reset();
+  if (!configuration_.rules.returns_with_last_data) {
+    if (is_final) return LinkObjection{"returned_with_data", "no F: the token is returned by an RT"};
+    return std::nullopt;
+  }
+  if (is_final && must_follow)
+    return LinkObjection{"data_held_back", "more data: there is some, and it fits"};
+  if (!is_final && !may_follow)
+    return LinkObjection{"last_without_final",
+                         "F: nothing else fits or is there, so this one returns the token"};
+  return std::nullopt;
 }
 
 std::optional<LinkObjection> FfModel::return_token(const DrivenDlpdu& dlpdu) {
-  const auto next = next_to_send();
-  const bool is_held_back = next && fits(*next, dlpdu.begin);
+  std::deque<FfRequest>* const next = next_to_send();
+  const bool is_held_back = next != nullptr && fits(next->front(), dlpdu.begin);
+  std::optional<LinkObjection> objection;
+  if (is_held_back)
+    objection = LinkObjection{"data_held_back", words_of(dt1_of(next->front()), configuration_.rules)};
   token_.reset();
-  if (!is_held_back) return std::nullopt;
-  return LinkObjection{"data_held_back", fmt::format("{:02X}", fmt::join(next->data, " "))};
+  return objection;
 }
 
 std::optional<LinkObjection> FfModel::be_silent() {
-  const auto& link = configuration_.rules.link;
-  const Time slot_later = earliest() + fieldbus_dll::octets(link, link.slot_time_octets);
   if (const auto answer = std::exchange(answer_, std::nullopt)) {
-    if (slot_later > answer->until || answer->may_be_left) return std::nullopt;
-    return LinkObjection{"no_answer", text_of_any(answer->allowed)};
+    if (earliest() + delay() > answer->until) return std::nullopt;
+    return LinkObjection{"no_answer", words_of_any(answer->allowed, configuration_.rules)};
   }
   const auto token = std::exchange(token_, std::nullopt);
-  if (!token || end_of(1, latest_of_token()) > token->ends) return std::nullopt;
+  if (!token || end_of(1, earliest() + delay()) > token->ends) return std::nullopt;
   return LinkObjection{"token_not_returned", "the token is returned, by RT or by F"};
 }
 

@@ -18,196 +18,363 @@ namespace {
 using fieldbus_dll::FfAddress;
 using fieldbus_dll::Priority;
 
-constexpr std::array<std::int64_t, 4> kFfBuffers{0, 0, 1, 2};
-constexpr std::array<std::int64_t, 3> kFfDestinations{0, 1, 2};
-constexpr std::array<std::int64_t, 7> kFfDurations{12, 14, 28, 29, 60, 200, 1000};
-constexpr std::array<std::int64_t, 6> kFfSizes{0, 1, 8, 64, 65, 129};
-constexpr std::array<std::int64_t, 3> kFfWaits{1, 40, 1000};
+// Numbers that words choose from: which node, address or kind it is.
+constexpr FfAddress kFfLink = 0x0001'0000;
+constexpr FfAddress kLongPublished = kFfLink | FfBench::kPublished;
+constexpr FfAddress kLongSubscribed = kFfLink | FfBench::kSubscribed;
+constexpr unsigned kFfLongBit = 0x08;
+
+constexpr std::array<std::int64_t, 16> kFfNodes{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4};
+constexpr std::array<std::int64_t, 10> kFfProbedNodes{0, 0, 0, 0, 2, 2, 2, 1, 3, 4};
+constexpr std::array<std::int64_t, 24> kFfBuffers{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1,
+                                                  1, 1, 2, 2, 2, 3, 4, 5, 6, 7, 8, 9};
+constexpr std::array<std::int64_t, 11> kFfWritten{0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 3};
+constexpr std::array<std::int64_t, 8> kFfWriteSizes{0, 1, 2, 8, 9, 63, 64, 65};
+constexpr std::array<std::int64_t, 16> kFfPriorities{1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 0};
+constexpr std::array<std::int64_t, 5> kFfRequestPriorities{1, 2, 3, 2, 3};
+constexpr std::array<std::int64_t, 20> kFfDurations{
+    1, 12, 13, 14, 15, 20, 28, 29, 30, 31, 60, 61, 127, 200, 256, 1'000, 4'096, 32'768, 33'000, 65'535};
+constexpr std::array<std::int64_t, 12> kFfSizes{0, 1, 2, 8, 9, 10, 63, 64, 65, 128, 129, 256};
+constexpr std::array<std::int64_t, 8> kFfTimes{1, 1, 1, 1, 1, 1, 40, 150};
+constexpr std::array<std::int64_t, 8> kFfWrites{1, 1, 1, 1, 2, 2, 128, 255};
 
 enum class FfWord : std::uint8_t {
   token,
   compel,
   probe,
-  token_elsewhere,
-  probe_elsewhere,
-  time,
+  other,
   data,
   published,
+  activation,
+  noise,
   submit,
   write,
+  supply,
+  one,
   wait
 };
 
 SequenceNumber ff_priority(std::string_view name = "priority") {
-  return {name, 1, 3, 1};
+  return {name, 0, 3, 2, kFfPriorities, true};
+}
+SequenceNumber ff_truth(std::string_view name) {
+  return {name, 0, 1, 0};
+}
+SequenceNumber ff_node() {
+  return {"node", 0, 4, 0, kFfNodes, true};
 }
 
 void expect_judgeable_device(const fieldbus_dll::FfConfiguration& device) {
   expect_time_for_answers(device.rules.link);
 }
 
+std::vector<SequenceWord> ff_device_words() {
+  // In the order of FfWord.
+  return {{.word = "token",
+           .meaning = "a PT for what is at least as urgent; to the device, or to others",
+           .numbers = {ff_node(),
+                       ff_priority("least"),
+                       {"octets", 0, 65'535, 200, kFfDurations},
+                       ff_truth("first"),
+                       link_length(),
+                       link_silence()},
+           .units = 8,
+           .weight = 20},
+          {.word = "compel",
+           .meaning = "a CD for a buffer of the device, or for other addresses",
+           .numbers = {{"buffer", 0, 9, 0, kFfBuffers, true},
+                       ff_priority(),
+                       ff_truth("final"),
+                       link_length(),
+                       link_silence()},
+           .units = 7,
+           .weight = 18},
+          {.word = "probe",
+           .meaning = "a PN, to the device, or to others",
+           .numbers = {{"node", 0, 4, 0, kFfProbedNodes, true}, link_length(), link_silence()},
+           .units = 6,
+           .weight = 5},
+          {.word = "other",
+           .meaning = "TD, CL, TL, RT, SR, RI, PR, CT, IDLE, or what is none, with this in its last octet",
+           .numbers = {{"kind", 0, 10, 0}, {"value", 0, 255, 1}, link_length(), link_silence()},
+           .units = 7,
+           .weight = 8},
+          {.word = "data",
+           .meaning = "a DT1 to the device, to all or to others, from a user or an entity",
+           .numbers = {{"to", 0, 9, 0},
+                       {"from", 0, 4, 0},
+                       ff_priority(),
+                       ff_truth("final"),
+                       {"first", 0, 3, 0},
+                       {"size", 0, 260, 8, kFfSizes},
+                       link_silence()},
+           .units = 11,
+           .weight = 9},
+          {.word = "published",
+           .meaning = "a DT3 to which the device has subscribed, or another",
+           .numbers = {{"from", 0, 5, 0},
+                       ff_priority(),
+                       ff_truth("final"),
+                       {"number", 0, 255, 1},
+                       {"size", 0, 260, 8, kFfSizes},
+                       link_silence()},
+           .units = 10,
+           .weight = 6},
+          {.word = "activation",
+           .meaning = "a DT1 of the scheduler's entity to that of the device: 01, and more",
+           .numbers = {ff_priority(), {"long", 0, 1, 0}, {"more", 0, 2, 0}, link_silence()},
+           .units = 11,
+           .weight = 6},
+          {.word = "noise",
+           .meaning = "levels on the line that are no frame",
+           .numbers = {{"octets", 1, 60, 4}, link_silence()},
+           .weight = 3},
+          {.word = "submit",
+           .meaning = "the user submits data for another node, so many times",
+           .numbers = {{"priority", 1, 3, 2, kFfRequestPriorities},
+                       {"to", 0, 4, 0},
+                       {"size", 0, 260, 8, kFfSizes},
+                       {"times", 1, 300, 1, kFfTimes, true}},
+           .weight = 20},
+          {.word = "write",
+           .meaning = "the user writes a buffer, so many times",
+           .numbers = {{"buffer", 0, 3, 0, kFfWritten, true},
+                       {"size", 0, 257, 8, kFfWriteSizes},
+                       {"times", 1, 300, 1, kFfWrites},
+                       ff_truth("same")},
+           .weight = 18},
+          {.word = "supply", .meaning = "is off, or comes", .numbers = {ff_truth("on")}, .weight = 1},
+          {.word = "one", .meaning = "until the device has sent one DLPDU, or does not", .weight = 8},
+          {.word = "wait",
+           .meaning = "silence of so many octet durations",
+           .numbers = {link_wait()},
+           .weight = 3}};
+}
+
 SequenceVocabulary ff_device_vocabulary() {
   const fieldbus_dll::FfConfiguration as_made;
-  // In the order of FfWord.
-  return {
-      .words = {{.word = "token",
-                 .meaning = "a PT for the device, for what is at least as urgent",
-                 .numbers = {ff_priority("least"), {"octets", 1, 2000, 200, kFfDurations}, link_silence()},
-                 .units = 8,
-                 .weight = 6},
-                {.word = "compel",
-                 .meaning = "a CD for buffer 0, 1 or for one that does not exist",
-                 .numbers = {{"buffer", 0, 2, 0, kFfBuffers}, ff_priority(), link_silence()},
-                 .units = 7,
-                 .weight = 4},
-                {.word = "probe",
-                 .meaning = "a PN for the device",
-                 .numbers = {link_silence()},
-                 .units = 6,
-                 .weight = 1},
-                {.word = "token_elsewhere",
-                 .meaning = "a PT for another node",
-                 .numbers = {link_silence()},
-                 .units = 8,
-                 .weight = 1},
-                {.word = "probe_elsewhere",
-                 .meaning = "a PN for another node",
-                 .numbers = {link_silence()},
-                 .units = 6,
-                 .weight = 2},
-                {.word = "time", .meaning = "a TD", .numbers = {link_silence()}, .units = 11, .weight = 1},
-                {.word = "data",
-                 .meaning = "a DT1 for the user, for all or for another node",
-                 .numbers = {{"to", 0, 2, 0, kFfDestinations}, {"size", 2, 32, 2}, link_silence()},
-                 .units = 11,
-                 .weight = 2},
-                {.word = "published",
-                 .meaning = "a DT3 to which the device has subscribed, or another",
-                 .numbers = {{"from", 0, 1, 0}, {"size", 2, 32, 2}, link_silence()},
-                 .units = 10,
-                 .weight = 2},
-                {.word = "submit",
-                 .meaning = "the user submits data for another node",
-                 .numbers = {ff_priority(), {"size", 0, 260, 8, kFfSizes}},
-                 .weight = 8},
-                {.word = "write",
-                 .meaning = "the user writes buffer 0 or 1",
-                 .numbers = {{"buffer", 0, 1, 0}, {"size", 0, 66, 8, kFfSizes}},
-                 .weight = 4},
-                {.word = "wait",
-                 .meaning = "silence of so many octet durations",
-                 .numbers = {{"octets", 1, 10'000, 40, kFfWaits}},
-                 .weight = 1}},
-      .unit = "octet",
-      .levels_per_unit = kFlipsOfAnOctet,
-      .settings = sequence_settings(fieldbus_dll::kFfTable, &as_made, kFixedOfLink),
-      .objection = objection_of(fieldbus_dll::kFfTable, as_made, expect_judgeable_device)};
+  return {.words = ff_device_words(),
+          .unit = "octet",
+          .levels_per_unit = kFlipsOfAnOctet,
+          .settings = sequence_settings(fieldbus_dll::kFfTable, &as_made, kFixedOfLink),
+          .objection = objection_of(fieldbus_dll::kFfTable, as_made, expect_judgeable_device)};
 }
+
+// What the words of a sequence send, from the numbers of a command.
+class FfWords {
+ public:
+  explicit FfWords(FfBench& bench) : bench_(bench), codes_(bench.rules().codes) {}
+
+  Octets octets_of(FfWord word, const std::vector<std::int64_t>& numbers) const {
+    switch (word) {
+      case FfWord::token:
+        return with_length(
+            {control(codes_.pt, numbers[1], numbers[3] != 0), node(numbers[0]),
+             static_cast<std::uint8_t>(numbers[2] >> 8), static_cast<std::uint8_t>(numbers[2])},
+            numbers[4]);
+      case FfWord::compel:
+        return with_length(compelling(numbers), numbers[3]);
+      case FfWord::probe:
+        return with_length({codes_.pn, node(numbers[0])}, numbers[1]);
+      case FfWord::other:
+        return with_length(other(numbers[0], static_cast<std::uint8_t>(numbers[1])), numbers[2]);
+      case FfWord::data:
+        return data(numbers);
+      case FfWord::published:
+        return published(numbers);
+      default:
+        return activation(numbers);
+    }
+  }
+
+  FfAddress buffer(std::int64_t number) const {
+    const auto own = static_cast<FfAddress>(bench_.node()) << 8;
+    constexpr FfAddress kTopOfNode = 0x8000;
+    const std::array<FfAddress, 10> all{FfBench::kPublished,
+                                        FfBench::kPublished + 1,
+                                        kLongPublished,
+                                        FfBench::kPublished + 2,
+                                        own,
+                                        kLongPublished + kFfLink,
+                                        FfBench::kSubscribed,
+                                        FfBench::kPublished ^ kTopOfNode,
+                                        kLongPublished + 1,
+                                        FfBench::kPublished};
+    return all.at(static_cast<std::size_t>(number));
+  }
+  FfAddress destination(std::int64_t number) const {
+    const std::array<FfAddress, 5> all{FfBench::kPeersAddress, kFfLink | FfBench::kPeersAddress,
+                                       fieldbus_dll::kEverybody, 0xFFFF'2230,
+                                       kFfLink | fieldbus_dll::kEverybody};
+    return all.at(static_cast<std::size_t>(number));
+  }
+
+ private:
+  std::uint8_t control(unsigned code, std::int64_t priority, bool is_final, bool is_long = false) const {
+    return static_cast<std::uint8_t>(code | static_cast<unsigned>(priority) |
+                                     (is_final ? fieldbus_dll::kFinalBit : 0U) | (is_long ? kFfLongBit : 0U));
+  }
+  std::uint8_t node(std::int64_t number) const {
+    const std::array<int, 5> all{bench_.node(), bench_.node() ^ 0x80, bench_.node() + 1, bench_.node() - 1,
+                                 0xFF};
+    return static_cast<std::uint8_t>(all.at(static_cast<std::size_t>(number)));
+  }
+  // The last one has L and no link, which makes it no address.
+  Octets compelling(const std::vector<std::int64_t>& numbers) const {
+    const FfAddress address = buffer(numbers[0]);
+    const bool is_long = fieldbus_dll::is_long(address) || numbers[0] == 9;
+    Octets octets{control(codes_.cd, numbers[1], numbers[2] != 0, is_long)};
+    append_address(octets, address, is_long);
+    return octets;
+  }
+  Octets other(std::int64_t kind, std::uint8_t value) const {
+    const std::array<Octets, 11> all{Octets{codes_.td, 0, 0, 0, 1, 0, value},
+                                     Octets{codes_.cl, value},
+                                     Octets{codes_.tl, value, 0, 1},
+                                     Octets{codes_.rt},
+                                     Octets{codes_.sr, value},
+                                     Octets{codes_.ri, 0, value},
+                                     Octets{codes_.pr, value},
+                                     Octets{codes_.ct, value},
+                                     Octets{codes_.idle},
+                                     Octets{0xE2, bench_.node(), value},
+                                     Octets{codes_.ri, 0, 0}};
+    return all.at(static_cast<std::size_t>(kind));
+  }
+  Octets data(const std::vector<std::int64_t>& numbers) const {
+    const auto own = static_cast<FfAddress>(bench_.node()) << 8;
+    constexpr FfAddress kTopOfNode = 0x8000;
+    const std::array<FfAddress, 10> to{own | 0x40,
+                                       fieldbus_dll::kEverybody,
+                                       own,
+                                       FfBench::kPeersAddress,
+                                       kFfLink | own | 1,
+                                       kFfLink | own,
+                                       kFfLink | fieldbus_dll::kEverybody,
+                                       (own | 1) ^ kTopOfNode,
+                                       0xFFFF'0000 | own | 0xFF,
+                                       own | 1};
+    const std::array<FfAddress, 5> from{FfBench::kPeersAddress, fieldbus_dll::address_of(FfBench::kScheduler),
+                                        0x2100, 0x22FF, fieldbus_dll::address_of(FfBench::kPeer)};
+    const FfAddress destination = to.at(static_cast<std::size_t>(numbers[0]));
+    // The last of each has L, and one of its addresses no link.
+    const bool is_long = fieldbus_dll::is_long(destination) || numbers[0] == 9;
+    Octets octets{control(codes_.dt1, numbers[2], numbers[3] != 0, is_long)};
+    append_address(octets, destination, is_long);
+    append_address(
+        octets, from.at(static_cast<std::size_t>(numbers[1])) | (is_long && numbers[1] != 4 ? kFfLink : 0U),
+        is_long);
+    return with_content(std::move(octets), numbers[4], numbers[5]);
+  }
+  Octets published(const std::vector<std::int64_t>& numbers) const {
+    const std::array<FfAddress, 6> all{FfBench::kSubscribed,     kLongSubscribed,
+                                       FfBench::kSubscribed + 1, kLongSubscribed + kFfLink,
+                                       FfBench::kPublished,      FfBench::kSubscribed};
+    const FfAddress from = all.at(static_cast<std::size_t>(numbers[0]));
+    const bool is_long = fieldbus_dll::is_long(from) || numbers[0] == 5;
+    Octets octets{control(codes_.dt3, numbers[1], numbers[2] != 0, is_long)};
+    append_address(octets, from, is_long);
+    octets.push_back(static_cast<std::uint8_t>(numbers[3]));
+    return with_content(std::move(octets), 0, numbers[4]);
+  }
+  Octets activation(const std::vector<std::int64_t>& numbers) const {
+    const bool is_long = numbers[1] != 0;
+    const FfAddress link = is_long ? kFfLink : 0U;
+    Octets octets{control(codes_.dt1, numbers[0], false, is_long)};
+    append_address(octets, link | fieldbus_dll::address_of(bench_.node()), is_long);
+    append_address(octets, link | fieldbus_dll::address_of(FfBench::kScheduler), is_long);
+    octets.push_back(static_cast<std::uint8_t>(fieldbus_dll::SpduKind::activation));
+    octets.insert(octets.end(), static_cast<std::size_t>(numbers[2]), 0x5A);
+    return octets;
+  }
+  // By its first octet it is what entities know, or do not.
+  Octets with_content(Octets octets, std::int64_t first, std::int64_t size) const {
+    Octets content = bench_.numbered_data(static_cast<std::size_t>(size));
+    if (first > 0 && !content.empty()) content[0] = static_cast<std::uint8_t>(first - 1);
+    octets.insert(octets.end(), content.begin(), content.end());
+    return octets;
+  }
+
+  FfBench& bench_;
+  const fieldbus_dll::FfCodes& codes_;
+};
 
 class FfSequenceRun {
  public:
   FfSequenceRun(FfBench& bench, CaseJudge& judge)
-      : bench_(bench), judge_(judge), model_(bench.configuration()) {
+      : bench_(bench), judge_(judge), words_(bench), model_(bench.configuration()) {
     // That it was activated is known; when it last spoke is long ago.
     model_.hear_noise(bench.now());
+    bench_.user().reports.clear();
   }
 
   void run(const Sequence& sequence) {
     for (const SequenceCommand& command : sequence.commands) execute(command);
     await_response_window();
-    judge_user();
   }
 
  private:
   void execute(const SequenceCommand& command) {
     const auto word = static_cast<FfWord>(command.word);
-    if (word == FfWord::wait) {
-      await_response_window();
-      return bench_.wait(bench_.octets(command.numbers[0]));
+    switch (word) {
+      case FfWord::wait:
+        await_response_window();
+        return bench_.wait(bench_.octets(command.numbers[0]));
+      case FfWord::one:
+        if (const auto one = bench_.next()) return object(model_.say(*one), bench_.words(*one), one->begin);
+        return await_response_window();
+      case FfWord::supply:
+        return set_supply(command.numbers[0] != 0);
+      case FfWord::submit:
+        return submit(command.numbers);
+      case FfWord::write:
+        return write(command.numbers);
+      case FfWord::noise:
+        send_noise(bench_, command.numbers[0]);
+        model_.hear_noise(bench_.now());
+        return settle(command.numbers.back());
+      default:
+        break;
     }
-    if (word == FfWord::submit) return submit(command);
-    if (word == FfWord::write) return write(command);
-    if (send_link_command(bench_, octets_of(word, command), command)) {
-      hear(word, command);
+    const Octets octets = words_.octets_of(word, command.numbers);
+    if (send_link_command(bench_, octets, command)) {
+      model_.hear(octets, bench_.now());
     } else {
       model_.hear_noise(bench_.now());
     }
-    const std::int64_t silence = command.numbers.back();
-    if (silence >= bench_.link().inter_pdu_delay_octets) return await_response_window();
+    settle(command.numbers.back());
+  }
+
+  void settle(std::int64_t silence) {
+    if (silence >= bench_.link().inter_pdu_delay_octets || silence == kLinkSettles)
+      return await_response_window();
     bench_.wait(bench_.octets(silence));
     judge_said();
   }
 
-  FfAddress buffer(std::int64_t number) const { return FfBench::kPublished + static_cast<FfAddress>(number); }
+  void set_supply(bool is_on) {
+    if (is_on == model_.has_supply()) return;
+    bench_.set_supply(is_on);
+    model_.set_supply(is_on);
+  }
 
-  Octets octets_of(FfWord word, const SequenceCommand& command) {
-    const auto& codes = bench_.rules().codes;
-    const auto number = [&](std::size_t n) { return command.numbers.at(n); };
-    const auto priority = [&](std::size_t n) { return static_cast<Priority>(number(n)); };
-    content_ = word == FfWord::data || word == FfWord::published
-                   ? bench_.numbered_data(static_cast<std::size_t>(number(1)))
-                   : Octets{};
-    switch (word) {
-      case FfWord::token:
-        return bench_.pt(priority(0), static_cast<unsigned>(number(1)));
-      case FfWord::compel: {
-        Octets cd = bench_.cd(buffer(number(0)));
-        cd[0] = bench_.control(codes.cd, priority(1));
-        return cd;
-      }
-      case FfWord::probe:
-        return {codes.pn, bench_.node()};
-      case FfWord::token_elsewhere:
-        return {bench_.control(codes.pt, Priority::normal), FfBench::kPeer, 0, 200};
-      case FfWord::probe_elsewhere:
-        return {codes.pn, FfBench::kPeer};
-      case FfWord::time:
-        return {codes.td, 0, 0, 0, 1, 0, 0};
-      case FfWord::data:
-        return bench_.dt1(Priority::normal, destination(number(0)), FfBench::kPeersAddress, content_);
-      default:
-        return bench_.dt3(FfBench::kSubscribed + static_cast<FfAddress>(number(0)), content_);
+  // Who has no supply is asked for nothing.
+  void submit(const std::vector<std::int64_t>& numbers) {
+    for (std::int64_t n = 0; n < numbers[3] && model_.has_supply(); ++n) {
+      const fieldbus_dll::FfRequest request{static_cast<Priority>(numbers[0]), words_.destination(numbers[1]),
+                                            bench_.numbered_data(static_cast<std::size_t>(numbers[2]))};
+      judge_taken(bench_.submit(request.priority, request.data, request.destination), model_.submit(request),
+                  request.data);
     }
   }
 
-  FfAddress destination(std::int64_t number) const {
-    constexpr FfAddress kUserSelector = 0x40;
-    const std::array<FfAddress, 3> all{fieldbus_dll::address_of(bench_.node(), kUserSelector),
-                                       fieldbus_dll::kEverybody, FfBench::kPeersAddress};
-    return all.at(static_cast<std::size_t>(number));
-  }
-
-  void hear(FfWord word, const SequenceCommand& command) {
-    const kernel::Time end = bench_.now();
-    const auto number = [&](std::size_t n) { return command.numbers.at(n); };
-    switch (word) {
-      case FfWord::token:
-        return model_.hear_token(static_cast<Priority>(number(0)), static_cast<unsigned>(number(1)), end);
-      case FfWord::compel:
-        return model_.hear_cd(buffer(number(0)), static_cast<Priority>(number(1)), end);
-      case FfWord::probe:
-        return model_.hear_probe(end);
-      case FfWord::data:
-        if (number(0) < 2) data_.push_back(content_);
-        return model_.hear_other(false, end);
-      case FfWord::published:
-        if (number(0) == 0) published_.push_back(content_);
-        return model_.hear_other(false, end);
-      default:
-        return model_.hear_other(true, end);
+  void write(const std::vector<std::int64_t>& numbers) {
+    Octets data = bench_.numbered_data(static_cast<std::size_t>(numbers[1]));
+    for (std::int64_t n = 0; n < numbers[2] && model_.has_supply(); ++n) {
+      if (n > 0 && numbers[3] == 0) data = bench_.numbered_data(data.size());
+      const FfAddress address = words_.buffer(numbers[0]);
+      judge_taken(bench_.write(address, data), model_.write(address, data), data);
     }
-  }
-
-  void submit(const SequenceCommand& command) {
-    const auto priority = static_cast<Priority>(command.numbers[0]);
-    const Octets data = bench_.numbered_data(static_cast<std::size_t>(command.numbers[1]));
-    judge_taken(bench_.submit(priority, data), model_.submit(priority, data), data);
-  }
-
-  void write(const SequenceCommand& command) {
-    const Octets data = bench_.numbered_data(static_cast<std::size_t>(command.numbers[1]));
-    const FfAddress address = buffer(command.numbers[0]);
-    judge_taken(bench_.write(address, data), model_.write(address, data), data);
   }
 
   void judge_taken(bool is_taken, bool is_right, const Octets& data) {
@@ -220,43 +387,37 @@ class FfSequenceRun {
   void judge_said() {
     while (bench_.next_begins(bench_.now())) {
       const DrivenDlpdu one = *bench_.next();
-      object(model_.say(one), one.text(), one.begin);
+      object(model_.say(one), bench_.words(one), one.begin);
     }
   }
 
   void await_response_window() {
-    for (const DrivenDlpdu& one : bench_.listen()) object(model_.say(one), one.text(), one.begin);
+    for (const DrivenDlpdu& one : bench_.listen()) object(model_.say(one), bench_.words(one), one.begin);
     object(model_.be_silent(), "silence", bench_.now());
+    judge_reports();
   }
 
   void object(const std::optional<LinkObjection>& objection, const std::string& actual, kernel::Time when) {
     if (objection) judge_.fail(objection->reason, {{objection->expected}, actual, when});
   }
 
-  void judge_user() {
-    const auto contents = [](const std::vector<fieldbus_dll::FfDlpdu>& dlpdus) {
-      std::vector<Octets> all;
-      for (const auto& one : dlpdus) all.push_back(one.data);
-      return all;
-    };
-    judge_.expect(contents(bench_.user().data) == data_, "data_not_delivered",
-                  "the user gets the data of each DT1 for it or for all", "other data, or none");
-    judge_.expect(contents(bench_.user().published) == published_, "published_not_delivered",
-                  "the user gets what it has subscribed to, and nothing else", "other data, or none");
+  void judge_reports() {
+    judge_reported(judge_, model_.take_reports(), std::exchange(bench_.user().reports, {}), bench_.now());
   }
 
   FfBench& bench_;
   CaseJudge& judge_;
+  FfWords words_;
   FfModel model_;
-  Octets content_;
-  std::vector<Octets> data_;
-  std::vector<Octets> published_;
 };
 
 std::vector<PartialSource> ff_sequence_details() {
   std::vector<PartialSource> details = ff_details();
   details.push_back({link_sources::own("a token is returned by F or by RT as soon as nothing fits"),
                      {"token_not_returned", "data_held_back", "speaks_unasked"}});
+  details.push_back({link_sources::own("of what is received its user is given this"),
+                     {"not_delivered", "delivered_unasked", "delivered_otherwise", "last_without_final",
+                      "returned_with_data"}});
   details.push_back(
       {link_sources::own("a published buffer has the number of its writes"), {"published_wrong"}});
   return details;
@@ -285,6 +446,13 @@ const SequenceRole& ff_device_sequence_role() {
        {DerivedKind::repetitions, {"tells_other_source", "told_otherwise"}},
        {DerivedKind::settings, {"tells_no_writes", "told_otherwise"}}}};
   return role;
+}
+
+FfNeeds ff_device_sequence_needs() {
+  return {.change = [](fieldbus_dll::FfConfiguration& device) {
+    device.published.push_back(kLongPublished);
+    device.subscribed.push_back(kLongSubscribed);
+  }};
 }
 
 void run_ff_device_sequence(const Sequence& sequence, FfBench& bench, CaseJudge& judge) {

@@ -12,6 +12,9 @@ namespace fieldproof::conformance {
 // "fieldbus_dll/ff_device/check/follows_the_model".
 const SequenceRole& ff_device_sequence_role();
 
+// The device of the sequences publishes and hears short and long addresses.
+FfNeeds ff_device_sequence_needs();
+
 // Does the commands in order and judges each DLPDU of the device against the model. The tester either waits
 // until the device has nothing to say any more, or goes on before V(MID) is over, when it may not have begun:
 // nowhere does it speak into an answer.

@@ -65,6 +65,23 @@ void IsaBench::order_transfer(std::uint8_t node) {
   refresh_iut();
 }
 
+std::string IsaReport::text() const {
+  return data ? describe(*data) : fmt::format("{} of {:02X}", text_of(event.kind), event.node);
+}
+
+void IsaBench::set_supply(bool is_on) {
+  if (is_on) {
+    station_->start(now());
+  } else {
+    station_->stop(now());
+  }
+  refresh_iut();
+}
+
+std::string IsaBench::words(const DrivenDlpdu& dlpdu) const {
+  return dlpdu.has_right_check ? words_of(dlpdu.octets, rules()) : dlpdu.text();
+}
+
 // ---- DLPDUs of the tester ----
 
 Octets IsaBench::et(Priority least) const {

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "conformance/fieldbus_dll/link_bench.hpp"
@@ -31,6 +33,15 @@ struct IsaSetting : PlannedSetting<fieldbus_dll::IsaDevice, fieldbus_dll::IsaCon
 // Throws kernel::Error(configuration) where no reply can come in time.
 void expect_judgeable_isa(const fieldbus_dll::IsaConfiguration& station);
 
+// What the IUT gives its user: data, or an event.
+struct IsaReport {
+  std::optional<fieldbus_dll::IsaDlpdu> data{};
+  fieldbus_dll::IsaEvent event{fieldbus_dll::IsaEventKind::reply_missing};
+
+  std::string text() const;
+  friend bool operator==(const IsaReport&, const IsaReport&) = default;
+};
+
 // The IUT's user.
 class IsaUpperTester final : public fieldbus_dll::IsaUser {
  public:
@@ -41,14 +52,19 @@ class IsaUpperTester final : public fieldbus_dll::IsaUser {
 
   void on_data(const fieldbus_dll::IsaDlpdu& dlpdu, kernel::Time when) override {
     deliveries.push_back({dlpdu, when});
+    reports.push_back({dlpdu});
   }
-  void on_event(const fieldbus_dll::IsaEvent& event, kernel::Time) override { events.push_back(event); }
+  void on_event(const fieldbus_dll::IsaEvent& event, kernel::Time) override {
+    events.push_back(event);
+    reports.push_back({{}, event});
+  }
   bool is_reply_coming(fieldbus_dll::Priority, kernel::Time) override { return works_on_reply; }
 
   bool was_delivered(const Octets& data) const;
 
   std::vector<Delivery> deliveries;
   std::vector<fieldbus_dll::IsaEvent> events;
+  std::vector<IsaReport> reports;  // all of these, in order
   bool works_on_reply = false;
 };
 
@@ -76,6 +92,8 @@ class IsaBench final : public LinkBench {
     return submit(fieldbus_dll::IsaService::unit_data, priority, data);
   }
   void order_transfer(std::uint8_t node);
+  void set_supply(bool is_on);
+  std::string words(const DrivenDlpdu& dlpdu) const override;
 
   // ---- DLPDUs of the tester ----
   std::uint8_t control(std::uint8_t code, Priority priority) const {

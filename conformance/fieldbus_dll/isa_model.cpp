@@ -1,17 +1,14 @@
 #include "conformance/fieldbus_dll/isa_model.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <utility>
-
-#include "conformance/fieldbus_dll/link_bench.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
+using fieldbus_dll::IsaEventKind;
 using fieldbus_dll::IsaService;
+using fieldbus_dll::IsaType;
 using fieldbus_dll::Priority;
 using kernel::Duration;
 using kernel::Time;
@@ -27,9 +24,25 @@ std::uint8_t control_with(std::uint8_t code, Priority priority) {
 
 }  // namespace
 
-bool IsaModel::submit(IsaService service, Priority priority, std::uint8_t destination, const Octets& data) {
+void IsaModel::set_supply(bool is_on) {
+  has_supply_ = is_on;
+  if (is_on) return;
+  to_send_ = {};
+  replies_ = {};
+  token_.reset();
+  awaited_.reset();
+  answer_.reset();
+}
+
+bool IsaModel::submit(IsaService service, Priority priority, std::uint8_t destination, const Octets& data,
+                      Time now) {
   const auto number = static_cast<std::size_t>(priority);
   if (data.size() > rules_.link.most_data.at(number - 1)) return false;
+  const bool is_address = (destination >= rules_.first_address && destination <= rules_.last_address) ||
+                          (service == IsaService::unit_data && destination == rules_.everybody);
+  if (service != IsaService::reply_data && !is_address) return false;
+  if (service == IsaService::compel && !data.empty()) return false;
+  if (service == IsaService::reply_data) reply_since_ = now;
   (service == IsaService::reply_data ? replies_ : to_send_)
       .at(number)
       .push_back({service == IsaService::compel, priority, destination, data});
@@ -45,6 +58,42 @@ bool IsaModel::is_another_dlpdu_for_waiting(Time end) {
   if (!std::exchange(awaited_, std::nullopt)) return false;
   token_.reset();
   return true;
+}
+
+void IsaModel::hear_noise(Time end) {
+  silent_since_ = end;
+  if (awaited_ && awaited_->until <= end) miss_reply();
+}
+
+void IsaModel::miss_reply() {
+  report(IsaEventKind::reply_missing, awaited_->node);
+  resumes_at_ = awaited_->until;
+  awaited_.reset();
+}
+
+void IsaModel::hear(const Octets& octets, Time begin, Time end) {
+  if (awaited_ && awaited_->until <= begin) miss_reply();
+  const auto dlpdu = isa_dlpdu_of(octets, rules_);
+  if (!dlpdu || !has_supply_) return hear_noise(end);
+  const bool is_mine = dlpdu->destination == address_;
+  const bool is_reply = awaited_ && dlpdu->type == IsaType::dt && is_mine && dlpdu->source == awaited_->node;
+  const bool is_another = awaited_ && !is_reply;
+  if (is_another) report(IsaEventKind::token_dropped, dlpdu->source);
+  const bool is_token = dlpdu->type == IsaType::et || dlpdu->type == IsaType::es;
+  if (is_token && is_mine) {
+    hear_token(dlpdu->priority,
+               dlpdu->type == IsaType::es ? std::optional<unsigned>(dlpdu->duration) : std::nullopt,
+               dlpdu->source, end);
+  } else if (dlpdu->type == IsaType::cd && is_mine) {
+    hear_cd(dlpdu->priority, dlpdu->source, end);
+  } else if (is_reply) {
+    hear_dt(dlpdu->source, end);
+  } else {
+    hear_other(is_of_scheduler(dlpdu->type), end);
+  }
+  const bool is_data = (dlpdu->type == IsaType::dt && is_mine) ||
+                       (dlpdu->type == IsaType::du && (is_mine || dlpdu->destination == rules_.everybody));
+  if (is_data && !is_another) reports_.push_back({*dlpdu});
 }
 
 void IsaModel::hear_other(bool is_of_scheduler, Time end) {
@@ -83,7 +132,12 @@ Duration IsaModel::frame_of(std::size_t octets) const {
 
 Time IsaModel::earliest() const {
   const Time silent = silent_since_ + times(rules_.link.inter_pdu_delay_octets);
-  return awaited_ ? std::max(awaited_->until, silent) : silent;
+  return std::max(awaited_ ? awaited_->until : resumes_at_, silent);
+}
+
+// Before anything was seen of it: a slot time.
+Duration IsaModel::delay() const {
+  return slowest_.value_or(times(rules_.link.slot_time_octets));
 }
 
 std::deque<IsaModel::Request>* IsaModel::most_urgent(Queues& queues, Priority least) {
@@ -107,6 +161,14 @@ std::optional<LinkObjection> IsaModel::say(const DrivenDlpdu& dlpdu) {
     return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
   if (!answer_ && !token_)
     return LinkObjection{"speaks_unasked", "silence: nothing that it received asks for it"};
+  const bool was_waiting = awaited_.has_value();
+  if (awaited_) miss_reply();
+  const Time from = answer_ ? std::max(earliest(), reply_since_) : earliest();
+  const Duration later = std::max(dlpdu.begin - from, Duration{});
+  if (was_waiting && slowest_ && later > *slowest_ + times(1))
+    return LinkObjection{"waits_too_long_for_reply",
+                         "it goes on when V(RR) is over, as soon as it does after V(MID)"};
+  slowest_ = std::max(slowest_.value_or(later), later);
   auto objection = answer_ ? say_reply(dlpdu) : say_under_token(dlpdu);
   silent_since_ = dlpdu.end;
   return objection;
@@ -124,12 +186,14 @@ Octets IsaModel::expected_reply() {
 }
 
 std::optional<LinkObjection> IsaModel::say_reply(const DrivenDlpdu& dlpdu) {
+  if (works_ && most_urgent(replies_, answer_->least) == nullptr)
+    return LinkObjection{"does_not_wait_for_user", "silence: its user works on data for the CD"};
   const Octets expected = expected_reply();
   const Time until = std::exchange(answer_, std::nullopt)->until;
   if (dlpdu.begin > until + kLinkRounding)
     return LinkObjection{"replies_too_late", "it begins within V(FD), or is not sent"};
   if (dlpdu.octets == expected) return std::nullopt;
-  return LinkObjection{"reply_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
+  return LinkObjection{"reply_wrong", words_of(expected, rules_)};
 }
 
 bool IsaModel::fits(const Request& request, Time begin) const {
@@ -145,8 +209,7 @@ bool IsaModel::fits(const Request& request, Time begin) const {
 }
 
 std::optional<LinkObjection> IsaModel::say_under_token(const DrivenDlpdu& dlpdu) {
-  const Time since = awaited_ ? earliest() : silent_since_;
-  awaited_.reset();
+  const Time since = std::max(resumes_at_, silent_since_);
   if (dlpdu.begin > since + times(rules_.reply_wait_octets) + kLinkRounding)
     return LinkObjection{"answers_too_late", "who holds the token is not silent for longer than V(RR)"};
   if (token_->ends && dlpdu.end > *token_->ends + kLinkRounding)
@@ -166,8 +229,7 @@ std::optional<LinkObjection> IsaModel::say_request(const DrivenDlpdu& dlpdu) {
   Octets said = dlpdu.octets;
   // Whether a DU has F is not said anywhere.
   if (!said.empty() && !request.compels) said[0] &= static_cast<std::uint8_t>(~kFinalOfIsa);
-  if (said != expected)
-    return LinkObjection{"sends_other_data", fmt::format("{:02X}", fmt::join(expected, " "))};
+  if (said != expected) return LinkObjection{"sends_other_data", words_of(expected, rules_)};
   if (!fits(request, dlpdu.begin))
     return LinkObjection{"sends_without_time", "EE: what must follow does not end within the duration"};
   queue->pop_front();
@@ -186,22 +248,28 @@ std::optional<LinkObjection> IsaModel::say_end(const DrivenDlpdu& dlpdu) {
                         reason};
   token_.reset();
   if (dlpdu.octets == expected) return std::nullopt;
-  return LinkObjection{"end_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
+  return LinkObjection{"end_wrong", words_of(expected, rules_)};
 }
 
 std::optional<LinkObjection> IsaModel::be_silent() {
-  const Time slot_later = earliest() + times(rules_.link.slot_time_octets);
-  const Time latest = (awaited_ ? earliest() : silent_since_) + times(rules_.reply_wait_octets);
-  awaited_.reset();
-  if (answer_ && slot_later <= answer_->until) {
-    const Octets expected = expected_reply();
+  if (awaited_) miss_reply();
+  if (answer_) {
+    const bool has_data = most_urgent(replies_, answer_->least) != nullptr;
+    const Time begin = std::max(earliest(), has_data ? reply_since_ : kernel::kStart) + delay();
+    // What comes when its time is over may be left.
+    const bool is_there = has_data && reply_since_ < answer_->until;
+    if (begin <= answer_->until && (is_there || !works_)) {
+      const Octets expected = expected_reply();
+      answer_.reset();
+      return LinkObjection{"no_reply", words_of(expected, rules_)};
+    }
     answer_.reset();
-    return LinkObjection{"no_reply", fmt::format("{:02X}", fmt::join(expected, " "))};
+    return std::nullopt;
   }
-  answer_.reset();
   const auto token = std::exchange(token_, std::nullopt);
   // An EE that would begin as late as it may has no place any more.
-  if (!token || (token->ends && latest + frame_of(kOctetsOfAnEnd) > *token->ends)) return std::nullopt;
+  if (!token || (token->ends && earliest() + delay() + frame_of(kOctetsOfAnEnd) > *token->ends))
+    return std::nullopt;
   return LinkObjection{"token_not_returned", "EE"};
 }
 

@@ -53,8 +53,8 @@ TEST(IsaModel, AnEsIsForWhatEndsInTime) {
   model.hear_token(Priority::normal, 34, 0x10, isa_octet_at(300));
   EXPECT_EQ(isa_reason_in(model.say(isa_said_at(308, {0x32, 0x22, 0x21, 7}))), "");
   EXPECT_EQ(isa_reason_in(model.say(isa_said_at(325, end_said(0)))), "");
-  // Who begins as late as V(RR) has time for an EE, or none.
-  const auto latest = static_cast<unsigned>(fieldbus_dll::IsaRules{}.reply_wait_octets + 9);
+  // Who has begun at V(MID) always has time for an EE, or none.
+  const unsigned latest = 8 + 9;
   model.hear_token(Priority::normal, latest, 0x10, isa_octet_at(400));
   EXPECT_EQ(isa_reason_in(model.be_silent()), "token_not_returned");
   model.hear_token(Priority::normal, latest - 1, 0x10, isa_octet_at(500));
@@ -96,11 +96,30 @@ TEST(IsaModel, RepliesWithWhatIsThereInTime) {
   EXPECT_EQ(isa_reason_in(model.say(isa_said_at(225, {0x26, 0x22, 0x21}))), "replies_too_late");
   model.hear_cd(Priority::normal, 0x22, isa_octet_at(300));
   EXPECT_EQ(isa_reason_in(model.say(isa_said_at(308, {0x26, 0x22, 0x21, 5}))), "reply_wrong");
-  model.hear_cd(Priority::normal, 0x22, isa_octet_at(400));
-  EXPECT_EQ(isa_reason_in(model.be_silent()), "no_reply");
+  IsaModel usual({}, 0x21);
+  usual.hear_cd(Priority::normal, 0x22, isa_octet_at(400));
+  EXPECT_EQ(isa_reason_in(usual.be_silent()), "no_reply");
   model.hear_cd(Priority::normal, 0x22, isa_octet_at(500));
   model.hear_other(false, isa_octet_at(510));
   EXPECT_EQ(isa_reason_in(model.be_silent()), "");
+}
+
+TEST(IsaModel, ReportsWhatBecomesOfItsCd) {
+  const auto reported = [](const Octets& dlpdu, std::int64_t begin) {
+    IsaModel model({}, 0x21);
+    EXPECT_TRUE(model.submit(IsaService::compel, Priority::normal, 0x22, {}));
+    model.hear({0x42, 0x21, 0x10}, isa_octet_at(5), isa_octet_at(10));
+    EXPECT_EQ(isa_reason_in(model.say(isa_said_at(18, {0x12, 0x22, 0x21}))), "");
+    model.hear(dlpdu, isa_octet_at(begin), isa_octet_at(begin + 8));
+    const std::vector<IsaReport> reports = model.take_reports();
+    return reports.empty() ? std::string{} : reports.front().text();
+  };
+  const Octets reply{0x26, 0x21, 0x22};
+  EXPECT_EQ(reported(reply, 40), "DT normal 22 -> 21 final");
+  EXPECT_EQ(reported({0x26, 0x21, 0x23}, 40), "token dropped of 23");
+  EXPECT_EQ(reported({0x42, 0x21, 0x10}, 40), "token dropped of 10");
+  EXPECT_EQ(reported({0x42, 0x21, 0x10, 0}, 40), "");
+  EXPECT_EQ(reported(reply, 58), "reply missing of 22");
 }
 
 }  // namespace

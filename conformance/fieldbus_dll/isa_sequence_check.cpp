@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -17,93 +18,155 @@ namespace {
 using fieldbus_dll::IsaService;
 using fieldbus_dll::Priority;
 
-constexpr std::array<std::int64_t, 7> kIsaDurations{10, 17, 30, 31, 60, 200, 1000};
-constexpr std::array<std::int64_t, 6> kIsaSizes{0, 1, 8, 64, 65, 129};
-constexpr std::array<std::int64_t, 3> kIsaWaits{1, 40, 1000};
+constexpr std::array<std::int64_t, 16> kIsaDurations{1,  9,  10,  17,  30,    31,     33,     34,
+                                                     60, 61, 127, 200, 1'000, 32'768, 33'000, 65'535};
+constexpr std::array<std::int64_t, 12> kIsaSizes{0, 1, 2, 8, 9, 10, 63, 64, 65, 128, 129, 256};
+constexpr std::array<std::int64_t, 8> kIsaTimes{1, 1, 1, 1, 1, 1, 40, 150};
+constexpr std::array<std::int64_t, 23> kIsaToStations{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+                                                      0, 0, 0, 0, 1, 1, 2, 3, 4, 5, 6};
+constexpr std::array<std::int64_t, 22> kIsaTo{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+                                              0, 0, 0, 0, 0, 1, 1, 2, 3, 4, 5};
+constexpr std::array<std::int64_t, 18> kIsaFrom{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 1, 2, 3, 4, 5};
+constexpr std::array<std::int64_t, 16> kIsaPriorities{1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 0};
+constexpr std::array<std::int64_t, 4> kIsaRequestPriorities{1, 2, 3, 2};
+constexpr std::array<std::int64_t, 18> kIsaWorks{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 12, 22, 24, 25, 60};
+constexpr std::array<std::int64_t, 6> kIsaPeers{1, 1, 1, 2, 3, 4};
+constexpr std::array<std::int64_t, 6> kIsaPeerAfter{8, 8, 8, 20, 30, 31};
 constexpr std::uint8_t kStranger = 0x23;
 
 enum class IsaWord : std::uint8_t {
   single,
   sequence,
   compel,
-  token_elsewhere,
+  other,
   data,
   reply,
+  noise,
   submit,
-  submit_compel,
-  submit_reply,
   peer,
+  supply,
+  one,
   wait
 };
 
 // What the tester does after a CD of the station.
-enum class Peer : std::uint8_t { silent, replies, stranger_replies, stranger_sends };
+enum class Peer : std::uint8_t {
+  silent,
+  replies,
+  replies_empty,
+  replies_without_final,
+  stranger_replies,
+  replies_to_stranger,
+  sends_data,
+  stranger_sends,
+  compels,
+  delegates,
+  takes_back,
+  sends_none,
+  makes_noise
+};
 
 SequenceNumber isa_priority(std::string_view name = "priority") {
-  return {name, 1, 3, 1};
+  return {name, 0, 3, 2, kIsaPriorities, true};
+}
+SequenceNumber isa_to() {
+  return {"to", 0, 6, 0, kIsaToStations, true};
+}
+SequenceNumber isa_from() {
+  return {"from", 0, 5, 0, kIsaFrom, true};
+}
+SequenceNumber isa_truth(std::string_view name) {
+  return {name, 0, 1, 0};
 }
 
 // The tester does not wait longer for who waits for a reply.
 constexpr std::array kBoundsOfIsaDle{SettingBound{"reply_wait_octets", {1, kLinkSettles / 2}}};
 
+std::vector<SequenceWord> isa_dle_words() {
+  // In the order of IsaWord.
+  return {{.word = "single",
+           .meaning = "an ET for what is at least as urgent, to the station or to others",
+           .numbers = {isa_to(), isa_from(), isa_priority("least"), link_length(), link_silence()},
+           .units = 7,
+           .weight = 12},
+          {.word = "sequence",
+           .meaning = "an ES for what is at least as urgent, to the station or to others",
+           .numbers = {isa_to(),
+                       isa_from(),
+                       isa_priority("least"),
+                       {"octets", 0, 65'535, 200, kIsaDurations},
+                       link_length(),
+                       link_silence()},
+           .units = 9,
+           .weight = 18},
+          {.word = "compel",
+           .meaning = "a CD, to the station or to others; its user works on data until so many octets after "
+                      "it, 0: it does not",
+           .numbers = {isa_to(),
+                       isa_from(),
+                       isa_priority("least"),
+                       {"works", 0, 60, 0, kIsaWorks, true},
+                       link_length(),
+                       link_silence()},
+           .units = 7,
+           .weight = 15},
+          {.word = "other",
+           .meaning = "EE, TL, or what is none, with this in its last octet",
+           .numbers =
+               {{"kind", 0, 3, 0}, isa_to(), isa_from(), {"value", 0, 255, 0}, link_length(), link_silence()},
+           .units = 8,
+           .weight = 6},
+          {.word = "data",
+           .meaning = "a DU",
+           .numbers = {isa_to(),
+                       isa_from(),
+                       isa_priority(),
+                       isa_truth("final"),
+                       {"size", 0, 260, 8, kIsaSizes},
+                       link_silence()},
+           .units = 9,
+           .weight = 8},
+          {.word = "reply",
+           .meaning = "a DT, for which the station has not asked",
+           .numbers = {isa_to(),
+                       isa_from(),
+                       isa_priority(),
+                       isa_truth("final"),
+                       {"size", 0, 260, 8, kIsaSizes},
+                       link_silence()},
+           .units = 9,
+           .weight = 5},
+          {.word = "noise",
+           .meaning = "levels on the line that are no frame",
+           .numbers = {{"octets", 1, 60, 4}, link_silence()},
+           .weight = 3},
+          {.word = "submit",
+           .meaning = "the user submits: 0 data, 1 a CD, 2 data for a CD; so many times",
+           .numbers = {{"service", 0, 2, 0},
+                       {"priority", 1, 3, 2, kIsaRequestPriorities},
+                       {"to", 0, 5, 0, kIsaTo, true},
+                       {"size", 0, 260, 0, kIsaSizes},
+                       {"times", 1, 300, 1, kIsaTimes, true}},
+           .weight = 27},
+          {.word = "peer",
+           .meaning = "what the tester does so many octets after a CD of the station",
+           .numbers = {{"does", 0, 12, 0, kIsaPeers}, {"after", 8, 60, 8, kIsaPeerAfter}},
+           .weight = 10},
+          {.word = "supply", .meaning = "is off, or comes", .numbers = {isa_truth("on")}, .weight = 1},
+          {.word = "one", .meaning = "until the station has sent one DLPDU, or does not", .weight = 8},
+          {.word = "wait",
+           .meaning = "silence of so many octet durations",
+           .numbers = {link_wait()},
+           .weight = 3}};
+}
+
 SequenceVocabulary isa_dle_vocabulary() {
   const fieldbus_dll::IsaConfiguration as_made;
-  // In the order of IsaWord.
-  return {
-      .words = {{.word = "single",
-                 .meaning = "an ET for the station, for what is at least as urgent",
-                 .numbers = {isa_priority("least"), link_silence()},
-                 .units = 7,
-                 .weight = 4},
-                {.word = "sequence",
-                 .meaning = "an ES for the station, for what is at least as urgent",
-                 .numbers = {isa_priority("least"), {"octets", 1, 2000, 200, kIsaDurations}, link_silence()},
-                 .units = 9,
-                 .weight = 6},
-                {.word = "compel",
-                 .meaning = "a CD for the station",
-                 .numbers = {isa_priority("least"), link_silence()},
-                 .units = 7,
-                 .weight = 4},
-                {.word = "token_elsewhere",
-                 .meaning = "an ET for another station",
-                 .numbers = {link_silence()},
-                 .units = 7,
-                 .weight = 2},
-                {.word = "data",
-                 .meaning = "a DU for the station, for all or for another",
-                 .numbers = {{"to", 0, 2, 0}, {"size", 2, 32, 2}, link_silence()},
-                 .units = 9,
-                 .weight = 2},
-                {.word = "reply",
-                 .meaning = "a DT for the station, for which it has not asked",
-                 .numbers = {{"size", 2, 32, 2}, link_silence()},
-                 .units = 9,
-                 .weight = 1},
-                {.word = "submit",
-                 .meaning = "the user submits data for another station",
-                 .numbers = {isa_priority(), {"size", 0, 260, 8, kIsaSizes}},
-                 .weight = 7},
-                {.word = "submit_compel",
-                 .meaning = "the user compels another station",
-                 .numbers = {isa_priority()},
-                 .weight = 3},
-                {.word = "submit_reply",
-                 .meaning = "the user submits data for who compels",
-                 .numbers = {isa_priority(), {"size", 0, 260, 8, kIsaSizes}},
-                 .weight = 4},
-                {.word = "peer",
-                 .meaning = "who is compelled is silent, replies, or another does, or sends data to a third",
-                 .numbers = {{"does", 0, 3, 0}},
-                 .weight = 2},
-                {.word = "wait",
-                 .meaning = "silence of so many octet durations",
-                 .numbers = {{"octets", 1, 10'000, 40, kIsaWaits}},
-                 .weight = 1}},
-      .unit = "octet",
-      .levels_per_unit = kFlipsOfAnOctet,
-      .settings = sequence_settings(fieldbus_dll::kIsaTable, &as_made, kFixedOfLink, kBoundsOfIsaDle),
-      .objection = objection_of(fieldbus_dll::kIsaTable, as_made, expect_judgeable_isa)};
+  return {.words = isa_dle_words(),
+          .unit = "octet",
+          .levels_per_unit = kFlipsOfAnOctet,
+          .settings = sequence_settings(fieldbus_dll::kIsaTable, &as_made, kFixedOfLink, kBoundsOfIsaDle),
+          .objection = objection_of(fieldbus_dll::kIsaTable, as_made, expect_judgeable_isa)};
 }
 
 class IsaSequenceRun {
@@ -114,144 +177,246 @@ class IsaSequenceRun {
   void run(const Sequence& sequence) {
     for (const SequenceCommand& command : sequence.commands) execute(command);
     await_response_window();
-    std::vector<Octets> delivered;
-    for (const auto& one : bench_.user().deliveries) delivered.push_back(one.dlpdu.data);
-    judge_.expect(delivered == data_, "data_not_delivered",
-                  "the user gets the data of each DU and DT for it or for all", "other data, or none");
   }
 
  private:
+  using Numbers = std::vector<std::int64_t>;
+
   void execute(const SequenceCommand& command) {
-    const auto word = static_cast<IsaWord>(command.word);
-    const auto priority = static_cast<Priority>(command.numbers[0]);
-    switch (word) {
+    const Numbers& numbers = command.numbers;
+    switch (static_cast<IsaWord>(command.word)) {
       case IsaWord::wait:
         await_response_window();
-        return bench_.wait(bench_.octets(command.numbers[0]));
+        return bench_.wait(bench_.octets(numbers[0]));
+      case IsaWord::one:
+        if (const auto one = bench_.next()) return judge_next(*one);
+        return await_response_window();
+      case IsaWord::supply:
+        return set_supply(numbers[0] != 0);
       case IsaWord::peer:
         await_response_window();
-        peer_ = static_cast<Peer>(command.numbers[0]);
+        peer_ = static_cast<Peer>(numbers[0]);
+        peer_after_ = std::max(numbers[1], std::int64_t{bench_.link().inter_pdu_delay_octets});
         return;
       case IsaWord::submit:
-        return submit(IsaService::unit_data, priority, command.numbers[1]);
-      case IsaWord::submit_compel:
-        return submit(IsaService::compel, priority, 0);
-      case IsaWord::submit_reply:
-        return submit(IsaService::reply_data, priority, command.numbers[1]);
+        return submit(numbers);
+      case IsaWord::noise:
+        send_noise(bench_, numbers[0]);
+        model_.hear_noise(bench_.now());
+        return settle(numbers.back());
+      case IsaWord::compel:
+        return compel(command);
       default:
-        return send(word, command);
+        send(command);
+        return settle(numbers.back());
     }
   }
 
-  void send(IsaWord word, const SequenceCommand& command) {
-    if (send_link_command(bench_, octets_of(word, command), command)) {
-      hear(word, command);
+  void send(const SequenceCommand& command) {
+    const Octets octets = octets_of(static_cast<IsaWord>(command.word), command.numbers);
+    const kernel::Time begin = bench_.now();
+    if (send_link_command(bench_, octets, command)) {
+      model_.hear(octets, begin, bench_.now());
     } else {
       model_.hear_noise(bench_.now());
     }
-    const std::int64_t silence = command.numbers.back();
-    if (silence >= bench_.link().inter_pdu_delay_octets) return await_response_window();
-    bench_.wait(bench_.octets(silence));
-    while (bench_.next_begins(bench_.now())) judge_next(*bench_.next());
   }
 
-  Octets octets_of(IsaWord word, const SequenceCommand& command) {
-    const auto& numbers = command.numbers;
+  // Its user has the data so many octets after the CD, or has said that there are none.
+  void compel(const SequenceCommand& command) {
+    const std::int64_t works = command.numbers[3];
+    work_on_reply(works > 0);
+    send(command);
+    if (works > 0) {
+      const kernel::Time there = bench_.now() + bench_.octets(works);
+      while (bench_.next_begins(there)) judge_next(*bench_.next());
+      submit_one(IsaService::reply_data, Priority::urgent, IsaBench::kPeer, bench_.numbered_data(4));
+    }
+    if (works > 0) return await_response_window();
+    settle(command.numbers.back());
+  }
+
+  void work_on_reply(bool works) {
+    bench_.user().works_on_reply = works;
+    model_.work_on_reply(works);
+  }
+
+  void settle(std::int64_t silence) {
+    if (silence >= bench_.link().inter_pdu_delay_octets || silence == kLinkSettles)
+      return await_response_window();
+    const kernel::Time until = bench_.now() + bench_.octets(silence);
+    while (bench_.next_begins(until)) judge_next(*bench_.next());
+  }
+
+  Octets octets_of(IsaWord word, const Numbers& numbers) {
     const auto& codes = bench_.rules().codes;
     switch (word) {
       case IsaWord::single:
-        return bench_.et(static_cast<Priority>(numbers[0]));
-      case IsaWord::sequence:
-        return bench_.es(static_cast<Priority>(numbers[0]), static_cast<unsigned>(numbers[1]));
+        return with_length(header(codes.et, numbers[2], numbers), numbers[3]);
+      case IsaWord::sequence: {
+        Octets es = header(codes.es, numbers[2], numbers);
+        es.push_back(static_cast<std::uint8_t>(numbers[3] >> 8));
+        es.push_back(static_cast<std::uint8_t>(numbers[3]));
+        return with_length(std::move(es), numbers[4]);
+      }
       case IsaWord::compel:
-        return bench_.cd(static_cast<Priority>(numbers[0]));
-      case IsaWord::token_elsewhere:
-        return {bench_.control(codes.et, Priority::normal), IsaBench::kPeer, IsaBench::kScheduler};
-      case IsaWord::reply:
-        content_ = bench_.numbered_data(static_cast<std::size_t>(numbers[0]));
-        return bench_.dt(Priority::normal, content_, kStranger);
+        return with_length(header(codes.cd, numbers[2], numbers), numbers[4]);
+      case IsaWord::other:
+        return with_length(other(numbers), numbers[4]);
       default: {
-        content_ = bench_.numbered_data(static_cast<std::size_t>(numbers[1]));
-        const std::array<std::uint8_t, 3> to{bench_.address(), bench_.rules().everybody, IsaBench::kPeer};
-        Octets du{bench_.control(codes.du, Priority::normal), to.at(static_cast<std::size_t>(numbers[0])),
-                  kStranger};
-        du.insert(du.end(), content_.begin(), content_.end());
-        return du;
+        const unsigned code = word == IsaWord::data ? codes.du : codes.dt;
+        Octets octets = header(code | (numbers[3] != 0 ? fieldbus_dll::kFinalBit : 0U), numbers[2], numbers);
+        const Octets content = bench_.numbered_data(static_cast<std::size_t>(numbers[4]));
+        octets.insert(octets.end(), content.begin(), content.end());
+        return octets;
       }
     }
   }
 
-  void hear(IsaWord word, const SequenceCommand& command) {
-    const kernel::Time end = bench_.now();
-    const auto least = static_cast<Priority>(command.numbers[0]);
-    switch (word) {
-      case IsaWord::single:
-        return model_.hear_token(least, {}, IsaBench::kScheduler, end);
-      case IsaWord::sequence:
-        return model_.hear_token(least, static_cast<unsigned>(command.numbers[1]), IsaBench::kScheduler, end);
-      case IsaWord::compel:
-        return model_.hear_cd(least, IsaBench::kPeer, end);
-      case IsaWord::reply:
-        data_.push_back(content_);
-        return model_.hear_dt(kStranger, end);
-      case IsaWord::data:
-        if (command.numbers[0] < 2) data_.push_back(content_);
-        return model_.hear_other(false, end);
-      default:
-        return model_.hear_other(true, end);
-    }
+  std::uint8_t to(std::int64_t number) const {
+    const auto& rules = bench_.rules();
+    const std::array<int, 7> all{bench_.address(),        IsaBench::kPeer,         rules.everybody,
+                                 bench_.address() ^ 0x80, rules.first_address - 1, rules.last_address + 1,
+                                 rules.last_address};
+    return static_cast<std::uint8_t>(all.at(static_cast<std::size_t>(number)));
+  }
+  std::uint8_t from(std::int64_t number) const {
+    const auto& rules = bench_.rules();
+    const std::array<int, 6> all{IsaBench::kScheduler, IsaBench::kPeer,        kStranger,
+                                 rules.first_address,  rules.last_address + 1, 0};
+    return static_cast<std::uint8_t>(all.at(static_cast<std::size_t>(number)));
+  }
+  Octets header(unsigned code, std::int64_t priority, const Numbers& numbers) const {
+    return {static_cast<std::uint8_t>(code | static_cast<unsigned>(priority)), to(numbers[0]),
+            from(numbers[1])};
+  }
+  Octets other(const Numbers& numbers) const {
+    const auto& codes = bench_.rules().codes;
+    const std::uint8_t destination = to(numbers[1]);
+    const std::uint8_t source = from(numbers[2]);
+    const auto value = static_cast<std::uint8_t>(numbers[3]);
+    const std::array<Octets, 4> all{
+        Octets{static_cast<std::uint8_t>(codes.ee | fieldbus_dll::kFinalBit), destination, source, value},
+        Octets{codes.tl, destination, source, 0, value}, Octets{codes.ee, destination, source, value},
+        Octets{0x8A, destination, source, value}};
+    return all.at(static_cast<std::size_t>(numbers[0]));
   }
 
-  void submit(IsaService service, Priority priority, std::int64_t size) {
-    const Octets data =
-        service == IsaService::compel ? Octets{} : bench_.numbered_data(static_cast<std::size_t>(size));
-    const bool is_taken = bench_.submit(service, priority, data);
-    const bool is_right = model_.submit(service, priority, IsaBench::kPeer, data);
+  // Who has no supply is asked for nothing.
+  void submit(const Numbers& numbers) {
+    const auto service = static_cast<IsaService>(numbers[0]);
+    const std::array<int, 6> all{IsaBench::kPeer,
+                                 bench_.rules().everybody,
+                                 bench_.rules().first_address,
+                                 bench_.rules().first_address - 1,
+                                 bench_.rules().last_address + 1,
+                                 bench_.rules().last_address};
+    const auto destination = static_cast<std::uint8_t>(all.at(static_cast<std::size_t>(numbers[2])));
+    // A CD has data where these are many.
+    constexpr std::int64_t kMany = 128;
+    const std::int64_t size = service == IsaService::compel && numbers[3] < kMany ? 0 : numbers[3];
+    for (std::int64_t n = 0; n < numbers[4] && model_.has_supply(); ++n)
+      submit_one(service, static_cast<Priority>(numbers[1]), destination,
+                 bench_.numbered_data(static_cast<std::size_t>(size)));
+  }
+
+  void submit_one(IsaService service, Priority priority, std::uint8_t destination, const Octets& data) {
+    if (!model_.has_supply()) return;
+    const bool is_taken = bench_.submit(service, priority, data, destination);
+    const bool is_right = model_.submit(service, priority, destination, data, bench_.now());
     judge_.expect(is_taken == is_right, is_right ? "data_refused" : "data_too_long_taken", [&] {
-      return Mismatch{{fmt::format("data of {} octets is {}", data.size(), is_right ? "taken" : "refused")},
+      return Mismatch{{fmt::format("data of {} octets to {:02X} are {}", data.size(), destination,
+                                   is_right ? "taken" : "refused")},
                       is_taken ? "taken" : "refused"};
     });
+  }
+
+  void set_supply(bool is_on) {
+    if (is_on == model_.has_supply()) return;
+    bench_.set_supply(is_on);
+    model_.set_supply(is_on);
   }
 
   void await_response_window() {
     while (const auto one = bench_.next()) judge_next(*one);
     object(model_.be_silent(), "silence", bench_.now());
+    work_on_reply(false);
+    judge_reports();
   }
 
   void judge_next(const DrivenDlpdu& one) {
-    object(model_.say(one), one.text(), one.begin);
+    object(model_.say(one), bench_.words(one), one.begin);
     const auto node = model_.compelled();
     if (!node || peer_ == Peer::silent) return;
-    const std::uint8_t from = peer_ == Peer::replies ? *node : kStranger;
-    const Octets content = bench_.numbered_data(4);
-    bench_.wait(bench_.least_gap());
-    if (peer_ == Peer::stranger_sends) {
-      bench_.send(
-          {bench_.control(bench_.rules().codes.du, Priority::normal), IsaBench::kPeer, kStranger, 0x55});
-      return model_.hear_other(false, bench_.now());
+    // Who is compelled may be as late as its time-out, or later.
+    const kernel::Time begin = one.end + bench_.octets(peer_after_);
+    if (bench_.next_begins(begin)) return judge_next(*bench_.next());
+    if (peer_ == Peer::makes_noise) {
+      send_noise(bench_, 4);
+      return model_.hear_noise(bench_.now());
     }
-    bench_.send(bench_.dt(Priority::normal, content, from));
-    // What is no reply costs the token, and is nothing else.
-    if (peer_ == Peer::replies) data_.push_back(content);
-    model_.hear_dt(from, bench_.now());
+    const Octets octets = octets_of_peer(*node);
+    const kernel::Time sent = bench_.now();
+    bench_.send(octets);
+    model_.hear(octets, sent, bench_.now());
+  }
+
+  Octets octets_of_peer(std::uint8_t node) {
+    const auto& codes = bench_.rules().codes;
+    const Octets content = bench_.numbered_data(4);
+    const auto first = [&](std::uint8_t code) { return bench_.control(code, Priority::normal); };
+    Octets dt = bench_.dt(Priority::normal, content, node);
+    switch (peer_) {
+      case Peer::replies_empty:
+        return bench_.dt(Priority::time_available, {}, node);
+      case Peer::replies_without_final:
+        dt[0] = first(codes.dt);
+        return dt;
+      case Peer::stranger_replies:
+        dt[2] = kStranger;
+        return dt;
+      case Peer::replies_to_stranger:
+        dt[1] = kStranger;
+        return dt;
+      case Peer::sends_data:
+        dt[0] = first(codes.du);
+        return dt;
+      case Peer::stranger_sends:
+        return {first(codes.du), IsaBench::kPeer, kStranger, 0x55};
+      case Peer::compels:
+        return {first(codes.cd), bench_.address(), node};
+      case Peer::delegates:
+        return bench_.et(Priority::time_available);
+      case Peer::takes_back:
+        return {first(codes.et), IsaBench::kPeer, IsaBench::kScheduler};
+      case Peer::sends_none:
+        return {first(codes.et), bench_.address(), node, 0};
+      default:
+        return dt;
+    }
   }
 
   void object(const std::optional<LinkObjection>& objection, const std::string& actual, kernel::Time when) {
     if (objection) judge_.fail(objection->reason, {{objection->expected}, actual, when});
   }
 
+  void judge_reports() {
+    judge_reported(judge_, model_.take_reports(), std::exchange(bench_.user().reports, {}), bench_.now());
+  }
+
   IsaBench& bench_;
   CaseJudge& judge_;
   IsaModel model_;
   Peer peer_ = Peer::silent;
-  Octets content_;
-  std::vector<Octets> data_;
+  std::int64_t peer_after_ = 0;
 };
 
 std::vector<PartialSource> isa_check_details() {
   std::vector<PartialSource> details = isa_details();
   details.push_back({link_sources::own("encoding of the profile ISA-D, and what is returned when"),
-                     {"end_wrong", "reply_wrong", "data_held_back", "speaks_unasked", "sends_other_data"}});
+                     {"not_delivered", "delivered_unasked", "delivered_otherwise", "does_not_wait_for_user",
+                      "waits_too_long_for_reply", "end_wrong", "reply_wrong", "data_held_back",
+                      "speaks_unasked", "sends_other_data"}});
   return details;
 }
 

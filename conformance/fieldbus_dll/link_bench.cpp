@@ -120,7 +120,7 @@ std::vector<std::string> LinkBench::decode_lines() {
   const auto tell = [&](std::string_view who, const std::vector<DrivenDlpdu>& dlpdus) {
     for (const DrivenDlpdu& one : dlpdus) {
       all.emplace_back(one.begin, fmt::format("{} {} to {}: {}", who, kernel::describe(one.begin),
-                                              kernel::describe(one.end), one.text()));
+                                              kernel::describe(one.end), words(one)));
     }
   };
   tell("tester drove", sent_.all());

@@ -90,6 +90,8 @@ class LinkBench : public LineBench {
   // What has arrived under stress with a check that fits, though nobody sent it: no station can know better.
   std::vector<DrivenDlpdu> arrived_unsent() const;
 
+  // A DLPDU as a person reads it; of what is none its octets.
+  virtual std::string words(const DrivenDlpdu& dlpdu) const = 0;
   // The last DLPDUs of both, in words.
   std::vector<std::string> decode_lines();
 

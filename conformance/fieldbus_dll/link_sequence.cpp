@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -12,6 +13,9 @@ namespace {
 
 constexpr std::array<std::int64_t, 5> kLinkSilences{0, 4, kLinkSettles, kLinkSettles, kLinkSettles};
 
+constexpr std::array<std::int64_t, 25> kLinkLengths{0, 0, 0, 0, 0, 0, 0, 0,  0,  0,  0, 0, 0,
+                                                    0, 0, 0, 0, 0, 0, 0, -9, -2, -1, 1, 2};
+constexpr std::array<std::int64_t, 6> kLinkWaits{1, 40, 260, 4'000, 8'200, 40'000};
 constexpr int kMostBitsFlipped = 2;
 
 void flip(line::Levels& half_bits, std::size_t first, std::uint32_t what, int& bits_left) {
@@ -35,6 +39,26 @@ void expect_time_for_answers(const fieldbus_dll::LinkRules& link) {
 
 SequenceNumber link_silence() {
   return {"silence", 0, kLinkSettles, kLinkSettles, kLinkSilences, true};
+}
+
+SequenceNumber link_length() {
+  return {"more", -9, 2, 0, kLinkLengths, true};
+}
+
+SequenceNumber link_wait() {
+  return {"octets", 1, 50'000, 40, kLinkWaits};
+}
+
+Octets with_length(Octets dlpdu, std::int64_t more) {
+  const auto size = std::max<std::int64_t>(1, static_cast<std::int64_t>(dlpdu.size()) + more);
+  dlpdu.resize(static_cast<std::size_t>(size));
+  return dlpdu;
+}
+
+void send_noise(LinkBench& bench, std::int64_t octets) {
+  line::Levels half_bits = half_bits_of_frame({}, static_cast<unsigned>(octets));
+  half_bits.fill(static_cast<std::size_t>(octets) * kHalfBitsOfAnOctet, half_bits.size(), false);
+  bench.send_half_bits(std::move(half_bits));
 }
 
 bool send_link_command(LinkBench& bench, const Octets& octets, const SequenceCommand& command) {

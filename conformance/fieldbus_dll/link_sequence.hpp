@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "conformance/fieldbus_dll/link_bench.hpp"
+#include "conformance/judging.hpp"
 #include "conformance/sequence.hpp"
 
 // What sequences of every profile of the data link have in common: the silence after a command, and how it
@@ -31,6 +34,29 @@ void expect_time_for_answers(const fieldbus_dll::LinkRules& link);
 
 // After what the command sends, to the next.
 SequenceNumber link_silence();
+// Octets that a DLPDU has too much, or that its end lacks, before its check.
+SequenceNumber link_length();
+// Silence of timers of 16 bits in microseconds, of a second, of ten.
+SequenceNumber link_wait();
+Octets with_length(Octets dlpdu, std::int64_t more);
+// Of so many octets: levels that are no frame.
+void send_noise(LinkBench& bench, std::int64_t octets);
+
+// What its user was given is what it must have been given, in that order.
+template <typename Report>
+void judge_reported(CaseJudge& judge, const std::vector<Report>& right, const std::vector<Report>& actual,
+                    kernel::Time now) {
+  const auto [wrong, other] = std::ranges::mismatch(right, actual);
+  const bool is_all = wrong == right.end();
+  const bool is_none = other == actual.end();
+  if (is_all && is_none) return;
+  judge.fail(is_none  ? "not_delivered"
+             : is_all ? "delivered_unasked"
+                      : "delivered_otherwise",
+             {{is_all ? "nothing more is given to its user" : "its user is given: " + wrong->text()},
+              is_none ? "nothing" : other->text(),
+              now});
+}
 
 // Sends the octets in a frame, their check after them. False: with faults, after which it is no frame to
 // anybody.

@@ -57,7 +57,8 @@ RoleRow ff_device_row() {
       FfCases{.name = "ff_device",
               .cases = ff_cases,
               .settings = &kFfTable,
-              .sequences = SequenceRow<FfCase>{ff_device_sequence_role, run_ff_device_sequence}});
+              .sequences = SequenceRow<FfCase>{ff_device_sequence_role, run_ff_device_sequence,
+                                                 ff_device_sequence_needs()}});
 }
 
 RoleRow ff_las_row() {

@@ -94,8 +94,7 @@ class Station(LinkEnd):
             if not is_reply:
                 self.token = None
                 self.stream.write(EVENT, TOKEN_DROPPED | source << 8, self.now)
-                if kind in ("dt", "du", "cd"):
-                    return
+                return
         if kind in ("et", "es", "tl"):  # of a scheduler: the token was taken back
             self.token = None
         if to == self.address or kind == "du" and to == self.s["everybody"]:
@@ -181,7 +180,7 @@ class Station(LinkEnd):
         if self.awaited:
             return NEVER if self.is_active else self.awaited[1]
         if self.compelled:
-            return self.compelled[2] if self.is_worked_out and not any(self.replies.values()) else min(
+            return self.compelled[2] if self.is_worked_out and not self.next_of(self.replies, self.compelled[0]) else min(
                 self.may_begin(), self.compelled[2])
         if self.token:
             return min(self.may_begin(), NEVER if self.token[2] is None else self.token[2])

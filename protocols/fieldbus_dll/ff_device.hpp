@@ -38,6 +38,8 @@ std::string_view text_of(FfEventKind kind);
 struct FfEvent {
   FfEventKind kind;
   std::uint8_t node = 0;
+
+  friend bool operator==(const FfEvent&, const FfEvent&) = default;
 };
 
 // The user of the data link. It may submit and write from here; instants never decrease.

@@ -301,4 +301,9 @@ std::string describe(const FfDlpdu& dlpdu) {
   return text;
 }
 
+std::string words_of(std::span<const std::uint8_t> octets, const FfRules& rules) {
+  const auto dlpdu = ff_dlpdu_of(octets, rules);
+  return dlpdu ? describe(*dlpdu) : no_dlpdu_text(octets);
+}
+
 }  // namespace fieldproof::fieldbus_dll

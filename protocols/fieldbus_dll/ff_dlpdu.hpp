@@ -84,5 +84,7 @@ bool returns_token(const FfDlpdu& dlpdu);
 
 // "PT urgent 20 for 280 octets", "DT3 normal 2001 final, write 7: 41 42".
 std::string describe(const FfDlpdu& dlpdu);
+// The same of octets, which may be no DLPDU.
+std::string words_of(std::span<const std::uint8_t> octets, const FfRules& rules);
 
 }  // namespace fieldproof::fieldbus_dll

@@ -70,6 +70,7 @@ void FfStation::stop(kernel::Time) {
 }
 
 bool FfStation::submit(const FfRequest& request, kernel::Time) {
+  if (request.priority < Priority::time_available || request.priority > Priority::urgent) return false;
   if (is_too_long(request.priority, request.data.size())) return false;
   to_send_.push(request);
   return true;

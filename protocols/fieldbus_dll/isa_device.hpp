@@ -42,6 +42,8 @@ std::string_view text_of(IsaEventKind kind);
 struct IsaEvent {
   IsaEventKind kind;
   std::uint8_t node = 0;
+
+  friend bool operator==(const IsaEvent&, const IsaEvent&) = default;
 };
 
 // The user of the data link. It may submit from here; instants never decrease.

@@ -264,8 +264,8 @@ bool IsaDle::is_meant(const IsaDlpdu& dlpdu) const {
 }
 
 bool IsaDle::is_delivered(const IsaDlpdu& dlpdu) const {
-  const bool is_data = dlpdu.type == IsaType::dt || dlpdu.type == IsaType::du;
-  return is_data && (is_meant(dlpdu) || dlpdu.destination == rules().everybody);
+  const bool is_to_all = dlpdu.type == IsaType::du && dlpdu.destination == rules().everybody;
+  return is_to_all || ((dlpdu.type == IsaType::dt || dlpdu.type == IsaType::du) && is_meant(dlpdu));
 }
 
 kernel::Duration IsaDle::silence_before_sending() const {

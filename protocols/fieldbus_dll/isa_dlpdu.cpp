@@ -187,4 +187,9 @@ std::string describe(const IsaDlpdu& dlpdu) {
   return text;
 }
 
+std::string words_of(std::span<const std::uint8_t> octets, const IsaRules& rules) {
+  const auto dlpdu = isa_dlpdu_of(octets, rules);
+  return dlpdu ? describe(*dlpdu) : no_dlpdu_text(octets);
+}
+
 }  // namespace fieldproof::fieldbus_dll

@@ -51,5 +51,7 @@ bool is_of_scheduler(IsaType type);
 
 // "ES urgent 10 -> 21 for 1000 octets", "DT normal 22 -> 21 final: 41 42".
 std::string describe(const IsaDlpdu& dlpdu);
+// The same of octets, which may be no DLPDU.
+std::string words_of(std::span<const std::uint8_t> octets, const IsaRules& rules);
 
 }  // namespace fieldproof::fieldbus_dll

@@ -1,5 +1,8 @@
 #include "protocols/fieldbus_dll/line_end.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -7,6 +10,11 @@
 #include "harness/line/checked_frame.hpp"
 
 namespace fieldproof::fieldbus_dll {
+
+std::string no_dlpdu_text(std::span<const std::uint8_t> octets) {
+  return fmt::format("no DLPDU: {:02X}", fmt::join(octets, " "));
+}
+
 Octets with_check(std::span<const std::uint8_t> octets) {
   return line::with_frame_check(octets);
 }

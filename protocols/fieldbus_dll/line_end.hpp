@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "harness/line/delimited_frame.hpp"
@@ -57,5 +58,7 @@ class LineEnd {
 
 // The octets with their check after them.
 Octets with_check(std::span<const std::uint8_t> octets);
+// "no DLPDU: 26 20 00".
+std::string no_dlpdu_text(std::span<const std::uint8_t> octets);
 
 }  // namespace fieldproof::fieldbus_dll
