@@ -440,11 +440,11 @@ const SequenceRole& ff_device_sequence_role() {
        .tags = {},
        .catches = {}},
       ff_device_vocabulary(),
-      {{DerivedKind::values, {"tells_twice", "data_not_delivered"}},
-       {DerivedKind::faults, {"tells_live_lists", "data_not_delivered"}},
-       {DerivedKind::words, {"subscribed_to_none", "published_not_delivered"}},
-       {DerivedKind::repetitions, {"tells_other_source", "told_otherwise"}},
-       {DerivedKind::settings, {"tells_no_writes", "told_otherwise"}}}};
+      {{DerivedKind::values, {"tells_twice", "delivered_unasked"}},
+       {DerivedKind::faults, {"tells_live_lists", "told_otherwise"}},
+       {DerivedKind::words, {"subscribed_to_none", "not_delivered"}},
+       {DerivedKind::repetitions, {"tells_other_source", "delivered_otherwise"}},
+       {DerivedKind::settings, {"tells_no_writes", "delivered_otherwise"}}}};
   return role;
 }
 
