@@ -244,8 +244,10 @@ def serve(stream, kind_of_slave):
             name, settings = case_of(message)
             slave = kind_of_slave(stream, settings) if name.startswith("interbus/") else None
         elif kind == POWER:
-            is_on, slave.now = struct.unpack("<x?q", message)
-            if is_on:
+            is_on, now = struct.unpack("<x?q", message)
+            if is_on:  # nothing outlasts the supply
+                slave = kind_of_slave(stream, settings)
+                slave.now = now
                 slave.clear()
         elif kind in (RECEIVE_TELEGRAMS, RECEIVE_LEVELS):
             slave.hear(message)
