@@ -39,20 +39,26 @@ int position_from(const std::string& text, std::string_view digits) {
   return position;
 }
 
-// The suites that have the role; all of them for an assignment that names none.
-std::vector<const Suite*> suites_with(const std::string& text, const std::string& role,
+// The suites that have the role, of which it may name the protocol (PROTOCOL/ROLE), which it has no more
+// then; all of them for an assignment that names none.
+std::vector<const Suite*> suites_with(const std::string& text, std::string& role,
                                       const Catalogue& catalogue) {
+  const std::size_t slash = role.find('/');
+  const std::string protocol = slash == std::string::npos ? "" : role.substr(0, slash);
+  const std::string written = role;
+  if (slash != std::string::npos) role.erase(0, slash + 1);
   std::vector<const Suite*> suites;
   std::set<std::string> roles;
   for (const auto& suite : catalogue.suites()) {
     const std::vector<std::string> known = suite->roles();
+    if (!protocol.empty() && suite->protocol() != protocol) continue;
     if (role.empty() || std::find(known.begin(), known.end(), role) != known.end()) {
       suites.push_back(suite.get());
     }
     roles.insert(known.begin(), known.end());
   }
   if (suites.empty())
-    refuse(text, fmt::format("there is no role '{}'; there are '{}'", role, fmt::join(roles, "', '")));
+    refuse(text, fmt::format("there is no role '{}'; there are '{}'", written, fmt::join(roles, "', '")));
   return suites;
 }
 

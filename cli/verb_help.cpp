@@ -114,7 +114,8 @@ R"(  ref                          the built-in reference of the role (the defaul
   unix:/path, tcp:HOST:PORT    a process that listens there
   plugin:./libx.so             a shared library behind one C header; ?in-process: faster, without protection
   serial:/dev/ttyX?baud=N&format=8e1   a box at a serial line, in wall-clock time
-  ROLE=URI, ROLE@N=URI         which role it plays, and at which place: slave@3=exec:./slave
+  ROLE=URI, ROLE@N=URI         which role it plays, and at which place: slave@3=exec:./slave; ROLE may be
+                               PROTOCOL/ROLE
 )"},
     HelpTopic{"selectors", "which cases",
 R"(  PROTOCOL/ROLE/CHAPTER/CASE        one case, by its id; 'fieldproof list' prints them

@@ -54,6 +54,7 @@ void MasterBench::power_up(std::vector<VirtualStation> ring) {
   const std::size_t ring_seat = segment().attach(*ring_, "ring" + number);
   segment::Link& out = segment().connect("ring/in" + number, ring_seat, 0, kernel::Duration{});
   watch(out);
+  out_ = &out;
   master_->wire(out);
   back_ = &segment().connect("master/in" + number, master_seat_, 0, kernel::Duration{});
   ring_->wire(*back_);

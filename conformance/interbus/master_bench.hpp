@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "conformance/bench_case.hpp"
@@ -109,6 +110,10 @@ class MasterBench final : public CaseBench {
   void begin_stress(const fault::Stress& stress) { begin_stress_at(stress, *back_, rules_.bit_rate, now()); }
   // What comes back to the master from now on is shown to the tap as well. For one ring.
   void tap_arrived(segment::Tap& tap) { back_->tap_arrived(tap); }
+  // The same of what the master drives.
+  void tap_driven(segment::Tap& tap) { out_->tap_driven(tap); }
+  // Rings of earlier power-ups go on to show it what they carry.
+  void keep(std::shared_ptr<segment::Tap> tap) { taps_.push_back(std::move(tap)); }
 
   interbus::MasterStatus status() const { return master_->status(); }
   bool is_in_run() const { return status().state == interbus::MasterState::run; }
@@ -133,8 +138,10 @@ class MasterBench final : public CaseBench {
   interbus::Rules rules_;
   interbus::MasterConfiguration configuration_;
   std::vector<Place> places_;
+  std::vector<std::shared_ptr<segment::Tap>> taps_;
   interbus::MasterDevice* master_ = nullptr;
   interbus::RingEmulator* ring_ = nullptr;
+  segment::Link* out_ = nullptr;
   segment::Link* back_ = nullptr;
   std::size_t master_seat_ = 0;
   trace::Channel master_place_ = 0;

@@ -24,5 +24,6 @@ std::vector<MasterCase> master_timing_cases();
 std::vector<MasterCase> master_application_cases();
 std::vector<MasterCase> master_skew_cases();
 std::vector<MasterCase> master_immunity_cases();
+std::vector<MasterCase> master_compared_cases();
 
 }  // namespace fieldproof::conformance

@@ -65,7 +65,7 @@ void expect_check_of_outputs(MasterBench& bench, CaseJudge& judge) {
   bench.run_data_cycles(judge, 1);
   const SeenCycle& seen = bench.ring().last_cycle();
   judge.expect(seen.status_clean, "status_word_not_clean", "status word 0000h", "another status word");
-  const std::uint16_t own = interbus::RingEmulator::check_of({seen.octets.data(), seen.transfer_octets});
+  const std::uint16_t own = bench.ring().check_of({seen.octets.data(), seen.transfer_octets});
   judge.expect(seen.word(seen.transfer_octets) == own, "check_not_of_sent_bits",
                fmt::format("check word {:04X}h", own), seen.describe_word(seen.transfer_octets));
   expect_good_checks(bench, judge);

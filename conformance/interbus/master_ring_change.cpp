@@ -63,7 +63,7 @@ MasterStep fault_located(int more) {
 void expect_declared_outputs(MasterBench& bench, CaseJudge& judge) {
   const auto all_are = [&bench](std::uint16_t value) {
     for (unsigned word = 0; word < bench.ring().word_count(); ++word) {
-      if (bench.ring().output(word) != value) return false;
+      if (bench.master().output(word) != value) return false;
     }
     return true;
   };

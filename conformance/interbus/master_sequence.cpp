@@ -15,8 +15,11 @@ namespace fieldproof::conformance {
 namespace {
 
 std::string cycle_text(std::span<const std::int64_t> values) {
-  if (values[0] != 0) return fmt::format("ID cycle of {} octets", values[1]);
-  return fmt::format("data cycle of {} octets: {:04X}", values[1], fmt::join(values.subspan(2), " "));
+  const std::string after =
+      values[2] < 0 ? "no whole number of cycle times" : fmt::format("{} cycle times", values[2]);
+  if (values[0] != 0) return fmt::format("ID cycle of {} octets, {} after the one before", values[1], after);
+  return fmt::format("data cycle of {} octets, {} after the one before: {:04X}", values[1], after,
+                     fmt::join(values.subspan(3), " "));
 }
 
 std::string inputs_text(std::span<const std::int64_t> values) {
@@ -26,15 +29,21 @@ std::string inputs_text(std::span<const std::int64_t> values) {
 
 std::string report_text(std::span<const std::int64_t> values) {
   if (values[0] == 0) return "not in run";
-  return fmt::format("run, quality bit {}, messages and place of the last fault {}", values[1],
-                     fmt::join(values.subspan(2), " "));
+  return fmt::format(
+      "run, quality bit {}, messages, bad cycles in a row, place of the last fault, outputs {}", values[1],
+      fmt::join(values.subspan(2), " "));
 }
 
 std::string state_text(std::span<const std::int64_t> values) {
   const auto state = interbus::name(static_cast<interbus::MasterState>(values[0]));
-  return fmt::format("{}{}{}{}", state, values[1] != 0 ? ", configuration refused" : "",
-                     values.size() > 2 ? ", stations or place of the fault " : "",
-                     fmt::join(values.subspan(2), " "));
+  std::string text = fmt::format("{}{}", state, values[1] != 0 ? ", configuration refused" : "");
+  for (unsigned n = 0; n < 6; ++n) {
+    if ((values[2] >> n & 1) == 0) continue;
+    text += fmt::format(", cycles in {}", interbus::name(static_cast<interbus::MasterState>(n)));
+  }
+  if (values.size() > 3)
+    text += fmt::format(", stations, place of the fault or outputs {}", fmt::join(values.subspan(3), " "));
+  return text;
 }
 
 constexpr EventKind kCycles{"cycles", "no_data_cycle", "cycle_unasked", "cycle_wrong", cycle_text};
@@ -44,7 +53,8 @@ constexpr EventKind kStates{"states", "state_missing", "state_unasked", "state_w
 
 class MasterSequenceRun {
  public:
-  MasterSequenceRun(MasterBench& bench, CaseJudge& judge, const field::Settings& settings)
+  MasterSequenceRun(MasterBench& bench, CaseJudge& judge, const field::Settings& settings,
+                    void (*change_rules)(interbus::Rules&))
       : judge_(judge),
         twin_(NoNeeds{},
               {.make_device = std::make_unique<interbus::Master, const interbus::MasterConfiguration&>,
@@ -55,12 +65,17 @@ class MasterSequenceRun {
     for (MasterSide& side : sides_) {
       side.bench().configuration() = configuration_of_sequence(settings);
       side.bench().rules() = side.bench().configuration().rules;
+      if (change_rules != nullptr) change_rules(side.bench().rules());
     }
   }
 
   void run(const Sequence& sequence) {
     power({.ring = ring_of(0)});
+    std::string done;
     for (const SequenceCommand& command : sequence.commands) {
+      done += (done.empty() ? "" : "; ") +
+              command_lines({.commands = {command}}, master_sequence_role().vocabulary).front();
+      judge_.begin_step(done);
       for (MasterSide& side : sides_) execute(side, command);
       compare();
     }
@@ -101,7 +116,7 @@ class MasterSequenceRun {
       case MasterWord::ring:
         return side.replace_ring(changed_ring(side.bench().ring().stations(), numbers[0], numbers[1]));
       case MasterWord::stop:
-        return side.stop();
+        return side.stop(numbers[0] != 0);
       case MasterWord::start:
         return side.start(word(0));
       case MasterWord::power:
@@ -125,7 +140,18 @@ class MasterSequenceRun {
     compare_events(kCycles, iut.cycles(), std::span(&twin.cycles(), 1), true, judge_);
     compare_events(kInputs, iut.inputs(), std::span(&twin.inputs(), 1), true, judge_);
     compare_events(kReports, iut.reports(), std::span(&twin.reports(), 1), true, judge_);
+    compare_cycle_time();
     for (MasterSide& side : sides_) side.clear_observations();
+  }
+
+  // The delay of the ring is measured, to some bits.
+  void compare_cycle_time() {
+    if (!sides_[0].is_running() || !sides_[1].is_running()) return;
+    const kernel::Duration seen = sides_[0].bench().status().cycle_time;
+    const kernel::Duration right = twin_.status().cycle_time;
+    const kernel::Duration tolerance = kernel::levels_duration(4, twin_.rules().bit_rate);
+    judge_.expect(right - tolerance <= seen && seen <= right + tolerance, "cycle_time_wrong",
+                  kernel::describe(right), kernel::describe(seen));
   }
 
   CaseJudge& judge_;
@@ -151,8 +177,9 @@ const SequenceRole& master_sequence_role() {
   return role;
 }
 
-void run_master_sequence(const Sequence& sequence, MasterBench& bench, CaseJudge& judge) {
-  MasterSequenceRun(bench, judge, sequence.settings).run(sequence);
+void run_master_sequence(const Sequence& sequence, MasterBench& bench, CaseJudge& judge,
+                         void (*change_rules)(interbus::Rules&)) {
+  MasterSequenceRun(bench, judge, sequence.settings, change_rules).run(sequence);
 }
 
 }  // namespace fieldproof::conformance

@@ -13,6 +13,11 @@ namespace fieldproof::conformance {
 // "interbus/master/check/follows_the_reference".
 const SequenceRole& master_sequence_role();
 
-void run_master_sequence(const Sequence& sequence, MasterBench& bench, CaseJudge& judge);
+// `change_rules`: what every power-up has otherwise; null: nothing.
+void run_master_sequence(const Sequence& sequence, MasterBench& bench, CaseJudge& judge,
+                         void (*change_rules)(interbus::Rules&));
+inline void run_master_sequence(const Sequence& sequence, MasterBench& bench, CaseJudge& judge) {
+  run_master_sequence(sequence, bench, judge, nullptr);
+}
 
 }  // namespace fieldproof::conformance

@@ -36,7 +36,9 @@ CycleFaults changed_answer() {
 }  // namespace
 
 MasterSide::MasterSide(MasterBench& bench, CaseJudge* judge) : bench_(bench), judge_(judge) {}
-MasterSide::~MasterSide() = default;
+MasterSide::~MasterSide() {
+  bench_.set_script({});
+}
 
 void MasterSide::clear_observations() {
   for (Observations* all : {&cycles_, &inputs_, &reports_, &states_}) all->clear();
@@ -57,21 +59,67 @@ void MasterSide::power(const MasterScene& scene) {
   for (const VirtualStation& one : scene.ring) words += one.words;
   configuration.copy.clear();
   if (scene.copies && words > 0) configuration.copy = {{0, words - 1}};
+  if (scene.copies && words > 1) configuration.copy.push_back({words - 1, 0});
+  if (!bench_.may_answer("request_below_minimum", "clipped")) configuration.cycle_time = {};
+  const interbus::Rules usual = bench_.rules();
+  limit_ring(scene);
+  // Who knows no station yet may ask on and on.
+  constexpr unsigned kFew = 3;
+  constexpr unsigned kWithAStation = 2;
+  undisturbed_ = std::max(scene.disturbed_from, scene.disturbed > kFew ? kWithAStation : 0);
+  states_seen_ = 0;
+  is_before_data_ = false;
   disturbed_ = scene.disturbed;
   is_stopped_ = false;
   is_ring_right_ = true;
+  is_ring_known_ = false;
   armed_.reset();
-  returned_ = std::make_unique<ReturnedLine>(bench_.rules());
-  bench_.set_script([this](const interbus::RingEmulator::CycleInfo&, CycleFaults& f) { on_ring_cycle(f); });
+  returned_ = std::make_shared<ReturnedLine>(bench_.rules());
+  bench_.set_script([this](const interbus::RingEmulator::CycleInfo& info, CycleFaults& faults) {
+    on_ring_cycle(info.is_id_cycle, faults);
+  });
   bench_.power_up(scene.ring);
+  bench_.rules() = usual;
+  const kernel::Time powered = bench_.now();
   bench_.tap_arrived(*returned_);
+  bench_.keep(returned_);
+  driven_ = std::make_shared<DrivenLine>(bench_.rules());
+  bench_.tap_driven(*driven_);
+  bench_.keep(driven_);
   await_run();
   judge_silence();
+  expect(driven_->first() - powered <= bench_.rules().silence_limit, "silence_before_the_first_start",
+         "no silence before the first start", kernel::describe(driven_->first() - powered));
 }
 
-void MasterSide::on_ring_cycle(CycleFaults& faults) {
+void MasterSide::limit_ring(const MasterScene& scene) {
+  interbus::Rules& rules = bench_.rules();
+  unsigned words = 0;
+  unsigned deepest = 1;
+  std::vector<unsigned> levels;
+  for (const VirtualStation& one : scene.ring) {
+    words += one.words;
+    const unsigned before = one.before < 0 ? 1 : levels.at(static_cast<std::size_t>(one.before));
+    levels.push_back(before + (one.on_branch ? 1 : 0));
+    deepest = std::max(deepest, levels.back());
+  }
+  const auto stations = static_cast<unsigned>(scene.ring.size());
+  constexpr unsigned kPoints = 16;
+  if (scene.limits == Limits::stations_met) rules.max_stations = stations;
+  if (scene.limits == Limits::stations_exceeded) rules.max_stations = std::max(1U, stations - 1);
+  if (scene.limits == Limits::points_met) rules.max_io_points = kPoints * words;
+  if (scene.limits == Limits::points_exceeded) rules.max_io_points = kPoints * words - 1;
+  if (scene.limits == Limits::levels_met) rules.max_levels = deepest;
+  if (scene.limits == Limits::levels_exceeded) rules.max_levels = std::max(1U, deepest - 1);
+}
+
+void MasterSide::on_ring_cycle(bool is_id_cycle, CycleFaults& faults) {
   returned_->begin();
-  if (disturbed_ > 0) {
+  states_seen_ |= std::uint64_t{1} << static_cast<unsigned>(bench_.status().state);
+  if (!is_id_cycle && std::exchange(is_before_data_, false)) has_kept_inputs_ = image() == at_start_;
+  if (undisturbed_ > 0) {
+    --undisturbed_;
+  } else if (disturbed_ > 0) {
     --disturbed_;
     faults = changed_answer();
   } else if (armed_) {
@@ -86,12 +134,19 @@ bool MasterSide::is_idle() const {
 
 void MasterSide::start(unsigned disturbed) {
   if (!is_idle()) return;
-  disturbed_ = disturbed;
+  disturbed_ = std::min(disturbed, 3U);
   is_stopped_ = false;
   is_ring_right_ = true;
   const std::uint64_t before = bench_.ring().cycle_count();
+  driven_->forget_silence();
   bench_.start();
+  at_start_ = image();
+  has_kept_inputs_ = true;
+  is_before_data_ = is_ring_known_;
   await_run();
+  expect(has_kept_inputs_, "inputs_not_held", "the end of the recognition of the same ring clears no input",
+         "inputs have changed");
+  if (bench_.ring().has_cycle(before)) judge_break();
   // Before the first cycle it was silent, as it must.
   bench_.ring().forget_statistics();
   if (!bench_.ring().has_cycle(before)) return;
@@ -128,19 +183,23 @@ void MasterSide::enter_run() {
          "an ID cycle that was asked for and two good data cycles within 8 cycles",
          has_identified ? "no good data cycles" : "no ID cycle");
   held_ = image();
-  data_cycles_ = rejected_ = 0;
+  is_next_ = false;
+  is_ring_known_ = true;
+  data_cycles_ = rejected_ = id_cycles_ = rejected_of_all_ = 0;
   at_entry_ = bench_.status();
   note_state(false);
 }
 
-void MasterSide::stop() {
+void MasterSide::stop(bool is_disturbed) {
   if (is_stopped_) return;
   const bool was_running = is_running();
   is_stopped_ = true;
   const std::uint64_t before = bench_.ring().cycle_count();
+  if (is_disturbed && was_running) armed_ = changed_answer();
   bench_.stop();
   bench_.run_until([this] { return bench_.status().state == MasterState::off; }, kernel::kSecond);
   bench_.run_for(kernel::kMillisecond);
+  armed_.reset();
   if (was_running && is_ring_right_) {
     const SeenCycle& last = bench_.ring().last_cycle();
     bool is_zero = bench_.ring().cycle_count() > before && !last.is_id_cycle;
@@ -174,7 +233,9 @@ void MasterSide::wait(kernel::Duration duration) {
 // ---- application and stations ----
 
 void MasterSide::write(unsigned word, std::uint16_t value) {
-  if (!is_running() || !is_ring_right_ || word >= bench_.ring().word_count()) return;
+  if (!is_ring_right_ || word >= bench_.ring().word_count()) return;
+  // Without effect there.
+  if (!is_running()) return is_ring_known_ && is_idle() ? bench_.write_output(word, value) : void();
   unsigned first = 0;
   for (const VirtualStation& station : bench_.ring().stations()) {
     const bool is_of_station = word < first + station.words;
@@ -203,7 +264,8 @@ void MasterSide::set_messages(std::size_t station, std::uint16_t bits) {
 }
 
 void MasterSide::cut_before(std::size_t station) {
-  if (!is_running()) return;
+  // Whether a cut after the stations that are known is seen depends on the interfaces that stay on.
+  if (!is_running() || !is_ring_right_) return;
   const auto& stations = bench_.ring().stations();
   bench_.ring().cut_after(stations[station % stations.size()].before);
   is_ring_right_ = false;
@@ -214,8 +276,13 @@ void MasterSide::cut_before(std::size_t station) {
 }
 
 void MasterSide::replace_ring(std::vector<VirtualStation> ring) {
+  const bool is_as_long = ring.size() == bench_.ring().stations().size();
   bench_.ring().replace_ring(std::move(ring));
-  is_ring_right_ = false;
+  is_ring_right_ = is_ring_known_ = false;
+  if (is_as_long) return;
+  // A disturbed ID cycle may, or may not, switch the interface off after which the new station is.
+  constexpr int kUntilSeen = 4;
+  for (int n = 0; n < kUntilSeen && is_running(); ++n) cycle();
 }
 
 // ---- cycles ----
@@ -223,10 +290,13 @@ void MasterSide::replace_ring(std::vector<VirtualStation> ring) {
 void MasterSide::cycle(const CycleFaults& faults) {
   if (!is_running()) return;
   armed_ = faults;
+  const std::uint64_t before = bench_.ring().cycle_count();
+  driven_->forget_silence();
   if (!run_cycle()) return;
   if (is_running()) return;
   armed_.reset();
   settle();
+  if (bench_.ring().cycle_count() > before + 1) judge_break();
   note_state(false);
 }
 
@@ -239,6 +309,7 @@ bool MasterSide::run_cycle() {
          "an ID cycle after a rejected cycle", "a data cycle");
   has_rejected_ = !bench_.finished().is_accepted;
   judge_cycle(bench_.ring().last_cycle());
+  judge_line();
   note_cycle();
   judge_counters();
   return true;
@@ -309,13 +380,19 @@ void MasterSide::judge_counters() {
   if (bench_.finished().is_data) {
     ++data_cycles_;
     rejected_ += bench_.finished().is_accepted ? 0U : 1U;
+  } else {
+    ++id_cycles_;
   }
+  rejected_of_all_ += bench_.finished().is_accepted ? 0U : 1U;
   if (judge_ == nullptr || !is_running()) return;
   const MasterStatus status = bench_.status();
   judge_->expect_equal(status.data_cycles - at_entry_.data_cycles, data_cycles_, "counter_wrong",
                        "data cycles");
   judge_->expect_equal(status.rejected_data_cycles - at_entry_.rejected_data_cycles, rejected_,
                        "counter_wrong", "rejected data cycles");
+  judge_->expect_equal(status.id_cycles - at_entry_.id_cycles, id_cycles_, "counter_wrong", "ID cycles");
+  judge_->expect_equal(status.rejected_cycles - at_entry_.rejected_cycles, rejected_of_all_, "counter_wrong",
+                       "rejected cycles");
 }
 
 void MasterSide::judge_silence() {
@@ -326,12 +403,50 @@ void MasterSide::judge_silence() {
          kernel::describe(longest));
 }
 
+// After a stop or a bus stop all stations fall into reset before anything is looked for.
+void MasterSide::judge_break() {
+  const interbus::Rules& rules = bench_.rules();
+  const kernel::Duration least = rules.silence_limit + rules.silence_tolerance;
+  const kernel::Duration longest = driven_->longest_silence();
+  expect(longest >= least, "silence_too_short",
+         fmt::format("{} of silence before the ring is recognised", kernel::describe(least)),
+         kernel::describe(longest));
+}
+
+void MasterSide::judge_line() {
+  if (judge_ == nullptr) return;
+  const DrivenLine::Misplaced& misplaced = driven_->misplaced();
+  if (!misplaced.reason.empty()) {
+    judge_->fail(misplaced.reason,
+                 {.expected = {misplaced.expected}, .actual = misplaced.actual, .time = misplaced.when});
+  }
+}
+
+// How many cycle times lie between the starts of two cycles; -1: not a whole number of them.
+std::int64_t MasterSide::cycle_times() {
+  const kernel::Duration cycle_time = bench_.status().cycle_time;
+  const kernel::Time start = bench_.ring().last_cycle().start;
+  const kernel::Duration span = start - std::exchange(cycle_start_, start);
+  if (!std::exchange(is_next_, true)) return 0;
+  const std::int64_t count = (span + cycle_time / 2) / cycle_time;
+  const kernel::Duration beside = span - count * cycle_time;
+  const kernel::Duration bit = kernel::levels_duration(1, bench_.rules().bit_rate);
+  return -bit <= beside && beside <= bit ? count : -1;
+}
+
+void MasterSide::add_images(Values& values) const {
+  const bool is_held =
+      !bench_.may_answer("outputs_after_bus_stop", "zero") && bench_.status().state == MasterState::bus_stop;
+  for (unsigned word = 0; word < bench_.ring().word_count() && is_ring_right_; ++word)
+    values.push_back(is_held ? 0 : bench_.master().output(word));
+}
+
 // ---- what is compared ----
 
 void MasterSide::note_cycle() {
   const SeenCycle& sent = bench_.ring().last_cycle();
   const kernel::Time when = sent.start;
-  Values cycle{sent.is_id_cycle ? 1 : 0, static_cast<std::int64_t>(sent.transfer_octets)};
+  Values cycle{sent.is_id_cycle ? 1 : 0, static_cast<std::int64_t>(sent.transfer_octets), cycle_times()};
   // Of an ID cycle the acknowledgement is compared, no more: how interfaces are switched is the
   // recognition's.
   const std::size_t words = sent.transfer_octets / 2;
@@ -339,6 +454,9 @@ void MasterSide::note_cycle() {
     const auto word = sent.word(2 * n).value_or(0);
     if (!sent.is_id_cycle) cycle.push_back(word);
   }
+  constexpr std::size_t kCheckAndStatus = 4;
+  for (std::size_t n = sent.transfer_octets + kCheckAndStatus; n < sent.octets.size(); ++n)
+    cycle.push_back(sent.octets[n]);
   cycles_.push_back({cycle, when});
   const std::vector<std::uint16_t> held = image();
   Values inputs{bench_.finished().is_accepted ? 1 : 0};
@@ -351,16 +469,22 @@ void MasterSide::note_cycle() {
     report.push_back(static_cast<std::int64_t>(status.peripheral_faults.size()));
     report.insert(report.end(), status.peripheral_faults.begin(), status.peripheral_faults.end());
     report.insert(report.end(), status.reconfigurations.begin(), status.reconfigurations.end());
+    report.push_back(status.consecutive_bad);
     report.push_back(status.has_fault_location ? 1 : 0);
     report.push_back(status.has_fault_location ? status.fault_location.from : 0);
     report.push_back(status.has_fault_location ? status.fault_location.to : 0);
   }
+  add_images(report);
   reports_.push_back({report, when});
 }
 
 void MasterSide::note_state(bool is_located) {
+  // Whether the first cycles are driven in the state before is the master's choice.
+  constexpr std::uint64_t kBefore = std::uint64_t{1} << static_cast<unsigned>(MasterState::ready) |
+                                    std::uint64_t{1} << static_cast<unsigned>(MasterState::bus_stop);
   const MasterStatus status = bench_.status();
-  Values state{static_cast<std::int64_t>(status.state), status.configuration_error.empty() ? 0 : 1};
+  Values state{static_cast<std::int64_t>(status.state), status.configuration_error.empty() ? 0 : 1,
+               static_cast<std::int64_t>(std::exchange(states_seen_, 0) & ~kBefore)};
   if (status.state == MasterState::run) {
     for (const interbus::FoundStation& one : status.stations)
       state.insert(state.end(), {one.id_code, one.words, one.before, one.on_branch ? 1 : 0});
@@ -369,6 +493,7 @@ void MasterSide::note_state(bool is_located) {
     state.insert(state.end(),
                  {status.has_fault_location ? 1 : 0, status.fault_location.from, status.fault_location.to});
   }
+  if (status.state != MasterState::run) add_images(state);
   states_.push_back({state, bench_.now()});
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "conformance/comparison/observation.hpp"
+#include "conformance/interbus/driven_line.hpp"
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/interbus/returned_line.hpp"
 
@@ -25,13 +26,26 @@
 //   it sends no cycle when it is stopped, and its last one sets the outputs to 0
 namespace fieldproof::conformance {
 
+// What the limits of a master are: the usual ones, just met by the ring, or just exceeded.
+enum class Limits : std::uint8_t {
+  usual,
+  stations_met,
+  stations_exceeded,
+  points_met,
+  points_exceeded,
+  levels_met,
+  levels_exceeded,
+};
+
 // What a master finds when its supply comes.
 struct MasterScene {
   std::vector<interbus::VirtualStation> ring;
   std::vector<interbus::VirtualStation> expected{};  // empty: any ring is taken
   bool copies = false;                               // the first input word to the last output word
   kernel::Duration cycle_time{};
-  unsigned disturbed = 0;  // the first cycles come back changed
+  unsigned disturbed = 0;       // so many cycles come back changed
+  unsigned disturbed_from = 0;  // the first of them
+  Limits limits = Limits::usual;
 };
 
 class MasterSide {
@@ -53,7 +67,7 @@ class MasterSide {
   void power(const MasterScene& scene);
   // Nothing unless it is off or has given up the bus.
   void start(unsigned disturbed);
-  void stop();
+  void stop(bool is_disturbed);
   // In run, up to the end of the next cycle, which suffers the faults.
   void cycle(const interbus::CycleFaults& faults = {});
   // The application; nothing unless it is in run.
@@ -65,6 +79,7 @@ class MasterSide {
   void set_messages(std::size_t station, std::uint16_t bits);
   // The cable in front of the station is cut until the master has given up the bus.
   void cut_before(std::size_t station);
+  // One of another length: until the master has seen it.
   void replace_ring(std::vector<interbus::VirtualStation> ring);
   void wait(kernel::Duration duration);
 
@@ -72,32 +87,48 @@ class MasterSide {
   using Values = std::vector<std::int64_t>;
 
   bool is_idle() const;
-  void on_ring_cycle(interbus::CycleFaults& faults);
+  void limit_ring(const MasterScene& scene);
+  void on_ring_cycle(bool is_id_cycle, interbus::CycleFaults& faults);
   void await_run();
   void enter_run();
   void settle();
   bool run_cycle();
   void note_cycle();
   void note_state(bool is_located);
+  void add_images(Values& values) const;
   void judge_cycle(const interbus::SeenCycle& sent);
   void judge_inputs(const interbus::SeenCycle& sent, Arrival arrival);
   void judge_counters();
   void judge_silence();
+  void judge_line();
+  void judge_break();
+  std::int64_t cycle_times();
   void expect(bool holds, std::string_view reason, std::string_view expected, std::string_view actual) const;
   std::vector<std::uint16_t> image() const;
   std::vector<std::size_t> input_places() const;
 
   MasterBench& bench_;
   CaseJudge* judge_;
-  std::unique_ptr<ReturnedLine> returned_;
+  std::shared_ptr<ReturnedLine> returned_;
+  std::shared_ptr<DrivenLine> driven_;
+  kernel::Time cycle_start_{};
+  bool is_next_ = false;  // the cycle before was one of this run
   std::optional<interbus::CycleFaults> armed_;
   unsigned disturbed_ = 0;
+  unsigned undisturbed_ = 0;             // cycles before these
+  std::uint64_t states_seen_ = 0;        // a bit for each, at the beginnings of cycles
+  std::vector<std::uint16_t> at_start_;  // the inputs after the order
+  bool has_kept_inputs_ = true;          // up to the first data cycle
+  bool is_before_data_ = false;
   bool is_stopped_ = false;
-  bool has_rejected_ = false;  // the last cycle
-  bool is_ring_right_ = true;  // the one that it runs on
+  bool has_rejected_ = false;   // the last cycle
+  bool is_ring_known_ = false;  // it has run on this one since its supply came
+  bool is_ring_right_ = true;   // the one that it runs on
   std::vector<std::uint16_t> held_;
   std::uint64_t data_cycles_ = 0;  // in this run
   std::uint64_t rejected_ = 0;
+  std::uint64_t id_cycles_ = 0;
+  std::uint64_t rejected_of_all_ = 0;
   interbus::MasterStatus at_entry_;
   Observations cycles_;
   Observations inputs_;

@@ -20,13 +20,16 @@ constexpr std::array<std::int64_t, 6> kBadCounts{1, 2, 1, 8, 9, 10};
 constexpr std::array<std::int64_t, 5> kImageWords{0x0000, 0xFFFF, 0x0001, 0x8000, 0xA55A};
 constexpr std::array<std::int64_t, 6> kShifts{-16, -8, -1, 1, 8, 16};
 constexpr std::array<std::int64_t, 3> kMasks{0x01, 0x80, 0xFF};
+constexpr std::array<std::int64_t, 5> kMarks{0x0001, 0x0080, 0x0100, 0x8000, 0xFFFF};
 constexpr std::array<std::int64_t, 4> kFirstTelegrams{0, 1, 2, 3};
-constexpr std::array<std::int64_t, 3> kRequests{0, 0, 40};
+constexpr std::array<std::int64_t, 5> kRequests{0, 0, 1, 40, 70};
 constexpr std::array<std::int64_t, 3> kMilliseconds{1, 30, 100};
 constexpr std::array<std::int64_t, 4> kExpectations{0, 1, 1, 2};
 // Of a cycle of the largest ring.
 constexpr unsigned kMostTelegrams = 14;
-constexpr std::int64_t kRings = 6;
+constexpr std::int64_t kRings = 7;
+constexpr std::array<std::int64_t, 5> kDisturbed{0, 1, 3, 9, 10};
+constexpr std::array<std::int64_t, 4> kImagePlaces{0, 1, 7, 150};
 constexpr std::int64_t kMostStations = 4;
 
 SequenceNumber image_word(std::string_view name) {
@@ -39,42 +42,44 @@ SequenceNumber telegram() {
   return {"telegram", 0, kMostTelegrams - 1, 0, kFirstTelegrams};
 }
 SequenceNumber disturbed() {
-  return {"disturbed", 0, 3, 0};
+  return {"disturbed", 0, 12, 0, kDisturbed};
 }
 
 std::vector<SequenceWord> words_of_answers() {
-  return {{.word = "cycles",
-           .meaning = "so many cycles come back as they are",
-           .numbers = {{"count", 1, 30, 1, kCounts}},
-           .weight = 6},
-          {.word = "changed",
-           .meaning = "a cycle comes back with flipped levels and without some telegrams",
-           .units = kMostTelegrams,
-           .weight = 6},
-          {.word = "forged",
-           .meaning = "an octet comes back changed, with a check that fits",
-           .numbers = {telegram(), {"mask", 1, 0xFF, 1, kMasks}},
-           .weight = 3},
-          {.word = "extra",
-           .meaning = "one telegram comes back twice, one is in front of it, or one is after the last",
-           .numbers = {{"kind", 0, 3, 0}, telegram()},
-           .weight = 2},
-          {.word = "marked",
-           .meaning = "a station marks the status word and reports that its check did not fit",
-           .numbers = {station()},
-           .weight = 3},
-          {.word = "shifted",
-           .meaning = "the register is so many bits longer, or shorter",
-           .numbers = {{"bits", -16, 16, 1, kShifts}},
-           .weight = 2},
-          {.word = "lost",
-           .meaning = "so many cycles do not come back, the line holds a level",
-           .numbers = {{"count", 1, 12, 1, kBadCounts}, {"level", 0, 1, 1}},
-           .weight = 3},
-          {.word = "bad",
-           .meaning = "so many cycles come back with one bit changed",
-           .numbers = {{"count", 1, 12, 1, kBadCounts}},
-           .weight = 4}};
+  return {
+      {.word = "cycles",
+       .meaning = "so many cycles come back as they are",
+       .numbers = {{"count", 1, 30, 1, kCounts}},
+       .weight = 6},
+      {.word = "changed",
+       .meaning = "a cycle comes back with flipped levels and without some telegrams",
+       .units = kMostTelegrams,
+       .weight = 6},
+      {.word = "forged",
+       .meaning = "an octet comes back changed, with a check that fits",
+       .numbers = {telegram(), {"mask", 1, 0xFF, 1, kMasks}},
+       .weight = 3},
+      {.word = "extra",
+       .meaning = "one telegram comes back twice, one is in front of it, or one is after the last; status "
+                  "telegrams of other kinds",
+       .numbers = {{"kind", 0, 4, 0}, telegram()},
+       .weight = 2},
+      {.word = "marked",
+       .meaning = "a station marks the status word and reports that its check did not fit; so does another",
+       .numbers = {station(), {"other", 0, kMostStations - 1, 0}, {"bits", 1, 0xFFFF, 0xFFFF, kMarks}},
+       .weight = 3},
+      {.word = "shifted",
+       .meaning = "the register is so many bits longer, or shorter",
+       .numbers = {{"bits", -16, 16, 1, kShifts}},
+       .weight = 2},
+      {.word = "lost",
+       .meaning = "so many cycles do not come back, the line holds a level",
+       .numbers = {{"count", 1, 12, 1, kBadCounts}, {"level", 0, 1, 1}},
+       .weight = 3},
+      {.word = "bad",
+       .meaning = "so many cycles come back with one bit changed",
+       .numbers = {{"count", 1, 12, 1, kBadCounts}},
+       .weight = 4}};
 }
 
 std::vector<SequenceWord> words_of_users() {
@@ -88,7 +93,7 @@ std::vector<SequenceWord> words_of_users() {
            .weight = 3},
           {.word = "output",
            .meaning = "the application writes one output",
-           .numbers = {{"word", 0, 7, 0}, image_word("value")},
+           .numbers = {{"word", 0, 255, 0, kImagePlaces}, image_word("value")},
            .weight = 2},
           {.word = "identify", .meaning = "the application asks for an ID cycle", .weight = 3},
           {.word = "messages",
@@ -98,32 +103,38 @@ std::vector<SequenceWord> words_of_users() {
 }
 
 std::vector<SequenceWord> words_of_rings() {
-  return {{.word = "cut",
-           .meaning = "the cable in front of a station is cut until the bus is given up",
-           .numbers = {station()},
-           .weight = 1},
-          {.word = "ring",
-           .meaning = "another station of the same length, one more, or one less",
-           .numbers = {{"change", 0, 2, 0}, station()},
-           .weight = 1},
-          {.word = "stop", .meaning = "the application stops the bus", .weight = 2},
-          {.word = "start",
-           .meaning = "the application starts the bus; the first cycles come back changed",
-           .numbers = {disturbed()},
-           .weight = 4},
-          {.word = "power",
-           .meaning = "the supply goes and comes, with a ring, and the configuration expects any (0), this "
-                      "or another one (2)",
-           .numbers = {{"ring", 0, kRings - 1, 0},
-                       {"expects", 0, 2, 0, kExpectations},
-                       {"copies", 0, 1, 0},
-                       {"cycle_ms", 0, 40, 0, kRequests, true},
-                       disturbed()},
-           .weight = 2},
-          {.word = "wait",
-           .meaning = "so many milliseconds without cycles",
-           .numbers = {{"ms", 1, 200, 1, kMilliseconds}},
-           .weight = 1}};
+  return {
+      {.word = "cut",
+       .meaning = "the cable in front of a station is cut until the bus is given up",
+       .numbers = {station()},
+       .weight = 1},
+      {.word = "ring",
+       .meaning = "another station of the same length (0, 3, 4), one more, or one less",
+       .numbers = {{"change", 0, 4, 0}, station()},
+       .weight = 1},
+      {.word = "stop",
+       .meaning = "the application stops the bus; the last cycle comes back changed",
+       .numbers = {{"disturbed", 0, 1, 0}},
+       .weight = 2},
+      {.word = "start",
+       .meaning = "the application starts the bus; the first cycles come back changed",
+       .numbers = {disturbed()},
+       .weight = 4},
+      {.word = "power",
+       .meaning = "the supply goes and comes, with a ring, and the configuration expects any (0), this "
+                  "or another one (2): the last station elsewhere (3), on another interface (4), missing (5)",
+       .numbers = {{"ring", 0, kRings - 1, 0},
+                   {"expects", 0, 5, 0, kExpectations},
+                   {"copies", 0, 1, 0},
+                   {"cycle_ms", 0, 70, 0, kRequests, true},
+                   disturbed(),
+                   {"from", 0, 3, 0},
+                   {"limits", 0, 6, 0}},
+       .weight = 2},
+      {.word = "wait",
+       .meaning = "so many milliseconds without cycles",
+       .numbers = {{"ms", 1, 200, 1, kMilliseconds}},
+       .weight = 1}};
 }
 
 // As many as a sequence has: the printed window takes a million cycles.
@@ -185,6 +196,8 @@ std::vector<VirtualStation> ring_of(std::int64_t number) {
       return interbus::line_of(4, 0x0103, 1);
     case 4:
       return interbus::line_of(1, 0x0603, 8);
+    case 6:
+      return interbus::line_of(5, 0x1403, 32);
     default:
       return {{0x0103, 1, -1, false}, {0x0008, 0, 0, false}, {0x01BE, 1, 1, true}, {0x0203, 2, 1, false}};
   }
@@ -194,8 +207,10 @@ std::vector<VirtualStation> changed_ring(std::vector<VirtualStation> ring, std::
                                          std::int64_t station) {
   constexpr std::uint16_t kOtherType = 0x0040;
   const std::size_t place = static_cast<std::size_t>(station) % ring.size();
-  if (change == 0) {
-    ring[place].id_code ^= kOtherType;
+  if (change == 0 || change > 2) {
+    // The register stays as long, whatever its code says.
+    constexpr std::array<std::uint16_t, 5> kOther{kOtherType, 0, 0, 0x1000, 0x0001};
+    ring[place].id_code ^= kOther.at(static_cast<std::size_t>(change));
   } else if (change == 1) {
     ring.push_back({0x0103, 1, static_cast<int>(ring.size()) - 1, false});
   } else if (ring.size() > 1) {
@@ -204,14 +219,30 @@ std::vector<VirtualStation> changed_ring(std::vector<VirtualStation> ring, std::
   return ring;
 }
 
+namespace {
+
+// The ring with its last station elsewhere.
+std::vector<VirtualStation> misplaced(std::vector<VirtualStation> ring, std::int64_t how) {
+  VirtualStation& last = ring.back();
+  if (how == 3) last.before = last.before < 0 ? 0 : last.before - 1;
+  if (how == 4) last.on_branch = !last.on_branch;
+  if (how == 5) ring.pop_back();
+  return ring;
+}
+
+}  // namespace
+
 MasterScene scene_of(const SequenceCommand& command) {
   const auto& numbers = command.numbers;
   MasterScene scene{.ring = ring_of(numbers[0])};
   if (numbers[1] == 1) scene.expected = scene.ring;
   if (numbers[1] == 2) scene.expected = ring_of((numbers[0] + 1) % kRings);
+  if (numbers[1] > 2) scene.expected = misplaced(scene.ring, numbers[1]);
   scene.copies = numbers[2] != 0;
   scene.cycle_time = numbers[3] * kernel::kMillisecond;
   scene.disturbed = static_cast<unsigned>(numbers[4]);
+  scene.disturbed_from = static_cast<unsigned>(numbers[5]);
+  scene.limits = static_cast<Limits>(numbers[6]);
   return scene;
 }
 
@@ -235,9 +266,12 @@ CycleFaults faults_of(const SequenceCommand& command, std::size_t stations) {
       if (number(0) == 1) faults.inserted = number(1);
       if (number(0) == 2) faults.trailing_telegram = true;
       if (number(0) == 3) faults.status_flag_flipped = true;
+      if (number(0) == 4) faults.inserted_status = number(1);
       break;
     case MasterWord::marked:
       faults.marked_by = number(0) % static_cast<int>(stations);
+      faults.also_marked_by = number(1) % static_cast<int>(stations);
+      faults.mark = static_cast<std::uint16_t>(number(2));
       break;
     case MasterWord::shifted:
       faults.longer_bits = number(0);

@@ -48,7 +48,7 @@ bool ReturnedLine::is_cycle(std::size_t transfer, bool is_id_cycle) const {
     octets.push_back(received_[n].data);
   }
   const std::size_t words = transfer / 2;
-  if (word(words) != interbus::RingEmulator::check_of({octets.data(), transfer})) return false;
+  if (word(words) != check_.of({octets.data(), transfer})) return false;
   if (word(words + 1) != rules_.status_clean) return false;
   for (std::size_t n = is_id_cycle ? 0 : words - 1; n < words; ++n) {
     if (word(n) == rules_.loopback_word) return true;

@@ -20,7 +20,9 @@ enum class Arrival : std::uint8_t {
 class ReturnedLine final : public segment::Tap {
  public:
   explicit ReturnedLine(const interbus::Rules& rules)
-      : rules_(rules), receiver_(line::shared_telegram_code(rules.telegram), rules.bit_rate) {}
+      : rules_(rules),
+        receiver_(line::shared_telegram_code(rules.telegram), rules.bit_rate),
+        check_(line::frame_check_named(rules.frame_check)) {}
 
   void on_wave(const line::Waveform& wave) override;
 
@@ -43,6 +45,7 @@ class ReturnedLine final : public segment::Tap {
 
   interbus::Rules rules_;
   line::TelegramReceiver receiver_;
+  BitwiseCheck check_;
   std::vector<Received> received_;
 };
 

@@ -9,26 +9,8 @@ namespace fieldproof::interbus {
 
 namespace {
 
-constexpr std::uint16_t kPolynomial = 0x1021;
-constexpr std::uint16_t kPreset = 0xFFFF;
 // Telegrams that are nearer to one another than this many levels leave no silence worth noting.
 constexpr std::size_t kStatusLongest = 4 * line::kDataTelegramLevels;
-
-// What eight steps of the division do to a register whose upper octet is `octet`.
-constexpr std::array<std::uint16_t, 256> make_steps() {
-  std::array<std::uint16_t, 256> steps{};
-  for (unsigned octet = 0; octet < 256; ++octet) {
-    unsigned bits = octet << 8;
-    for (int bit = 0; bit < 8; ++bit) bits = (bits & 0x8000) != 0 ? (bits << 1) ^ kPolynomial : bits << 1;
-    steps[octet] = static_cast<std::uint16_t>(bits);
-  }
-  return steps;
-}
-constexpr std::array<std::uint16_t, 256> kSteps = make_steps();
-
-std::uint16_t divide(std::uint16_t check, std::uint8_t octet) {
-  return static_cast<std::uint16_t>((check << 8) ^ kSteps[static_cast<std::size_t>((check >> 8) ^ octet)]);
-}
 
 }  // namespace
 
@@ -42,12 +24,13 @@ std::vector<VirtualStation> line_of(std::size_t count, std::uint16_t id_code, un
 bool CycleFaults::is_none() const {
   return flips.empty() && level_flips.empty() && longer_bits == 0 && dropped < 0 && duplicated < 0 &&
          inserted < 0 && stop_missing < 0 && flag_flipped < 0 && header_flipped < 0 && !status_flag_flipped &&
-         !trailing_telegram && marked_by < 0 && !stuck;
+         !trailing_telegram && inserted_status < 0 && marked_by < 0 && !stuck;
 }
 
 RingEmulator::RingEmulator(const Rules& rules, std::vector<VirtualStation> stations)
     : rules_(rules),
       code_(line::shared_telegram_code(rules_.telegram)),
+      check_(line::frame_check_named(rules_.frame_check)),
       receiver_(code_, rules_.bit_rate),
       status_levels_(code_.levels_of(0, 0)) {
   for (unsigned n = 0; n < 3; ++n) {
@@ -55,12 +38,6 @@ RingEmulator::RingEmulator(const Rules& rules, std::vector<VirtualStation> stati
   }
   replace_ring(std::move(stations));
   reset_stations();
-}
-
-std::uint16_t RingEmulator::check_of(std::span<const std::uint8_t> octets) {
-  std::uint16_t check = kPreset;
-  for (const std::uint8_t octet : octets) check = divide(check, octet);
-  return check;
 }
 
 // ---- the ring ----

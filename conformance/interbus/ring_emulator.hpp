@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/interbus/slave_model.hpp"
 #include "harness/line/telegram_receiver.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/interbus/rules.hpp"
@@ -56,10 +57,13 @@ struct CycleFaults {
   int stop_missing = -1;
   int flag_flipped = -1;  // of a data telegram
   int header_flipped = -1;
-  bool status_flag_flipped = false;  // of the first status telegram behind the cycle
-  bool trailing_telegram = false;    // one more data telegram behind the last
-  int marked_by = -1;                // this station marks the status word and sets its message bit
-  std::optional<bool> stuck;         // the return line holds this level
+  bool status_flag_flipped = false;     // of the first status telegram behind the cycle
+  bool trailing_telegram = false;       // one more data telegram behind the last
+  int inserted_status = -1;             // a status telegram in front of this one
+  int marked_by = -1;                   // this station marks the status word and sets its message bit
+  int also_marked_by = -1;              // and this one
+  std::optional<std::uint16_t> mark{};  // the bits that it sets, instead of those of the rules
+  std::optional<bool> stuck;            // the return line holds this level
 
   bool is_none() const;
 };
@@ -151,7 +155,7 @@ class RingEmulator : public segment::Station {
   // Idle since the end of the last telegram.
   kernel::Duration silence_until(kernel::Time now) const;
 
-  static std::uint16_t check_of(std::span<const std::uint8_t> octets);
+  std::uint16_t check_of(std::span<const std::uint8_t> octets) const { return check_.of(octets); }
 
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
   void on_time(kernel::Time now) override;
@@ -191,6 +195,7 @@ class RingEmulator : public segment::Station {
 
   Rules rules_;
   const line::TelegramCode& code_;
+  conformance::BitwiseCheck check_;
   line::TelegramReceiver receiver_;
   std::uint64_t status_levels_;
   unsigned flag_level_ = 3;

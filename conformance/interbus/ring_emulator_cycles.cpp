@@ -119,7 +119,10 @@ void RingEmulator::on_check(const line::Waveform& wave, const line::Telegram& te
     octet = octet_of(sent_check_, n);
   } else if (n < kCheckOctets) {
     if (telegram.data != octet_of(rules_.status_clean, n - 2)) is_marked_ = true;
-    if (own_error_ || (is_faulted_ && faults_.marked_by >= 0)) octet |= octet_of(rules_.status_marked, n - 2);
+    const bool is_marked_here = is_faulted_ && faults_.marked_by >= 0;
+    const std::uint16_t mark =
+        is_marked_here ? faults_.mark.value_or(rules_.status_marked) : rules_.status_marked;
+    if (own_error_ || is_marked_here) octet |= octet_of(mark, n - 2);
   }
   emit(telegram, octet);
   if (n + 1 != kCheckOctets) return;
@@ -140,6 +143,8 @@ void RingEmulator::finish_cycle() {
   }
   if (is_faulted_ && faults_.marked_by >= 0) {
     error_messages_.at(static_cast<std::size_t>(faults_.marked_by)) |= rules_.message_check_error;
+    if (faults_.also_marked_by >= 0)
+      error_messages_.at(static_cast<std::size_t>(faults_.also_marked_by)) |= rules_.message_check_error;
     return;
   }
   if (is_marked_) return;
@@ -189,6 +194,8 @@ void RingEmulator::emit(const line::Telegram& telegram, std::uint8_t octet) {
   if (faults_.flag_flipped == index) levels ^= std::uint64_t{1} << flag_level_;
   if (faults_.header_flipped == index) levels ^= std::uint64_t{1} << (flag_level_ == 1 ? 2 : 1);
   if (faults_.dropped == index) return;
+  if (faults_.inserted_status == index)
+    emit_levels(telegram_bit_, status_levels_, line::kStatusTelegramLevels);
   if (faults_.inserted == index) {
     emit_levels(telegram_bit_, code_.levels_of(header, kJunk), line::kDataTelegramLevels);
   }

@@ -93,6 +93,7 @@ SlaveBench::SlaveBench(interbus::NetworkDescription network, const SlaveSetting&
       out_(segment(), train_.code(), network_.rules.bit_rate),
       remote_(segment(), train_.code(), network_.rules.bit_rate),
       branch_(segment(), train_.code(), network_.rules.bit_rate),
+      kept_alive_(network_.rules.silence_limit / 4),
       loopback_word_(network_.rules.loopback_word),
       inputs_(words()) {
   start_recording(setting, network_.rules);
@@ -168,6 +169,13 @@ void SlaveBench::set_bridge(bool on_branch, bool present) {
   segment().refresh(ring_.seat(position_));
 }
 
+void SlaveBench::set_power(bool is_on) {
+  ring_.slave(position_).set_power(is_on, now());
+  segment().refresh(ring_.seat(position_));
+  if (is_on) return;
+  for (unsigned word = 0; word < words(); ++word) terminals().write(word, 0, now());
+}
+
 std::vector<std::uint16_t> SlaveBench::random_words() {
   std::vector<std::uint16_t> drawn(words());
   for (std::uint16_t& word : drawn) word = static_cast<std::uint16_t>(random().next());
@@ -205,13 +213,19 @@ const CyclePlace& SlaveBench::append_data_cycle(std::span<const std::uint16_t> w
   return train_.cycles().back();
 }
 
-const CyclePlace& SlaveBench::append_id_cycle(std::uint16_t control, std::span<const std::uint16_t> behind) {
+std::span<const std::uint8_t> SlaveBench::id_octets(std::uint16_t control,
+                                                    std::span<const std::uint16_t> behind) {
   octets_.clear();
   put_word(loopback_word_);
   for (const std::uint16_t word : behind) put_word(word);
   put_word(control);
   for (auto place = way_.rbegin(); place != way_.rend(); ++place)
     put_word(place->next_on_branch ? rules().control_remote_off : rules().control_local_off);
+  return octets_;
+}
+
+const CyclePlace& SlaveBench::append_id_cycle(std::uint16_t control, std::span<const std::uint16_t> behind) {
+  id_octets(control, behind);
   append_cycle(true);
   return train_.cycles().back();
 }
@@ -268,6 +282,29 @@ void SlaveBench::send() {
   segment().run_until(end + settling_);
 }
 
+void SlaveBench::send_back(bool on_branch) {
+  clear_views();
+  sent_at_ = now();
+  line::Waveform wave{now(), rules().bit_rate, {}};
+  std::swap(wave.levels, train_.levels());
+  const kernel::Time end = wave.end();
+  drive_return(on_branch, wave);
+  std::swap(wave.levels, train_.levels());
+  segment().run_until(end + settling_);
+}
+
+std::unique_ptr<SlaveBench> SlaveBench::twin(int side) const {
+  interbus::NetworkDescription network = network_;
+  const kernel::Duration tolerance = network.rules.silence_tolerance;
+  network.rules.silence_limit += side * tolerance;
+  network.rules.silence_tolerance += side * (tolerance / 8 - tolerance);
+  SlaveSetting setting;
+  setting.position = position_;
+  std::unique_ptr<SlaveBench> made(new SlaveBench(std::move(network), setting));
+  made->kept_alive_ = kept_alive_;
+  return made;
+}
+
 void SlaveBench::clear_views() {
   for (LineView* view : {&in_, &out_, &remote_, &branch_}) view->clear();
 }
@@ -281,7 +318,7 @@ std::size_t SlaveBench::code_word_level(const CyclePlace& cycle, std::size_t bit
 
 // The stations in front hear nothing of what is driven directly.
 void SlaveBench::keep_way_alive() {
-  if (way_.empty() || now() - last_sent_ < rules().silence_limit / 4) return;
+  if (way_.empty() || now() - last_sent_ < kept_alive_) return;
   status_telegrams(2);
 }
 

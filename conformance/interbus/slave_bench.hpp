@@ -76,6 +76,8 @@ class SlaveBench final : public CaseBench, private segment::Station {
   const std::vector<interbus::TerminalBlock::Change>& changes() { return terminals().changes(); }
   void set_inputs(std::span<const std::uint16_t> words);
   void set_bridge(bool on_branch, bool present);
+  // Without supply nothing stands at the outputs.
+  void set_power(bool is_on);
   std::vector<std::uint16_t> random_words();
 
   // ---- cycles through the ring ----
@@ -103,8 +105,12 @@ class SlaveBench final : public CaseBench, private segment::Station {
   // Octets of a data cycle as they are sent, loopback word included, and their check.
   std::span<const std::uint8_t> data_octets(std::span<const std::uint16_t> words,
                                             std::span<const std::uint16_t> behind = {});
+  // The same for an ID cycle.
+  std::span<const std::uint8_t> id_octets(std::uint16_t control, std::span<const std::uint16_t> behind = {});
   // Sends the train now, and runs until everything has come back. Clears the views before.
   void send();
+  // The same on the line that comes back from the station after OUT1 or OUT2.
+  void send_back(bool on_branch);
 
   // ---- faults at the IUT's receiver ----
   fault::ScriptedChannel& channel() { return channel_; }
@@ -121,6 +127,12 @@ class SlaveBench final : public CaseBench, private segment::Station {
   void drive_return(bool on_branch, line::Waveform& wave);
   // A whole data cycle as the station in front of the IUT would send it, alone in the ring.
   line::Levels direct_data_cycle(std::span<const std::uint16_t> words, unsigned gap_bits);
+
+  // ---- a twin ----
+  // The same ring with a reference slave at the IUT's position. It takes silence for a reset as early (-1) or
+  // as late (1) as the tolerance lets it, and ends the time of control_reset an eighth of it earlier or
+  // later.
+  std::unique_ptr<SlaveBench> twin(int side) const;
 
   // The case is over. What the IUT does then is still its verdict.
   void finish() { ring_.end(); }
@@ -175,6 +187,7 @@ class SlaveBench final : public CaseBench, private segment::Station {
   LineView remote_;
   LineView branch_;
   kernel::Duration settling_{};
+  kernel::Duration kept_alive_{};  // how long the way to the IUT is left without telegrams
   std::uint16_t loopback_word_;
   std::vector<std::uint16_t> inputs_;
   std::vector<std::uint16_t> outputs_;  // see outputs()

@@ -59,7 +59,8 @@ const std::vector<SlaveCase>& slave_cases() {
     static constexpr std::array kChapters{
         slave_power_up_cases,    slave_id_cycle_cases,    slave_data_cycle_cases, slave_length_code_cases,
         slave_frame_check_cases, slave_short_cycle_cases, slave_telegram_cases,   slave_timing_cases,
-        slave_supervision_cases, slave_interface_cases,   slave_message_cases,    slave_immunity_cases};
+        slave_supervision_cases, slave_interface_cases,   slave_message_cases,    slave_immunity_cases,
+        slave_compared_cases};
     auto all = cases_of<SlaveCase>(kChapters, {});
     all.push_back(canary());
     return all;

@@ -34,6 +34,7 @@ std::vector<SlaveCase> slave_supervision_cases();
 std::vector<SlaveCase> slave_interface_cases();
 std::vector<SlaveCase> slave_message_cases();
 std::vector<SlaveCase> slave_immunity_cases();
+std::vector<SlaveCase> slave_compared_cases();
 
 // ---- what chapters share ----
 

@@ -157,6 +157,8 @@ std::vector<SlaveRow> slave_management_rows() {
        mutant<KeptAliveByReturns>()},
       {"reset_leaves_interfaces_on", "", "leaves its outgoing interfaces on in a reset",
        mutant<ResetLeavesInterfacesOn>()},
+      {"keeps_all_without_supply", "", "goes on after the supply was away as if nothing had been",
+       mutant<KeepsAllWithoutSupply>()},
       {"ignores_words_with_reserved_bits", "", "ignores a control word with a reserved bit",
        mutant<IgnoresWordsWithReservedBits>()},
       {"remote_interface_stays_open", "", "ignores the order to switch OUT1 off",

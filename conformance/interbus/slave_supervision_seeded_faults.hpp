@@ -26,6 +26,13 @@ class KeptAliveByReturns : public Slave {
   bool is_sign_of_life(segment::PortIndex) const override { return true; }
 };
 
+// Its memory is buffered, or it does not see that the supply has been away.
+class KeepsAllWithoutSupply final : public interbus::Slave {
+ public:
+  using Slave::Slave;
+  void set_power(bool, kernel::Time) override {}
+};
+
 class ResetLeavesInterfacesOn : public Slave {
   using Slave::Slave;
   bool reset_switches_off() const override { return false; }

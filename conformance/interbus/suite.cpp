@@ -83,7 +83,8 @@ RoleRow slave_row() {
           .pics_items = slave_pics_items,
           .usual_answers = declared_usual_slave,
           .settings = &interbus::kSlaveTable,
-          .sequences = SequenceRow<SlaveCase>{slave_sequence_role, run_slave_sequence}});
+          .sequences =
+              SequenceRow<SlaveCase>{slave_sequence_role, run_slave_sequence, slave_sequence_needs()}});
 }
 
 // ---- master ----

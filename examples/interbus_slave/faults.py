@@ -186,7 +186,7 @@ FAULTS = {
     "message_cleared_early": ("clears its messages when they are read", "", (ID_WORD, ID_WORD + "\n            self.messages = 0")),
     "message_never_cleared": ("keeps the message of a check error", "", ("            self.messages &= ~self.messages_read\n", "")),
     "message_cleared_by_data": ("a good data cycle clears its message", "", (ACTIVE, "elif self.messages or True:\n            self.messages = 0\n            if not self.is_active:\n                return")),
-    "fault_latched": ("a peripheral fault stays when it has gone", "", ('            self.messages &= ~(s["message_peripheral_fault"] | s["message_reconfiguration"])\n', "            pass\n"), ("            self.messages &= ~self.messages_read\n", "            self.messages &= ~s[\"message_check_error\"]\n")),
+    "fault_latched": ("a peripheral fault stays when it has gone", "", ('            self.messages &= ~(s["message_peripheral_fault"] | s["message_reconfiguration"])\n', ""), ("            self.messages &= ~self.messages_read\n", "            self.messages &= ~self.s[\"message_check_error\"]\n")),
     "fault_hides_request": ("sends one message at a time", "", ("        if self.stream.read(RECONFIGURATION, when):" , "        if self.stream.read(RECONFIGURATION, when) and not self.messages:")),
     "outputs_without_id": ("moves outputs before an ID cycle", "", (ACTIVE, "else:")),
     "outputs_late": ("moves outputs 60 us after the cycle", "", (OUTPUTS, OUTPUTS.replace("max(end, self.now)", "max(end, self.now) + 60 * 10**6"))),

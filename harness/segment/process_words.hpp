@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -10,7 +11,7 @@
 // outputs with the instants at which they changed.
 //
 // Contract: instants may lie ahead, because a station works through a whole reception when it begins; those
-// of outputs never decrease.
+// of one output never decrease.
 namespace fieldproof::segment {
 
 class ProcessWords {
@@ -46,13 +47,15 @@ class ProcessWords {
     writes_[word] = {when, held};
     if (held == value) return;
     const Change change{when, word, held, value};
-    if (changes_.size() < kMostChanges) changes_.push_back(change);
+    if (changes_.size() < kMostChanges) {
+      changes_.insert(std::ranges::upper_bound(changes_, when, {}, &Change::when), change);
+    }
     for (const auto& hook : on_change_) hook(change);
     held = value;
   }
 
-  // Changes of outputs since `forget_changes`, at most kMostChanges of them; and how often any output was
-  // written, changed or not.
+  // Changes of outputs in order of time since `forget_changes`, at most kMostChanges of them; and how often
+  // any output was written, changed or not.
   static constexpr std::size_t kMostChanges = 65'536;
   const std::vector<Change>& changes() const { return changes_; }
   void forget_changes() { changes_.clear(); }

@@ -332,7 +332,9 @@ void ServedMaster::tell_stations(const MasterStatus& status) {
 void ServedMaster::tell_images(const MasterStatus& status) {
   unsigned words = 0;
   for (const FoundStation& station : status.stations) words += station.words;
-  for (unsigned word = 0; word < words; ++word) {
+  // Those that are there no more are 0.
+  told_words_ = std::max(told_words_, words);
+  for (unsigned word = 0; word < told_words_; ++word) {
     keep(kInputImage + word, station().input(word));
     keep(kOutputImage + word, station().output(word));
   }

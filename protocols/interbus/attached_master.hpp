@@ -140,6 +140,7 @@ class ServedMaster final : public iut::ServedStation<MasterDevice> {
 
   Make make_;
   std::vector<std::uint64_t> told_;  // by item, as the bench was told them
+  unsigned told_words_ = 0;
 };
 
 // The role as benches and attachments know it.

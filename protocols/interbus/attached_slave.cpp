@@ -16,10 +16,17 @@ AttachedSlave::AttachedSlave(iut::Attachment attachment, const SlaveConfiguratio
 void AttachedSlave::wire(const SlavePorts& ports, Terminals& terminals) {
   ports_ = {ports.upstream, ports.branch, ports.remote};
   terminals_ = &terminals;
-  attached_.set_power(true, kernel::kStart);
+  set_power(true, kernel::kStart);
+}
+
+void AttachedSlave::set_power(bool is_on, kernel::Time now) {
+  if (front_) front_->reset();
+  is_supplied_ = is_on;
+  attached_.set_power(is_on, now);
 }
 
 void AttachedSlave::receive(segment::PortIndex port, const line::Waveform& reception) {
+  if (!is_supplied_) return;
   if (!front_) {
     return attached_.call(reception.start, [&](iut::Device& device) { device.receive(port, reception); });
   }
@@ -31,11 +38,13 @@ void AttachedSlave::tell(unsigned port, std::span<const iut::Character> telegram
 }
 
 void AttachedSlave::on_time(kernel::Time now) {
+  if (!is_supplied_) return;
   if (front_) front_->complete(now, [&](unsigned port, auto telegrams) { tell(port, telegrams, now); });
   if (!front_ || attached_.next_time() <= now) attached_.on_time(now);
 }
 
 kernel::Time AttachedSlave::next_time() const {
+  if (!is_supplied_) return kernel::kNever;
   return std::min(attached_.next_time(), front_ ? front_->next_time() : kernel::kNever);
 }
 
@@ -68,7 +77,8 @@ void AttachedSlave::write(iut::Item item, std::uint64_t value, kernel::Time when
         fmt::format("writes {} to item {}; this slave has {} output words, from item {} on", value, item,
                     words_, kOutputWord));
   }
-  attached_.expect_in_order(when, "moves its outputs");
+  // The words of a cycle may come in any order.
+  attached_.expect_in_order(when, fmt::format("moves output word {}", item - kOutputWord));
   terminals_->output(item - kOutputWord, static_cast<std::uint16_t>(value), when);
 }
 
@@ -89,13 +99,20 @@ std::uint64_t AttachedSlave::read(iut::Item item, kernel::Time when) {
 
 bool ServedSlave::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
   play(make_(slave_configuration_of(begin)), bench);
+  is_wired_ = false;
   return true;
 }
 
-// It has no switch of its own: with the supply it is there. Where nothing is plugged in then, nothing will
-// be.
+// Where nothing is plugged in when the supply comes first, nothing will be.
 void ServedSlave::set_power(bool is_on, kernel::Time now) {
   if (!is_on) return;
+  if (is_wired_) {
+    return act(now, [&] {
+      station().set_power(false, now);
+      station().set_power(true, now);
+    });
+  }
+  is_wired_ = true;
   SlavePorts ports{.upstream = &port(kFromUpstream)};
   is_branch_plugged_ = bench().read(kBranchPlugged, now) != 0;
   is_remote_plugged_ = bench().read(kRemotePlugged, now) != 0;

@@ -38,6 +38,7 @@ class AttachedSlave final : public SlaveDevice, private iut::Bench {
   void set_next_present(bool on_branch, bool present) override {
     (on_branch ? branch_present_ : remote_present_) = present;
   }
+  void set_power(bool is_on, kernel::Time now) override;
   bool has_line_interface() const override { return front_ == nullptr; }
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
   void on_time(kernel::Time now) override;
@@ -57,6 +58,7 @@ class AttachedSlave final : public SlaveDevice, private iut::Bench {
   std::unique_ptr<TelegramFront> front_;  // of one that hears telegrams
   std::array<segment::Port*, 3> ports_{};
   Terminals* terminals_ = nullptr;
+  bool is_supplied_ = false;
   bool remote_present_ = true;
   bool branch_present_ = true;
 };
@@ -81,6 +83,7 @@ class ServedSlave final : public iut::ServedStation<SlaveDevice>, private Termin
   bool wants_reconfiguration(kernel::Time when) override;
 
   Make make_;
+  bool is_wired_ = false;
   bool is_branch_plugged_ = false;
   bool is_remote_plugged_ = false;
 };

@@ -53,6 +53,9 @@ class SlaveDevice : public segment::Station {
   virtual void wire(const SlavePorts& ports, Terminals& terminals) = 0;
   // The plug with the bridge at an outgoing interface is put in or pulled.
   virtual void set_next_present(bool on_branch, bool present) = 0;
+  // The supply goes or comes back; it is there from `wire` on. Nothing outlasts it, and what stands at the
+  // outputs without it is the bench's.
+  virtual void set_power(bool is_on, kernel::Time now) = 0;
   // Whether it finds telegrams in levels itself, and makes levels of its own.
   virtual bool has_line_interface() const { return true; }
 };

@@ -64,6 +64,16 @@ void Slave::set_next_present(bool on_branch, bool present) {
   (on_branch ? branch_present_ : remote_present_) = present;
 }
 
+void Slave::set_power(bool is_on, kernel::Time now) {
+  now_ = now;
+  is_supplied_ = is_on;
+  for (line::TelegramReceiver& receiver : receivers_) receiver.reset();
+  messages_ = 0;
+  outgoing_reset_until_ = kernel::Time{kernel::Duration::min()};
+  last_telegram_ = last_data_ = supervised_life_ = kNoTelegram;
+  enter_reset(now);
+}
+
 // ---- the way of a telegram through the station ----
 
 segment::Port* Slave::next_after(segment::PortIndex from) const {
@@ -88,6 +98,7 @@ void Slave::open_forward() {
 }
 
 void Slave::receive(segment::PortIndex port, const line::Waveform& reception) {
+  if (!is_supplied_) return;
   now_ = reception.start;
   if (port != kFromUpstream) return relay_only(port, reception);
   open_forward();

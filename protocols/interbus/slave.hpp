@@ -43,6 +43,7 @@ class Slave : public SlaveDevice {
 
   void wire(const SlavePorts& ports, Terminals& terminals) override;
   void set_next_present(bool on_branch, bool present) override;
+  void set_power(bool is_on, kernel::Time now) override;
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
   void on_time(kernel::Time now) override;
   kernel::Time next_time() const override;
@@ -164,6 +165,7 @@ class Slave : public SlaveDevice {
 
   bool route_changed_ = false;  // a control word has taken effect, nothing has gone the new way yet
   bool shifts_status_ = false;
+  bool is_supplied_ = true;
   bool is_deaf_ = false;  // a deviating receiver that does not resynchronise
   kernel::Time now_{};    // of the reception in work
   kernel::Time last_telegram_ = kNoTelegram;

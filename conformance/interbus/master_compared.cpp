@@ -1,0 +1,287 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <initializer_list>
+#include <utility>
+
+#include "conformance/interbus/master_cases.hpp"
+#include "conformance/interbus/master_sequence.hpp"
+#include "conformance/interbus/master_vocabulary.hpp"
+#include "conformance/sequence_draw.hpp"
+
+// A master beside the reference: each value of each word, each level of a cycle flipped on its way back, what
+// ends a run and begins the next one, one thing after another, and everything again with other settings.
+namespace fieldproof::conformance {
+namespace {
+
+using MasterCommands = std::vector<SequenceCommand>;
+using MasterFamily = std::vector<MasterCommands> (*)();
+using ChangeRules = void (*)(interbus::Rules&);
+
+const SequenceVocabulary& words_of_master() {
+  static const SequenceVocabulary without_settings = [] {
+    SequenceVocabulary all = master_sequence_role().vocabulary;
+    all.settings.clear();
+    return all;
+  }();
+  return without_settings;
+}
+
+// The numbers that are not given are the simple ones.
+SequenceCommand order(MasterWord word,
+                      std::initializer_list<std::pair<std::size_t, std::int64_t>> given = {}) {
+  SequenceCommand made{.word = static_cast<std::size_t>(word), .numbers = {}};
+  for (const SequenceNumber& number : words_of_master().words[made.word].numbers)
+    made.numbers.push_back(number.simple);
+  for (const auto& [n, value] : given) made.numbers[n] = value;
+  return made;
+}
+SequenceCommand cycles(std::int64_t count) {
+  return order(MasterWord::cycles, {{0, count}});
+}
+SequenceCommand ring(std::int64_t number) {
+  return order(MasterWord::power, {{0, number}, {1, 1}, {2, 1}});
+}
+
+// ---- families of sequences ----
+
+std::vector<MasterCommands> each_value_for_a_master() {
+  constexpr std::int64_t kFew = 14;
+  std::vector<MasterCommands> all;
+  for (std::size_t word = 0; word < words_of_master().words.size(); ++word) {
+    const auto& numbers = words_of_master().words[word].numbers;
+    all.push_back({order(static_cast<MasterWord>(word))});
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      std::vector<std::int64_t> values(numbers[n].likely.begin(), numbers[n].likely.end());
+      for (std::int64_t value = numbers[n].least; value <= numbers[n].most && numbers[n].most <= kFew;
+           ++value)
+        values.push_back(value);
+      for (const std::int64_t value : values)
+        all.push_back({ring(5), order(static_cast<MasterWord>(word), {{n, value}})});
+    }
+  }
+  for (std::int64_t limits = 1; limits <= 6; ++limits) {
+    for (const std::int64_t number : {0, 5})
+      all.push_back({order(MasterWord::power, {{0, number}, {6, limits}})});
+  }
+  for (std::int64_t from = 1; from < 4; ++from) {
+    for (const std::int64_t disturbed : {1, 9, 10})
+      all.push_back({order(MasterWord::power, {{0, 5}, {4, disturbed}, {5, from}})});
+  }
+  all.push_back({order(MasterWord::power, {{0, 4}, {3, 1}})});
+  all.push_back({ring(6), order(MasterWord::output, {{0, 150}, {1, 0x8001}}), cycles(2)});
+  return all;
+}
+
+// Each header level, the stop level and some data levels of each telegram, and each telegram lost; of a data
+// cycle and of an ID cycle.
+std::vector<MasterCommands> each_fault_on_the_way_back() {
+  constexpr std::array<std::uint32_t, 7> kLevels{0, 1, 2, 3, 4, 11, 12};
+  constexpr std::uint32_t kTelegrams = 10;
+  std::vector<MasterCommands> all;
+  for (const bool is_id_cycle : {false, true}) {
+    for (std::uint32_t unit = 0; unit < kTelegrams; ++unit) {
+      for (std::size_t n = 0; n <= kLevels.size(); ++n) {
+        SequenceCommand changed = order(MasterWord::changed);
+        const bool is_lost = n == kLevels.size();
+        changed.faults.push_back(
+            {is_lost ? SequenceFaultKind::drop : SequenceFaultKind::flip, unit, is_lost ? 0 : kLevels.at(n)});
+        if (is_id_cycle) {
+          all.push_back({order(MasterWord::identify), changed});
+        } else {
+          all.push_back({changed});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+std::vector<SequenceCommand> events_for_a_master() {
+  return {order(MasterWord::bad),
+          order(MasterWord::bad, {{0, 9}}),
+          order(MasterWord::bad, {{0, 10}}),
+          order(MasterWord::marked),
+          order(MasterWord::marked, {{0, 1}, {1, 2}}),
+          order(MasterWord::marked, {{0, 2}, {1, 0}, {2, 0x0080}}),
+          order(MasterWord::forged, {{0, 2}}),
+          order(MasterWord::extra, {{0, 2}}),
+          order(MasterWord::shifted, {{0, 16}}),
+          order(MasterWord::lost, {{0, 2}}),
+          order(MasterWord::inputs, {{0, 0x8001}, {1, 0x0180}}),
+          order(MasterWord::outputs, {{0, 0x7FFE}, {1, 0xFF00}}),
+          order(MasterWord::output, {{0, 1}, {1, 0x8000}}),
+          order(MasterWord::identify),
+          order(MasterWord::messages, {{0, 1}, {1, 3}}),
+          order(MasterWord::messages, {{0, 0}, {1, 2}}),
+          order(MasterWord::cut),
+          order(MasterWord::cut, {{0, 1}}),
+          order(MasterWord::ring, {{0, 0}}),
+          order(MasterWord::ring, {{0, 1}}),
+          order(MasterWord::ring, {{0, 2}}),
+          order(MasterWord::stop),
+          order(MasterWord::stop, {{0, 1}}),
+          order(MasterWord::start, {{0, 2}}),
+          ring(1),
+          ring(5),
+          order(MasterWord::wait, {{0, 30}})};
+}
+
+std::vector<MasterCommands> one_order_after_another() {
+  std::vector<MasterCommands> all;
+  for (const SequenceCommand& first : events_for_a_master()) {
+    for (const SequenceCommand& second : events_for_a_master()) all.push_back({first, cycles(1), second});
+  }
+  return all;
+}
+
+// What ends a run, how the next one begins, and what ends that.
+std::vector<MasterCommands> run_after_run() {
+  const std::vector<SequenceCommand> ends{
+      order(MasterWord::stop),           order(MasterWord::bad, {{0, 10}}),
+      order(MasterWord::cut, {{0, 1}}),  order(MasterWord::ring, {{0, 0}, {1, 1}}),
+      order(MasterWord::ring, {{0, 2}}), order(MasterWord::cut, {{0, 3}})};
+  std::vector<MasterCommands> all;
+  for (const SequenceCommand& first : ends) {
+    for (const SequenceCommand& second : ends) {
+      all.push_back({ring(5), order(MasterWord::inputs, {{0, 0x1357}, {1, 0x2468}}),
+                     order(MasterWord::outputs, {{0, 0x1111}, {1, 0x2222}}), order(MasterWord::bad, {{0, 5}}),
+                     cycles(2), first, order(MasterWord::identify),
+                     order(MasterWord::outputs, {{0, 1}, {1, 1}}), order(MasterWord::start),
+                     order(MasterWord::bad, {{0, 6}}), cycles(3), second, order(MasterWord::start),
+                     order(MasterWord::bad, {{0, 9}})});
+    }
+  }
+  for (std::int64_t station = 0; station < 4; ++station) {
+    const SequenceCommand changed = order(MasterWord::ring, {{0, 0}, {1, station}});
+    all.push_back({ring(5), changed, order(MasterWord::identify), cycles(2)});
+    all.push_back({ring(5), changed, order(MasterWord::lost, {{0, 12}})});
+    all.push_back({ring(5), order(MasterWord::messages, {{0, 3 - station}, {1, 3}}),
+                   order(MasterWord::marked, {{0, station}, {1, 3}}), cycles(3)});
+  }
+  return all;
+}
+
+std::vector<MasterCommands> many_cycles_of_a_master() {
+  MasterCommands many;
+  for (std::int64_t n = 0; n < 26; ++n) {
+    many.push_back(order(MasterWord::inputs, {{0, n}, {1, 0xFFFF - n}}));
+    many.push_back(order(n % 3 == 0 ? MasterWord::bad : MasterWord::cycles));
+    many.push_back(cycles(10));
+  }
+  MasterCommands window;
+  for (int n = 0; n < 3; ++n) {
+    window.push_back(order(MasterWord::bad));
+    window.push_back(cycles(2));
+  }
+  window.push_back(cycles(30));
+  window.push_back(order(MasterWord::bad));
+  window.push_back(cycles(30));
+  return {many, window};
+}
+
+// ---- a case ----
+
+Sequence between(const MasterCommands& middle) {
+  Sequence sequence;
+  sequence.commands = {order(MasterWord::inputs, {{0, 0x0102}, {1, 0xFEFD}}),
+                       order(MasterWord::outputs, {{0, 0x00FF}, {1, 0x5AA5}}), cycles(2)};
+  sequence.commands.insert(sequence.commands.end(), middle.begin(), middle.end());
+  for (const SequenceCommand& one :
+       {cycles(1), order(MasterWord::inputs, {{0, 0xFF00}, {1, 0}}), order(MasterWord::outputs), cycles(3),
+        order(MasterWord::identify), cycles(2), order(MasterWord::start), cycles(2)})
+    sequence.commands.push_back(one);
+  return sequence;
+}
+
+// All of a family; in a quick run so many of it, others with each seed.
+std::function<void(MasterBench&, CaseJudge&)> each_beside(MasterFamily family, std::size_t quick,
+                                                          ChangeRules change_rules = nullptr) {
+  return [=](MasterBench& bench, CaseJudge& judge) {
+    const std::vector<MasterCommands> all = family();
+    const std::size_t count = bench.volume(std::min(quick, all.size()), all.size());
+    const std::size_t first =
+        count == all.size() ? 0 : static_cast<std::size_t>(bench.random().below(all.size()));
+    for (std::size_t n = 0; n < count; ++n)
+      run_master_sequence(between(all[(first + n * all.size() / count) % all.size()]), bench, judge,
+                          change_rules);
+  };
+}
+
+void drawn_for_a_master(MasterBench& bench, CaseJudge& judge) {
+  const SequenceSource source(words_of_master(), bench.random().next());
+  for (std::uint64_t n = 0; n < bench.volume(15U, 300U); ++n)
+    run_master_sequence({.commands = source.draw(40 + n).commands}, bench, judge);
+}
+
+// ---- other settings ----
+
+void change_all_codings(interbus::Rules& rules) {
+  rules.telegram = {
+      .header = {line::HeaderLevel::control, line::HeaderLevel::flag, line::HeaderLevel::select},
+      .select_level = false,
+      .control_level = false,
+      .data_flag_level = false,
+      .most_significant_first = false};
+  rules.loopback_word = 0x8C31;
+  rules.frame_check = "CRC-16/MAXIM-DOW";
+  rules.status_clean = 0x0A50;
+  rules.status_marked = 0x8100;
+  rules.control_remote_off = 0x8000;
+  rules.control_local_off = 0x0100;
+  rules.message_reconfiguration = 0x8000;
+  rules.message_check_error = 0x2000;
+  rules.message_peripheral_fault = 0x4000;
+  rules.end_telegrams = 3;
+}
+
+void change_times_of_a_master(interbus::Rules& rules) {
+  rules.telegram_gap_millibits = 3'700;
+  rules.status_pitch_bits = 300;
+  rules.software_time = 3 * kernel::kMillisecond;
+  rules.frame_check = "CRC-16/GENIBUS";
+  rules.stop_after_bad_cycles = 4;
+  rules.quality_bad_cycles = 2;
+  rules.quality_window_cycles = 7;
+  rules.silence_limit = 60 * kernel::kMillisecond;
+  rules.silence_tolerance = 5 * kernel::kMillisecond;
+}
+
+MasterCase compared_master(std::string_view id, std::string stimulus, std::vector<MustCatch> catches,
+                           std::function<void(MasterBench&, CaseJudge&)> procedure) {
+  MasterCase made{master_sequence_role().test_case, std::move(procedure)};
+  made.test_case.id = fmt::format("interbus/master/compared/{}", id);
+  made.test_case.purpose = "compared";
+  made.test_case.stimulus = std::move(stimulus);
+  made.test_case.tags = {"must"};
+  made.test_case.catches = std::move(catches);
+  return made;
+}
+
+}  // namespace
+
+std::vector<MasterCase> master_compared_cases() {
+  return {
+      compared_master("each_value_of_each_word", "Each word of sequences with each boundary value, in run.",
+                      {{"first_station_first", "cycle_wrong"}}, each_beside(each_value_for_a_master, 160)),
+      compared_master("each_fault_on_the_way_back",
+                      "A data cycle and an ID cycle come back with a level flipped or a telegram lost.",
+                      {{"telegrams_without_gap", "gap_wrong"}}, each_beside(each_fault_on_the_way_back, 160)),
+      compared_master("one_thing_after_another", "Each two of all that can happen to a master, in run.",
+                      {{"cycle_start_wanders", "pause_not_filled"}},
+                      each_beside(one_order_after_another, 50)),
+      compared_master("run_after_run", "What ends a run, a start, and what ends the next one.",
+                      {{"changed_ring_ignored", "state_missing"}}, each_beside(run_after_run, 60)),
+      compared_master("many_cycles", "300 cycles, some of them bad, each with other inputs.",
+                      {{"outputs_torn", "cycle_wrong"}}, each_beside(many_cycles_of_a_master, 2)),
+      compared_master("drawn_sequences", "Sequences of all words at random.",
+                      {{"first_station_first", "cycle_wrong"}}, drawn_for_a_master),
+      compared_master("other_codings", "The same with each coding another one.",
+                      {{"outputs_one_cycle_late", "cycle_wrong"}},
+                      each_beside(each_value_for_a_master, 10, change_all_codings)),
+      compared_master("other_times", "The same with other times and counts.",
+                      {{"inputs_frozen", "new_inputs_missed"}},
+                      each_beside(run_after_run, 8, change_times_of_a_master))};
+}
+
+}  // namespace fieldproof::conformance

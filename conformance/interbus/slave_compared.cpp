@@ -1,0 +1,371 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <initializer_list>
+#include <utility>
+
+#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_sequence.hpp"
+#include "conformance/interbus/slave_words.hpp"
+#include "conformance/sequence_draw.hpp"
+
+// A slave beside references: each value of each word, each level of a cycle flipped, what happens within a
+// cycle and within a reset, one thing after another, and everything again with other settings. Each sequence
+// begins with the supply, both interfaces on and a data cycle, and ends with what shows the state.
+namespace fieldproof::conformance {
+namespace {
+
+using Commands = std::vector<SequenceCommand>;
+using Given = std::initializer_list<std::pair<std::size_t, std::int64_t>>;
+
+const SequenceVocabulary& vocabulary() {
+  static const SequenceVocabulary without_settings = [] {
+    SequenceVocabulary all = slave_sequence_role().vocabulary;
+    all.settings.clear();
+    return all;
+  }();
+  return without_settings;
+}
+
+// The numbers that are not given are the simple ones.
+SequenceCommand command(SlaveWord word, Given given = {}) {
+  SequenceCommand made{.word = static_cast<std::size_t>(word), .numbers = {}};
+  for (const SequenceNumber& number : vocabulary().words[made.word].numbers) {
+    made.numbers.push_back(number.simple);
+  }
+  for (const auto& [n, value] : given) made.numbers[n] = value;
+  return made;
+}
+
+SequenceCommand id(std::int64_t orders) {
+  return command(SlaveWord::id, {{0, orders}});
+}
+SequenceCommand check_telegrams() {
+  return command(SlaveWord::telegrams, {{1, 1}, {4, 4}});
+}
+SequenceCommand returns(bool on_branch) {
+  return command(SlaveWord::returns, {{0, on_branch ? 1 : 0}, {5, 2}});
+}
+
+// ---- families of sequences ----
+
+std::vector<std::int64_t> values_of(const SequenceNumber& number) {
+  constexpr std::int64_t kFew = 16;
+  std::vector<std::int64_t> values(number.likely.begin(), number.likely.end());
+  if (number.most - number.least >= kFew) return values;
+  values.clear();
+  for (std::int64_t value = number.least; value <= number.most; ++value) values.push_back(value);
+  return values;
+}
+
+std::vector<Commands> each_value() {
+  std::vector<Commands> all;
+  for (std::size_t word = 0; word < vocabulary().words.size(); ++word) {
+    const auto& numbers = vocabulary().words[word].numbers;
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      for (const std::int64_t value : values_of(numbers[n]))
+        all.push_back({command(static_cast<SlaveWord>(word), {{n, value}})});
+    }
+  }
+  for (std::int64_t header = 0; header < 8; ++header) {
+    const Given of_telegrams{{0, header & 1}, {1, header >> 1 & 1}, {2, header >> 2}, {4, 2}};
+    all.push_back({command(SlaveWord::telegrams, of_telegrams)});
+    all.push_back({command(SlaveWord::periphery, {{0, header & 1}, {1, header >> 1 & 1}}), id(header)});
+    for (const std::int64_t branch : {0, 1}) {
+      const Given back{{0, branch}, {1, header & 1}, {2, header >> 1 & 1}, {3, header >> 2}};
+      all.push_back({command(SlaveWord::returns, back)});
+      all.push_back({id(branch + 1), command(SlaveWord::returns, back)});
+    }
+  }
+  return all;
+}
+
+// Each header level, stop level and some data levels of each telegram, and each telegram lost.
+std::vector<Commands> each_fault(SlaveWord word) {
+  constexpr std::array<std::uint32_t, 7> kLevels{0, 1, 2, 3, 4, 11, 12};
+  std::vector<Commands> all;
+  const unsigned units = vocabulary().words[static_cast<std::size_t>(word)].units + 4;
+  for (std::uint32_t unit = 0; unit < units; ++unit) {
+    SequenceCommand lost = command(word);
+    lost.faults.push_back({SequenceFaultKind::drop, unit, 0});
+    all.push_back({lost});
+    for (const std::uint32_t level : kLevels) {
+      SequenceCommand flipped = command(word);
+      flipped.faults.push_back({SequenceFaultKind::flip, unit, level});
+      all.push_back({flipped});
+    }
+  }
+  return all;
+}
+std::vector<Commands> each_fault_of_a_data_cycle() {
+  return each_fault(SlaveWord::data);
+}
+std::vector<Commands> each_fault_of_an_id_cycle() {
+  return each_fault(SlaveWord::id);
+}
+
+// What leaves something behind.
+std::vector<SequenceCommand> events() {
+  return {command(SlaveWord::data),
+          command(SlaveWord::data, {{2, 1}}),
+          command(SlaveWord::data, {{3, 1}}),
+          command(SlaveWord::data, {{4, 1}}),
+          id(0),
+          id(1),
+          id(2),
+          id(3),
+          id(4),
+          command(SlaveWord::id, {{0, 0}, {2, 1}}),
+          command(SlaveWord::id, {{0, 0}, {3, 0x8000}}),
+          command(SlaveWord::id, {{0, 3}, {3, 0xFFFF}}),
+          command(SlaveWord::telegrams),
+          command(SlaveWord::telegrams, {{0, 1}}),
+          check_telegrams(),
+          command(SlaveWord::status, {{0, 3}}),
+          command(SlaveWord::inputs),
+          command(SlaveWord::plugs, {{0, 0}}),
+          command(SlaveWord::plugs, {{1, 0}}),
+          command(SlaveWord::periphery),
+          command(SlaveWord::periphery, {{0, 0}, {1, 1}}),
+          returns(false),
+          returns(true),
+          command(SlaveWord::returns, {{0, 1}, {6, 0}}),
+          command(SlaveWord::silence, {{0, 1}}),
+          command(SlaveWord::silence),
+          command(SlaveWord::silence, {{0, 4}}),
+          command(SlaveWord::kept_alive),
+          command(SlaveWord::power),
+          command(SlaveWord::glitch)};
+}
+
+std::vector<Commands> one_after_another() {
+  std::vector<Commands> all;
+  for (const SequenceCommand& first : events()) {
+    for (const SequenceCommand& second : events()) all.push_back({first, second});
+  }
+  return all;
+}
+
+std::vector<Commands> before_a_reset() {
+  std::vector<Commands> all;
+  for (const SequenceCommand& event : events()) {
+    for (const SlaveWord end : {SlaveWord::silence, SlaveWord::power}) all.push_back({event, command(end)});
+  }
+  return all;
+}
+
+// A cycle whose end does not come, with and without its check; then its check comes after all.
+std::vector<Commands> within_a_cycle() {
+  std::vector<Commands> all;
+  for (const SlaveWord word : {SlaveWord::data, SlaveWord::id}) {
+    for (const unsigned lost : {4U, 2U, 1U}) {
+      SequenceCommand cut = command(word);
+      const unsigned units = vocabulary().words[cut.word].units + 4;
+      for (unsigned n = 1; n <= lost; ++n) cut.faults.push_back({SequenceFaultKind::drop, units - n, 0});
+      for (const SequenceCommand& event : events()) {
+        all.push_back(
+            {cut, event,
+             command(SlaveWord::telegrams, {{0, word == SlaveWord::id ? 1 : 0}, {1, 1}, {3, 0}, {4, lost}})});
+      }
+    }
+  }
+  return all;
+}
+
+// The time of a reset of the outgoing bus, from each side, with what may end it or begin it again.
+std::vector<Commands> within_a_reset() {
+  std::vector<Commands> all;
+  for (std::int64_t first = 0; first < 3; ++first) {
+    for (const SequenceCommand& between : {id(0), id(3), id(4), id(7), command(SlaveWord::silence),
+                                           command(SlaveWord::power), command(SlaveWord::data)}) {
+      for (std::int64_t second = 0; second < 3; ++second) {
+        all.push_back({id(4), command(SlaveWord::kept_alive, {{0, first}}), between,
+                       command(SlaveWord::kept_alive, {{0, second}})});
+      }
+    }
+  }
+  return all;
+}
+
+// More than a counter of eight bits counts.
+std::vector<Commands> many_cycles() {
+  constexpr std::size_t kThreeEach = 90;
+  return {Commands(kThreeEach, command(SlaveWord::data, {{6, 3}})),
+          Commands(kThreeEach, command(SlaveWord::id, {{0, 0}, {6, 3}}))};
+}
+
+// ---- a case ----
+
+void begin_anew(SlaveTwins& twins) {
+  twins.each([&](SlaveBench& one) {
+    one.set_power(false);
+    one.silence(4 * twins.bench().rules().silence_limit);
+    one.set_bridge(false, twins.bench().pics().supports("remote_interface"));
+    one.set_bridge(true, true);
+    one.terminals().set_peripheral_fault({});
+    one.terminals().set_reconfiguration({});
+    one.set_power(true);
+    one.bring_up();
+  });
+}
+
+// Up to where nothing is certain any more.
+void run(SlaveTwins& twins, CaseJudge& judge, const Commands& commands) {
+  begin_anew(twins);
+  SlaveActs acts(twins);
+  std::string done;
+  for (const SequenceCommand& one : commands) {
+    acts.act(one);
+    done += (done.empty() ? "" : "; ") + command_lines({.commands = {one}}, vocabulary()).front();
+    if (!twins.agree(judge, done)) return;
+  }
+}
+
+// One thing after a start, then what shows the state that it left.
+void run_between(SlaveTwins& twins, CaseJudge& judge, const Commands& middle) {
+  Commands commands{command(SlaveWord::inputs), id(0), command(SlaveWord::data)};
+  commands.insert(commands.end(), middle.begin(), middle.end());
+  for (const SequenceCommand& one :
+       {returns(true), command(SlaveWord::data, {{0, 0xF00F}, {1, 0x00FF}}), returns(false), returns(true),
+        id(0), command(SlaveWord::data, {{0, 0x8001}, {1, 0x7FFE}}), id(0), command(SlaveWord::data)})
+    commands.push_back(one);
+  run(twins, judge, commands);
+}
+
+struct Share {
+  std::vector<Commands> (*family)();
+  std::size_t quick;
+  std::size_t full = ~std::size_t{0};
+};
+
+// So many of each family, others with each seed.
+std::function<void(SlaveBench&, CaseJudge&)> each_of(std::vector<Share> shares) {
+  return [shares = std::move(shares)](SlaveBench& bench, CaseJudge& judge) {
+    SlaveTwins twins(bench);
+    for (const auto& [family, quick, full] : shares) {
+      const std::vector<Commands> all = family();
+      const std::size_t count = std::min(bench.volume(quick, full), all.size());
+      const std::size_t first =
+          count == all.size() ? 0 : static_cast<std::size_t>(bench.random().below(all.size()));
+      for (std::size_t n = 0; n < count; ++n)
+        run_between(twins, judge, all[(first + n * all.size() / count) % all.size()]);
+    }
+  };
+}
+
+void drawn(SlaveBench& bench, CaseJudge& judge) {
+  SlaveTwins twins(bench);
+  const SequenceSource source(vocabulary(), bench.random().next());
+  for (std::uint64_t n = 0; n < bench.volume(15U, 300U); ++n) run(twins, judge, source.draw(40 + n).commands);
+}
+
+// Everything with other settings, some of it.
+std::function<void(SlaveBench&, CaseJudge&)> some_of_all() {
+  return each_of({{each_value, 20, 200}, {one_after_another, 6, 200}, {within_a_reset, 9}});
+}
+
+// ---- other settings ----
+
+// Each coding is another one.
+void change_coding(interbus::Rules& rules) {
+  rules.telegram = {
+      .header = {line::HeaderLevel::control, line::HeaderLevel::flag, line::HeaderLevel::select},
+      .select_level = false,
+      .control_level = false,
+      .data_flag_level = false,
+      .most_significant_first = false};
+  rules.frame_check = "CRC-16/MAXIM-DOW";
+  rules.status_clean = 0x0A50;
+  rules.status_marked = 0x8100;
+  rules.control_remote_off = 0x8000;
+  rules.control_local_off = 0x0100;
+  rules.control_reset = 0x0080;
+  rules.control_acknowledge = 0x4000;
+  rules.message_reconfiguration = 0x8000;
+  rules.message_check_error = 0x2000;
+  rules.message_peripheral_fault = 0x4000;
+}
+
+// Short delays and a short silence.
+void change_to_short(interbus::Rules& rules) {
+  rules.bit_rate = 2'000'000;
+  rules.forward_delay_half_bits = 1;
+  rules.return_delay_half_bits = 0;
+  rules.silence_limit = 6 * kernel::kMillisecond;
+  rules.silence_tolerance = 200 * kernel::kMicrosecond;
+  rules.frame_check = "CRC-16/GENIBUS";
+  rules.control_remote_off = 0x0010;
+  rules.control_local_off = 0x0800;
+}
+
+// Delays beyond eight bits, a silence beyond sixteen bits of microseconds.
+void change_to_long(interbus::Rules& rules) {
+  rules.forward_delay_half_bits = 301;
+  rules.return_delay_half_bits = 518;
+  rules.silence_limit = 200 * kernel::kMillisecond;
+  rules.silence_tolerance = 4 * kernel::kMillisecond;
+  rules.frame_check = "CRC-16/KERMIT";
+}
+
+constexpr std::uint16_t kCodeOfMany = 0x0903;
+// As many words as a ring may have.
+void change_to_many_words(interbus::Rules& rules) {
+  rules.length_codes = {{0, 0}, {1, 1}, {2, 2}, {9, 255}};
+  rules.max_io_points *= 2;
+}
+
+SlaveCase compared(std::string_view id, std::string stimulus, std::vector<MustCatch> catches,
+                   std::function<void(SlaveBench&, CaseJudge&)> procedure,
+                   void (*change_rules)(interbus::Rules&) = nullptr,
+                   std::optional<std::uint16_t> id_code = std::nullopt) {
+  SlaveCase made{slave_sequence_role().test_case, std::move(procedure), slave_sequence_needs()};
+  made.test_case.id = fmt::format("interbus/slave/compared/{}", id);
+  made.test_case.purpose = "compared";
+  made.test_case.stimulus = std::move(stimulus);
+  made.test_case.tags = {"must"};
+  made.test_case.catches = std::move(catches);
+  made.needs.change_rules = change_rules;
+  made.needs.id_code = id_code;
+  std::vector<Applicability> only_for{for_inputs(), for_outputs()};
+  if (change_rules != nullptr) only_for.push_back(for_other_settings());
+  made.test_case.not_applicable = for_all(std::move(only_for));
+  return made;
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_compared_cases() {
+  const std::string after = " after a data cycle with both interfaces on; then cycles that show the state.";
+  return {
+      compared("each_value_of_each_word", "Each word of sequences with each boundary value," + after,
+               {{"interface_switches_inside_cycle", "telegram_not_passed"}}, each_of({{each_value, 160}})),
+      compared("each_fault_of_a_data_cycle", "A data cycle with a level flipped or a telegram lost," + after,
+               {{"clears_outputs_on_rejected_cycle", "outputs_wrong"}},
+               each_of({{each_fault_of_a_data_cycle, 36}})),
+      compared("each_fault_of_an_id_cycle", "An ID cycle with a level flipped or a telegram lost," + after,
+               {{"id_octets_swapped", "octet_wrong"}}, each_of({{each_fault_of_an_id_cycle, 36}})),
+      compared("one_thing_after_another", "Each two of all that leaves something behind," + after,
+               {{"message_without_error", "octet_wrong"}}, each_of({{one_after_another, 40}})),
+      compared("before_a_reset",
+               "All that leaves something behind, then silence, or the supply goes," + after,
+               {{"latches_late", "outputs_at_another_time"}}, each_of({{before_a_reset, 60}})),
+      compared("within_a_cycle", "Something between a cycle whose end is lost and that end," + after,
+               {{"check_not_reset_between_cycles", "octet_wrong"}}, each_of({{within_a_cycle, 90}})),
+      compared("within_a_reset_of_the_outgoing_bus",
+               "ID cycles, silence and supply at both ends of the time of control_reset," + after,
+               {{"outgoing_reset_clears_outputs", "outputs_wrong"}}, each_of({{within_a_reset, 63}})),
+      compared("many_cycles", "270 data cycles and 270 ID cycles," + after,
+               {{"loses_every_200th_cycle", "outputs_wrong"}}, each_of({{many_cycles, 2}})),
+      compared("drawn_sequences", "Sequences of all words at random.", {{"crc_preset_zero", "octet_wrong"}},
+               drawn),
+      compared("other_codings", "The same with each coding another one.",
+               {{"final_xor_hard_coded", "octet_wrong"}}, some_of_all(), change_coding),
+      compared("short_times", "The same with short delays and a short silence.",
+               {{"delays_four_bits", "passed_at_another_time"}}, some_of_all(), change_to_short),
+      compared("long_times", "The same with long delays and a long silence.",
+               {{"latches_5_ms_late", "outputs_at_another_time"}}, some_of_all(), change_to_long),
+      compared("many_words", "The same with 255 words.", {{"loses_input_words_above_16", "octet_wrong"}},
+               each_of({{each_value, 8, 60}}), change_to_many_words, kCodeOfMany)};
+}
+
+}  // namespace fieldproof::conformance

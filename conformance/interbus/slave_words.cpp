@@ -1,0 +1,301 @@
+#include "conformance/interbus/slave_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace fieldproof::conformance {
+namespace {
+
+using Numbers = std::span<const std::int64_t>;
+
+constexpr std::array<std::int64_t, 7> kLikelyWords{0x0000, 0xFFFF, 0x0001, 0x8000, 0x7F80, 0xA55A, 0xFF00};
+constexpr std::array<std::int64_t, 6> kErrors{0x0000, 0x0001, 0x0080, 0x0100, 0x8000, 0xFFFF};
+constexpr std::array<std::int64_t, 10> kOctetsInFront{-3, -1, 0, 1, 2, 3, 5, 7, 60, 300};
+constexpr std::array<std::int64_t, 5> kGaps{0, 1, 2, 13, 100};
+constexpr std::array<std::int64_t, 3> kTimes{1, 2, 3};
+constexpr std::array<std::int64_t, 4> kCounts{1, 2, 4, 40};
+constexpr std::array<std::int64_t, 2> kMilliseconds{1, 40};
+// Of a control word, whatever their places are.
+constexpr std::int64_t kRemoteOff = 1;
+constexpr std::int64_t kBranchOff = 2;
+constexpr std::int64_t kReset = 4;
+constexpr std::int64_t kAcknowledge = 8;
+
+constexpr std::size_t kUsualFront = 6;  // loopback word, and a word for a station after each interface
+constexpr std::array<std::uint16_t, 2> kBehind{0x7E57, 0x1EA5};
+
+SequenceNumber slave_word(std::string_view name, std::int64_t simple) {
+  return {name, 0, 0xFFFF, simple, kLikelyWords};
+}
+SequenceNumber truth(std::string_view name, std::int64_t simple) {
+  return {name, 0, 1, simple};
+}
+
+// What data and ID cycles have in common.
+std::vector<SequenceNumber> cycle_numbers(std::vector<SequenceNumber> numbers) {
+  numbers.push_back({"check_error", 0, 0xFFFF, 0, kErrors});
+  numbers.push_back({"mark", 0, 0xFFFF, 0, kErrors});
+  numbers.push_back({"in_front", -4, 300, kUsualFront, kOctetsInFront});
+  numbers.push_back({"gap", 0, 100, 2, kGaps});
+  numbers.push_back({"times", 1, 3, 1, kTimes});
+  return numbers;
+}
+
+std::vector<SequenceNumber> telegram_numbers() {
+  return {{"select", 0, 1, 0},      {"control", 0, 1, 0},          {"is_data", 0, 1, 1},
+          {"octet", 0, 0xFF, 0x80}, {"count", 1, 100, 1, kCounts}, {"stop", 0, 1, 1}};
+}
+
+std::uint8_t header_of(Numbers numbers) {
+  return static_cast<std::uint8_t>((numbers[0] != 0 ? line::kSelect : 0) |
+                                   (numbers[1] != 0 ? line::kControl : 0) |
+                                   (numbers[2] != 0 ? line::kDataTelegram : 0));
+}
+
+// ---- what is sent ----
+
+// As many as the slave has, the two of the command in turn.
+std::vector<std::uint16_t> words_of(const SlaveBench& bench, std::int64_t even, std::int64_t odd) {
+  std::vector<std::uint16_t> words;
+  for (unsigned n = 0; n < bench.words(); ++n)
+    words.push_back(static_cast<std::uint16_t>(n % 2 == 0 ? even : odd));
+  return words;
+}
+
+// The octets in front of the slave's own and those of the way, the nearest to these as they usually are.
+std::vector<std::uint8_t> with_front(std::span<const std::uint8_t> octets, std::int64_t in_front) {
+  std::vector<std::uint8_t> sent(octets.begin(), octets.end());
+  const auto usual = static_cast<std::int64_t>(kUsualFront);
+  if (in_front >= usual) {
+    sent.insert(sent.begin(), static_cast<std::size_t>(in_front - usual), 0x3C);
+  } else {
+    const auto most = static_cast<std::int64_t>(sent.size()) - 1;
+    sent.erase(sent.begin(), sent.begin() + std::min(usual - in_front, most));
+  }
+  return sent;
+}
+
+void append_cycle(SlaveBench& bench, bool is_id_cycle, std::span<const std::uint8_t> octets, Numbers shape) {
+  const std::vector<std::uint8_t> sent = with_front(octets, shape[2]);
+  bench.train().set_gap(static_cast<unsigned>(shape[3]));
+  const auto check = static_cast<std::uint16_t>(bench.model().check().of(sent) ^ shape[0]);
+  const auto status = static_cast<std::uint16_t>(bench.rules().status_clean ^ shape[1]);
+  bench.train().cycle(is_id_cycle, sent, check, status);
+}
+
+void append_data(SlaveBench& bench, const SequenceCommand& command) {
+  const Numbers numbers = command.numbers;
+  // The words turn round from cycle to cycle, so that each one is seen.
+  for (std::int64_t n = 0; n < numbers[6]; ++n) {
+    const std::int64_t turn = n % 2 == 0 ? 0 : 0xFFFF;
+    const auto words = words_of(bench, numbers[0] ^ turn, numbers[1] ^ turn);
+    append_cycle(bench, false, bench.data_octets(words, kBehind), numbers.subspan(2));
+  }
+}
+
+std::uint16_t control_word(SlaveBench& bench, std::int64_t orders, std::int64_t reserved) {
+  const interbus::Rules& r = bench.rules();
+  // What the outputs do in a reset of the outgoing bus is declared, and judged by a case of its own.
+  const bool may_reset = bench.pics().text("outputs_while_outgoing_bus_is_reset", "held") == "held";
+  const auto known = static_cast<std::uint16_t>(r.control_remote_off | r.control_local_off | r.control_reset |
+                                                r.control_acknowledge);
+  auto word = static_cast<std::uint16_t>(reserved & ~known);
+  if ((orders & kRemoteOff) != 0) word |= r.control_remote_off;
+  if ((orders & kBranchOff) != 0) word |= r.control_local_off;
+  if ((orders & kReset) != 0 && may_reset) word |= r.control_reset;
+  if ((orders & kAcknowledge) != 0) word |= r.control_acknowledge;
+  return word;
+}
+
+void append_id(SlaveBench& bench, const SequenceCommand& command) {
+  const Numbers numbers = command.numbers;
+  const std::array<std::uint16_t, 2> behind{bench.interfaces_off(), bench.interfaces_off()};
+  for (std::int64_t n = 0; n < numbers[6]; ++n)
+    append_cycle(bench, true, bench.id_octets(control_word(bench, numbers[0], numbers[1]), behind),
+                 numbers.subspan(2));
+}
+
+// The numbers of telegrams; without a stop level the level is 0 up to the next one.
+void append_alike(SlaveBench& bench, Numbers numbers) {
+  const std::uint8_t header = header_of(numbers);
+  const unsigned length =
+      (header & line::kDataTelegram) != 0 ? line::kDataTelegramLevels : line::kStatusTelegramLevels;
+  for (std::int64_t n = 0; n < numbers[4]; ++n) {
+    const std::size_t start = bench.train().levels().size();
+    bench.train().telegram(header, static_cast<std::uint8_t>(numbers[3]));
+    if (numbers[5] == 0) bench.train().levels().place(start + length - 1, 0, 1);
+  }
+}
+
+void append_telegrams(SlaveBench& bench, const SequenceCommand& command) {
+  append_alike(bench, command.numbers);
+}
+
+void append_status(SlaveBench& bench, const SequenceCommand& command) {
+  bench.train().status(static_cast<std::size_t>(command.numbers[0]));
+}
+
+void disturb(SlaveBench& bench, const SequenceCommand& command) {
+  fault::ScriptedChannel& channel = bench.channel();
+  channel.on_next();
+  for (const SequenceFault& fault : command.faults) {
+    if (fault.kind == SequenceFaultKind::flip) {
+      channel.flip_in_telegram(fault.unit, fault.value);
+    } else if (fault.kind == SequenceFaultKind::drop) {
+      channel.drop_telegram(fault.unit);
+    }
+  }
+}
+
+// ---- what happens besides ----
+
+void send_back(SlaveBench& bench, Numbers numbers) {
+  const bool on_branch = numbers[0] != 0;
+  if (bench.neighbour_words(on_branch) == 0) return;
+  bench.begin();
+  append_alike(bench, numbers.subspan(1));
+  bench.send_back(on_branch);
+}
+
+// A low pulse of so many eighths of a bit: shorter than half a bit, it is no start level.
+void drive_glitch(SlaveBench& bench, std::int64_t eighths) {
+  constexpr std::int64_t kLevelsPerBit = 8;
+  line::Levels levels;
+  levels.append_idle(kLevelsPerBit);
+  levels.append_fill(false, static_cast<std::size_t>(eighths));
+  levels.append_idle(static_cast<std::size_t>(kLevelsPerBit));
+  line::Waveform wave{bench.now(), bench.rules().bit_rate * kLevelsPerBit, std::move(levels)};
+  bench.drive_at_receiver(wave);
+}
+
+}  // namespace
+
+std::vector<SequenceWord> slave_words() {
+  constexpr unsigned kUnits = 14;  // of a slave of two words; loopback word, register, check and status word
+  return {
+      {"data", "data cycles, with the two words in turn",
+       cycle_numbers({slave_word("word0", 0x1234), slave_word("word1", 0xFEDC)}), 0, kUnits, 8},
+      {"id", "ID cycles; orders: 1 OUT1 off, 2 OUT2 off, 4 reset, 8 acknowledge",
+       cycle_numbers({{"orders", 0, 15, kRemoteOff | kBranchOff}, {"reserved", 0, 0xFFFF, 0, kErrors}}), 0,
+       kUnits - 2, 6},
+      {"telegrams", "telegrams outside of cycles", telegram_numbers(), 0, 4, 2},
+      {"status", "status telegrams", {{"count", 1, 100, 1, kCounts}}, 0, 2, 1},
+      {"inputs", "the inputs stand like this", {slave_word("word0", 0x4321), slave_word("word1", 0x8001)}},
+      {"plugs", "what is plugged in", {truth("out1", 1), truth("out2", 1)}},
+      {"periphery", "what is reported to the slave", {truth("fault", 1), truth("reconfiguration", 0)}},
+      {"returns", "telegrams that come back after OUT1, or OUT2",
+       [] {
+         std::vector<SequenceNumber> numbers = telegram_numbers();
+         numbers.insert(numbers.begin(), truth("out2", 0));
+         return numbers;
+       }(),
+       0, 0, 2},
+      {"silence",
+       "silence: 0 half of the limit, 1 up to the limit, 2 beyond it, 3 three limits, 4 70 s",
+       {{"how_long", 0, 4, 2}},
+       0,
+       0,
+       2},
+      {"kept_alive",
+       "status telegrams, counted from the last ID cycle: 0 for half of the time of a reset of the outgoing "
+       "bus, 1 nearly to its end, 2 beyond it",
+       {{"how_long", 0, 2, 2}}},
+      {"power", "the supply goes and comes back", {{"milliseconds", 1, 100, 1, kMilliseconds}}},
+      {"glitch", "a low pulse that is no start level", {{"eighths", 1, 3, 3}}}};
+}
+
+void SlaveActs::act(const SequenceCommand& command) {
+  const Numbers numbers = command.numbers;
+  switch (static_cast<SlaveWord>(command.word)) {
+    case SlaveWord::data:
+      return send(command, append_data);
+    case SlaveWord::id:
+      return send(command, append_id);
+    case SlaveWord::telegrams:
+      return send(command, append_telegrams);
+    case SlaveWord::status:
+      return send(command, append_status);
+    case SlaveWord::inputs:
+      return twins_.each([&](SlaveBench& one) { one.set_inputs(words_of(one, numbers[0], numbers[1])); });
+    case SlaveWord::plugs:
+      return twins_.each([&](SlaveBench& one) {
+        one.set_bridge(false, numbers[0] != 0 && twins_.bench().pics().supports("remote_interface"));
+        one.set_bridge(true, numbers[1] != 0);
+      });
+    case SlaveWord::periphery:
+      return periphery(command);
+    case SlaveWord::returns:
+      return twins_.each([&](SlaveBench& one) { send_back(one, numbers); });
+    case SlaveWord::silence:
+      return be_silent(numbers[0]);
+    case SlaveWord::kept_alive:
+      return keep_alive(numbers[0]);
+    case SlaveWord::power:
+      return twins_.each([&](SlaveBench& one) {
+        one.set_power(false);
+        one.silence(numbers[0] * kernel::kMillisecond);
+        one.set_power(true);
+      });
+    case SlaveWord::glitch:
+      twins_.each([&](SlaveBench& one) { drive_glitch(one, numbers[0]); });
+      return note_what_came(false);
+  }
+}
+
+void SlaveActs::send(const SequenceCommand& command, void (*append)(SlaveBench&, const SequenceCommand&)) {
+  twins_.each([&](SlaveBench& one) {
+    one.begin();
+    append(one, command);
+    disturb(one, command);
+    one.send();
+  });
+  note_what_came(static_cast<SlaveWord>(command.word) == SlaveWord::id);
+}
+
+void SlaveActs::note_what_came(bool is_id_cycle) {
+  LineView& in = twins_.bench().in();
+  if (in.telegrams().empty()) return;
+  last_telegram_ = in.end_of(in.telegrams().back());
+  if (is_id_cycle) last_id_cycle_ = last_telegram_;
+}
+
+void SlaveActs::periphery(const SequenceCommand& command) {
+  const judge::Pics& pics = twins_.bench().pics();
+  const bool has_fault = command.numbers[0] != 0 && pics.supports("peripheral_fault_input");
+  const bool is_asked = command.numbers[1] != 0 && pics.supports("reconfiguration_button");
+  twins_.each([&](SlaveBench& one) {
+    one.terminals().set_peripheral_fault([has_fault](kernel::Time) { return has_fault; });
+    one.terminals().set_reconfiguration([is_asked](kernel::Time) { return is_asked; });
+  });
+}
+
+void SlaveActs::be_silent(std::int64_t how_long) {
+  const interbus::Rules& rules = twins_.bench().rules();
+  const kernel::Duration beyond =
+      rules.silence_tolerance + rules.silence_tolerance / 2 + twins_.bench().bits(2);
+  const std::array<kernel::Duration, 5> lengths{rules.silence_limit / 2, rules.silence_limit - beyond,
+                                                rules.silence_limit + beyond,
+                                                3 * rules.silence_limit + beyond, 70 * kernel::kSecond};
+  const kernel::Time until = std::max(twins_.bench().now() + twins_.bench().bits(1),
+                                      last_telegram_ + lengths.at(static_cast<std::size_t>(how_long)));
+  twins_.each([&](SlaveBench& one) { one.segment().run_until(until); });
+}
+
+void SlaveActs::keep_alive(std::int64_t how_long) {
+  const interbus::Rules& rules = twins_.bench().rules();
+  const kernel::Duration whole = rules.silence_limit + rules.silence_tolerance;
+  const kernel::Duration beside = rules.silence_tolerance / 2 + twins_.bench().bits(60);
+  const std::array<kernel::Duration, 3> lengths{whole / 2, whole - beside, whole + beside};
+  const kernel::Time until = last_id_cycle_ + lengths.at(static_cast<std::size_t>(how_long));
+  while (twins_.bench().now() < until) {
+    const kernel::Time next = std::min(until, twins_.bench().now() + rules.silence_limit / 3);
+    twins_.each([&](SlaveBench& one) {
+      one.status_telegrams(1);
+      one.segment().run_until(std::max(next, one.now()));
+    });
+    note_what_came(false);
+  }
+}
+
+}  // namespace fieldproof::conformance
