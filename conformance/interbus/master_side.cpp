@@ -83,7 +83,7 @@ void MasterSide::power(const MasterScene& scene) {
   const kernel::Time powered = bench_.now();
   bench_.tap_arrived(*returned_);
   bench_.keep(returned_);
-  driven_ = std::make_shared<DrivenLine>(bench_.rules());
+  driven_ = std::make_shared<DrivenTelegrams>(bench_.rules());
   bench_.tap_driven(*driven_);
   bench_.keep(driven_);
   await_run();
@@ -415,7 +415,7 @@ void MasterSide::judge_break() {
 
 void MasterSide::judge_line() {
   if (judge_ == nullptr) return;
-  const DrivenLine::Misplaced& misplaced = driven_->misplaced();
+  const DrivenTelegrams::Misplaced& misplaced = driven_->misplaced();
   if (!misplaced.reason.empty()) {
     judge_->fail(misplaced.reason,
                  {.expected = {misplaced.expected}, .actual = misplaced.actual, .time = misplaced.when});

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "conformance/comparison/observation.hpp"
-#include "conformance/interbus/driven_line.hpp"
+#include "conformance/interbus/driven_telegrams.hpp"
 #include "conformance/interbus/master_bench.hpp"
 #include "conformance/interbus/returned_line.hpp"
 
@@ -110,7 +110,7 @@ class MasterSide {
   MasterBench& bench_;
   CaseJudge* judge_;
   std::shared_ptr<ReturnedLine> returned_;
-  std::shared_ptr<DrivenLine> driven_;
+  std::shared_ptr<DrivenTelegrams> driven_;
   kernel::Time cycle_start_{};
   bool is_next_ = false;  // the cycle before was one of this run
   std::optional<interbus::CycleFaults> armed_;

@@ -11,9 +11,9 @@
 // their pitch in every pause, each of them whole. Keeps the first that does not.
 namespace fieldproof::conformance {
 
-class DrivenLine final : public segment::Tap {
+class DrivenTelegrams final : public segment::Tap {
  public:
-  explicit DrivenLine(const interbus::Rules& rules);
+  explicit DrivenTelegrams(const interbus::Rules& rules);
 
   void on_wave(const line::Waveform& wave) override;
 

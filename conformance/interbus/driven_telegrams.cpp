@@ -1,4 +1,4 @@
-#include "conformance/interbus/driven_line.hpp"
+#include "conformance/interbus/driven_telegrams.hpp"
 
 #include <fmt/format.h>
 
@@ -12,24 +12,24 @@ constexpr std::int64_t kMillibits = 1'000;
 
 }  // namespace
 
-DrivenLine::DrivenLine(const interbus::Rules& rules)
+DrivenTelegrams::DrivenTelegrams(const interbus::Rules& rules)
     : bit_rate_(rules.bit_rate),
       pitch_(rules.status_pitch_bits),
       telegram_millibits_(kMillibits * line::kDataTelegramLevels + rules.telegram_gap_millibits),
       break_(rules.silence_limit / 2),
       receiver_(line::shared_telegram_code(rules.telegram), rules.bit_rate) {}
 
-void DrivenLine::on_wave(const line::Waveform& wave) {
+void DrivenTelegrams::on_wave(const line::Waveform& wave) {
   receiver_.receive(
       wave, [this](const line::Waveform& of, const line::Telegram& one) { add(of.time_of(one.level), one); });
 }
 
-void DrivenLine::note(std::string reason, std::string expected, std::string actual, kernel::Time when) {
+void DrivenTelegrams::note(std::string reason, std::string expected, std::string actual, kernel::Time when) {
   if (misplaced_.reason.empty())
     misplaced_ = {std::move(reason), std::move(expected), std::move(actual), when};
 }
 
-void DrivenLine::add(kernel::Time start, const line::Telegram& telegram) {
+void DrivenTelegrams::add(kernel::Time start, const line::Telegram& telegram) {
   if (telegram.is_stop_missing()) note("stop_missing", "a stop level", "none", start);
   if (first_ == kernel::kNever) first_ = before_ = start;
   longest_silence_ = std::max(longest_silence_, start - before_);
@@ -41,7 +41,7 @@ void DrivenLine::add(kernel::Time start, const line::Telegram& telegram) {
 }
 
 // A place is known to a bit: levels are whole ones.
-void DrivenLine::on_data(kernel::Time start, const line::Telegram& telegram) {
+void DrivenTelegrams::on_data(kernel::Time start, const line::Telegram& telegram) {
   if (has_before_ && was_data_) {
     ++place_;
     const kernel::Time right = cycle_start_ + bits(place_ * telegram_millibits_ / kMillibits);
@@ -63,7 +63,7 @@ void DrivenLine::on_data(kernel::Time start, const line::Telegram& telegram) {
   cycle_start_ = start;
 }
 
-void DrivenLine::on_status(kernel::Time start, const line::Telegram& telegram) {
+void DrivenTelegrams::on_status(kernel::Time start, const line::Telegram& telegram) {
   if ((telegram.header & (line::kSelect | line::kControl)) != 0)
     note("header_wrong", "status telegrams without SL and CR", "one with them", start);
   // Before run the pauses are made of pieces.
