@@ -62,11 +62,7 @@ std::vector<MasterCommands> each_value_for_a_master() {
   }
   for (std::int64_t limits = 1; limits <= 6; ++limits) {
     for (const std::int64_t number : {0, 5})
-      all.push_back({order(MasterWord::power, {{0, number}, {6, limits}})});
-  }
-  for (std::int64_t from = 1; from < 4; ++from) {
-    for (const std::int64_t disturbed : {1, 9, 10})
-      all.push_back({order(MasterWord::power, {{0, 5}, {4, disturbed}, {5, from}})});
+      all.push_back({order(MasterWord::power, {{0, number}, {5, limits}})});
   }
   all.push_back({order(MasterWord::power, {{0, 4}, {3, 1}})});
   all.push_back({ring(6), order(MasterWord::output, {{0, 150}, {1, 0x8001}}), cycles(2)});

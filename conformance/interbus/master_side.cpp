@@ -63,10 +63,6 @@ void MasterSide::power(const MasterScene& scene) {
   if (!bench_.may_answer("request_below_minimum", "clipped")) configuration.cycle_time = {};
   const interbus::Rules usual = bench_.rules();
   limit_ring(scene);
-  // Who knows no station yet may ask on and on.
-  constexpr unsigned kFew = 3;
-  constexpr unsigned kWithAStation = 2;
-  undisturbed_ = std::max(scene.disturbed_from, scene.disturbed > kFew ? kWithAStation : 0);
   states_seen_ = 0;
   is_before_data_ = false;
   disturbed_ = scene.disturbed;
@@ -117,9 +113,7 @@ void MasterSide::on_ring_cycle(bool is_id_cycle, CycleFaults& faults) {
   returned_->begin();
   states_seen_ |= std::uint64_t{1} << static_cast<unsigned>(bench_.status().state);
   if (!is_id_cycle && std::exchange(is_before_data_, false)) has_kept_inputs_ = image() == at_start_;
-  if (undisturbed_ > 0) {
-    --undisturbed_;
-  } else if (disturbed_ > 0) {
+  if (disturbed_ > 0) {
     --disturbed_;
     faults = changed_answer();
   } else if (armed_) {
@@ -134,7 +128,7 @@ bool MasterSide::is_idle() const {
 
 void MasterSide::start(unsigned disturbed) {
   if (!is_idle()) return;
-  disturbed_ = std::min(disturbed, 3U);
+  disturbed_ = disturbed;
   is_stopped_ = false;
   is_ring_right_ = true;
   const std::uint64_t before = bench_.ring().cycle_count();

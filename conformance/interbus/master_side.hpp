@@ -43,8 +43,7 @@ struct MasterScene {
   std::vector<interbus::VirtualStation> expected{};  // empty: any ring is taken
   bool copies = false;                               // the first input word to the last output word
   kernel::Duration cycle_time{};
-  unsigned disturbed = 0;       // so many cycles come back changed
-  unsigned disturbed_from = 0;  // the first of them
+  unsigned disturbed = 0;  // the first cycles come back changed
   Limits limits = Limits::usual;
 };
 
@@ -115,7 +114,6 @@ class MasterSide {
   bool is_next_ = false;  // the cycle before was one of this run
   std::optional<interbus::CycleFaults> armed_;
   unsigned disturbed_ = 0;
-  unsigned undisturbed_ = 0;             // cycles before these
   std::uint64_t states_seen_ = 0;        // a bit for each, at the beginnings of cycles
   std::vector<std::uint16_t> at_start_;  // the inputs after the order
   bool has_kept_inputs_ = true;          // up to the first data cycle

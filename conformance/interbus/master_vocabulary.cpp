@@ -28,7 +28,6 @@ constexpr std::array<std::int64_t, 4> kExpectations{0, 1, 1, 2};
 // Of a cycle of the largest ring.
 constexpr unsigned kMostTelegrams = 14;
 constexpr std::int64_t kRings = 7;
-constexpr std::array<std::int64_t, 5> kDisturbed{0, 1, 3, 9, 10};
 constexpr std::array<std::int64_t, 4> kImagePlaces{0, 1, 7, 150};
 constexpr std::int64_t kMostStations = 4;
 
@@ -42,7 +41,7 @@ SequenceNumber telegram() {
   return {"telegram", 0, kMostTelegrams - 1, 0, kFirstTelegrams};
 }
 SequenceNumber disturbed() {
-  return {"disturbed", 0, 12, 0, kDisturbed};
+  return {"disturbed", 0, 3, 0};
 }
 
 std::vector<SequenceWord> words_of_answers() {
@@ -62,7 +61,7 @@ std::vector<SequenceWord> words_of_answers() {
       {.word = "extra",
        .meaning = "one telegram comes back twice, one is in front of it, or one is after the last; status "
                   "telegrams of other kinds",
-       .numbers = {{"kind", 0, 4, 0}, telegram()},
+       .numbers = {{"kind", 0, 3, 0}, telegram()},
        .weight = 2},
       {.word = "marked",
        .meaning = "a station marks the status word and reports that its check did not fit; so does another",
@@ -128,7 +127,6 @@ std::vector<SequenceWord> words_of_rings() {
                    {"copies", 0, 1, 0},
                    {"cycle_ms", 0, 70, 0, kRequests, true},
                    disturbed(),
-                   {"from", 0, 3, 0},
                    {"limits", 0, 6, 0}},
        .weight = 2},
       {.word = "wait",
@@ -241,8 +239,7 @@ MasterScene scene_of(const SequenceCommand& command) {
   scene.copies = numbers[2] != 0;
   scene.cycle_time = numbers[3] * kernel::kMillisecond;
   scene.disturbed = static_cast<unsigned>(numbers[4]);
-  scene.disturbed_from = static_cast<unsigned>(numbers[5]);
-  scene.limits = static_cast<Limits>(numbers[6]);
+  scene.limits = static_cast<Limits>(numbers[5]);
   return scene;
 }
 
@@ -266,7 +263,6 @@ CycleFaults faults_of(const SequenceCommand& command, std::size_t stations) {
       if (number(0) == 1) faults.inserted = number(1);
       if (number(0) == 2) faults.trailing_telegram = true;
       if (number(0) == 3) faults.status_flag_flipped = true;
-      if (number(0) == 4) faults.inserted_status = number(1);
       break;
     case MasterWord::marked:
       faults.marked_by = number(0) % static_cast<int>(stations);

@@ -229,7 +229,6 @@ class Master:
                 self.open.add(probe)
                 yield  # what is switched on now answers in the next cycle
             newcomer = len(self.found)
-            self.open.add((newcomer, BRANCH))  # of the one that may answer
             ids = yield
             if len(ids) > newcomer:
                 if error := self.take(ids[-1] & 0x1FFF, probe):
