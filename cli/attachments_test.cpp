@@ -289,9 +289,9 @@ TEST_F(Attachments, InterbusMasterInPythonPassesInTelegrams) {
 
 // Written from the pages of the roles; each of their faults is found by the case that it names.
 struct FaultyProgram {
-  std::string name;
-  std::string file;  // in examples
-  std::string suite;
+  const char* name;  // of the test
+  const char* role;  // "PROTOCOL/ROLE"
+  const char* file;  // of examples
 };
 
 class FaultsInPython : public Attachments, public testing::WithParamInterface<FaultyProgram> {};
@@ -299,8 +299,10 @@ class FaultsInPython : public Attachments, public testing::WithParamInterface<Fa
 TEST_P(FaultsInPython, PassesAndBreaksAsItsFaultsSay) {
   const std::string python = installed("python3");
   ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
-  const auto& [_, file, suite] = GetParam();
-  const std::string program = in_quotes(python) + " " + in_quotes(kSourceFolder / "examples" / file);
+  const fs::path file = kSourceFolder / "examples" / GetParam().file;
+  const std::string program = in_quotes(python) + " " + in_quotes(file);
+  const std::string role = GetParam().role;
+  const std::string suite = role + "/";
   // What a sanitizer looks at is the same in each case.
   if (!kernel::kIsSanitized) expect_passes("exec:" + program, suite);
   const std::unique_ptr<FILE, int (*)(FILE*)> list(popen((program + " --list-faults").c_str(), "r"), pclose);
@@ -314,7 +316,7 @@ TEST_P(FaultsInPython, PassesAndBreaksAsItsFaultsSay) {
     words >> name >> test_case;
     ++faults;
     if (few.leaves_out()) continue;
-    const Cases cases = judged("exec:" + program + " --fault " + name, test_case, {}, {}, suite);
+    const Cases cases = judged(role + "=exec:" + program + " --fault " + name, test_case, {}, {}, suite);
     EXPECT_EQ(cases.at(test_case).verdict, "fail") << name;
   }
   EXPECT_GE(faults, 7U);
@@ -322,13 +324,15 @@ TEST_P(FaultsInPython, PassesAndBreaksAsItsFaultsSay) {
 
 INSTANTIATE_TEST_SUITE_P(
     Roles, FaultsInPython,
-    testing::Values(FaultyProgram{"token_bus_station", "token_bus/station.py", "token_bus/station/"},
-                    FaultyProgram{"token_bus_translator", "token_bus/translator.py", "token_bus/translator/"},
-                    FaultyProgram{"token_bus_channel_manager", "token_bus/channel_manager.py",
-                                  "token_bus/channel_manager/"},
-                    FaultyProgram{"valve_node", "valve_node/node_faults.py", "valve_bus/node/"},
-                    FaultyProgram{"valve_host", "valve_host/host_faults.py", "valve_bus/host/"}),
-    [](const auto& one) { return one.param.name; });
+    testing::Values(FaultyProgram{"station", "token_bus/station", "token_bus/station.py"},
+                    FaultyProgram{"translator", "token_bus/translator", "token_bus/translator.py"},
+                    FaultyProgram{"channel_manager", "token_bus/channel_manager",
+                                  "token_bus/channel_manager.py"},
+                    FaultyProgram{"interbus_slave", "interbus/slave", "interbus_slave/faults.py"},
+                    FaultyProgram{"interbus_master", "interbus/master", "interbus_master/faults.py"},
+                    FaultyProgram{"valve_node", "valve_bus/node", "valve_node/node_faults.py"},
+                    FaultyProgram{"valve_host", "valve_bus/host", "valve_host/host_faults.py"}),
+    [](const auto& one) { return std::string(one.param.name); });
 
 // It hears frames; no case of its role drives anything else.
 TEST_F(Attachments, FfDeviceInPythonPasses) {

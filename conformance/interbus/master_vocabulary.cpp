@@ -59,8 +59,7 @@ std::vector<SequenceWord> words_of_answers() {
        .numbers = {telegram(), {"mask", 1, 0xFF, 1, kMasks}},
        .weight = 3},
       {.word = "extra",
-       .meaning = "one telegram comes back twice, one is in front of it, or one is after the last; status "
-                  "telegrams of other kinds",
+       .meaning = "one telegram comes back twice, one is in front of it, or one is after the last",
        .numbers = {{"kind", 0, 3, 0}, telegram()},
        .weight = 2},
       {.word = "marked",

@@ -24,7 +24,7 @@ std::vector<VirtualStation> line_of(std::size_t count, std::uint16_t id_code, un
 bool CycleFaults::is_none() const {
   return flips.empty() && level_flips.empty() && longer_bits == 0 && dropped < 0 && duplicated < 0 &&
          inserted < 0 && stop_missing < 0 && flag_flipped < 0 && header_flipped < 0 && !status_flag_flipped &&
-         !trailing_telegram && inserted_status < 0 && marked_by < 0 && !stuck;
+         !trailing_telegram && marked_by < 0 && !stuck;
 }
 
 RingEmulator::RingEmulator(const Rules& rules, std::vector<VirtualStation> stations)

@@ -59,7 +59,6 @@ struct CycleFaults {
   int header_flipped = -1;
   bool status_flag_flipped = false;     // of the first status telegram behind the cycle
   bool trailing_telegram = false;       // one more data telegram behind the last
-  int inserted_status = -1;             // a status telegram in front of this one
   int marked_by = -1;                   // this station marks the status word and sets its message bit
   int also_marked_by = -1;              // and this one
   std::optional<std::uint16_t> mark{};  // the bits that it sets, instead of those of the rules

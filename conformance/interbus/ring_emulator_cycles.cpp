@@ -194,8 +194,6 @@ void RingEmulator::emit(const line::Telegram& telegram, std::uint8_t octet) {
   if (faults_.flag_flipped == index) levels ^= std::uint64_t{1} << flag_level_;
   if (faults_.header_flipped == index) levels ^= std::uint64_t{1} << (flag_level_ == 1 ? 2 : 1);
   if (faults_.dropped == index) return;
-  if (faults_.inserted_status == index)
-    emit_levels(telegram_bit_, status_levels_, line::kStatusTelegramLevels);
   if (faults_.inserted == index) {
     emit_levels(telegram_bit_, code_.levels_of(header, kJunk), line::kDataTelegramLevels);
   }

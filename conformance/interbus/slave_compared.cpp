@@ -314,7 +314,9 @@ void change_to_long(interbus::Rules& rules) {
 constexpr std::uint16_t kCodeOfMany = 0x1903;
 // As many words as a ring may have.
 void change_to_many_words(interbus::Rules& rules) {
-  rules.length_codes = {{0, 0}, {1, 1}, {2, 2}, {0x19, 255}};
+  const auto published = interbus::published_length_codes();
+  rules.length_codes.assign(published.begin(), published.end());
+  rules.length_codes.push_back({0x19, 255});
   rules.max_io_points *= 2;
 }
 
