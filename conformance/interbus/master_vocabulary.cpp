@@ -206,7 +206,7 @@ std::vector<VirtualStation> changed_ring(std::vector<VirtualStation> ring, std::
   const std::size_t place = static_cast<std::size_t>(station) % ring.size();
   if (change == 0 || change > 2) {
     // The register stays as long, whatever its code says.
-    constexpr std::array<std::uint16_t, 5> kOther{kOtherType, 0, 0, 0x1000, 0x0001};
+    constexpr std::array<std::uint16_t, 5> kOther{kOtherType, 0, 0, 0x0010, 0x0001};
     ring[place].id_code ^= kOther.at(static_cast<std::size_t>(change));
   } else if (change == 1) {
     ring.push_back({0x0103, 1, static_cast<int>(ring.size()) - 1, false});

@@ -26,13 +26,16 @@ void expect_judgeable_slave(const field::Settings& settings) {
   expect_time_for_silences(network.rules);
 }
 
+// Slower, a transmission of a sequence lasts longer than a bench waits for one.
+constexpr std::array kBoundsOfSlave{SettingBound{"bit_rate", {100'000, 2'000'000}}};
+
 SequenceVocabulary slave_vocabulary() {
   const interbus::SlaveConfiguration as_made =
       SlaveBench(slave_sequence_needs(), SlaveSetting{}).ring().configuration(1);
   return {.words = slave_words(),
           .unit = "telegram",
           .levels_per_unit = line::kDataTelegramLevels,
-          .settings = sequence_settings(interbus::kSlaveTable, &as_made, kFixedOfSlave),
+          .settings = sequence_settings(interbus::kSlaveTable, &as_made, kFixedOfSlave, kBoundsOfSlave),
           .objection = objection_of(expect_judgeable_slave)};
 }
 
