@@ -3,6 +3,7 @@
 #include <rapidcheck.h>
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 
 #include "conformance/sequence_settings.hpp"
@@ -117,25 +118,33 @@ rc::Shrinkable<Sequence> drawn(const SequenceVocabulary& vocabulary, std::uint64
   return rc::gen::map(rc::gen::resize(most, commands), together)(rc::Random(rc::Random::Key{seed, n, 0, 0}));
 }
 
+// RapidCheck keeps what it is at in one place for all threads, and cases run in several.
+template <typename Call>
+auto alone(Call call) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  return call();
+}
+
 }  // namespace
 
 Sequence SequenceSource::draw(std::uint64_t n) const {
-  return drawn(vocabulary_, seed_, n).value();
+  return alone([&] { return drawn(vocabulary_, seed_, n).value(); });
 }
 
 Sequence SequenceSource::smaller(std::uint64_t n, const SequenceFails& still_fails) const {
-  rc::Shrinkable<Sequence> best = drawn(vocabulary_, seed_, n);
+  rc::Shrinkable<Sequence> best = alone([&] { return drawn(vocabulary_, seed_, n); });
   for (bool is_smaller = true; is_smaller;) {
     is_smaller = false;
-    auto steps = best.shrinks();
+    auto steps = alone([&] { return best.shrinks(); });
     for (unsigned tried = 0; tried < kMostSteps && !is_smaller; ++tried) {
-      const auto step = steps.next();
+      const auto step = alone([&] { return steps.next(); });
       if (!step) break;
-      is_smaller = still_fails(step->value());
+      is_smaller = still_fails(alone([&] { return step->value(); }));
       if (is_smaller) best = *step;
     }
   }
-  return best.value();
+  return alone([&] { return best.value(); });
 }
 
 }  // namespace fieldproof::conformance

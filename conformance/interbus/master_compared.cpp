@@ -262,7 +262,7 @@ std::vector<MasterCase> master_compared_cases() {
                       {{"first_station_first", "cycle_wrong"}}, each_beside(each_value_for_a_master, 160)),
       compared_master("each_fault_on_the_way_back",
                       "A data cycle and an ID cycle come back with a level flipped or a telegram lost.",
-                      {{"telegrams_without_gap", "gap_wrong"}}, each_beside(each_fault_on_the_way_back, 160)),
+                      {{"telegrams_without_gap", "cycle_time_wrong"}}, each_beside(each_fault_on_the_way_back, 160)),
       compared_master("one_thing_after_another", "Each two of all that can happen to a master, in run.",
                       {{"cycle_start_wanders", "pause_not_filled"}},
                       each_beside(one_order_after_another, 50)),

@@ -58,11 +58,11 @@ const SequenceRole& slave_sequence_role() {
        .tags = {},
        .catches = {}},
       slave_vocabulary(),
-      {{DerivedKind::values, {"sends_check_of_received_bits", "check_wrong"}},
-       {DerivedKind::faults, {"id_register_in_data_cycle", "register_content_wrong"}},
-       {DerivedKind::words, {"output_octets_swapped", "wrong_value_latched"}},
-       {DerivedKind::repetitions, {"latches_5_ms_late", "valid_cycle_rejected"}},
-       {DerivedKind::settings, {"input_bit_stuck", "register_content_wrong"}}}};
+      {{DerivedKind::values, {"sends_check_of_received_bits", "octet_wrong"}},
+       {DerivedKind::faults, {"id_register_in_data_cycle", "octet_wrong"}},
+       {DerivedKind::words, {"output_octets_swapped", "outputs_wrong"}},
+       {DerivedKind::repetitions, {"latches_5_ms_late", "outputs_at_another_time"}},
+       {DerivedKind::settings, {"input_bit_stuck", "octet_wrong"}}}};
   return role;
 }
 

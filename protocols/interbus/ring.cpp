@@ -25,7 +25,10 @@ Ring::Ring(segment::Segment& segment, const NetworkDescription& network, std::si
   for (const RingPlace& place : places) add_station(network, place, make_slave);
   for (std::size_t n = 0; n < places.size(); ++n) lay_cable(network, places[n], n);
   find_last_behind(places);
-  for (Place& place : slaves_) place.device->wire(place.ports, place.terminals);
+  for (Place& place : slaves_) {
+    place.device->wire(place.ports, place.terminals);
+    segment_.refresh(place.seat);  // with the supply it may want something
+  }
 }
 
 void Ring::add_station(const NetworkDescription& network, const RingPlace& place,
