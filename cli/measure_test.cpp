@@ -153,25 +153,25 @@ TEST_F(MeasureVerb, ABadNetworkIsToldWithItsPlace) {
 
 TEST_F(MeasureVerb, ThePaperIsReproducedSideBySide) {
   const Called called = call({"paper", "interbus", "--duration", "5s", "--json", "paper.json"});
-  EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
-  for (const char* part :
-       {"0.755 ms", "0.7550 ms", "0.814 ms", "0.8148 ms", "0.86 ms", "0.8600 ms", "59.8 us",
-        "exactly two telegrams", "614 Hz", "614.25 Hz", "0 of", "pictures", "(no number)", "input  ",
-        "output ", "all that is published and compared here agrees"}) {
+  EXPECT_EQ(called.exit_code, 1) << called.out << called.err;
+  for (const char* part : {"0.755 ms", "0.7550 ms", "0.814 ms", "0.8148 ms", "0.86 ms", "0.8600 ms",
+                           "59.8 us", "exactly two telegrams", "614 Hz", "614.25 Hz", "0 of", "pictures",
+                           "(no number)", "input  ", "output ", "agrees: 614.251 Hz of 614 Hz +- 0.5",
+                           "DIFFERS: 0.8148 ms of 0.755 ms +- 0.0005", " own, "}) {
     EXPECT_HOLDS(called.out, part);
   }
 }
 
 TEST_F(MeasureVerb, BothDocumentsAreValidForASchemaValidator) {
   ASSERT_EQ(call({"measure", "interbus", "--duration", "5s", "--json", "m.json"}).exit_code, 0);
-  ASSERT_EQ(call({"paper", "--duration", "1s", "--json", "paper.json"}).exit_code, 0);
+  ASSERT_EQ(call({"paper", "--duration", "1s", "--json", "paper.json"}).exit_code, 1);
   expect_valid({"m.json"}, "measurement");
   expect_valid({"paper.json"}, "publication");
 }
 
 // Where the paper shows pictures, no number is called the paper's.
 TEST_F(MeasureVerb, PicturesOfThePaperHaveNoNumber) {
-  ASSERT_EQ(call({"paper", "--duration", "1s", "--json", "paper.json"}).exit_code, 0);
+  ASSERT_EQ(call({"paper", "--duration", "1s", "--json", "paper.json"}).exit_code, 1);
   const Json paper = json("paper.json");
   int pictures = 0;
   for (const Json& section : paper["sections"]) {
@@ -186,7 +186,7 @@ TEST_F(MeasureVerb, PicturesOfThePaperHaveNoNumber) {
 }
 
 TEST_F(MeasureVerb, ThePapersBurstsFailWithoutAShieldAndNotBehindAProperOne) {
-  ASSERT_EQ(call({"paper", "--duration", "12s", "--json", "paper.json"}).exit_code, 0);
+  ASSERT_EQ(call({"paper", "--duration", "12s", "--json", "paper.json"}).exit_code, 1);
   const Json section = json("paper.json")["sections"].back();
   EXPECT_HOLDS(section["heading"].get<std::string>(), "1000 to 4500 V");
   ASSERT_EQ(section["rows"].size(), 17U);  // eight voltages without and with a shield, and what they come to
@@ -196,7 +196,7 @@ TEST_F(MeasureVerb, ThePapersBurstsFailWithoutAShieldAndNotBehindAProperOne) {
     EXPECT_EQ(row["reproduced"].get<std::string>().starts_with("A: "), n % 2 == 1) << row;
     EXPECT_HOLDS(row["reproduced"].get<std::string>(), " 0 wrong words accepted");
   }
-  EXPECT_EQ(section["rows"][16]["agrees"], true);
+  EXPECT_EQ(section["rows"][16]["verdict"], "not checked");
 }
 
 }  // namespace

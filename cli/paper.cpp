@@ -36,7 +36,9 @@ int paper(Session& session) {
   session.terminal.end_progress();
   session.terminal.print(reports::publication_text(publication));
   write_document(session, "paper", reports::publication_json(publication));
-  return reports::is_reproduced(publication) ? kAllAsExpected : kFailed;
+  if (reports::rows_that(publication, reports::Reproduction::differs) > 0) return kFailed;
+  const bool is_decided = reports::rows_that(publication, reports::Reproduction::inconclusive) == 0;
+  return is_decided ? kAllAsExpected : kInconclusive;
 }
 
 }  // namespace fieldproof::cli

@@ -33,7 +33,7 @@ std::span<const reports::DocumentKind> document_kinds() {
   static const std::array kinds = {
       reports::DocumentKind{"fieldproof/emc/1", reports::emc_schema},
       reports::DocumentKind{"fieldproof/measurement/1", reports::measurement_schema},
-      reports::DocumentKind{"fieldproof/publication/1", reports::publication_schema},
+      reports::DocumentKind{"fieldproof/publication/2", reports::publication_schema},
       reports::DocumentKind{"fieldproof/residual/1", reports::residual_schema},
       reports::DocumentKind{"fieldproof/matrix/1", matrix_schema},
   };

@@ -11,6 +11,7 @@
 namespace fieldproof::papers {
 namespace {
 
+using reports::Reproduction;
 using testing::HasSubstr;
 
 Settings of_a_second() {
@@ -21,7 +22,8 @@ Settings of_a_second() {
 std::map<std::string, std::string> disagreeing(const reports::PublishedSection& section) {
   std::map<std::string, std::string> rows;
   for (const reports::PublishedRow& row : section.rows) {
-    if (row.agrees == false) rows[row.what] = row.reproduced + "; " + row.remark;
+    if (reproduction_of(row.compared) == Reproduction::differs)
+      rows[row.what] = row.reproduced + "; " + row.remark;
   }
   return rows;
 }

@@ -15,11 +15,11 @@ namespace {
 
 constexpr std::array<Reproduce, 4> kInterbus = {&interbus_cycle_times, &interbus_highest_frequency,
                                                 &interbus_square_waves, &interbus_bursts};
-constexpr std::array<Reproduce, 3> kValveBus = {&valve_bus_cycle_times, &valve_bus_block_check,
-                                                &valve_bus_resonance};
-constexpr std::array<Reproduce, 5> kFoundation = {&foundation_rotations, &foundation_targets,
-                                                  &foundation_shares, &foundation_lengths,
-                                                  &foundation_stations};
+constexpr std::array<Reproduce, 4> kValveBus = {&valve_bus_cycle_times, &valve_bus_sentences,
+                                                &valve_bus_block_check, &valve_bus_resonance};
+constexpr std::array<Reproduce, 6> kFoundation = {&foundation_rotations, &foundation_sentences,
+                                                  &foundation_targets,   &foundation_shares,
+                                                  &foundation_lengths,   &foundation_stations};
 constexpr std::array<Reproduce, 3> kControlLoop = {&control_loop_quiet, &control_loop_under_bursts,
                                                    &control_loop_with_operator};
 constexpr std::array<Reproduce, 5> kBandwidth = {&bandwidth_periodic, &bandwidth_non_real_time,

@@ -27,6 +27,7 @@ using reports::PublishedSection;
 constexpr double kMessages = 1.5;  // of each other node in a second, where the bus is loaded
 constexpr unsigned kMostPeriods = 20'000;
 constexpr double kShownSeconds = 60;
+constexpr std::uint64_t kFewestSamples = 30;
 
 ControlLoopSetting loop_setting(const Settings& settings, DataWay way, double messages_per_s) {
   ControlLoopSetting loop;
@@ -67,7 +68,8 @@ PublishedRow sentence(std::string what, std::string published, const ControlLoop
   return {std::move(what), std::move(published),
           fmt::format("{:+.0f} %", 100 * (with.*quantity / (without.*quantity) - 1)),
           "the same bus, blocks and messages; only the way of the data differs",
-          with.*quantity > without.*quantity};
+          reports::of_samples(reports::more_than(without.*quantity, with.*quantity), with.to_controller.sent,
+                              kFewestSamples)};
 }
 
 PublishedCurves::Curve course(std::string name, const ControlLoop& loop,

@@ -9,6 +9,7 @@
 namespace fieldproof::papers {
 namespace {
 
+using reports::Reproduction;
 using testing::HasSubstr;
 
 Settings short_run() {
@@ -21,7 +22,8 @@ TEST(ControlLoopPaper, LossAndVacantSamplingCostWhatThePaperSays) {
   // Published data are as good as no bus.
   EXPECT_EQ(section.rows[0].reproduced, section.rows[1].reproduced);
   for (const std::size_t row : {8U, 9U}) {
-    EXPECT_EQ(section.rows[row].agrees, true) << section.rows[row].reproduced;
+    EXPECT_EQ(reproduction_of(section.rows[row].compared), Reproduction::agrees)
+        << section.rows[row].reproduced;
     EXPECT_FALSE(section.rows[row].published.empty());
   }
   ASSERT_EQ(section.figures.size(), 2U);

@@ -22,11 +22,13 @@ reports::PublishedSection interbus_bursts(const Settings& settings);
 
 // Kim, Seo and Lee, the RS-485 bus for pneumatic valves.
 reports::PublishedSection valve_bus_cycle_times(const Settings& settings);
+reports::PublishedSection valve_bus_sentences(const Settings& settings);
 reports::PublishedSection valve_bus_block_check(const Settings& settings);
 reports::PublishedSection valve_bus_resonance(const Settings& settings);
 
 // Hong and Son, the delay of urgent data in the Foundation Fieldbus.
 reports::PublishedSection foundation_rotations(const Settings& settings);
+reports::PublishedSection foundation_sentences(const Settings& settings);
 reports::PublishedSection foundation_targets(const Settings& settings);
 reports::PublishedSection foundation_shares(const Settings& settings);
 reports::PublishedSection foundation_lengths(const Settings& settings);

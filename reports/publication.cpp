@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "harness/kernel/untrusted_text.hpp"
 #include "reports/measurement_writer.hpp"
@@ -22,9 +25,53 @@ constexpr std::size_t kReproducedWidth = 24;
 constexpr std::size_t kTraceColumns = 100;
 constexpr std::string_view kNoNumber = "(no number)";
 
-std::string_view sign_of(const PublishedRow& row) {
-  if (!row.agrees) return "";
-  return *row.agrees ? "agrees" : "DIFFERS";
+constexpr std::array kReproductions = {Reproduction::agrees, Reproduction::differs, Reproduction::own,
+                                       Reproduction::not_checked, Reproduction::inconclusive};
+
+std::string_view relation_of(const Compared& compared) {
+  switch (compared.relation) {
+    case Compared::Relation::within:
+      return "within";
+    case Compared::Relation::at_most:
+      return "at_most";
+    case Compared::Relation::more_than:
+      return "more_than";
+  }
+  return "";
+}
+
+bool holds(const Compared& compared) {
+  switch (compared.relation) {
+    case Compared::Relation::within:
+      return std::abs(compared.ours - compared.reference) <= compared.tolerance;
+    case Compared::Relation::at_most:
+      return compared.ours <= compared.reference + compared.tolerance;
+    case Compared::Relation::more_than:
+      return compared.ours > compared.reference;
+  }
+  return false;
+}
+
+std::string numbers_of(const Compared& compared) {
+  const auto number = [&](double value) {
+    return fmt::format("{:.6g}{}{}", value, compared.unit.empty() ? "" : " ", compared.unit);
+  };
+  switch (compared.relation) {
+    case Compared::Relation::within:
+      return fmt::format("{} of {} +- {:.2g}", number(compared.ours), number(compared.reference),
+                         compared.tolerance);
+    case Compared::Relation::at_most:
+      return fmt::format("{} of at most {}", number(compared.ours), number(compared.reference));
+    case Compared::Relation::more_than:
+      return fmt::format("{} of more than {}", number(compared.ours), number(compared.reference));
+  }
+  return "";
+}
+
+std::string sign_of(const PublishedRow& row) {
+  const std::string_view word = text_of(reproduction_of(row.compared));
+  return row.compared ? fmt::format("{}: {}", word, escaped_line(numbers_of(*row.compared)))
+                      : std::string(word);
 }
 
 std::string row_text(const PublishedRow& row) {
@@ -65,6 +112,16 @@ Json figure_json(const PublishedCurves& figure) {
           {"curves", std::move(curves)}};
 }
 
+Json compared_json(const Compared& compared) {
+  return {{"with", compared.is_own ? "own" : "paper"},
+          {"relation", relation_of(compared)},
+          {compared.is_own ? "reference" : "published", compared.reference},
+          {"tolerance", compared.tolerance},
+          {"ours", std::isfinite(compared.ours) ? Json(compared.ours) : Json()},
+          {"unit", as_utf8(compared.unit)},
+          {"is_too_few", compared.is_too_few}};
+}
+
 Json section_json(const PublishedSection& section) {
   Json json = {{"heading", as_utf8(section.heading)},
                {"note", as_utf8(section.note)},
@@ -76,9 +133,10 @@ Json section_json(const PublishedSection& section) {
                 {"published", nullptr},
                 {"reproduced", as_utf8(row.reproduced)},
                 {"remark", as_utf8(row.remark)},
-                {"agrees", nullptr}};
+                {"verdict", text_of(reproduction_of(row.compared))},
+                {"compared", nullptr}};
     if (!row.published.empty()) one["published"] = as_utf8(row.published);
-    if (row.agrees) one["agrees"] = *row.agrees;
+    if (row.compared) one["compared"] = compared_json(*row.compared);
     json["rows"].push_back(std::move(one));
   }
   for (const PublishedTrace& one : section.traces) {
@@ -90,26 +148,79 @@ Json section_json(const PublishedSection& section) {
 
 }  // namespace
 
-bool is_reproduced(const Publication& publication) {
-  return std::ranges::all_of(publication.sections, [](const PublishedSection& section) {
-    return std::ranges::all_of(section.rows,
-                               [](const PublishedRow& row) { return row.agrees.value_or(true); });
-  });
+std::string_view text_of(Reproduction reproduction) {
+  switch (reproduction) {
+    case Reproduction::agrees:
+      return "agrees";
+    case Reproduction::differs:
+      return "DIFFERS";
+    case Reproduction::own:
+      return "own";
+    case Reproduction::not_checked:
+      return "not checked";
+    case Reproduction::inconclusive:
+      return "inconclusive";
+  }
+  return "";
+}
+
+Compared within(double reference, double tolerance, double ours, std::string unit) {
+  return {.reference = reference, .tolerance = tolerance, .ours = ours, .unit = std::move(unit)};
+}
+
+Compared at_most(double limit, double ours, std::string unit) {
+  return {.reference = limit, .ours = ours, .unit = std::move(unit), .relation = Compared::Relation::at_most};
+}
+
+Compared more_than(double limit, double ours, std::string unit) {
+  return {
+      .reference = limit, .ours = ours, .unit = std::move(unit), .relation = Compared::Relation::more_than};
+}
+
+Compared own(Compared compared) {
+  compared.is_own = true;
+  return compared;
+}
+
+Compared of_samples(Compared compared, std::uint64_t samples, std::uint64_t needed) {
+  compared.is_too_few = samples < needed;
+  return compared;
+}
+
+Reproduction reproduction_of(const std::optional<Compared>& compared) {
+  if (!compared) return Reproduction::not_checked;
+  if (compared->is_too_few || !std::isfinite(compared->ours)) return Reproduction::inconclusive;
+  if (!holds(*compared)) return Reproduction::differs;
+  return compared->is_own ? Reproduction::own : Reproduction::agrees;
+}
+
+std::uint64_t rows_that(const Publication& publication, Reproduction reproduction) {
+  std::uint64_t rows = 0;
+  for (const PublishedSection& section : publication.sections) {
+    rows += static_cast<std::uint64_t>(std::ranges::count_if(section.rows, [&](const PublishedRow& row) {
+      return reproduction_of(row.compared) == reproduction;
+    }));
+  }
+  return rows;
 }
 
 std::string publication_text(const Publication& publication) {
   std::string text = fmt::format("{}\n", escaped_line(publication.title));
   for (const PublishedSection& section : publication.sections) text += section_text(section);
-  return text + (is_reproduced(publication) ? "\nall that is published and compared here agrees\n"
-                                            : "\nnot all that is published and compared here agrees\n");
+  std::string counts;
+  for (const Reproduction one : kReproductions) {
+    counts += fmt::format("{}{} {}", counts.empty() ? "\n" : ", ", rows_that(publication, one), text_of(one));
+  }
+  return text + counts + "\n";
 }
 
 std::string publication_json(const Publication& publication) {
-  Json json = {{"schema", "fieldproof/publication/1"},
+  Json json = {{"schema", "fieldproof/publication/2"},
                {"title", as_utf8(publication.title)},
                {"seed", fmt::format("{}", publication.seed)},
-               {"reproduced", is_reproduced(publication)},
+               {"rows", Json::object()},
                {"sections", Json::array()}};
+  for (const Reproduction one : kReproductions) json["rows"][text_of(one)] = rows_that(publication, one);
   for (const PublishedSection& section : publication.sections)
     json["sections"].push_back(section_json(section));
   return json.dump(1) + "\n";

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "reports/approved_text.hpp"
@@ -28,17 +29,33 @@ TEST(PublicationTest, IsValidForASchemaValidator) {
 TEST(PublicationTest, APictureIsNoNumber) {
   const auto json = nlohmann::json::parse(publication_json(sample_publication()));
   EXPECT_TRUE(json["sections"][0]["rows"][1]["published"].is_null());
-  EXPECT_TRUE(json["sections"][0]["rows"][1]["agrees"].is_null());
+  EXPECT_TRUE(json["sections"][0]["rows"][1]["compared"].is_null());
   EXPECT_NE(publication_text(sample_publication()).find("(no number)"), std::string::npos);
 }
 
-TEST(PublicationTest, OneRowThatDiffersIsNoReproduction) {
+TEST(PublicationTest, ARowIsWhatItsNumbersSay) {
+  EXPECT_EQ(reproduction_of(std::nullopt), Reproduction::not_checked);
+  EXPECT_EQ(reproduction_of(within(614, 0.5, 614.5)), Reproduction::agrees);
+  EXPECT_EQ(reproduction_of(within(614, 0.5, 614.51)), Reproduction::differs);
+  EXPECT_EQ(reproduction_of(at_most(4, 4)), Reproduction::agrees);
+  EXPECT_EQ(reproduction_of(at_most(4, 5)), Reproduction::differs);
+  EXPECT_EQ(reproduction_of(more_than(0, 0)), Reproduction::differs);
+  EXPECT_EQ(reproduction_of(more_than(0, 1)), Reproduction::agrees);
+  EXPECT_EQ(reproduction_of(own(within(2, 1, 3))), Reproduction::own);
+  EXPECT_EQ(reproduction_of(own(within(2, 1, 4))), Reproduction::differs);
+  EXPECT_EQ(reproduction_of(within(1, 1, std::nan(""))), Reproduction::inconclusive);
+  EXPECT_EQ(reproduction_of(of_samples(within(2, 1, 9), 9, 10)), Reproduction::inconclusive);
+  EXPECT_EQ(reproduction_of(of_samples(within(2, 1, 9), 10, 10)), Reproduction::differs);
+}
+
+TEST(PublicationTest, OneRowThatDiffersIsCounted) {
   Publication publication = sample_publication();
-  EXPECT_TRUE(is_reproduced(publication));
-  publication.sections[0].rows[0].agrees = false;
-  EXPECT_FALSE(is_reproduced(publication));
-  EXPECT_NE(publication_text(publication).find("DIFFERS"), std::string::npos);
-  EXPECT_NE(publication_text(publication).find("not all that is published"), std::string::npos);
+  EXPECT_EQ(rows_that(publication, Reproduction::differs), 0U);
+  publication.sections[0].rows[0].compared->ours = 0.814;
+  EXPECT_EQ(rows_that(publication, Reproduction::differs), 1U);
+  EXPECT_NE(publication_text(publication).find("DIFFERS: 0.814 ms of 0.755 ms +- 0.0005"), std::string::npos);
+  EXPECT_NE(publication_text(publication).find("0 agrees, 1 DIFFERS, 0 own, 1 not checked"),
+            std::string::npos);
 }
 
 }  // namespace

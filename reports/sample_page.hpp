@@ -241,8 +241,9 @@ inline Publication sample_publication() {
   PublishedSection section;
   section.heading = "Cycle time";
   section.note = "as printed";
-  section.rows = {{"calculated", "0.755 ms", "0.7550 ms", "by the formula", true},
-                  {"delay", "", "1.1 to 1.9 ms", "pictures only", std::nullopt}};
+  section.rows = {
+      {"calculated", "0.755 ms", "0.7550 ms", "by the formula", within(0.755, 0.0005, 0.755, "ms")},
+      {"delay", "", "1.1 to 1.9 ms", "pictures only", std::nullopt}};
   section.traces = {{"50 Hz", sample_measurement().series[0].trace}};
   section.figures = {{"Step <response>",
                       "time, s",

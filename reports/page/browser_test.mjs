@@ -30,7 +30,7 @@ const cases = data.runs.flatMap((run) => run.results.cases);
 const firstRun = data.runs[0];
 const failing = cases.filter((one) => one.verdict === "fail");
 const withTimeLine = Object.entries(firstRun?.cases ?? {}).find(([, more]) => more.timeline)?.[0];
-const sections = ["fieldproof/measurement/1", "fieldproof/emc/1", "fieldproof/residual/1", "fieldproof/publication/1", "fieldproof/matrix/1"]
+const sections = ["fieldproof/measurement/1", "fieldproof/emc/1", "fieldproof/residual/1", "fieldproof/publication/2", "fieldproof/matrix/1"]
     .filter((schema) => data.documents.some(({ content }) => content.schema === schema));
 
 function expect(condition, sentence) {
@@ -234,7 +234,7 @@ if (withTimeLine) {
 await check("each document has its section, its charts and its command", async (page) => {
   await whole(page);
   const ids = {"fieldproof/measurement/1": "timing", "fieldproof/emc/1": "immunity", "fieldproof/residual/1": "residual",
-    "fieldproof/publication/1": "publication", "fieldproof/matrix/1": "matrix"};
+    "fieldproof/publication/2": "publication", "fieldproof/matrix/1": "matrix"};
   for (const schema of sections) {
     const place = page.locator(`section#${ids[schema]}`);
     expectEqual(await place.count(), 1, schema);

@@ -6,9 +6,15 @@ import { table } from "./table.js";
 import { linearCurves } from "./charts.js";
 import { traceFigure } from "./timing.js";
 
-function agreement({ agrees }) {
-  if (agrees === null) return element("span", {class: "quiet"}, "nothing to compare");
-  return element("span", {class: `verdict ${agrees ? "pass" : "fail"}`}, agrees ? "agrees" : "differs");
+const SIGNS = {agrees: "pass", DIFFERS: "fail", inconclusive: "inconclusive"};
+const RELATIONS = {within: "of", at_most: "of at most", more_than: "of more than"};
+
+function agreement({ verdict, compared }) {
+  if (compared === null) return element("span", {class: "quiet"}, verdict);
+  const { ours, relation, tolerance, unit } = compared;
+  const band = relation === "within" ? ` \u00b1 ${tolerance}` : "";
+  return element("span", {title: `${ours} ${RELATIONS[relation]} ${compared.published ?? compared.reference}${band} ${unit}`},
+      element("span", {class: `verdict ${SIGNS[verdict] ?? ""}`}, verdict));
 }
 
 function curvesFigure(figure) {
@@ -32,11 +38,11 @@ function sectionPart(part) {
 
 function paperPart({ name, content }) {
   return element("article", {}, element("h3", {}, content.title),
-      definitions([["Document", name], ["Seed", content.seed], ["Verdict", content.reproduced ? "no row disagrees" : "a row disagrees"]]),
+      definitions([["Document", name], ["Seed", content.seed], ["Rows", Object.entries(content.rows).map(([verdict, rows]) => `${rows} ${verdict}`).join(", ")]]),
       documentCommand(content, name), content.sections.map(sectionPart));
 }
 
 export function publicationSection(data) {
-  const documents = documentsOf(data, "fieldproof/publication/1");
+  const documents = documentsOf(data, "fieldproof/publication/2");
   return documents.length ? section("publication", "Paper and reproduction", documents.map((document) => later(() => paperPart(document)))) : null;
 }

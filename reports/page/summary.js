@@ -115,7 +115,7 @@ function runPart(run, isJoined) {
 const kDocuments = {
   "fieldproof/emc/1": ["#immunity", "a network under bursts"],
   "fieldproof/measurement/1": ["#timing", "a measurement beside the theory"],
-  "fieldproof/publication/1": ["#publication", "a paper beside its reproduction"],
+  "fieldproof/publication/2": ["#publication", "a paper beside its reproduction"],
   "fieldproof/residual/1": ["#residual", "undetected errors of a frame check"],
   "fieldproof/matrix/1": ["#matrix", "cases and mutants"],
 };
