@@ -57,7 +57,8 @@ TEST(PaperCatalogue, APublishedValueThatIsMovedDiffers) {
     std::size_t published = 0;
     std::size_t differing = 0;
     for (const Reproduce reproduce : paper.sections) {
-      for (const reports::PublishedRow& row : reproduce({.seed = 2, .duration = 10 * kernel::kSecond}).rows) {
+      const reports::PublishedSection section = reproduce({.seed = 2, .duration = 10 * kernel::kSecond});
+      for (const reports::PublishedRow& row : section.rows) {
         if (!row.compared || row.compared->is_own) continue;
         ++published;
         EXPECT_FALSE(row.published.empty()) << row.what;

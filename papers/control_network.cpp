@@ -43,7 +43,7 @@ std::string braced(std::span<const PhySymbol> symbols) {
 }
 
 double unlike_characters(std::string_view one, std::string_view other) {
-  const auto [length, longest] = std::minmax(one.size(), other.size());
+  const auto [length, longest] = std::minmax({one.size(), other.size()});
   auto unlike = static_cast<double>(longest - length);
   for (std::size_t n = 0; n < length; ++n) unlike += one[n] == other[n] ? 0 : 1;
   return unlike;
