@@ -135,8 +135,8 @@ int measure_protocol(Session& session) {
   if (!interruption.reason().empty()) session.terminal.log(interruption.reason());
   if (interruption.signal() != 0) return kSignalBase + interruption.signal();
   if (measured.series.empty()) return kNothingJudged;
-  int code = code_of(measure::agreement(measured));
-  if (code == kFailed && has_other_stations(session.settings)) {
+  int code = measured.failures.empty() ? code_of(measure::agreement(measured)) : kFailed;
+  if (code == kFailed && measured.failures.empty() && has_other_stations(session.settings)) {
     session.terminal.print(
         "The closed forms are those of the reference stations. Others may be faster or slower within what "
         "the "

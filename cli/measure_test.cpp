@@ -116,16 +116,52 @@ TEST_F(MeasureVerb, LostPulsesOfBurstsRefuteNoTheory) {
   EXPECT_EQ(called.exit_code, 0) << called.out;
 }
 
-TEST_F(MeasureVerb, ABusThatStopsIsToldAndDecidesNothing) {
+TEST_F(MeasureVerb, ABusThatStopsIsAFailureWithItsReason) {
   write("impatient.json", R"({
     "name": "impatient", "bit_rate": "500 kbit/s", "formula": "f4",
     "rules": {"software_time": "450 us", "stop_after_bad_cycles": 3},
     "stations": [{"name": "a", "id_code": "0x0103", "cable": "5 m"}],
     "copy": [{"from": "a", "input_word": 0, "to": "a", "output_word": 0}]})");
   const Called called = call({"measure", "interbus", "--network", "impatient.json", "--signal", "50Hz",
-                              "--bursts", "4", "--duration", "20s"});
-  EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
-  EXPECT_HOLDS(called.out, "50 Hz: the bus stopped for good meanwhile");
+                              "--bursts", "4", "--duration", "20s", "--json", "stopped.json"});
+  EXPECT_EQ(called.exit_code, 1) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "fail: 50 Hz: the bus stopped for good meanwhile, its last data ");
+  EXPECT_EQ(json("stopped.json")["failures"].size(), 1U);
+  expect_valid({"stopped.json"}, "measurement");
+}
+
+TEST_F(MeasureVerb, QuietBurstAndRecoveryAreComparedApart) {
+  const Called called =
+      call({"measure", "interbus", "--signal", "50Hz", "--bursts", "4", "--duration", "20s"});
+  EXPECT_EQ(called.exit_code, 0) << called.out;
+  EXPECT_HOLDS(called.out, "theory and measurement while quiet: holds");
+  EXPECT_HOLDS(called.out, "the same, burst: differs");
+  EXPECT_HOLDS(called.out, "jitter of the cycle, peak to peak, burst");
+}
+
+// Where a pulse is as often one cycle longer as not, few samples leave its standard deviation too small, down
+// to 0.
+TEST_F(MeasureVerb, FewPulsesOf128StationsRefuteNoTheory) {
+  Json network = {{"name", "long"},
+                  {"bit_rate", "500 kbit/s"},
+                  {"formula", "f4"},
+                  {"rules", {{"software_time", "450 us"}}},
+                  {"copy", {{{"from", "s0"}, {"input_word", 0}, {"to", "s127"}, {"output_word", 0}}}}};
+  for (int n = 0; n < 128; ++n)
+    network["stations"].push_back(
+        {{"name", "s" + std::to_string(n)}, {"id_code", "0x0103"}, {"cable", "5 m"}});
+  write("long.json", network.dump());
+  const Called called = call({"measure", "interbus", "--network", "long.json", "--signal", "10Hz",
+                              "--duration", "3s", "--seed", "8"});
+  EXPECT_EQ(called.exit_code, 2) << called.out;
+  EXPECT_HOLDS(called.out, "theory and measurement: open");
+}
+
+TEST_F(MeasureVerb, ASignalThatTakesLongerThanAskedForSaysSo) {
+  const Called called = call({"measure", "interbus", "--signal", "50Hz", "--duration", "1ms"});
+  EXPECT_HOLDS(called.out, "50 Hz: one train of 8 periods and its rest take 1");
+  const Called enough = call({"measure", "interbus", "--signal", "50Hz", "--duration", "1s"});
+  EXPECT_EQ(enough.out.find("longer than asked for"), std::string::npos) << enough.out;
 }
 
 TEST_F(MeasureVerb, TakesOneDisturbanceAtATime) {

@@ -40,6 +40,7 @@ Json comparison_json(const Comparison& one, double tolerance_percent) {
           {"deviation_percent", one.deviation_percent()},
           {"whole", as_utf8(one.whole_name)},
           {"standard_error", one.standard_error},
+          {"phase", name(one.phase)},
           {"agreement", name(agreement(one, tolerance_percent))}};
 }
 
@@ -96,7 +97,9 @@ std::string value_text(double value, std::string_view unit) {
 std::string comparison_line(const Comparison& one, double tolerance_percent) {
   const auto agrees = agreement(one, tolerance_percent);
   const std::string mark = agrees == measure::Agreement::holds ? "" : fmt::format("  {}", name(agrees));
-  return fmt::format("  {:<{}} {:>14} {:>14} {:>+9.3f} % {}{}\n", escaped_line(one.quantity), kNameWidth,
+  const std::string what = escaped_line(one.quantity) +
+                           (one.phase == measure::Phase::quiet ? "" : fmt::format(", {}", name(one.phase)));
+  return fmt::format("  {:<{}} {:>14} {:>14} {:>+9.3f} % {}{}\n", what, kNameWidth,
                      value_text(one.theory, one.unit), value_text(one.measured, one.unit),
                      one.deviation_percent(), escaped_line(one.whole_name), mark);
 }
@@ -176,8 +179,14 @@ std::string measurement_json(const measure::Measurement& measurement) {
                {"seed", fmt::format("{}", measurement.seed)},
                {"tolerance_percent", measurement.tolerance_percent},
                {"agreement", name(agreement(measurement))},
+               {"phases", Json::object()},
+               {"failures", Json::array()},
                {"conditions", Json::array()},
                {"series", Json::array()}};
+  for (const measure::Phase phase : measure::kPhases) {
+    if (const auto of_phase = agreement(measurement, phase)) json["phases"][name(phase)] = name(*of_phase);
+  }
+  for (const std::string& failure : measurement.failures) json["failures"].push_back(as_utf8(failure));
   for (const measure::Condition& one : measurement.conditions) {
     json["conditions"].push_back({{"name", as_utf8(one.name)}, {"value", as_utf8(one.value)}});
   }
@@ -195,8 +204,18 @@ std::string measurement_text(const measure::Measurement& measurement) {
   for (const measure::Series& series : measurement.series) {
     text += series_text(series, measurement.tolerance_percent);
   }
-  return text + fmt::format("\ntheory and measurement: {} (tolerance {} %)\n", name(agreement(measurement)),
-                            measurement.tolerance_percent);
+  for (const std::string& failure : measurement.failures)
+    text += fmt::format("\nfail: {}\n", escaped_line(failure));
+  const bool is_disturbed = agreement(measurement, measure::Phase::burst).has_value();
+  text += fmt::format("\ntheory and measurement{}: {} (tolerance {} %)\n", is_disturbed ? " while quiet" : "",
+                      name(agreement(measurement)), measurement.tolerance_percent);
+  for (const measure::Phase phase : {measure::Phase::burst, measure::Phase::recovery}) {
+    if (const auto of_phase = agreement(measurement, phase)) {
+      text += fmt::format("  the same, {}: {}; the closed forms are those of a quiet network\n", name(phase),
+                          name(*of_phase));
+    }
+  }
+  return text;
 }
 
 std::string trace_text(const measure::Trace& trace, std::size_t columns) {

@@ -21,9 +21,13 @@ Agreement agreement(const Comparison& comparison, double tolerance_percent) {
   return beyond <= 300 * comparison.standard_error / comparison.whole ? Agreement::open : Agreement::differs;
 }
 
-Agreement agreement(std::span<const Comparison> comparisons, double tolerance_percent) {
-  Agreement worst = Agreement::holds;
-  for (const Comparison& one : comparisons) worst = std::max(worst, agreement(one, tolerance_percent));
+std::optional<Agreement> agreement(std::span<const Comparison> comparisons, double tolerance_percent,
+                                   Phase phase) {
+  std::optional<Agreement> worst;
+  for (const Comparison& one : comparisons) {
+    if (one.phase == phase)
+      worst = std::max(worst.value_or(Agreement::holds), agreement(one, tolerance_percent));
+  }
   return worst;
 }
 

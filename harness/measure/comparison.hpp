@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "harness/measure/phase.hpp"
 
 // A measured quantity beside the one that a theory gives, and what the two say together.
 namespace fieldproof::measure {
@@ -18,6 +21,7 @@ struct Comparison {
   std::string whole_name;     // "of the cycle time"
   double standard_error = 0;  // of the measured value, by the number of samples; 0 where it is exact
   bool is_bound = false;      // the theory gives the most that may be, not the value
+  Phase phase = Phase::quiet;
 
   double deviation_percent() const { return 100 * (measured - theory) / whole; }
 };
@@ -32,7 +36,8 @@ std::string_view name(Agreement agreement);
 
 // The tolerance is a part of `whole` in percent.
 Agreement agreement(const Comparison& comparison, double tolerance_percent);
-// The worst of all; holds when there is none.
-Agreement agreement(std::span<const Comparison> comparisons, double tolerance_percent);
+// The worst of all of a phase; nothing when there is none.
+std::optional<Agreement> agreement(std::span<const Comparison> comparisons, double tolerance_percent,
+                                   Phase phase);
 
 }  // namespace fieldproof::measure

@@ -37,9 +37,9 @@ TEST(ComparisonTest, BelowABoundIsAlwaysRight) {
 }
 
 TEST(ComparisonTest, TheWorstOfSeveralCounts) {
-  EXPECT_EQ(agreement(std::vector<Comparison>{}, 2), Agreement::holds);
-  EXPECT_EQ(agreement(std::vector{delay(1'500), delay(1'550, 10)}, 2), Agreement::open);
-  EXPECT_EQ(agreement(std::vector{delay(1'900), delay(1'550, 10)}, 2), Agreement::differs);
+  EXPECT_EQ(agreement(std::vector<Comparison>{}, 2, Phase::quiet), std::nullopt);
+  EXPECT_EQ(agreement(std::vector{delay(1'500), delay(1'550, 10)}, 2, Phase::quiet), Agreement::open);
+  EXPECT_EQ(agreement(std::vector{delay(1'900), delay(1'550, 10)}, 2, Phase::quiet), Agreement::differs);
   EXPECT_EQ(name(Agreement::open), "open");
   EXPECT_THROW(agreement(Comparison{}, 2), kernel::BrokenInvariant);
 }

@@ -5,9 +5,15 @@
 namespace fieldproof::measure {
 
 Agreement agreement(const Measurement& measurement) {
-  Agreement worst = measurement.is_complete ? Agreement::holds : Agreement::open;
+  const Agreement worst = measurement.is_complete ? Agreement::holds : Agreement::open;
+  return std::max(worst, agreement(measurement, Phase::quiet).value_or(worst));
+}
+
+std::optional<Agreement> agreement(const Measurement& measurement, Phase phase) {
+  std::optional<Agreement> worst;
   for (const Series& series : measurement.series) {
-    worst = std::max(worst, agreement(series.comparisons, measurement.tolerance_percent));
+    // Nothing is less than any agreement.
+    worst = std::max(worst, agreement(series.comparisons, measurement.tolerance_percent, phase));
   }
   return worst;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,9 +59,14 @@ struct Measurement {
   std::vector<Condition> conditions;
   std::vector<Series> series;
   bool is_complete = true;  // false: something could not be compared; a condition says what, and why
+  std::vector<std::string> failures;  // "50 Hz: the bus stopped for good ..."
 };
 
-// Over everything that was compared; open where something could not be.
+// Over everything that was compared while the network was quiet; open where something could not be. The
+// theory is that of a quiet network: what bursts and recovery make of it stands beside it, and refutes
+// nothing.
 Agreement agreement(const Measurement& measurement);
+// Of one phase alone; nothing where nothing of it was compared.
+std::optional<Agreement> agreement(const Measurement& measurement, Phase phase);
 
 }  // namespace fieldproof::measure

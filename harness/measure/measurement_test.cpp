@@ -20,5 +20,19 @@ TEST(MeasurementTest, AgreesAsItsWorstSeriesDoes) {
   EXPECT_EQ(agreement(measurement), Agreement::holds);
 }
 
+// What bursts make of a cycle is told apart, and refutes no theory of a quiet network.
+TEST(MeasurementTest, EachPhaseAgreesByItself) {
+  Measurement measurement;
+  measurement.tolerance_percent = 2;
+  Series series;
+  series.comparisons = {{"cycle time", "us", 100, 101, 100, "of the theory"},
+                        {"cycle time", "us", 100, 900, 100, "of the theory", 0, false, Phase::burst}};
+  measurement.series.push_back(series);
+  EXPECT_EQ(agreement(measurement), Agreement::holds);
+  EXPECT_EQ(agreement(measurement, Phase::quiet), Agreement::holds);
+  EXPECT_EQ(agreement(measurement, Phase::burst), Agreement::differs);
+  EXPECT_EQ(agreement(measurement, Phase::recovery), std::nullopt);
+}
+
 }  // namespace
 }  // namespace fieldproof::measure

@@ -100,6 +100,12 @@ class DelayRows {
   double phases_;
 };
 
+// Of the standard deviation of a choice between two values, in parts of their distance. Where both are
+// equally probable it is largest: what remains there is a third of the square of three errors of the share.
+double error_of_choice(double share, double count) {
+  return std::abs(1 - 2 * share) / (2 * std::sqrt(count)) + 0.75 / count;
+}
+
 // Everything that a comparison of one path needs at hand. An edge waits for the sample, evenly up to a cycle.
 struct PathForms {
   PathForms(const SignalRecord& record, const PathTheory& theory)
@@ -163,7 +169,7 @@ void append_widths(std::vector<Comparison>& rows, const PathForms& theory, const
                           is_lossy ? 0 : us(width.standard_deviation), us(widths.standard_deviation()),
                           is_lossy              ? 0
                           : count < kFewSamples ? cycle
-                                                : cycle * std::abs(1 - 2 * more) / (2 * std::sqrt(count))));
+                                                : cycle * error_of_choice(more, count)));
 }
 
 void append_duty(std::vector<Comparison>& rows, const PathForms& theory, const measure::EdgeSkew& skew) {
@@ -293,7 +299,12 @@ class CycleSeries {
     for (const CycleRecord& cycle : cycles_) {
       measure::Series& series = all.emplace_back();
       series.name = cycle.kind.name;
-      series.comparisons = compare_cycles(cycle.kind, cycle.times.in(Phase::quiet), all.size() == 1);
+      for (const Phase phase : measure::kPhases) {
+        for (Comparison& row : compare_cycles(cycle.kind, cycle.times.in(phase), all.size() == 1)) {
+          row.phase = phase;
+          series.comparisons.push_back(std::move(row));
+        }
+      }
       series.curves = {{cycle.kind.name + (cycle.kind.is_delay ? "" : " time"), std::string(kMicrosecond),
                         kPerMicrosecond, cycle.times}};
     }
@@ -356,6 +367,22 @@ std::vector<Comparison> compare_path(const SignalRecord& record, const PathRecor
 
 namespace {
 
+// A signal that took longer than was asked for, and a bus that did not last as long.
+void add_remarks(measure::Measurement& measurement, const SignalRecord& record,
+                 const MeasurementSettings& settings) {
+  const std::string signal = measure::describe(record.settings.wave.frequency);
+  if (record.lasted > settings.duration) {
+    measurement.conditions.push_back(
+        {"longer than asked for",
+         fmt::format("{}: one train of {} periods and its rest take {}", signal,
+                     record.settings.periods_per_train, kernel::describe(record.lasted))});
+  }
+  if (!record.has_stopped) return;
+  measurement.failures.push_back(fmt::format(
+      "{}: the bus stopped for good meanwhile, its last data {} after the begin{}{}", signal,
+      kernel::describe(record.stopped_after), record.complaint.empty() ? "" : ": ", record.complaint));
+}
+
 std::optional<SignalRecord> record_until_stopped(Network& network, const measure::SquareWave& wave,
                                                  const MeasurementSettings& settings) {
   if (settings.stop.stop_requested()) return std::nullopt;
@@ -401,12 +428,7 @@ measure::Measurement measure_network(const MakeNetwork& make, const MeasurementS
     }
     const SignalRecord& record = *recorded;
     cycles.add(record);
-    if (record.has_stopped) {
-      measurement.is_complete = false;
-      measurement.conditions.push_back(
-          {"not compared", fmt::format("{}: the bus stopped for good meanwhile",
-                                       measure::describe(settings.signals[n].frequency))});
-    }
+    add_remarks(measurement, record, settings);
     for (const PathRecord& path : record.paths) {
       measurement.series.push_back(series_of(record, path));
       if (!path.path.theory) leave_open(measurement, path.path.why_open);

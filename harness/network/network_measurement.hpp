@@ -13,8 +13,9 @@
 // Cycle time, jitter and skew of a network: several signals, one run each on a network of its own, with the
 // closed forms of the network and of a cyclic copy beside what was measured.
 //
-// Where a run is disturbed, the comparisons are those of its quiet phase, and what can only be counted over
-// all of it (losses, foreign words, torn images) is not compared. A row of the comparison is left out where
+// Where a run is disturbed, cycles are compared apart for each phase, edges in the quiet one, and what can
+// only be counted over all of it (losses, foreign words, torn images) is not compared. A network that stops
+// for good while it is disturbed is a failure of the measurement. A row of the comparison is left out where
 // the theory expects so few samples of a kind that none may come.
 namespace fieldproof::network {
 

@@ -136,7 +136,11 @@ class SignalRun final : private ExchangeWatcher {
   void on_exchange(const Exchange& exchange) override {
     if (!is_recording_) return;
     ++(exchange.kind == ExchangeKind::data ? record_.data_exchanges : record_.service_exchanges);
-    if (exchange.outcome != Outcome::served) ++record_.unserved_exchanges;
+    if (exchange.outcome != Outcome::served) {
+      ++record_.unserved_exchanges;
+    } else {
+      last_served_ = network_.segment().now();
+    }
     record_.retries += exchange.retries;
   }
 
@@ -180,9 +184,14 @@ class SignalRun final : private ExchangeWatcher {
   SignalRecord finish() {
     record_.settings = settings_;
     record_.trains = trains_;
+    record_.lasted = trains_ * span_;
     record_.delivery_faults = network_.delivery_faults();
     record_.remarks = network_.remarks();
     record_.has_stopped = network_.state() != State::exchanging;
+    if (record_.has_stopped) {
+      record_.complaint = network_.complaint();
+      record_.stopped_after = std::max(last_served_ - begin_, Duration{});
+    }
     for (const Watched& watched : watched_) {
       record_.paths.push_back({watched.path, measure::edge_skew(watched.recorder, settings_.phase_during),
                                trace_of(watched.recorder)});
@@ -207,6 +216,7 @@ class SignalRun final : private ExchangeWatcher {
   Duration span_{};
   std::int64_t trains_ = 0;
   Time begin_{};
+  Time last_served_{};
   bool is_recording_ = false;
   std::vector<std::optional<Time>> last_begin_;
   SignalRecord record_;

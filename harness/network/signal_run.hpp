@@ -49,6 +49,7 @@ struct CycleRecord {
 struct SignalRecord {
   SignalSettings settings;
   std::int64_t trains = 0;
+  kernel::Duration lasted{};  // of trains and rests together
   std::vector<CycleRecord> cycles;
   std::vector<PathRecord> paths;
   // Images of the words that are copied together from one station to one other.
@@ -62,6 +63,8 @@ struct SignalRecord {
   std::vector<measure::Count> remarks;
   // A disturbance has stopped the network: it exchanges no data at the end.
   bool has_stopped = false;
+  std::string complaint{};           // of its controller, then
+  kernel::Duration stopped_after{};  // since the begin of the first train: its last data exchange
 };
 
 // `network` has not been started.

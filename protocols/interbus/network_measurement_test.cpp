@@ -190,17 +190,18 @@ TEST(NetworkMeasurementTest, AWrongTheoryDiffers) {
   const SignalRecord record = run_at(50);
   network::PathRecord path = record.paths.front();
   path.path.theory->cycle += kPaperBestCycle / 20;
-  EXPECT_EQ(agreement(compare_path(record, path), 2), measure::Agreement::differs);
+  EXPECT_EQ(agreement(compare_path(record, path), 2, measure::Phase::quiet), measure::Agreement::differs);
   network::CycleRecord cycle = record.cycles.front();
   cycle.kind.theory += kPaperBestCycle / 20;
-  EXPECT_EQ(agreement(compare_cycles(cycle.kind, cycle.times.total(), true), 2), measure::Agreement::differs);
+  EXPECT_EQ(agreement(compare_cycles(cycle.kind, cycle.times.total(), true), 2, measure::Phase::quiet),
+            measure::Agreement::differs);
 }
 
 TEST(NetworkMeasurementTest, WhatTheInputNeverHadIsNoAgreement) {
   SignalRecord record = run_at(50, LatchModel::frame_edges, kSecond);
   record.paths.front().skew.foreign_words = 1;
   const auto rows = compare_path(record, record.paths.front());
-  EXPECT_EQ(agreement(rows, 2), measure::Agreement::differs);
+  EXPECT_EQ(agreement(rows, 2, Phase::quiet), measure::Agreement::differs);
 }
 
 TEST(NetworkMeasurementTest, OneTrainLeavesOpenWhatItCannotShow) {

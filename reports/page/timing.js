@@ -22,6 +22,7 @@ function comparisons(series) {
   if (series.comparisons.length === 0) return null;
   return table(`${series.name}: theory and measurement`, [
     {title: "quantity", cell: (one) => one.quantity},
+    {title: "phase", cell: (one) => one.phase ?? "quiet"},
     {title: "theory", kind: "number", cell: (one) => `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit}`},
     {title: "measured", kind: "number", cell: (one) => `${number(one.measured)} ${one.unit}`},
     {title: "deviation", kind: "number", cell: (one) => `${fixed(one.deviation_percent, 3)} % ${one.whole}`},
@@ -78,6 +79,7 @@ function seriesPart(series) {
 function measurementPart({ name, content }) {
   return element("article", {},
       element("h3", {}, `${content.network} `, agreementMark(content.agreement)),
+      (content.failures ?? []).map((failure) => element("p", {}, element("span", {class: "verdict fail"}, "fail"), ` ${failure}`)),
       definitions([["Document", name], ["Protocol", content.protocol], ["Seed", content.seed],
         ["Tolerance", `${number(content.tolerance_percent)} %`], ...content.conditions.map((one) => [one.name, one.value])]),
       documentCommand(content, name), content.series.map((series) => later(() => seriesPart(series))));
