@@ -5,7 +5,7 @@
 #include "reports/run_directory.hpp"
 
 // `fieldproof diff`: what changed from one run to another; 1 when a case fails that did not, 2 when a run is
-// incomplete.
+// incomplete or has lost cases: of what is not judged any more nobody knows.
 namespace fieldproof::cli {
 
 int diff(Session& session) {
@@ -17,7 +17,8 @@ int diff(Session& session) {
     reports::write_text_file(session.settings.text("json"), reports::diff_json(difference));
   }
   if (!difference.new_failures.empty()) return kFailed;
-  return difference.incomplete.empty() ? kAllAsExpected : kInconclusive;
+  const bool is_whole = difference.incomplete.empty() && difference.disappeared.empty();
+  return is_whole ? kAllAsExpected : kInconclusive;
 }
 
 }  // namespace fieldproof::cli

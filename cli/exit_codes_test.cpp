@@ -50,7 +50,9 @@ TEST_F(ExitCode, ThreeWhenAFingerprintDiffers) {
 TEST_F(ExitCode, FourWhenNothingIsJudged) {
   EXPECT_EQ(code({"run", "odd/end/does_not_apply"}), 4);
   EXPECT_EQ(code({"run", "probe/**", "!probe/**"}), 4);
-  EXPECT_EQ(code({"run", "odd/end/*", "--iut", "station=ref"}), 4);
+  const Called idle = probe({"run", "odd/end/*", "--iut", "station=ref"});
+  EXPECT_EQ(idle.exit_code, 64);
+  EXPECT_HOLDS(idle.err, "a station takes part in none of the selected cases, which judge '");
 }
 
 TEST_F(ExitCode, FiveWhenTheImplementationIsNotUsable) {

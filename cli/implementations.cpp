@@ -198,6 +198,20 @@ std::vector<Assignment> parse_implementations(std::span<const std::string> texts
   return implementations;
 }
 
+void expect_parts(std::span<const Assignment> implementations, std::span<const Entry> among) {
+  std::set<std::string> judged;
+  std::set<std::string> parts;
+  for (const Entry& entry : among) {
+    judged.insert(entry.test_case->role());
+    parts.insert(entry.test_case->parts.begin(), entry.test_case->parts.end());
+  }
+  for (const Assignment& one : implementations) {
+    if (one.role.empty() || judged.empty() || judged.contains(one.role) || parts.contains(one.role)) continue;
+    refuse(text_of(one), fmt::format("a {} takes part in none of the selected cases, which judge '{}'",
+                                     one.role, fmt::join(judged, "', '")));
+  }
+}
+
 std::optional<std::string> reason_not_runnable(const Assignment& assignment, const Suite& suite,
                                                std::size_t last_position) {
   const std::vector<std::string> roles = suite.roles();

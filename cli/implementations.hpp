@@ -24,6 +24,9 @@ std::vector<conformance::Assignment> parse_implementations(std::span<const std::
                                                            const conformance::Catalogue& catalogue,
                                                            std::span<const conformance::Entry> among,
                                                            std::size_t last_position = 0);
+// Throws kernel::Error(usage) for one whose role takes part in none of these cases, where there are any.
+void expect_parts(std::span<const conformance::Assignment> implementations,
+                  std::span<const conformance::Entry> among);
 // For verbs that look at positions themselves.
 inline constexpr std::size_t kAnyPosition = 1'000'000;
 

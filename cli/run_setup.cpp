@@ -63,6 +63,7 @@ conformance::Setup setup_from(const Settings& settings, const conformance::Catal
   }
   setup.limits = limits_from(settings);
   setup.implementations = parse_implementations(settings.list("iut"), catalogue, selected);
+  expect_parts(setup.implementations, selected);
   conformance::check_setup(selected, setup);
   return setup;
 }

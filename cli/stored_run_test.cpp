@@ -102,6 +102,16 @@ TEST_F(Stored, DifferenceNamesNewFailuresAndFixedOnes) {
   EXPECT_EQ(code({"diff", "a", "a"}), 0);
 }
 
+// Cases that nobody judges any more are no result that is as good as before.
+TEST_F(Stored, CasesThatDisappearedLeaveADifferenceOpen) {
+  ASSERT_EQ(code({"run", "probe/**", "--out", "a"}), 0);
+  ASSERT_EQ(code({"run", "probe/station/data/word_is_latched", "--out", "b"}), 0);
+  const Called called = probe({"diff", "a", "b"});
+  EXPECT_EQ(called.exit_code, 2) << called.out;
+  EXPECT_HOLDS(called.out, "disappeared (");
+  EXPECT_EQ(code({"diff", "b", "a"}), 0);
+}
+
 TEST_F(Stored, FailedIsNarrowedBySelectorsAndBySettings) {
   probe({"run", "probe/**", "--iut", "mutant:swapped", "--seed", "9"});
   const Called narrowed = probe({"run", "--failed", "probe/station/data/word_is_h*"});
@@ -126,10 +136,10 @@ TEST_F(Stored, CopiesThatCannotBeWrittenAreRefusedBeforeTheRun) {
   write("file", "");
   for (const char* option : {"--junit", "--json"}) {
     const Called called = probe({"run", "probe/**", option, "file/x.xml"});
-    EXPECT_EQ(called.exit_code, 65);
+    EXPECT_EQ(called.exit_code, 74);
     EXPECT_FALSE(fs::exists(folder_ / "runs"));
   }
-  EXPECT_EQ(code({"matrix", "probe", "--json", "file/x.json"}), 65);
+  EXPECT_EQ(code({"matrix", "probe", "--json", "file/x.json"}), 74);
 }
 
 TEST_F(Stored, LatestThatIsNoLinkIsToldAndLeavesNothing) {
