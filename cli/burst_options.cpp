@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "harness/measure/frequency.hpp"
+
 namespace fieldproof::cli {
 namespace {
 
@@ -65,12 +67,18 @@ constexpr std::array kRepetitions = {emc::Repetition::khz_5, emc::Repetition::kh
                                      emc::Repetition::khz_2_5_edition_1};
 constexpr std::array kPolarities = {emc::Polarity::positive, emc::Polarity::negative};
 
+// As written, or the same frequency: "100 kHz" and "0.1MHz" are "100kHz".
+bool is_named(const std::string& written, std::string_view name) {
+  const auto frequency = measure::Frequency::read(name);
+  return written == name || (frequency && measure::Frequency::read(written) == frequency);
+}
+
 template <typename Value, std::size_t N>
 Value choice(const Settings& settings, std::string_view option, const std::string& word,
              const std::array<Value, N>& known) {
   std::string all;
   for (const Value value : known) {
-    if (word_of(value) == word) return value;
+    if (is_named(word, word_of(value))) return value;
     all += (all.empty() ? "" : ", ") + std::string(word_of(value));
   }
   settings.refuse(option, fmt::format("'{}' is none of {}", word, all));

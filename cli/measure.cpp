@@ -32,7 +32,7 @@ std::vector<measure::SquareWave> signals_from(const Settings& settings) {
     const auto frequency = measure::Frequency::read(word);
     if (!frequency) {
       settings.refuse("signal", fmt::format("'{}' is no frequency of 1 mHz to 1 MHz; write for example "
-                                            "50Hz,614.25Hz,1.5kHz",
+                                            "50Hz, 614.25 Hz, 1.5kHz or 250 mHz (millihertz)",
                                             word));
     }
     signals.push_back({.frequency = *frequency});

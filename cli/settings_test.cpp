@@ -49,8 +49,12 @@ TEST(Settings, TimesHaveAUnit) {
   EXPECT_EQ(typed({{"max-time", {"90s"}}}).duration("max-time"), milliseconds(90'000));
   EXPECT_EQ(typed({{"max-time", {"15 min"}}}).duration("max-time"), milliseconds(900'000));
   EXPECT_EQ(typed({{"max-time", {"7"}}}).duration("max-time"), milliseconds(7'000));
+  EXPECT_EQ(typed({{"max-time", {"1.5s"}}}).duration("max-time"), milliseconds(1'500));
+  EXPECT_EQ(typed({{"max-time", {"0.25 h"}}}).duration("max-time"), milliseconds(900'000));
+  EXPECT_EQ(typed({{"max-time", {"2.000ms"}}}).duration("max-time"), milliseconds(2));
   EXPECT_EQ(typed({}).duration("max-time"), std::nullopt);
-  for (const char* wrong : {"0s", "s", "1d", "-1s", "1000001h", "99999999999999999999s"}) {
+  for (const char* wrong : {"0s", "s", "1d", "-1s", "1.5ms", "1.s", ".5s", "1.2.3s", "0.0000001h", "0.0s",
+                            "1000001h", "99999999999999999999s"}) {
     EXPECT_THROW(typed({{"max-time", {wrong}}}).duration("max-time"), kernel::Error) << wrong;
   }
 }

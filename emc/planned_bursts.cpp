@@ -34,7 +34,10 @@ PlannedBursts read_bursts(const Value& value) {
       bursts.settings.repetition = repetition->as_choice<Repetition>(
           {{word_of(Repetition::khz_5), Repetition::khz_5},
            {word_of(Repetition::khz_100), Repetition::khz_100},
-           {word_of(Repetition::khz_2_5_edition_1), Repetition::khz_2_5_edition_1}});
+           {word_of(Repetition::khz_2_5_edition_1), Repetition::khz_2_5_edition_1},
+           {text_of(Repetition::khz_5), Repetition::khz_5},
+           {text_of(Repetition::khz_100), Repetition::khz_100},
+           {text_of(Repetition::khz_2_5_edition_1), Repetition::khz_2_5_edition_1}});
     }
     if (const auto polarity = object.optional("polarity")) {
       bursts.settings.polarity =

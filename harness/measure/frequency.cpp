@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "harness/kernel/check.hpp"
 
@@ -44,16 +46,28 @@ Frequency Frequency::from_millihertz(std::int64_t millihertz) {
 }
 
 std::optional<Frequency> Frequency::read(std::string_view text) {
-  if (!text.ends_with("Hz")) return std::nullopt;
-  text.remove_suffix(2);
-  std::int64_t factor = 1;
-  if (text.ends_with('k')) {
-    text.remove_suffix(1);
-    factor = 1'000;
+  // The prefix of the unit, and its part of a millihertz in a thousandth of it.
+  constexpr std::array<std::pair<std::string_view, std::int64_t>, 3> kUnits = {
+      {{"kHz", 1'000}, {"MHz", 1'000'000}, {"Hz", 1}}};
+  const bool is_millihertz = text.ends_with("mHz");
+  std::int64_t factor = 0;
+  std::size_t unit = 3;
+  for (const auto& [name, thousandth] : kUnits) {
+    if (is_millihertz || !text.ends_with(name)) continue;
+    factor = thousandth;
+    unit = name.size();
+    break;
   }
+  if (!is_millihertz && factor == 0) return std::nullopt;
+  text.remove_suffix(unit);
   if (text.ends_with(' ')) text.remove_suffix(1);
   const auto read = thousandths(text);
-  if (!read || *read == 0 || *read > kMostMillihertz / factor) return std::nullopt;
+  if (!read || *read == 0) return std::nullopt;
+  if (is_millihertz) {
+    if (*read % 1'000 != 0 || *read / 1'000 > kMostMillihertz) return std::nullopt;
+    return Frequency(*read / 1'000);
+  }
+  if (*read > kMostMillihertz / factor) return std::nullopt;
   return Frequency(*read * factor);
 }
 

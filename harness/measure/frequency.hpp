@@ -18,8 +18,8 @@ class Frequency {
   // 1 to kMostMillihertz.
   static Frequency from_millihertz(std::int64_t millihertz);
   static Frequency from_hertz(std::int64_t hertz) { return from_millihertz(1'000 * hertz); }
-  // "50Hz", "614.25 Hz", "1.5kHz", "0.1 Hz"; nothing for any other text, for more than three decimals of a
-  // hertz and outside of the limits.
+  // "50Hz", "614.25 Hz", "1.5kHz", "0.1 MHz", "250 mHz" (millihertz); nothing for any other text, for more
+  // than three decimals of a hertz and outside of the limits.
   static std::optional<Frequency> read(std::string_view text);
 
   std::int64_t millihertz() const { return millihertz_; }

@@ -21,12 +21,18 @@ TEST(FrequencyTest, IsReadWithItsUnit) {
   EXPECT_EQ(read("1.5kHz"), 1'500'000);
   EXPECT_EQ(read("1000 kHz"), Frequency::kMostMillihertz);
   EXPECT_EQ(read("50.000000Hz"), 50'000);
+  EXPECT_EQ(read("1MHz"), Frequency::kMostMillihertz);
+  EXPECT_EQ(read("0.5 MHz"), 500'000'000);
+  EXPECT_EQ(read("50mHz"), 50);
+  EXPECT_EQ(read("1500 mHz"), 1'500);
 }
 
 TEST(FrequencyTest, AnythingElseIsNone) {
   for (const char* text :
-       {"", "Hz", "50", "50 hz", "50  Hz", "-50Hz", "+1Hz", "5O Hz", ".5Hz", "5.Hz", "0Hz", "0.0001Hz",
-        "0.0005Hz", "1.2.3Hz", "1000.001kHz", "1e3Hz", " 50Hz", "nanHz", "99999999999999999999Hz"}) {
+       {"",         "Hz",      "50",          "50 hz",    "50  Hz", "-50Hz",
+        "+1Hz",     "5O Hz",   ".5Hz",        "5.Hz",     "0Hz",    "0.0001Hz",
+        "0.0005Hz", "1.2.3Hz", "1000.001kHz", "1.001MHz", "2 MHz",  "0.5mHz",
+        "mHz",      "5 mhz",   "1e3Hz",       " 50Hz",    "nanHz",  "99999999999999999999Hz"}) {
     EXPECT_EQ(read(text), -1) << text;
   }
 }
