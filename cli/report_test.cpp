@@ -98,7 +98,7 @@ TEST_F(ReportVerb, RefusesWhatItCannotShow) {
   expect_refusal({"report", "a/cases", "--html", "r.html"}, 65, "manifest.json");
   expect_refusal({"report", "a", "wrong.json", "--html", "r.html"}, 65, "wrong.json:1");
   expect_refusal({"report", "a", "other.json", "--html", "r.html"}, 65, "fieldproof/emc/1");
-  expect_refusal({"report", "a", "--html", "a"}, 65, "folder");
+  expect_refusal({"report", "a", "--html", "a"}, 74, "folder");
 }
 
 }  // namespace

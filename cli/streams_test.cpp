@@ -40,6 +40,17 @@ TEST_F(Closed, OrFullStandardOutputIsNoSuccess) {
   EXPECT_EQ(in_shell(call({"run", "odd/end/fails"}), ">/dev/full").run().exit_code, 1);
 }
 
+// What is judged is in the directory of the run, and a device that takes nothing stays a device.
+TEST_F(Closed, OrFullFileLosesNothingThatIsJudged) {
+  fs::create_symlink("/dev/full", folder_ / "full");
+  const Called called = probe({"run", "probe/**", "--junit", "full", "--out", "a"});
+  EXPECT_EQ(called.exit_code, 74) << called.err;
+  EXPECT_HOLDS(called.err, "full: the file cannot be written: No space left on device");
+  EXPECT_HOLDS(read("a/results.json"), "\"complete\": true");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "full"));
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
 TEST_F(Closed, ReaderOfTheOutputLetsARunFinishItsDirectory) {
   const Call gone = in_shell(call({"run", "odd/slow/case_0*", "--jobs", "1", "--out", "a"}),
                              "| head -n 1; exec cat /dev/null");

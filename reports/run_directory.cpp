@@ -1,8 +1,12 @@
 #include "reports/run_directory.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -20,13 +24,18 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kNotEnded = "the run did not end";
+constexpr std::string_view kNotWritten = "the file cannot be written";
 
 [[noreturn]] void refuse(const fs::path& path, std::string_view sentence) {
   throw kernel::Error(kernel::ErrorKind::configuration, fmt::format("{}: {}", path.string(), sentence));
 }
 
+[[noreturn]] void refuse_output(const fs::path& path, std::string_view what, std::string_view cause) {
+  throw kernel::Error(kernel::ErrorKind::output, fmt::format("{}: {}: {}", path.string(), what, cause));
+}
+
 void check(const fs::path& path, const std::error_code& failure, std::string_view what) {
-  if (failure) refuse(path, fmt::format("{}: {}", what, failure.message()));
+  if (failure) refuse_output(path, what, failure.message());
 }
 
 void create_folders(const fs::path& path) {
@@ -68,6 +77,40 @@ bool is_special(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
+// Who listens at the socket; -1 and errno where nobody does.
+int connected_to(const fs::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.native().size() >= sizeof(address.sun_path)) {
+    errno = ENAMETOOLONG;
+    return -1;
+  }
+  std::ranges::copy(path.native(), static_cast<char*>(address.sun_path));
+  const int number = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (number >= 0 && ::connect(number, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
+    const int cause = errno;
+    ::close(number);
+    errno = cause;
+    return -1;
+  }
+  return number;
+}
+
+// Into what is no regular file: a device, a pipe, a socket.
+void write_stream(const fs::path& path, std::string_view content) {
+  std::error_code failure;
+  const int number = fs::is_socket(path, failure) ? connected_to(path)
+                                                  : ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  int cause = number < 0 ? errno : 0;
+  while (cause == 0 && !content.empty()) {
+    const ssize_t written = ::write(number, content.data(), content.size());
+    if (written < 0 && errno != EINTR) cause = errno;
+    if (written > 0) content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (number >= 0) ::close(number);
+  if (cause != 0) refuse_output(path, kNotWritten, std::strerror(cause));
+}
+
 // Answers why it could not be done: the run is there all the same.
 std::string point_latest_at(const fs::path& parent, const fs::path& run) {
   const fs::path beside = parent / fmt::format(".latest.{}", ::getpid());
@@ -105,7 +148,7 @@ std::string read_text_file(const fs::path& path) {
 void check_writable(const fs::path& path) {
   std::error_code failure;
   if (is_special(path)) return;
-  if (fs::is_directory(path, failure)) refuse(path, "the file cannot be written: it is a folder");
+  if (fs::is_directory(path, failure)) refuse_output(path, kNotWritten, "it is a folder");
   write_text_file(part_of(path), "");
   fs::remove(part_of(path), failure);
 }
@@ -114,10 +157,7 @@ void write_text_file(const fs::path& named, std::string_view content) {
   if (named.has_parent_path()) create_folders(named.parent_path());
   std::error_code failure;
   if (is_special(named)) {
-    std::ofstream file(named, std::ios::binary | std::ios::app);
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
-    file.flush();
-    if (!file) refuse(named, fmt::format("the file cannot be written: {}", std::strerror(errno)));
+    write_stream(named, content);
     return;
   }
   // What a link leads to is written, and the link stays.
@@ -131,7 +171,7 @@ void write_text_file(const fs::path& named, std::string_view content) {
     if (!file) {
       const int cause = errno;
       fs::remove(beside, failure);
-      refuse(path, fmt::format("the file cannot be written: {}", std::strerror(cause)));
+      refuse_output(path, kNotWritten, std::strerror(cause));
     }
   }
   fs::rename(beside, path, failure);
@@ -139,7 +179,7 @@ void write_text_file(const fs::path& named, std::string_view content) {
     std::error_code ignored;
     fs::remove(beside, ignored);
   }
-  check(path, failure, "the file cannot be written");
+  check(path, failure, kNotWritten);
 }
 
 RunDirectory RunDirectory::create(const fs::path& parent, const Manifest& manifest,

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void throw_file_error(const fs::path& path, std::string_view what) {
-  throw kernel::Error(kernel::ErrorKind::configuration,
+  throw kernel::Error(kernel::ErrorKind::output,
                       fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
 }
 

@@ -23,14 +23,15 @@ enum class Durability : std::uint8_t { written, synced };
 
 class Journal {
  public:
-  // Creates the file, or continues it: a torn last line is cut off first. Throws kernel::Error(configuration)
-  // when the file cannot be opened, is damaged before its last line, or has a writer already.
+  // Creates the file, or continues it: a torn last line is cut off first. Throws kernel::Error(output) when
+  // the file cannot be opened, kernel::Error(configuration) when it is damaged before its last line or has a
+  // writer.
   explicit Journal(std::filesystem::path path, Durability durability = Durability::written);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  // Call it before the verdict is printed. Throws kernel::Error(configuration) when the disk takes no more;
+  // Call it before the verdict is printed. Throws kernel::Error(output) when the disk takes no more;
   // what was appended before stays readable.
   void append(const CaseResult& result);
 

@@ -10,6 +10,8 @@ int Error::exit_code() const noexcept {
       return 65;
     case ErrorKind::implementation:
       return 5;
+    case ErrorKind::output:
+      return 74;
   }
   return 70;
 }

@@ -14,6 +14,7 @@ enum class ErrorKind {
   usage,           // the command line asks for something that does not exist (exit code 64)
   configuration,   // a configuration, plan, case or network file is wrong (exit code 65)
   implementation,  // the implementation under test cannot be used at all (exit code 5)
+  output,          // a file, a device or a folder takes no result (exit code 74)
 };
 
 class Error : public std::runtime_error {
@@ -22,7 +23,7 @@ class Error : public std::runtime_error {
 
   ErrorKind kind() const noexcept { return kind_; }
 
-  // The process exit code that belongs to the kind: 64, 65 or 5.
+  // The process exit code that belongs to the kind: 64, 65, 5 or 74.
   int exit_code() const noexcept;
 
  private:
