@@ -2,12 +2,14 @@
 // and what can be made of them.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "cli/probe/probe_fixture.hpp"
+#include "harness/kernel/random.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -67,6 +69,45 @@ TEST_F(Interrupted, BySigkillKeepsEveryVerdictThatWasPrinted) {
   // What was interrupted and finished is the same as what was never interrupted.
   EXPECT_EQ(code({"run", "odd/slow/**", "--out", "whole", "--jobs", "2", "--seed", "5", "--quiet"}), 1);
   EXPECT_EQ(read("killed/results.json"), read("whole/results.json"));
+}
+
+// At random instants: what was printed is in the journal, whatever else is there can be read, and the run
+// goes on to the same end. FIELDPROOF_KILLS says how many, where 20 are too few.
+TEST_F(Interrupted, BySigkillAtAnyInstantLosesNothingThatIsJudged) {
+  const char* const asked_for = std::getenv("FIELDPROOF_KILLS");
+  const int kills = asked_for != nullptr ? std::max(1, std::atoi(asked_for)) : 20;
+  const std::vector<std::string> run = {"run", "odd/slow/**", "--jobs", "2", "--seed", "5", "--out"};
+  const auto into = [&](const std::string& directory) {
+    std::vector<std::string> words = run;
+    words.push_back(directory);
+    return words;
+  };
+  ASSERT_EQ(code(into("whole")), 1);
+  kernel::Random random(11);
+  int with_verdicts = 0;
+  for (int n = 0; n < kills; ++n) {
+    const std::string directory = "killed" + std::to_string(n);
+    const std::string seconds = "0." + std::to_string(1'000 + random.between(0, 999)).substr(1);
+    SCOPED_TRACE(directory + " after " + seconds + " s");
+    const Called called =
+        in_shell(call(into(directory)), "& ended=$!; sleep " + seconds + "; kill -KILL $ended; wait $ended")
+            .run();
+    const std::string journal = read(directory + "/journal.jsonl");
+    std::stringstream lines(called.out);
+    bool has_verdict = false;
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t begin = line.find("odd/slow/");
+      if (begin == std::string::npos || line.size() < begin + 16) continue;
+      has_verdict = true;
+      EXPECT_HOLDS(journal, "\"" + line.substr(begin, 16) + "\"");
+    }
+    with_verdicts += has_verdict ? 1 : 0;
+    if (!std::filesystem::exists(folder_ / directory / "manifest.json")) continue;
+    const Called resumed = probe({"run", "--resume", directory, "--jobs", "2"});
+    EXPECT_EQ(resumed.exit_code, 1) << resumed.err;
+    EXPECT_EQ(read(directory + "/results.json"), read("whole/results.json"));
+  }
+  EXPECT_GT(with_verdicts, kills / 4) << "most were killed before their first verdict";
 }
 
 TEST_F(Interrupted, ByMaxTimeIsMarkedIncomplete) {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 
 #include "cli/case_file.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/verbs.hpp"
+#include "harness/kernel/error.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
@@ -14,10 +17,13 @@
 namespace fieldproof::cli {
 namespace {
 
+constexpr std::string_view kNoRecording =
+    "no recording of the implementation is stored; "
+    "--record failed keeps those of cases that fail, --record all each";
+
 // Why a case of the run cannot be judged again, or nothing.
 std::string reason_not_judgeable(const CaseFile& stored) {
-  if (stored.playback.empty())
-    return "no recording of the implementation is stored: record with --record all";
+  if (stored.playback.empty()) return std::string(kNoRecording);
   if (stored.is_truncated) return "its recording reached the bound";
   return {};
 }
@@ -31,6 +37,25 @@ std::string change_text(const judge::CaseResult& before, const judge::CaseResult
                      reports::escaped_line(now.reason));
 }
 
+// Nothing where it cannot be: what one case lacks does not end the others.
+std::optional<judge::CaseResult> judged_again(Session& session, const judge::CaseResult& before,
+                                              const std::filesystem::path& file, std::size_t& damaged) {
+  try {
+    CaseFile stored = load_case(file, session.catalogue);
+    if (const std::string why = reason_not_judgeable(stored); !why.empty()) {
+      session.terminal.log(fmt::format("{} is not judged again: {}", before.id, why));
+      return std::nullopt;
+    }
+    const conformance::Entry& entry = session.catalogue.at(before.id);
+    stored.setup.playback_file = stored.playback.string();
+    return conformance::run_case(entry, stored.setup).outcome.result;
+  } catch (const kernel::Error& error) {
+    session.terminal.log(fmt::format("{} is not judged again: {}", before.id, error.what()));
+    ++damaged;
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 int judge_again(Session& session) {
@@ -39,7 +64,7 @@ int judge_again(Session& session) {
   session.terminal.print(reports::run_header(stored_run.run.identity, stored_run.manifest));
   reports::Run again{stored_run.run.identity, {}};
   std::size_t changed = 0;
-  std::size_t missing = 0;  // failed, and nothing is stored of them
+  std::size_t missing = 0;  // failed, and nothing is stored of them; or it is damaged
   for (const judge::CaseResult& before : stored_run.run.cases) {
     const std::filesystem::path file = directory.case_directory(before.id) / "case.json";
     if (!std::filesystem::exists(file)) {
@@ -49,14 +74,9 @@ int judge_again(Session& session) {
       ++missing;
       continue;
     }
-    CaseFile stored = load_case(file, session.catalogue);
-    if (const std::string why = reason_not_judgeable(stored); !why.empty()) {
-      session.terminal.log(fmt::format("{} is not judged again: {}", before.id, why));
-      continue;
-    }
-    const conformance::Entry& entry = session.catalogue.at(before.id);
-    stored.setup.playback_file = stored.playback.string();
-    const judge::CaseResult result = conformance::run_case(entry, stored.setup).outcome.result;
+    const std::optional<judge::CaseResult> judged = judged_again(session, before, file, missing);
+    if (!judged) continue;
+    const judge::CaseResult& result = *judged;
     if (!session.terminal.is_quiet()) {
       session.terminal.print(reports::case_line(result, {.colour = session.terminal.has_colour()}));
     }
@@ -70,8 +90,7 @@ int judge_again(Session& session) {
   again.identity.selected = again.cases.size();
   session.terminal.print(fmt::format("{} of {} cases were judged again, {} of them otherwise than before\n",
                                      again.cases.size(), stored_run.run.cases.size(), changed));
-  if (again.cases.empty())
-    session.terminal.print("no recording to judge is stored in the run: record with --record all\n");
+  if (again.cases.empty()) session.terminal.print(fmt::format("{}\n", kNoRecording));
   const std::size_t selected = stored_run.run.identity.selected;
   const std::size_t never = selected - std::min(selected, stored_run.run.cases.size());
   if (never > 0) {

@@ -81,13 +81,28 @@ TEST_F(JudgeTest, WhatIsMissingIsNoPass) {
   EXPECT_NE(call({"judge", "short"}).exit_code, 0);
 }
 
+TEST_F(JudgeTest, OneDamagedRecordingDoesNotEndTheOthers) {
+  ASSERT_EQ(call({"run", "valve_bus/node/read/**", "--volume", "quick", "--record", "all", "--out", "run"})
+                .exit_code,
+            0);
+  const auto of_case = folder_ / "run/cases/valve_bus+node+read+is_answered";
+  for (const auto& entry : std::filesystem::directory_iterator(of_case)) {
+    if (entry.path().filename() != "case.json") std::filesystem::resize_file(entry.path(), 40);
+  }
+  const Called called = call({"judge", "run"});
+  EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
+  EXPECT_HOLDS(called.err, "valve_bus/node/read/is_answered is not judged again: ");
+  EXPECT_HOLDS(called.out, "pass           valve_bus/node/read/answer_has_no_gaps");
+}
+
 TEST_F(JudgeTest, WithoutARecordingItSaysWhy) {
   ASSERT_EQ(call({"run", "valve_bus/node/read/is_answered", "--iut", "mutant:answers_twice", "--record",
                   "none", "--quiet", "--out", "run"})
                 .exit_code,
             1);
   EXPECT_HOLDS(call({"judge", "run"}).err,
-               "no recording of the implementation is stored: record with --record all");
+               "no recording of the implementation is stored; --record failed keeps those of cases that "
+               "fail, --record all each");
 }
 
 }  // namespace

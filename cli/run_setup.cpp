@@ -142,7 +142,10 @@ reports::RunIdentity identity_of(const Session& session, const conformance::Setu
   identity.network_hash = file_hash(setup.network_file);
   if (setup.pics) identity.pics_hash = hash_text(pics_text(*setup.pics));
   for (const auto& suite : session.catalogue.suites()) {
-    for (std::string& caveat : suite->caveats(setup)) identity.caveats.push_back(std::move(caveat));
+    for (std::string& caveat : suite->caveats(setup)) {
+      if (std::ranges::find(identity.caveats, caveat) == identity.caveats.end())
+        identity.caveats.push_back(std::move(caveat));
+    }
     // One file for all suites: any of them names its parts.
     if (identity.plan.empty()) identity.plan = suite->plan_parts(setup);
   }

@@ -141,6 +141,18 @@ TEST_F(SerialRuns, UpperChannelAtASocket) {
   expect_no_wrong_verdict(judged(uri("unix:" + socket), {"write/drives_the_valves"}));
 }
 
+TEST_F(SerialRuns, AStationThatIsEndedTakesItsNameAndItsSocketAway) {
+  const std::string socket = (folder_ / "upper").string();
+  const std::string wait = "until [ -S '" + socket + "' ]; do sleep 0.05; done; ";
+  const Called called = prepared({"-c", station("ref") + " --upper '" + socket + "' & " + wait +
+                                            "sleep 0.2; kill -TERM $!; wait $!"},
+                                 "/bin/sh")
+                            .run();
+  EXPECT_EQ(called.exit_code, 128 + SIGTERM) << called.err;
+  EXPECT_EQ(std::filesystem::symlink_status(line()).type(), std::filesystem::file_type::not_found);
+  EXPECT_FALSE(std::filesystem::exists(socket));
+}
+
 // A box of which nothing but the line is there.
 TEST_F(SerialRuns, WithoutAnUpperChannelTheLineAloneIsJudged) {
   write("node.pics.json", R"({ "items": { "bit_rate": 9600, "address_tens": 0, "address_units": 5 } })");

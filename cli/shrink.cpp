@@ -41,6 +41,10 @@ int shrink_sequence(Session& session, SequenceFile stored, const std::string& pa
   keep_sequence(session, stored, found->outcome.result, path);
   session.terminal.print(shrunk_text(found->drawn, found->smallest, found->shrinking_runs));
   if (interruption.signal() != 0) return kSignalBase + interruption.signal();
+  if (found->smallest == found->drawn) {
+    session.terminal.print("nothing is smaller: each part that can be left out was tried\n");
+    return kDiffers;
+  }
   return found->is_confirmed ? kAllAsExpected : kDiffers;
 }
 

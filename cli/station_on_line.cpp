@@ -6,6 +6,10 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -71,9 +75,45 @@ iut::Descriptor listen_at(const std::string& path) {
   return socket;
 }
 
-void serve_socket(const std::string& path, iut::SerialLine& line, const Role& role,
+// What a station that is ended by a signal takes away: its socket, and its name as long as that leads to its
+// terminal.
+struct Leavings {
+  std::array<char, PATH_MAX> link{};
+  std::array<char, PATH_MAX> terminal{};
+  std::array<char, PATH_MAX> socket{};
+};
+Leavings leavings;
+
+extern "C" void take_leavings_away(int signal) {
+  std::array<char, PATH_MAX> leads_to{};
+  const ssize_t length = ::readlink(leavings.link.data(), leads_to.data(), leads_to.size() - 1);
+  if (length > 0 && std::strcmp(leads_to.data(), leavings.terminal.data()) == 0)
+    ::unlink(leavings.link.data());
+  if (leavings.socket.front() != '\0') ::unlink(leavings.socket.data());
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+void keep(std::array<char, PATH_MAX>& place, const std::string& path) {
+  if (path.size() < place.size()) std::ranges::copy(path, place.begin());
+}
+
+// Of a line that was made here, and of the socket at its side.
+void clear_at_the_end(const std::string& link, const std::string& upper) {
+  std::error_code failure;
+  const std::filesystem::path terminal = std::filesystem::read_symlink(link, failure);
+  if (!failure && terminal.string().starts_with("/dev/pts/")) {
+    keep(leavings.link, link);
+    keep(leavings.terminal, terminal.string());
+  }
+  if (std::filesystem::is_socket(upper)) keep(leavings.socket, upper);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, take_leavings_away);
+}
+
+void serve_socket(const std::string& path, const std::string& link, iut::SerialLine& line, const Role& role,
                   const LinePlayer::MakeStation& make_station, const std::string& name) {
   const iut::Descriptor listener = listen_at(path);
+  clear_at_the_end(link, path);
   while (true) {
     const iut::Descriptor bench(::accept4(listener.number(), nullptr, nullptr, SOCK_CLOEXEC));
     if (!bench) continue;
@@ -111,8 +151,10 @@ void play_on_line(Session& session, const Role& role, const std::string& uri) {
   iut::SerialLine line = line_at(session.settings.text("serial"));
   const std::string upper = session.settings.text("upper");
   const std::string name = fmt::format("fieldproof {} on a line", uri);
+  clear_at_the_end(session.settings.text("serial"), "");
   if (upper == "-") return serve_bench(STDIN_FILENO, STDOUT_FILENO, line, role, make_station, name);
-  if (upper != "none") return serve_socket(upper, line, role, make_station, name);
+  if (upper != "none")
+    return serve_socket(upper, session.settings.text("serial"), line, role, make_station, name);
   if (role.alone == nullptr) {
     session.settings.refuse("upper",
                             fmt::format("'{}' does nothing by itself: what it is asked comes through "

@@ -101,6 +101,13 @@ void secure_standard_streams() {
 }
 
 void print_log_line(std::string_view text) {
+  // A sentence quotes what is wrong, and that may be a whole file. What would be right is at its end.
+  constexpr std::size_t kLongest = 1'600;
+  std::string cut;
+  if (text.size() > kLongest) {
+    cut = fmt::format("{} ... {}", text.substr(0, kLongest / 2), text.substr(text.size() - kLongest / 2));
+    text = cut;
+  }
   write_to_log(fmt::format("fieldproof: {}\n", reports::escaped_line(text)));
 }
 

@@ -212,7 +212,10 @@ std::string summary_text(const Run& run, const TextOptions& options) {
   const Verdict heaviest = headline(run);
   out += painted(heaviest, name(heaviest), options) + ": " + counts_text(count(run));
   if (const std::size_t unverified = unverified_verdicts(run); unverified > 0) {
-    out += fmt::format("{} of these verdicts rest on an unverified source\n", unverified);
+    // All that judge; a case that does not apply rests on nothing.
+    const std::size_t judged = std::max(unverified, static_cast<std::size_t>(count(run).judged));
+    out += fmt::format("{} of these {} verdicts ({:.0f} %) rest on an unverified source\n", unverified,
+                       judged, 100.0 * static_cast<double>(unverified) / static_cast<double>(judged));
   }
   out += planned_faults_text(run);
   for (const std::string& caveat : run.identity.caveats) out += "unverified: " + escaped_line(caveat) + "\n";

@@ -14,7 +14,8 @@
  * `on_time` the implementation acts by calling the bench, at instants that are now or later, and each of them returns
  * the instant at which it wants `on_time`: one behind `now`, or FIELDPROOF_NEVER. The latest answer holds;
  * the ones before are forgotten. Several instances may live at once, each in a thread of its own: keep no
- * state outside of them.
+ * state outside of them. `fieldproof_plugin` itself is called once for each case, from several threads, too: let it
+ * return what is constant.
  *
  * Times are picoseconds since the case began. Items and settings are those of the role; README.md beside this
  * file leads to them.
