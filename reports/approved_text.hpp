@@ -28,13 +28,13 @@ inline void expect_approved(const std::string& name, const std::string& text) {
   EXPECT_EQ(text, read_text_file(approved_path(name))) << name;
 }
 
-// What a refusal of a stored file says.
+// What a refusal of a stored file says, or with another exit code of a file that cannot be written.
 template <typename Action>
-std::string refusal_of(Action action) {
+std::string refusal_of(Action action, int exit_code = 65) {
   try {
     action();
   } catch (const kernel::Error& error) {
-    EXPECT_EQ(error.exit_code(), 65);
+    EXPECT_EQ(error.exit_code(), exit_code);
     return error.what();
   }
   return "no error";

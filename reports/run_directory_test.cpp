@@ -3,8 +3,12 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
+
+#include <algorithm>
 
 #include "harness/judge/journal.hpp"
 #include "harness/kernel/arbitrary_text.hpp"
@@ -73,7 +77,7 @@ TEST(RunDirectory, RefusesWhatIsNoRun) {
   write_text_file(folder.path() / "file", "x");
   EXPECT_EQ(refusal_of([&] { RunDirectory::create_at(folder.path(), {}, {}); }),
             here + ": the path is taken; name one that does not exist, or an empty directory");
-  EXPECT_NE(refusal_of([&] { RunDirectory::create(folder.path() / "file", {}, {}); }), "no error");
+  EXPECT_NE(refusal_of([&] { RunDirectory::create(folder.path() / "file", {}, {}); }, 74), "no error");
   EXPECT_EQ(refusal_of([&] { read_text_file(folder.path() / "none"); }),
             here + "/none: the file cannot be read: No such file or directory");
   EXPECT_EQ(refusal_of([&] { read_text_file(folder.path()); }),
@@ -98,6 +102,26 @@ TEST(WrittenFile, ALinkStaysAndAPipeIsWrittenTo) {
   EXPECT_EQ(::read(reader, octets, sizeof octets), 7);
   ::close(reader);
   EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST(WrittenFile, ASocketIsWrittenToAndOneThatNobodyListensAtIsRefused) {
+  const TemporaryFolder folder;
+  const fs::path place = folder.path() / "socket";
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::ranges::copy(place.native(), static_cast<char*>(address.sun_path));
+  const int listener = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_NE(refusal_of([&] { write_text_file(place, "lost"); }, 74).find("Connection refused"),
+            std::string::npos);
+  ASSERT_EQ(::listen(listener, 1), 0);
+  write_text_file(place, "through");
+  const int reader = ::accept(listener, nullptr, nullptr);
+  char octets[16] = {};
+  EXPECT_EQ(::read(reader, octets, sizeof octets), 7);
+  ::close(reader);
+  ::close(listener);
+  EXPECT_TRUE(fs::is_socket(place));
 }
 
 TEST(RunDirectory, KeepsCasesApart) {
