@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -64,6 +65,34 @@ struct Worst {
 const std::vector<Worst>& worst_acts() {
   static const std::vector<Worst> all = {
       {"exit_0", "implementation_crashed"},
+      {"exit_255", "implementation_crashed"},
+      {"quick_exit", "implementation_crashed"},
+      {"bus_error", "implementation_crashed"},
+      {"illegal_instruction", "implementation_crashed"},
+      {"broken_pipe", "implementation_crashed"},
+      {"quit", "implementation_crashed"},
+      {"alarm", "implementation_crashed"},
+      {"null_pointer", "implementation_crashed"},
+      {"endless_recursion", "implementation_crashed"},
+      {"throws", "implementation_crashed"},
+      {"stops_itself", "implementation_hangs"},
+      {"sleeps", "implementation_hangs"},
+      {"waits_for_input", "implementation_hangs"},
+      {"many_children", "implementation_hangs"},
+      {"length_of_three_octets", "implementation_hangs"},
+      {"type_zero", "implementation_sends_garbage"},
+      {"longest_message_and_one", "implementation_sends_garbage"},
+      {"all_ones", "implementation_sends_garbage"},
+      {"zeros_for_ever", "implementation_sends_garbage"},
+      {"hello_again", "implementation_sends_garbage"},
+      {"value_for_nothing", "implementation_sends_garbage"},
+      {"power_to_the_bench", "implementation_sends_garbage"},
+      {"empty_done", "implementation_sends_garbage"},
+      {"drives_a_port_without_end", "implementation_asks_the_impossible"},
+      {"writes_all_ones", "implementation_asks_the_impossible"},
+      {"writes_item_0xffff", "implementation_asks_the_impossible"},
+      {"reads_item_0xffff", "implementation_asks_the_impossible"},
+      {"writes_in_the_past", "implementation_asks_the_impossible"},
       {"exit_3", "implementation_crashed"},
       {"abort", "implementation_crashed"},
       {"segv", "implementation_crashed"},
@@ -180,6 +209,12 @@ class HostileStation : public testing::TestWithParam<Attack> {
     return results;
   }
 };
+
+TEST(HostileActs, AreManyAndEachOnce) {
+  std::set<std::string> names;
+  for (const Worst& worst : worst_acts()) EXPECT_TRUE(names.insert(worst.act).second) << worst.act;
+  EXPECT_GE(names.size(), 60U);
+}
 
 TEST_P(HostileStation, CostsItsOwnVerdictAndNoOther) {
   const std::size_t descriptors = open_descriptors();

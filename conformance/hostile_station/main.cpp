@@ -36,6 +36,15 @@ void say(std::span<const std::uint8_t> message) {
   say(std::string_view(reinterpret_cast<const char*>(message.data()), message.size()));
 }
 
+// Until the stack is used up.
+std::size_t dig(std::size_t depth) {
+  std::array<char, 4'096> held{};
+  volatile char* const kept = held.data();
+  kept[depth % held.size()] = 1;
+  const std::size_t deeper = kept[0] == 2 ? 0 : dig(depth + 1);
+  return deeper + static_cast<std::size_t>(kept[0]);
+}
+
 [[noreturn]] void hang() {
   while (true) ::pause();
 }
@@ -147,6 +156,68 @@ const std::map<std::string, std::function<void(Hostile&)>, std::less<>>& Hostile
   using kernel::kMillisecond;
   static const std::map<std::string, std::function<void(Hostile&)>, std::less<>> all = {
       {"exit_0", [](Hostile&) { ::_exit(0); }},
+      {"exit_255", [](Hostile&) { ::_exit(255); }},
+      {"quick_exit", [](Hostile&) { std::quick_exit(1); }},
+      {"bus_error", [](Hostile&) { ::raise(SIGBUS); }},
+      {"illegal_instruction", [](Hostile&) { ::raise(SIGILL); }},
+      {"broken_pipe",
+       [](Hostile&) {
+         ::signal(SIGPIPE, SIG_DFL);
+         ::raise(SIGPIPE);
+       }},
+      {"quit", [](Hostile&) { ::raise(SIGQUIT); }},
+      {"alarm",
+       [](Hostile&) {
+         ::signal(SIGALRM, SIG_DFL);
+         ::raise(SIGALRM);
+       }},
+      {"null_pointer",
+       [](Hostile&) {
+         volatile int* volatile nowhere = nullptr;
+         *nowhere = 1;
+       }},
+      {"endless_recursion", [](Hostile&) { std::exit(static_cast<int>(dig(0))); }},
+      {"throws", [](Hostile&) { throw 7; }},
+      {"stops_itself", [](Hostile&) { ::raise(SIGSTOP); }},
+      {"sleeps", [](Hostile&) { ::sleep(1'000); }},
+      {"waits_for_input",
+       [](Hostile&) {
+         std::array<char, 1> octet{};
+         while (::read(STDIN_FILENO, octet.data(), 1) > 0) {
+         }
+         hang();
+       }},
+      {"many_children",
+       [](Hostile&) {
+         for (int n = 0; n < 20; ++n) {
+           if (::fork() == 0) hang();
+         }
+         hang();
+       }},
+      {"length_of_three_octets",
+       [](Hostile&) {
+         say(std::string_view("\x05\0\0", 3));
+         hang();
+       }},
+      {"type_zero", [](Hostile&) { say(std::string_view("\x01\0\0\0\0", 5)); }},
+      {"longest_message_and_one", [](Hostile&) { say(std::string_view("\x01\0\0\x04", 4)); }},
+      {"all_ones", [](Hostile&) { say(std::string(64, '\xFF')); }},
+      {"zeros_for_ever",
+       [](Hostile&) {
+         while (true) say(std::string(4'096, '\0'));
+       }},
+      {"hello_again", [](Hostile&) { message(iut::MessageType::hello, [](auto& w) { w.u8(3); }); }},
+      {"value_for_nothing", [](Hostile&) { message(iut::MessageType::value, [](auto& w) { w.u64(1); }); }},
+      {"power_to_the_bench", [](Hostile&) { message(iut::MessageType::power, [](auto& w) { w.u8(1); }); }},
+      {"empty_done", [](Hostile&) { message(iut::MessageType::done, [](auto&) {}); }},
+      {"drives_a_port_without_end",
+       [](Hostile& station) { station.transmit(65'535, kMicrosecond, 5 * kMicrosecond, kMillisecond); }},
+      {"writes_all_ones",
+       [](Hostile& station) { station.bench_->write(station.written_, ~std::uint64_t{0}, station.now_); }},
+      {"writes_item_0xffff", [](Hostile& station) { station.bench_->write(0xFFFF, 0, station.now_); }},
+      {"reads_item_0xffff", [](Hostile& station) { station.bench_->read(0xFFFF, station.now_); }},
+      {"writes_in_the_past",
+       [](Hostile& station) { station.bench_->write(station.written_, 0, station.now_ - kMillisecond); }},
       {"exit_3", [](Hostile&) { ::_exit(3); }},
       {"abort", [](Hostile&) { std::abort(); }},
       {"segv", [](Hostile&) { ::raise(SIGSEGV); }},

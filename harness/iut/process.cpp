@@ -9,7 +9,11 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <mutex>
+#include <sstream>
 #include <system_error>
 #include <thread>
 
@@ -152,6 +156,35 @@ bool Process::has_ended(milliseconds longest_wait) {
     std::this_thread::sleep_for(milliseconds(1));
   }
   return true;
+}
+
+Process::Effort Process::effort() const {
+  Effort effort;
+  const double ticks_per_ms = static_cast<double>(::sysconf(_SC_CLK_TCK)) / 1e3;
+  std::error_code failure;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", failure)) {
+    // One that ends while it is looked at is an empty line.
+    std::string line;
+    std::getline(std::ifstream(entry.path() / "stat"), line);
+    // Its name may hold anything; state, parent and group come after.
+    const std::size_t name_end = line.rfind(')');
+    if (name_end == std::string::npos) continue;
+    std::istringstream fields(line.substr(name_end + 1));
+    char state = 0;
+    pid_t parent = 0;
+    pid_t group = 0;
+    fields >> state >> parent >> group;
+    if (group != id_) continue;
+    std::string skipped;
+    for (int n = 0; n < 8; ++n)
+      fields >> skipped;  // session, terminal, its group, flags, four kinds of faults
+    double user = 0;
+    double system = 0;
+    fields >> user >> system;
+    effort.is_ready |= state == 'R' || state == 'D';
+    effort.processor_time += milliseconds(std::llround((user + system) / ticks_per_ms));
+  }
+  return effort;
 }
 
 std::string Process::how_it_ended() const {

@@ -86,6 +86,19 @@ TEST(ProcessTest, EndedOneIsTold) {
   EXPECT_TRUE(process.how_it_ended().starts_with("was ended by signal 9 (")) << process.how_it_ended();
 }
 
+// Who sleeps is kept by nobody; who computes is, and has had time.
+TEST(ProcessTest, TellsWhatTheMachineGivesToItsGroup) {
+  const Process idle = shell("sleep 1000");
+  std::this_thread::sleep_for(milliseconds(200));
+  EXPECT_FALSE(idle.effort().is_ready);
+  const Process busy = shell("while :; do :; done");
+  for (int n = 0; n < 20'000 && busy.effort().processor_time < milliseconds(50); ++n)
+    std::this_thread::sleep_for(milliseconds(1));
+  const Process::Effort effort = busy.effort();
+  EXPECT_GE(effort.processor_time, milliseconds(50));
+  EXPECT_TRUE(effort.is_ready);
+}
+
 TEST(ProcessTest, StreamsAreThoseOfTheProgram) {
   Process process = shell("read a; echo \"out $a\"; echo \"err $a\" >&2");
   ASSERT_EQ(::write(process.to_input().number(), "x\n", 2), 2);
