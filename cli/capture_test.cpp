@@ -198,7 +198,7 @@ TEST_F(Capture, IsWrittenOnDemandByReplay) {
   const std::string dump = read(folder_ / "c.vcd");
   EXPECT_TRUE(dump.starts_with("$version fieldproof ")) << dump.substr(0, 80);
   EXPECT_NE(dump.find(" master/in $end"), std::string::npos);
-  EXPECT_EQ(call({"replay", file, "--vcd", "."}).exit_code, 65) << "a folder";
+  EXPECT_EQ(call({"replay", file, "--vcd", "."}).exit_code, 74) << "a folder";
 }
 
 TEST_F(Capture, OfWavesIsReadByAnotherProgram) {

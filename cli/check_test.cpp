@@ -59,7 +59,7 @@ TEST_F(Check, SearchesEachRoleOfTheDataLinkHereAndInAProcess) {
     const std::string mutant = role == "fieldbus_dll/ff_las" ? "misses_of_all_count" : "newest_first";
     EXPECT_EQ(call({"check", role, "--iut", "mutant:" + mutant}).exit_code, kFailed) << role;
     const std::string station = "exec:'" FIELDPROOF_EXE "' station " + role + " ";
-    const Called passed = call({"check", role, "--iut", station + "ref", "--cases", "20"});
+    const Called passed = call({"check", role, "--iut", station + "ref", "--cases", "60"});
     EXPECT_EQ(passed.exit_code, kAllAsExpected) << role << passed.out << passed.err;
     const Called found = call({"check", role, "--iut", station + "mutant:" + mutant, "--case", "found.json"});
     EXPECT_EQ(found.exit_code, kFailed) << role << found.out << found.err;

@@ -214,7 +214,7 @@ TEST_F(OfInterbus, RecordingOfAnotherSetupIsRefusedWithItsPlace) {
     text.replace(text.find(part), part.size(), instead);
     write(file, text);
     const Called called = real({"judge", "a"});
-    EXPECT_EQ(called.exit_code, 65) << instead << called.out << called.err;
+    EXPECT_EQ(called.exit_code, 4) << instead << called.out << called.err;
     EXPECT_HOLDS(called.err, "playback.json:");
   };
   EXPECT_EQ(real({"judge", "a"}).exit_code, 1);

@@ -273,7 +273,7 @@ std::string sequence(const std::string& role, const std::string& commands, const
 TEST_F(Schemas, OfASequence) {
   const std::string node = "valve_bus/node";
   const std::string wait = R"({"do": "wait", "ms": 1})";
-  const std::string id = R"({"do": "id", "faults": [{"fault": "drop", "unit": 3}]})";
+  const std::string id = R"({"do": "inputs", "word0": 1, "word1": 2})";
   const std::string octets = R"({"do": "octets", "silence": 45, "octets": [1, 255],
                                 "faults": [{"fault": "flip", "unit": 1, "level": 3}]})";
   const fs::path schema = folder_ / "sequence.schema.json";
@@ -286,7 +286,7 @@ TEST_F(Schemas, OfASequence) {
        good(sequence(node, "")), bad(sequence(node, id)), bad(sequence(node, R"({"do": "wait", "ms": 0})")),
        bad(sequence(node, R"({"do": "wait", "ms": 1, "faults": []})")),
        bad(sequence(node, R"({"do": "octets", "silence": 45, "octets": [256]})")),
-       bad(sequence("interbus/slave", R"({"do": "id", "faults": [{"fault": "drop"}]})")),
+       bad(sequence("interbus/slave", R"({"do": "inputs", "word0": 1, "word1": 65536})")),
        good(sequence(node, wait, R"("settings": {"loss_limit": 0, "boards": 1}, )")),
        bad(sequence(node, wait, R"("settings": {"boards": 3}, )")),
        bad(sequence(node, wait, R"("settings": {"slot_time_octets": 8}, )")),

@@ -131,7 +131,7 @@ TEST(PlanDisturbances, RefuseWhatMeansNothing) {
   is_refused(R"("bursts": {"level": 1, "profile": "G"})", "bursts/profile", "B2");
   is_refused(R"("bursts": {"level": 1, "profile": {"name": "mine", "coupling": {"ring_q": "x"}}})",
              "bursts/profile/coupling/ring_q", "number");
-  is_refused(R"("bursts": {"level": 1, "repetition": "5 kHz"})", "bursts/repetition", "5kHz");
+  is_refused(R"("bursts": {"level": 1, "repetition": "5 MHz"})", "bursts/repetition", "5kHz");
   is_refused(R"("gilbert_elliott": {"to_bad": 0, "to_good": 0})", "gilbert_elliott", "ever left");
   is_refused(R"("gilbert_elliott": {"fitted_to": {"level": 1}, "to_bad": 1})", "gilbert_elliott/to_bad",
              "known");

@@ -440,8 +440,8 @@ const SequenceRole& isa_dle_sequence_role() {
       {{DerivedKind::values, {"no_end_when_empty", "token_not_returned"}},
        {DerivedKind::faults, {"short_silence", "answers_too_early"}},
        {DerivedKind::words, {"sends_no_preamble", "frame_malformed"}},
-       {DerivedKind::repetitions, {"tells_other_source", "delivered_otherwise"}},
-       {DerivedKind::settings, {"takes_any_token", "speaks_unasked"}}}};
+       {DerivedKind::repetitions, {"replies_twice", "speaks_unasked"}},
+       {DerivedKind::settings, {"answers_behind_rr", "answers_too_late"}}}};
   return role;
 }
 
