@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <iostream>
+#include <iterator>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "cli/probe/program_fixture.hpp"
@@ -110,9 +113,22 @@ TEST_P(VerbTable, HasNoEmptySquare) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, VerbTable, testing::ValuesIn(kJudgedRoles), [](const auto& one) {
+using RoleOfTable = std::decay_t<decltype(*std::begin(kJudgedRoles))>;
+
+std::vector<RoleOfTable> roles_of(bool on_real_lines) {
+  std::vector<RoleOfTable> roles;
+  std::ranges::copy_if(kJudgedRoles, std::back_inserter(roles), [=](const RoleOfTable& one) {
+    return (std::string_view(one.protocol) == "valve_bus") == on_real_lines;
+  });
+  return roles;
+}
+std::string name_of_role(const testing::TestParamInfo<RoleOfTable>& one) {
   return fmt::format("{}_{}", one.param.protocol, one.param.name);
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(All, VerbTable, testing::ValuesIn(roles_of(false)), name_of_role);
+// What a real line carries is judged in wall-clock time.
+INSTANTIATE_TEST_SUITE_P(SerialRuns, VerbTable, testing::ValuesIn(roles_of(true)), name_of_role);
 
 }  // namespace
 }  // namespace fieldproof::cli

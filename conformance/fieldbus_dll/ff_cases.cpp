@@ -53,9 +53,9 @@ void judge_what_its_user_was_told(FfBench& bench, CaseJudge& judge) {
   const auto is_data = [&](const DrivenDlpdu& sent, const fieldbus_dll::FfDlpdu& told) {
     if (!is_dt1(bench, sent)) return false;
     const AddressesOfDt1 addresses = addresses_in(sent);
-    return (!is_between_entities(addresses) || dlsdu_of(sent).empty()) && is_same_address(addresses.to, told.destination) &&
-           is_same_address(addresses.from, told.source) && priority_in(sent) == told.priority &&
-           dlsdu_of(sent) == told.data;
+    return (!is_between_entities(addresses) || dlsdu_of(sent).empty()) &&
+           is_same_address(addresses.to, told.destination) && is_same_address(addresses.from, told.source) &&
+           priority_in(sent) == told.priority && dlsdu_of(sent) == told.data;
   };
   const auto is_buffer = [&](const DrivenDlpdu& sent, const fieldbus_dll::FfDlpdu& told) {
     if (!is_dt3(bench, sent)) return false;

@@ -58,7 +58,7 @@ RoleRow ff_device_row() {
               .cases = ff_cases,
               .settings = &kFfTable,
               .sequences = SequenceRow<FfCase>{ff_device_sequence_role, run_ff_device_sequence,
-                                                 ff_device_sequence_needs()}});
+                                               ff_device_sequence_needs()}});
 }
 
 RoleRow ff_las_row() {

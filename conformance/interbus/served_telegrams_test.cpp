@@ -72,9 +72,9 @@ const std::set<std::string>& of_levels() {
 
 // Mutants that cannot be said in telegrams: of a receiver or a driver of levels.
 const std::set<std::string>& unsayable() {
-  static const std::set<std::string> names{"start_bit_not_validated",  "follows_any_rate",
-                                           "clock_too_fast",           "does_not_retime",
-                                           "no_clock_tolerance",       "master_drives_over_itself"};
+  static const std::set<std::string> names{"start_bit_not_validated", "follows_any_rate",
+                                           "clock_too_fast",          "does_not_retime",
+                                           "no_clock_tolerance",      "master_drives_over_itself"};
   return names;
 }
 

@@ -47,8 +47,8 @@ class Process {
 
   // Waits so long for its end. Whether it has ended.
   bool has_ended(std::chrono::milliseconds longest_wait);
-  // What the machine gives to its group: the processor time that it has had, and whether one of it is ready to run or
-  // waits for the disk, so that nothing but the machine keeps it from going on.
+  // What the machine gives to its group: the processor time that it has had, and whether one of it is ready
+  // to run or waits for the disk, so that nothing but the machine keeps it from going on.
   struct Effort {
     bool is_ready = false;
     std::chrono::milliseconds processor_time{};
