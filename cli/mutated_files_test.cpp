@@ -220,7 +220,7 @@ TEST_F(MutatedFiles, AreReadOrRefusedInASentence) {
     SCOPED_TRACE(one.file.string());
     const std::string right = reports::read_text_file(one.file);
     kernel::Random random = kernel::Random(7).split(one.file.filename().string());
-    for (unsigned n = 0; n < std::max(1U, one.mutations / kFewer); ++n) {
+    for (unsigned n = 0; n < (one.mutations + kFewer - 1) / kFewer; ++n) {
       const std::string wrong =
           n % 2 == 0 ? with_changed_octets(right, random) : with_changed_structure(right, random);
       reports::write_text_file(one.file, wrong);
