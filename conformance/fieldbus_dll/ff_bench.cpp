@@ -24,7 +24,7 @@ FfConfiguration configuration_of(const FfNeeds& needs, const FfSetting& setting)
     configuration.published = {FfBench::kPublished, FfBench::kPublished + 1};
     configuration.subscribed = {FfBench::kSubscribed};
   }
-  if (needs.change != nullptr) needs.change(configuration);
+  if (needs.change) needs.change(configuration);
   field::take_settings(fieldbus_dll::kFfTable, setting.settings, configuration);
   return configuration;
 }

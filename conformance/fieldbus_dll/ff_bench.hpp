@@ -18,7 +18,7 @@ namespace fieldproof::conformance {
 // What a case needs around the IUT.
 struct FfNeeds {
   // Of the configuration of the IUT; null: as it is.
-  void (*change)(fieldbus_dll::FfConfiguration&) = nullptr;
+  std::function<void(fieldbus_dll::FfConfiguration&)> change{};
   bool is_live = true;  // a device that has been probed and activated when the case begins
 };
 

@@ -6,7 +6,7 @@
 #include "conformance/fieldbus_dll/ff_bench.hpp"
 #include "conformance/fieldbus_dll/link_sources.hpp"
 
-// The test cases for the profile FF-P, FF-01 to FF-45 of the catalogue of test purposes, of both roles:
+// The test cases for the profile FF-P, FF-01 to FF-49 of the catalogue of test purposes, of both roles:
 // `ff_device`, a basic device, and `ff_las`, a link master.
 namespace fieldproof::conformance {
 
@@ -23,6 +23,8 @@ std::vector<FfCase> ff_token_cases();
 std::vector<FfCase> ff_publisher_cases();
 std::vector<FfCase> ff_frame_cases();
 std::vector<FfCase> ff_link_settings_cases();
+std::vector<FfCase> ff_link_times_cases();
+std::vector<FfCase> ff_endings_cases();
 std::vector<FfCase> ff_schedule_cases();
 std::vector<FfCase> ff_circulation_cases();
 std::vector<FfCase> ff_rotation_cases();

@@ -18,18 +18,7 @@ constexpr FfAddress kNodeAndSelector = 0xFFFF;
 constexpr FfAddress kOtherLink = 0x2000'0000;
 
 void with_long_preamble(FfConfiguration& configuration) {
-  configuration.rules.link.preamble_octets = 4;
-}
-void with_other_codes(FfConfiguration& configuration) {
-  FfCodes& codes = configuration.rules.codes;
-  codes.cd = 0xC0;
-  codes.dt1 = 0xE0;
-  codes.dt3 = 0x60;
-  codes.sr = 0x1B;
-  codes.pn = 0x2E;
-  codes.pr = 0x2F;
-  codes.pt = 0x40;
-  codes.rt = 0x44;
+  configuration.rules.link.preamble_octets = 8;
 }
 void with_far_publisher(FfConfiguration& configuration) {
   configuration.subscribed = {kFarPublisher};
@@ -62,6 +51,24 @@ void expect_lengths(FfScene& scene) {
 
 }  // namespace
 
+void with_other_codes(FfConfiguration& configuration) {
+  FfCodes& codes = configuration.rules.codes;
+  codes.cd = 0xC0;
+  codes.dt1 = 0xE0;
+  codes.dt3 = 0x60;
+  codes.sr = 0x1B;
+  codes.pn = 0x2E;
+  codes.pr = 0x2F;
+  codes.pt = 0x40;
+  codes.rt = 0x44;
+  codes.ri = 0x28;
+  codes.td = 0x19;
+  codes.ct = 0x1C;
+  codes.cl = 0x09;
+  codes.tl = 0x0E;
+  codes.idle = 0x18;
+}
+
 std::vector<FfCase> ff_link_settings_cases() {
   using namespace ff_chart;
   using enum Priority;
@@ -89,15 +96,15 @@ std::vector<FfCase> ff_link_settings_cases() {
   using link_sources::memory;
   using link_sources::own;
   return {
-      on_chart(
-          must_case("fieldbus_dll/ff_device/settings/a_long_preamble_is_sent", "FF-43",
-                    "A station sends as many octets of preamble as its link has.",
-                    line("preamble and delimiters"),
-                    {{"preamble_of_the_usual_link", "frame_length_wrong"},
-                     {"mute_after_activation", "not_published"}}),
-          {{},
-           {all_served, expected<FfScene>("each of its DLPDUs has four octets of preamble", expect_lengths)}},
-          {.change = with_long_preamble, .is_live = false}),
+      on_chart(must_case("fieldbus_dll/ff_device/settings/a_long_preamble_is_sent", "FF-43",
+                         "A station sends as many octets of preamble as its link has.",
+                         line("preamble and delimiters"),
+                         {{"preamble_of_the_usual_link", "frame_length_wrong"},
+                          {"mute_after_activation", "not_published"}}),
+               {{},
+                {all_served,
+                 expected<FfScene>("each of its DLPDUs has eight octets of preamble", expect_lengths)}},
+               {.change = with_long_preamble, .is_live = false}),
       on_chart(must_case("fieldbus_dll/ff_device/settings/other_codes_are_used", "FF-43",
                          "The first octets of DLPDUs are those of the link.",
                          own("codes are settings, because their standard was not at hand"),

@@ -69,6 +69,57 @@ std::vector<FfRow> ff_token_rows() {
   };
 }
 
+std::vector<FfRow> ff_times_rows() {
+  using namespace ff_seeded_faults;
+  using fieldbus_dll::LinkRules;
+  using fieldbus_dll::response_delay;
+  return {
+      {"silence_of_six_bits", "", "looks at six bits of V(MID)",
+       with_rules<FfStation>([](FfRules& rules) { rules.link.inter_pdu_delay_octets %= 64; })},
+      {"slot_of_eight_bits", "", "looks at eight bits of V(ST)",
+       mutant<AnswersUntil>(+[](const LinkRules& link) {
+         return octets(link, std::int64_t{link.response_delay_slots} * (link.slot_time_octets & 0xFF));
+       })},
+      {"waits_four_slots", "", "waits four V(ST) for the line, whatever its link has",
+       mutant<AnswersUntil>(
+           +[](const LinkRules& link) { return octets(link, 4 * std::int64_t{link.slot_time_octets}); })},
+      {"waits_a_slot_longer", "", "waits a V(ST) longer for the line",
+       mutant<AnswersUntil>(+[](const LinkRules& link) {
+         return response_delay(link) + octets(link, link.slot_time_octets);
+       })},
+      {"gives_up_a_slot_early", "", "waits a V(ST) less for the line",
+       mutant<AnswersUntil>(+[](const LinkRules& link) {
+         return response_delay(link) - octets(link, link.slot_time_octets);
+       })},
+      {"waits_half_a_bit_longer", "", "begins half a bit after V(MRD) x V(ST) yet",
+       mutant<AnswersUntil>(
+           +[](const LinkRules& link) { return response_delay(link) + octets(link, 1) / 16; })},
+      {"gives_up_half_a_bit_early", "", "begins half a bit before V(MRD) x V(ST) at the latest",
+       mutant<AnswersUntil>(
+           +[](const LinkRules& link) { return response_delay(link) - octets(link, 1) / 16; })},
+      {"waits_for_ever", "", "answers however long the line is busy",
+       mutant<AnswersUntil>(+[](const LinkRules&) { return 3600 * kernel::kSecond; })},
+      {"no_dlpdu_ends_the_wait", "", "takes what is no DLPDU for one of a scheduler",
+       mutant<NoDlpduIsTakenForOne>()},
+      {"claims_end_nothing", "", "leaves claims of the link", mutant<TakesTypeFor>(FfType::cl, std::nullopt)},
+      {"returns_end_tokens", "", "takes a RT of others for the end of its token",
+       mutant<TakesTypeFor>(FfType::rt, FfType::pn)},
+      {"idle_ends_nothing", "", "answers though an IDLE came before",
+       mutant<TakesTypeFor>(FfType::idle, std::nullopt)},
+      {"time_by_the_usual_code", "", "knows TD by its usual code, whatever its link has",
+       with_rules<FfStation>([](FfRules& rules) { rules.codes.td = fieldbus_dll::FfCodes{}.td; })},
+      {"half_a_bit_into_what_follows", "", "sends what ends half a bit after its token",
+       mutant<HalfABitIntoWhatFollows>()},
+      {"returns_whatever_is_left", "", "sends RT though it does not fit", mutant<ReturnsWhateverIsLeft>()},
+      {"queue_of_128", "", "forgets what is submitted while 128 data of its priority wait",
+       mutant<QueueOf128>()},
+      {"takes_256", "", "receives 256 frames and no more", mutant<Takes256>()},
+      {"forgets_in_silence", "", "is off behind ten seconds of silence", mutant<ForgetsInSilence>()},
+      {"wrong_check_ends_the_wait", "", "takes what has a wrong check for a DLPDU of a scheduler",
+       mutant<WrongCheckIsTakenForOne>()},
+  };
+}
+
 std::vector<FfRow> ff_publisher_rows() {
   using namespace ff_seeded_faults;
   return {
@@ -313,8 +364,8 @@ std::vector<FfRow> ff_las_sequence_rows() {
 }  // namespace
 
 const FfMutants& ff_device_mutants() {
-  static const FfMutants table("ff_device",
-                               {ff_token_rows, ff_publisher_rows, ff_frame_rows, ff_sequence_rows});
+  static const FfMutants table(
+      "ff_device", {ff_token_rows, ff_times_rows, ff_publisher_rows, ff_frame_rows, ff_sequence_rows});
   return table;
 }
 

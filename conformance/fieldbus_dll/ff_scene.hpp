@@ -39,6 +39,9 @@ inline FfCase on_chart(TestCase test_case, Chart<FfScene> chart, FfNeeds needs =
   return charted<FfCase>(std::move(test_case), std::move(chart), needs);
 }
 
+// Codes that are not the usual ones, each of them.
+void with_other_codes(fieldbus_dll::FfConfiguration& configuration);
+
 namespace ff_chart {
 
 using namespace link_chart;

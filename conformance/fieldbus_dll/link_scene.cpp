@@ -35,6 +35,28 @@ Octets with_wrong_bits(Octets frame, const std::vector<std::size_t>& bits) {
   return frame;
 }
 
+bool keep_busy(LinkBench& link, kernel::Time until, DlpduIsNone kind) {
+  constexpr std::uint8_t kNoDlpdu = 0xFF;  // of no profile
+  constexpr std::int64_t kMostOctets = 200;
+  const kernel::Duration whole = until - link.now();
+  const kernel::Duration around = link.frame(0);
+  if (link.least_gap() <= link.octets(1) || whole <= around + link.octets(1)) return false;
+  // Equal frames, in front of each an octet of silence at most.
+  const std::int64_t count = whole / (around + link.octets(kMostOctets)) + 1;
+  const kernel::Time begin = link.now();
+  for (std::int64_t n = 0; n < count; ++n) {
+    const kernel::Time from = begin + whole * n / count;
+    const kernel::Time to = begin + whole * (n + 1) / count;
+    const auto size = (to - from - around - link.octets(1) / 2) / link.octets(1);
+    Octets octets(static_cast<std::size_t>(std::max<std::int64_t>(size, 1)), kNoDlpdu);
+    Octets frame = with_frame_check(octets);
+    if (kind == DlpduIsNone::by_its_check) frame.back() ^= 1;
+    link.run_until(to - link.frame(octets.size()));
+    link.send_half_bits(half_bits_of_frame(frame, link.link().preamble_octets));
+  }
+  return true;
+}
+
 TestCase must_in_time(std::string id, std::string purpose, std::string requirement,
                       judge::Reference reference, std::vector<MustCatch> catches,
                       std::vector<PartialSource> details) {

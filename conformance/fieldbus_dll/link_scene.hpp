@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -120,6 +121,12 @@ auto drive(std::string text, Make make) {
 }
 
 }  // namespace link_chart
+
+// Why octets in a whole frame are no DLPDU.
+enum class DlpduIsNone : std::uint8_t { by_its_check, by_its_first_octet };
+// Others drive such frames from now on, never silent for V(MID), the last just until then, and it runs until
+// that is over. False: there is no room for any, and nothing is done.
+bool keep_busy(LinkBench& link, kernel::Time until, DlpduIsNone kind);
 
 // The octets of a frame with these bits of it and its check turned.
 Octets with_wrong_bits(Octets frame, const std::vector<std::size_t>& bits);
