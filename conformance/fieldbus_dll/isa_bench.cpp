@@ -17,6 +17,7 @@ IsaConfiguration configuration_of(const IsaNeeds& needs, const IsaSetting& setti
   configuration.address = setting.address;
   configuration.schedule = needs.schedule;
   configuration.begins_as_scheduler = needs.is_scheduler;
+  if (needs.change) needs.change(configuration);
   field::take_settings(fieldbus_dll::kIsaTable, setting.settings, configuration);
   return configuration;
 }

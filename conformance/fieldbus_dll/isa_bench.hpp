@@ -22,6 +22,8 @@ struct IsaNeeds {
   fieldbus_dll::IsaSchedule schedule{};  // of an IUT that is the scheduler
   bool is_scheduler = true;              // when the case begins
   std::int64_t bit_rate = 31'250;
+  // Of the configuration of the IUT besides; empty: as it is.
+  std::function<void(fieldbus_dll::IsaConfiguration&)> change{};
 };
 
 // Who plays, and how.

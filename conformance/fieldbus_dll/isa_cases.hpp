@@ -6,7 +6,7 @@
 #include "conformance/fieldbus_dll/isa_bench.hpp"
 #include "conformance/fieldbus_dll/link_sources.hpp"
 
-// The test cases for the profile ISA-D, ISA-01 to ISA-40 of the catalogue of test purposes, of both roles:
+// The test cases for the profile ISA-D, ISA-01 to ISA-41 of the catalogue of test purposes, of both roles:
 // `isa_dle`, a data link entity, and `isa_las`, a link master.
 namespace fieldproof::conformance {
 
@@ -26,6 +26,7 @@ std::vector<IsaCase> isa_compelling_cases();
 std::vector<IsaCase> isa_compelled_cases();
 std::vector<IsaCase> isa_data_cases();
 std::vector<IsaCase> isa_line_cases();
+std::vector<IsaCase> isa_timers_cases();
 std::vector<IsaCase> isa_schedule_cases();
 std::vector<IsaCase> isa_supervision_cases();
 std::vector<IsaCase> isa_transfer_cases();

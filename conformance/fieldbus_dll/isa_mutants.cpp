@@ -107,6 +107,34 @@ std::vector<IsaRow> isa_reply_rows() {
   };
 }
 
+std::vector<IsaRow> isa_timers_rows() {
+  using namespace isa_seeded_faults;
+  return {
+      {"silence_of_the_usual_link", "", "keeps the usual V(MID), whatever its link's is",
+       with_rules<IsaDle>([](IsaRules& rules) {
+         rules.link.inter_pdu_delay_octets = fieldbus_dll::LinkRules{}.inter_pdu_delay_octets;
+       })},
+      {"forms_within_the_usual_time", "", "replies within the usual V(FD), whatever its link's is",
+       with_rules<IsaDle>(
+           [](IsaRules& rules) { rules.reply_forming_octets = IsaRules{}.reply_forming_octets; })},
+      {"forms_within_eight_bits", "", "looks at eight bits of V(FD)",
+       with_rules<IsaDle>([](IsaRules& rules) { rules.reply_forming_octets %= 256; })},
+      {"forms_an_octet_less", "", "gives its reply up an octet before V(FD)", mutant<ShiftsTimers>(-16, 0)},
+      {"forms_an_octet_longer", "", "replies an octet after V(FD) yet", mutant<ShiftsTimers>(16, 0)},
+      {"forms_half_a_bit_longer", "", "replies half a bit after V(FD) yet", mutant<ShiftsTimers>(1, 0)},
+      {"waits_the_usual_time", "", "waits for a reply for the usual V(RR), whatever its link's is",
+       with_rules<IsaDle>([](IsaRules& rules) { rules.reply_wait_octets = IsaRules{}.reply_wait_octets; })},
+      {"waits_eight_bits", "", "looks at eight bits of V(RR)",
+       with_rules<IsaDle>([](IsaRules& rules) { rules.reply_wait_octets %= 256; })},
+      {"waits_half_a_bit_less", "", "waits for a reply half a bit less than V(RR)",
+       mutant<ShiftsTimers>(0, -1)},
+      {"waits_half_a_bit_longer", "", "takes a reply that begins within half a bit after V(RR)",
+       mutant<ShiftsTimers>(0, 1)},
+      {"no_dlpdu_ends_the_wait", "", "takes what is no DLPDU for data of others",
+       mutant<IsaNoDlpduIsTakenForOne>()},
+  };
+}
+
 std::vector<IsaRow> isa_frame_rows() {
   using namespace isa_seeded_faults;
   return {
@@ -219,8 +247,8 @@ std::vector<IsaRow> isa_las_check_rows() {
 }  // namespace
 
 const IsaMutants& isa_dle_mutants() {
-  static const IsaMutants table(
-      "isa_dle", {isa_token_rows, isa_duration_rows, isa_reply_rows, isa_frame_rows, isa_check_rows});
+  static const IsaMutants table("isa_dle", {isa_token_rows, isa_duration_rows, isa_reply_rows,
+                                            isa_timers_rows, isa_frame_rows, isa_check_rows});
   return table;
 }
 

@@ -172,4 +172,27 @@ class BroadcastAnswered : public IsaDle {
   }
 };
 
+// ---- timers ----
+
+// V(FD) and V(RR) so many half bits longer.
+class ShiftsTimers : public IsaDle {
+ public:
+  ShiftsTimers(const IsaConfiguration& configuration, int forming, int wait)
+      : IsaDle(configuration), forming_(forming), wait_(wait) {}
+
+ private:
+  Duration reply_forming() const override { return IsaDle::reply_forming() + octet_times(forming_) / 16; }
+  Duration reply_wait() const override { return IsaDle::reply_wait() + octet_times(wait_) / 16; }
+  int forming_;
+  int wait_;
+};
+
+class IsaNoDlpduIsTakenForOne : public IsaDle {
+  using IsaDle::IsaDle;
+  std::optional<IsaDlpdu> understood(Heard octets) const override {
+    constexpr std::uint8_t kOther = 0x22;
+    return IsaDle::understood(octets).value_or(IsaDlpdu{.destination = kOther, .source = kOther});
+  }
+};
+
 }  // namespace fieldproof::conformance::isa_seeded_faults
