@@ -35,6 +35,11 @@ TEST(IsaDleSequence, FindsWhatTheCatalogueNames) {
           "reserved_bit_ignored",
           "zero_is_for_ever",
           "check_from_zero_too",
+          // Times that sequences do not set, or not to half a bit.
+          "forms_within_the_usual_time",
+          "forms_within_eight_bits",
+          "forms_half_a_bit_longer",
+          "waits_eight_bits",
       },
       20'000);
 }
