@@ -37,14 +37,6 @@ void add_once(std::vector<std::int64_t>& values, std::int64_t value) {
   if (std::ranges::find(values, value) == values.end()) values.push_back(value);
 }
 
-SequenceCommand simple_of(const SequenceVocabulary& vocabulary, std::size_t word) {
-  const SequenceWord& of = vocabulary.words[word];
-  SequenceCommand command{.word = word, .numbers = {}};
-  for (const SequenceNumber& number : of.numbers) command.numbers.push_back(number.simple);
-  if (of.most_octets > 0) command.octets.assign(std::min<std::size_t>(of.most_octets, 4), 0x5A);
-  return command;
-}
-
 // What makes sequences of one vocabulary.
 class Derivation {
  public:
@@ -96,7 +88,7 @@ class Derivation {
  private:
   using Makers = std::vector<std::function<Sequence()>>;
 
-  SequenceCommand simple(std::size_t word) const { return simple_of(vocabulary_, word); }
+  SequenceCommand simple(std::size_t word) const { return simple_command(vocabulary_, word); }
 
   // Each number at any of its values.
   SequenceCommand drawn(std::size_t word) {
@@ -336,7 +328,7 @@ std::vector<std::int64_t> derived_values(const SequenceNumber& number) {
 Sequence one_of_each(const SequenceVocabulary& vocabulary) {
   Sequence sequence;
   for (std::size_t word = 0; word < vocabulary.words.size(); ++word)
-    if (vocabulary.words[word].weight > 0) sequence.commands.push_back(simple_of(vocabulary, word));
+    if (vocabulary.words[word].weight > 0) sequence.commands.push_back(simple_command(vocabulary, word));
   return sequence;
 }
 

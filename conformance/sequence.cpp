@@ -112,6 +112,21 @@ std::optional<std::string> SequenceVocabulary::objection_to(const field::Setting
   return given.empty() || !objection ? std::nullopt : objection(given);
 }
 
+SequenceCommand simple_command(const SequenceVocabulary& vocabulary, std::size_t word, GivenNumbers given) {
+  constexpr std::size_t kOctets = 4;
+  const SequenceWord& of = vocabulary.words[word];
+  SequenceCommand command{.word = word, .numbers = {}};
+  for (const SequenceNumber& number : of.numbers) command.numbers.push_back(number.simple);
+  for (const auto& [n, value] : given) command.numbers.at(n) = value;
+  if (of.most_octets > 0) command.octets.assign(std::min<std::size_t>(of.most_octets, kOctets), 0x5A);
+  return command;
+}
+
+SequenceVocabulary without_settings(SequenceVocabulary vocabulary) {
+  vocabulary.settings.clear();
+  return vocabulary;
+}
+
 std::size_t units_of(const SequenceWord& word, const SequenceCommand& command) {
   return word.most_octets > 0 ? command.octets.size() : word.units;
 }

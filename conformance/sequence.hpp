@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "harness/config/document.hpp"
@@ -109,6 +111,12 @@ struct Sequence {
 };
 
 // Units of the transmission of a command, without its faults.
+// The numbers of a word that are not given, by their place, are the simple ones.
+using GivenNumbers = std::initializer_list<std::pair<std::size_t, std::int64_t>>;
+SequenceCommand simple_command(const SequenceVocabulary& vocabulary, std::size_t word,
+                               GivenNumbers given = {});
+SequenceVocabulary without_settings(SequenceVocabulary vocabulary);
+
 std::size_t units_of(const SequenceWord& word, const SequenceCommand& command);
 std::size_t flips_in(const Sequence& sequence);
 std::size_t faults_in(const Sequence& sequence);

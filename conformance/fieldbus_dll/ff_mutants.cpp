@@ -1,6 +1,7 @@
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 
 #include "conformance/fieldbus_dll/ff_device_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/ff_ending_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_sequence_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_sequence_seeded_faults.hpp"

@@ -8,7 +8,8 @@
 
 // Stations of the profile FF-P that differ from the reference in one decision each; ff_mutants.cpp names
 // and describes them. A decision that is a number is changed in the rules there, without a class. They lie by
-// role in ff_device_seeded_faults.hpp and ff_las_seeded_faults.hpp; here is what both name.
+// role in ff_device_seeded_faults.hpp, ff_ending_seeded_faults.hpp and ff_las_seeded_faults.hpp; here is what
+// both name.
 namespace fieldproof::conformance::ff_seeded_faults {
 
 using fieldbus_dll::Arrived;

@@ -79,6 +79,12 @@ SequenceNumber isa_truth(std::string_view name) {
   return {name, 0, 1, 0};
 }
 
+// Of a DU and a DT.
+std::vector<SequenceNumber> isa_numbers_of_data() {
+  return {isa_to(),      isa_from(), isa_priority(), isa_truth("final"), {"size", 0, 260, 8, kIsaSizes},
+          link_silence()};
+}
+
 // The tester does not wait longer for who waits for a reply.
 constexpr std::array kBoundsOfIsaDle{SettingBound{"reply_wait_octets", {1, kLinkSettles / 2}}};
 
@@ -116,24 +122,10 @@ std::vector<SequenceWord> isa_dle_words() {
                {{"kind", 0, 3, 0}, isa_to(), isa_from(), {"value", 0, 255, 0}, link_length(), link_silence()},
            .units = 8,
            .weight = 6},
-          {.word = "data",
-           .meaning = "a DU",
-           .numbers = {isa_to(),
-                       isa_from(),
-                       isa_priority(),
-                       isa_truth("final"),
-                       {"size", 0, 260, 8, kIsaSizes},
-                       link_silence()},
-           .units = 9,
-           .weight = 8},
+          {.word = "data", .meaning = "a DU", .numbers = isa_numbers_of_data(), .units = 9, .weight = 8},
           {.word = "reply",
            .meaning = "a DT, for which the station has not asked",
-           .numbers = {isa_to(),
-                       isa_from(),
-                       isa_priority(),
-                       isa_truth("final"),
-                       {"size", 0, 260, 8, kIsaSizes},
-                       link_silence()},
+           .numbers = isa_numbers_of_data(),
            .units = 9,
            .weight = 5},
           {.word = "noise",

@@ -7,6 +7,7 @@
 #include "conformance/interbus/master_cases.hpp"
 #include "conformance/interbus/master_sequence.hpp"
 #include "conformance/interbus/master_vocabulary.hpp"
+#include "conformance/interbus/other_codings.hpp"
 #include "conformance/sequence_draw.hpp"
 
 // A master beside the reference: each value of each word, each level of a cycle flipped on its way back, what
@@ -19,22 +20,12 @@ using MasterFamily = std::vector<MasterCommands> (*)();
 using ChangeRules = void (*)(interbus::Rules&);
 
 const SequenceVocabulary& words_of_master() {
-  static const SequenceVocabulary without_settings = [] {
-    SequenceVocabulary all = master_sequence_role().vocabulary;
-    all.settings.clear();
-    return all;
-  }();
-  return without_settings;
+  static const SequenceVocabulary words = without_settings(master_sequence_role().vocabulary);
+  return words;
 }
 
-// The numbers that are not given are the simple ones.
-SequenceCommand order(MasterWord word,
-                      std::initializer_list<std::pair<std::size_t, std::int64_t>> given = {}) {
-  SequenceCommand made{.word = static_cast<std::size_t>(word), .numbers = {}};
-  for (const SequenceNumber& number : words_of_master().words[made.word].numbers)
-    made.numbers.push_back(number.simple);
-  for (const auto& [n, value] : given) made.numbers[n] = value;
-  return made;
+SequenceCommand order(MasterWord word, GivenNumbers given = {}) {
+  return simple_command(words_of_master(), static_cast<std::size_t>(word), given);
 }
 SequenceCommand cycles(std::int64_t count) {
   return order(MasterWord::cycles, {{0, count}});
@@ -213,21 +204,8 @@ void drawn_for_a_master(MasterBench& bench, CaseJudge& judge) {
 // ---- other settings ----
 
 void change_all_codings(interbus::Rules& rules) {
-  rules.telegram = {
-      .header = {line::HeaderLevel::control, line::HeaderLevel::flag, line::HeaderLevel::select},
-      .select_level = false,
-      .control_level = false,
-      .data_flag_level = false,
-      .most_significant_first = false};
+  change_each_coding(rules);
   rules.loopback_word = 0x8C31;
-  rules.frame_check = "CRC-16/MAXIM-DOW";
-  rules.status_clean = 0x0A50;
-  rules.status_marked = 0x8100;
-  rules.control_remote_off = 0x8000;
-  rules.control_local_off = 0x0100;
-  rules.message_reconfiguration = 0x8000;
-  rules.message_check_error = 0x2000;
-  rules.message_peripheral_fault = 0x4000;
   rules.end_telegrams = 3;
 }
 

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <utility>
 
+#include "conformance/interbus/other_codings.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_sequence.hpp"
 #include "conformance/interbus/slave_words.hpp"
@@ -16,25 +17,14 @@ namespace fieldproof::conformance {
 namespace {
 
 using Commands = std::vector<SequenceCommand>;
-using Given = std::initializer_list<std::pair<std::size_t, std::int64_t>>;
 
 const SequenceVocabulary& vocabulary() {
-  static const SequenceVocabulary without_settings = [] {
-    SequenceVocabulary all = slave_sequence_role().vocabulary;
-    all.settings.clear();
-    return all;
-  }();
-  return without_settings;
+  static const SequenceVocabulary words = without_settings(slave_sequence_role().vocabulary);
+  return words;
 }
 
-// The numbers that are not given are the simple ones.
-SequenceCommand command(SlaveWord word, Given given = {}) {
-  SequenceCommand made{.word = static_cast<std::size_t>(word), .numbers = {}};
-  for (const SequenceNumber& number : vocabulary().words[made.word].numbers) {
-    made.numbers.push_back(number.simple);
-  }
-  for (const auto& [n, value] : given) made.numbers[n] = value;
-  return made;
+SequenceCommand command(SlaveWord word, GivenNumbers given = {}) {
+  return simple_command(vocabulary(), static_cast<std::size_t>(word), given);
 }
 
 SequenceCommand id(std::int64_t orders) {
@@ -68,12 +58,12 @@ std::vector<Commands> each_value() {
     }
   }
   for (std::int64_t header = 0; header < 8; ++header) {
-    const Given of_telegrams{{0, header & 1}, {1, header >> 1 & 1}, {2, header >> 2}, {4, 2}};
+    const GivenNumbers of_telegrams{{0, header & 1}, {1, header >> 1 & 1}, {2, header >> 2}, {4, 2}};
     all.push_back({command(SlaveWord::telegrams, of_telegrams)});
     all.push_back({command(SlaveWord::periphery, {{0, header & 1}, {1, header >> 1 & 1}}), id(header),
                    command(SlaveWord::periphery, {{0, 0}})});
     for (const std::int64_t branch : {0, 1}) {
-      const Given back{{0, branch}, {1, header & 1}, {2, header >> 1 & 1}, {3, header >> 2}};
+      const GivenNumbers back{{0, branch}, {1, header & 1}, {2, header >> 1 & 1}, {3, header >> 2}};
       all.push_back({command(SlaveWord::returns, back)});
       all.push_back({id(branch + 1), command(SlaveWord::returns, back)});
     }
@@ -270,26 +260,6 @@ std::function<void(SlaveBench&, CaseJudge&)> some_of_all() {
 
 // ---- other settings ----
 
-// Each coding is another one.
-void change_coding(interbus::Rules& rules) {
-  rules.telegram = {
-      .header = {line::HeaderLevel::control, line::HeaderLevel::flag, line::HeaderLevel::select},
-      .select_level = false,
-      .control_level = false,
-      .data_flag_level = false,
-      .most_significant_first = false};
-  rules.frame_check = "CRC-16/MAXIM-DOW";
-  rules.status_clean = 0x0A50;
-  rules.status_marked = 0x8100;
-  rules.control_remote_off = 0x8000;
-  rules.control_local_off = 0x0100;
-  rules.control_reset = 0x0080;
-  rules.control_acknowledge = 0x4000;
-  rules.message_reconfiguration = 0x8000;
-  rules.message_check_error = 0x2000;
-  rules.message_peripheral_fault = 0x4000;
-}
-
 // Short delays and a short silence.
 void change_to_short(interbus::Rules& rules) {
   rules.bit_rate = 2'000'000;
@@ -366,7 +336,7 @@ std::vector<SlaveCase> slave_compared_cases() {
       compared("drawn_sequences", "Sequences of all words at random.", {{"crc_preset_zero", "octet_wrong"}},
                drawn),
       compared("other_codings", "The same with each coding another one.",
-               {{"final_xor_hard_coded", "octet_wrong"}}, some_of_all(), change_coding),
+               {{"final_xor_hard_coded", "octet_wrong"}}, some_of_all(), change_each_coding),
       compared("short_times", "The same with short delays and a short silence.",
                {{"delays_four_bits", "passed_at_another_time"}}, some_of_all(), change_to_short),
       compared("long_times", "The same with long delays and a long silence.",

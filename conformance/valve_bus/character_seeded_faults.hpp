@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "protocols/valve_bus/codec.hpp"
 
 // Stations of either role, host or node, that look at a character in another way than the reference.
@@ -34,6 +37,22 @@ class NinthBitRequired : public Station {
     const bool has_ninth_bit = valve_bus::character_format(this->rules()).data_bits == 9;
     if (has_ninth_bit && (character.data & 0x100U) == 0) taken.is_stop_missing = true;
     return taken;
+  }
+};
+
+// Sends the ninth bit as 0.
+template <typename Station>
+class SendsNinthBit0 : public Station {
+  using Station::Station;
+  void transmit(std::span<const std::uint8_t> octets, kernel::Time start) override {
+    const auto& rules = this->rules();
+    const line::CharacterCode code(valve_bus::character_format(rules));
+    line::Waveform wave;
+    wave.rate = rules.bit_rate;
+    wave.start = start - valve_bus::bits(rules, rules.driver_on_bits);
+    wave.levels.append_idle(rules.driver_on_bits);
+    for (const std::uint8_t octet : octets) code.append(wave.levels, octet);
+    this->line().drive(wave);
   }
 };
 

@@ -50,7 +50,7 @@ std::vector<HostRow> host_request_rows() {
        mutant<RequestCheckWithoutId>()},
       {"request_check_is_sum", "", "sends the sum for the block check", mutant<RequestCheckIsSum>()},
       {"requests_without_ninth_bit", "", "sends its characters with a ninth bit of 0",
-       mutant<RequestsWithoutNinthBit>()},
+       mutant<SendsNinthBit0<Host>>()},
       {"wants_a_delimiter_before_responses", "", "takes no response within 3 characters",
        mutant<WantsADelimiterBeforeResponses>()},
       {"busy_told_as_silence", "", "reports no response where the line is not silent",

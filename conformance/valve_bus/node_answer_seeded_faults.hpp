@@ -51,19 +51,6 @@ class AnswersWithEcho : public Node {
   }
 };
 
-class SendsNinthBit0 : public Node {
-  using Node::Node;
-  void transmit(Octets octets, Time start) override {
-    const line::CharacterCode code(valve_bus::character_format(rules()));
-    line::Waveform wave;
-    wave.rate = rules().bit_rate;
-    wave.start = start - valve_bus::bits(rules(), rules().driver_on_bits);
-    wave.levels.append_idle(rules().driver_on_bits);
-    for (const std::uint8_t octet : octets) code.append(wave.levels, octet);
-    line().drive(wave);
-  }
-};
-
 class GapBetweenOctets : public Node {
   using Node::Node;
   void transmit(Octets octets, Time start) override {

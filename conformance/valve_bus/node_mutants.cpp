@@ -83,7 +83,7 @@ std::vector<NodeRow> node_answer_rows() {
       {"answers_twice", "MN22", "answers twice", mutant<AnswersTwice>()},
       {"answers_with_echo", "", "repeats the head of the command in front of its answer",
        mutant<AnswersWithEcho>()},
-      {"sends_ninth_bit_0", "", "sends its characters with a ninth bit of 0", mutant<SendsNinthBit0>()},
+      {"sends_ninth_bit_0", "", "sends its characters with a ninth bit of 0", mutant<SendsNinthBit0<Node>>()},
       {"gap_between_octets", "", "leaves 20 bits between the octets of an answer",
        mutant<GapBetweenOctets>()},
       {"answers_at_once", "MN12", "answers as soon as it has five octets", mutant<AnswersAtOnce>()},

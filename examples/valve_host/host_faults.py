@@ -4,9 +4,9 @@
 import pathlib
 import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "valve_node"))
-from edits import run
+FOLDER = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(FOLDER.parent))
+from changed_program import run
 
 KEEPS = "self.known[request.id] = data0, data1"
 WRONG = "                self.was_wrong = True\n"
@@ -49,4 +49,4 @@ FAULTS = {
 }
 
 if __name__ == "__main__":
-    run(HERE / "host.py", FAULTS)
+    run(FOLDER, ["host"], FAULTS)

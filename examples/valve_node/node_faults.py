@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes with one fault each, to see the bench find it: --iut 'exec:python3 node_faults.py --fault NAME'."""
 import pathlib
+import sys
 
-from edits import run
+FOLDER = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(FOLDER.parent))
+from changed_program import run
 
 SWITCHES = "switches = self.stream.read(LIMIT_SWITCHES, now) & boards"
 
@@ -49,4 +52,4 @@ FAULTS = {
 }
 
 if __name__ == "__main__":
-    run(pathlib.Path(__file__).resolve().parent / "node.py", FAULTS)
+    run(FOLDER, ["node"], FAULTS)
