@@ -43,7 +43,7 @@ const std::vector<TokenCase>& token_cases() {
         token_request_cases,        token_dropping_cases,   token_class_cases,
         token_alone_cases,          token_membership_cases, token_kind_cases,
         token_many_cases,           token_settings_cases,   token_rotation_settings_cases,
-        token_long_address_cases,   token_immunity_cases};
+        token_long_address_cases,   token_immunity_cases,   token_each_cases};
     auto all = cases_of<TokenCase>(kChapters, token_details());
     all.push_back(canary());
     return all;

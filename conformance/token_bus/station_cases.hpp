@@ -35,6 +35,7 @@ std::vector<TokenCase> token_address_cases();
 std::vector<TokenCase> token_request_cases();
 std::vector<TokenCase> token_dropping_cases();
 std::vector<TokenCase> token_class_cases();
+std::vector<TokenCase> token_each_cases();
 std::vector<TokenCase> token_alone_cases();
 std::vector<TokenCase> token_membership_cases();
 std::vector<TokenCase> token_kind_cases();

@@ -145,8 +145,12 @@ std::vector<TokenCase> token_holding_cases() {
                           "Within a class what was submitted first is sent first, whichever of the two "
                           "priorities of the class it has.",
                           controller("priority option"),
-                          {{"newest_first", "order_wrong"}, {"higher_priority_first", "order_wrong"}}),
-               {{}, {joined(), submit({6, 7, 6, 7}, 10), submit({2, 3, 2}, 10), token(), sends_in_order()}}),
+                          {{"newest_first", "order_wrong"},
+                           {"higher_priority_first", "order_wrong"},
+                           {"higher_priority_first_in_the_lowest", "order_wrong"}}),
+               {{},
+                {joined(), submit({6, 7, 6, 7}, 10), submit({4, 5, 4}, 10), submit({2, 3, 2}, 10),
+                 submit({0, 1, 0}, 10), token(), sends_in_order()}}),
   };
 }
 

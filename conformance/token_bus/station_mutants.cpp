@@ -206,7 +206,7 @@ const TokenMutants& token_station_mutants() {
       "station",
       {token_initialisation_rows, token_joining_rows, token_passing_rows, token_failure_rows,
        token_holding_rows, token_reception_rows, token_settings_rows, token_line_rows, token_host_rows,
-       token_anew_rows, token_vocabulary_rows, token_partial_rows, token_check_rows});
+       token_anew_rows, token_vocabulary_rows, token_partial_rows, token_each_rows, token_check_rows});
   return table;
 }
 

@@ -14,6 +14,7 @@ std::vector<TokenMutants::Row> token_host_rows();
 std::vector<TokenMutants::Row> token_anew_rows();
 std::vector<TokenMutants::Row> token_vocabulary_rows();
 std::vector<TokenMutants::Row> token_partial_rows();
+std::vector<TokenMutants::Row> token_each_rows();
 
 // Stations of the token bus with one seeded fault each.
 const TokenMutants& token_station_mutants();

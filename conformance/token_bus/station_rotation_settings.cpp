@@ -72,6 +72,11 @@ std::vector<TokenCase> windows() {
       windows_with("255_tokens_between_windows", "max_inter_solicit_count 255",
                    {{"sixteen_tokens_always", "window_early"}},
                    with([](Rules& rules) { rules.max_inter_solicit_count = 255; })),
+      // Its time begins anew with each pass: a window is no later for it.
+      windows_with("a_maintenance_time_of_a_few_rounds",
+                   "a time of ring maintenance that is longer than a round and shorter than sixteen",
+                   {{"maintenance_since_the_window", "window_missing"}},
+                   with([](Rules& rules) { rules.ring_maintenance_octets = 300; })),
       on_chart(
           token_must("settings/a_slow_ring_opens_no_window", "TB-11",
                      "When the token took longer than the target rotation time of ring maintenance, no "
