@@ -237,6 +237,30 @@ inline ManagementAnswer disable_refused_after_jabber(ManagementCommand command, 
   return is_refused ? ManagementAnswer::physical_error : right;
 }
 
+inline ManagementAnswer serial_data_tell_a_jabber(ManagementCommand command, bool has_jabbered,
+                                                  ManagementAnswer right) {
+  const bool is_told = has_jabbered && command == ManagementCommand::serial_data;
+  return is_told ? ManagementAnswer::physical_error : right;
+}
+
+// The second time that it is asked by this command.
+class AnswersAJabberOnce final : public StationManager {
+ public:
+  AnswersAJabberOnce(ManagementCommand command, ManagementAnswer second)
+      : command_(command), second_(second) {}
+
+ private:
+  ManagementAnswer answer_to(ManagementCommand command) const override {
+    if (!has_jabbered()) times_ = 0;
+    const bool is_second = has_jabbered() && command == command_ && ++times_ > 1;
+    return is_second ? second_ : StationManager::answer_to(command);
+  }
+
+  ManagementCommand command_;
+  ManagementAnswer second_;
+  mutable unsigned times_ = 0;
+};
+
 // With a command something else begins anew, too.
 template <typename Block>
 class CommandResets final : public StationManager {

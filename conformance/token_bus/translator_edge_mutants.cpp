@@ -48,6 +48,14 @@ auto with_mask_of(MaskOtherwise::Length length) {
   return mutant<MaskOtherwise>(length);
 }
 
+class MaskHasItsEnd final : public Translator {
+  using Translator::Translator;
+  bool is_error_masked(kernel::Duration after) const override {
+    return after >= kernel::Duration{} &&
+           after <= mac_symbols(configuration().rules, configuration().error_mask_symbols);
+  }
+};
+
 template <auto block>
 auto with_commands_that_reset() {
   return [](const TranslatorConfiguration& configuration) {
@@ -63,6 +71,9 @@ Rows mask_rows_of_translators() {
   return {
       {"mask_of_one_symbol_less", "", "ends its error mask a symbol early",
        with_mask_of([](One one) { return std::max(1U, one.error_mask_symbols) - 1; })},
+      {"mask_has_its_end", "", "masks an error that begins when the mask is over", mutant<MaskHasItsEnd>()},
+      {"error_without_carrier", "", "indicates a signal error without carrier",
+       with_block<&EdgeBlocks::receiver, ErrorWithoutCarrier>()},
       {"mask_of_one_symbol_more", "", "ends its error mask a symbol late",
        with_mask_of([](One one) { return one.error_mask_symbols + 1; })},
       {"mask_of_20_symbols_at_least", "", "masks errors for 20 symbols at least",
@@ -207,6 +218,13 @@ Rows translator_circuit_rows() {
        with_block<&EdgeBlocks::manager, EnabledAfterAJabber>()},
       {"disable_refused_after_a_jabber", "", "refuses DISABLE LOOPBACK after a jabber",
        with_block<&EdgeBlocks::manager, AnswersOtherwise>(disable_refused_after_jabber)},
+      {"second_enable_taken", "", "acknowledges a second ENABLE TRANSMITTER after a jabber",
+       with_block<&EdgeBlocks::manager, AnswersAJabberOnce>(ManagementCommand::enable_transmitter,
+                                                            ManagementAnswer::ack)},
+      {"jabber_told_once", "", "answers a second idle after a jabber with IDLE",
+       with_block<&EdgeBlocks::manager, AnswersAJabberOnce>(ManagementCommand::idle, ManagementAnswer::idle)},
+      {"serial_data_tell_a_jabber", "", "answers serial data after a jabber with physical error",
+       with_block<&EdgeBlocks::manager, AnswersOtherwise>(serial_data_tell_a_jabber)},
       {"jabber_loops_back", "", "loops back after a jabber",
        with_block<&EdgeBlocks::manager, JabberLoopsBack>()},
       {"jabber_outlives_supply", "", "remembers a jabber over a failure of the supply",

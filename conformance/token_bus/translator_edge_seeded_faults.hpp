@@ -113,6 +113,12 @@ class SilentUntilLocked final : public MacDecoder {
   }
 };
 
+class ErrorWithoutCarrier final : public MacDecoder {
+  MacSymbol indication(PhyPair pair, LineStatus status) const override {
+    return status.has_signal_error ? MacSymbol::bad_signal : MacDecoder::indication(pair, status);
+  }
+};
+
 class ThirdPairIsBadSignal final : public MacDecoder {
   MacSymbol indication(PhyPair pair, LineStatus status) const override {
     const MacSymbol right = MacDecoder::indication(pair, status);

@@ -19,6 +19,7 @@ struct MaskRow {
   std::string_view text;
   std::string script;
   bool is_from_the_middle;
+  std::size_t every = 1;  // bit
 };
 constexpr std::size_t kLast = 40;
 constexpr std::size_t kLead = 16;  // symbols, the preamble and start delimiter of what is received
@@ -34,7 +35,8 @@ const std::vector<MaskRow>& mask_rows() {
       {"after it, with a command in the mask", sent(kLast) + "SSi", false},
       {"throughout two transmissions, the second of which begins in the mask of the first",
        sent(kLast) + "SSSSS" + sent(kLast), true},
-      {"after a transmission of one symbol", std::string(kLast - 1, 'S') + "P", false}};
+      {"after a transmission of one symbol", std::string(kLast - 1, 'S') + "P", false},
+      {"in the first bit of each symbol after it", sent(kLast), false, 2}};
   return rows;
 }
 
@@ -43,12 +45,13 @@ std::string lead() {
 }
 
 // Ones, and errors in them.
-SideBits with_errors(TranslatorScene& scene, bool is_from_the_middle, std::size_t script) {
+SideBits with_errors(TranslatorScene& scene, bool is_from_the_middle, std::size_t script,
+                     std::size_t every = 1) {
   const TranslatorConfiguration& one = scene.bench.configuration();
   const std::size_t begin = is_from_the_middle ? kLast / 2 : kLast + one.delay_symbols;
   const std::size_t end = script + one.delay_symbols + one.error_mask_symbols + kLead;
   SideBits bits = side_bits_of(encoded(lead() + std::string(end - kLead, '1')));
-  for (std::size_t n = 2 * begin; n < bits.size() - 2 * std::size_t{4}; ++n) bits[n].has_error = true;
+  for (std::size_t n = 2 * begin; n < bits.size() - 2 * std::size_t{4}; n += every) bits[n].has_error = true;
   return bits;
 }
 
@@ -89,7 +92,7 @@ void expect_masked(TranslatorScene& scene, const SideBits& bits, std::string_vie
 
 void receive_errors(TranslatorScene& scene) {
   const MaskRow& row = mask_rows().at(scene.round % mask_rows().size());
-  const SideBits bits = with_errors(scene, row.is_from_the_middle, row.script.size());
+  const SideBits bits = with_errors(scene, row.is_from_the_middle, row.script.size(), row.every);
   scene.exchange(row.script, bits);
   scene.judge.expect(!scene.sent().empty(), "nothing_sent", "a preamble", "nothing");
   expect_masked(scene, bits, "mask_wrong");
@@ -146,12 +149,31 @@ std::vector<TranslatorCase> translator_mask_cases() {
       to_the_bit("the_mask_lasts_its_symbols", "",
                  {{"mask_of_one_symbol_less", "mask_wrong"},
                   {"mask_of_one_symbol_more", "mask_wrong"},
+                  {"mask_has_its_end", "mask_wrong"},
                   {"masked_for_ever", "mask_wrong"},
                   {"mask_from_the_request", "mask_wrong"},
                   {"errors_masked_while_it_sends", "mask_wrong"}}),
       to_the_bit("no_mask_at_all", " = 0", {{"mask_of_20_symbols_at_least", "mask_wrong"}}, with_mask<0>()),
       to_the_bit("the_longest_mask", " = 64", {{"mask_of_63_symbols_at_most", "mask_wrong"}},
                  with_mask<64>()),
+      on_chart(translator_must("blanking/an_error_without_carrier_is_silence", "PST-15",
+                               "Without carrier everything is silence, signal errors too.",
+                               own("without carrier everything is silence"),
+                               {{"error_without_carrier", "error_indicated"}}),
+               {{2, 4},
+                {on_line(),
+                 does("long after a transmission, bits with signal errors and without carrier",
+                      [](TranslatorScene& scene) {
+                        scene.exchange(sent(kLast));
+                        scene.rest();
+                        const char bit = scene.round % 2 == 0 ? 'I' : '1';
+                        scene.exchange("", SideBits(14, {bit, false, true}));
+                      }),
+                 requires_that("silence",
+                               [](TranslatorScene& scene) {
+                                 scene.expect_nothing_indicated("error_indicated", "there is no carrier");
+                               }),
+                 receives()}}),
       on_chart(
           translator_must("blanking/no_mask_without_transmission", "PST-15",
                           "A signal error after a transmission of someone else, or after a request that the "
