@@ -9,7 +9,7 @@ from collections import deque, namedtuple
 from itertools import repeat
 
 from channel_selection import ANSWER, BAD_SIGNAL, DELIMITER_SYMBOLS, NON_DATA, ONE, SILENCE, ZERO, Selection
-from contract import NEVER, SECOND, implementation, serve
+from contract import NEVER, end_of, implementation, serve
 
 MAC, CHANNEL_A, CHANNEL_B = 0, 1, 2  # ports
 FAULT = 1  # item
@@ -32,7 +32,7 @@ class Line:
     def add(self, start, rate, count, packed):
         while self.coming and self.coming[-1].end > start:  # cut short by a new reception
             self.coming.pop()
-        times = [start + 4 * n * SECOND // rate for n in range(count // 4 + 1)]
+        times = [end_of(start, 4 * n, rate) for n in range(count // 4 + 1)]
         levels = [unit for octet in packed for unit in (octet & 15, octet >> 4)]
         self.coming.extend(map(Unit, times, times[1:], levels, repeat(rate)))
 

@@ -18,6 +18,11 @@ VERSION, LEVELS_UNIT, ASKS_FOR_ACTIVITY = 3, 2, 1
 PROTOCOL = b"token_bus"
 
 
+def end_of(start, count, rate):
+    """When `count` levels end that begin at `start`, as the bench rounds it: once, to the nearest picosecond."""
+    return start + (2 * count * SECOND + rate) // (2 * rate)
+
+
 class Stream:
     """Messages of the bench and to it."""
 

@@ -7,7 +7,7 @@ protocols/token_bus/README.md describes it. Here is what the bench calls; statio
 machine, station_line.py its supply, user, line and time, station_frames.py the frames and their levels. --fault NAME
 gives it a fault of station_faults.py."""
 import station_frames as frames
-from contract import ASKS_FOR_ACTIVITY, CHARACTERS, SECOND, implementation, serve
+from contract import ASKS_FOR_ACTIVITY, CHARACTERS, end_of, implementation, serve
 from station_faults import FAULTS
 from station_machine import Machine
 
@@ -51,7 +51,7 @@ class Station:
 
     def receive_levels(self, _, start, rate, count, packed):
         half_bits = frames.unpacked(packed, count, rate, self.machine.half_bit_rate)
-        self.machine.hear(start, start + count * SECOND // rate, half_bits)
+        self.machine.hear(start, end_of(start, count, rate), half_bits)
 
     def activity(self, begins, now):
         self.machine.activity(begins, now)
