@@ -40,7 +40,13 @@ LineMonitor::LineMonitor(const MonitorRules& rules, trace::Trace& trace, trace::
 
 void LineMonitor::on_wave(const line::Waveform& wave) {
   const kernel::Time end = end_of(wave);
+  if (has_heard_ && is_before_the_last(wave.start, end)) {
+    before_until_ = end;
+    return;
+  }
   if (has_heard_) check_pause(wave.start);
+  last_since_ = wave.start;
+  before_until_ = has_heard_ ? heard_until_ : kernel::kStart;
   if (!has_heard_ || wave.start > heard_until_) {
     drive_since_ = wave.start;
     is_drive_told_ = false;
@@ -61,6 +67,10 @@ kernel::Time LineMonitor::end_of(const line::Waveform& wave) {
   }
   if (level_ == kernel::Duration{} || wave.levels.size() > 1'000'000) return wave.end();
   return wave.start + level_ * static_cast<std::int64_t>(wave.levels.size());
+}
+
+bool LineMonitor::is_before_the_last(kernel::Time start, kernel::Time end) const {
+  return before_until_ <= start && start < last_since_ && end <= last_since_;
 }
 
 void LineMonitor::check_pause(kernel::Time start) {

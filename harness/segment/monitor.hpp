@@ -15,7 +15,8 @@
 // a test case looks at. Put it on what is driven into a link (`Link::tap_driven`), or on a place of a medium
 // (`MediumPort::tap_arrived`, and `Medium::watch` for contention).
 //
-// Contract: transmissions come in order of their start. Each violation becomes an observation of the trace
+// Contract: transmissions come in order of their start; one that is known only after a later one may lie in the
+// silence in front of that, and then no pause is judged. Each violation becomes an observation of the trace
 // (value: how long or how many) and enters a list that is bounded; all are counted. A judge reads them at the
 // end of a case, after `finish`.
 namespace fieldproof::segment {
@@ -68,6 +69,7 @@ class LineMonitor final : public Tap, public ContentionWatcher {
 
  private:
   kernel::Time end_of(const line::Waveform& wave);
+  bool is_before_the_last(kernel::Time start, kernel::Time end) const;
   void check_pause(kernel::Time start);
   void check_drive(kernel::Time start, kernel::Time end);
   void check_number(kernel::Time start);
@@ -79,6 +81,8 @@ class LineMonitor final : public Tap, public ContentionWatcher {
   bool has_heard_ = false;
   bool has_changed_ = false;
   kernel::Time heard_until_{};
+  kernel::Time last_since_{};    // the last transmission,
+  kernel::Time before_until_{};  // and the end of what was in front of it
   kernel::Time drive_since_{};
   bool is_drive_told_ = false;
   std::vector<kernel::Time> begins_;  // the last ones, a ring

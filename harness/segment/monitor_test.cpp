@@ -49,6 +49,18 @@ TEST_F(Monitor, SeesOverlapsWithoutAnyRule) {
   EXPECT_EQ(monitor.count(), 2U);
 }
 
+TEST_F(Monitor, TakesWhatIsKnownLaterAndLiesInTheSilenceBefore) {
+  LineMonitor monitor = made({});
+  monitor.on_wave(wave(Duration{}, 10));
+  monitor.on_wave(wave(40 * kMicrosecond, 10));
+  monitor.on_wave(wave(20 * kMicrosecond, 20));
+  EXPECT_EQ(text(monitor), "");
+  monitor.on_wave(wave(39 * kMicrosecond, 1));
+  EXPECT_EQ(monitor.count(), 1U) << "it overlaps what lies there";
+  monitor.on_wave(wave(10 * kMicrosecond, 10));
+  EXPECT_EQ(monitor.count(), 2U) << "what lies further back is not known any more";
+}
+
 TEST_F(Monitor, SeesSilencesOnBothSidesOfTheLimit) {
   MonitorRules rules;
   rules.longest_silence = 25 * kMicrosecond;
