@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/probe/probe_fixture.hpp"
+#include "harness/kernel/campaign.hpp"
 #include "harness/kernel/random.hpp"
 
 namespace fieldproof::cli {
@@ -74,8 +75,7 @@ TEST_F(Interrupted, BySigkillKeepsEveryVerdictThatWasPrinted) {
 // At random instants: what was printed is in the journal, whatever else is there can be read, and the run
 // goes on to the same end. FIELDPROOF_KILLS says how many, where 20 are too few.
 TEST_F(Interrupted, BySigkillAtAnyInstantLosesNothingThatIsJudged) {
-  const char* const asked_for = std::getenv("FIELDPROOF_KILLS");
-  const int kills = asked_for != nullptr ? std::max(1, std::atoi(asked_for)) : 20;
+  const auto kills = static_cast<int>(kernel::campaign_count("FIELDPROOF_KILLS", 20));
   const std::vector<std::string> run = {"run", "odd/slow/**", "--jobs", "2", "--seed", "5", "--out"};
   const auto into = [&](const std::string& directory) {
     std::vector<std::string> words = run;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "protocols/fieldbus_dll/control_loop.hpp"
-#include "protocols/fieldbus_dll/take_over_instants.hpp"
+#include "harness/kernel/campaign.hpp"
 #include "protocols/fieldbus_dll/take_over_run.hpp"
 
 namespace fieldproof::papers {
@@ -60,7 +60,7 @@ TEST_P(TakeOverUnderBursts, IsByTheLowestLinkMasterInTimeAndAlone) {
   const auto& [profile, bit_rate, repetition] = GetParam();
   const kernel::Duration silence = fieldbus_dll::take_over_silence(bit_rate);
   std::uint64_t changed = 0;
-  for (std::uint64_t seed = 1; seed <= fieldbus_dll::instants_of_test(10); ++seed) {
+  for (std::uint64_t seed = 1; seed <= kernel::campaign_count("FIELDPROOF_INSTANTS", 10); ++seed) {
     const TakeOver found = fieldbus_dll::run_take_over(
         {.seed = seed,
          .bit_rate = bit_rate,

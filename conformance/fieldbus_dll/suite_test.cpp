@@ -10,7 +10,7 @@ namespace {
 
 TEST(FieldbusDllSuite, ReferencesPassInManySeedsWithoutAFalseAlarm) {
   const auto suite = fieldbus_dll_suite();
-  for (std::uint64_t seed = 1; seed <= kManySeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= many_seeds(); ++seed) {
     EXPECT_THAT(false_alarms(*suite, seed), testing::IsEmpty());
   }
 }

@@ -12,7 +12,7 @@ namespace {
 
 TEST(TokenBusSuite, ReferencesPassInManySeedsWithoutAFalseAlarm) {
   const auto suite = token_bus_suite();
-  for (std::uint64_t seed = 1; seed <= kManySeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= many_seeds(); ++seed) {
     EXPECT_THAT(false_alarms(*suite, seed), testing::IsEmpty());
   }
 }

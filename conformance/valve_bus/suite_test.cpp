@@ -11,7 +11,7 @@ namespace {
 
 TEST(ValveBusSuite, ReferencesPassInManySeedsWithoutAFalseAlarm) {
   const auto suite = valve_bus_suite();
-  for (std::uint64_t seed = 1; seed <= kManySeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= many_seeds(); ++seed) {
     EXPECT_THAT(false_alarms(*suite, seed), testing::IsEmpty());
   }
   // Here two pitches of a scan come out alike at first sight.

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "protocols/fieldbus_dll/take_over_instants.hpp"
+#include "harness/kernel/campaign.hpp"
 
 namespace fieldproof::fieldbus_dll {
 namespace {
@@ -11,7 +11,7 @@ class TakeOverAtRandomInstants : public testing::TestWithParam<double> {};
 
 TEST_P(TakeOverAtRandomInstants, IsByTheLowestLinkMasterInTimeAndAlone) {
   const kernel::Duration octet = kernel::levels_duration(8, 31'250);
-  for (std::uint64_t seed = 1; seed <= instants_of_test(200); ++seed) {
+  for (std::uint64_t seed = 1; seed <= kernel::campaign_count("FIELDPROOF_INSTANTS", 200); ++seed) {
     const TakeOver found = run_take_over(
         {.seed = seed, .disturb = losing_frames(GetParam(), kernel::Random(seed).split("losses"))});
     ASSERT_EQ(found.claimer, 0x11) << seed;
