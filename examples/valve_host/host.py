@@ -161,8 +161,8 @@ class Host:
         if request.command == WRITE:
             self.end_write(request)
             return
-        self.known[request.id] = data0, data1
         if not request.is_verifying:
+            self.known[request.id] = data0, data1
             self.report_response(request.id, False, now)
         elif (data0, data1) != (request.data0, request.data1):
             self.report_error(request.id, READ_BACK, now)

@@ -30,7 +30,7 @@ FAULTS = {
     "wrong_repeats_at_once": ("repeats at once after a wrong response", "memory/each_read_has_its_own_outcome", WRONG,
                               WRONG + "                self.fail(now)\n"),
     "old_modulo_64": ("keeps what it read by ID modulo 64", "memory/each_read_has_its_own_outcome", KEEPS,
-                      KEEPS + "\n        self.known[request.id ^ 64] = data0, data1"),
+                      KEEPS + "\n            self.known[request.id ^ 64] = data0, data1"),
     "counts_8_bits": ("has counters of 8 bits", "memory/counters_go_beyond_8_bits",
                       "self.counters.get(item, 0) + 1", "self.counters.get(item, 0) + 1 & 255"),
     "known_over_power": ("reports what it read before its supply was off", "memory/nothing_survives_power",
