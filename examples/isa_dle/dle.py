@@ -79,6 +79,8 @@ class Station(LinkEnd):
             if not self.is_address(octets[1]) and (kind != "du" or octets[1] != self.s["everybody"]):
                 return None
             most = {"cd": 0, "et": 0, "es": 2}.get(kind, self.s[f"most_data_{first & PRIORITY}"])
+            if kind == "es" and octets[3:] == b"\0\0":
+                return None
             return kind if (2 if kind == "es" else 0) <= size - 3 <= most else None
         return None
 

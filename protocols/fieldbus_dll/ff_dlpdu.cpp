@@ -193,7 +193,7 @@ std::string_view layout_text(Field field) {
     case Field::node:
       return "node (1)";
     case Field::duration:
-      return "duration in octets (2)";
+      return "duration in octets, not 0 (2)";
     case Field::version:
       return "version of the schedule (2)";
     case Field::link_time:

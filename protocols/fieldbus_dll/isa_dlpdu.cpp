@@ -110,7 +110,7 @@ std::string_view reason_text(EndReason reason) {
 std::string_view layout_of_fields(IsaType type) {
   switch (type) {
     case IsaType::es:
-      return ", duration in octets (2)";
+      return ", duration in octets, not 0 (2)";
     case IsaType::ee:
       return ", reason (1): 0 nothing to send, 1 no time, 2 single frame done";
     case IsaType::tl:
