@@ -24,6 +24,8 @@ std::vector<judge::Pics::Answer> answers_to_try(const judge::PicsItem& item) {
   return answers;
 }
 
+constexpr std::size_t kSequencesOfAnswers = 40;  // of each derived case: there are many declarations
+
 class RoleWithAnswers {
  public:
   RoleWithAnswers(const Suite& suite, const RoleRow& role) : suite_(suite) {
@@ -64,6 +66,7 @@ class RoleWithAnswers {
   Setup setup_of(const ValueRow& row) const {
     Setup setup;
     setup.volume = Volume::quick;
+    setup.sequences = kSequencesOfAnswers;
     setup.pics.emplace();
     for (std::size_t n = 0; n < row.size(); ++n)
       setup.pics->declare(items_[n].first, items_[n].second.at(row[n]));

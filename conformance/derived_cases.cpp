@@ -17,10 +17,7 @@ using judge::Verdict;
 constexpr std::string_view kFolder = "/derived/";
 constexpr std::string_view kOfImplementation = "implementation_";  // reasons begin so: it crashed, it hangs
 constexpr std::size_t kMostSaid = 10;                              // commands of a sequence, in a finding
-constexpr std::size_t kQuick = 60;
-constexpr std::size_t kFewest = 10;  // of a kind that costs much
-constexpr std::size_t kFull = 1'000;
-constexpr std::uint64_t kFingerprintFactor = 0x100'0000'01B3;  // of FNV-1a
+constexpr std::uint64_t kFingerprintFactor = 0x100'0000'01B3;      // of FNV-1a
 
 TestCase derived_case(const SequenceRole& role, const DerivedRow& row) {
   const std::string& id = role.test_case.id;
@@ -164,7 +161,7 @@ class DerivedResult {
 
 std::size_t derived_count(DerivedKind kind, Volume volume) {
   const auto row = std::ranges::find(kDerivedRows, kind, &DerivedRow::kind);
-  return volume == Volume::quick ? std::max(kQuick / row->cost, kFewest) : kFull / row->cost;
+  return volume == Volume::quick ? row->quick : row->full;
 }
 
 std::vector<TestCase> derived_cases(const SequenceRole& role) {

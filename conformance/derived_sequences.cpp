@@ -4,11 +4,12 @@
 #include <functional>
 #include <utility>
 
+#include "conformance/covering_array.hpp"
 #include "conformance/sequence_settings.hpp"
 
 namespace fieldproof::conformance {
 
-const std::array<DerivedRow, 5> kDerivedRows{{
+const std::array<DerivedRow, 6> kDerivedRows{{
     {DerivedKind::values, "each_number_at_its_boundaries",
      "Each number of each command at both ends, beside them, at each power of two and at what the rules "
      "name, "
@@ -18,8 +19,10 @@ const std::array<DerivedRow, 5> kDerivedRows{{
      "transmission unspoilt; and two faults at once."},
     {DerivedKind::words, "each_three_commands_in_each_order",
      "Each three commands, usual and unusual, one after the other."},
+    {DerivedKind::states, "each_command_in_each_state",
+     "Each command, with each of its choices, in each state into which commands bring a station.", 1'500},
     {DerivedKind::repetitions, "the_same_many_times",
-     "Each command again and again, two commands in turn, and others after them.", 15},
+     "Each command again and again, two commands in turn, and others after them.", 30, 350},
     {DerivedKind::settings, "each_setting_at_its_ends",
      "Each setting at both ends of its range and beside them, and one of each command; and two settings at "
      "once."},
@@ -29,9 +32,10 @@ namespace {
 
 constexpr std::array<std::size_t, 3> kRepetitions{2, 20, 130};
 constexpr std::size_t kManyRepetitions = 300;
-constexpr std::size_t kOrder = 3;       // words of which all orders occur
-constexpr std::size_t kNewOfWalk = 4;   // words that a walk has beyond those it shares with the one before
-constexpr std::size_t kTourLength = 5;  // commands with a setting
+constexpr std::size_t kOrder = 3;          // words of which all orders occur
+constexpr std::size_t kNewOfWalk = 4;      // words that a walk has beyond those it shares with the one before
+constexpr std::size_t kTourLength = 5;     // commands with a setting
+constexpr std::int64_t kMostChoices = 20;  // of a number: more are a quantity
 
 void add_once(std::vector<std::int64_t>& values, std::int64_t value) {
   if (std::ranges::find(values, value) == values.end()) values.push_back(value);
@@ -60,6 +64,8 @@ class Derivation {
         return faults();
       case DerivedKind::words:
         return walks();
+      case DerivedKind::states:
+        return states();
       case DerivedKind::repetitions:
         return repetitions();
       case DerivedKind::settings:
@@ -68,9 +74,30 @@ class Derivation {
     return {};
   }
 
+  // Each two values of two numbers of a word, together.
+  std::vector<std::function<Sequence()>> pairs() {
+    Makers all;
+    for (const std::size_t word : words_) {
+      const std::vector<SequenceNumber>& numbers = vocabulary_.words[word].numbers;
+      if (numbers.size() < 2) continue;
+      std::vector<std::vector<std::int64_t>> values;
+      std::vector<std::size_t> counts;
+      for (const SequenceNumber& number : numbers)
+        counts.push_back(values.emplace_back(derived_values(number)).size());
+      for (const ValueRow& row :
+           covering_array(counts, [](const ValueRow&) { return true; }, random_.split(word)).rows) {
+        SequenceCommand command = simple(word);
+        for (std::size_t n = 0; n < row.size(); ++n) command.numbers[n] = values[n][row[n]];
+        all.push_back([this, n = all.size(), command = std::move(command)] { return within(n, {command}); });
+      }
+    }
+    return all;
+  }
+
   // About two things, drawn; with no commands where there is nothing to draw.
   Sequence of_two(DerivedKind kind) {
     switch (kind) {
+      case DerivedKind::states:
       case DerivedKind::values:
         return between_others({drawn(any_word())});
       case DerivedKind::faults:
@@ -119,9 +146,15 @@ class Derivation {
     Sequence sequence{beginning(n)};
     if (n % 2 == 1) sequence.commands.push_back(letter(n / 2));
     for (SequenceCommand& one : about) sequence.commands.push_back(std::move(one));
-    sequence.commands.push_back(simple(words_[n % words_.size()]));
-    sequence.commands.push_back(simple(words_[(n + 1 + n / words_.size()) % words_.size()]));
+    append_each(sequence, n / 2);
     return sequence;
+  }
+  // One of each command, in their order or the other; after what is lost nothing would be seen.
+  void append_each(Sequence& sequence, std::size_t n) const {
+    std::vector<std::size_t> order = words_;
+    if (n % 2 == 1) std::ranges::reverse(order);
+    std::ranges::stable_partition(order, [&](std::size_t word) { return !vocabulary_.words[word].is_loss; });
+    for (const std::size_t word : order) sequence.commands.push_back(simple(word));
   }
   Sequence between_others(std::vector<SequenceCommand> about) {
     return within(random_.below(letters_.size() * words_.size() * 2), std::move(about));
@@ -239,6 +272,42 @@ class Derivation {
     return all;
   }
 
+  // A number of few values chooses: which station, which kind. Each of these is a command of its own, and of
+  // other numbers the ends.
+  std::vector<SequenceCommand> choices() const {
+    std::vector<SequenceCommand> all;
+    for (const std::size_t word : words_) {
+      const SequenceCommand usual = all.emplace_back(simple(word));
+      const std::vector<SequenceNumber>& numbers = vocabulary_.words[word].numbers;
+      for (std::size_t n = 0; n < numbers.size(); ++n) {
+        const bool is_choice = numbers[n].most - numbers[n].least < kMostChoices;
+        for (const std::int64_t value : derived_values(numbers[n])) {
+          if (value == usual.numbers[n]) continue;
+          if (!is_choice && value != numbers[n].least && value != numbers[n].most) continue;
+          all.push_back(usual);
+          all.back().numbers[n] = value;
+        }
+      }
+    }
+    return all;
+  }
+
+  Makers states() const {
+    Makers all;
+    const std::vector<SequenceCommand> commands = choices();
+    for (std::size_t state = 0; state <= vocabulary_.beginnings.size(); ++state) {
+      for (std::size_t n = 0; n < commands.size(); ++n) {
+        all.push_back([this, state, n, command = commands[n]] {
+          Sequence sequence{beginning(state)};
+          sequence.commands.push_back(command);
+          append_each(sequence, state + n);
+          return sequence;
+        });
+      }
+    }
+    return all;
+  }
+
   Sequence walk_with(SequenceCommand command) {
     Sequence sequence{beginning(random_.below(vocabulary_.beginnings.size() + 1))};
     for (std::size_t n = 0; n < kOrder; ++n) sequence.commands.push_back(any_letter());
@@ -282,6 +351,14 @@ class Derivation {
           all.push_back([this, which, value, n] {
             const std::array<SettingChoice, 1> chosen{{{which, value}}};
             return Sequence{tour(n), settings_of(chosen, vocabulary_)};
+          });
+        }
+        for (std::size_t state = 0; state <= vocabulary_.beginnings.size(); ++state) {
+          all.push_back([this, which, value, state, n = all.size()] {
+            const std::array<SettingChoice, 1> chosen{{{which, value}}};
+            Sequence sequence{beginning(state), settings_of(chosen, vocabulary_)};
+            append_each(sequence, n);
+            return sequence;
           });
         }
       }
@@ -350,7 +427,13 @@ DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& v
   }
   derived.taken = singles.size();
   for (const auto& make : singles) derived.sequences.push_back(make());
-  for (std::size_t n = singles.size(); n < most; ++n) {
+  if (kind == DerivedKind::values && singles.size() < most) {
+    auto pairs = derivation.pairs();
+    random.split("pairs").shuffle(pairs);
+    pairs.resize(std::min(pairs.size(), most - singles.size()));
+    for (const auto& make : pairs) derived.sequences.push_back(make());
+  }
+  while (derived.sequences.size() < most) {
     Sequence another = derivation.of_two(kind);
     if (another.commands.empty()) break;
     derived.sequences.push_back(std::move(another));

@@ -15,19 +15,21 @@
 // each word at its boundaries, each unit of each transmission spoilt, each setting at its ends, each three
 // words in each order, the same many times. A new word, number or setting gets all of it by its row.
 //
-// Whatever a sequence is about stands between others: in front of it a word that leaves something behind,
-// after it words that show what it has left behind.
+// Whatever a sequence is about stands between others: in front of it what brings the station into a state,
+// and a word that leaves something behind; after it one of each word, in their order or the other, which
+// shows what it has left behind.
 namespace fieldproof::conformance {
 
-enum class DerivedKind : std::uint8_t { values, faults, words, repetitions, settings };
+enum class DerivedKind : std::uint8_t { values, faults, words, states, repetitions, settings };
 
 struct DerivedRow {
   DerivedKind kind;
   std::string_view name;  // of its case, after "PROTOCOL/ROLE/derived/"
   std::string_view stimulus;
-  std::size_t cost = 1;  // a sequence takes as long as so many of the others
+  std::size_t quick = 400;  // sequences of it at this volume
+  std::size_t full = 5'000;
 };
-extern const std::array<DerivedRow, 5> kDerivedRows;
+extern const std::array<DerivedRow, 6> kDerivedRows;
 
 // What may be chosen for a number of a command: both ends, their neighbours, powers of two and their
 // neighbours, and what the vocabulary names; each once, what is simple first.
@@ -46,7 +48,8 @@ struct DerivedSequences {
 };
 
 // All sequences about one thing when `most` is enough for them, else as many of them, drawn; what is left of
-// `most` is drawn of those about two things. The same stream gives the same sequences.
+// `most` is about two things: each two values of two numbers of a word together, then what is drawn. The same
+// stream gives the same sequences.
 DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
                                    kernel::Random random);
 

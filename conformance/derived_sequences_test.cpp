@@ -100,6 +100,48 @@ TEST(DerivedSequences, BeginInEachStateOfTheVocabulary) {
   }
 }
 
+TEST(DerivedSequences, GiveEachChoiceInEachState) {
+  SequenceVocabulary vocabulary = two_words();
+  const SequenceCommand waits{.word = 1, .numbers = {3}};
+  vocabulary.beginnings = {{waits, waits, waits, waits}};
+  const DerivedSequences all = all_of(DerivedKind::states, vocabulary);
+  for (const bool is_in_state : {false, true}) {
+    for (std::int64_t ms = 1; ms <= 3; ++ms) {
+      const auto is_it = [&](const Sequence& one) {
+        const std::size_t at = is_in_state ? 4 : 0;
+        return one.commands.size() == at + 3 &&
+               one.commands[at] == SequenceCommand{.word = 1, .numbers = {ms}};
+      };
+      EXPECT_GE(std::ranges::count_if(std::span(all.sequences).first(all.singles), is_it), 1)
+          << is_in_state << " " << ms;
+    }
+  }
+}
+
+TEST(DerivedSequences, EndWithWhatIsLost) {
+  SequenceVocabulary vocabulary = two_words();
+  vocabulary.words[0].is_loss = true;
+  for (const Sequence& one : all_of(DerivedKind::states, vocabulary).sequences) {
+    if (one.commands.size() == 3) {
+      EXPECT_EQ(one.commands.back().word, 0U);
+    }
+  }
+}
+
+TEST(DerivedSequences, HaveEachTwoValuesOfTwoNumbersTogether) {
+  SequenceVocabulary vocabulary = two_words();
+  vocabulary.words[1].numbers = {{"ms", 1, 3, 2, {}, true}, {"how", 0, 2, 0}};
+  const DerivedSequences all = all_of(DerivedKind::values, vocabulary);
+  for (const std::int64_t ms : derived_values(vocabulary.words[1].numbers[0])) {
+    for (std::int64_t how = 0; how <= 2; ++how) {
+      const SequenceCommand wanted{.word = 1, .numbers = {ms, how}};
+      EXPECT_TRUE(std::ranges::any_of(
+          all.sequences, [&](const Sequence& one) { return std::ranges::count(one.commands, wanted) > 0; }))
+          << ms << " " << how;
+    }
+  }
+}
+
 TEST(DerivedSequences, AreTheSameForOneStreamAndOthersForAnother) {
   const SequenceVocabulary vocabulary = two_words();
   for (const DerivedRow& row : kDerivedRows) {

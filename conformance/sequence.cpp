@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/field/words.hpp"
+#include "harness/kernel/check.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -124,6 +125,28 @@ SequenceCommand simple_command(const SequenceVocabulary& vocabulary, std::size_t
 
 SequenceVocabulary without_settings(SequenceVocabulary vocabulary) {
   vocabulary.settings.clear();
+  return vocabulary;
+}
+
+SequenceVocabulary with_beginnings(SequenceVocabulary vocabulary,
+                                   const std::vector<std::vector<NamedCommand>>& states) {
+  const auto command_of = [&](const NamedCommand& named) {
+    const SequenceWord* const word = vocabulary.find(named.word);
+    FIELDPROOF_CHECK(word != nullptr, "a state is reached by words of the vocabulary");
+    SequenceCommand command =
+        simple_command(vocabulary, static_cast<std::size_t>(word - vocabulary.words.data()));
+    for (const auto& [name, value] : named.numbers) {
+      const auto number = std::ranges::find(word->numbers, name, &SequenceNumber::name);
+      FIELDPROOF_CHECK(number != word->numbers.end() && number->least <= value && value <= number->most,
+                       "a state is reached by numbers of the vocabulary");
+      command.numbers[static_cast<std::size_t>(number - word->numbers.begin())] = value;
+    }
+    return command;
+  };
+  for (const std::vector<NamedCommand>& state : states) {
+    std::vector<SequenceCommand>& commands = vocabulary.beginnings.emplace_back();
+    for (const NamedCommand& one : state) commands.push_back(command_of(one));
+  }
   return vocabulary;
 }
 

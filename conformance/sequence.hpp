@@ -58,6 +58,7 @@ struct SequenceWord {
   std::size_t most_octets = 0;  // octets of any value behind the numbers
   unsigned units = 0;           // of a transmission without octets; a word with neither takes no faults
   unsigned weight = 1;          // how often it is drawn, beside the others
+  bool is_loss = false;         // what went before is lost with it, as with the supply
 };
 
 // A setting that a sequence may begin with: a number with a name and a list of its own.
@@ -110,13 +111,21 @@ struct Sequence {
   friend bool operator==(const Sequence&, const Sequence&) = default;
 };
 
-// Units of the transmission of a command, without its faults.
 // The numbers of a word that are not given, by their place, are the simple ones.
 using GivenNumbers = std::initializer_list<std::pair<std::size_t, std::int64_t>>;
 SequenceCommand simple_command(const SequenceVocabulary& vocabulary, std::size_t word,
                                GivenNumbers given = {});
 SequenceVocabulary without_settings(SequenceVocabulary vocabulary);
 
+// A command in the words of its vocabulary; the numbers that are not named are the simple ones.
+struct NamedCommand {
+  std::string_view word;
+  std::vector<std::pair<std::string_view, std::int64_t>> numbers{};
+};
+SequenceVocabulary with_beginnings(SequenceVocabulary vocabulary,
+                                   const std::vector<std::vector<NamedCommand>>& states);
+
+// Units of the transmission of a command, without its faults.
 std::size_t units_of(const SequenceWord& word, const SequenceCommand& command);
 std::size_t flips_in(const Sequence& sequence);
 std::size_t faults_in(const Sequence& sequence);

@@ -106,8 +106,9 @@ struct Setup {
   std::optional<judge::Pics> pics;
   field::Settings settings{};  // of a sequence
   Volume volume = Volume::full;
-  iut::PeerLimits limits{};  // of implementations in other processes
-  bool record = false;       // keep the trace and what the implementations did (bounded) in the outcome
+  std::optional<std::size_t> sequences{};  // of each derived case; nothing: as many as the volume says
+  iut::PeerLimits limits{};                // of implementations in other processes
+  bool record = false;  // keep the trace and what the implementations did (bounded) in the outcome
   // The implementations of this program are called as those outside are, too: what can be recorded of them,
   // and played back, is the same to the bit.
   bool as_device = false;

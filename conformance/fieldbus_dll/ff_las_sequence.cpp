@@ -383,6 +383,7 @@ const SequenceRole& ff_las_sequence_role() {
       {{DerivedKind::values, {"steps_to_the_extreme", "priority_wrong"}},
        {DerivedKind::faults, {"steers_the_wrong_way", "priority_wrong"}},
        {DerivedKind::words, {"token_over_due", "token_over_due"}},
+       {DerivedKind::states, {"steps_back_to_the_extreme", "priority_wrong"}},
        {DerivedKind::repetitions, {"target_ignored", "priority_wrong"}},
        {DerivedKind::settings, {"time_at_half_speed", "time_wrong"}}}};
   return role;

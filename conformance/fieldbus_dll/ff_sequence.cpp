@@ -38,6 +38,8 @@ constexpr std::array<std::int64_t, 12> kFfSizes{0, 1, 2, 8, 9, 10, 63, 64, 65, 1
 constexpr std::array<std::int64_t, 8> kFfTimes{1, 1, 1, 1, 1, 1, 40, 150};
 constexpr std::array<std::int64_t, 8> kFfWrites{1, 1, 1, 1, 2, 2, 128, 255};
 
+constexpr std::int64_t kSameAgain = 4;  // of "first": the data of the DT1 or DT3 before
+
 enum class FfWord : std::uint8_t {
   token,
   compel,
@@ -96,7 +98,7 @@ std::vector<SequenceWord> ff_device_words() {
            .weight = 5},
           {.word = "other",
            .meaning = "TD, CL, TL, RT, SR, RI, PR, CT, IDLE, or what is none, with this in its last octet",
-           .numbers = {{"kind", 0, 10, 0}, {"value", 0, 255, 1}, link_length(), link_silence()},
+           .numbers = {{"kind", 0, 11, 0}, {"value", 0, 255, 1}, link_length(), link_silence()},
            .units = 7,
            .weight = 8},
           {.word = "data",
@@ -105,7 +107,7 @@ std::vector<SequenceWord> ff_device_words() {
                        {"from", 0, 4, 0},
                        ff_priority(),
                        ff_truth("final"),
-                       {"first", 0, 3, 0},
+                       {"first", 0, kSameAgain, 0},
                        {"size", 0, 260, 8, kFfSizes},
                        link_silence()},
            .units = 11,
@@ -143,12 +145,34 @@ std::vector<SequenceWord> ff_device_words() {
                        {"times", 1, 300, 1, kFfWrites},
                        ff_truth("same")},
            .weight = 18},
-          {.word = "supply", .meaning = "is off, or comes", .numbers = {ff_truth("on")}, .weight = 1},
+          link_supply(),
           {.word = "one", .meaning = "until the device has sent one DLPDU, or does not", .weight = 8},
           {.word = "wait",
            .meaning = "silence of so many octet durations",
            .numbers = {link_wait()},
            .weight = 3}};
+}
+
+// What a device has to send, holds, waits for or has lost.
+std::vector<std::vector<NamedCommand>> states_of_a_device() {
+  const NamedCommand large{"submit", {{"priority", 3}, {"size", 64}}};
+  const NamedCommand usual{"submit"};
+  const NamedCommand small{"submit", {{"priority", 1}, {"size", 1}}};
+  const NamedCommand written{"write"};
+  const NamedCommand token_held{"token", {{"silence", 4}}};
+  const NamedCommand answer_due{"compel", {{"silence", 4}}};
+  const NamedCommand lost{"supply"};
+  return {{large, usual, small},  // data of each priority
+          {written,
+           {"write", {{"buffer", 1}, {"times", 2}, {"same", 1}}},
+           {"write", {{"buffer", 2}}}},  // what it publishes
+          {written, answer_due},
+          {usual, token_held},
+          {large, usual, written, token_held, lost},
+          {large, usual, written, answer_due, lost, {"activation"}},
+          {lost, {"activation", {{"priority", 3}, {"long", 1}, {"more", 2}}}},
+          {{"data"}, {"published"}},
+          {{"supply", {{"how", kSupplyGoes}}}}};
 }
 
 SequenceVocabulary ff_device_vocabulary() {
@@ -165,7 +189,7 @@ class FfWords {
  public:
   explicit FfWords(FfBench& bench) : bench_(bench), codes_(bench.rules().codes) {}
 
-  Octets octets_of(FfWord word, const std::vector<std::int64_t>& numbers) const {
+  Octets octets_of(FfWord word, const std::vector<std::int64_t>& numbers) {
     switch (word) {
       case FfWord::token:
         return with_length(
@@ -228,7 +252,7 @@ class FfWords {
     return octets;
   }
   Octets other(std::int64_t kind, std::uint8_t value) const {
-    const std::array<Octets, 11> all{Octets{codes_.td, 0, 0, 0, 1, 0, value},
+    const std::array<Octets, 12> all{Octets{codes_.td, 0, 0, 0, 1, 0, value},
                                      Octets{codes_.cl, value},
                                      Octets{codes_.tl, value, 0, 1},
                                      Octets{codes_.rt},
@@ -238,10 +262,11 @@ class FfWords {
                                      Octets{codes_.ct, value},
                                      Octets{codes_.idle},
                                      Octets{0xE2, bench_.node(), value},
-                                     Octets{codes_.ri, 0, 0}};
+                                     Octets{codes_.ri, 0, 0},
+                                     Octets{codes_.sr, 2}};
     return all.at(static_cast<std::size_t>(kind));
   }
-  Octets data(const std::vector<std::int64_t>& numbers) const {
+  Octets data(const std::vector<std::int64_t>& numbers) {
     const auto own = static_cast<FfAddress>(bench_.node()) << 8;
     constexpr FfAddress kTopOfNode = 0x8000;
     const std::array<FfAddress, 10> to{own | 0x40,
@@ -266,7 +291,7 @@ class FfWords {
         is_long);
     return with_content(std::move(octets), numbers[4], numbers[5]);
   }
-  Octets published(const std::vector<std::int64_t>& numbers) const {
+  Octets published(const std::vector<std::int64_t>& numbers) {
     const std::array<FfAddress, 6> all{FfBench::kSubscribed,     kLongSubscribed,
                                        FfBench::kSubscribed + 1, kLongSubscribed + kFfLink,
                                        FfBench::kPublished,      FfBench::kSubscribed};
@@ -288,15 +313,19 @@ class FfWords {
     return octets;
   }
   // By its first octet it is what entities know, or do not.
-  Octets with_content(Octets octets, std::int64_t first, std::int64_t size) const {
-    Octets content = bench_.numbered_data(static_cast<std::size_t>(size));
-    if (first > 0 && !content.empty()) content[0] = static_cast<std::uint8_t>(first - 1);
+  Octets with_content(Octets octets, std::int64_t first, std::int64_t size) {
+    Octets content =
+        first == kSameAgain ? last_content_ : bench_.numbered_data(static_cast<std::size_t>(size));
+    last_content_ = content;
+    if (first > 0 && first != kSameAgain && !content.empty())
+      content[0] = static_cast<std::uint8_t>(first - 1);
     octets.insert(octets.end(), content.begin(), content.end());
     return octets;
   }
 
   FfBench& bench_;
   const fieldbus_dll::FfCodes& codes_;
+  Octets last_content_{};
 };
 
 class FfSequenceRun {
@@ -324,7 +353,7 @@ class FfSequenceRun {
         if (const auto one = bench_.next()) return object(model_.say(*one), bench_.words(*one), one->begin);
         return await_response_window();
       case FfWord::supply:
-        return set_supply(command.numbers[0] != 0);
+        return switch_supply(command.numbers[0]);
       case FfWord::submit:
         return submit(command.numbers);
       case FfWord::write:
@@ -352,6 +381,10 @@ class FfSequenceRun {
     judge_said();
   }
 
+  void switch_supply(std::int64_t how) {
+    if (how != kSupplyComes) set_supply(false);
+    if (how != kSupplyGoes) set_supply(true);
+  }
   void set_supply(bool is_on) {
     if (is_on == model_.has_supply()) return;
     bench_.set_supply(is_on);
@@ -439,10 +472,11 @@ const SequenceRole& ff_device_sequence_role() {
        .expected = "What a model of the rules says.",
        .tags = {},
        .catches = {}},
-      ff_device_vocabulary(),
+      with_beginnings(ff_device_vocabulary(), states_of_a_device()),
       {{DerivedKind::values, {"tells_twice", "delivered_unasked"}},
-       {DerivedKind::faults, {"tells_live_lists", "told_otherwise"}},
+       {DerivedKind::faults, {"no_probe_response", "no_answer"}},
        {DerivedKind::words, {"subscribed_to_none", "not_delivered"}},
+       {DerivedKind::states, {"mute_after_activation", "token_not_returned"}},
        {DerivedKind::repetitions, {"tells_other_source", "delivered_otherwise"}},
        {DerivedKind::settings, {"tells_no_writes", "delivered_otherwise"}}}};
   return role;

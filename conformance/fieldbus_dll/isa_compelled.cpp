@@ -53,6 +53,11 @@ IsaStep replied(std::size_t number, std::string reason_for_other_data) {
       });
 }
 
+void with_other_isa_codes(fieldbus_dll::IsaConfiguration& configuration) {
+  configuration.rules.codes = {
+      .cd = 0xC0, .dt = 0x10, .du = 0x20, .et = 0x80, .es = 0x40, .ee = 0xE0, .tl = 0x35};
+}
+
 }  // namespace
 
 std::vector<IsaCase> isa_compelled_cases() {
@@ -102,6 +107,16 @@ std::vector<IsaCase> isa_compelled_cases() {
                {{},
                 {offer(normal), cd(urgent), replied(0, "lower_priority_sent"), over, offer(urgent),
                  cd(normal), replied(2, "data_wrong"), over, cd(normal), replied(1, "data_wrong"), over}}),
+      on_chart(must_case("fieldbus_dll/isa_dle/settings/other_codes_are_used", "ISA-22",
+                         "The first octets of DLPDUs are those of the link.",
+                         own("codes are settings, because their standard was not at hand"),
+                         {{"codes_of_the_usual_link", "no_reply"}}, {forming}),
+               {{},
+                {offer(normal), cd(normal), replied(1, "data_wrong"), over, submit({normal}, 8), et(normal),
+                 used({2}, {"no_data_frame", "sent_twice"}), submit({normal, normal}, 8), es(normal, 500),
+                 used({3, 4}, {"no_data_frame", "sent_twice"}),
+                 end_reason(fieldbus_dll::EndReason::nothing_to_send)}},
+               {.change = with_other_isa_codes}),
   };
 }
 

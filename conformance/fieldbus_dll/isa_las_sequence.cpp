@@ -324,6 +324,7 @@ const SequenceRole& isa_las_sequence_role() {
       {{DerivedKind::values, {"schedule_late", "line_left_silent"}},
        {DerivedKind::faults, {"schedule_not_begun", "line_left_silent"}},
        {DerivedKind::words, {"schedule_early", "delegation_early"}},
+       {DerivedKind::states, {"retakes_early", "answers_too_early"}},
        {DerivedKind::repetitions, {"waits_out_duration", "line_left_silent"}},
        {DerivedKind::settings, {"transfer_without_version", "transfer_wrong"}}}};
   return role;

@@ -96,6 +96,8 @@ std::vector<IsaRow> isa_reply_rows() {
       {"reply_ignores_priority", "", "replies with less urgent data", mutant<ReplyIgnoresPriority>()},
       {"urgent_as_long_as_normal", "", "accepts urgent data of 128 octets", mutant<UrgentAsLongAsNormal>()},
       {"one_octet_less", "", "refuses the longest data", mutant<OneOctetLess>()},
+      {"codes_of_the_usual_link", "", "knows the usual codes, whatever its link has",
+       with_rules<IsaDle>([](IsaRules& rules) { rules.codes = {}; })},
       {"broadcast_not_delivered", "", "does not deliver data for everybody", mutant<BroadcastNotDelivered>()},
       {"broadcast_answered", "", "answers data for everybody", mutant<BroadcastAnswered>()},
       {"tells_other_source", "", "reports another source to its user",

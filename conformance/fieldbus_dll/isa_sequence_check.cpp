@@ -119,7 +119,7 @@ std::vector<SequenceWord> isa_dle_words() {
           {.word = "other",
            .meaning = "EE, TL, or what is none, with this in its last octet",
            .numbers =
-               {{"kind", 0, 3, 0}, isa_to(), isa_from(), {"value", 0, 255, 0}, link_length(), link_silence()},
+               {{"kind", 0, 6, 0}, isa_to(), isa_from(), {"value", 0, 255, 0}, link_length(), link_silence()},
            .units = 8,
            .weight = 6},
           {.word = "data", .meaning = "a DU", .numbers = isa_numbers_of_data(), .units = 9, .weight = 8},
@@ -144,12 +144,33 @@ std::vector<SequenceWord> isa_dle_words() {
            .meaning = "what the tester does so many octets after a CD of the station",
            .numbers = {{"does", 0, 12, 0, kIsaPeers}, {"after", 8, 60, 8, kIsaPeerAfter}},
            .weight = 10},
-          {.word = "supply", .meaning = "is off, or comes", .numbers = {isa_truth("on")}, .weight = 1},
+          link_supply(),
           {.word = "one", .meaning = "until the station has sent one DLPDU, or does not", .weight = 8},
           {.word = "wait",
            .meaning = "silence of so many octet durations",
            .numbers = {link_wait()},
            .weight = 3}};
+}
+
+// What an entity has to send, holds, waits for or has lost.
+std::vector<std::vector<NamedCommand>> states_of_an_entity() {
+  const NamedCommand data{"submit"};
+  const NamedCommand asks{"submit", {{"service", 1}}};
+  const NamedCommand reply{"submit", {{"service", 2}}};
+  const NamedCommand token_held{"sequence", {{"silence", 4}}};
+  const NamedCommand answer_due{"compel", {{"silence", 4}}};
+  const NamedCommand lost{"supply"};
+  return {{{"submit", {{"priority", 3}, {"size", 64}}}, data, {"submit", {{"priority", 1}}}},
+          {reply, reply},
+          {data, token_held},
+          {reply, answer_due},
+          {asks, {"single", {{"silence", 4}}}, {"one"}},  // its CD is out, and nobody has replied
+          {asks, token_held, {"one"}},
+          {{"peer", {{"does", 1}}}, asks},
+          {{"submit", {{"times", 150}}}},
+          {data, asks, reply, token_held, lost},
+          {data, reply, answer_due, lost},
+          {{"supply", {{"how", kSupplyGoes}}}}};
 }
 
 SequenceVocabulary isa_dle_vocabulary() {
@@ -184,7 +205,7 @@ class IsaSequenceRun {
         if (const auto one = bench_.next()) return judge_next(*one);
         return await_response_window();
       case IsaWord::supply:
-        return set_supply(numbers[0] != 0);
+        return switch_supply(numbers[0]);
       case IsaWord::peer:
         await_response_window();
         peer_ = static_cast<Peer>(numbers[0]);
@@ -287,10 +308,14 @@ class IsaSequenceRun {
     const std::uint8_t destination = to(numbers[1]);
     const std::uint8_t source = from(numbers[2]);
     const auto value = static_cast<std::uint8_t>(numbers[3]);
-    const std::array<Octets, 4> all{
+    const std::array<Octets, 7> all{
         Octets{static_cast<std::uint8_t>(codes.ee | fieldbus_dll::kFinalBit), destination, source, value},
-        Octets{codes.tl, destination, source, 0, value}, Octets{codes.ee, destination, source, value},
-        Octets{0x8A, destination, source, value}};
+        Octets{codes.tl, destination, source, 0, value},
+        Octets{codes.ee, destination, source, value},
+        Octets{0x8A, destination, source, value},
+        Octets{codes.tl, destination, source, 0},
+        Octets{codes.tl, destination, source, 0, 1, value},
+        Octets{static_cast<std::uint8_t>(codes.ee | fieldbus_dll::kFinalBit), destination, source, 3}};
     return all.at(static_cast<std::size_t>(numbers[0]));
   }
 
@@ -323,6 +348,10 @@ class IsaSequenceRun {
     });
   }
 
+  void switch_supply(std::int64_t how) {
+    if (how != kSupplyComes) set_supply(false);
+    if (how != kSupplyGoes) set_supply(true);
+  }
   void set_supply(bool is_on) {
     if (is_on == model_.has_supply()) return;
     bench_.set_supply(is_on);
@@ -428,12 +457,13 @@ const SequenceRole& isa_dle_sequence_role() {
        .expected = "What a model of the rules says.",
        .tags = {},
        .catches = {}},
-      isa_dle_vocabulary(),
+      with_beginnings(isa_dle_vocabulary(), states_of_an_entity()),
       {{DerivedKind::values, {"no_end_when_empty", "token_not_returned"}},
        {DerivedKind::faults, {"short_silence", "answers_too_early"}},
        {DerivedKind::words, {"sends_no_preamble", "frame_malformed"}},
+       {DerivedKind::states, {"end_sent_twice", "speaks_unasked"}},
        {DerivedKind::repetitions, {"replies_twice", "speaks_unasked"}},
-       {DerivedKind::settings, {"answers_behind_rr", "answers_too_late"}}}};
+       {DerivedKind::settings, {"no_frame_under_et", "data_held_back"}}}};
   return role;
 }
 

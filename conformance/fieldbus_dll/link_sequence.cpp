@@ -45,6 +45,14 @@ SequenceNumber link_length() {
   return {"more", -9, 2, 0, kLinkLengths, true};
 }
 
+SequenceWord link_supply() {
+  return {.word = "supply",
+          .meaning = "0: goes, 1: comes, 2: goes and comes again",
+          .numbers = {{"how", kSupplyGoes, kSupplyReturns, kSupplyReturns}},
+          .weight = 1,
+          .is_loss = true};
+}
+
 SequenceNumber link_wait() {
   return {"octets", 1, 50'000, 40, kLinkWaits};
 }

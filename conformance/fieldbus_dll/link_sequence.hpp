@@ -36,6 +36,11 @@ void expect_time_for_answers(const fieldbus_dll::LinkRules& link);
 SequenceNumber link_silence();
 // Octets that a DLPDU has too much, or that its end lacks, before its check.
 SequenceNumber link_length();
+// What becomes of the supply.
+inline constexpr std::int64_t kSupplyGoes = 0;
+inline constexpr std::int64_t kSupplyComes = 1;
+inline constexpr std::int64_t kSupplyReturns = 2;  // it goes and comes
+SequenceWord link_supply();
 // Silence of timers of 16 bits in microseconds, of a second, of ten.
 SequenceNumber link_wait();
 Octets with_length(Octets dlpdu, std::int64_t more);

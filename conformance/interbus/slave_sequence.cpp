@@ -29,6 +29,19 @@ void expect_judgeable_slave(const field::Settings& settings) {
 // Slower, a transmission of a sequence lasts longer than a bench waits for one.
 constexpr std::array kBoundsOfSlave{SettingBound{"bit_rate", {100'000, 2'000'000}}};
 
+// What a slave was identified with, has switched on or has lost.
+std::vector<std::vector<NamedCommand>> states_of_a_slave() {
+  const NamedCommand identified{"id"};
+  const NamedCommand on{"id", {{"orders", 0}}};
+  const NamedCommand plugged{"plugs"};
+  return {{identified, {"data"}},
+          {plugged, on, {"data"}},
+          {plugged, on, {"silence"}},
+          {identified, {"data"}, {"periphery"}},
+          {plugged, on, {"data"}, {"power"}},
+          {identified, {"telegrams"}}};
+}
+
 SequenceVocabulary slave_vocabulary() {
   const interbus::SlaveConfiguration as_made =
       SlaveBench(slave_sequence_needs(), SlaveSetting{}).ring().configuration(1);
@@ -57,10 +70,11 @@ const SequenceRole& slave_sequence_role() {
            "and one late.",
        .tags = {},
        .catches = {}},
-      slave_vocabulary(),
+      with_beginnings(slave_vocabulary(), states_of_a_slave()),
       {{DerivedKind::values, {"sends_check_of_received_bits", "octet_wrong"}},
        {DerivedKind::faults, {"id_register_in_data_cycle", "octet_wrong"}},
        {DerivedKind::words, {"output_octets_swapped", "outputs_wrong"}},
+       {DerivedKind::states, {"does_not_resynchronise", "telegram_not_passed"}},
        {DerivedKind::repetitions, {"latches_5_ms_late", "outputs_at_another_time"}},
        {DerivedKind::settings, {"input_bit_stuck", "octet_wrong"}}}};
   return role;

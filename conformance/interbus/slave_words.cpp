@@ -201,7 +201,10 @@ std::vector<SequenceWord> slave_words() {
        "status telegrams, counted from the last ID cycle: 0 for half of the time of a reset of the outgoing "
        "bus, 1 nearly to its end, 2 beyond it",
        {{"how_long", 0, 2, 2}}},
-      {"power", "the supply goes and comes back", {{"milliseconds", 1, 100, 1, kMilliseconds}}},
+      {.word = "power",
+       .meaning = "the supply goes and comes back",
+       .numbers = {{"milliseconds", 1, 100, 1, kMilliseconds}},
+       .is_loss = true},
       {"glitch", "a low pulse that is no start level", {{"eighths", 1, 3, 3}}}};
 }
 

@@ -35,6 +35,12 @@ enum class ManagerWord : std::uint8_t {
   power
 };
 
+std::vector<std::vector<NamedCommand>> states_of_a_manager() {
+  return {
+      {{"alone", {{"channel", 1}}}}, {{"wrong"}}, {{"noise"}}, {{"command"}}, {{"answer", {{"which", 2}}}},
+      {{"differ"}, {"power"}}};
+}
+
 SequenceVocabulary channel_manager_vocabulary() {
   const token_bus::ChannelManagerConfiguration as_made;
   const SequenceNumber on{"channel", 0, 1, 0};
@@ -86,7 +92,7 @@ SequenceVocabulary channel_manager_vocabulary() {
                  .numbers = {{"who", 0, 2, 2}, {"which", 0, 3, 1}},
                  .weight = 1},
                 {.word = "wait", .meaning = "silence of so many slot times", .numbers = {{"slots", 1, 9, 1}}},
-                {.word = "power", .meaning = "the supply is switched off and on"}},
+                {.word = "power", .meaning = "the supply is switched off and on", .is_loss = true}},
       .unit = "symbol",
       .levels_per_unit = 2,
       .settings = sequence_settings(token_bus::kChannelManagerTable, &as_made),
@@ -206,10 +212,11 @@ const SequenceRole& channel_manager_sequence_role() {
        .expected = "What a reference does on a bench of its own.",
        .tags = {},
        .catches = {}},
-      channel_manager_vocabulary(),
+      with_beginnings(channel_manager_vocabulary(), states_of_a_manager()),
       // Of spoilt symbols the page leaves open what is right: for `check` only.
       {{DerivedKind::values, {"watches_the_preferred_alone", "report_other"}},
        {DerivedKind::words, {"sends_on_a_alone", "request_other"}},
+       {DerivedKind::states, {"takes_the_first", "indication_other"}},
        {DerivedKind::repetitions, {"zero_and_one_exchanged_on_b", "request_other"}},
        {DerivedKind::settings, {"sends_on_the_preferred_alone", "request_other"}}}};
   return role;

@@ -45,21 +45,16 @@ enum class TokenWord : std::uint8_t {
 constexpr std::array<std::string_view, 4> kFixedOfStation{"address", "demand_wait_slots", "bus_idle_slots",
                                                           "lowest_bus_idle_slots"};
 
-SequenceCommand does(TokenWord word, std::vector<std::int64_t> numbers = {}) {
-  return {.word = static_cast<std::size_t>(word), .numbers = std::move(numbers)};
-}
-
 // What brings a station into the ring of the tester, and what it then has to do.
-std::vector<std::vector<SequenceCommand>> states_of_a_station() {
-  using enum TokenWord;
-  const SequenceCommand offered = does(solicit, {0});
-  const SequenceCommand passed = does(token);
-  const SequenceCommand urgent = does(submit, {6, 20});
-  const SequenceCommand bulk = does(submit, {0, 300});
-  return {{offered, passed},                            // a member
-          {urgent, bulk, offered, passed},              // that has had data of several classes
-          {does(respond, {10}), offered, passed},       // with a response
-          {offered, passed, does(peer, {0}), urgent}};  // among others that are silent
+std::vector<std::vector<NamedCommand>> states_of_a_station() {
+  const NamedCommand offered{"solicit"};
+  const NamedCommand passed{"token"};
+  const NamedCommand urgent{"submit", {{"size", 20}}};
+  const NamedCommand bulk{"submit", {{"priority", 0}, {"size", 300}}};
+  return {{offered, passed},                                    // a member
+          {urgent, bulk, offered, passed},                      // that has had data of several classes
+          {{"respond", {{"size", 10}}}, offered, passed},       // with a response
+          {offered, passed, {"peer", {{"does", 0}}}, urgent}};  // among others that are silent
 }
 
 SequenceVocabulary token_station_vocabulary() {
@@ -130,8 +125,7 @@ SequenceVocabulary token_station_vocabulary() {
       .settings = sequence_settings(token_bus::kStationTable, &as_made, kFixedOfStation),
       .objection = objection_of(
           token_bus::kStationTable, as_made,
-          +[](const token_bus::StationConfiguration& one) { expect_possible(one.rules); }),
-      .beginnings = states_of_a_station()};
+          +[](const token_bus::StationConfiguration& one) { expect_possible(one.rules); })};
 }
 
 std::string octets_in_words(std::span<const std::int64_t> values) {
@@ -343,10 +337,11 @@ const SequenceRole& token_station_sequence_role() {
        .expected = "What a reference station does on its twin of the line.",
        .tags = {},
        .catches = {}},
-      token_station_vocabulary(),
+      with_beginnings(token_station_vocabulary(), states_of_a_station()),
       {{DerivedKind::values, {"delivers_from_another", "indication_other"}},
        {DerivedKind::faults, {"data_of_members_only", "indication_missing"}},
        {DerivedKind::words, {"delivers_with_another_priority", "indication_other"}},
+       {DerivedKind::states, {"response_of_the_asked_only", "frame_missing"}},
        {DerivedKind::repetitions, {"offer_kept", "frame_other"}},
        {DerivedKind::settings, {"preamble_of_four_octets", "frame_missing"}}}};
   return role;

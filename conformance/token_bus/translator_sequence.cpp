@@ -28,6 +28,16 @@ enum class TranslatorWord : std::uint8_t {
   power
 };
 
+std::vector<std::vector<NamedCommand>> states_of_a_translator() {
+  const NamedCommand on_line{"on_line"};
+  return {{on_line},
+          {on_line, {"request"}},
+          {on_line, {"receive", {{"more", 1}}}},
+          {on_line, {"collide"}},
+          {on_line, {"command"}},
+          {on_line, {"power"}}};
+}
+
 SequenceVocabulary translator_vocabulary() {
   const token_bus::TranslatorConfiguration as_made;
   const SequenceNumber content{"content", 0, 255, 0x42};
@@ -70,7 +80,7 @@ SequenceVocabulary translator_vocabulary() {
             .units = kFrameBits,
             .weight = 2},
            {.word = "wait", .meaning = "silence of so many symbols", .numbers = {{"symbols", 1, 200, 50}}},
-           {.word = "power", .meaning = "the supply is switched off and on"}},
+           {.word = "power", .meaning = "the supply is switched off and on", .is_loss = true}},
       .unit = "bit",
       .levels_per_unit = 3,
       .settings = sequence_settings(token_bus::kTranslatorTable, &as_made),
@@ -208,7 +218,7 @@ const SequenceRole& translator_sequence_role() {
            "disagree, the sequence ends.",
        .tags = {},
        .catches = {}},
-      translator_vocabulary(),
+      with_beginnings(translator_vocabulary(), states_of_a_translator()),
       // Of cut requests and spoilt bits the page leaves open what is right: for `check` only.
       {{DerivedKind::words, {"reset_enables_transmitter", "sent_other"}},
        {DerivedKind::repetitions, {"zero_and_one_exchanged", "indication_other"}},

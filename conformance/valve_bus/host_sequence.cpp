@@ -69,6 +69,17 @@ enum class HostWord : std::uint8_t {
 // There are no words for nodes that acknowledge writes.
 constexpr std::array<std::string_view, 2> kFixedOfHost{"answers_writes", "dip"};
 
+// What a host has been ordered, waits for or has lost.
+std::vector<std::vector<NamedCommand>> states_of_a_host() {
+  const NamedCommand answered{"answer", {{"data0", 0xA5}, {"data1", 0x3C}}};
+  const NamedCommand written{"write", {{"data0", 0x5A}, {"data1", 0xC3}}};
+  return {{answered, {"read"}, {"wait"}},
+          {{"unanswered"}, {"read"}, {"wait"}},
+          {{"part", {{"count", 2}}}},
+          {written, {"read"}, {"read", {{"id", 2}}}},
+          {written, {"wait"}, {"power"}}};
+}
+
 SequenceVocabulary host_vocabulary() {
   const valve_bus::HostConfiguration host = host_configuration({}, declared_host());
   // In the order of HostWord.
@@ -114,7 +125,8 @@ SequenceVocabulary host_vocabulary() {
                  .meaning = "the supply goes and comes: 0, when everything has ended; 1, with the next "
                             "read on the line",
                  .numbers = {{"open", 0, 1, 0}},
-                 .weight = 1}},
+                 .weight = 1,
+                 .is_loss = true}},
       .unit = "character",
       .levels_per_unit = 11,
       .gaps = kGaps,
@@ -282,11 +294,12 @@ const SequenceRole& host_sequence_role() {
        .expected = "What the reference sends and reports when it is ordered and answered the same.",
        .tags = {},
        .catches = {}},
-      host_vocabulary(),
+      with_beginnings(host_vocabulary(), states_of_a_host()),
       {{DerivedKind::values, {"request_check_is_sum", "check_wrong"}},
-       {DerivedKind::faults, {"write_waits_for_answer", "counters_wrong"}},
+       {DerivedKind::faults, {"waits_long_behind_errors", "no_request"}},
        {DerivedKind::words, {"request_check_without_id", "check_wrong"}},
-       {DerivedKind::repetitions, {"two_attempts", "no_request"}},
+       {DerivedKind::states, {"sends_id_100", "indication_wrong"}},
+       {DerivedKind::repetitions, {"told_twice", "indication_wrong"}},
        {DerivedKind::settings, {"silence_told_as_data", "indication_wrong"}}}};
   return role;
 }
