@@ -24,7 +24,7 @@ std::vector<judge::Pics::Answer> answers_to_try(const judge::PicsItem& item) {
   return answers;
 }
 
-constexpr std::size_t kSequencesOfAnswers = 40;  // of each derived case: there are many declarations
+constexpr std::size_t kSequencesOfAnswers = 15;  // of each derived case: there are many declarations
 
 class RoleWithAnswers {
  public:

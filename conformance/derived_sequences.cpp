@@ -152,6 +152,7 @@ class Derivation {
   // One of each command, in their order or the other; after what is lost nothing would be seen.
   void append_each(Sequence& sequence, std::size_t n) const {
     std::vector<std::size_t> order = words_;
+    std::erase_if(order, [&](std::size_t word) { return vocabulary_.words[word].is_no_frame; });
     if (n % 2 == 1) std::ranges::reverse(order);
     std::ranges::stable_partition(order, [&](std::size_t word) { return !vocabulary_.words[word].is_loss; });
     for (const std::size_t word : order) sequence.commands.push_back(simple(word));

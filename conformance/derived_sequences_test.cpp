@@ -103,6 +103,7 @@ TEST(DerivedSequences, BeginInEachStateOfTheVocabulary) {
 TEST(DerivedSequences, GiveEachChoiceInEachState) {
   SequenceVocabulary vocabulary = two_words();
   const SequenceCommand waits{.word = 1, .numbers = {3}};
+  vocabulary.words[1].numbers = {{"ms", 1, 3, 2}};
   vocabulary.beginnings = {{waits, waits, waits, waits}};
   const DerivedSequences all = all_of(DerivedKind::states, vocabulary);
   for (const bool is_in_state : {false, true}) {

@@ -59,6 +59,7 @@ struct SequenceWord {
   unsigned units = 0;           // of a transmission without octets; a word with neither takes no faults
   unsigned weight = 1;          // how often it is drawn, beside the others
   bool is_loss = false;         // what went before is lost with it, as with the supply
+  bool is_no_frame = false;     // who receives telegrams cannot be told of it
 };
 
 // A setting that a sequence may begin with: a number with a name and a list of its own.

@@ -25,14 +25,12 @@ TEST(FfDeviceSequence, NoSingleCommandTellsThem) {
   ff_device_checks().expect_single_commands_pass(250);
 }
 
-// In a sequence the device is live from the start, its codes are the usual ones, and settings are possible;
-// an exact fit, the loss of the supply and what is sent before the next activation do not come together by
-// chance.
+// In a sequence the codes are the usual ones, and settings are possible.
 TEST(FfDeviceSequence, FindsWhatTheCatalogueNames) {
   ff_device_checks().expect_finds_all_but(
-      {"activated_by_anything", "activated_by_broadcast", "activated_by_its_users_data", "answers_cd_offline",
-       "live_from_the_start", "silence_of_the_usual_link", "impossible_rules_taken", "es_is_pt",
-       "takes_other_residue", "preamble_of_the_usual_link", "codes_of_the_usual_link",
+      {"activated_by_anything", "activated_by_its_users_data", "silence_of_the_usual_link",
+       "impossible_rules_taken", "es_is_pt", "takes_other_residue", "preamble_of_the_usual_link",
+       "codes_of_the_usual_link",
        // Times and codes that sequences do not set, or not to half a bit; and how much is taken.
        "silence_of_six_bits", "slot_of_eight_bits", "waits_half_a_bit_longer", "time_by_the_usual_code",
        "half_a_bit_into_what_follows", "takes_256"},

@@ -35,6 +35,7 @@ TEST(IsaDleSequence, FindsWhatTheCatalogueNames) {
           "reserved_bit_ignored",
           "zero_is_for_ever",
           "check_from_zero_too",
+          "codes_of_the_usual_link",
           // Times that sequences do not set, or not to half a bit.
           "forms_within_the_usual_time",
           "forms_within_eight_bits",

@@ -26,8 +26,10 @@ void expect_judgeable_slave(const field::Settings& settings) {
   expect_time_for_silences(network.rules);
 }
 
-// Slower, a transmission of a sequence lasts longer than a bench waits for one.
-constexpr std::array kBoundsOfSlave{SettingBound{"bit_rate", {100'000, 2'000'000}}};
+// Slower, a transmission of a sequence lasts longer than a bench waits for one; and who receives telegrams
+// knows of one when it has ended.
+constexpr std::array kBoundsOfSlave{SettingBound{"bit_rate", {100'000, 2'000'000}},
+                                    SettingBound{"silence_tolerance", {200'000'000, 1'000'000'000'000'000}}};
 
 // What a slave was identified with, has switched on or has lost.
 std::vector<std::vector<NamedCommand>> states_of_a_slave() {
