@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "protocols/fieldbus_dll/control_loop.hpp"
 #include "harness/kernel/campaign.hpp"
+#include "protocols/fieldbus_dll/control_loop.hpp"
 #include "protocols/fieldbus_dll/take_over_run.hpp"
 
 namespace fieldproof::papers {

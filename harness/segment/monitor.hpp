@@ -15,10 +15,10 @@
 // a test case looks at. Put it on what is driven into a link (`Link::tap_driven`), or on a place of a medium
 // (`MediumPort::tap_arrived`, and `Medium::watch` for contention).
 //
-// Contract: transmissions come in order of their start; one that is known only after a later one may lie in the
-// silence in front of that, and then no pause is judged. Each violation becomes an observation of the trace
-// (value: how long or how many) and enters a list that is bounded; all are counted. A judge reads them at the
-// end of a case, after `finish`.
+// Contract: transmissions come in order of their start; one that is known only after a later one may lie in
+// the silence in front of that, and then no pause is judged. Each violation becomes an observation of the
+// trace (value: how long or how many) and enters a list that is bounded; all are counted. A judge reads them
+// at the end of a case, after `finish`.
 namespace fieldproof::segment {
 
 struct MonitorRules {
