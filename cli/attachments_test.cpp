@@ -309,7 +309,8 @@ TEST_P(FaultsInPython, PassesAndBreaksAsItsFaultsSay) {
     // The whole lists of the data link hold what is judged by hand, too.
     if (test_case.find('/') == std::string::npos) continue;
     ++faults;
-    if (few.leaves_out()) continue;
+    // Under a sanitizer such a case has too few sequences to find what it finds.
+    if (few.leaves_out() || (kernel::kIsSanitized && test_case.starts_with("derived/"))) continue;
     const Cases cases = judged(role + "=exec:" + program + " --fault " + name, test_case, {}, {}, suite);
     EXPECT_EQ(cases.at(test_case).verdict, "fail") << name;
   }

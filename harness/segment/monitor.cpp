@@ -40,8 +40,10 @@ LineMonitor::LineMonitor(const MonitorRules& rules, trace::Trace& trace, trace::
 
 void LineMonitor::on_wave(const line::Waveform& wave) {
   const kernel::Time end = end_of(wave);
+  has_changed_ = has_changed_ || has_change(wave.levels);
   if (has_heard_ && is_before_the_last(wave.start, end)) {
     before_until_ = end;
+    if (rules_.most_transmissions > 0) check_number(last_since_);
     return;
   }
   if (has_heard_) check_pause(wave.start);
@@ -52,7 +54,6 @@ void LineMonitor::on_wave(const line::Waveform& wave) {
     is_drive_told_ = false;
   }
   has_heard_ = true;
-  has_changed_ = has_changed_ || has_change(wave.levels);
   heard_until_ = std::max(heard_until_, end);
   if (rules_.longest_drive) check_drive(wave.start, end);
   if (rules_.most_transmissions > 0) check_number(wave.start);

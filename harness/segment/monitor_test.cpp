@@ -61,6 +61,17 @@ TEST_F(Monitor, TakesWhatIsKnownLaterAndLiesInTheSilenceBefore) {
   EXPECT_EQ(monitor.count(), 2U) << "what lies further back is not known any more";
 }
 
+TEST_F(Monitor, CountsWhatIsKnownLaterToo) {
+  MonitorRules rules;
+  rules.most_transmissions = 3;
+  rules.window = 100 * kMicrosecond;
+  LineMonitor monitor = made(rules);
+  for (const int at : {10, 30, 20}) monitor.on_wave(wave(at * kMicrosecond, 5));
+  EXPECT_EQ(monitor.count(), 0U);
+  monitor.on_wave(wave(50 * kMicrosecond, 5));
+  EXPECT_EQ(monitor.violations().at(0).kind, ViolationKind::too_many);
+}
+
 TEST_F(Monitor, SeesSilencesOnBothSidesOfTheLimit) {
   MonitorRules rules;
   rules.longest_silence = 25 * kMicrosecond;
