@@ -38,7 +38,7 @@ constexpr std::array<std::int64_t, 12> kFfSizes{0, 1, 2, 8, 9, 10, 63, 64, 65, 1
 constexpr std::array<std::int64_t, 8> kFfTimes{1, 1, 1, 1, 1, 1, 40, 150};
 constexpr std::array<std::int64_t, 8> kFfWrites{1, 1, 1, 1, 2, 2, 128, 255};
 
-constexpr std::int64_t kSameAgain = 4;  // of "first": the data of the DT1 or DT3 before
+constexpr std::int64_t kSameAgain = 4;  // of "first": the data of the DT1 before
 
 enum class FfWord : std::uint8_t {
   token,
@@ -172,7 +172,7 @@ std::vector<std::vector<NamedCommand>> states_of_a_device() {
           {large, usual, written, token_held, lost},
           {large, usual, written, answer_due, lost, {"activation"}},
           {lost, {"activation", {{"priority", 3}, {"long", 1}, {"more", 2}}}},
-          {{"data"}, {"published"}},
+          {{"published"}, {"data"}},
           {{"supply", {{"how", kSupplyGoes}}}}};
 }
 
@@ -290,9 +290,11 @@ class FfWords {
     append_address(
         octets, from.at(static_cast<std::size_t>(numbers[1])) | (is_long && numbers[1] != 4 ? kFfLink : 0U),
         is_long);
-    return with_content(std::move(octets), numbers[4], numbers[5]);
+    const Octets data = content(numbers[4], numbers[5]);
+    octets.insert(octets.end(), data.begin(), data.end());
+    return octets;
   }
-  Octets published(const std::vector<std::int64_t>& numbers) {
+  Octets published(const std::vector<std::int64_t>& numbers) const {
     const std::array<FfAddress, 6> all{FfBench::kSubscribed,     kLongSubscribed,
                                        FfBench::kSubscribed + 1, kLongSubscribed + kFfLink,
                                        FfBench::kPublished,      FfBench::kSubscribed};
@@ -301,7 +303,9 @@ class FfWords {
     Octets octets{control(codes_.dt3, numbers[1], numbers[2] != 0, is_long)};
     append_address(octets, from, is_long);
     octets.push_back(static_cast<std::uint8_t>(numbers[3]));
-    return with_content(std::move(octets), 0, numbers[4]);
+    const Octets data = bench_.numbered_data(static_cast<std::size_t>(numbers[4]));
+    octets.insert(octets.end(), data.begin(), data.end());
+    return octets;
   }
   Octets activation(const std::vector<std::int64_t>& numbers) const {
     const bool is_long = numbers[1] != 0;
@@ -314,14 +318,11 @@ class FfWords {
     return octets;
   }
   // By its first octet it is what entities know, or do not.
-  Octets with_content(Octets octets, std::int64_t first, std::int64_t size) {
-    Octets content =
-        first == kSameAgain ? last_content_ : bench_.numbered_data(static_cast<std::size_t>(size));
-    last_content_ = content;
-    if (first > 0 && first != kSameAgain && !content.empty())
-      content[0] = static_cast<std::uint8_t>(first - 1);
-    octets.insert(octets.end(), content.begin(), content.end());
-    return octets;
+  Octets content(std::int64_t first, std::int64_t size) {
+    if (first == kSameAgain) return last_content_;
+    Octets content = bench_.numbered_data(static_cast<std::size_t>(size));
+    if (first > 0 && !content.empty()) content[0] = static_cast<std::uint8_t>(first - 1);
+    return last_content_ = content;
   }
 
   FfBench& bench_;
@@ -354,7 +355,7 @@ class FfSequenceRun {
         if (const auto one = bench_.next()) return object(model_.say(*one), bench_.words(*one), one->begin);
         return await_response_window();
       case FfWord::supply:
-        return switch_supply(command.numbers[0]);
+        return switch_supply(command.numbers[0], bench_, model_);
       case FfWord::submit:
         return submit(command.numbers);
       case FfWord::write:
@@ -380,16 +381,6 @@ class FfSequenceRun {
       return await_response_window();
     bench_.wait(bench_.octets(silence));
     judge_said();
-  }
-
-  void switch_supply(std::int64_t how) {
-    if (how != kSupplyComes) set_supply(false);
-    if (how != kSupplyGoes) set_supply(true);
-  }
-  void set_supply(bool is_on) {
-    if (is_on == model_.has_supply()) return;
-    bench_.set_supply(is_on);
-    model_.set_supply(is_on);
   }
 
   // Who has no supply is asked for nothing.

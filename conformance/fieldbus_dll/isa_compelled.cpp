@@ -3,7 +3,7 @@
 
 #include "conformance/fieldbus_dll/isa_scene.hpp"
 
-// The IUT is compelled by a CD.
+// The IUT is compelled by a CD; and what comes of it, and of tokens, where DLPDUs have other codes.
 namespace fieldproof::conformance {
 namespace {
 

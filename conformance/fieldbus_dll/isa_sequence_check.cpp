@@ -206,7 +206,7 @@ class IsaSequenceRun {
         if (const auto one = bench_.next()) return judge_next(*one);
         return await_response_window();
       case IsaWord::supply:
-        return switch_supply(numbers[0]);
+        return switch_supply(numbers[0], bench_, model_);
       case IsaWord::peer:
         await_response_window();
         peer_ = static_cast<Peer>(numbers[0]);
@@ -347,16 +347,6 @@ class IsaSequenceRun {
                                    is_right ? "taken" : "refused")},
                       is_taken ? "taken" : "refused"};
     });
-  }
-
-  void switch_supply(std::int64_t how) {
-    if (how != kSupplyComes) set_supply(false);
-    if (how != kSupplyGoes) set_supply(true);
-  }
-  void set_supply(bool is_on) {
-    if (is_on == model_.has_supply()) return;
-    bench_.set_supply(is_on);
-    model_.set_supply(is_on);
   }
 
   void await_response_window() {

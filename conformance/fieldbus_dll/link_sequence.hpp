@@ -41,6 +41,14 @@ inline constexpr std::int64_t kSupplyGoes = 0;
 inline constexpr std::int64_t kSupplyComes = 1;
 inline constexpr std::int64_t kSupplyReturns = 2;  // it goes and comes
 SequenceWord link_supply();
+template <typename Bench, typename Model>
+void switch_supply(std::int64_t how, Bench& bench, Model& model) {
+  for (const bool is_on : {false, true}) {
+    if (how == (is_on ? kSupplyGoes : kSupplyComes) || is_on == model.has_supply()) continue;
+    bench.set_supply(is_on);
+    model.set_supply(is_on);
+  }
+}
 // Silence of timers of 16 bits in microseconds, of a second, of ten.
 SequenceNumber link_wait();
 Octets with_length(Octets dlpdu, std::int64_t more);

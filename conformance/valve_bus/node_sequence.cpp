@@ -244,6 +244,17 @@ std::vector<PartialSource> sequence_details() {
   return details;
 }
 
+// What its valves and switches are, and what it has just received or lost.
+std::vector<std::vector<NamedCommand>> states_of_a_node() {
+  const NamedCommand written{"write", {{"data0", 0xA5}, {"data1", 0x3C}}};
+  return {{written},
+          {{"switches", {{"data0", 0x5A}, {"data1", 0xC3}}}, {"read"}},
+          {{"command", {{"id", 2}, {"command", 1}}}},  // another node's answer is due
+          {written, {"wait", {{"ms", 1'000}}}},
+          {written, {"power"}},
+          {written, {"octets"}}};
+}
+
 }  // namespace
 
 const SequenceRole& node_sequence_role() {
@@ -258,7 +269,7 @@ const SequenceRole& node_sequence_role() {
        .expected = "What the reference does with what arrived, within the times of the rules.",
        .tags = {},
        .catches = {}},
-      node_vocabulary(),
+      with_beginnings(node_vocabulary(), states_of_a_node()),
       {{DerivedKind::values, {"switch_bit_stuck", "answer_data_wrong"}},
        {DerivedKind::faults, {"turns_round_late", "answer_too_late"}},
        {DerivedKind::words, {"turns_round_a_tenth_late", "answer_too_late"}},
