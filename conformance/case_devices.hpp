@@ -39,6 +39,8 @@ class CaseDevices {
                                               const typename Kind::Configuration& configuration,
                                               MakeLocal make_local) {
     expect_playable<Kind>(uri);
+    if (Kind::role == test_case_.role())
+      configuration_ = std::make_shared<const typename Kind::Configuration>(configuration);
     std::optional<iut::Attachment> attachment = outside({Kind::protocol, Kind::role}, uri);
     if constexpr (requires { typename Kind::Served; }) {
       if (!attachment && setup_.as_device) {
@@ -55,6 +57,8 @@ class CaseDevices {
 
   // What was recorded goes to the outcome.
   void keep(Outcome& outcome);
+  // Of the last station that was made for the role of the case; null before. Its type is that of the role.
+  const void* configuration() const { return configuration_.get(); }
 
  private:
   std::optional<iut::Attachment> outside(const iut::RoleName& role, const std::string& uri);
@@ -65,6 +69,7 @@ class CaseDevices {
   std::optional<iut::DeviceRecording> played_back_;
   std::size_t played_back_devices_ = 0;
   std::shared_ptr<iut::DeviceRecording> recording_;
+  std::shared_ptr<const void> configuration_;
 };
 
 }  // namespace fieldproof::conformance

@@ -1,6 +1,7 @@
 #include "conformance/running_case.hpp"
 
 #include "harness/fault/plan_file.hpp"
+#include "harness/field/differences.hpp"
 
 namespace fieldproof::conformance {
 
@@ -40,6 +41,12 @@ void RunningCase::keep(Outcome& outcome) {
     kept.truncated = kept.trace.is_cut;
   }
   devices_.keep(outcome);
+}
+
+std::vector<std::string> RunningCase::unusual_settings(const field::AnyTable& table) const {
+  const void* const configuration = devices_.configuration();
+  return configuration == nullptr ? std::vector<std::string>{}
+                                  : field::differences_of_any(table, configuration);
 }
 
 }  // namespace fieldproof::conformance

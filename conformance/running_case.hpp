@@ -68,6 +68,8 @@ class RunningCase {
                                   std::shared_ptr<const trace::Dissector> dissector);
   // What was recorded goes to the outcome.
   void keep(Outcome& outcome);
+  // What the implementation was given otherwise than usual, by the settings of its role.
+  std::vector<std::string> unusual_settings(const field::AnyTable& table) const;
 
  private:
   const TestCase& test_case_;

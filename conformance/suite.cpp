@@ -84,6 +84,9 @@ Outcome Suite::run(const TestCase& test_case, const Setup& setup) const {
     run.keep(outcome);
   } else {
     outcome = row.run(test_case, run);
+    // A finding of sequences names the settings of its own.
+    if (!outcome.result.findings.empty() && row.settings != nullptr)
+      outcome.result.settings = run.unusual_settings(*row.settings);
   }
   outcome.happens_once = run.is_on_real_line();
   return outcome;

@@ -41,6 +41,7 @@ inline judge::CaseResult sample_failure() {
   finding.decode = {"levels    0 11111111 1", "telegram  data 0xA5",
                     "cycle     loopback word, 2 octets,\ncheck wrong"};
   result.findings = {finding};
+  result.settings = {"bit_rate 2 Mbit/s in place of 500 kbit/s"};
   return result;
 }
 

@@ -185,6 +185,7 @@ std::string finding_text(const RunIdentity& identity, const CaseResult& result, 
     out += field("source", reference_text(result.reference));
   }
   for (const Finding& finding : result.findings) out += one_finding(finding, options);
+  out += list_fields("settings", "", result.settings);
   out += field("seed", fmt::format("{} (of the case)", result.seed));
   out += field("fingerprint", judge::fingerprint_text(result.fingerprint));
   const std::string command =

@@ -32,6 +32,24 @@ TEST(ValveBusSuite, NoTwoAnswersOfAPicsAccuseAReference) {
   }
 }
 
+// Who reads a finding sees what the implementation was given.
+TEST(ValveBusSuite, AFailureNamesTheSettingsThatAreNotTheUsualOnes) {
+  const auto suite = valve_bus_suite();
+  const auto settings_of_failures = [&](const judge::Pics& pics) {
+    conformance::Setup setup;
+    setup.volume = Volume::quick;
+    setup.pics = pics;
+    setup.implementations = {{"node", 0, "mutant:answers_twice"}};
+    for (const TestCase& one : suite->cases()) {
+      if (one.id == "valve_bus/node/read/is_answered") return suite->run(one, setup).result.settings;
+    }
+    return std::vector<std::string>{"no such case"};
+  };
+  judge::Pics pics;
+  pics.declare("boards", std::int64_t{1});
+  EXPECT_THAT(settings_of_failures(pics), testing::Contains("boards 1 in place of 2"));
+}
+
 // Each position of the switches is a bit rate; refreshes come within exchanges at the lowest.
 TEST(ValveBusSuite, NoBitRateAccusesTheHost) {
   const auto suite = valve_bus_suite();

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "harness/field/boundaries.hpp"
+#include "harness/field/differences.hpp"
 #include "harness/field/facts.hpp"
 #include "harness/field/pics.hpp"
 #include "harness/field/sample_table.hpp"
@@ -171,6 +172,20 @@ TEST(Field, BoundariesAreBothEndsAndTheirNeighbours) {
   const Boundaries loud = boundaries_of(kSampleRows[3], &sample);
   EXPECT_EQ(loud.inside, (std::vector<std::int64_t>{0, 1}));
   EXPECT_TRUE(loud.outside.empty());
+}
+
+TEST(Field, DifferencesAreOneLineForEachRow) {
+  EXPECT_TRUE(differences_of_any(kSampleTable, kSampleTable.reference()).empty());
+  Sample sample;
+  sample.inside.half_bits = 5;
+  sample.bit_rate = 2'000'000;
+  sample.is_loud = true;
+  sample.live = {0x10, 0x11};
+  sample.note = "is no setting";
+  EXPECT_EQ(differences_of_any(kSampleTable, &sample),
+            (std::vector<std::string>{"inside_half_bits 2.5 bit in place of 1.5 bit",
+                                      "bit_rate 2 Mbit/s in place of 500 kbit/s",
+                                      "is_loud yes in place of no", "live 10h, 11h in place of none"}));
 }
 
 TEST(Field, MarkdownHasALineForEachSetting) {

@@ -79,6 +79,8 @@ inline rc::Gen<CaseResult> arbitrary_result() {
           rc::gen::set(&CaseResult::findings, rc::gen::container<std::vector<Finding>>(arbitrary_finding())),
           rc::gen::set(&CaseResult::measurements,
                        rc::gen::container<std::vector<Measurement>>(arbitrary_measurement())),
+          rc::gen::set(&CaseResult::settings,
+                       rc::gen::container<std::vector<std::string>>(kernel::arbitrary_text())),
           rc::gen::set(&CaseResult::planned_hits,
                        rc::gen::container<std::vector<std::uint64_t>>(arbitrary_word())),
           rc::gen::set(&CaseResult::seed, arbitrary_word()),

@@ -43,6 +43,8 @@ struct CaseResult {
   Reference reference;
   std::vector<Finding> findings;
   std::vector<Measurement> measurements;
+  // What a case that does not pass gave the implementation otherwise than usual, for people.
+  std::vector<std::string> settings{};
   // Under a plan of faults: how often each of its parts hit, in its order; of a disturbance the waves that it
   // changed.
   std::vector<std::uint64_t> planned_hits{};

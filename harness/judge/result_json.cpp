@@ -159,6 +159,7 @@ nlohmann::ordered_json to_json(const CaseResult& result, WallTime wall_time) {
                {"fingerprint", fingerprint_text(result.fingerprint)},
                {"virtual_time_ps", fmt::format("{}", result.virtual_time.count())},
                {"log", kernel::as_utf8(result.log)}};
+  if (!result.settings.empty()) json["settings"] = strings_to_json(result.settings);
   if (!result.planned_hits.empty()) {
     json["planned_hits"] =
         list_to_json(result.planned_hits, [](std::uint64_t hits) { return fmt::format("{}", hits); });
@@ -197,6 +198,7 @@ CaseResult case_result_from(const Value& value) {
     result.virtual_time =
         kernel::Duration{integer_from<std::int64_t>(object.required("virtual_time_ps"), 10)};
     result.log = text_in(object, "log");
+    if (const auto settings = object.optional("settings")) result.settings = texts_from(*settings);
     if (const auto hits = object.optional("planned_hits")) {
       result.planned_hits = list_from(*hits, [](const Value& one) { return unsigned_from(one); });
     }

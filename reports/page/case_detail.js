@@ -107,6 +107,7 @@ export function caseDetail(row) {
       ["Plan of faults", plannedHitsText(result.planned_hits, row.run.results.run.plan)]]),
     storyPart(story),
     result.findings.map((finding, at) => findingPart(finding, result, at, result.findings.length)),
+    result.settings ? definitions([["Settings other than usual", lines(result.settings, "")]]) : null,
     timeLinePart(more),
     result.measurements.length ? measurementsPart(result.measurements) : null,
     result.log ? [element("h4", {}, "Log of the implementation"), element("pre", {class: "scroll", tabindex: "0"}, result.log)] : null,
