@@ -33,6 +33,22 @@ TEST_F(Check, PassesTheReferenceAndFindsAMutant) {
   EXPECT_HOLDS(found.out, "to 2 commands, 1 fault (1 flipped bit)");
 }
 
+TEST_F(Check, CountsCommandsUntilEachMutantIsFound) {
+  const Called found = call({"matrix", "valve_bus/node", "--sequences", "--seeds", "1", "--commands", "40",
+                             "--json", "found.json"});
+  EXPECT_EQ(found.exit_code, 1) << found.out << found.err;  // so few find too little
+  EXPECT_HOLDS(found.out, "not found: ");
+  EXPECT_HOLDS(found.out, "valve_bus/node: found ");
+  EXPECT_HOLDS(read("found.json"), "fieldproof/detection/1");
+  const Called no_role = call({"matrix", "valve_bus/valve", "--sequences"});
+  EXPECT_EQ(no_role.exit_code, 64);
+  EXPECT_HOLDS(no_role.err, "there are no sequences for 'valve_bus/valve'");
+  const Called of_cases = call({"matrix", "valve_bus/node"});
+  EXPECT_EQ(of_cases.exit_code, 64);
+  EXPECT_HOLDS(of_cases.err, "write matrix valve_bus, or matrix valve_bus/node --sequences");
+  EXPECT_HOLDS(call({"matrix", "valve_bus", "--seeds", "2"}).err, "--seeds is one of --sequences; add that");
+}
+
 TEST_F(Check, ItsCaseIsReplayedAnywhere) {
   call({"check", "valve_bus/node", "--iut", "mutant:read_answers_write", "--case", "found.json"});
   const Called same = call({"replay", "found.json"});

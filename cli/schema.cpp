@@ -25,6 +25,7 @@ void add_files(std::vector<NamedText>& all) {
   for (const auto& [name, text] : {std::pair{"baseline", baseline_schema},
                                    {"case", case_schema},
                                    {"configuration", configuration_schema},
+                                   {"detection", detection_schema},
                                    {"emc_case", emc_case_schema},
                                    {"matrix", matrix_schema},
                                    {"faults", fault::plan_schema},

@@ -35,7 +35,7 @@ constexpr std::array kHelp = {
     VerbHelp{"matrix", kJudge, {{
         {"matrix {protocol}", "which case kills which mutant of the reference"},
         {"matrix {protocol} --jobs 2 --json matrix.json", "the same as JSON"},
-        {"matrix {protocol} --max-time 10min --quiet", "with a limit of time"}}}},
+        {"matrix {role} --sequences", "after how many commands of check each mutant is found"}}}},
     VerbHelp{"verify", kJudge, {{
         {"verify '{role}/**' --iut exec:./device", "is your process deterministic: run twice, compare bit for bit"},
         {"verify '{role}/**' -n 5", "five times"},
