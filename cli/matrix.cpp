@@ -55,6 +55,7 @@ int matrix_of_cases(Session& session, const Interruption& interruption) {
   conformance::MatrixPlan plan;
   plan.seed = seed_of(session);
   plan.jobs = jobs_from(session.settings);
+  plan.declared_only = session.settings.is_set("declared");
   plan.stop = interruption.token();
   bool has_begun = false;
   plan.on_progress = [&](std::size_t finished, std::size_t planned) {

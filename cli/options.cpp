@@ -60,6 +60,7 @@ constexpr std::array kOptions = {
     Option{"serial", value, "LINE", "", "station", "play it in wall-clock time on this serial line; a name that is not there yet becomes a pseudo terminal", true},
     Option{"upper", value, "PATH|-|none", "-", "station", "with --serial: where the upper tester's channel is: a socket to listen at, the standard streams, or none", true},
     Option{"runs", value, "N", "2", "verify", "how often each case is run (also -n)", true},
+    Option{"declared", flag, "", "", "matrix", "of the mutants of a case only those that it declares to catch: every gap of the suite in a tenth of the time", true},
     Option{"sequences", flag, "", "", "matrix", "sequences of check in the place of cases: after how many commands each mutant is found", true},
     Option{"seeds", value, "N", "5", "matrix", "with --sequences: how many seeds", true},
     Option{"commands", value, "N", "1000000", "matrix", "with --sequences: how many commands each mutant is given at most under each seed", true},

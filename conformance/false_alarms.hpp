@@ -14,7 +14,7 @@ namespace fieldproof::conformance {
 
 // FIELDPROOF_SEEDS says how many, where these are too few.
 inline std::uint64_t many_seeds() {
-  return kernel::campaign_count("FIELDPROOF_SEEDS", 20);
+  return kernel::campaign_count("FIELDPROOF_SEEDS", 10);
 }
 // Of derived cases, which are many sequences each, one seed in so many.
 constexpr std::uint64_t kFewerSeedsOfSequences = 7;

@@ -43,15 +43,15 @@ std::string declared_reason(const TestCase& test_case, const Mutant* mutant) {
   return found == test_case.catches.end() ? std::string{} : found->reason;
 }
 
-std::vector<PlannedRun> planned_runs(Matrix& matrix) {
+std::vector<PlannedRun> planned_runs(Matrix& matrix, bool declared_only) {
   std::vector<PlannedRun> runs;
   for (std::size_t role = 0; role < matrix.roles.size(); ++role) {
     RoleMatrix& block = matrix.roles[role];
     for (std::size_t row = 0; row < block.cases.size(); ++row) {
       runs.push_back({role, row, nullptr, &block.reference[row]});
-      const bool is_derived = derived_kind(*block.cases[row]).has_value();
+      const bool is_declared_only = declared_only || derived_kind(*block.cases[row]).has_value();
       for (std::size_t column = 0; column < block.mutants.size(); ++column) {
-        if (is_derived && declared_reason(*block.cases[row], block.mutants[column]).empty()) continue;
+        if (is_declared_only && declared_reason(*block.cases[row], block.mutants[column]).empty()) continue;
         runs.push_back({role, row, block.mutants[column], &block.cells[row][column]});
       }
     }
@@ -174,7 +174,7 @@ Matrix make_matrix(const Suite& suite, const MatrixPlan& plan) {
   matrix.protocol = suite.protocol();
   matrix.seed = plan.seed;
   for (const std::string& role : suite.roles()) matrix.roles.push_back(blank_role(suite, role));
-  const std::vector<PlannedRun> runs = planned_runs(matrix);
+  const std::vector<PlannedRun> runs = planned_runs(matrix, plan.declared_only);
 
   OrderedWork<Cell> work;
   work.count = runs.size();

@@ -23,10 +23,10 @@
 namespace fieldproof::conformance {
 
 enum class CellKind : std::uint8_t {
-  not_run,            // the matrix was stopped before, or a derived case declares nothing about it
-  not_applicable,     // the case does not apply to this implementation
-  passed,             // not caught, and not declared to be
-  caught,             // fails for the declared reason
+  not_run,         // the matrix was stopped before, or declared catches alone were asked for and this is none
+  not_applicable,  // the case does not apply to this implementation
+  passed,          // not caught, and not declared to be
+  caught,          // fails for the declared reason
   caught_undeclared,  // fails, without being declared
   missed,             // declared, but does not fail
   wrong_cause,        // declared, but fails for another reason; or the verdict is error
@@ -78,6 +78,9 @@ struct Matrix {
 struct MatrixPlan {
   std::uint64_t seed = 1;
   unsigned jobs = 1;
+  // Of the mutants only those are run that a case declares to catch: no hole is overlooked but that of a case
+  // that ends in an error on a mutant that it does not name.
+  bool declared_only = false;
   std::stop_token stop;
   // Finished and planned runs, a few times a second.
   std::function<void(std::size_t, std::size_t)> on_progress;

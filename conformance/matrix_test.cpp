@@ -93,6 +93,19 @@ TEST_F(MatrixOfARing, UndeclaredCatchDoesNotFillAHole) {
   EXPECT_EQ(holes(), Strings{"surviving-mutant  late"});
 }
 
+TEST_F(MatrixOfARing, OfDeclaredCatchesAloneHasTheSameHoles) {
+  suite_.add(declaring("word", {{"swapped", "wrong_word"}}),
+             answering({{"mutant:late", {Verdict::fail, "wrong_word"}}}));
+  suite_.add(declaring("idle", {}), answering({}));
+  const Strings of_all = holes();
+  const Matrix matrix = make_matrix(suite_, {.declared_only = true, .stop = {}, .on_progress = {}});
+  EXPECT_EQ(matrix.holes.size(), of_all.size());
+  EXPECT_EQ(of_all.size(), 5U);  // two that survive, a catch that is missed, two idle cases
+  EXPECT_EQ(matrix.roles[0].cells[0][0].kind, CellKind::missed);
+  EXPECT_EQ(matrix.roles[0].cells[0][1].kind, CellKind::not_run);
+  EXPECT_EQ(matrix.roles[0].reference[1].verdict, Verdict::pass);
+}
+
 TEST_F(MatrixOfARing, CaseThatCatchesNothingIsAHole) {
   add_good_cases();
   suite_.add(declaring("idle", {}), answering({{"mutant:late", {Verdict::fail, "late_answer"}}}));

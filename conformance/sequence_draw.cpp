@@ -102,18 +102,32 @@ field::Settings draw_settings(const SequenceVocabulary& vocabulary) {
   return settings_of(drawn, vocabulary);
 }
 
+// Random commands alone seldom lead into a state that takes several in their order: each second sequence
+// begins with what leads into one.
+std::vector<SequenceCommand> draw_beginning(const SequenceVocabulary& vocabulary) {
+  if (vocabulary.beginnings.empty() || chance(kPerCent / 2)) return {};
+  return chosen(std::span<const std::vector<SequenceCommand>>(vocabulary.beginnings));
+}
+
 rc::Shrinkable<Sequence> drawn(const SequenceVocabulary& vocabulary, std::uint64_t seed, std::uint64_t n) {
   const auto most = static_cast<int>(std::min<std::uint64_t>(1 + n / kGrowth, vocabulary.most_commands));
   // The size of a container is its length; that of what is in it stays whole.
   const auto one = rc::gen::pair(command_of(vocabulary), rc::gen::inRange(0U, kPerCent));
   const auto commands = rc::gen::container<std::vector<std::pair<SequenceCommand, unsigned>>>(
       rc::gen::resize(rc::kNominalSize, one));
-  // Drawn apart from the commands, which are those of the seed with any settings.
-  const field::Settings settings =
-      rc::gen::exec([&] { return draw_settings(vocabulary); })(rc::Random(rc::Random::Key{seed, n, 1, 0}))
-          .value();
-  const auto together = [settings](const std::vector<std::pair<SequenceCommand, unsigned>>& of) {
-    return Sequence{with_repetitions(of), settings};
+  // Drawn apart from the commands, which are those of the seed with any settings, after any beginning.
+  const auto apart = [&](std::uint64_t what, auto draw) {
+    return rc::gen::exec(draw)(rc::Random(rc::Random::Key{seed, n, what, 0})).value();
+  };
+  const field::Settings settings = apart(1, [&] { return draw_settings(vocabulary); });
+  const std::vector<SequenceCommand> beginning = apart(2, [&] { return draw_beginning(vocabulary); });
+  const std::size_t room = vocabulary.most_commands;
+  const auto together = [=](const std::vector<std::pair<SequenceCommand, unsigned>>& of) {
+    std::vector<SequenceCommand> all = beginning;
+    const std::vector<SequenceCommand> others = with_repetitions(of);
+    all.insert(all.end(), others.begin(), others.end());
+    all.resize(std::min(all.size(), room));
+    return Sequence{std::move(all), settings};
   };
   return rc::gen::map(rc::gen::resize(most, commands), together)(rc::Random(rc::Random::Key{seed, n, 0, 0}));
 }

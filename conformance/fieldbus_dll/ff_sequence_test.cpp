@@ -28,9 +28,8 @@ TEST(FfDeviceSequence, NoSingleCommandTellsThem) {
 // In a sequence the codes are the usual ones, and settings are possible.
 TEST(FfDeviceSequence, FindsWhatTheCatalogueNames) {
   ff_device_checks().expect_finds_all_but(
-      {"activated_by_anything", "activated_by_its_users_data", "silence_of_the_usual_link",
-       "impossible_rules_taken", "es_is_pt", "takes_other_residue", "preamble_of_the_usual_link",
-       "codes_of_the_usual_link",
+      {"silence_of_the_usual_link", "impossible_rules_taken", "es_is_pt", "takes_other_residue",
+       "preamble_of_the_usual_link", "codes_of_the_usual_link",
        // Times and codes that sequences do not set, or not to half a bit; and how much is taken.
        "silence_of_six_bits", "slot_of_eight_bits", "waits_half_a_bit_longer", "time_by_the_usual_code",
        "half_a_bit_into_what_follows", "takes_256"},
