@@ -25,7 +25,8 @@ const std::array<DerivedRow, 6> kDerivedRows{{
      "Each command again and again, two commands in turn, and others after them.", 30, 350},
     {DerivedKind::settings, "each_setting_at_its_ends",
      "Each setting at both ends of its range and beside them, and one of each command; and two settings at "
-     "once."},
+     "once.",
+     1'000},
 }};
 
 namespace {
@@ -347,13 +348,15 @@ class Derivation {
     Makers all;
     const std::size_t tours = (letters_.size() + kTourLength - 1) / kTourLength;
     for (std::size_t which = 0; which < vocabulary_.settings.size(); ++which) {
-      for (const std::int64_t value : vocabulary_.settings[which].likely) {
+      const SequenceSetting& setting = vocabulary_.settings[which];
+      for (const std::int64_t value : setting.likely) {
         for (std::size_t n = 0; n < tours; ++n) {
           all.push_back([this, which, value, n] {
             const std::array<SettingChoice, 1> chosen{{{which, value}}};
             return Sequence{tour(n), settings_of(chosen, vocabulary_)};
           });
         }
+        if (setting.is_likely_only || setting.likely.size() == 1) add_choices_with(which, value, all);
         for (std::size_t state = 0; state <= vocabulary_.beginnings.size(); ++state) {
           all.push_back([this, which, value, state, n = all.size()] {
             const std::array<SettingChoice, 1> chosen{{{which, value}}};
@@ -365,6 +368,22 @@ class Derivation {
       }
     }
     return all;
+  }
+
+  // What can be or not, or is one of a few, may matter to any choice of any command.
+  void add_choices_with(std::size_t which, std::int64_t value, Makers& all) const {
+    const std::vector<SequenceCommand> commands = choices();
+    for (std::size_t first = 0; first < commands.size(); first += kTourLength) {
+      const std::size_t end = std::min(commands.size(), first + kTourLength);
+      all.push_back([this, which, value, n = all.size(),
+                     tour = std::vector(commands.begin() + static_cast<std::ptrdiff_t>(first),
+                                        commands.begin() + static_cast<std::ptrdiff_t>(end))] {
+        const std::array<SettingChoice, 1> chosen{{{which, value}}};
+        Sequence sequence{beginning(n), settings_of(chosen, vocabulary_)};
+        sequence.commands.insert(sequence.commands.end(), tour.begin(), tour.end());
+        return sequence;
+      });
+    }
   }
 
   SettingChoice any_setting() {
@@ -434,7 +453,9 @@ DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& v
     pairs.resize(std::min(pairs.size(), most - singles.size()));
     for (const auto& make : pairs) derived.sequences.push_back(make());
   }
-  while (derived.sequences.size() < most) {
+  // Two settings at once find little that one does not, and slow rates among them cost the most.
+  const std::size_t filled = kind == DerivedKind::settings ? most * 2 / 5 : most;
+  while (derived.sequences.size() < filled) {
     Sequence another = derivation.of_two(kind);
     if (another.commands.empty()) break;
     derived.sequences.push_back(std::move(another));

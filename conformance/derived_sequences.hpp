@@ -48,8 +48,8 @@ struct DerivedSequences {
 };
 
 // All sequences about one thing when `most` is enough for them, else as many of them, drawn; what is left of
-// `most` is about two things: each two values of two numbers of a word together, then what is drawn. The same
-// stream gives the same sequences.
+// `most`, of settings of two fifths of it, is about two things: each two values of two numbers of a word
+// together, then what is drawn. The same stream gives the same sequences.
 DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
                                    kernel::Random random);
 

@@ -85,18 +85,23 @@ line::Levels half_bits_of_frame(std::span<const std::uint8_t> octets, unsigned p
 
 void DrivenDlpdus::on_wave(const line::Waveform& wave) {
   const line::Levels half_bits = line::half_bits_of(wave, bit_rate_);
-  DrivenDlpdu driven{wave.start, wave.end(), false, false, {}};
   const std::vector<line::DelimitedFrame> frames = line::delimited_frames_in(wave, bit_rate_);
-  if (frames.size() == 1) {
-    driven.octets = frames.front().octets;
-    driven.is_well_formed = frames.front().end == line::FrameEnd::whole && is_exact(half_bits, driven.octets);
+  // Of several frames in a transmission each is received; a station may send one only.
+  std::size_t taken = 0;
+  for (const line::DelimitedFrame& frame : frames) {
+    const bool is_whole = frame.end == line::FrameEnd::whole;
+    if (frames.size() > 1 && !is_whole) continue;
+    DrivenDlpdu driven{wave.start, wave.end(), false, false, frame.octets};
+    driven.is_well_formed = frames.size() == 1 && is_whole && is_exact(half_bits, frame.octets);
+    if (driven.octets.size() > kCheck) {
+      const std::span all(driven.octets);
+      driven.has_right_check = with_frame_check(all.first(all.size() - kCheck)) == driven.octets;
+      driven.octets.resize(driven.octets.size() - kCheck);
+    }
+    all_.push_back(std::move(driven));
+    ++taken;
   }
-  if (driven.octets.size() > kCheck) {
-    const std::span all(driven.octets);
-    driven.has_right_check = with_frame_check(all.first(all.size() - kCheck)) == driven.octets;
-    driven.octets.resize(driven.octets.size() - kCheck);
-  }
-  all_.push_back(std::move(driven));
+  if (taken == 0) all_.push_back({wave.start, wave.end(), false, false, {}});
 }
 
 }  // namespace fieldproof::conformance

@@ -29,7 +29,7 @@ constexpr std::array<std::int64_t, 10> kFfProbedNodes{0, 0, 0, 0, 2, 2, 2, 1, 3,
 constexpr std::array<std::int64_t, 24> kFfBuffers{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1,
                                                   1, 1, 2, 2, 2, 3, 4, 5, 6, 7, 8, 9};
 constexpr std::array<std::int64_t, 11> kFfWritten{0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 3};
-constexpr std::array<std::int64_t, 8> kFfWriteSizes{0, 1, 2, 8, 9, 63, 64, 65};
+constexpr std::array<std::int64_t, 10> kFfWriteSizes{0, 1, 2, 8, 9, 63, 64, 65, 127, 128};
 constexpr std::array<std::int64_t, 16> kFfPriorities{1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 0};
 constexpr std::array<std::int64_t, 5> kFfRequestPriorities{1, 2, 3, 2, 3};
 constexpr std::array<std::int64_t, 20> kFfDurations{
@@ -38,6 +38,8 @@ constexpr std::array<std::int64_t, 12> kFfSizes{0, 1, 2, 8, 9, 10, 63, 64, 65, 1
 constexpr std::array<std::int64_t, 8> kFfTimes{1, 1, 1, 1, 1, 1, 40, 150};
 constexpr std::array<std::int64_t, 8> kFfWrites{1, 1, 1, 1, 2, 2, 128, 255};
 
+constexpr std::int64_t kToUser = 0;  // of "to" of data
+constexpr std::int64_t kToAnother = 3;
 constexpr std::int64_t kSameAgain = 4;  // of "first": the data of the DT1 before
 
 enum class FfWord : std::uint8_t {
@@ -53,7 +55,8 @@ enum class FfWord : std::uint8_t {
   write,
   supply,
   one,
-  wait
+  wait,
+  framed
 };
 
 SequenceNumber ff_priority(std::string_view name = "priority") {
@@ -151,7 +154,8 @@ std::vector<SequenceWord> ff_device_words() {
           {.word = "wait",
            .meaning = "silence of so many octet durations",
            .numbers = {link_wait()},
-           .weight = 3}};
+           .weight = 3},
+          link_framed()};
 }
 
 // What a device has to send, holds, waits for or has lost.
@@ -210,6 +214,13 @@ class FfWords {
       default:
         return activation(numbers);
     }
+  }
+
+  // Of a peer, to an address of the word "data".
+  Octets user_data(std::int64_t to) {
+    constexpr std::int64_t kUrgency = 2;
+    constexpr std::int64_t kSize = 8;
+    return data({to, 0, kUrgency, 0, 0, kSize});
   }
 
   FfAddress buffer(std::int64_t number) const {
@@ -364,6 +375,8 @@ class FfSequenceRun {
         send_noise(bench_, command.numbers[0]);
         model_.hear_noise(bench_.now());
         return settle(command.numbers.back());
+      case FfWord::framed:
+        return send_framed_data(command.numbers);
       default:
         break;
     }
@@ -374,6 +387,14 @@ class FfSequenceRun {
       model_.hear_noise(bench_.now());
     }
     settle(command.numbers.back());
+  }
+
+  void send_framed_data(const std::vector<std::int64_t>& numbers) {
+    const std::vector<Octets> heard =
+        send_framed(bench_, numbers[0], words_.user_data(kToAnother), words_.user_data(kToUser));
+    for (const Octets& dlpdu : heard) model_.hear(dlpdu, bench_.now());
+    if (heard.empty()) model_.hear_noise(bench_.now());
+    settle(numbers.back());
   }
 
   void settle(std::int64_t silence) {

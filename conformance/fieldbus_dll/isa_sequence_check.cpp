@@ -46,7 +46,8 @@ enum class IsaWord : std::uint8_t {
   peer,
   supply,
   one,
-  wait
+  wait,
+  framed
 };
 
 // What the tester does after a CD of the station.
@@ -150,7 +151,8 @@ std::vector<SequenceWord> isa_dle_words() {
           {.word = "wait",
            .meaning = "silence of so many octet durations",
            .numbers = {link_wait()},
-           .weight = 3}};
+           .weight = 3},
+          link_framed()};
 }
 
 // What an entity has to send, holds, waits for or has lost.
@@ -220,6 +222,8 @@ class IsaSequenceRun {
         return settle(numbers.back());
       case IsaWord::compel:
         return compel(command);
+      case IsaWord::framed:
+        return send_framed_data(numbers);
       default:
         send(command);
         return settle(numbers.back());
@@ -234,6 +238,18 @@ class IsaSequenceRun {
     } else {
       model_.hear_noise(bench_.now());
     }
+  }
+
+  void send_framed_data(const Numbers& numbers) {
+    constexpr std::int64_t kToAnother = 1;
+    const auto data_to = [&](std::int64_t to) {
+      return octets_of(IsaWord::data, {to, 1, static_cast<std::int64_t>(Priority::normal), 0, 8});
+    };
+    const kernel::Time begin = bench_.now();
+    const std::vector<Octets> heard = send_framed(bench_, numbers[0], data_to(kToAnother), data_to(0));
+    for (const Octets& dlpdu : heard) model_.hear(dlpdu, begin, bench_.now());
+    if (heard.empty()) model_.hear_noise(bench_.now());
+    settle(numbers.back());
   }
 
   // Its user has the data so many octets after the CD, or has said that there are none.

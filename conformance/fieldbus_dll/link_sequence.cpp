@@ -69,6 +69,43 @@ void send_noise(LinkBench& bench, std::int64_t octets) {
   bench.send_half_bits(std::move(half_bits));
 }
 
+SequenceWord link_framed() {
+  return {.word = "framed",
+          .meaning =
+              "data of 8 octets for its user, with 1 to 7 bits more in front of the end delimiter, 8: after "
+              "a start delimiter and two octets, 9: after a frame for another in the same transmission",
+          .numbers = {{"how", 1, kAfterAnother, kAfterAnother}, link_silence()},
+          .weight = 2,
+          .is_no_frame = true};
+}
+
+std::vector<Octets> send_framed(LinkBench& bench, std::int64_t framing, const Octets& for_another,
+                                const Octets& octets) {
+  constexpr std::size_t kBegun = 2 * kHalfBitsOfAnOctet;  // preamble and start delimiter
+  constexpr unsigned kHalfBitsOfABit = 2;
+  constexpr std::uint64_t kOneBit = 0b01;
+  const line::Levels frame = half_bits_of_frame(with_frame_check(octets));
+  line::Levels half_bits;
+  std::vector<Octets> heard{octets};
+  if (framing == kAfterAnother) {
+    half_bits = half_bits_of_frame(with_frame_check(for_another));
+    heard.insert(heard.begin(), for_another);
+  } else if (framing == kAfterAStart) {
+    half_bits.append(half_bits_of_frame(octets), 0, kBegun + 2 * kHalfBitsOfAnOctet);
+  }
+  if (framing >= kAfterAStart) {
+    half_bits.append(frame, kHalfBitsOfAnOctet, frame.size() - kHalfBitsOfAnOctet);
+  } else {
+    const std::size_t end = frame.size() - kHalfBitsOfAnOctet;
+    half_bits.append(frame, 0, end);
+    for (std::int64_t n = 0; n < framing; ++n) half_bits.append(kOneBit, kHalfBitsOfABit);
+    half_bits.append(frame, end, kHalfBitsOfAnOctet);
+    heard.clear();
+  }
+  bench.send_half_bits(std::move(half_bits));
+  return heard;
+}
+
 bool send_link_command(LinkBench& bench, const Octets& octets, const SequenceCommand& command) {
   const line::Levels whole = half_bits_of_frame(with_frame_check(octets));
   line::Levels half_bits = whole;

@@ -75,4 +75,14 @@ void judge_reported(CaseJudge& judge, const std::vector<Report>& right, const st
 // anybody.
 bool send_link_command(LinkBench& bench, const Octets& octets, const SequenceCommand& command);
 
+// How data of a user lie in their transmission, before the silence. 1 to 7: with so many bits more in front
+// of the end delimiter, which is no frame; then after a start delimiter and some octets of a frame that does
+// not end, and after a whole frame for another.
+inline constexpr std::int64_t kAfterAStart = 8;
+inline constexpr std::int64_t kAfterAnother = 9;
+SequenceWord link_framed();
+// Sends `octets` so; gives the DLPDUs that every receiver has to take.
+std::vector<Octets> send_framed(LinkBench& bench, std::int64_t framing, const Octets& for_another,
+                                const Octets& octets);
+
 }  // namespace fieldproof::conformance

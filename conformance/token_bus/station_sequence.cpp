@@ -343,7 +343,7 @@ const SequenceRole& token_station_sequence_role() {
        {DerivedKind::words, {"delivers_with_another_priority", "indication_other"}},
        {DerivedKind::states, {"response_of_the_asked_only", "frame_missing"}},
        {DerivedKind::repetitions, {"offer_kept", "frame_other"}},
-       {DerivedKind::settings, {"preamble_of_four_octets", "frame_missing"}}}};
+       {DerivedKind::settings, {"preamble_of_four_octets", "preamble_short"}}}};
   return role;
 }
 
