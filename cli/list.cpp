@@ -2,14 +2,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-
+#include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/build_info.hpp"
+#include "cli/case_lists.hpp"
 #include "cli/pics_file.hpp"
 #include "cli/pics_roles.hpp"
 #include "cli/protocol_entry.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/verbs.hpp"
+#include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
 // `fieldproof list`: the cases, or the mutants, the protocols, the items of a PICS, of all roles or of one.
@@ -17,6 +21,9 @@ namespace fieldproof::cli {
 namespace {
 
 using nlohmann::ordered_json;
+
+// What is listed besides cases.
+constexpr std::array<std::string_view, 3> kOtherLists = {"protocols", "mutants", "pics"};
 
 // One row as JSON and as text; `list` prints either.
 struct Row {
@@ -109,6 +116,56 @@ Row row_of_plans(const ProtocolEntry& protocol) {
   return row;
 }
 
+// The files of `--needs` and `--ctest`.
+void write_case_lists(const Session& session, std::span<const conformance::Entry> entries) {
+  const Settings& settings = session.settings;
+  if (settings.is_set("needs"))
+    reports::write_text_file(settings.text("needs"), needs_json(entries, tool_version()));
+  if (!settings.is_set("ctest")) return;
+  std::vector<std::string> options;
+  for (const std::string& uri : settings.list("iut")) options.insert(options.end(), {"--iut", uri});
+  if (settings.is_set("pics")) {
+    options.insert(options.end(), {"--pics", std::filesystem::absolute(settings.text("pics")).string()});
+  }
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  reports::write_text_file(settings.text("ctest"),
+                           ctest_script(entries, program, options, std::filesystem::current_path().string()));
+}
+
+std::vector<Row> case_rows_of(const Session& session) {
+  std::vector<Row> rows;
+  conformance::Setup setup;
+  const std::vector<conformance::Entry> selected = session.catalogue.select(session.operands);
+  if (session.settings.is_set("pics")) {
+    setup.pics = load_pics(session.settings.text("pics"), session.catalogue.pics_items());
+    expect_items_of(roles_of(selected), *setup.pics, session.settings.text("pics"), session.catalogue);
+  }
+  const std::vector<conformance::Entry> entries = shard_of(session.settings, selected);
+  for (const conformance::Entry& entry : entries) rows.push_back(row_of(entry, setup));
+  write_case_lists(session, entries);
+  return rows;
+}
+
+// A test against the reference would be green without the device; and an implementation that only stands
+// there is not tested.
+void check_case_lists(const Session& session) {
+  const Settings& settings = session.settings;
+  for (const char* const option : {"needs", "ctest"}) {
+    const bool is_of_cases = session.operands.empty() ||
+                             std::ranges::count(kOtherLists, std::string_view(session.operands.front())) == 0;
+    if (settings.is_set(option) && !is_of_cases)
+      settings.refuse(option, "is of cases; name them by a selector");
+  }
+  const bool names_one = settings.origin("iut") != Origin::fallback;
+  if (settings.is_set("ctest") && !names_one) {
+    settings.refuse("ctest",
+                    "needs the implementation that is to be tested; write for example --iut exec:./device");
+  }
+  if (!settings.is_set("ctest") && settings.origin("iut") == Origin::command_line) {
+    settings.refuse("iut", "takes part in a list with --ctest only; judge it with 'fieldproof run'");
+  }
+}
+
 std::vector<Row> rows_of(Session& session) {
   std::vector<Row> rows;
   const bool is_single = session.operands.size() == 1;
@@ -130,21 +187,13 @@ std::vector<Row> rows_of(Session& session) {
   }
   if (session.operands.size() == 2 && session.operands.front() == "pics")
     return pics_rows_of(role_named(session.operands.back()), session);
-  conformance::Setup setup;
-  const std::vector<conformance::Entry> selected = session.catalogue.select(session.operands);
-  if (session.settings.is_set("pics")) {
-    setup.pics = load_pics(session.settings.text("pics"), items);
-    expect_items_of(roles_of(selected), *setup.pics, session.settings.text("pics"), session.catalogue);
-  }
-  for (const conformance::Entry& entry : shard_of(session.settings, selected)) {
-    rows.push_back(row_of(entry, setup));
-  }
-  return rows;
+  return case_rows_of(session);
 }
 
 }  // namespace
 
 int list(Session& session) {
+  check_case_lists(session);
   const std::vector<Row> rows = rows_of(session);
   if (session.settings.is_set("json")) {
     ordered_json all = ordered_json::array();

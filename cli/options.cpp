@@ -11,7 +11,7 @@ using enum OptionKind;
 
 // clang-format off
 constexpr std::array kOptions = {
-    Option{"iut", list, "[ROLE[@POSITION]=]URI", "ref", "run verify replay emc measure check doctor fuzz",
+    Option{"iut", list, "[ROLE[@POSITION]=]URI", "ref", "run verify replay emc measure check doctor fuzz list",
            "implementation under test, in which role and place; see below", false, true},
     Option{"seed", value, "N", "1", "run verify matrix residual measure paper emc check plan fuzz", "seed of the run, 0 to 2^64-1", false, true},
     Option{"volume", value, "quick|full", "full", "run verify", "how many repetitions a case makes", false, true},
@@ -22,10 +22,15 @@ constexpr std::array kOptions = {
     Option{"out", value, "DIR", "runs/<utc>-<seed>", "run", "directory of the run"},
     Option{"out", value, "DIR", "", "emc", "where each test that fails, and the first wrong word, leave a file for replay and shrink"},
     Option{"record", value, "none|failed|all", "failed", "run", "which cases keep their trace"},
-    Option{"junit", value, "FILE", "", "run", "also write the JUnit report here"},
+    Option{"junit", value, "FILE", "", "run report", "also write the JUnit report here; beyond 10 MB the rest goes to FILE-2 and so on"},
+    Option{"sarif", value, "FILE", "", "run report", "also write what did not pass as SARIF 2.1.0 here, for code scanning"},
+    Option{"ctrf", value, "FILE", "", "run report", "also write the result as CTRF (JSON) here"},
+    Option{"github", flag, "", "", "run report", "print annotations for GitHub Actions, and add to the summary of the step"},
     Option{"html", value, "FILE", "", "run report", "also write the report as one HTML page here"},
-    Option{"json", value, "FILE", "", "run matrix diff residual measure paper emc plan", "also write the result as JSON here"},
+    Option{"json", value, "FILE", "", "run report matrix diff residual measure paper emc plan", "also write the result as JSON here"},
     Option{"json", flag, "", "", "list", "print JSON", true},
+    Option{"needs", value, "FILE", "", "list", "write the requirements of the cases here, as needs.json for sphinx-needs", true},
+    Option{"ctest", value, "FILE", "", "list", "write a test of CTest per case here, against what --iut names", true},
     Option{"strict", flag, "", "", "run", "warn and inconclusive count as fail", false, false, true},
     Option{"allow-inconclusive", flag, "", "", "run replay judge verify", "an inconclusive verdict, or a run that --max-time ended, gives 0, not 2", false, false, true},
     Option{"baseline", value, "FILE", "", "run", "failures that are expected, each with its reason and its last day; one that is stale gives 3", false, false, true},

@@ -81,6 +81,42 @@ TEST_F(ReportVerb, ADocumentHoldsItsCommand) {
   EXPECT_EQ(read("again.json"), first);
 }
 
+// One table of formats: a stored run says the same as the run itself.
+TEST_F(ReportVerb, WritesTheFormatsThatTheRunWrites) {
+  std::vector<std::string> formats;
+  for (const char* format : {"json", "junit", "sarif", "ctrf"})
+    formats.insert(formats.end(), {std::string("--") + format, std::string("of_run.") + format});
+  EXPECT_EQ(run("a", formats).exit_code, 1);
+  for (std::string& word : formats)
+    if (word.starts_with("of_run")) word.replace(0, 6, "new/again");
+  formats.insert(formats.begin(), {"report", "a"});
+  const Called made = call(formats);
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  for (const std::string format : {"json", "junit", "sarif", "ctrf"}) {
+    EXPECT_FALSE(read("of_run." + format).empty()) << format;
+    EXPECT_EQ(read("of_run." + format), read("new/again." + format)) << format;
+  }
+  EXPECT_EQ(read("of_run.json"), read("a/results.json"));
+  EXPECT_EQ(read("of_run.junit"), read("a/junit.xml"));
+  const auto flow =
+      json("of_run.sarif")["runs"][0]["results"][0]["codeFlows"][0]["threadFlows"][0]["locations"];
+  EXPECT_EQ(flow.back()["properties"]["kind"], "finding");
+  EXPECT_EQ(flow.front()["properties"]["kind"], "step");
+}
+
+TEST_F(ReportVerb, GitHubGetsAnnotationsAndASummary) {
+  run("a");
+  write("summary.md", "before\n");
+  Call report = prepared({"report", "a", "--github"});
+  report.environment["GITHUB_STEP_SUMMARY"] = (folder_ / "summary.md").string();
+  const Called made = report.run();
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_TRUE(made.out.starts_with("::error title=interbus/slave/frame_check/")) << made.out;
+  EXPECT_TRUE(read("summary.md").starts_with("before\n### fieldproof: fail\n")) << read("summary.md");
+  report.environment["GITHUB_STEP_SUMMARY"] = folder_.string();
+  EXPECT_EQ(report.run().exit_code, 74);
+}
+
 TEST_F(ReportVerb, RefusesWhatItCannotShow) {
   const auto expect_refusal = [&](std::vector<std::string> arguments, int code, const std::string& told) {
     const Called called = call(std::move(arguments));
@@ -99,6 +135,8 @@ TEST_F(ReportVerb, RefusesWhatItCannotShow) {
   expect_refusal({"report", "a", "wrong.json", "--html", "r.html"}, 65, "wrong.json:1");
   expect_refusal({"report", "a", "other.json", "--html", "r.html"}, 65, "fieldproof/emc/1");
   expect_refusal({"report", "a", "--html", "a"}, 74, "folder");
+  expect_refusal({"report", "residual.json", "--junit", "r.html"}, 65, "residual.json");
+  expect_refusal({"report", "a", "--sarif", "a"}, 74, "folder");
 }
 
 }  // namespace

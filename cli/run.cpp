@@ -5,17 +5,18 @@
 #include <optional>
 
 #include "cli/baseline.hpp"
+#include "cli/copies.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
 #include "cli/page_catalogue.hpp"
 #include "cli/reset_hook.hpp"
 #include "cli/run_book.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/same_run.hpp"
 #include "cli/verbs.hpp"
 #include "harness/kernel/error.hpp"
+#include "reports/github_writer.hpp"
 #include "reports/html_writer.hpp"
-#include "reports/json_writer.hpp"
-#include "reports/junit_writer.hpp"
 #include "reports/text_summary.hpp"
 
 // `fieldproof run`: judges an implementation by the selected cases and stores the result.
@@ -24,8 +25,6 @@ namespace {
 
 using judge::Verdict;
 
-constexpr const char* kConfiguration = "configuration.json";
-
 bool is_failure(const judge::CaseResult& result) {
   const Verdict verdict = reports::counted_verdict(result);
   return verdict == Verdict::fail || verdict == Verdict::error;
@@ -33,7 +32,7 @@ bool is_failure(const judge::CaseResult& result) {
 
 // Gives what the stored run was configured with to the options that were not given now.
 void take_over_configuration(Session& session, const reports::RunDirectory& directory) {
-  session.settings.add_file(directory.path() / kConfiguration, Origin::stored_run);
+  session.settings.add_file(directory.path() / kConfigurationFile, Origin::stored_run);
 }
 
 // `--failed` may swallow a selector: what is no directory of a run is one.
@@ -110,27 +109,11 @@ void refuse_resume(const reports::RunDirectory& directory, const std::string& se
                       fmt::format("--resume {}: {}; start a new run", directory.path().string(), sentence));
 }
 
-// A resumed run must be the same run: nothing that decides its outcome may have changed. What is compared is
-// what the options mean, not how they are written: the stored ones name their files from anywhere.
+// A resumed run must be the same run: nothing that decides its outcome may have changed.
 void check_same_run(const reports::RunDirectory& directory, const reports::RunIdentity& stored,
                     const reports::RunIdentity& now) {
-  if (stored.suite_version != now.suite_version) {
-    refuse_resume(directory,
-                  fmt::format("the suite was {} and is {}", stored.suite_version, now.suite_version));
-  }
-  if (stored.seed != now.seed) {
-    refuse_resume(directory, fmt::format("the seed was {}, not {}", stored.seed, now.seed));
-  }
-  if (stored.volume != now.volume) {
-    refuse_resume(directory, fmt::format("the volume was {}, not {}", stored.volume, now.volume));
-  }
-  if (stored.implementations != now.implementations) {
-    refuse_resume(directory, fmt::format("its options were '{}', not '{}': the implementations differ",
-                                         stored.reproduce_options, now.reproduce_options));
-  }
-  if (stored.plan_hash != now.plan_hash) refuse_resume(directory, "the plan of faults has changed since");
-  if (stored.network_hash != now.network_hash) refuse_resume(directory, "the network has changed since");
-  if (stored.pics_hash != now.pics_hash) refuse_resume(directory, "the PICS has changed since");
+  if (const std::string sentence = difference(stored, now); !sentence.empty())
+    refuse_resume(directory, sentence);
 }
 
 Prepared prepare_resumed(Session& session) {
@@ -233,41 +216,15 @@ class Judging {
   bool has_differed_ = false;
 };
 
-// Before hours of work that their absence would make worthless.
-void check_copies(const Settings& settings) {
-  for (const char* option : {"json", "junit", "html"}) {
-    if (settings.is_set(option)) reports::check_writable(settings.text(option));
-  }
-}
-
-// JUnit tells the same as the exit code.
-reports::JunitOptions junit_options(const Settings& settings) {
-  reports::JunitOptions options;
-  options.is_strict = settings.is_set("strict");
-  if (settings.is_set("allow-inconclusive")) options.inconclusive = reports::InconclusiveAs::skipped;
-  if (options.is_strict) options.inconclusive = reports::InconclusiveAs::failure;
-  return options;
-}
-
-// The page of a run stands in its directory, and is read from there like any other.
-void write_page(const Session& session, const RunBook& book) {
+// The page of a run stands in its directory, and is read from there like any other; so are the copies.
+void write_reports(const Session& session, const RunBook& book, const reports::OutcomeRules& rules) {
   reports::PageContent content;
   content.catalogue = page_catalogue(session.catalogue);
   content.runs.push_back(reports::page_run(book.directory()));
   const std::string page = reports::html_page(content);
   book.directory().write("report.html", page);
   if (session.settings.is_set("html")) reports::write_text_file(session.settings.text("html"), page);
-}
-
-void write_copies(const Session& session, const RunBook& book) {
-  const Settings& settings = session.settings;
-  if (settings.is_set("json"))
-    reports::write_text_file(settings.text("json"), reports::results_json(book.run()));
-  if (settings.is_set("junit")) {
-    reports::write_text_file(settings.text("junit"),
-                             reports::junit_xml(book.run(), book.manifest(), junit_options(settings)));
-  }
-  write_page(session, book);
+  write_copies(session, content.runs.front(), rules);
 }
 
 }  // namespace
@@ -278,7 +235,7 @@ int run(Session& session) {
   const Interruption interruption(session.settings.duration("max-time"));
   Prepared prepared = prepare(session);
   RunBook& book = *prepared.book;
-  const reports::JunitOptions options = junit_options(session.settings);
+  const reports::OutcomeRules outcomes = outcome_rules(session.settings);
   if (const std::string& warning = book.directory().warning(); !warning.empty())
     session.terminal.log(warning);
   session.terminal.print(reports::run_header(book.run().identity, book.manifest()));
@@ -288,8 +245,8 @@ int run(Session& session) {
     incomplete_because = judging.run(interruption);
   } catch (const kernel::Error& error) {
     session.terminal.end_progress();
-    book.close(error.what(), error.exit_code(), options);
-    write_copies(session, book);
+    book.close(error.what(), error.exit_code(), outcomes);
+    write_reports(session, book, outcomes);
     throw;
   }
   if (prepared.baseline) book.hold_against(*prepared.baseline);
@@ -301,10 +258,11 @@ int run(Session& session) {
   rules.is_incomplete = !incomplete_because.empty();
   rules.signal = interruption.signal();
   const int code = exit_code(book.run(), rules);
-  book.close(incomplete_because, code, options);
+  book.close(incomplete_because, code, outcomes);
   session.terminal.log(fmt::format("the result is in {}", book.directory().path().string()));
-  session.terminal.print(reports::summary_text(book.run(), {.colour = session.terminal.has_colour()}));
-  write_copies(session, book);
+  const std::string summary = reports::summary_text(book.run(), {.colour = session.terminal.has_colour()});
+  session.terminal.print(session.settings.is_set("github") ? reports::github_log(summary) : summary);
+  write_reports(session, book, outcomes);
   return code;
 }
 

@@ -29,7 +29,7 @@ RunBook::RunBook(const std::string& out, reports::Manifest manifest, reports::Ru
       selected_(std::move(selected)),
       journal_(std::make_unique<judge::Journal>(directory_.journal())),
       begin_(std::chrono::steady_clock::now()) {
-  directory_.write("configuration.json", configuration);
+  directory_.write(kConfigurationFile, configuration);
 }
 
 RunBook::RunBook(reports::RunDirectory directory, std::unique_ptr<judge::Journal> journal,
@@ -77,7 +77,7 @@ void RunBook::sort_by_catalogue() {
 }
 
 void RunBook::close(const std::string& incomplete_because, int exit_code,
-                    const reports::JunitOptions& options) {
+                    const reports::OutcomeRules& rules) {
   sort_by_catalogue();
   run_.identity.incomplete_because = incomplete_because;
   run_.identity.exit_code = exit_code;
@@ -86,7 +86,7 @@ void RunBook::close(const std::string& incomplete_because, int exit_code,
   manifest_.wall_time_us +=
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(passed).count());
   directory_.store(manifest_, run_);
-  directory_.write("junit.xml", reports::junit_xml(run_, manifest_, options));
+  reports::write_files(directory_.path() / "junit.xml", reports::junit_files(run_, manifest_, rules));
 }
 
 }  // namespace fieldproof::cli

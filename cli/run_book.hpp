@@ -14,10 +14,13 @@
 #include "cli/baseline.hpp"
 #include "cli/run_setup.hpp"
 #include "harness/judge/journal.hpp"
-#include "reports/junit_writer.hpp"
+#include "reports/outcome.hpp"
 #include "reports/run_directory.hpp"
 
 namespace fieldproof::cli {
+
+// The options of a run, in its directory: what `--config` reads.
+inline constexpr const char* kConfigurationFile = "configuration.json";
 
 class RunBook {
  public:
@@ -40,7 +43,7 @@ class RunBook {
   // Which failures of all cases are expected, also of those that were judged before a resumption under
   // another baseline; and what the baseline says and the run does not show.
   void hold_against(const Baseline& baseline);
-  void close(const std::string& incomplete_because, int exit_code, const reports::JunitOptions& options);
+  void close(const std::string& incomplete_because, int exit_code, const reports::OutcomeRules& rules);
 
  private:
   void sort_by_catalogue();

@@ -22,7 +22,7 @@ constexpr std::string_view kKnow = "Look up";
 constexpr std::array kHelp = {
     VerbHelp{"run", kJudge, {{
         {"run '{role}/**' --iut exec:./device", "every case of a role against your process"},
-        {"run +must --iut {name}@3=unix:./device.sock --html report.html", "by a tag; your device at the third place of a network"},
+        {"run +must --iut {name}@3=unix:./device.sock --html report.html --sarif ci.sarif", "by a tag; your device at the third place of a network"},
         {"run --failed --iut exec:./device --record all", "what failed in the last run, with the trace of each case"}}}},
     VerbHelp{"check", kJudge, {{
         {"check {role} --iut exec:./device", "2000 random sequences, compared with the reference"},
@@ -67,7 +67,7 @@ constexpr std::array kHelp = {
     VerbHelp{"report", kAgain, {{
         {"report runs/latest --html report.html", "one page of a stored run"},
         {"report runs/latest emc.json measure.json --html report.html", "with bursts and cycle times of the same device"},
-        {"report runs/a runs/b --html both.html", "several runs on one page"}}}},
+        {"report shard1 shard2 shard3 --junit ci.xml --sarif ci.sarif", "the parts of --shard 1/3 to 3/3 as one run"}}}},
     VerbHelp{"emc", kNetwork, {{
         {"emc {protocol} --iut {name}@2=exec:./device", "burst immunity of a network with your device in it"},
         {"emc {protocol} --test-levels 1..4 --json emc.json", "all levels, as JSON for report"},

@@ -27,7 +27,7 @@ function(fieldproof_library name folder)
   list(FILTER sources EXCLUDE REGEX "(_test|_fuzz|/main|/test_main)\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "/node_modules/")
   list(FILTER headers EXCLUDE REGEX "/node_modules/")
-  list(FILTER headers EXCLUDE REGEX "/(approved_text|(probe|program)_fixture|source_folder)\\.hpp$")  # of tests only: they need what CMake tells those
+  list(FILTER headers EXCLUDE REGEX "/(approved_text|published_schema|(probe|program)_fixture|source_folder)\\.hpp$")  # of tests only: they need what CMake tells those
   if(arg_ONLY)
     list(FILTER sources INCLUDE REGEX "${arg_ONLY}")
     list(FILTER headers INCLUDE REGEX "${arg_ONLY}")

@@ -1,9 +1,11 @@
 #include "reports/junit_writer.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
+#include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,33 +19,6 @@ namespace {
 
 using judge::CaseResult;
 using judge::Verdict;
-
-enum class Outcome : std::uint8_t { passed, failure, error, skipped };
-
-Outcome outcome_of(Verdict verdict, const JunitOptions& options) {
-  switch (verdict) {
-    case Verdict::pass:
-      return Outcome::passed;
-    case Verdict::warn:
-      return options.is_strict ? Outcome::failure : Outcome::passed;
-    case Verdict::fail:
-      return Outcome::failure;
-    case Verdict::not_applicable:
-      return Outcome::skipped;
-    case Verdict::inconclusive:
-      if (options.inconclusive == InconclusiveAs::failure) return Outcome::failure;
-      return options.inconclusive == InconclusiveAs::skipped ? Outcome::skipped : Outcome::error;
-    case Verdict::none:
-    case Verdict::error:
-      break;
-  }
-  return Outcome::error;
-}
-
-Outcome outcome_of(const CaseResult& result, const JunitOptions& options) {
-  const bool is_expected = counted_verdict(result) != result.verdict;
-  return is_expected ? Outcome::skipped : outcome_of(result.verdict, options);
-}
 
 // What a Char of XML 1.0 may be.
 bool is_xml_char(char32_t point) {
@@ -126,6 +101,30 @@ Names names_of(const std::string& id) {
   return names;
 }
 
+// Servers keep the first of two tests of one name and lose the other: ids that differ only in '/' and '.' get
+// a number.
+class UniqueNames {
+ public:
+  Names of(const std::string& id) {
+    Names names = names_of(id);
+    const std::string first = names.name;
+    for (int n = 2; !used_.emplace(names.classname, names.name).second; ++n) {
+      names.name = fmt::format("{} ({})", first, n);
+    }
+    return names;
+  }
+
+ private:
+  std::set<std::pair<std::string, std::string>> used_;
+};
+
+// The first and the last part of a text that is too long.
+std::string capped(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  return fmt::format("{}\n[{} octets are left out]\n{}", text.substr(0, most / 2), text.size() - most / 2 * 2,
+                     text.substr(text.size() - most / 2));
+}
+
 struct Totals {
   std::size_t tests = 0;
   std::size_t failures = 0;
@@ -133,12 +132,8 @@ struct Totals {
   std::size_t skipped = 0;
   std::uint64_t wall_time_us = 0;
 
-  void add(const CaseResult& result, const JunitOptions& options) {
-    add(outcome_of(result, options));
-    wall_time_us += result.wall_time_us;
-  }
-
-  void add(Outcome outcome) {
+  void add(Outcome outcome, std::uint64_t us) {
+    wall_time_us += us;
     ++tests;
     failures += outcome == Outcome::failure ? 1U : 0U;
     errors += outcome == Outcome::error ? 1U : 0U;
@@ -168,13 +163,6 @@ std::string properties(const RunIdentity& identity, const CaseResult& result) {
          property("fingerprint", judge::fingerprint_text(result.fingerprint)) + "      </properties>\n";
 }
 
-std::string message_of(const CaseResult& result) {
-  if (result.verdict == Verdict::none) return "the case was not judged";
-  if (counted_verdict(result) != result.verdict) return "expected: " + result.expected_because;
-  if (result.verdict == Verdict::inconclusive) return "inconclusive: " + result.reason;
-  return result.reason;
-}
-
 std::string outcome_element(Outcome outcome, const std::string& message, std::string_view type,
                             const std::string& text) {
   if (outcome == Outcome::passed) return "";
@@ -185,19 +173,37 @@ std::string outcome_element(Outcome outcome, const std::string& message, std::st
                      cdata(text));
 }
 
-std::string test_case(const RunIdentity& identity, const CaseResult& result, const Names& names,
-                      const JunitOptions& options) {
-  std::string out =
-      fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{}\">\n", attribute(names.classname),
-                  attribute(names.name), seconds(result.wall_time_us));
-  out += properties(identity, result);
-  const Outcome outcome = outcome_of(result, options);
-  out += outcome_element(outcome, message_of(result), name(result.verdict), finding_text(identity, result));
-  if (result.verdict == Verdict::warn && outcome == Outcome::passed) {
-    out += "      <system-out>" + cdata(finding_text(identity, result)) + "</system-out>\n";
+// One <testcase>, and what counts of it.
+struct Written {
+  std::string suite;
+  Outcome outcome = Outcome::passed;
+  std::uint64_t wall_time_us = 0;
+  std::string xml;
+};
+
+Written test_case(const RunIdentity& identity, const CaseResult& result, const Names& names,
+                  const OutcomeRules& rules, const JunitLimits& limits) {
+  Written out{names.classname, outcome_of(result, rules), result.wall_time_us, {}};
+  out.xml = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{}\">\n",
+                        attribute(names.classname), attribute(names.name), seconds(result.wall_time_us));
+  out.xml += properties(identity, result);
+  const std::string text = capped(finding_text(identity, result), limits.text_octets);
+  out.xml += outcome_element(out.outcome, outcome_message(result), name(result.verdict), text);
+  if (result.verdict == Verdict::warn && out.outcome == Outcome::passed) {
+    out.xml += "      <system-out>" + cdata(text) + "</system-out>\n";
   }
-  if (!result.log.empty()) out += "      <system-err>" + cdata(result.log) + "</system-err>\n";
-  return out + "    </testcase>\n";
+  if (!result.log.empty()) {
+    out.xml += "      <system-err>" + cdata(capped(result.log, limits.text_octets)) + "</system-err>\n";
+  }
+  out.xml += "    </testcase>\n";
+  return out;
+}
+
+Written test_case(const Complaint& complaint) {
+  std::string xml = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0.000000\">\n",
+                                kComplaintSuite, complaint.name);
+  xml += outcome_element(complaint.outcome, complaint.text, complaint.type, complaint.text + "\n");
+  return {std::string(kComplaintSuite), complaint.outcome, 0, xml + "    </testcase>\n"};
 }
 
 // The cases of one folder; folders in the order of their first case.
@@ -220,65 +226,71 @@ std::string timestamp(const Manifest& manifest) {
   return utc.empty() ? "" : fmt::format(" timestamp=\"{}\"", attribute(utc));
 }
 
-// What is wrong with a run that none of its cases tells; a testcase of the suite fieldproof.run each.
-struct Complaint {
-  std::string_view name;
-  std::string_view type;
-  std::string text;
-  Outcome outcome;
-};
-
-std::vector<Complaint> complaints_about(const Run& run, const JunitOptions& options) {
-  std::vector<Complaint> all;
-  if (!run.is_complete()) {
-    const Counts counts = count(run);
-    all.push_back({"is_complete", "incomplete",
-                   fmt::format("the run is incomplete: {}; {} of {} selected cases were not judged",
-                               run.identity.incomplete_because, counts.not_run(), counts.selected),
-                   outcome_of(Verdict::inconclusive, options)});
+std::vector<Written> written(const Run& run, const OutcomeRules& rules, const JunitLimits& limits) {
+  std::vector<Written> all;
+  UniqueNames names;
+  const std::vector<Complaint> complaints = complaints_about(run, rules);
+  for (const Complaint& one : complaints) names.of(fmt::format("{}/{}", kComplaintSuite, one.name));
+  for (const auto& [folder, results] : by_folder(run)) {
+    for (const CaseResult* result : results) {
+      all.push_back(test_case(run.identity, *result, names.of(result->id), rules, limits));
+    }
   }
-  if (!run.identity.stale_expectations.empty()) {
-    all.push_back({"baseline_is_current", "stale",
-                   fmt::format("{}", fmt::join(run.identity.stale_expectations, "\n")), Outcome::failure});
-  }
+  for (const Complaint& one : complaints) all.push_back(test_case(one));
   return all;
 }
 
-std::string suite_of(const std::vector<Complaint>& complaints, const Manifest& manifest) {
+std::string totals_of(std::span<const Written> cases) {
   Totals totals;
-  for (const Complaint& one : complaints) totals.add(one.outcome);
-  std::string out =
-      fmt::format("  <testsuite name=\"fieldproof.run\" {}{}>\n", totals.attributes(), timestamp(manifest));
-  for (const Complaint& one : complaints) {
-    out +=
-        fmt::format("    <testcase classname=\"fieldproof.run\" name=\"{}\" time=\"0.000000\">\n", one.name);
-    out += outcome_element(one.outcome, one.text, one.type, one.text + "\n");
-    out += "    </testcase>\n";
+  for (const Written& one : cases) totals.add(one.outcome, one.wall_time_us);
+  return totals.attributes();
+}
+
+// How many of them, from the first on, one file holds.
+std::size_t fitting(std::span<const Written> cases, const JunitLimits& limits) {
+  std::size_t octets = 0;
+  std::size_t count = 0;
+  while (count < std::min(cases.size(), limits.cases)) {
+    octets += cases[count].xml.size();
+    if (count > 0 && octets > limits.octets) break;
+    ++count;
   }
-  return out + "  </testsuite>\n";
+  return count;
+}
+
+std::string document(std::span<const Written> cases, const Manifest& manifest) {
+  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+  out += fmt::format("<testsuites name=\"fieldproof\" {}>\n", totals_of(cases));
+  while (!cases.empty()) {
+    const auto end =
+        std::ranges::find_if(cases, [&](const Written& one) { return one.suite != cases.front().suite; });
+    const auto suite = cases.first(static_cast<std::size_t>(end - cases.begin()));
+    out += fmt::format("  <testsuite name=\"{}\" {}{}>\n", attribute(suite.front().suite), totals_of(suite),
+                       timestamp(manifest));
+    for (const Written& one : suite) out += one.xml;
+    out += "  </testsuite>\n";
+    cases = cases.subspan(suite.size());
+  }
+  return out + "</testsuites>\n";
 }
 
 }  // namespace
 
-std::string junit_xml(const Run& run, const Manifest& manifest, const JunitOptions& options) {
-  Totals all;
-  for (const CaseResult& result : run.cases) all.add(result, options);
-  const std::vector<Complaint> complaints = complaints_about(run, options);
-  for (const Complaint& one : complaints) all.add(one.outcome);
-  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  out += fmt::format("<testsuites name=\"fieldproof\" {}>\n", all.attributes());
-  for (const auto& [folder, results] : by_folder(run)) {
-    Totals totals;
-    for (const CaseResult* result : results) totals.add(*result, options);
-    out += fmt::format("  <testsuite name=\"{}\" {}{}>\n", attribute(folder), totals.attributes(),
-                       timestamp(manifest));
-    for (const CaseResult* result : results) {
-      out += test_case(run.identity, *result, names_of(result->id), options);
-    }
-    out += "  </testsuite>\n";
-  }
-  if (!complaints.empty()) out += suite_of(complaints, manifest);
-  return out + "</testsuites>\n";
+std::string junit_xml(const Run& run, const Manifest& manifest, const OutcomeRules& rules) {
+  return document(written(run, rules, {}), manifest);
+}
+
+std::vector<std::string> junit_files(const Run& run, const Manifest& manifest, const OutcomeRules& rules,
+                                     const JunitLimits& limits) {
+  const std::vector<Written> all = written(run, rules, limits);
+  std::vector<std::string> files;
+  std::span<const Written> rest = all;
+  do {
+    const std::size_t count = fitting(rest, limits);
+    files.push_back(document(rest.first(count), manifest));
+    rest = rest.subspan(count);
+  } while (!rest.empty());
+  return files;
 }
 
 }  // namespace fieldproof::reports

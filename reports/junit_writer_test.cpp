@@ -257,6 +257,63 @@ TEST(JunitWriter, TellsTheProperties) {
   EXPECT_FALSE(properties.at("requirement").empty());
 }
 
+TEST(JunitFiles, AreOneWhereOneIsEnough) {
+  const auto files = junit_files(sample_run(), sample_manifest());
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files.front(), junit_xml(sample_run(), sample_manifest()));
+  EXPECT_EQ(junit_files(reports::Run{}, sample_manifest()).size(), 1U);
+}
+
+// Each is whole, none is larger than it may be, and together they are the run.
+TEST(JunitFiles, StayWithinTheirLimits) {
+  reports::Run run = sample_run();
+  run.cases.clear();
+  for (int n = 0; n < 300; ++n) {
+    run.cases.push_back(sample_failure());
+    run.cases.back().id += "_" + std::to_string(n);
+  }
+  for (const JunitLimits limits : {JunitLimits{50'000, 2'000, 1'000}, JunitLimits{10'000'000, 7, 1'000}}) {
+    const auto files = junit_files(run, sample_manifest(), {}, limits);
+    EXPECT_GT(files.size(), 5U);
+    std::map<std::string, std::string> all;
+    for (const std::string& file : files) {
+      EXPECT_LE(file.size(), limits.octets + 1'000);
+      auto verdicts = consumed(file);
+      ASSERT_TRUE(verdicts);
+      EXPECT_LE(verdicts->size(), limits.cases);
+      all.merge(*verdicts);
+      EXPECT_TRUE(verdicts->empty());  // none is in two files
+    }
+    EXPECT_EQ(all.size(), 301U);
+  }
+}
+
+TEST(JunitFiles, KeepBothEndsOfALongText) {
+  reports::Run run = sample_run();
+  run.cases = {sample_failure()};
+  run.cases[0].log = "first" + std::string(1'000'000, 'x') + "last";
+  run.cases[0].findings[0].actual = std::string(1'000'000, 'y');
+  const auto files = junit_files(run, sample_manifest());
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_TRUE(consumed(files[0]));
+  EXPECT_LT(files[0].size(), 250'000U);
+  EXPECT_NE(files[0].find("CDATA[first"), std::string::npos);
+  EXPECT_NE(files[0].find("last]]>"), std::string::npos);
+  EXPECT_NE(files[0].find("octets are left out"), std::string::npos);
+}
+
+// A server keeps the first of two tests of one name.
+TEST(JunitWriter, NamesAreUniqueWhateverTheIdsAre) {
+  reports::Run run = sample_run();
+  run.cases.clear();
+  for (const char* id : {"a/b/c", "a.b/c", "a/b.c", "a/b/c (2)", "c", "fieldproof/run/is_complete"}) {
+    run.cases.push_back(sample_case(id, judge::Verdict::pass));
+  }
+  const auto verdicts = consumed(junit_xml(run, sample_manifest()));
+  ASSERT_TRUE(verdicts);
+  EXPECT_EQ(verdicts->size(), run.cases.size() + 1);
+}
+
 std::vector<judge::CaseResult> distinct(std::vector<judge::CaseResult> cases) {
   for (std::size_t i = 0; i < cases.size(); ++i) cases.at(i).id += "/case_" + std::to_string(i);
   return cases;

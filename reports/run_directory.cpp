@@ -182,6 +182,16 @@ void write_text_file(const fs::path& named, std::string_view content) {
   check(path, failure, kNotWritten);
 }
 
+void write_files(const fs::path& path, const std::vector<std::string>& contents) {
+  const bool is_stream = is_special(path);
+  for (std::size_t n = 0; n < contents.size(); ++n) {
+    const std::string name =
+        n == 0 || is_stream ? path.filename().string()
+                            : fmt::format("{}-{}{}", path.stem().string(), n + 1, path.extension().string());
+    write_text_file(path.parent_path() / name, contents[n]);
+  }
+}
+
 RunDirectory RunDirectory::create(const fs::path& parent, const Manifest& manifest,
                                   const RunIdentity& identity) {
   create_folders(parent);

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "reports/results.hpp"
 
@@ -73,5 +74,8 @@ std::string case_directory_name(std::string_view case_id);
 void check_writable(const std::filesystem::path& path);
 std::string read_text_file(const std::filesystem::path& path);
 void write_text_file(const std::filesystem::path& path, std::string_view content);
+// The first at `path`, the others beside it: "ci.xml", "ci-2.xml", "ci-3.xml". Into a device or a pipe they
+// go one after another.
+void write_files(const std::filesystem::path& path, const std::vector<std::string>& contents);
 
 }  // namespace fieldproof::reports

@@ -25,14 +25,17 @@ function stop(sentence) {
   process.exit(2);
 }
 
-// Both kinds of drafts in use; the schema says in "$schema" which one it is written in.
+// The drafts in use; the schema says in "$schema" which one it is written in.
 async function judgeFor(schema, folder) {
-  const is2020 = String(schema.$schema ?? "").includes("2020-12");
+  const draft = String(schema.$schema ?? "");
+  const module = draft.includes("2020-12") ? "ajv/dist/2020.js" : draft.includes("draft-04") ? "ajv-draft-04" : "ajv";
   try {
-    const { default: Ajv } = await import(is2020 ? "ajv/dist/2020.js" : "ajv");
+    const { default: Ajv } = await import(module);
+    const { default: addFormats } = await import("ajv-formats");
     // A referred schema is looked for by the last part of its address: nothing is fetched.
     const loadSchema = async (address) => read(join(folder, basename(address)));
-    return new Ajv({ strict: false, allErrors: true, loadSchema });
+    // Patterns of the published schema of SARIF are none with the flag "u".
+    return addFormats(new Ajv({ strict: false, allErrors: true, unicodeRegExp: false, loadSchema }));
   } catch (error) {
     if (error.code !== "ERR_MODULE_NOT_FOUND") throw error;
     return stop(`ajv is not installed; run "npm ci" in ${dirname(fileURLToPath(import.meta.url))}`);
