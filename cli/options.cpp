@@ -21,6 +21,8 @@ constexpr std::array kOptions = {
     Option{"jobs", value, "N", "all cores", "run verify matrix emc", "threads; the results are the same for any number"},
     Option{"out", value, "DIR", "runs/<utc>-<seed>", "run", "directory of the run"},
     Option{"out", value, "DIR", "", "emc", "where each test that fails, and the first wrong word, leave a file for replay and shrink"},
+    Option{"out", value, "DIR", "<role>", "new", "the folder that it is written to", true},
+    Option{"lang", value, "python|c|cpp", "python", "new", "a process in Python, or a shared library in C or C++", true},
     Option{"record", value, "none|failed|all", "failed", "run", "which cases keep their trace"},
     Option{"junit", value, "FILE", "", "run report", "also write the JUnit report here; beyond 10 MB the rest goes to FILE-2 and so on"},
     Option{"sarif", value, "FILE", "", "run report", "also write what did not pass as SARIF 2.1.0 here, for code scanning"},

@@ -1,4 +1,7 @@
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/copies.hpp"
 #include "cli/exit_code.hpp"
@@ -14,15 +17,36 @@
 namespace fieldproof::cli {
 namespace {
 
-// The parts of a run that was cut stand on it one after another.
-void write_page_of(const Session& session, const std::string& file) {
+bool is_directory(const std::string& operand) {
+  return std::filesystem::is_directory(operand);
+}
+
+// The run of `--json`, `--junit` and the others: one, or joined from its parts.
+JoinedRun one_run(const Session& session) {
+  std::vector<std::string> directories;
+  for (const std::string& operand : session.operands) {
+    // A document goes to the page; what is nothing at all is refused.
+    if (session.settings.is_set("html") && std::filesystem::is_regular_file(operand)) continue;
+    directories.push_back(operand);
+  }
+  if (directories.empty()) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        "--json, --junit, --sarif, --ctrf and --github are of a run; name its directory");
+  }
+  return joined(session, directories);
+}
+
+// With the one run that the other formats are of, or with each directory as a run of its own.
+void write_page(const Session& session, const std::optional<JoinedRun>& only) {
+  const std::string file = session.settings.text("html");
   reports::PageContent content;
   content.catalogue = page_catalogue(session.catalogue);
+  if (only) content.runs.push_back(only->run);
   for (const std::string& operand : session.operands) {
-    if (std::filesystem::is_directory(operand)) {
-      content.runs.push_back(reports::page_run(reports::RunDirectory::open(operand)));
-    } else {
+    if (!is_directory(operand)) {
       content.documents.push_back(reports::page_document(operand, document_kinds()));
+    } else if (!only) {
+      content.runs.push_back(reports::page_run(reports::RunDirectory::open(operand)));
     }
   }
   reports::write_text_file(file, reports::html_page(content));
@@ -33,27 +57,17 @@ void write_page_of(const Session& session, const std::string& file) {
 
 int report(Session& session) {
   const bool has_page = session.settings.is_set("html");
-  if (!has_page && !asks_for_copies(session.settings)) {
-    throw kernel::Error(
-        kernel::ErrorKind::usage,
-        "report needs the file to write: --html, --json, --junit, --sarif or --ctrf, or --github; "
-        "write for example --html report.html");
+  const bool has_copies = asks_for_copies(session.settings);
+  if (!has_page && !has_copies) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        "report needs the file to write: --html, --json, --junit, --sarif or --ctrf, or "
+                        "--github; write for example --html report.html");
   }
   check_copies(session.settings);
-  if (has_page) write_page_of(session, session.settings.text("html"));
-  if (!asks_for_copies(session.settings)) return kAllAsExpected;
-  std::vector<std::string> directories;
-  for (const std::string& operand : session.operands) {
-    // A document goes to the page only; what is nothing at all is refused.
-    if (has_page && std::filesystem::is_regular_file(operand)) continue;
-    directories.push_back(operand);
-  }
-  if (directories.empty()) {
-    throw kernel::Error(kernel::ErrorKind::usage,
-                        "--json, --junit, --sarif, --ctrf and --github are of a run; name its directory");
-  }
-  const JoinedRun run = joined(session, directories);
-  write_copies(session, run.run, run.rules);
+  std::optional<JoinedRun> run;
+  if (has_copies) run = one_run(session);
+  if (has_page) write_page(session, run);
+  if (run) write_copies(session, run->run, run->rules);
   return kAllAsExpected;
 }
 

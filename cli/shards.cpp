@@ -71,8 +71,9 @@ void check_parts(const std::vector<Part>& parts) {
     }
     const auto [other, is_new] = shards.emplace(part.shard(), &part);
     if (!is_new) {
-      refuse(part, fmt::format("this is part {}, and so is {}; leave one of the two", part.shard(),
-                               kernel::escaped_line(other->second->directory)));
+      refuse(part,
+             fmt::format("this is part {}, and so is {}; leave one of the two",
+                         kernel::escaped_line(part.shard()), kernel::escaped_line(other->second->directory)));
     }
   }
   const std::string count = first.shard().substr(first.shard().find('/') + 1);
@@ -83,12 +84,14 @@ void check_parts(const std::vector<Part>& parts) {
       refuse(part, fmt::format("this is part {}, and {} is part {}; cut a run once", part.shard(),
                                kernel::escaped_line(first.directory), first.shard()));
   }
-  if (parts.size() == parts_in_all) return;
-  for (unsigned n = 1; n <= parts_in_all; ++n) {
+  for (unsigned n = 1; n == 1 || n <= parts_in_all; ++n) {
     const std::string shard = fmt::format("{}/{}", n, count);
-    if (!shards.contains(shard))
-      refuse(first, fmt::format("this is part {}, and part {} is missing", first.shard(), shard));
+    if (shards.contains(shard)) continue;
+    refuse(first, fmt::format("this is part {}, and part {} is missing", kernel::escaped_line(first.shard()),
+                              kernel::escaped_line(shard)));
   }
+  if (parts.size() == parts_in_all) return;
+  refuse(first, fmt::format("there are {} parts of {}; name each once", parts.size(), parts_in_all));
 }
 
 // Each result at the place that its case has in the whole selection.
@@ -186,6 +189,9 @@ JoinedRun joined(const Session& session, const std::vector<std::string>& directo
   const auto number_of = [](const Part& part) { return std::stoul(part.shard()); };
   std::ranges::sort(parts, {}, number_of);
   reports::PageRun whole = parts.front().run;
+  std::vector<std::string> names;
+  for (const Part& part : parts) names.push_back(part.run.name);
+  whole.name = fmt::format("{}", fmt::join(names, ", "));
   whole.stored.run.cases = cases_in_order(session, parts);
   for (Part& part : parts) {
     whole.timelines.merge(part.run.timelines);

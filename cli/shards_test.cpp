@@ -46,6 +46,10 @@ TEST_F(JoinedShards, AreTheRunThatWasNeverCut) {
   EXPECT_FALSE(read("whole.json").empty());
   EXPECT_EQ(read("joined.json"), read("whole.json"));
   EXPECT_EQ(timeless(read("joined.xml")), timeless(read("whole.xml")));
+  // The page is of the same run then.
+  EXPECT_EQ(probe({"report", "1", "2", "3", "--html", "page.html", "--json", "joined.json"}).exit_code, 0);
+  const std::string page = read("page.html");
+  EXPECT_HOLDS(page, "\"1, 2, 3\"");
 }
 
 TEST_F(JoinedShards, KeepTheRulesAndTheBaselineThatTheyRanUnder) {
@@ -83,6 +87,11 @@ TEST_F(JoinedShards, AreRefusedWhereTheyAreNoWhole) {
   expect_refusal({"2", "half"}, "half: this is part 1/2");
   expect_refusal({"whole", "1"}, "whole: this run is no part");
   expect_refusal({"1", "2", "none"}, "none");
+  // What a run was configured with is a file that anybody may have written.
+  for (const char* shard : {"a/3", "", "/", "0/0", "3/3/3", "99999999999/3"}) {
+    write("3/configuration.json", std::string(R"({"shard": ")") + shard + R"("})");
+    expect_refusal({"1", "2", "3"}, ": ");
+  }
 }
 
 TEST_F(JoinedShards, OfWhichOneDidNotEndHaveNotEnded) {

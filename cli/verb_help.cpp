@@ -48,6 +48,10 @@ constexpr std::array kHelp = {
         {"station {role} ref", "the reference on standard input and output"},
         {"station {role} mutant:NAME", "a mutant of it, as if it were yours"},
         {"station {role} ref --serial ./line", "on a pseudo terminal, in wall-clock time"}}}},
+    VerbHelp{"new", kJudge, {{
+        {"new {role}", "a process in Python, in a folder with the name of the role"},
+        {"new {role} --lang c --out firmware", "a shared library in C, and the header that it needs"},
+        {"new {role} --lang cpp", "one in C++"}}}},
     VerbHelp{"judge", kAgain, {{
         {"judge runs/latest", "the verdicts again, from what was recorded, without the implementation"},
         {"judge runs/latest --quiet", "the exit code only"},

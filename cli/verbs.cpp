@@ -16,6 +16,7 @@ constexpr std::array kVerbs = {
     Verb{"verify", "SELECTOR...|CASEFILE", 1, kAny, "run cases several times; equal seeds must give equal fingerprints", &verify},
     Verb{"doctor", "", 0, 0, "can the implementation be attached, and how well does this machine know instants", &doctor},
     Verb{"station", "PROTOCOL/ROLE [ref|mutant:NAME|plugin:LIBRARY|exec:PROGRAM]", 1, 2, "play a station on standard input and output, for --iut exec:, or on a serial line", &station},
+    Verb{"new", "PROTOCOL/ROLE", 1, 1, "write a device of a role to begin with, in Python, C or C++, that can be judged at once", &new_device},
     Verb{"judge", "RUNDIR", 1, 1, "judge a stored run again, without the implementation", &judge_again},
     Verb{"replay", "CASEFILE", 1, 1, "run a stored case again and compare it bit for bit", &replay},
     Verb{"shrink", "CASEFILE", 1, 1, "make a stored case that fails smaller: the fewest commands, faults and flipped bits", &shrink},

@@ -41,6 +41,7 @@ int paper(Session& session);
 int plan(Session& session);
 int report(Session& session);
 int station(Session& session);
+int new_device(Session& session);
 int doctor(Session& session);
 
 struct Verb {

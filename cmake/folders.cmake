@@ -1,6 +1,7 @@
 # Folders become targets: libraries, test programs, fuzz targets, benchmarks.
 include(embed_schemas)
 include(embed_page)
+include(embed_devices)
 include(hot_sources)
 
 # Names of the direct subfolders of a folder that hold sources.

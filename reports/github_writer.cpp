@@ -14,7 +14,7 @@ using judge::CaseResult;
 using judge::Verdict;
 
 constexpr std::size_t kMostLines = 9;
-constexpr std::size_t kMostRows = 200;  // a summary has 1 MiB
+constexpr std::size_t kMostOctets = 900'000;  // a summary has 1 MiB
 constexpr std::size_t kLongestText = 1'000;
 
 // The data of a workflow command; of a property also what separates properties.
@@ -105,14 +105,14 @@ std::string github_summary(const Run& run, const OutcomeRules& rules) {
   const std::vector<const CaseResult*> cases = worst_first(run, rules);
   if (cases.empty()) return out;
   out += "| verdict | case | why | again |\n|---|---|---|---|\n";
-  const std::size_t room = std::min(cases.size(), kMostRows);
-  for (std::size_t n = 0; n < room; ++n) {
-    const CaseResult& result = *cases[n];
+  std::size_t shown = 0;
+  for (; shown < cases.size() && out.size() < kMostOctets; ++shown) {
+    const CaseResult& result = *cases[shown];
     out += fmt::format("| {} | {} | {} | {} |\n", name(result.verdict), plain_markdown(result.id),
                        plain_markdown(outcome_message(result)),
                        plain_markdown(reproduce_command(run.identity, result.id)));
   }
-  if (cases.size() > room) out += fmt::format("\n{} more did not pass\n", cases.size() - room);
+  if (cases.size() > shown) out += fmt::format("\n{} more did not pass\n", cases.size() - shown);
   return out + "\n";
 }
 

@@ -74,6 +74,15 @@ TEST(GithubSummary, HasNoMarkupOfAnyText) {
   EXPECT_NE(text.find("1 of 1 selected cases judged"), std::string::npos);
 }
 
+// GitHub takes 1 MiB of a step, and nothing of what is larger.
+TEST(GithubSummary, StaysWithinWhatAStepMayHave) {
+  reports::Run run = failing_cases(2000);
+  for (judge::CaseResult& result : run.cases) result.reason = std::string(5000, '*');
+  const std::string text = github_summary(run, {});
+  EXPECT_LT(text.size(), 1U << 20U);
+  EXPECT_NE(text.find(" more did not pass"), std::string::npos);
+}
+
 RC_GTEST_PROP(GithubLog, HasNoCommand, ()) {
   std::string text = *kernel::arbitrary_text() + "\n   ::error::x\n a ##[debug]y\n::stop-commands::z";
   for (const std::string& line : lines_in(github_log(text))) {
