@@ -117,6 +117,14 @@ TEST_F(ReportVerb, GitHubGetsAnnotationsAndASummary) {
   EXPECT_EQ(report.run().exit_code, 74);
 }
 
+TEST_F(ReportVerb, ARunTellsGitHubTheSame) {
+  const Called ran = run("a", {"--github"});
+  EXPECT_EQ(ran.exit_code, 1);
+  const Called told = call({"report", "a", "--github"});
+  EXPECT_TRUE(ran.out.ends_with(told.out)) << ran.out;
+  EXPECT_EQ(run("b").out + told.out, ran.out) << "without the option nothing else is printed";
+}
+
 TEST_F(ReportVerb, RefusesWhatItCannotShow) {
   const auto expect_refusal = [&](std::vector<std::string> arguments, int code, const std::string& told) {
     const Called called = call(std::move(arguments));

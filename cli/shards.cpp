@@ -110,6 +110,10 @@ std::vector<judge::CaseResult> cases_in_order(const Session& session, const std:
   std::map<std::size_t, judge::CaseResult> cases;
   for (const Part& part : parts) {
     const std::vector<conformance::Entry> own = shard_of(part.settings, selected);
+    if (own.size() != part.identity().selected) {
+      refuse(part, fmt::format("it selected {} cases, and its selectors select {} for part {} now",
+                               part.identity().selected, own.size(), part.shard()));
+    }
     for (const judge::CaseResult& result : part.run.stored.run.cases) {
       const auto is_it = [&](const conformance::Entry& entry) { return entry.test_case->id == result.id; };
       if (std::ranges::none_of(own, is_it)) {

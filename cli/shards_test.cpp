@@ -94,6 +94,16 @@ TEST_F(JoinedShards, AreRefusedWhereTheyAreNoWhole) {
   }
 }
 
+// Selectors may stand in a file, which may have changed since.
+TEST_F(JoinedShards, OfOtherCasesThanNowAreRefused) {
+  write("some.txt", "probe/**\n");
+  for (const char* part : {"1", "2"})
+    probe({"run", "@some.txt", "--shard", std::string(part) + "/2", "--out", part});
+  ASSERT_EQ(probe({"report", "1", "2", "--junit", "joined.xml"}).exit_code, 0);
+  write("some.txt", "probe/**\nodd/slow/**\n");
+  expect_refusal({"1", "2"}, "its selectors select");
+}
+
 TEST_F(JoinedShards, OfWhichOneDidNotEndHaveNotEnded) {
   for (const char* part : {"1", "2"})
     run(part, {"--shard", std::string(part) + "/2", "--fail-fast", "--jobs", "1"});
