@@ -39,7 +39,7 @@ TEST_F(EmcVerb, TellsEachTestAndTheLedger) {
   EXPECT_EQ(residual.at("frame_check"), "CRC-16/IBM-3740");
   EXPECT_DOUBLE_EQ(residual.at("expected_wrong_at_most").get<double>(),
                    residual.at("worst_share_of_corrupted").get<double>() *
-                       document.at("total").at("corrupted").get<double>());
+                       document.at("total").at("balance").at("data_differed").get<double>());
 }
 
 TEST_F(EmcVerb, TheNumberOfThreadsChangesNothing) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "emc/evidence.hpp"
 #include "emc/residual/residual_error.hpp"
 #include "harness/field/facts.hpp"
 #include "reports/text_summary.hpp"
@@ -22,6 +23,24 @@ std::string recovery_text(const emc::ImmunityResult& result) {
   return result.recovered_after_start ? "after a start" : "never";
 }
 
+// Which of four ends each exchange had, and how many put the checks to the test.
+ordered_json balance_json(const network::ErrorStatistics& ledger) {
+  return {{"exposed", ledger.sent},
+          {"untouched", ledger.untouched},
+          {"hit_without_effect", ledger.without_effect},
+          {"rejected", ledger.refused},
+          {"accepted_wrong", ledger.wrong_exchanges},
+          {"data_differed", ledger.differed}};
+}
+
+ordered_json evidence_json(const emc::Evidence& evidence) {
+  ordered_json json = {{"text", evidence.text}};
+  if (evidence.worse_than_a) json["worse_than_a_at_most"] = *evidence.worse_than_a;
+  if (evidence.c) json["c_at_most"] = *evidence.c;
+  if (evidence.d) json["d_at_most"] = *evidence.d;
+  return json;
+}
+
 ordered_json ledger_json(const network::ErrorStatistics& ledger) {
   return {{"sent", ledger.sent},
           {"corrupted", ledger.corrupted},
@@ -34,7 +53,8 @@ ordered_json ledger_json(const network::ErrorStatistics& ledger) {
           {"wrong_cycles", ledger.wrong_exchanges},
           {"missed_outputs", ledger.missed_outputs},
           {"cleared_outputs", ledger.cleared_outputs},
-          {"partly_latched", ledger.partly_latched}};
+          {"partly_latched", ledger.partly_latched},
+          {"balance", balance_json(ledger)}};
 }
 
 ordered_json line_json(const emc::BurstStatistics& line) {
@@ -96,6 +116,8 @@ ordered_json result_json(const emc::ImmunityResult& result) {
           {"quality_bit", result.poor_quality},
           {"cycle_time_us", cycle_time_us(result)},
           {"cycles", cycles_json(result.cycles)},
+          {"bursts", result.bursts},
+          {"evidence", evidence_json(emc::evidence_of(result))},
           {"ledger", ledger_json(result.counts)},
           {"line", line_json(result.line)}};
 }
@@ -131,19 +153,20 @@ std::string channel_line(const EmcTest& test) {
   if (!test.result.came_up) return where + does_not_come_up(test.result);
   const network::ErrorStatistics& counts = test.result.counts;
   const std::string line =
-      fmt::format("{} {:>9} {:>10} {:>10} {:>8} {:>6} {:>6}", where, counts.sent, counts.corrupted,
-                  counts.detected, test.result.longest_bad_run, test.result.stops, counts.wrong_exchanges);
+      fmt::format("{} {:>9} {:>9} {:>9} {:>9} {:>8} {:>6} {:>6}", where, counts.sent, counts.untouched,
+                  counts.without_effect, counts.refused, test.result.longest_bad_run, test.result.stops,
+                  counts.wrong_exchanges);
   if (!test.has_theory()) return line + fmt::format(" {:>12} {:>8}\n", "-", "-");
   return line + fmt::format(" {:>12.3g} {:>8.3g}\n", test.expected_wrong(), test.chance_of_count());
 }
 
-std::string frame_residual_text(const emc::FrameResidual& residual, std::uint64_t corrupted) {
+std::string frame_residual_text(const emc::FrameResidual& residual, std::uint64_t differed) {
   return fmt::format(
       "{} over {} bits lets at most {:.3g} of the corrupted frames pass (exact, at the worst bit-error rate, "
       "{:.2g}): of these {:.3g}\n"
       "per hour {:.3g} frames pass wrong at a bit-error rate of 1e-2 (formula of IEC 61784-3, unverified)\n",
       residual.frame_check, residual.bits, residual.worst_share, residual.worst_ber,
-      static_cast<double>(corrupted) * residual.worst_share, residual.rate_per_hour);
+      static_cast<double>(differed) * residual.worst_share, residual.rate_per_hour);
 }
 
 ordered_json frame_residual_json(const emc::FrameResidual& residual, const EmcTotal& total) {
@@ -198,6 +221,23 @@ std::vector<std::string> unverified_of(const EmcCampaign& campaign) {
 
 }  // namespace
 
+namespace {
+
+// The letter with what it rests on, and what decided.
+std::string evidence_lines(const emc::ImmunityResult& result) {
+  const emc::Evidence evidence = emc::evidence_of(result);
+  const std::string more = emc::longer_run(evidence);
+  std::string text;
+  if (!evidence.text.empty())
+    text += fmt::format("    {}: {}{}{}\n", emc::name(result.criterion), evidence.text,
+                        more.empty() ? "" : "; ", more);
+  if (!result.decided_by.empty())
+    text += fmt::format("    {}: {}\n", emc::name(result.criterion), result.decided_by);
+  return text;
+}
+
+}  // namespace
+
 void EmcTest::bound_by(const std::vector<network::ProtectedFrame>& frames) {
   for (const network::ProtectedFrame& frame : frames)
     undetected_share = std::max(undetected_share, emc::undetected_share_at(frame, flip_probability));
@@ -213,29 +253,26 @@ double EmcTest::expected_wrong() const {
 EmcTotal total_of(const EmcCampaign& campaign) {
   EmcTotal total;
   for (const EmcTest& test : campaign.tests) {
-    total.corrupted += test.result.counts.corrupted;
-    total.detected += test.result.counts.detected;
-    total.accepted_wrong += test.result.counts.accepted_wrong();
+    total.counts += test.result.counts;
   }
-  if (total.corrupted > 0) {
-    total.upper_bound_of_share =
-        emc::upper_bound_of_share(std::min(total.accepted_wrong, total.corrupted), total.corrupted);
-  }
+  total.upper_bound_of_share = emc::upper_bound_of_share(total.counts.wrong_exchanges, total.counts.differed);
   if (!campaign.residuals.empty()) {
-    total.expected_at_most = static_cast<double>(total.corrupted) * campaign.residuals.front().worst_share;
+    total.expected_at_most =
+        static_cast<double>(total.counts.differed) * campaign.residuals.front().worst_share;
   }
   return total;
 }
 
 std::string emc_table_head(bool has_bursts) {
   if (!has_bursts) {
-    return fmt::format("{:<16} {:>9} {:>10} {:>10} {:>8} {:>6} {:>6} {:>12} {:>8}\n", "channel", "exchanges",
-                       "corrupted", "rejected", "longest", "stops", "wrong", "at most", "chance");
+    return fmt::format("{:<16} {:>9} {:>9} {:>9} {:>9} {:>8} {:>6} {:>6} {:>12} {:>8}\n", "channel",
+                       "exposed", "untouched", "no effect", "rejected", "longest", "stops", "wrong",
+                       "at most", "chance");
   }
   return fmt::format(
-      "{:<14} {:>8} {:>3}  {:>9} {:>9} {:>10} {:>9} {:>8} {:>9} {:>7} {:>8} {:>14} {:>6} {:>8} {:>6}\n",
-      "level", "pulses", "pol", "criterion", "exchanges", "corrupted", "rejected", "retries", "held",
-      "missed", "longest", "recovery", "stops", "cleared", "wrong");
+      "{:<14} {:>8} {:>3}  {:>9} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8} {:>7} {:>7} {:>8} {:>14} {:>6} {:>8}\n",
+      "level", "pulses", "pol", "criterion", "exposed", "untouched", "no effect", "rejected", "wrong",
+      "retries", "held", "missed", "longest", "recovery", "stops", "cleared");
 }
 
 std::string emc_line(const EmcTest& test) {
@@ -246,14 +283,12 @@ std::string emc_line(const EmcTest& test) {
   if (!result.came_up) return where + does_not_come_up(result);
   const network::ErrorStatistics& counts = result.counts;
   std::string line =
-      fmt::format("{}  {:>9} {:>9} {:>10} {:>9} {:>8} {:>9} {:>7} {:>8} {:>14} {:>6} {:>8} {:>6}\n", where,
-                  emc::name(result.criterion), counts.sent, counts.corrupted, counts.detected, counts.retried,
+      fmt::format("{}  {:>9} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8} {:>7} {:>7} {:>8} {:>14} {:>6} {:>8}\n",
+                  where, emc::name(result.criterion), counts.sent, counts.untouched, counts.without_effect,
+                  counts.refused, counts.wrong_exchanges, counts.retried,
                   counts.detected - std::min(counts.detected, counts.partly_latched), counts.missed_outputs,
-                  result.longest_bad_run, recovery_text(result), result.stops, counts.cleared_outputs,
-                  counts.accepted_wrong());
-  if (!result.decided_by.empty()) {
-    line += fmt::format("    {}: {}\n", emc::name(result.criterion), result.decided_by);
-  }
+                  result.longest_bad_run, recovery_text(result), result.stops, counts.cleared_outputs);
+  line += evidence_lines(result);
   if (!result.complaint.empty()) line += fmt::format("    {}\n", reports::escaped_line(result.complaint));
   if (result.complaint.empty() && !result.was_disturbed())
     line += "    no burst met a receiver: this shows nothing\n";
@@ -330,12 +365,13 @@ std::string emc_summary(const EmcCampaign& campaign) {
   }
   text += cycles_text(campaign);
   text += fmt::format(
-      "\nerror statistics: {} exchanges corrupted, {} rejected, {} words accepted wrong; of corrupted ones "
-      "at "
-      "most {:.3g} pass unseen (one-sided 95 %)\n",
-      total.corrupted, total.detected, total.accepted_wrong, total.upper_bound_of_share);
+      "\nerror statistics: {} exchanges exposed = {} untouched + {} hit without effect + {} rejected + {} "
+      "accepted wrong ({} words); data differed in {}: {}\n",
+      total.counts.sent, total.counts.untouched, total.counts.without_effect, total.counts.refused,
+      total.counts.wrong_exchanges, total.counts.accepted_wrong(), total.counts.differed,
+      emc::undetected_text(total.counts, campaign.exchange));
   for (const emc::FrameResidual& residual : campaign.residuals)
-    text += frame_residual_text(residual, total.corrupted);
+    text += frame_residual_text(residual, total.counts.differed);
   text += places_text(campaign);
   if (!campaign.has_bursts) return text;
   text += fmt::format("profile {} ({}): a receiver can be wrong from {:.0f} V on\n", campaign.profile.name,
@@ -383,9 +419,10 @@ std::string emc_json(const EmcCampaign& campaign) {
                                    {"source", campaign.recovery.source}}},
                                  {"residual", frame_residual_json(residual_of(campaign), total)},
                                  {"total",
-                                  {{"corrupted", total.corrupted},
-                                   {"detected", total.detected},
-                                   {"accepted_wrong", total.accepted_wrong},
+                                  {{"corrupted", total.counts.corrupted},
+                                   {"detected", total.counts.detected},
+                                   {"accepted_wrong", total.counts.accepted_wrong()},
+                                   {"balance", balance_json(total.counts)},
                                    {"upper_bound_of_share", total.upper_bound_of_share}}}};
   return document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -64,10 +64,8 @@ struct EmcCampaign {
 
 // The errors of all tests together, and how much a count of wrong words can still hide.
 struct EmcTotal {
-  std::uint64_t corrupted = 0;
-  std::uint64_t detected = 0;
-  std::uint64_t accepted_wrong = 0;
-  double upper_bound_of_share = 1;  // of the corrupted exchanges, one-sided 95 %; 1 where none was
+  network::ErrorStatistics counts;
+  double upper_bound_of_share = 1;  // of the exchanges whose data differed, one-sided 95 %; 1 where none was
   // Exchanges that may pass wrong by the theory of the frame check, at the worst bit-error rate.
   double expected_at_most = 0;
 };

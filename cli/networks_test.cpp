@@ -1,6 +1,8 @@
 // Subject: `emc` and `measure` for every protocol, and with implementations outside in its networks.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -44,6 +46,66 @@ TEST_F(Networks, OfEveryProtocolExchangeDataUnderBursts) {
     EXPECT_GT(cycles, 10) << arguments.front();
     expect_valid({"emc.json"}, "emc");
   }
+}
+
+// Of each protocol, with a reference and with one that accepts or loses what it should not.
+TEST_F(Networks, BalanceTheirExchanges) {
+  std::uint64_t wrong = 0;
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"interbus", "--duration", "3s"},
+           {"interbus", "--duration", "3s", "--iut", "slave@1=mutant:does_not_mark_status"},
+           {"interbus", "--duration", "3s", "--iut", "master=mutant:own_check_ignored"},
+           {"interbus", "--duration", "2s", "--channel", "bsc:0.001"},
+           {"valve_bus", "--duration", "2s"},
+           {"valve_bus", "--duration", "2s", "--iut", "node@3=mutant:write_not_checked"},
+           {"fieldbus_dll", "--duration", "10s"},
+           {"fieldbus_dll", "--duration", "10s", "--iut", "isa_dle@1=ref"},
+           {"token_bus", "--duration", "300ms"}}) {
+    std::vector<std::string> typed = arguments;
+    typed.insert(typed.begin(), "emc");
+    if (std::ranges::count(typed, "--channel") == 0) typed.insert(typed.end(), {"--test-levels", "1,4"});
+    typed.insert(typed.end(), {"--quiet", "--json", "emc.json"});
+    const std::string out = call(typed).out;
+    const nlohmann::json document = json("emc.json");
+    ASSERT_GT(document.at("tests").size() + document.at("channels").size(), 0U) << out;
+    const auto balanced = [&](const nlohmann::json& balance) {
+      const auto count = [&](const char* name) { return balance.at(name).get<std::uint64_t>(); };
+      EXPECT_EQ(count("exposed"), count("untouched") + count("hit_without_effect") + count("rejected") +
+                                      count("accepted_wrong"))
+          << out;
+      EXPECT_LE(count("data_differed"), count("rejected") + count("accepted_wrong"));
+      wrong += count("accepted_wrong");
+    };
+    for (const char* tests : {"tests", "channels"}) {
+      for (const nlohmann::json& test : document.at(tests)) {
+        balanced(test.at("ledger").at("balance"));
+        EXPECT_EQ(test.at("ledger").at("balance").at("exposed"), test.at("ledger").at("sent"));
+      }
+    }
+    balanced(document.at("total").at("balance"));
+    EXPECT_LT(document.at("total").at("balance").at("untouched"),
+              document.at("total").at("balance").at("exposed"))
+        << out;
+    expect_valid({"emc.json"}, "emc");
+  }
+  EXPECT_GT(wrong, 0U);
+}
+
+TEST_F(Networks, SayWhatALetterRestsOnAndThatNothingWasHit) {
+  const Called quiet = emc({"interbus", "--duration", "2s", "--profile", "C"});
+  EXPECT_HOLDS(quiet.out, "no cycle was hit");
+  EXPECT_HOLDS(quiet.out, "A: nothing rejected in ");
+  EXPECT_EQ(quiet.out.find("pass unseen"), std::string::npos) << quiet.out;
+  const Called hit = emc({"interbus", "--duration", "20s"});
+  EXPECT_HOLDS(hit.out, "exchanges rejected in ");
+  EXPECT_HOLDS(hit.out, "a longer run could still show C in up to ");
+  const nlohmann::json test = only_test();
+  const double bursts = test.at("bursts").get<double>();
+  EXPECT_NEAR(bursts, 20 / 0.3, 15);
+  EXPECT_NEAR(test.at("evidence").at("c_at_most").get<double>(), 1 - std::pow(0.05, 1 / bursts), 1e-9);
+  const double differed = test.at("ledger").at("balance").at("data_differed").get<double>();
+  EXPECT_NEAR(json("emc.json").at("total").at("upper_bound_of_share").get<double>(),
+              1 - std::pow(0.05, 1 / differed), 1e-9);
 }
 
 TEST_F(Networks, TakeAnImplementationOutsideAtAnyPlace) {

@@ -61,4 +61,13 @@ measure::Phase BurstClamp::phase_during(kernel::Time from, kernel::Time to) {
   return is_recovery ? measure::Phase::recovery : measure::Phase::quiet;
 }
 
+std::uint64_t BurstClamp::bursts_between(kernel::Time from, kernel::Time to) {
+  std::uint64_t bursts = 0;
+  for (kernel::Time pulse = schedule_.first_from(from); pulse < to;
+       pulse = schedule_.first_from(schedule_.window_of(pulse).to + schedule_.timing().jitter)) {
+    ++bursts;
+  }
+  return bursts;
+}
+
 }  // namespace fieldproof::emc

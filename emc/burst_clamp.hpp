@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 
 #include "emc/burst_channel.hpp"
@@ -25,6 +26,9 @@ class BurstClamp {
 
   // Whether an interval meets a burst, or else a recovery.
   measure::Phase phase_during(kernel::Time from, kernel::Time to);
+
+  // How many bursts have a pulse in an interval.
+  std::uint64_t bursts_between(kernel::Time from, kernel::Time to);
 
   const std::deque<BurstChannel>& channels() const { return channels_; }
 

@@ -180,9 +180,7 @@ class Run final : private network::ExchangeWatcher {
   }
 
   void on_exchange(const Exchange& exchange) override {
-    const std::uint64_t changed = changed_transmissions();
-    statistics_.on_exchange(exchange, changed != changed_before_);
-    changed_before_ = changed;
+    statistics_.on_exchange(exchange, effect_on_line());
     const bool is_served = exchange.outcome == network::Outcome::served;
     if (is_served && exchange.kind == network::ExchangeKind::data && network_.state() == State::exchanging) {
       is_exchanging_ = true;
@@ -220,19 +218,28 @@ class Run final : private network::ExchangeWatcher {
     for (const CountedChannel& channel : counted_) use(channel.statistics());
   }
 
-  std::uint64_t changed_transmissions() const {
-    std::uint64_t sum = 0;
-    for_each_statistics([&](const BurstStatistics& one) { sum += one.changed_transmissions; });
-    return sum;
+  // Since the exchange before.
+  network::LineEffect effect_on_line() {
+    std::uint64_t hit = 0;
+    std::uint64_t changed = 0;
+    for_each_statistics([&](const BurstStatistics& one) {
+      hit += one.hit_transmissions;
+      changed += one.changed_transmissions;
+    });
+    const bool is_hit = std::exchange(hit_before_, hit) != hit;
+    if (std::exchange(changed_before_, changed) != changed) return network::LineEffect::changed;
+    return is_hit ? network::LineEffect::hit : network::LineEffect::untouched;
   }
 
   void sum_up() {
+    statistics_.end();
     result_.counts = statistics_.counts();
     result_.first_wrong = statistics_.first_wrong();
     for_each_statistics([&](const BurstStatistics& one) {
       ++result_.receivers;
       result_.line += one;
     });
+    if (clamp_) result_.bursts = clamp_->bursts_between(on_, off_);
     result_.had_a_burst = !clamp_ || clamp_->phase_during(on_, off_) == measure::Phase::burst;
     result_.criterion = criterion();
   }
@@ -301,6 +308,7 @@ class Run final : private network::ExchangeWatcher {
   std::optional<Time> first_trouble_;  // an exchange that was not served, or not at the first attempt
   std::string why_stopped_;            // the first time, where the network can say so
   std::uint64_t bad_run_ = 0;
+  std::uint64_t hit_before_ = 0;
   std::uint64_t changed_before_ = 0;
   std::vector<std::optional<Time>> last_begin_;  // by kind of cycle
   ImmunityResult result_;

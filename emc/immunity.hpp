@@ -77,6 +77,7 @@ struct ImmunityResult {
   bool poor_quality = false;           // was reported by its controller at any time
   std::uint64_t receivers = 0;         // that were disturbed
   bool had_a_burst = false;  // one at least came while they were; a textbook's channel is always there
+  std::uint64_t bursts = 0;  // that came; 0 on a textbook's channel
   BurstStatistics line;      // sums over them; of a textbook's channel only the transmissions
   std::vector<CycleTimes> cycles;
 

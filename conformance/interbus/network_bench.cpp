@@ -52,7 +52,8 @@ network::ExchangeStatistics& NetworkBench::begin_exchange() {
 void NetworkBench::on_exchange(const network::Exchange& exchange) {
   if (!exchange_) return;
   const std::uint64_t changed = stressed_transmissions();
-  exchange_->on_exchange(exchange, changed != changed_before_);
+  exchange_->on_exchange(
+      exchange, changed != changed_before_ ? network::LineEffect::changed : network::LineEffect::untouched);
   changed_before_ = changed;
 }
 

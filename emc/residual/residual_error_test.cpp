@@ -8,6 +8,7 @@
 
 #include "emc/residual/weight_distribution.hpp"
 #include "harness/kernel/error.hpp"
+#include "harness/kernel/random.hpp"
 
 namespace fieldproof::emc {
 namespace {
@@ -155,6 +156,30 @@ TEST(ResidualError, BoundOfAShareIsWhereSoFewErrorsAreFivePercent) {
   EXPECT_EQ(upper_bound_of_share(20, 20), 1);
   EXPECT_EQ(upper_bound_of_share(0, 0), 1);
   EXPECT_NEAR(upper_bound_of_share(0, 10'000'000), 2.9957e-7, 1e-11);
+}
+
+// 10^4 campaigns in which each of so many exchanges passes with a known probability: the bound holds in 95 %
+// of them. Four times as many exchanges, of which most could not pass at all, would make it false.
+TEST(ResidualError, BoundOfAShareHoldsInNineteenOfTwentyCampaigns) {
+  constexpr int kCampaigns = 10'000;
+  constexpr double kScatter = 3 * 0.0022;  // three standard deviations of a share of 0.95
+  kernel::Random random(27);
+  for (const unsigned exchanges : {20U, 300U, 2'000U}) {
+    for (const double truth : {0.002, 0.02, 0.15}) {
+      int holds = 0;
+      int holds_of_all = 0;
+      for (int n = 0; n < kCampaigns; ++n) {
+        std::uint64_t wrong = 0;
+        for (std::uint64_t at = random.geometric(truth); at < exchanges; at += 1 + random.geometric(truth))
+          ++wrong;
+        holds += upper_bound_of_share(wrong, exchanges) >= truth ? 1 : 0;
+        holds_of_all += upper_bound_of_share(wrong, std::uint64_t{4} * exchanges) >= truth ? 1 : 0;
+      }
+      EXPECT_GE(holds, kCampaigns * (0.95 - kScatter)) << exchanges << " " << truth;
+      if (exchanges * truth < 5) continue;
+      EXPECT_LT(holds_of_all, kCampaigns / 10) << exchanges << " " << truth;
+    }
+  }
 }
 
 }  // namespace

@@ -7,6 +7,19 @@
 
 namespace fieldproof::network {
 
+ErrorStatistics& ErrorStatistics::operator+=(const ErrorStatistics& other) {
+  for (const auto member :
+       {&ErrorStatistics::sent, &ErrorStatistics::corrupted, &ErrorStatistics::detected,
+        &ErrorStatistics::missing, &ErrorStatistics::retried, &ErrorStatistics::repeated,
+        &ErrorStatistics::accepted_wrong_inputs, &ErrorStatistics::accepted_wrong_outputs,
+        &ErrorStatistics::wrong_exchanges, &ErrorStatistics::untouched, &ErrorStatistics::without_effect,
+        &ErrorStatistics::refused, &ErrorStatistics::differed, &ErrorStatistics::missed_outputs,
+        &ErrorStatistics::cleared_outputs, &ErrorStatistics::partly_latched}) {
+    this->*member += other.*member;
+  }
+  return *this;
+}
+
 ExchangeStatistics::ExchangeStatistics(Network& network, kernel::Random random)
     : network_(network), random_(std::move(random)), words_(network.signals().size()) {
   for (std::size_t n = 0; n < words_.size(); ++n) {
@@ -25,18 +38,23 @@ void ExchangeStatistics::begin_recovery() {
   undelivered_ = words_.size();
 }
 
-void ExchangeStatistics::on_exchange(const Exchange& exchange, bool is_corrupted) {
+void ExchangeStatistics::end() {
+  if (counts_.accepted_wrong() == wrong_before_) return;
+  ++counts_.sent;
+  weigh(LineEffect::untouched, false);
+}
+
+void ExchangeStatistics::on_exchange(const Exchange& exchange, LineEffect effect) {
   FIELDPROOF_CHECK(exchange.first_signal + exchange.signal_count <= words_.size(),
                    "an exchange carries signals of its network");
-  count(exchange, is_corrupted);
+  count(exchange, effect == LineEffect::changed);
   judge_images(exchange);
   const bool is_good = exchange.kind == ExchangeKind::data && exchange.outcome == Outcome::served;
   if (is_good) {
     judge_shown(exchange);
     if (!has_missed_) ++good_exchanges_;
   }
-  if (counts_.accepted_wrong() != wrong_before_) ++counts_.wrong_exchanges;
-  wrong_before_ = counts_.accepted_wrong();
+  if (exchange.kind == ExchangeKind::data) weigh(effect, is_good && !has_missed_ && exchange.retries == 0);
   has_taken_over_ = false;
   renew(exchange);
 }
@@ -56,6 +74,20 @@ void ExchangeStatistics::count(const Exchange& exchange, bool is_corrupted) {
     ++counts_.repeated;
   }
   was_unserved_ = !is_served;
+}
+
+// A word that comes wrong in an exchange for service counts in the next one of data.
+void ExchangeStatistics::weigh(LineEffect effect, bool is_whole) {
+  if (counts_.accepted_wrong() != wrong_before_) {
+    ++counts_.wrong_exchanges;
+    ++counts_.differed;
+  } else if (!is_whole) {
+    ++counts_.refused;
+    if (effect == LineEffect::changed) ++counts_.differed;
+  } else {
+    ++(effect == LineEffect::untouched ? counts_.untouched : counts_.without_effect);
+  }
+  wrong_before_ = counts_.accepted_wrong();
 }
 
 void ExchangeStatistics::on_shown(std::size_t signal, std::uint16_t shown, kernel::Time when) {

@@ -22,6 +22,13 @@
 // Limit: a wrong word that happens to be admissible is taken for a right one, of 16 bits once in 65,535.
 namespace fieldproof::network {
 
+// What the line did to an exchange at the receivers that are disturbed.
+enum class LineEffect : std::uint8_t {
+  untouched,
+  hit,      // an output was wrong for some time, and what it gave on was as it was sent
+  changed,  // a receiver got something else than was driven; it may read the same in it
+};
+
 struct ErrorStatistics {
   // Exchanges of data.
   std::uint64_t sent = 0;
@@ -33,7 +40,14 @@ struct ErrorStatistics {
   // Words that an application got and nobody had sent.
   std::uint64_t accepted_wrong_inputs = 0;
   std::uint64_t accepted_wrong_outputs = 0;
-  std::uint64_t wrong_exchanges = 0;  // with such words, however many
+  std::uint64_t wrong_exchanges = 0;  // in which, or after the one before, such words came, however many
+  // Each exchange of data is one of four: of the three here and those that were accepted wrong.
+  std::uint64_t untouched = 0;
+  std::uint64_t without_effect = 0;  // hit, and each word arrived right at the first attempt
+  // Not served, repeated, or a sink did not take over a word of it; also where what was hit came before.
+  std::uint64_t refused = 0;
+  // Those that put the checks to the test: accepted wrong, or refused and some receiver got something else.
+  std::uint64_t differed = 0;
   // Words of served exchanges that a sink did not show: it held the ones before.
   std::uint64_t missed_outputs = 0;
   // Sinks that went to their safe value: a reset, after a stop or a silence.
@@ -41,6 +55,8 @@ struct ErrorStatistics {
   // Not served, but a sink had taken over its word, which was right.
   std::uint64_t partly_latched = 0;
 
+  ErrorStatistics& operator+=(const ErrorStatistics& other);
+  std::uint64_t balance() const { return untouched + without_effect + refused + wrong_exchanges; }
   std::uint64_t accepted_wrong() const { return accepted_wrong_inputs + accepted_wrong_outputs; }
 };
 
@@ -62,8 +78,10 @@ class ExchangeStatistics {
   // From here on it is waited for every signal to be delivered once.
   void begin_recovery();
   bool is_recovered() const { return undelivered_ == 0; }
+  // Nothing more comes: a wrong word after the last exchange makes one more of what was cut.
+  void end();
 
-  void on_exchange(const Exchange& exchange, bool is_corrupted);
+  void on_exchange(const Exchange& exchange, LineEffect effect);
   void on_shown(std::size_t signal, std::uint16_t word, kernel::Time when);
 
   const ErrorStatistics& counts() const { return counts_; }
@@ -82,6 +100,7 @@ class ExchangeStatistics {
   };
 
   void count(const Exchange& exchange, bool is_corrupted);
+  void weigh(LineEffect effect, bool is_whole);
   void judge_images(const Exchange& exchange);
   void judge_shown(const Exchange& exchange);
   void accept_wrong(std::size_t signal, std::uint16_t got, kernel::Time when);

@@ -52,7 +52,7 @@ class ExchangeStatisticsTest : public testing::Test {
     statistics_.begin();
   }
   void exchange(Outcome outcome = Outcome::served, ExchangeKind kind = ExchangeKind::data) {
-    statistics_.on_exchange({.kind = kind, .outcome = outcome, .signal_count = 2}, false);
+    statistics_.on_exchange({.kind = kind, .outcome = outcome, .signal_count = 2}, LineEffect::untouched);
   }
   void show(std::uint16_t word) { statistics_.on_shown(0, word, kernel::kStart); }
   void deliver() {
@@ -127,11 +127,74 @@ TEST_F(ExchangeStatisticsTest, RecoveryIsOverWhenEverySignalHasBeenDelivered) {
   EXPECT_TRUE(statistics_.is_recovered());
 }
 
+TEST_F(ExchangeStatisticsTest, EachExchangeHasOneOfFourEnds) {
+  const auto exchange_with = [&](LineEffect effect, Exchange exchange) {
+    exchange.signal_count = 2;
+    statistics_.on_exchange(exchange, effect);
+  };
+  for (const LineEffect effect : {LineEffect::untouched, LineEffect::hit, LineEffect::changed}) {
+    deliver();
+    exchange_with(effect, {});
+  }
+  EXPECT_EQ(statistics_.counts().untouched, 1U);
+  EXPECT_EQ(statistics_.counts().without_effect, 2U);
+  EXPECT_EQ(statistics_.counts().differed, 0U) << "a receiver read the same in it";
+  exchange_with(LineEffect::untouched, {.outcome = Outcome::missing});
+  exchange_with(LineEffect::changed, {.outcome = Outcome::rejected});
+  deliver();
+  exchange_with(LineEffect::changed, {.retries = 1});
+  EXPECT_EQ(statistics_.counts().refused, 3U);
+  EXPECT_EQ(statistics_.counts().differed, 2U);
+  network_.image_ = network_.given[1];
+  exchange_with(LineEffect::changed, {});
+  EXPECT_EQ(statistics_.counts().refused, 4U) << "an output held its word";
+  EXPECT_EQ(statistics_.counts().wrong_exchanges, 0U);
+  EXPECT_EQ(statistics_.counts().balance(), statistics_.counts().sent);
+}
+
+TEST_F(ExchangeStatisticsTest, AWrongWordOfAServiceOrAfterTheLastExchangeFindsItsExchange) {
+  show(static_cast<std::uint16_t>(network_.given[0] ^ 0x0100));
+  exchange(Outcome::served, ExchangeKind::service);
+  EXPECT_EQ(statistics_.counts().wrong_exchanges, 0U);
+  deliver();
+  exchange();
+  EXPECT_EQ(statistics_.counts().wrong_exchanges, 1U);
+  show(static_cast<std::uint16_t>(network_.given[0] ^ 0x0100));
+  statistics_.end();
+  statistics_.end();
+  EXPECT_EQ(statistics_.counts().wrong_exchanges, 2U);
+  EXPECT_EQ(statistics_.counts().sent, 2U);
+  EXPECT_EQ(statistics_.counts().balance(), 2U);
+}
+
+RC_GTEST_PROP(ExchangeStatisticsProperty, ExposedIsTheSumOfTheFourEnds, ()) {
+  TwoWords network;
+  ExchangeStatistics statistics(network, kernel::Random(*rc::gen::arbitrary<std::uint64_t>()));
+  statistics.begin();
+  for (const int drawn : *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 3 * 3 * 2 * 2 * 3))) {
+    const int shown = drawn / 36;
+    const auto word = static_cast<std::uint16_t>(network.given[0] ^ (shown == 2 ? 0x0101 : 0));
+    if (shown > 0) statistics.on_shown(0, word, kernel::kStart);
+    if (shown == 1) network.image_ = network.given[1];
+    statistics.on_exchange({.kind = static_cast<ExchangeKind>(drawn / 18 % 2),
+                            .outcome = static_cast<Outcome>(drawn / 3 % 3),
+                            .retries = static_cast<std::uint64_t>(drawn / 9 % 2),
+                            .signal_count = 2},
+                           static_cast<LineEffect>(drawn % 3));
+  }
+  statistics.end();
+  const ErrorStatistics& counts = statistics.counts();
+  RC_ASSERT(counts.balance() == counts.sent);
+  RC_ASSERT(counts.differed <= counts.refused + counts.wrong_exchanges);
+  RC_ASSERT(counts.differed >= counts.wrong_exchanges);
+  RC_ASSERT((counts.accepted_wrong() == 0) == (counts.wrong_exchanges == 0));
+}
+
 // Whatever comes in whatever order: served exchanges that brought their words are good, and no count is lost.
 RC_GTEST_PROP(ExchangeStatisticsProperty, EveryExchangeIsCountedOnce, ()) {
   TwoWords network;
   ExchangeStatistics statistics(network, kernel::Random(*rc::gen::arbitrary<std::uint64_t>()));
-  statistics.on_exchange({.signal_count = 2}, false);
+  statistics.on_exchange({.signal_count = 2}, LineEffect::untouched);
   statistics.begin();
   std::uint64_t served = 0;
   std::uint64_t unserved = 0;
@@ -140,7 +203,8 @@ RC_GTEST_PROP(ExchangeStatisticsProperty, EveryExchangeIsCountedOnce, ()) {
       statistics.on_shown(0, network.given[0], kernel::kStart);
       network.image_ = network.given[1];
     }
-    statistics.on_exchange({.outcome = static_cast<Outcome>(outcome), .signal_count = 2}, false);
+    statistics.on_exchange({.outcome = static_cast<Outcome>(outcome), .signal_count = 2},
+                           LineEffect::untouched);
     ++(outcome == 0 ? served : unserved);
   }
   RC_ASSERT(statistics.counts().sent == served + unserved);

@@ -22,7 +22,8 @@ class ExchangeStatisticsTest : public testing::Test, protected network::Exchange
   void on_exchange(const Exchange& exchange) override {
     Exchange told = exchange;
     if (is_claimed_bad_) told.outcome = network::Outcome::rejected;
-    statistics_.on_exchange(told, is_claimed_bad_);
+    statistics_.on_exchange(told,
+                            is_claimed_bad_ ? network::LineEffect::changed : network::LineEffect::untouched);
   }
   void on_shown(std::size_t signal, std::uint16_t word, kernel::Time when) override {
     statistics_.on_shown(signal, word, when);

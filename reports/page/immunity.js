@@ -1,6 +1,6 @@
 // Networks under bursts: the performance criterion by level, repetition and polarity, and the ledger of errors.
 import { definitions, element, notice, section } from "./dom.js";
-import { number, part, scientific } from "./format.js";
+import { number, part, plural, scientific } from "./format.js";
 import { later } from "./later.js";
 import { documentCommand, documentsOf } from "./summary.js";
 import { table } from "./table.js";
@@ -23,7 +23,9 @@ function heatCell(test) {
   if (!test.came_up) return element("td", {class: "heat none"}, "does not come up");
   const { ledger } = test;
   return element("td", {class: `heat criterion-${test.criterion}`}, element("strong", {}, test.criterion),
-      element("small", {}, `${number(ledger.detected)} rejected`, element("br"), `${part(ledger.corrupted, ledger.sent)} hit`,
+      element("small", {}, `${number(ledger.balance?.rejected ?? ledger.detected)} rejected`, element("br"),
+          test.bursts ? [`in ${plural(test.bursts, "burst")}`, element("br")] : null,
+          `${part(ledger.balance ? ledger.sent - ledger.balance.untouched : ledger.corrupted, ledger.sent)} hit`,
           wrongOf(test) ? [element("br"), `${number(wrongOf(test))} wrong`] : null));
 }
 
@@ -46,15 +48,48 @@ function criteriaPart(content) {
     element("li", {}, element("span", {class: `heat criterion-${one.criterion}`}, one.criterion), " ", one.meaning)));
 }
 
+// Documents of earlier programs have none.
+function balanceColumns(column, tests) {
+  if (!tests.every(({ledger: one}) => one.balance)) return [column("sent", ({ledger: one}) => number(one.sent))];
+  return [["exposed", "exposed"], ["untouched", "= untouched"], ["hit_without_effect", "+ hit without effect"],
+    ["rejected", "+ rejected"], ["accepted_wrong", "+ accepted wrong"], ["data_differed", "data differed"]]
+      .map(([key, title]) => column(title, ({ledger: {balance}}) => number(balance[key])));
+}
+
+function percent(share) {
+  return `${number(100 * share, 2)} %`;
+}
+
+// Bounds, not chances: a run without a stop has not shown that none can come.
+function longerRun({evidence}) {
+  if (!evidence) return "";
+  return [["worse_than_a_at_most", "B or worse", "bursts"], ["c_at_most", "C", "bursts"],
+    ["d_at_most", "D", "exchanges whose data differ"]]
+      .filter(([key]) => evidence[key] !== undefined && evidence[key] < 1)
+      .map(([key, letter, of]) => `${letter} in up to ${percent(evidence[key])} of ${of}`).join(", ");
+}
+
+const whichTest = [
+  {title: "level", cell: (test) => test.level},
+  {title: "pulses", cell: (test) => `${test.repetition} ${test.polarity === "-" ? "−" : test.polarity}`},
+  {title: "criterion", cell: (test) => (test.came_up ? test.criterion : "did not come up")},
+];
+
+function balance(tests) {
+  const column = (title, cell) => ({title, kind: "number", cell});
+  return table("How each exchange ended, and what the criterion rests on", [
+    ...whichTest, ...balanceColumns(column, tests),
+    {title: "rests on", kind: "text", cell: ({evidence}) => evidence?.text ?? ""},
+    {title: "a longer run could still show (95 %)", kind: "text", cell: longerRun},
+  ], tests, "many");
+}
+
 function ledger(tests) {
   const column = (title, cell) => ({title, kind: "number", cell});
   return table("Error ledger of each test", [
-    {title: "level", cell: (test) => test.level},
-    {title: "pulses", cell: (test) => `${test.repetition} ${test.polarity === "-" ? "−" : test.polarity}`},
-    {title: "criterion", cell: (test) => (test.came_up ? test.criterion : "did not come up")},
-    column("sent", ({ledger: one}) => number(one.sent)),
-    column("corrupted", ({ledger: one}) => number(one.corrupted)),
-    column("detected", ({ledger: one}) => number(one.detected)),
+    ...whichTest,
+    column("levels changed", ({ledger: one}) => number(one.corrupted)),
+    column("not served", ({ledger: one}) => number(one.detected)),
     column("repeated", ({ledger: one}) => number(one.repeated)),
     column("wrong inputs accepted", ({ledger: one}) => number(one.accepted_wrong_inputs)),
     column("wrong outputs accepted", ({ledger: one}) => number(one.accepted_wrong_outputs)),
@@ -74,9 +109,7 @@ function channels(tests) {
   const column = (title, cell) => ({title, kind: "number", cell});
   return table("On a channel of the textbooks instead of bursts", [
     {title: "each bit flips with", cell: (test) => scientific(test.flip_probability)},
-    column("sent", ({ledger: one}) => number(one.sent)),
-    column("corrupted", ({ledger: one}) => number(one.corrupted)),
-    column("detected", ({ledger: one}) => number(one.detected)),
+    ...balanceColumns(column, tests),
     column("longest bad run", (test) => number(test.longest_bad_run)),
     column("bus stops", (test) => number(test.bus_stops)),
     column("cycles accepted wrong", ({ledger: one}) => number(one.wrong_cycles)),
@@ -87,16 +120,19 @@ function channels(tests) {
 
 // What counting shows, beside what the frame check itself allows.
 function totalPart({ total, residual }) {
-  return table("Corrupted cycles that pass unseen", [
+  const wrong = total.balance ? total.balance.accepted_wrong : total.accepted_wrong;
+  const differed = total.balance ? total.balance.data_differed : total.corrupted;
+  const bound = ["upper bound", differed ? scientific(total.upper_bound_of_share) : "none", number(total.upper_bound_of_share * differed, 3),
+    differed ? "one-sided 95 %, from the count (Clopper and Pearson)" : "data differed in no exchange: the check was not put to the test"];
+  return table(total.balance ? "Exchanges whose data differed and that pass unseen" : "Corrupted cycles that pass unseen", [
     {title: "", cell: ([what]) => what},
     {title: "share", kind: "number", cell: ([, share]) => share},
-    {title: "cycles", kind: "number", cell: ([, , cycles]) => cycles},
+    {title: "exchanges", kind: "number", cell: ([, , exchanges]) => exchanges},
     {title: "how it is known", kind: "text", cell: ([, , , how]) => how},
   ], [
-    ["counted", scientific(total.accepted_wrong / Math.max(total.corrupted, 1)), `${number(total.accepted_wrong)} words wrong`,
-      `${number(total.corrupted)} cycles corrupted, ${number(total.detected)} rejected`],
-    ["upper bound", scientific(total.upper_bound_of_share), number(total.upper_bound_of_share * total.corrupted, 3),
-      "one-sided 95 %, from the count"],
+    ["counted", scientific(wrong / Math.max(differed, 1)), number(wrong),
+      `${plural(total.accepted_wrong, "wrong word")}; data differed in ${plural(differed, "exchange")}`],
+    bound,
     [`exact: ${residual.frame_check} over ${number(residual.bits)} bits`, scientific(residual.worst_share_of_corrupted),
       `at most ${number(residual.expected_wrong_at_most, 3)}`,
       `at the worst bit-error rate, ${scientific(residual.worst_ber)}, where every bit flips with the same chance`],
@@ -118,7 +154,7 @@ function campaign({ name, content }) {
       content.unverified.length ? notice(element("strong", {}, "Unverified and uncalibrated"),
           element("ul", {}, content.unverified.map((text) => element("li", {}, text)))) : null,
       hasBursts ? [heatMap(content.tests), criteriaPart(content)] : null, totalPart(content),
-      content.channels.length ? channels(content.channels) : null, hasBursts ? ledger(content.tests) : null);
+      content.channels.length ? channels(content.channels) : null, hasBursts ? [balance(content.tests), ledger(content.tests)] : null);
 }
 
 export function immunitySection(data) {
