@@ -15,6 +15,7 @@
 #include "cli/burst_options.hpp"
 #include "cli/emc_case.hpp"
 #include "cli/emc_run.hpp"
+#include "cli/emc_search.hpp"
 #include "cli/emc_text.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
@@ -133,6 +134,12 @@ class Campaign {
     stored_.bursts.profile = done_.profile;
     stored_.worst = static_cast<emc::Criterion>(settings.choice("worst"));
     done_.has_bursts = wants_bursts(settings);
+    for (const char* option : {"search", "sensitivity"}) {
+      if (!done_.has_bursts && settings.is_set(option) && is_typed(settings, option))
+        settings.refuse(option, "a channel has no voltage; leave one of them out");
+    }
+    is_searching_ =
+        done_.has_bursts && (settings.is_set("search") || settings.origin("test-levels") == Origin::fallback);
     if (!row_.undetected.caveat.empty()) done_.channel_caveats.emplace_back(row_.undetected.caveat);
     network_->make(done_.seed);  // who cannot take part ends the call, and is no verdict
     planned_ = tests_from(settings, done_.has_bursts);
@@ -148,6 +155,7 @@ class Campaign {
     done_.threshold_volts = response.threshold_volts();
     session_.terminal.print(
         simulation_header(session_, done_.seed, session_.settings.text("network"), row_.network.own_network));
+    search(response);
     session_.terminal.print(emc_table_head(done_.has_bursts));
     conformance::OrderedWork<Ran> work;
     work.count = planned_.size();
@@ -169,6 +177,12 @@ class Campaign {
     const std::size_t delivered = work.run();
     session_.terminal.end_progress();
     done_.is_complete = delivered == planned_.size() && done_.tests.size() == planned_.size();
+    session_.terminal.print(emc_hint(done_));
+    if (!done_.has_bursts || !session_.settings.is_set("sensitivity") || !done_.is_complete) return;
+    const auto highest = std::ranges::max_element(
+        planned_, {}, [](const EmcTest& test) { return test.level.open_circuit_volts(); });
+    done_.sensitivity = search_sensitivity(probing(), done_.profile.coupling, highest->level);
+    session_.terminal.print(sensitivity_text(*done_.sensitivity));
   }
 
   const EmcCampaign& result() const { return done_; }
@@ -200,6 +214,42 @@ class Campaign {
       ran.result = end_by(misbehaviour);
     }
     return ran;
+  }
+
+  // Signal ports are tested up to 2 kV, and the others up to 4 kV.
+  void search(const emc::LineResponse& response) {
+    if (!is_searching_) return;
+    double top = emc::Level::standard(emc::PortKind::power, 4).open_circuit_volts();
+    for (const EmcTest& test : planned_) top = std::max(top, test.level.open_circuit_volts());
+    done_.search = search_thresholds(probing(), response, top);
+    session_.terminal.print(search_text(*done_.search));
+  }
+
+  // A test of each repetition and polarity of the campaign.
+  EmcProbing probing() const {
+    EmcProbing made;
+    made.duration = EmcProbing::duration_for(done_.duration);
+    const std::size_t of_a_level = planned_.size() / levels_from(session_.settings).size();
+    for (std::size_t n = 0; n < of_a_level; ++n) {
+      made.tests.push_back(case_of(n));
+      made.tests.back().seed = done_.seed;
+    }
+    made.run = [this](const emc::LineResponse& response, const std::vector<EmcCase>& tests) {
+      std::vector<emc::ImmunityResult> results;
+      conformance::OrderedWork<Ran> work;
+      work.count = tests.size();
+      work.threads = jobs_from(session_.settings);
+      work.stop = interruption_.token();
+      work.work = [&](std::size_t n) { return run_one(response, tests[n]); };
+      work.deliver = [&](std::size_t, Ran&& ran) {
+        results.push_back(std::move(ran.result));
+        return results.back().is_complete;
+      };
+      work.idle = [this](std::size_t) { session_.terminal.progress(0); };
+      const bool is_whole = work.run() == tests.size() && results.back().is_complete;
+      return is_whole ? std::optional(std::move(results)) : std::nullopt;
+    };
+    return made;
   }
 
   void describe(const Ran& ran) {
@@ -261,6 +311,7 @@ class Campaign {
   const conformance::PlannedNetwork* network_ = nullptr;
   EmcCase stored_;                // what all tests have in common
   std::filesystem::path folder_;  // of what is stored; empty: nothing is
+  bool is_searching_ = false;
   bool has_first_wrong_ = false;
   std::vector<EmcTest> planned_;
   EmcCampaign done_;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -56,6 +57,56 @@ TEST_F(EmcVerb, EndsWithOneWhereTheCriterionIsWorseThanAllowed) {
       call({"--test-levels", "3", "--iut", "slave@1=mutant:does_not_mark_status", "--duration", "5s"});
   EXPECT_EQ(caught.exit_code, 1);
   EXPECT_NE(caught.out.find("reproduce: fieldproof emc interbus"), std::string::npos) << caught.out;
+}
+
+TEST_F(EmcVerb, SearchesWhereEachCriterionIsSeenFirst) {
+  const Called called = call({"--jobs", "1", "--json", "one.json"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  const std::size_t line = called.out.find("threshold search: A up to ");
+  ASSERT_NE(line, std::string::npos) << called.out;
+  EXPECT_LT(line, called.out.find("criterion")) << "above the table";
+  EXPECT_HOLDS(called.out, "hint: all levels lie on one side, above where A ends; A was found up to ");
+  const nlohmann::json document = json("one.json");
+  EXPECT_EQ(document.at("tests").size(), 16U);
+  const nlohmann::json& found = document.at("thresholds");
+  const double a = found.at("a_up_to_volts").get<double>();
+  const double b = found.at("b_from_volts").get<double>();
+  EXPECT_GE(a, std::ceil(document.at("threshold_volts").get<double>()) - 1);
+  EXPECT_GT(b, a);
+  EXPECT_LT(b, a * 1.06 + 1);
+  for (const auto& probe : found.at("probes"))
+    EXPECT_EQ(probe.at("criterion") == "A", probe.at("volts").get<double>() <= a) << probe;
+  EXPECT_EQ(found.at("tests").get<std::size_t>(), 4 * found.at("probes").size());
+  expect_valid({"one.json"}, "emc");
+  EXPECT_EQ(call({"--jobs", "2", "--json", "two.json"}).exit_code, 0);
+  EXPECT_EQ(read("one.json"), read("two.json"));
+}
+
+TEST_F(EmcVerb, SearchesBesideLevelsThatAreGivenWhereItIsAsked) {
+  const Called given = call({"--test-levels", "4", "--profile", "C", "--json", "given.json"});
+  EXPECT_FALSE(json("given.json").contains("thresholds"));
+  EXPECT_HOLDS(given.out, "below where A ends; --search finds where that is");
+  const Called asked = call({"--test-levels", "x:30,3", "--search", "--json", "asked.json"});
+  EXPECT_EQ(asked.out.find("hint:"), std::string::npos) << asked.out;
+  EXPECT_EQ(json("asked.json").at("thresholds").at("searched_to_volts"), 4000);
+  EXPECT_EQ(call({"--channel", "bsc:0.001", "--search"}).exit_code, 64);
+}
+
+TEST_F(EmcVerb, SaysOverWhichRangeOfEachParameterAVerdictHolds) {
+  const Called called =
+      call({"--test-levels", "x:55", "--polarity", "+", "--sensitivity", "--json", "emc.json"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_HOLDS(called.out, "sensitivity at X (55 V): ");
+  const nlohmann::json sensitivity = json("emc.json").at("sensitivity");
+  bool changes = false;
+  for (const auto& one : sensitivity.at("parameters")) {
+    EXPECT_NE(one.at("name"), "source_ohm");
+    EXPECT_LE(one.at("from"), one.at("value"));
+    EXPECT_LE(one.at("value"), one.at("to"));
+    changes = changes || !one.at("holds").get<bool>();
+  }
+  EXPECT_TRUE(changes) << "just above the threshold less coupling brings an A";
+  expect_valid({"emc.json"}, "emc");
 }
 
 TEST_F(EmcVerb, RefusesWhatItCannotServe) {

@@ -33,6 +33,46 @@ ordered_json balance_json(const network::ErrorStatistics& ledger) {
           {"data_differed", ledger.differed}};
 }
 
+ordered_json volts_json(const std::optional<double>& volts) {
+  return volts ? ordered_json(*volts) : ordered_json();
+}
+
+ordered_json search_json(const EmcSearch& search) {
+  const emc::Thresholds& found = search.thresholds;
+  ordered_json probes = ordered_json::array();
+  for (const auto& [volts, criterion] : found.probes)
+    probes.push_back({{"volts", volts}, {"criterion", emc::name(criterion)}});
+  return {{"is_complete", found.is_complete},
+          {"text", emc::text_of(found)},
+          {"a_up_to_volts", found.a_up_to_volts},
+          {"b_from_volts", volts_json(found.seen_from[1])},
+          {"c_seen_from_volts", volts_json(found.seen_from[2])},
+          {"d_seen_from_volts", volts_json(found.seen_from[3])},
+          {"searched_to_volts", found.top_volts},
+          {"tests", search.tests()},
+          {"test_s", static_cast<double>(search.duration.count()) / 1e12},
+          {"probes", std::move(probes)}};
+}
+
+ordered_json sensitivity_json(const EmcSensitivity& found) {
+  ordered_json parameters = ordered_json::array();
+  for (const emc::ParameterRange& range : found.parameters) {
+    ordered_json one = {{"name", range.name}, {"unit", range.unit}, {"value", range.value},
+                        {"from", range.from}, {"to", range.to},     {"holds", range.holds()}};
+    if (range.below)
+      one["below"] = {{"value", range.below->first}, {"criterion", emc::name(range.below->second)}};
+    if (range.above)
+      one["above"] = {{"value", range.above->first}, {"criterion", emc::name(range.above->second)}};
+    parameters.push_back(std::move(one));
+  }
+  return {{"is_complete", found.is_complete},
+          {"level", found.level.text()},
+          {"criterion", emc::name(found.criterion)},
+          {"tests", found.tests},
+          {"test_s", static_cast<double>(found.duration.count()) / 1e12},
+          {"parameters", std::move(parameters)}};
+}
+
 ordered_json evidence_json(const emc::Evidence& evidence) {
   ordered_json json = {{"text", evidence.text}};
   if (evidence.worse_than_a) json["worse_than_a_at_most"] = *evidence.worse_than_a;
@@ -345,6 +385,24 @@ std::string places_text(const EmcCampaign& campaign) {
 
 }  // namespace
 
+std::string emc_hint(const EmcCampaign& campaign) {
+  const auto is_a = [](const EmcTest& test) { return test.result.criterion == emc::Criterion::a; };
+  const auto says_something = [](const EmcTest& test) {
+    return test.result.came_up && test.result.was_disturbed();
+  };
+  if (!campaign.has_bursts || !campaign.is_complete || campaign.tests.empty() ||
+      !std::ranges::all_of(campaign.tests, says_something))
+    return "";
+  const bool has_a = std::ranges::any_of(campaign.tests, is_a);
+  if (has_a && !std::ranges::all_of(campaign.tests, is_a)) return "";
+  const std::string side = has_a ? "below where A ends" : "above where A ends";
+  const std::string where =
+      campaign.search && campaign.search->thresholds.is_complete
+          ? fmt::format("A was found up to {:.0f} V", campaign.search->thresholds.a_up_to_volts)
+          : "--search finds where that is";
+  return fmt::format("hint: all levels lie on one side, {}; {}\n", side, where);
+}
+
 std::string emc_summary(const EmcCampaign& campaign) {
   const EmcTotal total = total_of(campaign);
   std::string text;
@@ -398,32 +456,34 @@ std::string emc_json(const EmcCampaign& campaign) {
   }
   const EmcTotal total = total_of(campaign);
   const bool has_bursts = campaign.has_bursts;
-  const ordered_json document = {{"schema", "fieldproof/emc/1"},
-                                 {"protocol", campaign.protocol},
-                                 {"network", campaign.network},
-                                 {"implementations", campaign.implementations},
-                                 {"profile", has_bursts ? campaign.profile.name : ""},
-                                 {"threshold_volts", has_bursts ? campaign.threshold_volts : 0},
-                                 {"unverified", unverified_of(campaign)},
-                                 {"criteria", std::move(criteria)},
-                                 {"seed", std::to_string(campaign.seed)},
-                                 {"is_complete", campaign.is_complete},
-                                 {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
-                                 {"tests", std::move(tests)},
-                                 {"channels", std::move(channels)},
-                                 {"places", places_json(campaign)},
-                                 {"acceptance", acceptance_json(campaign)},
-                                 {"recovery_limit",
-                                  {{"exchanges", campaign.recovery.exchanges},
-                                   {"exchange", campaign.exchange},
-                                   {"source", campaign.recovery.source}}},
-                                 {"residual", frame_residual_json(residual_of(campaign), total)},
-                                 {"total",
-                                  {{"corrupted", total.counts.corrupted},
-                                   {"detected", total.counts.detected},
-                                   {"accepted_wrong", total.counts.accepted_wrong()},
-                                   {"balance", balance_json(total.counts)},
-                                   {"upper_bound_of_share", total.upper_bound_of_share}}}};
+  ordered_json document = {{"schema", "fieldproof/emc/1"},
+                           {"protocol", campaign.protocol},
+                           {"network", campaign.network},
+                           {"implementations", campaign.implementations},
+                           {"profile", has_bursts ? campaign.profile.name : ""},
+                           {"threshold_volts", has_bursts ? campaign.threshold_volts : 0},
+                           {"unverified", unverified_of(campaign)},
+                           {"criteria", std::move(criteria)},
+                           {"seed", std::to_string(campaign.seed)},
+                           {"is_complete", campaign.is_complete},
+                           {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
+                           {"tests", std::move(tests)},
+                           {"channels", std::move(channels)},
+                           {"places", places_json(campaign)},
+                           {"acceptance", acceptance_json(campaign)},
+                           {"recovery_limit",
+                            {{"exchanges", campaign.recovery.exchanges},
+                             {"exchange", campaign.exchange},
+                             {"source", campaign.recovery.source}}},
+                           {"residual", frame_residual_json(residual_of(campaign), total)},
+                           {"total",
+                            {{"corrupted", total.counts.corrupted},
+                             {"detected", total.counts.detected},
+                             {"accepted_wrong", total.counts.accepted_wrong()},
+                             {"balance", balance_json(total.counts)},
+                             {"upper_bound_of_share", total.upper_bound_of_share}}}};
+  if (campaign.search) document["thresholds"] = search_json(*campaign.search);
+  if (campaign.sensitivity) document["sensitivity"] = sensitivity_json(*campaign.sensitivity);
   return document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

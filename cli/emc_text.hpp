@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/emc_search.hpp"
 #include "cli/protocol_entry.hpp"
 #include "emc/frame_residual.hpp"
 #include "emc/immunity.hpp"
@@ -60,6 +62,8 @@ struct EmcCampaign {
   // Of each kind of frame with a check; the first is the one that carries data.
   std::vector<emc::FrameResidual> residuals;
   bool has_bursts = true;  // else channels of the textbooks
+  std::optional<EmcSearch> search;
+  std::optional<EmcSensitivity> sensitivity;
 };
 
 // The errors of all tests together, and how much a count of wrong words can still hide.
@@ -73,6 +77,8 @@ EmcTotal total_of(const EmcCampaign& campaign);
 
 std::string emc_table_head(bool has_bursts);
 std::string emc_line(const EmcTest& test);
+// Where no level lies on the other side of where A ends; else empty.
+std::string emc_hint(const EmcCampaign& campaign);
 // The error statistics and what they rest on.
 std::string emc_summary(const EmcCampaign& campaign);
 std::string emc_json(const EmcCampaign& campaign);

@@ -46,6 +46,8 @@ constexpr std::array kOptions = {
     Option{"signal", list, "F,F...", "50Hz,150Hz,200Hz", "measure", "frequencies of the square waves", false, true},
     Option{"duration", value, "T", "60s", "measure paper emc", "virtual time of each signal or test", false, true},
     Option{"test-levels", list, "L,L...", "1..4", "emc", "test levels of signal ports: 1, 1..4, or volts x:1000, x:1000..4500:500", false, true},
+    Option{"search", flag, "", "", "emc", "find from which voltage on each criterion is seen, also where --test-levels is given", false, true},
+    Option{"sensitivity", flag, "", "", "emc", "at the highest level: over which range of each parameter of the coupling that nobody measured the criterion stays", false, true},
     Option{"repetition", list, "R,R...", "5kHz,100kHz", "emc", "5kHz, 100kHz, or 2.5kHz of edition 1", false, true},
     Option{"polarity", list, "+,-", "+,-", "emc", "of all pulses of a test", false, true},
     Option{"channel", list, "bsc:P,...", "", "emc", "instead of bursts, a channel on which each bit flips with this chance, to hold the frame check's theory against", false, true},

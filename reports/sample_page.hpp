@@ -123,6 +123,29 @@ inline nlohmann::ordered_json sample_emc() {
           {"accepted_wrong", 4},
           {"data_differed", 84}}},
         {"upper_bound_of_share", 0.107}}}};
+  json["thresholds"] = {{"is_complete", true},
+                        {"text", "A up to 46 V, B from 48 V, C seen from 1472 V, D not seen up to 4000 V"},
+                        {"a_up_to_volts", 46},
+                        {"b_from_volts", 48},
+                        {"c_seen_from_volts", 1472},
+                        {"d_seen_from_volts", nullptr},
+                        {"searched_to_volts", 4000},
+                        {"tests", 4},
+                        {"test_s", 1.0},
+                        {"probes", {{{"volts", 48}, {"criterion", "B"}}}}};
+  json["sensitivity"] = {{"is_complete", true},
+                         {"level", "4 (2000 V)"},
+                         {"criterion", "B"},
+                         {"tests", 12},
+                         {"test_s", 1.0},
+                         {"parameters",
+                          {{{"name", "ring_q"},
+                            {"unit", ""},
+                            {"value", 4.0},
+                            {"from", 2.0},
+                            {"to", 5.66},
+                            {"holds", false},
+                            {"above", {{"value", 8.0}, {"criterion", "C"}}}}}}};
   const std::string criteria = "ABCD";
   for (const char criterion : criteria) {
     json["criteria"].push_back({{"criterion", std::string(1, criterion)}, {"meaning", "as agreed"}});

@@ -4,6 +4,7 @@ import { number, part, plural, scientific } from "./format.js";
 import { later } from "./later.js";
 import { documentCommand, documentsOf } from "./summary.js";
 import { table } from "./table.js";
+import { sensitivityPart, thresholdsPart } from "./thresholds.js";
 
 function wrongOf({ ledger }) {
   return ledger.accepted_wrong_inputs + ledger.accepted_wrong_outputs;
@@ -153,7 +154,8 @@ function campaign({ name, content }) {
       content.is_complete ? null : notice("The campaign ended before all of its tests were made: what is not here was not tested."),
       content.unverified.length ? notice(element("strong", {}, "Unverified and uncalibrated"),
           element("ul", {}, content.unverified.map((text) => element("li", {}, text)))) : null,
-      hasBursts ? [heatMap(content.tests), criteriaPart(content)] : null, totalPart(content),
+      thresholdsPart(content),
+      hasBursts ? [heatMap(content.tests), criteriaPart(content)] : null, sensitivityPart(content), totalPart(content),
       content.channels.length ? channels(content.channels) : null, hasBursts ? [balance(content.tests), ledger(content.tests)] : null);
 }
 
