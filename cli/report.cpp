@@ -11,6 +11,7 @@
 #include "cli/verbs.hpp"
 #include "harness/kernel/error.hpp"
 #include "reports/html_writer.hpp"
+#include "reports/joined_verdict.hpp"
 #include "reports/text_summary.hpp"
 
 // `fieldproof report`: stored runs and documents as one page, and a stored run in the other formats.
@@ -49,7 +50,10 @@ void write_page(const Session& session, const std::optional<JoinedRun>& only) {
       content.runs.push_back(reports::page_run(reports::RunDirectory::open(operand)));
     }
   }
+  content.cover = {session.settings.text("title"), session.settings.text("device"),
+                   session.settings.text("customer"), session.settings.text("note")};
   reports::write_text_file(file, reports::html_page(content));
+  session.terminal.print(reports::joined_text(reports::joined_verdict(content)));
   session.terminal.print("the report is in " + reports::escaped_line(file) + "\n");
 }
 

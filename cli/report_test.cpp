@@ -67,6 +67,34 @@ TEST_F(ReportVerb, JoinsRunsAndDocuments) {
   EXPECT_EQ(data["documents"][0]["content"]["frame_check"], "CRC-8/SMBUS");
 }
 
+// The page and the terminal say the same, and the worst of all, whatever is named first.
+TEST_F(ReportVerb, SaysTheWorstOfAllThatIsOnThePage) {
+  EXPECT_EQ(call({"run", "interbus/slave/frame_check/**", "--out", "good"}).exit_code, 0);
+  run("bad");
+  const Called made = call({"report", "good", "bad", "--html", "r.html"});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  const nlohmann::json joined = data_of("r.html")["joined"];
+  EXPECT_EQ(joined["verdict"], "fail");
+  EXPECT_EQ(made.out.find("fail: " + joined["sentence"].get<std::string>() + "\n"), 0U) << made.out;
+  EXPECT_NE(made.out.find("2 runs: 1 failed ("), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find("\n  pass          good: all "), std::string::npos) << made.out;
+}
+
+TEST_F(ReportVerb, HasACoverWhenAskedForOne) {
+  run("a");
+  EXPECT_EQ(call({"report", "a", "--html", "r.html"}).exit_code, 0);
+  EXPECT_FALSE(data_of("r.html").contains("cover"));
+  EXPECT_EQ(call({"report", "a", "--html", "r.html", "--title", "Type test", "--device", "<b>S-7</b>",
+                  "--customer", "a customer", "--note", "</script>"})
+                .exit_code,
+            0);
+  EXPECT_EQ(data_of("r.html")["cover"], (nlohmann::json{{"title", "Type test"},
+                                                        {"device", "<b>S-7</b>"},
+                                                        {"customer", "a customer"},
+                                                        {"note", "</script>"}}));
+  EXPECT_EQ(read("r.html").find("<b>S-7"), std::string::npos);
+}
+
 // Each document says how it was made, and the command makes it again.
 TEST_F(ReportVerb, ADocumentHoldsItsCommand) {
   residual();

@@ -6,7 +6,7 @@
 
 set(page_modules
   dom format later table charts time_line_model time_line case_detail case_table summary timing immunity residual publication
-  matrix coverage page)
+  matrix coverage cover page)
 
 # The octets of a hexadecimal number as base64.
 function(fieldproof_base64 hexadecimal result)

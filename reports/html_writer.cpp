@@ -7,6 +7,7 @@
 
 #include "harness/kernel/untrusted_text.hpp"
 #include "reports/embedded_page.hpp"
+#include "reports/joined_verdict.hpp"
 #include "reports/json_writer.hpp"
 #include "reports/packed_timeline.hpp"
 
@@ -40,6 +41,35 @@ Json catalogue_json(const PageCatalogue& catalogue) {
   return {{"suite_version", as_utf8(catalogue.suite_version)}, {"stories", std::move(stories)}};
 }
 
+Json parts_json(const std::vector<JudgedPart>& parts) {
+  Json json = Json::array();
+  for (const JudgedPart& part : parts) {
+    json.push_back({{"name", as_utf8(part.name)},
+                    {"verdict", judge::name(part.verdict)},
+                    {"sentence", as_utf8(part.sentence)}});
+  }
+  return json;
+}
+
+Json joined_json(const JoinedVerdict& joined) {
+  Json json = {{"verdict", judge::name(joined.verdict)},
+               {"sentence", as_utf8(joined.sentence)},
+               {"runs", parts_json(joined.runs)},
+               {"documents", parts_json(joined.documents)},
+               {"caveats", Json::array()}};
+  for (const JoinedCaveat& caveat : joined.caveats) {
+    json["caveats"].push_back({{"text", as_utf8(caveat.text)}, {"names", strings_json(caveat.names)}});
+  }
+  return json;
+}
+
+Json cover_json(const PageCover& cover) {
+  return {{"title", as_utf8(cover.title)},
+          {"device", as_utf8(cover.device)},
+          {"customer", as_utf8(cover.customer)},
+          {"note", as_utf8(cover.note)}};
+}
+
 std::string run_command(const RunIdentity& identity) {
   std::string command = "fieldproof run";
   for (const std::string& selector : identity.selectors) command += " " + shell_quoted(selector);
@@ -51,9 +81,11 @@ class DataWriter {
  public:
   Json write(const PageContent& content) {
     Json json = {{"schema", kReportSchema},
+                 {"joined", joined_json(joined_verdict(content))},
                  {"catalogue", catalogue_json(content.catalogue)},
                  {"runs", Json::array()},
                  {"documents", Json::array()}};
+    if (content.cover != PageCover{}) json["cover"] = cover_json(content.cover);
     for (const PageRun& run : content.runs) json["runs"].push_back(run_json(run));
     for (const PageDocument& document : content.documents) {
       json["documents"].push_back({{"name", as_utf8(document.name)}, {"content", parsed(document.json)}});

@@ -54,10 +54,21 @@ struct DocumentKind {
 
 PageDocument page_document(const std::filesystem::path& file, std::span<const DocumentKind> kinds);
 
+// What a page that is handed over says of the occasion; all empty: it has no cover.
+struct PageCover {
+  std::string title;
+  std::string device;
+  std::string customer;
+  std::string note;
+
+  friend bool operator==(const PageCover&, const PageCover&) = default;
+};
+
 struct PageContent {
   PageCatalogue catalogue;
   std::vector<PageRun> runs;
   std::vector<PageDocument> documents;
+  PageCover cover;
 };
 
 }  // namespace fieldproof::reports

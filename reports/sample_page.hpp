@@ -310,6 +310,7 @@ inline PageContent sample_page() {
                        {"residual.json", sample_residual().dump()},
                        {"publication.json", publication_json(sample_publication())},
                        {"matrix.json", sample_matrix().dump()}};
+  content.cover = {"A test report", kHostileName, "a customer", kHostileName};
   return content;
 }
 

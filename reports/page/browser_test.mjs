@@ -122,6 +122,31 @@ await check("numbers of the summary are those of the run", async (page) => {
   if (!firstRun.results.run.complete) expect(text.includes("incomplete"), "that it is incomplete is not reported");
 });
 
+await check("title, headline and icon say the verdict of all that is on the page", async (page) => {
+  const { verdict, sentence, caveats, runs, documents } = data.joined;
+  expect((await page.title()).startsWith(`${verdict}: `), `the title is "${await page.title()}"`);
+  const headline = page.locator(".headline");
+  expectEqual(await headline.count(), 1, "headlines");
+  expect((await headline.innerText()).toLowerCase().includes(sentence.toLowerCase()), "the headline is another");
+  expect(await headline.evaluate((one, wanted) => one.classList.contains(wanted), verdict), "its colour");
+  expect((await page.locator("link[rel=icon]").getAttribute("href")).startsWith("data:image/svg+xml,"), "no icon");
+  const text = await page.locator("#content").innerText();
+  for (const caveat of caveats) expect(text.includes(caveat.text), `not told: ${caveat.text}`);
+  for (const one of [...runs, ...documents]) {
+    if (runs.length + documents.length > 1) expect(text.toLowerCase().includes(one.sentence.toLowerCase()), `not told of ${one.name}`);
+  }
+});
+
+await check("the cover tells what was tested and what came out", async (page) => {
+  expectEqual(await page.locator("#cover").count(), data.cover ? 1 : 0, "covers");
+  if (!data.cover) return;
+  const text = await page.locator("#cover").innerText();
+  const shown = (one) => one.replace(/[\u0000-\u001f]/g, "");
+  for (const one of Object.values(data.cover)) expect(text.includes(shown(one)), `"${one}" is not shown`);
+  for (const run of data.runs) expect(text.includes(run.results.run.seed) && text.includes(run.manifest.host), "seed and host");
+  expect(await page.locator("#cover table tbody tr").count() >= data.runs.length, "no results");
+});
+
 await check("text, verdicts and standing filter", async (page) => {
   const wanted = failing[0].id;
   await page.fill("#case-filter", wanted.toUpperCase());
@@ -274,8 +299,11 @@ await check("paper shows every case that did not pass opened, all charts and no 
   await page.waitForSelector("body[data-is-whole]");
   const opened = cases.length - quiet.length + Math.min(1, quiet.length);
   expectEqual(await page.locator(".case-detail:visible").count(), opened, "open cases");
-  expectEqual(await page.locator("tr.case:visible").count(), cases.length, "lines of cases");
-  expectEqual(await page.locator(".controls:visible, .buttons:visible, .copy:visible, nav:visible").count(), 0, "controls");
+  expectEqual(await page.locator("tr.case:visible").count(), opened, "lines of cases");
+  const named = await page.locator(".names-on-paper").innerText();
+  for (const { id } of quiet) expect(named.includes(id.split("/").at(-1)), `${id} is not named`);
+  expectEqual(await page.locator(".contents a:visible").count(), await page.locator("main section").count(), "contents");
+  expectEqual(await page.locator(".controls:visible, .buttons:visible, .copy:visible, header nav:visible").count(), 0, "controls");
   expectEqual(await page.locator(".chart:not(:has(canvas))").count(), 0, "charts that are not drawn");
   if (withTimeLine) expect(await page.locator(`[id="detail-${withTimeLine}"] .stage rect`).first().isVisible(), "no time line");
   const folder = mkdtempSync(join(tmpdir(), "fieldproof-"));

@@ -1,6 +1,9 @@
 // The table of cases: filtered by text, verdict and standing, sorted by its heads; a row opens to all that is
 // known of its case. A case has the address #<id>; in a page of several runs the later ones have #<n>:<id>.
-import { breakable, element, replaceContent, section } from "./dom.js";
+//
+// A page may hold a hundred thousand cases: lines are made when they are shown, a thousand at a time. On paper
+// stand the cases that did not pass, with their details, and of the others a list of names.
+import { breakable, element, notice, replaceContent, section } from "./dom.js";
 import { caseDetail, unverifiedMark } from "./case_detail.js";
 import { duration, part } from "./format.js";
 import { cellOf, sortableHead } from "./table.js";
@@ -11,6 +14,10 @@ export const kVerdicts = ["error", "fail", "inconclusive", "warn", "pass", "not-
 const kNeedsNoDetails = new Set(["pass", "not-applicable"]);
 
 const kWeight = new Map(kVerdicts.map((verdict, at) => [verdict, at]));
+
+const kLinesAtATime = 1000;
+const kMostOnPaper = 300;
+const kMostNames = 2000;
 
 export function verdictBadge(verdict) {
   return element("span", {class: `verdict ${verdict}`}, verdict === "not-applicable" ? "n/a" : verdict);
@@ -34,6 +41,7 @@ function isUnverified({ result }) {
 
 function searchText({ result, run }) {
   const findings = result.findings.flatMap((one) => [one.reason, one.actual, one.requirement]);
+  // It is not kept: a hundred thousand of them are more than the results themselves.
   return [result.id, result.verdict, result.reason, result.purpose, result.requirement, result.reference.source, run.name, ...findings]
       .join("\n").toLowerCase();
 }
@@ -59,36 +67,42 @@ class CaseTable {
     this.wanted = new Set(kVerdicts);
     this.text = "";
     this.isUnverifiedOnly = false;
+    this.most = kLinesAtATime;
     this.body = element("tbody");
-    for (const row of this.rows) this.make(row);
     this.rows.sort((a, b) => kWeight.get(a.result.verdict) - kWeight.get(b.result.verdict) || a.position - b.position);
     this.count = element("p", {class: "count", role: "status"});
+    this.more = element("button", {type: "button", class: "more-lines", onclick: () => { this.most += kLinesAtATime; this.place(); }});
     this.table = element("table", {class: "cases"},
         element("caption", {class: "unseen"}, "Cases; a row opens to its findings"), sortableHead(this.columns, (compare) => this.order(compare)), this.body);
-    this.place();
     this.show();
   }
 
-  make(row) {
+  // The line of a row, made when it is first asked for.
+  lineOf(row) {
+    if (row.line) return row.line;
     const detailId = `detail-${row.address}`;
     row.opener = element("button", {type: "button", class: "opener", "aria-expanded": "false", "aria-controls": detailId,
       onclick: () => this.toggle(row)}, breakable(row.result.id));
-    row.search = searchText(row);
-    row.isUnverified = isUnverified(row);
     row.cell = element("td", {colspan: this.columns.length});
     row.detail = element("tr", {class: "detail", id: detailId, hidden: true}, row.cell);
     const link = element("a", {class: "anchor", href: `#${encodeURI(row.address)}`, "aria-label": `Link to ${row.result.id}`}, "#");
     row.line = element("tr", {class: `case ${row.result.verdict}${kNeedsNoDetails.has(row.result.verdict) ? " quiet" : ""}`, id: row.address}, this.columns.map((column) => cellOf(column, row)));
     row.opener.after(link);
+    return row.line;
   }
 
   place() {
-    this.body.replaceChildren(...this.rows.flatMap((row) => [row.line, row.detail]));
+    const lines = this.shown.slice(0, this.most);
+    if (this.called && !lines.includes(this.called)) lines.push(this.called);
+    this.body.replaceChildren(...lines.flatMap((row) => [this.lineOf(row), row.detail]));
+    const rest = this.shown.length - this.most;
+    this.more.hidden = rest <= 0;
+    this.more.textContent = `Show ${Math.min(rest, kLinesAtATime)} more of ${rest}`;
   }
 
   order(compare) {
     this.rows.sort((a, b) => compare(a, b) || a.position - b.position);
-    this.place();
+    this.show();
   }
 
   controls() {
@@ -114,22 +128,20 @@ class CaseTable {
   }
 
   isShown(row) {
-    return this.wanted.has(row.result.verdict) && (!this.isUnverifiedOnly || row.isUnverified) && row.search.includes(this.text);
+    return this.wanted.has(row.result.verdict) && (!this.isUnverifiedOnly || isUnverified(row)) &&
+        (this.text === "" || searchText(row).includes(this.text));
   }
 
   show() {
-    let count = 0;
-    for (const row of this.rows) {
-      const isShown = this.isShown(row);
-      count += isShown ? 1 : 0;
-      row.line.hidden = !isShown;
-      row.detail.hidden = !isShown || !this.isOpen(row);
-    }
-    replaceContent(this.count, `${part(count, this.rows.length)} cases shown`);
+    this.shown = this.rows.filter((row) => this.isShown(row));
+    this.most = kLinesAtATime;
+    this.called = null;
+    this.place();
+    replaceContent(this.count, `${part(this.shown.length, this.rows.length)} cases shown`);
   }
 
   isOpen(row) {
-    return row.opener.getAttribute("aria-expanded") === "true";
+    return row.opener?.getAttribute("aria-expanded") === "true";
   }
 
   fill(row) {
@@ -153,17 +165,40 @@ class CaseTable {
     const address = decodedAddress();
     const row = this.rows.find((one) => one.address === address);
     if (!row) return;
+    this.called = row;
+    this.place();
     this.open(row);
-    row.line.hidden = false;
     row.line.scrollIntoView({block: "start"});
     row.opener.focus({preventScroll: true});
   }
 
   fillForPaper() {
-    for (const row of this.rows) {
-      if (!kNeedsNoDetails.has(row.result.verdict)) this.fill(row);
+    const loud = this.rows.filter(({ result }) => !kNeedsNoDetails.has(result.verdict));
+    for (const row of loud.slice(0, kMostOnPaper)) {
+      if (!row.line?.isConnected) this.body.append(this.lineOf(row), row.detail);
+      this.fill(row);
     }
+    replaceContent(this.forPaper, paperList(this.rows.filter(({ result }) => kNeedsNoDetails.has(result.verdict)), loud.length - kMostOnPaper));
   }
+
+  forPaper = element("div", {class: "paper-only"});
+}
+
+// Names in columns, by protocol, role and group.
+function paperList(rows, leftOut) {
+  const groups = new Map();
+  for (const row of rows.slice(0, kMostNames)) {
+    const words = row.result.id.split("/");
+    const name = `${row.result.verdict === "pass" ? "Passed" : "Not applicable"}: ${words.slice(0, -1).join("/")}`;
+    if (!groups.has(name)) groups.set(name, new Map());
+    const names = groups.get(name);
+    names.set(words.at(-1), (names.get(words.at(-1)) ?? 0) + 1);
+  }
+  const listed = [...groups].map(([name, names]) => element("li", {}, element("strong", {}, name), " ",
+      [...names].map(([one, times]) => (times > 1 ? `${one} (${times} times)` : one)).join(", ")));
+  return [leftOut > 0 ? notice(`${leftOut} more cases that did not pass are in the page itself and not on paper.`) : null,
+    listed.length ? element("ul", {class: "names-on-paper"}, listed) : null,
+    rows.length > kMostNames ? element("p", {}, `${part(rows.length - kMostNames, rows.length)} such cases are not named on paper.`) : null];
 }
 
 function decodedAddress() {
@@ -180,7 +215,7 @@ export function caseSection(data) {
   addEventListener("hashchange", () => cases.openAddress());
   addEventListener("beforeprint", () => cases.fillForPaper());
   matchMedia("print").addEventListener("change", () => cases.fillForPaper());
-  const place = section("cases", "Cases", cases.controls(), cases.table);
+  const place = section("cases", "Cases", cases.controls(), cases.table, cases.more, cases.forPaper);
   place.openAddress = () => cases.openAddress();
   return place;
 }

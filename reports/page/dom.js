@@ -92,6 +92,11 @@ export function notice(...children) {
   return element("div", {class: "notice"}, children);
 }
 
+// What few readers want: on paper it is left out, unless it was opened.
+export function folded(title, ...children) {
+  return element("details", {class: "folded"}, element("summary", {}, title), children);
+}
+
 // A thing as wide as it wants in a box that scrolls by itself.
 export function scrollBox(label, ...children) {
   return element("div", {class: "scroll", role: "region", "aria-label": label, tabindex: "0"}, children);

@@ -1,6 +1,7 @@
 // Reads the data of the page and shows them.
 import { caseSection } from "./case_table.js";
 import { watchCharts } from "./charts.js";
+import { coverSection } from "./cover.js";
 import { coverageSection } from "./coverage.js";
 import { append, element, replaceContent, visible } from "./dom.js";
 import { immunitySection } from "./immunity.js";
@@ -11,20 +12,36 @@ import { residualSection } from "./residual.js";
 import { summarySection } from "./summary.js";
 import { timingSection } from "./timing.js";
 
-const kSections = [summarySection, caseSection, timingSection, immunitySection, residualSection, publicationSection, matrixSection,
-  coverageSection];
+const kSections = [coverSection, summarySection, caseSection, timingSection, immunitySection, residualSection, publicationSection,
+  matrixSection, coverageSection];
 
-function titleOf(data) {
-  const [run] = data.runs;
-  if (!run) return "fieldproof report";
-  return `${run.results.headline}: ${run.results.run.selectors.join(" ") || "all cases"}, seed ${run.results.run.seed}`;
+// The same verdict in the title, the headline and the icon of the tab.
+function titleOf({ joined, cover, runs }) {
+  const verdict = joined.verdict === "none" ? "" : `${joined.verdict}: `;
+  const what = cover?.title || (runs.length === 1 ? `${joined.sentence}, seed ${runs[0].results.run.seed}` : joined.sentence);
+  return `${verdict}${what}`;
+}
+
+const kIconColours = {pass: "#1a7037", fail: "#b3261e", error: "#84207a", warn: "#b57b00", inconclusive: "#b57b00"};
+
+function showIcon(verdict) {
+  const picture = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 8 8"><circle cx="4" cy="4" r="4" fill="${kIconColours[verdict] ?? "#57606a"}"/></svg>`;
+  document.querySelector("link[rel=icon]").href = `data:image/svg+xml,${encodeURIComponent(picture)}`;
+}
+
+// For paper, where no head with links is.
+function contentsList(sections) {
+  return element("nav", {class: "contents", "aria-label": "Contents"}, element("h2", {}, "Contents"),
+      element("ol", {}, sections.map((one) => element("li", {}, element("a", {href: `#${one.id}`}, one.querySelector("h2").textContent)))));
 }
 
 function showPage() {
   const data = JSON.parse(document.getElementById("data").textContent);
   document.title = visible(titleOf(data));
+  showIcon(data.joined.verdict);
   const sections = kSections.map((make) => make(data)).filter(Boolean);
-  replaceContent(document.getElementById("content"), element("h1", {class: "unseen"}, titleOf(data)), sections);
+  const [first, ...others] = sections;
+  replaceContent(document.getElementById("content"), element("h1", {class: "unseen"}, titleOf(data)), first, contentsList(sections), others);
   append(document.getElementById("sections"), sections.map((one) => element("a", {href: `#${one.id}`}, one.querySelector("h2").textContent)));
   append(document.getElementById("end"), [element("p", {},
       "One file, no network: this page asks for nothing. Simulated time is virtual; what a source does not verify is marked unverified. ",

@@ -1,8 +1,10 @@
-// The head of the page: for each run its verdict, counts with their denominators, what it was and the command
-// that makes it again; for each document where it comes from.
+// The head of the page: the verdict of all that is on it, as the program joined it, with what must be said of
+// the results; then for each run its counts with their denominators, what it was and the command that makes it
+// again.
 import { kVerdicts, verdictBadge } from "./case_table.js";
-import { command, definitions, element, notice, section } from "./dom.js";
+import { breakable, command, definitions, element, folded, notice, section } from "./dom.js";
 import { duration, number, part, plural } from "./format.js";
+import { table } from "./table.js";
 
 const kMeaning = {
   error: "the bench or the implementation broke off",
@@ -13,22 +15,6 @@ const kMeaning = {
   "not-applicable": "the implementation declares otherwise",
   none: "selected, not judged",
 };
-
-function headlineText({ headline, counts }) {
-  const of = counts.by_verdict;
-  const judged = `of ${plural(counts.judged, "judged case")}`;
-  if (counts.judged === 0) return "No case was judged";
-  if (of.fail + of.error > 0 && headline !== "fail" && headline !== "error") {
-    return `${number(of.fail + of.error)} ${judged} failed, as the baseline expects; all others passed`;
-  }
-  if (of.fail + of.error > 0) {
-    const errors = of.error ? ` and ${number(of.error)} ended in an error` : "";
-    return `${number(of.fail)} ${judged} failed${errors}`;
-  }
-  if (of.inconclusive > 0) return `${number(of.inconclusive)} ${judged} could not be told; none failed`;
-  return headline === "warn" ? `No failure among ${plural(counts.judged, "judged case")}, ${plural(of.warn, "warning")}`
-      : `All ${plural(counts.judged, "judged case")} passed`;
-}
 
 // One bar, as wide as the selection; its parts are listed below it.
 function countBar(counts) {
@@ -44,7 +30,7 @@ function countBar(counts) {
   return [bar, element("ul", {class: "counts"}, items)];
 }
 
-function implementationText(run) {
+export function implementationText(run) {
   if (run.implementations.length === 0) return "ref (the built-in reference)";
   return run.implementations.map((one) => (one.role ? `${one.role}${one.position ? `@${one.position}` : ""}=` : "") + one.uri).join("; ");
 }
@@ -53,19 +39,26 @@ function setUp({ results, manifest }) {
   const run = results.run;
   return definitions([
     ["Implementation", implementationText(run)],
-    ["Seed", run.seed],
     ["Cases", run.selectors.join(" ") || "all"],
-    ["Volume", run.volume],
     ["Suite", run.suite_version],
-    ["fieldproof", `${run.tool_version}, ${manifest.build.type}, ${manifest.build.compiler}`],
-    ["Plan of faults", planText(results)],
-    ["Network", run.network_hash || "the suite's own"],
-    ["PICS", run.pics_hash || "none"],
+    ["Seed", run.seed],
     ["Started", manifest.started],
-    ["Finished", manifest.finished || "never"],
-    ["Took", `${duration(Number(manifest.wall_time_us))}, ${plural(manifest.jobs, "thread")}, host ${manifest.host}`],
-    ["Exit code", String(run.exit_code)],
+    ["Took", `${duration(Number(manifest.wall_time_us))}, host ${manifest.host}`],
+    ["PICS", run.pics_hash ? `hash ${run.pics_hash}` : "none"],
   ]);
+}
+
+// What a developer asks who makes it again.
+function detailsOf({ results, manifest }) {
+  const run = results.run;
+  return folded("How it was made", definitions([
+    ["Volume", run.volume],
+    ["fieldproof", `${run.tool_version}, ${manifest.build.type}, ${manifest.build.compiler}`],
+    ["Network", run.network_hash || "the suite's own"],
+    ["Finished", manifest.finished || "never"],
+    ["Threads", String(manifest.jobs)],
+    ["Exit code", String(run.exit_code)],
+  ]), element("p", {class: "quiet"}, "As typed: ", element("code", {}, manifest.arguments.join(" "))));
 }
 
 function planPart(fault) {
@@ -75,12 +68,13 @@ function planPart(fault) {
 }
 
 // Of a long plan as many parts as a reader looks through.
-function planText(results) {
+function planOf(results) {
   const faults = results.planned_faults ?? [];
+  if (!results.run.plan_hash && faults.length === 0) return null;
   const kMost = 20;
-  return [results.run.plan_hash || "none",
+  return definitions([["Plan of faults", [results.run.plan_hash,
     faults.length ? element("ul", {class: "plain"}, faults.slice(0, kMost).map((fault) => element("li", {}, planPart(fault)))) : null,
-    faults.length > kMost ? `${number(faults.length - kMost)} more parts are in results.json` : null];
+    faults.length > kMost ? `${number(faults.length - kMost)} more parts are in results.json` : null]]]);
 }
 
 // A part of a plan that never hit may be a slip of its writer, and a pass then says less than it seems.
@@ -92,7 +86,7 @@ function idleFaults(results) {
   return notice(element("strong", {}, "Planned faults that never hit"), `: ${part(idle.length, faults.length)} parts of the plan (${named})`);
 }
 
-function runPart(run, isJoined) {
+function runPart(run, said, isJoined) {
   const { results } = run;
   const { counts } = results;
   const trouble = [];
@@ -102,37 +96,70 @@ function runPart(run, isJoined) {
   }
   trouble.push(idleFaults(results));
   for (const stale of results.run.stale_expectations ?? []) trouble.push(notice(element("strong", {}, "Baseline"), `: ${stale}`));
-  for (const caveat of results.run.caveats ?? []) trouble.push(notice(element("strong", {}, "Unverified"), `: ${caveat}`));
   if (run.journal_was_torn) trouble.push(notice("The last line of its journal was torn; that result is lost."));
-  return element("article", {class: `run ${results.headline}`},
-      isJoined ? element("h3", {}, run.name) : null,
-      element("p", {class: "headline"}, verdictBadge(results.headline), " ", headlineText(results)),
+  return element("article", {class: `run ${said.verdict}`, id: addressOf("run", said)},
+      isJoined ? element("h3", {}, verdictBadge(said.verdict), " ", run.name) : null,
+      isJoined ? element("p", {}, sentence(said.sentence)) : null,
       element("p", {class: "quiet"}, `${part(counts.judged, counts.selected)} selected cases judged; not run: ${number(counts.not_run)}.`),
-      trouble, countBar(counts), setUp(run),
-      element("p", {class: "quiet"}, "As typed: ", element("code", {}, run.manifest.arguments.join(" "))), command(run.command));
+      trouble, countBar(counts), setUp(run), planOf(results), command(run.command), detailsOf(run));
 }
 
 const kDocuments = {
-  "fieldproof/emc/1": ["#immunity", "a network under bursts"],
-  "fieldproof/measurement/1": ["#timing", "a measurement beside the theory"],
-  "fieldproof/publication/2": ["#publication", "a paper beside its reproduction"],
-  "fieldproof/residual/1": ["#residual", "undetected errors of a frame check"],
-  "fieldproof/matrix/1": ["#matrix", "cases and mutants"],
+  "fieldproof/emc/1": ["immunity", "a network under bursts"],
+  "fieldproof/measurement/1": ["timing", "a measurement beside the theory"],
+  "fieldproof/publication/2": ["publication", "a paper beside its reproduction"],
+  "fieldproof/residual/1": ["residual", "undetected errors of a frame check"],
+  "fieldproof/matrix/1": ["matrix", "cases and mutants"],
 };
 
-function documentList(documents) {
-  const items = documents.map(({ name, content }) => {
-    const [target, what] = kDocuments[content.schema];
-    return element("li", {}, element("code", {}, name), ": ", element("a", {href: target}, what));
+// The program writes its sentences without a capital, to be joined.
+export function sentence(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+function addressOf(kind, said) {
+  return `${kind}-${said.at}`;
+}
+
+// Verdicts of all parts, each with its place on the page.
+export function partsOf(data) {
+  const { joined } = data;
+  const runs = joined.runs.map((said, at) => ({...said, at, what: "a run of cases", target: addressOf("run", {at})}));
+  const documents = joined.documents.map((said, at) => {
+    const [target, what] = kDocuments[data.documents[at].content.schema];
+    return {...said, at, what, target};
   });
-  return [element("h3", {}, "Documents"), element("ul", {class: "plain"}, items)];
+  return [...runs, ...documents];
+}
+
+function partsTable(parts) {
+  return table("Runs and documents", [
+    {title: "", cell: (one) => (one.verdict === "none" ? element("span", {class: "quiet"}, "no verdict") : verdictBadge(one.verdict))},
+    {title: "name", cell: (one) => element("a", {href: `#${one.target}`}, breakable(one.name))},
+    {title: "what it is", cell: (one) => one.what},
+    {title: "what it says", kind: "text", cell: (one) => sentence(one.sentence)},
+  ], parts, "parts");
+}
+
+// Each is said once, however many parts it holds for.
+export function caveatList({ joined }, parts) {
+  const of = (names) => (parts > 1 ? element("span", {class: "quiet"}, ` (${names.join(", ")})`) : null);
+  return joined.caveats.length === 0 ? null
+      : notice(element("strong", {}, "What must be said of these results"),
+          element("ul", {}, joined.caveats.map(({ text, names }) => element("li", {}, text, of(names)))));
+}
+
+export function headlineOf({ joined }) {
+  return element("p", {class: `headline ${joined.verdict}`}, verdictBadge(joined.verdict), " ", sentence(joined.sentence));
 }
 
 export function summarySection(data) {
   const isJoined = data.runs.length > 1;
-  const place = section("summary", "Summary", data.runs.map((run) => runPart(run, isJoined)),
-      data.documents.length ? documentList(data.documents) : null);
-  place.querySelector("h2").classList.add("unseen");
+  const parts = partsOf(data);
+  const place = section("summary", "Summary", data.cover ? null : headlineOf(data),
+      parts.length > 1 ? partsTable(parts) : null, data.cover ? null : caveatList(data, parts.length),
+      data.runs.map((run, at) => runPart(run, {...data.joined.runs[at], at}, isJoined)));
+  if (!data.cover) place.querySelector("h2").classList.add("unseen");
   return place;
 }
 

@@ -1,0 +1,158 @@
+#include "reports/document_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace fieldproof::reports {
+
+std::string several(std::size_t count, std::string_view one) {
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+}
+
+void add_words(std::string& sentence, const std::string& words, std::string_view between) {
+  if (!sentence.empty() && !words.empty()) sentence += between;
+  sentence += words;
+}
+
+namespace {
+
+using judge::Verdict;
+using Document = nlohmann::json;
+
+bool works_again(const Document& test) {
+  return test.at("recovered_by_itself").get<bool>() || test.at("recovered_after_start").get<bool>();
+}
+
+// Without it there is nothing that the count could refute.
+bool has_theory(const Document& channel) {
+  return std::ranges::any_of(channel.items(),
+                             [](const auto& item) { return item.key().starts_with("undetected_by_"); });
+}
+
+template <typename IsSo>
+std::size_t tests_that(const Document& tests, IsSo&& is_so) {
+  return static_cast<std::size_t>(std::ranges::count_if(tests, std::forward<IsSo>(is_so)));
+}
+
+// The tests under bursts: a bus that stopped is said before anything else.
+void judge_bursts(const Document& tests, Said& said) {
+  const auto has_criterion = [&](char criterion) {
+    return tests_that(tests, [criterion](const Document& test) {
+      return test.at("came_up") == true && test.at("criterion") == std::string(1, criterion);
+    });
+  };
+  const auto add = [&](std::size_t count, Verdict verdict, const std::string& words) {
+    if (count == 0) return;
+    said.verdict = std::max(said.verdict, verdict);
+    add_words(said.sentence,
+              fmt::format("{} in {} of {}", words, count, several(tests.size(), "burst test")));
+  };
+  if (!tests.empty()) said.verdict = std::max(said.verdict, Verdict::pass);
+  add(tests_that(tests, [](const Document& test) { return test.at("bus_stops") > 0; }), Verdict::fail,
+      "the bus stopped");
+  add(has_criterion('D'), Verdict::fail, "criterion D");
+  add(has_criterion('C'), Verdict::fail, "criterion C");
+  add(tests_that(tests, [](const Document& test) { return test.at("came_up") == false; }),
+      Verdict::inconclusive, "the network did not come up");
+  if (said.sentence.empty()) add(has_criterion('B'), Verdict::warn, "criterion B at worst,");
+}
+
+void judge_channels(const Document& channels, Said& said) {
+  constexpr double kRefuted = 1e-3;
+  if (!channels.empty()) said.verdict = std::max(said.verdict, Verdict::pass);
+  const std::size_t refuted = tests_that(channels, [](const Document& test) {
+    return test.at("came_up") == true &&
+           ((has_theory(test) && test.at("chance_of_count") < kRefuted) || !works_again(test));
+  });
+  if (refuted == 0) return;
+  said.verdict = Verdict::fail;
+  add_words(said.sentence, fmt::format("it went worse than the theory of the frame check allows in {} of {}",
+                                       refuted, several(channels.size(), "channel")));
+}
+
+Said said_by_emc(const Document& document) {
+  Said said;
+  judge_bursts(document.at("tests"), said);
+  judge_channels(document.at("channels"), said);
+  const bool is_whole = document.at("is_complete").get<bool>() && said.verdict != Verdict::none;
+  if (!is_whole) {
+    said.verdict = std::max(said.verdict, Verdict::inconclusive);
+    add_words(said.sentence, "the campaign under bursts is incomplete");
+  }
+  if (said.sentence.empty()) {
+    said.sentence = fmt::format("criterion A in {}", several(document.at("tests").size(), "burst test"));
+  }
+  return said;
+}
+
+Said said_by_measurement(const Document& document) {
+  if (const Document failures = document.value("failures", Document::array()); !failures.empty()) {
+    return {Verdict::fail, fmt::format("the measurement failed: {}", failures.at(0).get<std::string>())};
+  }
+  std::size_t compared = 0;
+  std::size_t differs = 0;
+  for (const Document& series : document.at("series")) {
+    for (const Document& one : series.at("comparisons")) {
+      ++compared;
+      differs += one.at("agreement") == "differs" ? 1U : 0U;
+    }
+  }
+  const std::string of = fmt::format("of {}", several(compared, "comparison"));
+  if (document.at("agreement") == "holds") return {Verdict::pass, "the measurement agrees with the theory"};
+  if (document.at("agreement") == "open") {
+    return {Verdict::inconclusive, "too few samples tell whether the measurement agrees with the theory"};
+  }
+  return {Verdict::fail, fmt::format("the measurement differs from the theory in {} {}", differs, of)};
+}
+
+Said said_by_matrix(const Document& document) {
+  Said said{Verdict::pass, "every mutant is caught"};
+  const Document& holes = document.at("holes");
+  if (!holes.empty()) {
+    const std::size_t survivors =
+        tests_that(holes, [](const Document& hole) { return hole.at("kind") == "surviving-mutant"; });
+    said = {Verdict::fail,
+            survivors == 0 ? "" : several(survivors, "mutant") + (survivors == 1 ? " survives" : " survive")};
+    if (const std::size_t others = holes.size() - survivors; others > 0) {
+      add_words(said.sentence,
+                fmt::format("the matrix has {}", several(others, survivors > 0 ? "other hole" : "hole")));
+    }
+  }
+  if (document.at("complete") == false) {
+    said = {std::max(said.verdict, Verdict::inconclusive),
+            holes.empty() ? "the matrix is incomplete" : said.sentence + ", the matrix is incomplete"};
+  }
+  return said;
+}
+
+Said said_by_publication(const Document& document) {
+  const Document& rows = document.at("rows");
+  const auto differs = rows.at("DIFFERS").get<std::size_t>();
+  const auto open = rows.at("inconclusive").get<std::size_t>();
+  const auto compared =
+      rows.at("agrees").get<std::size_t>() + rows.at("own").get<std::size_t>() + differs + open;
+  const std::string of = fmt::format("of {}", several(compared, "compared row"));
+  if (differs > 0)
+    return {Verdict::fail,
+            fmt::format("{} {} of a publication {}", differs, of, differs == 1 ? "differs" : "differ")};
+  if (open > 0)
+    return {Verdict::inconclusive, fmt::format("{} {} of a publication cannot be told", open, of)};
+  if (compared == 0) return {Verdict::inconclusive, "no row of a publication is compared"};
+  return {Verdict::pass, "a publication is reproduced"};
+}
+
+}  // namespace
+
+Said said_by_document(const Document& document) {
+  const auto schema = document.at("schema").get<std::string>();
+  if (schema.starts_with("fieldproof/emc/")) return said_by_emc(document);
+  if (schema.starts_with("fieldproof/measurement/")) return said_by_measurement(document);
+  if (schema.starts_with("fieldproof/matrix/")) return said_by_matrix(document);
+  if (schema.starts_with("fieldproof/publication/")) return said_by_publication(document);
+  return {Verdict::none, "holds numbers and no verdict"};
+}
+
+}  // namespace fieldproof::reports

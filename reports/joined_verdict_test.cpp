@@ -1,0 +1,174 @@
+#include "reports/joined_verdict.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "reports/sample_page.hpp"
+
+namespace fieldproof::reports {
+namespace {
+
+using judge::Verdict;
+using OrderedJson = nlohmann::ordered_json;
+
+PageRun run_of(const std::string& name, const std::vector<Verdict>& verdicts) {
+  PageRun run;
+  run.name = name;
+  for (const Verdict verdict : verdicts) {
+    run.stored.run.cases.push_back(
+        sample_case("case_" + std::to_string(run.stored.run.cases.size()), verdict));
+  }
+  run.stored.run.identity.selected = verdicts.size();
+  return run;
+}
+
+JoinedVerdict of_document(const OrderedJson& document) {
+  PageContent content;
+  content.runs = {run_of("good", {Verdict::pass})};
+  content.documents = {{"document.json", document.dump()}};
+  return joined_verdict(content);
+}
+
+OrderedJson quiet_emc() {
+  OrderedJson emc = sample_emc();
+  for (OrderedJson& test : emc["tests"]) {
+    test["came_up"] = true;
+    test["criterion"] = "A";
+    test["bus_stops"] = 0;
+  }
+  return emc;
+}
+
+TEST(JoinedVerdict, TheWorstRunIsTheHeadlineWhereverItStands) {
+  PageContent content;
+  content.runs = {run_of("good", {Verdict::pass, Verdict::pass}),
+                  run_of("bad", {Verdict::pass, Verdict::fail, Verdict::fail})};
+  const JoinedVerdict joined = joined_verdict(content);
+  EXPECT_EQ(joined.verdict, Verdict::fail);
+  EXPECT_EQ(joined.sentence, "2 runs: 1 failed (2 of 5 judged cases failed)");
+  EXPECT_EQ(joined.runs[0], (JudgedPart{"good", Verdict::pass, "all 2 judged cases passed"}));
+  EXPECT_EQ(joined.runs[1], (JudgedPart{"bad", Verdict::fail, "2 of 3 judged cases failed"}));
+}
+
+TEST(JoinedVerdict, WhatIsIncompleteOrJudgedNothingIsNoPass) {
+  PageRun killed = run_of("killed", {Verdict::pass});
+  killed.stored.run.identity.selected = 3;
+  killed.stored.run.identity.incomplete_because = "killed";
+  PageContent content;
+  content.runs = {killed};
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::inconclusive);
+  EXPECT_EQ(joined_verdict(content).sentence,
+            "all 1 judged case passed; the run is incomplete: 2 of 3 selected cases have no verdict");
+  content.runs = {run_of("empty", {}), run_of("good", {Verdict::pass})};
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::inconclusive);
+  content.runs = {run_of("open", {Verdict::pass, Verdict::inconclusive})};
+  EXPECT_EQ(joined_verdict(content).sentence, "1 of 2 judged cases could not be told; none failed");
+}
+
+TEST(JoinedVerdict, AnExpectedFailurePassesAndAStrictRunDoesNot) {
+  PageRun run = run_of("run", {Verdict::pass, Verdict::fail});
+  run.stored.run.cases[1].expected_because = "known";
+  PageContent content;
+  content.runs = {run};
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::pass);
+  EXPECT_EQ(joined_verdict(content).sentence,
+            "all 2 judged cases passed, or failed as the baseline expects (1 as expected)");
+  content.runs = {run_of("strict", {Verdict::warn})};
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::warn);
+  content.runs[0].stored.run.identity.exit_code = 1;
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::fail);
+}
+
+TEST(JoinedVerdict, BurstsSayThatTheBusStopped) {
+  EXPECT_EQ(of_document(quiet_emc()).verdict, Verdict::pass);
+  OrderedJson emc = quiet_emc();
+  emc["tests"][3]["criterion"] = "B";
+  EXPECT_EQ(of_document(emc).verdict, Verdict::warn);
+  emc["tests"][4]["bus_stops"] = 2;
+  EXPECT_EQ(of_document(emc).verdict, Verdict::fail);
+  EXPECT_EQ(of_document(emc).sentence, "all 1 judged case passed; the bus stopped in 1 of 16 burst tests");
+  emc["tests"][5]["criterion"] = "D";
+  EXPECT_EQ(of_document(emc).documents[0].sentence,
+            "the bus stopped in 1 of 16 burst tests, criterion D in 1 of 16 burst tests");
+  emc = quiet_emc();
+  emc["is_complete"] = false;
+  EXPECT_EQ(of_document(emc).verdict, Verdict::inconclusive);
+  emc = quiet_emc();
+  emc["tests"][0]["came_up"] = false;
+  EXPECT_EQ(of_document(emc).verdict, Verdict::inconclusive);
+  emc = quiet_emc();
+  emc["channels"][0]["chance_of_count"] = 1e-6;
+  EXPECT_EQ(of_document(emc).verdict, Verdict::fail);
+}
+
+TEST(JoinedVerdict, OtherDocumentsCountAsWell) {
+  OrderedJson measurement = OrderedJson::parse(measurement_json(sample_measurement()));
+  for (const auto& [agreement, verdict] :
+       {std::pair("holds", Verdict::pass), std::pair("open", Verdict::inconclusive),
+        std::pair("differs", Verdict::fail)}) {
+    measurement["agreement"] = agreement;
+    measurement["failures"] = OrderedJson::array();
+    EXPECT_EQ(of_document(measurement).verdict, verdict) << agreement;
+  }
+  measurement["agreement"] = "holds";
+  measurement["failures"] = {"50 Hz: the bus stopped for good"};
+  EXPECT_EQ(of_document(measurement).documents[0].sentence,
+            "the measurement failed: 50 Hz: the bus stopped for good");
+  OrderedJson matrix = sample_matrix();
+  EXPECT_EQ(of_document(matrix).verdict, Verdict::fail);
+  matrix["holes"][0]["kind"] = "surviving-mutant";
+  EXPECT_EQ(of_document(matrix).documents[0].sentence, "1 mutant survives");
+  matrix["holes"] = OrderedJson::array();
+  EXPECT_EQ(of_document(matrix).verdict, Verdict::pass);
+  matrix["complete"] = false;
+  EXPECT_EQ(of_document(matrix).verdict, Verdict::inconclusive);
+  OrderedJson publication = OrderedJson::parse(publication_json(sample_publication()));
+  EXPECT_EQ(of_document(publication).verdict, Verdict::pass);
+  publication["rows"]["DIFFERS"] = 1;
+  EXPECT_EQ(of_document(publication).verdict, Verdict::fail);
+  EXPECT_EQ(of_document(sample_residual()).verdict, Verdict::pass) << "it has no verdict";
+}
+
+TEST(JoinedVerdict, APageOfNumbersAloneIsNoPass) {
+  PageContent content;
+  content.documents = {{"residual.json", sample_residual().dump()}};
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::none);
+  EXPECT_EQ(joined_verdict({}).verdict, Verdict::none);
+}
+
+TEST(JoinedVerdict, EachCaveatIsSaidOnce) {
+  PageContent content;
+  content.runs = {run_of("a", {Verdict::pass}), run_of("b", {Verdict::pass})};
+  content.runs[0].stored.run.identity.caveats = {"one", "two"};
+  content.runs[1].stored.run.identity.caveats = {"two"};
+  const std::vector<JoinedCaveat> expected = {{"one", {"a"}}, {"two", {"a", "b"}}};
+  EXPECT_EQ(joined_verdict(content).caveats, expected);
+}
+
+TEST(JoinedVerdict, ATerminalGetsNoControlCharacters) {
+  PageContent content;
+  content.runs = {run_of("a\x1b[2J", {Verdict::pass}), run_of("b", {Verdict::fail})};
+  const std::string text = joined_text(joined_verdict(content));
+  EXPECT_EQ(text.find('\x1b'), std::string::npos);
+  EXPECT_EQ(text.substr(0, text.find('\n')), "fail: 2 runs: 1 failed (1 of 2 judged cases failed)");
+}
+
+// The order of the runs changes no verdict, and a run more never makes it better.
+RC_GTEST_PROP(JoinedVerdict, IsTheWorstOfItsRunsInAnyOrder, ()) {
+  const auto verdict = rc::gen::map(rc::gen::inRange(0, 7), [](int n) { return static_cast<Verdict>(n); });
+  PageContent content;
+  for (const auto& verdicts : *rc::gen::container<std::vector<std::vector<Verdict>>>(
+           rc::gen::container<std::vector<Verdict>>(verdict))) {
+    content.runs.push_back(run_of("run", verdicts));
+  }
+  const Verdict whole = joined_verdict(content).verdict;
+  std::ranges::reverse(content.runs);
+  RC_ASSERT(joined_verdict(content).verdict == whole);
+  if (content.runs.empty()) return;
+  for (const PageRun& run : content.runs) RC_ASSERT(headline(run.stored.run) <= whole);
+  content.runs.pop_back();
+  RC_ASSERT(joined_verdict(content).verdict <= whole);
+}
+
+}  // namespace
+}  // namespace fieldproof::reports

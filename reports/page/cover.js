@@ -1,0 +1,124 @@
+// The cover of a page that is handed over: what was tested, with what, and what came out, with limits and
+// margins. It is there when the report was asked for one.
+import { definitions, element, section } from "./dom.js";
+import { fixed, number, part } from "./format.js";
+import { mutantsCaught } from "./matrix.js";
+import { caveatList, documentsOf, headlineOf, implementationText, partsOf, sentence } from "./summary.js";
+import { table } from "./table.js";
+
+function distinct(values) {
+  return [...new Set(values.filter(Boolean))];
+}
+
+function dates(runs) {
+  const days = distinct(runs.map(({ manifest }) => manifest.started.slice(0, 10))).sort();
+  return days.length > 1 ? `${days[0]} to ${days.at(-1)}` : days[0];
+}
+
+function testedPart({ runs, documents }) {
+  const identities = runs.map(({ results }) => results.run);
+  return definitions([
+    ["Implementation", distinct([...identities.map(implementationText), ...documents.map(({ content }) => content.implementations)]).join("; ")],
+    ["Suite", distinct(identities.map((one) => one.suite_version)).join("; ")],
+    ["Cases", distinct(identities.flatMap((one) => one.selectors)).join(" ")],
+    ["Networks", distinct(documents.map(({ content }) => content.network)).join("; ")],
+    ["Declared (PICS), hash", distinct(identities.map((one) => one.pics_hash)).join(", ") || "nothing is declared"],
+  ]);
+}
+
+function benchPart({ runs, documents }) {
+  const identities = runs.map(({ results }) => results.run);
+  return definitions([
+    ["fieldproof", distinct(identities.map((one) => one.tool_version)).join(", ")],
+    ["Date", dates(runs)],
+    ["Host", distinct(runs.map(({ manifest }) => manifest.host)).join(", ")],
+    ["Seeds", distinct([...identities, ...documents.map(({ content }) => content)].map((one) => one.seed)).join(", ")],
+    ["Network file, hash", distinct(identities.map((one) => one.network_hash)).join(", ")],
+    ["Plan of faults, hash", distinct(identities.map((one) => one.plan_hash)).join(", ")],
+  ]);
+}
+
+// Of each measured quantity of the cases the value that is nearest to a limit of its own.
+function tightest(run) {
+  const nearest = new Map();
+  for (const { measurements } of run.results.cases) {
+    for (const one of measurements) {
+      if (one.low === one.value && one.high === one.value) continue;
+      const margin = Math.min(one.value - one.low, one.high - one.value);
+      const known = nearest.get(one.name);
+      if (!known || margin < known.margin) nearest.set(one.name, {...one, margin});
+    }
+  }
+  return [...nearest.values()];
+}
+
+function rowsOfRun(run, said) {
+  const kMost = 12;
+  const rows = tightest(run);
+  return [{test: run.name, result: sentence(said.sentence), limit: "no failure", margin: ""},
+    ...rows.slice(0, kMost).map((one) => ({test: `${run.name}: ${one.name}, the nearest to its limit`, result: `${number(one.value)} ${one.unit}`,
+      limit: `${number(one.low)} to ${number(one.high)} ${one.unit}`, margin: `${number(one.margin)} ${one.unit}`}))];
+}
+
+// Of each quantity the series that deviates most.
+function rowsOfMeasurement({ name, content }) {
+  const worst = new Map();
+  for (const one of content.series.flatMap((series) => series.comparisons)) {
+    const known = worst.get(one.quantity);
+    if (!known || Math.abs(one.deviation_percent) > Math.abs(known.deviation_percent)) worst.set(one.quantity, one);
+  }
+  const ofWorst = (one) => {
+    const over = one.is_bound ? one.deviation_percent : Math.abs(one.deviation_percent);
+    return {test: `${name}: ${one.quantity}`, result: `${number(one.measured)} ${one.unit}`,
+      limit: `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit}${one.is_bound ? "" : ` \u00b1 ${number(content.tolerance_percent)} %`}`,
+      margin: `${fixed(content.tolerance_percent - over, 2)} % ${one.whole}`};
+  };
+  return [...worst.values()].map(ofWorst);
+}
+
+function rowsOfBursts({ name, content }) {
+  const levels = distinct(content.tests.map((test) => test.level));
+  const rows = levels.map((level) => {
+    const tests = content.tests.filter((test) => test.level === level);
+    const worst = tests.map((test) => (test.came_up ? test.criterion : "did not come up")).sort().at(-1);
+    const stops = tests.filter((test) => test.bus_stops > 0).length;
+    return {test: `${name}: bursts, level ${level}`, result: `criterion ${worst}${stops ? `, the bus stopped in ${part(stops, tests.length)} tests` : ""}`,
+      limit: "B, and no stop", margin: ""};
+  });
+  const recovered = content.tests.filter((test) => test.came_up && test.recovered_by_itself).map((test) => test.recovery_cycles);
+  if (recovered.length > 0 && content.recovery_limit) {
+    const { exchanges, exchange } = content.recovery_limit;
+    const most = Math.max(...recovered);
+    rows.push({test: `${name}: recovery after the last pulse, the longest`, result: `${number(most)} ${exchange}s`, limit: `${number(exchanges)} ${exchange}s`,
+      margin: `${number(exchanges - most)} ${exchange}s`});
+  }
+  return rows;
+}
+
+function rowsOfMatrix({ name, content }) {
+  return content.roles.map((role) => ({test: `${name}: mutants of ${content.protocol}/${role.role} that are caught`,
+    result: part(mutantsCaught(role), role.mutants.length), limit: "all", margin: ""}));
+}
+
+function resultRows(data) {
+  const of = (schema, rows) => documentsOf(data, schema).flatMap(rows);
+  const said = new Map(data.documents.map((document, at) => [document, data.joined.documents[at]]));
+  return [...data.runs.flatMap((run, at) => rowsOfRun(run, data.joined.runs[at])), ...of("fieldproof/measurement/1", rowsOfMeasurement),
+    ...of("fieldproof/emc/1", rowsOfBursts), ...of("fieldproof/matrix/1", rowsOfMatrix),
+    ...of("fieldproof/publication/2", (document) => [{test: document.name, result: sentence(said.get(document).sentence), limit: "no row DIFFERS", margin: ""}])];
+}
+
+export function coverSection(data) {
+  const { cover } = data;
+  if (!cover) return null;
+  return section("cover", cover.title || "Test report",
+      definitions([["Device", cover.device], ["Customer", cover.customer], ["Note", cover.note]]),
+      headlineOf(data), element("h3", {}, "What was tested"), testedPart(data), element("h3", {}, "With what"), benchPart(data),
+      table("Results", [
+        {title: "test", kind: "text", cell: (row) => row.test},
+        {title: "result", cell: (row) => row.result},
+        {title: "limit", cell: (row) => row.limit},
+        {title: "margin", kind: "number", cell: (row) => row.margin},
+      ], resultRows(data)),
+      caveatList(data, partsOf(data).length));
+}
