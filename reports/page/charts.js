@@ -2,11 +2,11 @@
 //
 // A chart is drawn when its place first comes near the view, again when the width or the colour scheme
 // changes, and before printing. Beside each stands the text that says the same.
-import { element } from "./dom.js";
+import { drawn, element } from "./dom.js";
 import { number, scientific } from "./format.js";
 
 const places = new Set();
-const kPaperWidth = 620;
+const kPaperWidth = 640;
 
 const nearView = new IntersectionObserver((entries) => {
   for (const entry of entries) if (entry.isIntersecting) draw(entry.target);
@@ -21,6 +21,8 @@ function isPrinting() {
 }
 
 function widthOf(place) {
+  // Two stand side by side.
+  if (isPrinting() && place.closest(".charts")) return kPaperWidth / 2;
   return isPrinting() ? Math.min(kPaperWidth, place.widest ?? kPaperWidth) : Math.min(place.clientWidth, place.widest ?? 1200);
 }
 
@@ -75,31 +77,72 @@ function axis(label, more = {}) {
   };
 }
 
-// A legend in words stands outside; the cursor shows the value under it.
+const kDashes = [[], [6, 3], [2, 3], [10, 3, 2, 3]];
+
+// A chart under its title, and above a legend that paper has as well. Entries are {colour, text, dash}.
+export function chartFigure(title, detail, chart, legend, classes = "") {
+  const key = ({colour: name, dash}) => drawn("svg", {viewBox: "0 0 24 8", width: 24, height: 8, "aria-hidden": "true"},
+      drawn("line", {x1: 0, y1: 4, x2: 24, y2: 4, class: `stroke-${name}`, "stroke-width": 2.5, "stroke-dasharray": kDashes[dash]?.join(" ") || null}));
+  return element("figure", {class: classes},
+      element("figcaption", {}, element("strong", {}, title), element("span", {class: "quiet"}, ` ${detail}`)), chart,
+      element("ul", {class: "legend"}, legend.map((one) => element("li", {}, key(one), one.text))));
+}
+
+// The cursor shows the value under it.
 const kQuiet = {legend: {show: true, live: true}, cursor: {drag: {x: true, y: false}}};
 
-// Bins {low, high, count} as bars; drag zooms, a double click shows all.
-export function histogram(label, unit, bins) {
+// Upright lines at values that a reader compares the bars with.
+function markLines(marks) {
+  return {draw: (plot) => {
+    const {ctx, bbox} = plot;
+    ctx.save();
+    ctx.strokeStyle = colour("second");
+    ctx.lineWidth = 1.5 * devicePixelRatio;
+    marks.forEach(({at}, which) => {
+      const x = plot.valToPos(at, "x", true);
+      if (x < bbox.left || x > bbox.left + bbox.width) return;
+      ctx.setLineDash(kDashes[which % kDashes.length].map((one) => one * devicePixelRatio));
+      ctx.beginPath();
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + bbox.height);
+      ctx.stroke();
+    });
+    ctx.restore();
+  }};
+}
+
+function cumulative(counts) {
+  const total = counts.reduce((sum, one) => sum + one, 0);
+  let until = 0;
+  return counts.map((one) => (100 * (until += one)) / total);
+}
+
+// Bins {low, high, count} as bars with the share of all values up to each, and upright lines at `marks`, which
+// are {name, at}; drag zooms, a double click shows all.
+export function histogram(label, unit, bins, marks) {
   const make = () => {
-    const isOne = bins.length === 1;
-    const margin = isOne ? Math.max(Math.abs(bins[0].low) * 0.01, 1) : (bins[0].high - bins[0].low) / 2;
-    const middles = bins.map((bin) => (bin.low + bin.high) / 2);
+    const margin = (bins[0].high - bins[0].low) / 2;
+    const counts = bins.map((bin) => bin.count);
+    const range = (plot, low, high) => [low - margin, high + margin];
     return {
-      data: [middles, bins.map((bin) => bin.count)],
+      data: [bins.map((bin) => (bin.low + bin.high) / 2), counts, cumulative(counts)],
       options: {
         ...kQuiet,
-        scales: {x: {time: false, range: isOne ? [middles[0] - margin, middles[0] + margin] : (plot, low, high) => [low - margin, high + margin]},
-          y: {range: (plot, low, high) => [0, Math.max(high * 1.05, 1)]}},
-        axes: [axis(unit, {size: 32}), axis("count", {size: 52})],
+        hooks: {draw: [markLines(marks).draw]},
+        scales: {x: {time: false, range}, y: {range: (plot, low, high) => [0, Math.max(high * 1.05, 1)]}, share: {range: [0, 105]}},
+        axes: [axis(unit, {size: 32}), axis("count", {size: 66}),
+          axis("%", {scale: "share", side: 1, size: 44, grid: {show: false}, splits: () => [0, 50, 100]})],
         series: [
           {label: unit, value: (plot, value) => (value === null ? "" : number(value))},
           {label: "count", stroke: colour("accent"), fill: colour("accent-soft"), points: {show: false},
-            paths: uPlot.paths.bars({size: [isOne ? 0.05 : 0.95, 80]})},
+            paths: uPlot.paths.bars({size: [0.95, 80]})},
+          {label: "up to here, %", scale: "share", stroke: colour("third"), width: 1.5, points: {show: false},
+            value: (plot, value) => (value === null ? "" : number(value, 4))},
         ],
       },
     };
   };
-  return chartPlace(label, 190, make, 560);
+  return chartPlace(label, 210, make, 560);
 }
 
 // Edges {time_us, level} as a step line from 0 to 1; the level before the first edge is the other one.

@@ -38,13 +38,18 @@ function benchPart({ runs, documents }) {
   ]);
 }
 
+// Nothing that is measured here is below zero: there it is no limit.
+function isOneSided({ low, value }) {
+  return low === 0 && value >= 0;
+}
+
 // Of each measured quantity of the cases the value that is nearest to a limit of its own.
 function tightest(run) {
   const nearest = new Map();
   for (const { measurements } of run.results.cases) {
     for (const one of measurements) {
       if (one.low === one.value && one.high === one.value) continue;
-      const margin = Math.min(one.value - one.low, one.high - one.value);
+      const margin = isOneSided(one) ? one.high - one.value : Math.min(one.value - one.low, one.high - one.value);
       const known = nearest.get(one.name);
       if (!known || margin < known.margin) nearest.set(one.name, {...one, margin});
     }
@@ -57,7 +62,7 @@ function rowsOfRun(run, said) {
   const rows = tightest(run);
   return [{test: run.name, result: sentence(said.sentence), limit: "no failure", margin: ""},
     ...rows.slice(0, kMost).map((one) => ({test: `${run.name}: ${one.name}, the nearest to its limit`, result: `${number(one.value)} ${one.unit}`,
-      limit: `${number(one.low)} to ${number(one.high)} ${one.unit}`, margin: `${number(one.margin)} ${one.unit}`}))];
+      limit: `${isOneSided(one) ? "at most" : `${number(one.low)} to`} ${number(one.high)} ${one.unit}`, margin: `${number(one.margin)} ${one.unit}`}))];
 }
 
 // Of each quantity the series that deviates most.

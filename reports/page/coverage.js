@@ -7,25 +7,28 @@ import { documentsOf } from "./summary.js";
 import { table } from "./table.js";
 
 function groupOf(id) {
-  return id.split("/").slice(0, 2).join("/");
+  const end = id.indexOf("/", id.indexOf("/") + 1);
+  return end < 0 ? id : id.slice(0, end);
 }
 
 function isJudged({ verdict }) {
   return verdict !== "none" && verdict !== "not-applicable";
 }
 
-// By protocol and role: in the catalogue, with a result, judged.
+// By protocol and role that took part in the run: in the catalogue, with a result, judged.
 function groups(run, catalogue) {
   const isKnown = run.results.run.suite_version === catalogue.suite_version;
-  const known = isKnown ? Object.keys(catalogue.stories) : [];
-  const { cases } = run.results;
-  const names = [...new Set([...known, ...cases.map(({ id }) => id)].map(groupOf))];
-  return names.map((name) => {
-    const here = cases.filter(({ id }) => groupOf(id) === name);
-    return {name, known: known.filter((id) => groupOf(id) === name).length, results: here.length, judged: here.filter(isJudged).length,
-      passed: here.filter(({ verdict }) => verdict === "pass").length,
-      unverified: here.filter(({ reference }) => !reference.verified).length};
-  });
+  const rows = new Map();
+  for (const { id, verdict, reference } of run.results.cases) {
+    const name = groupOf(id);
+    if (!rows.has(name)) rows.set(name, {name, known: isKnown ? catalogue.roles[name] ?? 0 : 0, results: 0, judged: 0, passed: 0, unverified: 0});
+    const row = rows.get(name);
+    row.results += 1;
+    row.judged += isJudged({verdict}) ? 1 : 0;
+    row.passed += verdict === "pass" ? 1 : 0;
+    row.unverified += reference.verified ? 0 : 1;
+  }
+  return [...rows.values()];
 }
 
 function sum(rows, key) {

@@ -56,7 +56,8 @@ export function definitions(pairs) {
   const list = element("dl", {class: "facts"});
   for (const [name, value] of pairs) {
     if (value === "" || value === null || value === undefined) continue;
-    list.append(element("div", {}, element("dt", {}, name), element("dd", {}, value)));
+    const isLong = typeof value === "string" && value.length > 160;
+    list.append(element("div", {class: isLong ? "long" : null}, element("dt", {}, name), element("dd", {}, value)));
   }
   return list;
 }

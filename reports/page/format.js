@@ -2,17 +2,39 @@
 
 const kPerUnit = [["s", 1e6], ["ms", 1e3], ["us", 1], ["ns", 1e-3], ["ps", 1e-6]];
 
+// Each is dear to make.
+const kFormats = new Map();
+
+function written(value, options) {
+  const key = JSON.stringify(options);
+  if (!kFormats.has(key)) kFormats.set(key, new Intl.NumberFormat("en", options));
+  return kFormats.get(key).format(value).replaceAll(",", "\u202f");
+}
+
 // Thousands apart, and no more than six digits of a fraction.
 export function number(value, digits = 6) {
   if (typeof value !== "number" || !Number.isFinite(value)) return String(value);
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-4 || size >= 1e15)) return value.toExponential(3);
-  return value.toLocaleString("en", {maximumSignificantDigits: Math.max(digits, Math.ceil(Math.log10(size + 1)))})
-      .replaceAll(",", "\u202f");
+  return written(value, {maximumSignificantDigits: Math.max(digits, Math.ceil(Math.log10(size + 1)))});
 }
 
 export function fixed(value, digits) {
   return Number.isFinite(value) ? value.toFixed(digits) : String(value);
+}
+
+// Numbers of one column, with as many decimals as the finest of them needs, three at most; what is smaller than
+// that is written with a power of ten.
+export function alike(values) {
+  const all = values.filter((value) => typeof value === "number" && Number.isFinite(value));
+  const kMost = 3;
+  const isFine = (digits) => all.every((value) => Math.abs(value - Number(value.toFixed(digits))) < 10 ** -kMost / 2);
+  const digits = [0, 1, 2].find(isFine) ?? kMost;
+  return (value) => {
+    if (typeof value !== "number" || !Number.isFinite(value)) return String(value);
+    if (value !== 0 && Math.abs(value) < 10 ** -kMost / 2) return value.toExponential(1);
+    return written(value, {minimumFractionDigits: digits, maximumFractionDigits: digits});
+  };
 }
 
 export function scientific(value) {
@@ -46,6 +68,12 @@ export function exactTime(picoseconds) {
   const rest = String(size % 1000000n).padStart(6, "0").replace(/0+$/, "");
   const whole = String(size / 1000000n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
   return `${sign}${whole}${rest ? `.${rest}` : ""} us`;
+}
+
+// Nanoseconds are as much as a reader wants; `exactTime` is there on demand.
+export function shownTime(picoseconds) {
+  const us = Number(BigInt(picoseconds) / 1000n) / 1000;
+  return `${written(us, {minimumFractionDigits: 3, maximumFractionDigits: 3})} us`;
 }
 
 export function duration(us) {

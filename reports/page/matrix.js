@@ -1,5 +1,5 @@
 // Cases and mutants: which case catches which mutant of the reference.
-import { definitions, element, notice, section } from "./dom.js";
+import { definitions, element, folded, notice, section } from "./dom.js";
 import { number, part } from "./format.js";
 import { later } from "./later.js";
 import { documentCommand, documentsOf } from "./summary.js";
@@ -48,8 +48,7 @@ function roleTable(role) {
 }
 
 function rolePart(role) {
-  const names = element("details", {}, element("summary", {}, `The mutants of the ${role.role}`),
-      element("dl", {class: "names"}, role.mutants.map((one) => [
+  const names = folded(`The mutants of the ${role.role}`, element("dl", {class: "names"}, role.mutants.map((one) => [
         element("dt", {}, labelOf(role, one), " ", element("code", {}, one.name)), element("dd", {}, one.description)])));
   return element("article", {}, element("h4", {}, `${role.role}: `, `${part(mutantsCaught(role), role.mutants.length)} mutants caught by `,
       `${number(role.cases.length)} cases`), later(() => roleTable(role)), names);

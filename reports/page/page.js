@@ -3,6 +3,7 @@ import { caseSection } from "./case_table.js";
 import { watchCharts } from "./charts.js";
 import { coverSection } from "./cover.js";
 import { coverageSection } from "./coverage.js";
+import { unpack } from "./data.js";
 import { append, element, replaceContent, visible } from "./dom.js";
 import { immunitySection } from "./immunity.js";
 import { makeLater } from "./later.js";
@@ -32,17 +33,22 @@ function showIcon(verdict) {
 // For paper, where no head with links is.
 function contentsList(sections) {
   return element("nav", {class: "contents", "aria-label": "Contents"}, element("h2", {}, "Contents"),
-      element("ol", {}, sections.map((one) => element("li", {}, element("a", {href: `#${one.id}`}, one.querySelector("h2").textContent)))));
+      element("ol", {}, sections.map((one) => element("li", {}, element("a", {href: `#${one.id}`}, shortName(one))))));
+}
+
+// The title of a cover is any text, and its place is the first.
+function shortName(place) {
+  return place.id === "cover" ? "Cover" : place.querySelector("h2").textContent;
 }
 
 function showPage() {
-  const data = JSON.parse(document.getElementById("data").textContent);
+  const data = unpack(JSON.parse(document.getElementById("data").textContent));
   document.title = visible(titleOf(data));
   showIcon(data.joined.verdict);
   const sections = kSections.map((make) => make(data)).filter(Boolean);
   const [first, ...others] = sections;
   replaceContent(document.getElementById("content"), element("h1", {class: "unseen"}, titleOf(data)), first, contentsList(sections), others);
-  append(document.getElementById("sections"), sections.map((one) => element("a", {href: `#${one.id}`}, one.querySelector("h2").textContent)));
+  append(document.getElementById("sections"), sections.map((one) => element("a", {href: `#${one.id}`}, shortName(one))));
   append(document.getElementById("end"), [element("p", {},
       "One file, no network: this page asks for nothing. Simulated time is virtual; what a source does not verify is marked unverified. ",
       "Charts by uPlot (MIT licence, in the source of this page).")]);

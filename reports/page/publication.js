@@ -3,7 +3,7 @@ import { definitions, element, section } from "./dom.js";
 import { later } from "./later.js";
 import { documentCommand, documentsOf } from "./summary.js";
 import { table } from "./table.js";
-import { linearCurves } from "./charts.js";
+import { chartFigure, linearCurves } from "./charts.js";
 import { traceFigure } from "./timing.js";
 
 const SIGNS = {agrees: "pass", DIFFERS: "fail", inconclusive: "inconclusive"};
@@ -19,8 +19,9 @@ function agreement({ verdict, compared }) {
 
 function curvesFigure(figure) {
   const label = `${figure.name}: ${figure.y_label} over ${figure.x_label}; ${figure.curves.map((one) => one.name).join(", ")}`;
-  return element("figure", {class: "wide"}, linearCurves(label, figure.x_label, figure.y_label, figure.curves),
-      element("figcaption", {}, figure.name, element("span", {class: "quiet"}, " drag to zoom, a double click shows all")));
+  const colours = ["accent", "second", "third", "quiet"];
+  return chartFigure(figure.name, "drag to zoom, a double click shows all", linearCurves(label, figure.x_label, figure.y_label, figure.curves),
+      figure.curves.map((one, at) => ({colour: colours[at % colours.length], dash: at < colours.length ? 0 : 1, text: one.name})), "wide");
 }
 
 function sectionPart(part) {

@@ -1,5 +1,5 @@
 // Undetected errors of frame checks: exact beside simulated.
-import { logarithmicCurves } from "./charts.js";
+import { chartFigure, logarithmicCurves } from "./charts.js";
 import { definitions, element, notice, section } from "./dom.js";
 import { number, plural, scientific } from "./format.js";
 import { later } from "./later.js";
@@ -16,10 +16,11 @@ function curves(content) {
   if (points.some((point) => point.sampled)) {
     series.push({label: "importance sampling", values: points.map((point) => point.sampled?.probability ?? 0), isPoints: true});
   }
-  return element("figure", {class: "wide"},
+  const colours = ["accent", "second", "third"];
+  return chartFigure("Probability of an undetected error over the bit-error rate", "both axes logarithmic",
       logarithmicCurves(`Probability of an undetected error of ${content.frame_check} over the bit-error rate`, "bit-error rate",
           "probability", points.map((point) => point.ber), series),
-      element("figcaption", {}, "Probability of an undetected error over the bit-error rate"));
+      series.map((one, at) => ({colour: colours[at], dash: at === 2 ? 1 : 0, text: one.label})), "wide");
 }
 
 function points(content) {

@@ -1,8 +1,10 @@
 // Tables: built from columns and rows, and sorted by their heads.
 //
-// A column is {title, cell(row), value(row), kind, label}: `cell` gives what is shown, `value` what is sorted
-// by (nothing: not sortable), `kind` the class of the cells ("number", "code").
+// A column is {title, cell(row), value(row), kind, amount(row), show(text, row)}: `cell` gives what is shown, or
+// `amount` a number, which has the decimals of its column and which `show` may put into words; `value` what is
+// sorted by (nothing: not sortable), `kind` the class of the cells ("number", "code").
 import { element, scrollBox } from "./dom.js";
+import { alike } from "./format.js";
 
 export function cellOf(column, row, isHead) {
   const shown = column.cell(row);
@@ -10,8 +12,15 @@ export function cellOf(column, row, isHead) {
   return isHead ? element("th", {...attributes, scope: "row"}, shown) : element("td", attributes, shown);
 }
 
+function withCell(column, rows) {
+  const text = alike(rows.map(column.amount));
+  const show = column.show ?? ((one) => one);
+  return {kind: "number", ...column, cell: (row) => show(text(column.amount(row)), row)};
+}
+
 // A plain table in its own scrolling box; the first column heads each row.
-export function table(caption, columns, rows, classes = "") {
+export function table(caption, givenColumns, rows, classes = "") {
+  const columns = givenColumns.map((column) => (column.amount ? withCell(column, rows) : column));
   const head = element("tr", {}, columns.map((column) => element("th", {scope: "col", class: column.kind}, column.title)));
   const body = rows.map((row) =>
       element("tr", {class: row.class}, columns.map((column, at) => cellOf(column, row, at === 0))));

@@ -1,8 +1,8 @@
 // Measurements: theory beside measurement, distributions with histograms, and input and output as on an
 // oscilloscope.
-import { histogram, oscilloscope } from "./charts.js";
+import { chartFigure, histogram, oscilloscope } from "./charts.js";
 import { definitions, element, section } from "./dom.js";
-import { fixed, number, part } from "./format.js";
+import { alike, number, part } from "./format.js";
 import { later } from "./later.js";
 import { documentCommand, documentsOf } from "./summary.js";
 import { table } from "./table.js";
@@ -23,10 +23,10 @@ function comparisons(series) {
   return table(`${series.name}: theory and measurement`, [
     {title: "quantity", cell: (one) => one.quantity},
     {title: "phase", cell: (one) => one.phase ?? "quiet"},
-    {title: "theory", kind: "number", cell: (one) => `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit}`},
-    {title: "measured", kind: "number", cell: (one) => `${number(one.measured)} ${one.unit}`},
-    {title: "deviation", kind: "number", cell: (one) => `${fixed(one.deviation_percent, 3)} % ${one.whole}`},
-    {title: "standard error", kind: "number", cell: (one) => number(one.standard_error, 3)},
+    {title: "theory", amount: (one) => one.theory, show: (text, one) => `${one.is_bound ? "at most " : ""}${text} ${one.unit}`},
+    {title: "measured", amount: (one) => one.measured, show: (text, one) => `${text} ${one.unit}`},
+    {title: "deviation", amount: (one) => one.deviation_percent, show: (text, one) => `${text} % ${one.whole}`},
+    {title: "standard error", amount: (one) => one.standard_error},
     {title: "agreement", cell: (one) => agreementMark(one.agreement)},
   ], series.comparisons);
 }
@@ -36,25 +36,52 @@ function phasesOf(series) {
       Object.entries(phases).map(([phase, values]) => ({quantity, unit, phase, values})));
 }
 
+// All numbers of the table have the same decimals, for the eye to go along a row and down a column.
 function distributions(series, phases) {
-  const quantile = (key) => ({values}) => `${values.exact_quantiles ? "" : "~"}${number(values[key])}`;
-  const column = (title, key, cell = ({values}) => number(values[key])) => ({title, kind: "number", cell});
+  const kKeys = ["min", "mean", "p50", "p99", "p99_99", "max", "standard_deviation"];
+  const kTitles = {p99_99: "p99.99", standard_deviation: "sd"};
+  const text = alike(phases.flatMap(({values}) => kKeys.map((key) => values[key])));
+  const about = (key, {exact_quantiles: isExact}) => (key.startsWith("p") && !isExact ? "~" : "");
   return table(`${series.name}: distributions`, [
     {title: "quantity", cell: ({quantity, unit}) => `${quantity}, ${unit}`},
     {title: "phase", cell: ({phase}) => phase},
-    column("count", "count"), column("min", "min"), column("mean", "mean"), column("p50", "p50", quantile("p50")),
-    column("p99", "p99", quantile("p99")), column("p99.99", "p99_99", quantile("p99_99")), column("max", "max"),
-    column("sd", "standard_deviation"),
+    {title: "count", amount: ({values}) => values.count},
+    ...kKeys.map((key) => ({title: kTitles[key] ?? key, kind: "number", cell: ({values}) => about(key, values) + text(values[key])})),
   ], phases);
 }
 
-function histograms(phases) {
-  return element("div", {class: "charts"}, phases.map(({quantity, unit, phase, values}) => {
+// The theory of a quantity, where the document compares it: the whole, or the least and the largest.
+function limitsOf(series, quantity, phase, tolerance) {
+  const limits = [];
+  for (const one of series.comparisons.filter((each) => (each.phase ?? "quiet") === phase)) {
+    if (one.quantity === quantity && !one.is_bound) {
+      limits.push({name: "lower limit", at: one.theory * (1 - tolerance / 100)}, {name: "upper limit", at: one.theory * (1 + tolerance / 100)});
+    } else if (one.quantity === quantity) {
+      limits.push({name: "limit", at: one.theory});
+    } else if (one.quantity === `least ${quantity}` || one.quantity === `largest ${quantity}`) {
+      limits.push({name: `theory, ${one.quantity.split(" ")[0]}`, at: one.theory});
+    }
+  }
+  return limits;
+}
+
+function isBeyond({at}, {histogram: bins}) {
+  const margin = (bins[0].high - bins[0].low) / 2;
+  return at < bins[0].low - margin || at > bins.at(-1).high + margin;
+}
+
+// What never changes needs no picture; the table says it.
+function histograms(series, phases, tolerance) {
+  const worth = phases.filter(({values}) => values.min !== values.max && values.histogram.length > 1);
+  if (worth.length === 0) return null;
+  return element("div", {class: "charts"}, worth.map(({quantity, unit, phase, values}) => {
     const title = `${quantity}, ${phase}`;
-    const range = values.min === values.max ? `always ${number(values.min)} ${unit}`
-        : `${number(values.min)} to ${number(values.max)} ${unit}, mean ${number(values.mean)}`;
-    return element("figure", {}, histogram(`Histogram of ${title}: ${range}`, unit, values.histogram),
-        element("figcaption", {}, title, element("span", {class: "quiet"}, ` ${number(values.count)} values, ${range}`)));
+    const text = alike([values.min, values.max, values.mean, values.p99]);
+    const range = `${text(values.min)} to ${text(values.max)} ${unit}, mean ${text(values.mean)}, p99 ${text(values.p99)}`;
+    const marks = [{name: "mean", at: values.mean}, {name: "p99", at: values.p99}, ...limitsOf(series, quantity, phase, tolerance)];
+    return chartFigure(title, `${number(values.count)} values, ${range}`, histogram(`Histogram of ${title}: ${range}`, unit, values.histogram, marks),
+        [{colour: "accent", text: "count"}, {colour: "third", text: "share up to here, %"},
+          ...marks.map((mark, at) => ({colour: "second", dash: at, text: `${mark.name} ${text(mark.at)} ${unit}${isBeyond(mark, values) ? ", beyond the chart" : ""}`}))]);
   }));
 }
 
@@ -64,16 +91,15 @@ function counts(series) {
 
 export function traceFigure(name, trace) {
   if (trace.length_us <= 0) return null;
-  return element("figure", {class: "wide"},
+  return chartFigure(`${name}: input and output`, `${number(trace.length_us / 1000)} ms`,
       oscilloscope(`${name}: input with ${number(trace.input.length)} edges above output with ${number(trace.output.length)} edges`, trace),
-      element("figcaption", {}, `${name}: input and output`,
-          element("span", {class: "quiet"}, ` ${number(trace.length_us / 1000)} ms; drag to zoom, a double click shows all`)));
+      [{colour: "accent", text: "input"}, {colour: "second", text: "output"}], "wide");
 }
 
-function seriesPart(series) {
+function seriesPart(series, tolerance) {
   const phases = phasesOf(series);
   return element("article", {}, element("h4", {}, series.name), traceFigure(series.name, series.trace), comparisons(series),
-      phases.length ? [distributions(series, phases), histograms(phases)] : null, counts(series));
+      phases.length ? [distributions(series, phases), histograms(series, phases, tolerance)] : null, counts(series));
 }
 
 function measurementPart({ name, content }) {
@@ -82,7 +108,7 @@ function measurementPart({ name, content }) {
       (content.failures ?? []).map((failure) => element("p", {}, element("span", {class: "verdict fail"}, "fail"), ` ${failure}`)),
       definitions([["Document", name], ["Protocol", content.protocol], ["Seed", content.seed],
         ["Tolerance", `${number(content.tolerance_percent)} %`], ...content.conditions.map((one) => [one.name, one.value])]),
-      documentCommand(content, name), content.series.map((series) => later(() => seriesPart(series))));
+      documentCommand(content, name), content.series.map((series) => later(() => seriesPart(series, content.tolerance_percent))));
 }
 
 export function timingSection(data) {
