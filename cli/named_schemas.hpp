@@ -16,6 +16,7 @@ struct NamedText {
 // Files first, in the order of their names, then roles.
 std::vector<NamedText> named_schemas(const conformance::Catalogue& catalogue);
 std::string pics_schema_text(const conformance::Catalogue& catalogue);
+std::string campaign_schema_text();
 std::string sequence_schema_text(const conformance::Catalogue& catalogue);
 
 }  // namespace fieldproof::cli

@@ -15,7 +15,10 @@
 namespace fieldproof::cli {
 
 const ProtocolEntry& network_entry_of(const Session& session, std::string_view verb) {
-  const std::string& protocol = session.operands.front();
+  return network_entry_named(session.operands.front(), verb);
+}
+
+const ProtocolEntry& network_entry_named(std::string_view protocol, std::string_view verb) {
   std::vector<std::string_view> names;
   for (const ProtocolEntry& entry : protocols()) {
     if (entry.network.plan == nullptr) continue;

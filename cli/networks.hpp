@@ -12,6 +12,7 @@ namespace fieldproof::cli {
 
 // The row of the protocol that the call names; a usage error that lists them where it has no network.
 const ProtocolEntry& network_entry_of(const Session& session, std::string_view verb);
+const ProtocolEntry& network_entry_named(std::string_view protocol, std::string_view verb);
 
 // Whom `--iut` puts into it.
 std::vector<conformance::Assignment> network_implementations(const Session& session,

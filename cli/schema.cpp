@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "campaign/embedded_schemas.hpp"
 #include "cli/embedded_schemas.hpp"
 #include "cli/named_schemas.hpp"
 #include "cli/protocol_entry.hpp"
@@ -70,6 +71,8 @@ std::vector<NamedText> named_schemas(const conformance::Catalogue& catalogue) {
   std::vector<NamedText> all;
   add_files(all);
   all.push_back({"pics", pics_schema_text(catalogue)});
+  all.push_back({"campaign", campaign_schema_text()});
+  all.push_back({"campaign_result", std::string(campaign::campaign_result_schema)});
   all.push_back({"sequence", sequence_schema_text(catalogue)});
   for (const auto& suite : catalogue.suites()) {
     for (const field::NamedSchema& file : suite->schemas()) {

@@ -70,7 +70,7 @@ void refuse_empty(const Option& option, const Setting& setting) {
 Setting fallback_of(const Option& option) {
   Setting setting;
   setting.place = fmt::format("default of --{}", option.name);
-  if (option.name == "jobs") {
+  if (option.name == "jobs" || option.name == "workers") {
     setting.values = {std::to_string(std::max(1U, std::thread::hardware_concurrency()))};
   } else if (!option.default_text.empty() && option.default_text.find('<') == std::string_view::npos) {
     setting.values = {std::string(option.default_text)};
@@ -160,6 +160,30 @@ std::vector<std::string> unknown_variables(const char* const* variables) {
                                     kernel::escaped_line(name), nearest.front()));
   }
   return sentences;
+}
+
+std::optional<std::chrono::milliseconds> duration_of(std::string_view written) {
+  constexpr std::uint64_t kLongest = 1'000'000;  // of any unit
+  constexpr std::size_t kMostDecimals = 6;
+  constexpr std::array<std::pair<std::string_view, std::int64_t>, 5> kUnits = {
+      {{"ms", 1}, {"s", 1000}, {"min", 60'000}, {"h", 3'600'000}, {"", 1000}}};
+  const std::size_t end = std::min(written.find_first_not_of("0123456789."), written.size());
+  const std::string_view number = written.substr(0, end);
+  const std::size_t point = std::min(number.find('.'), number.size());
+  const std::string_view decimals = number.substr(std::min(point + 1, number.size()));
+  // 1.5 is 1,500,000 millionths.
+  const std::string millionths = fmt::format("{}{:0<{}}", number.substr(0, point), decimals, kMostDecimals);
+  const auto count = whole_number(millionths);
+  const bool is_number = count && point > 0 && decimals.size() <= kMostDecimals && !number.ends_with('.');
+  constexpr std::int64_t kMillion = 1'000'000;
+  std::string_view unit = written.substr(end);
+  if (unit.starts_with(' ')) unit.remove_prefix(1);
+  for (const auto& [unit_name, milliseconds] : kUnits) {
+    if (unit != unit_name || !is_number || *count == 0 || *count > kLongest * kMillion) continue;
+    const std::int64_t parts = static_cast<std::int64_t>(*count) * milliseconds;
+    if (parts % kMillion == 0) return std::chrono::milliseconds(parts / kMillion);
+  }
+  return std::nullopt;
 }
 
 Settings::Settings(const Command& command, const Environment& environment) : verb_(command.verb) {
@@ -263,26 +287,7 @@ std::vector<std::string> Settings::words(std::string_view name) const {
 std::optional<std::chrono::milliseconds> Settings::duration(std::string_view name) const {
   const std::string written = text(name);
   if (written.empty()) return std::nullopt;
-  constexpr std::uint64_t kLongest = 1'000'000;  // of any unit
-  constexpr std::size_t kMostDecimals = 6;
-  constexpr std::array<std::pair<std::string_view, std::int64_t>, 5> kUnits = {
-      {{"ms", 1}, {"s", 1000}, {"min", 60'000}, {"h", 3'600'000}, {"", 1000}}};
-  const std::size_t end = std::min(written.find_first_not_of("0123456789."), written.size());
-  const std::string_view number = std::string_view(written).substr(0, end);
-  const std::size_t point = std::min(number.find('.'), number.size());
-  const std::string_view decimals = number.substr(std::min(point + 1, number.size()));
-  // 1.5 is 1,500,000 millionths.
-  const std::string millionths = fmt::format("{}{:0<{}}", number.substr(0, point), decimals, kMostDecimals);
-  const auto count = whole_number(millionths);
-  const bool is_number = count && point > 0 && decimals.size() <= kMostDecimals && !number.ends_with('.');
-  constexpr std::int64_t kMillion = 1'000'000;
-  std::string_view unit = std::string_view(written).substr(end);
-  if (unit.starts_with(' ')) unit.remove_prefix(1);
-  for (const auto& [unit_name, milliseconds] : kUnits) {
-    if (unit != unit_name || !is_number || *count == 0 || *count > kLongest * kMillion) continue;
-    const std::int64_t parts = static_cast<std::int64_t>(*count) * milliseconds;
-    if (parts % kMillion == 0) return std::chrono::milliseconds(parts / kMillion);
-  }
+  if (const auto time = duration_of(written)) return time;
   refuse(name, fmt::format(
                    "'{}' is no time of whole milliseconds; write a number with ms, s, min or h, for example "
                    "90s or 1.5 min",

@@ -42,6 +42,9 @@ Environment process_environment();
 // One sentence for each "FIELDPROOF_..." of these "NAME=value" that is the variable of no option.
 std::vector<std::string> unknown_variables(const char* const* variables);
 
+// "90s", "1.5 min": a time of whole milliseconds, with ms, s, min or h; nothing for what is none.
+std::optional<std::chrono::milliseconds> duration_of(std::string_view written);
+
 class Settings {
  public:
   Settings(const Command& command, const Environment& environment);

@@ -36,6 +36,10 @@ constexpr std::array kHelp = {
         {"matrix {protocol}", "which case kills which mutant of the reference"},
         {"matrix {protocol} --jobs 2 --json matrix.json", "the same as JSON"},
         {"matrix {role} --sequences", "after how many commands of check each mutant is found"}}}},
+    VerbHelp{"campaign", kJudge, {{
+        {"campaign examples/campaigns/roles.json --dry-run", "how many jobs, and about how long"},
+        {"campaign examples/campaigns/small.json --workers 2 --out nightly", "run it; the sum of all is nightly/campaign.json"},
+        {"campaign --resume nightly", "go on after a kill; with mpirun in front, on many machines"}}}},
     VerbHelp{"verify", kJudge, {{
         {"verify '{role}/**' --iut exec:./device", "is your process deterministic: run twice, compare bit for bit"},
         {"verify '{role}/**' -n 5", "five times"},

@@ -12,6 +12,7 @@ constexpr std::array kVerbs = {
     Verb{"run", "[SELECTOR...]", 0, kAny, "judge an implementation by the selected cases", &run},
     Verb{"check", "PROTOCOL/ROLE", 1, 1, "random sequences of commands and faults against the reference of the role; what fails is made as small as it can be", &check},
     Verb{"fuzz", "PROTOCOL/ROLE", 1, 1, "the sequences of check, mutated towards what an instrumented implementation has not passed yet", &fuzz_role},
+    Verb{"campaign", "[FILE.json]", 0, 1, "many jobs of the verbs above, over all cores or the ranks of mpirun; what is judged survives a kill", &run_campaign},
     Verb{"matrix", "PROTOCOL[/ROLE]", 1, 1, "which case kills which mutant, or how soon random sequences find it; 1 if one survives", &matrix},
     Verb{"verify", "SELECTOR...|CASEFILE", 1, kAny, "run cases several times; equal seeds must give equal fingerprints", &verify},
     Verb{"doctor", "", 0, 0, "can the implementation be attached, and how well does this machine know instants", &doctor},

@@ -27,6 +27,7 @@ int run(Session& session);
 int explain(Session& session);
 int schema(Session& session);
 int matrix(Session& session);
+int run_campaign(Session& session);
 int replay(Session& session);
 int check(Session& session);
 int fuzz_role(Session& session);

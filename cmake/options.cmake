@@ -8,6 +8,7 @@ set(CMAKE_VERIFY_INTERFACE_HEADER_SETS ON)
 
 option(FIELDPROOF_TESTS "Build the tests and the replay of the fuzz corpora" ON)
 option(FIELDPROOF_BENCHMARKS "Build the benchmarks where Google Benchmark is installed" ON)
+option(FIELDPROOF_MPI "Build the module for mpirun where MPI is installed" ON)
 option(FIELDPROOF_FUZZ "Build the libFuzzer programs (clang only)" OFF)
 option(FIELDPROOF_COVERAGE "Count executed lines and branches (g++ only)" OFF)
 option(FIELDPROOF_PRECOMPILE "Precompile GoogleTest and RapidCheck once for all test programs" ON)

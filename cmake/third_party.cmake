@@ -28,3 +28,11 @@ if(FIELDPROOF_BENCHMARKS)
   find_path(ns3_include_folder ns3/simulator.h)
   find_library(ns3_core_library NAMES ns3-core ns3.37-core)
 endif()
+
+# For campaigns over the ranks of mpirun; everything else goes without it.
+if(FIELDPROOF_MPI AND NOT FIELDPROOF_SANITIZE)
+  find_package(MPI COMPONENTS CXX QUIET)
+  if(NOT MPI_CXX_FOUND)
+    message(STATUS "MPI was not found: fieldproof is built without ranks of mpirun (libopenmpi-dev openmpi-bin)")
+  endif()
+endif()

@@ -24,16 +24,6 @@ namespace fs = std::filesystem;
                       fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
 }
 
-// FNV-1a: enough to know a torn or overwritten line; it guards against accidents only.
-std::uint64_t check_of(std::string_view text) {
-  std::uint64_t check = 0xcbf29ce484222325;
-  for (const char c : text) {
-    check ^= static_cast<unsigned char>(c);
-    check *= 0x100000001b3;
-  }
-  return check;
-}
-
 std::string head_of(std::string_view result) {
   return fmt::format(R"({{"check":"{:016x}","size":{},"result":)", check_of(result), result.size());
 }
@@ -53,6 +43,15 @@ std::optional<std::string_view> intact_result(std::string_view line) {
 }
 
 }  // namespace
+
+std::uint64_t check_of(std::string_view text) {
+  std::uint64_t check = 0xcbf29ce484222325;
+  for (const char c : text) {
+    check ^= static_cast<unsigned char>(c);
+    check *= 0x100000001b3;
+  }
+  return check;
+}
 
 // A file that is closed also when the constructor that opened it throws.
 CheckedLines::OpenFile::~OpenFile() {

@@ -20,6 +20,9 @@ namespace fieldproof::judge {
 
 enum class Durability : std::uint8_t { written, synced };
 
+// FNV-1a: enough to know a torn or changed text; it guards against accidents only.
+std::uint64_t check_of(std::string_view text);
+
 // What reading found besides the results themselves.
 struct LinesRead {
   bool is_torn = false;            // the last line was incomplete and is not among the results

@@ -1,0 +1,43 @@
+#include "campaign/confidence.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace fieldproof::campaign {
+namespace {
+
+std::uint64_t count_of(const Counts& counts, std::string_view name) {
+  const auto found = counts.find(name);
+  return found == counts.end() ? 0 : found->second;
+}
+
+}  // namespace
+
+bool Confidence::add(const Outcome& outcome) {
+  if (decision_ != Decision::open) return true;
+  if (outcome.ledger.empty()) return false;
+  total_ += count_of(outcome.ledger, goal_.is_of_corrupted ? "corrupted" : "sent");
+  wrong_ += count_of(outcome.ledger, "wrong_cycles");
+  ++jobs_;
+  if (std::has_single_bit(jobs_)) look();
+  return decision_ != Decision::open;
+}
+
+void Confidence::end() {
+  if (decision_ == Decision::open && jobs_ > 0 && !std::has_single_bit(jobs_)) look();
+}
+
+void Confidence::look() {
+  ++looks_;
+  if (total_ == 0) return;
+  const auto k = static_cast<double>(looks_);
+  const double confidence = 1 - (1 - goal_.confidence) / (k * (k + 1));
+  // A wrong word may outlive the exchange that was corrupted.
+  const std::uint64_t wrong = std::min(wrong_, total_);
+  upper_ = bound_(wrong, total_, confidence);
+  lower_ = wrong == 0 ? 0 : 1 - bound_(total_ - wrong, total_, confidence);
+  if (upper_ < goal_.rate) decision_ = Decision::below;
+  if (lower_ > goal_.rate) decision_ = Decision::above;
+}
+
+}  // namespace fieldproof::campaign

@@ -1,0 +1,115 @@
+#include "campaign/outcome.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/kernel/error.hpp"
+#include "harness/kernel/untrusted_text.hpp"
+
+namespace fieldproof::campaign {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kLastVerdict = 4;  // exit codes above it are no verdicts
+
+void read_run(const ordered_json& document, Outcome& outcome) {
+  outcome.headline = document.at("headline");
+  document.at("counts").at("by_verdict").get_to(outcome.cases);
+  std::erase_if(outcome.cases, [](const auto& counted) { return counted.second == 0; });
+  document.at("run").at("caveats").get_to(outcome.caveats);
+  for (const ordered_json& one : document.at("cases")) {
+    const std::string verdict = one.at("verdict");
+    if ((verdict == "fail" || verdict == "error") && !one.contains("expected_because"))
+      outcome.failed.push_back(one.at("id"));
+  }
+}
+
+// The worst criterion of all tests, and the sum of their ledgers.
+void read_emc(const ordered_json& document, Outcome& outcome) {
+  document.at("unverified").get_to(outcome.caveats);
+  for (const char* part : {"tests", "channels"}) {
+    for (const ordered_json& test : document.at(part)) {
+      add(test.at("ledger").get<Counts>(), outcome.ledger);
+      outcome.headline = std::max(outcome.headline, test.at("criterion").get<std::string>());
+    }
+  }
+}
+
+void read_document(const ordered_json& document, Outcome& outcome) {
+  const std::string kind = document.value("schema", "");
+  if (kind == "fieldproof/results/1") read_run(document, outcome);
+  if (kind == "fieldproof/emc/1") read_emc(document, outcome);
+  if (kind == "fieldproof/measurement/1") outcome.headline = document.at("agreement");
+  if (kind == "fieldproof/matrix/1")
+    outcome.headline =
+        document.at("holes").empty() ? "complete" : fmt::format("{} holes", document.at("holes").size());
+}
+
+std::string last_line(const std::string& log) {
+  const std::size_t end = log.find_last_not_of('\n');
+  if (end == std::string::npos) return {};
+  const std::size_t before = log.rfind('\n', end);
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  return kernel::as_utf8(std::string_view(log).substr(begin, end + 1 - begin));
+}
+
+}  // namespace
+
+void add(const Counts& more, Counts& sum) {
+  for (const auto& [name, number] : more) sum[name] += number;
+}
+
+Outcome outcome_of(const JobResult& result) {
+  Outcome outcome;
+  outcome.id = result.id;
+  outcome.exit_code = result.exit_code;
+  outcome.wall_time_ms = result.wall_time_ms;
+  if (result.exit_code > kLastVerdict) outcome.message = last_line(result.log);
+  for (const KeptFile& file : result.files)
+    if (file.name != kDocument) outcome.files.push_back(file.name);
+  const std::string_view text = result.file(kDocument);
+  if (text.empty()) return outcome;
+  try {
+    read_document(ordered_json::parse(text), outcome);
+  } catch (const ordered_json::exception& broken) {
+    outcome.exit_code = 70;
+    outcome.message = fmt::format("{} is not what the verb writes: {}", kDocument, broken.what());
+  }
+  return outcome;
+}
+
+std::string to_json(const Outcome& outcome) {
+  const ordered_json json = {{"id", outcome.id},           {"exit_code", outcome.exit_code},
+                             {"killed", outcome.killed},   {"headline", outcome.headline},
+                             {"message", outcome.message}, {"files", outcome.files},
+                             {"cases", outcome.cases},     {"failed", outcome.failed},
+                             {"ledger", outcome.ledger},   {"wall_time_ms", outcome.wall_time_ms}};
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+Outcome outcome_from_json(std::string_view text, const std::string& place) {
+  try {
+    const ordered_json json = ordered_json::parse(text);
+    Outcome outcome;
+    json.at("id").get_to(outcome.id);
+    json.at("exit_code").get_to(outcome.exit_code);
+    json.at("killed").get_to(outcome.killed);
+    json.at("headline").get_to(outcome.headline);
+    json.at("message").get_to(outcome.message);
+    json.at("files").get_to(outcome.files);
+    json.at("cases").get_to(outcome.cases);
+    json.at("failed").get_to(outcome.failed);
+    json.at("ledger").get_to(outcome.ledger);
+    json.at("caveats").get_to(outcome.caveats);
+    json.at("wall_time_ms").get_to(outcome.wall_time_ms);
+    return outcome;
+  } catch (const ordered_json::exception& broken) {
+    throw kernel::Error(kernel::ErrorKind::configuration,
+                        fmt::format("{}: this is no outcome of a job: {}", place, broken.what()));
+  }
+}
+
+}  // namespace fieldproof::campaign

@@ -1,0 +1,301 @@
+#include "cli/campaign_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "cli/command_line.hpp"
+#include "cli/networks.hpp"
+#include "cli/sequence_file.hpp"
+#include "cli/settings.hpp"
+#include "harness/kernel/error.hpp"
+
+namespace fieldproof::cli {
+namespace {
+
+using config::Value;
+
+constexpr std::size_t kMostRows = 1000;
+constexpr std::size_t kMostChoices = 100'000;
+constexpr std::uint64_t kMostJobs = 1'000'000;
+constexpr std::chrono::hours kUsualLimit{1};
+
+constexpr std::array<std::string_view, 8> kCampaignVerbs = {"run",     "matrix", "check",  "emc",
+                                                            "measure", "fuzz",   "verify", "residual"};
+
+std::string scalar_of(const Value& value) {
+  switch (value.kind()) {
+    case config::ValueKind::integer:
+      return std::to_string(value.as_integer<std::uint64_t>());
+    case config::ValueKind::number:
+      return fmt::format("{}", value.as_number());
+    default:
+      return std::string(value.as_string());
+  }
+}
+
+std::chrono::milliseconds time_of(const Value& value) {
+  const auto time = duration_of(value.as_string());
+  if (!time)
+    config::fail(value,
+                 fmt::format("'{}' is no time; write for example \"90s\" or \"1.5 h\"", value.as_string()));
+  return *time;
+}
+
+// The file that a word of the command line would name.
+std::optional<std::string> file_named_by(std::string_view word, const Option* option) {
+  if (option != nullptr) {
+    if (option->value_name.find("FILE") == std::string_view::npos) return std::nullopt;
+    word.remove_prefix(option->name.size() + 3);  // "--", "="
+  } else if (word.starts_with('@')) {
+    word.remove_prefix(1);
+  } else if (!word.ends_with(".json")) {
+    return std::nullopt;
+  }
+  return std::string(word);
+}
+
+bool is_file(const std::optional<std::string>& path) {
+  std::error_code failure;
+  return path && std::filesystem::is_regular_file(*path, failure);
+}
+
+// Values are read as what the table calls them.
+void check_values(const Settings& settings, const Option& option) {
+  if (!settings.is_set(option.name) || option.kind != OptionKind::value) return;
+  const bool is_choice = option.value_name.find('|') != std::string_view::npos &&
+                         option.value_name.find("FILE") == std::string_view::npos;
+  if (is_choice) settings.choice(option.name);
+  if (option.value_name == "N") settings.number(option.name, 0, std::numeric_limits<std::uint64_t>::max());
+  if (option.value_name == "T") settings.duration(option.name);
+}
+
+void check_operands(const std::string& verb, const std::vector<std::string>& words,
+                    const conformance::Catalogue& catalogue) {
+  if (verb == "run") catalogue.select(words);
+  if (verb == "verify" && !(words.size() == 1 && is_file(file_named_by(words.front(), nullptr))))
+    catalogue.select(words);
+  if (verb == "matrix") catalogue.suite(words.front());
+  if (verb == "check" || verb == "fuzz") sequence_role_at(words.front(), catalogue);
+  if (verb == "emc" || verb == "measure") network_entry_named(words.front(), verb);
+}
+
+}  // namespace
+
+std::span<const std::string_view> campaign_verbs() {
+  return kCampaignVerbs;
+}
+
+bool is_of_a_row(const Option& option, std::string_view verb) {
+  return is_known_to(option, verb) && (option.decides_outcome || option.decides_exit_code ||
+                                       option.name == "cases" || option.name == "runs");
+}
+
+CampaignPlan::Words CampaignPlan::Axis::at(std::uint64_t n) const {
+  if (range == 0) return choices.at(n);
+  return {fmt::format("--{}={}", option->name, from + n)};
+}
+
+CampaignPlan::CampaignPlan(const std::filesystem::path& file, const conformance::Catalogue& catalogue)
+    : document_(config::Document::load(file)), limit_(kUsualLimit) {
+  read(catalogue);
+}
+
+void CampaignPlan::read(const conformance::Catalogue& catalogue) {
+  config::read_object(document_.root(), [&](config::ObjectReader& object) {
+    if (const auto title = object.optional("title")) title_ = title->as_string();
+    if (const auto limit = object.optional("job_limit")) limit_ = time_of(*limit);
+    if (const auto budget = object.optional("budget")) read_budget(*budget);
+    std::uint64_t first = 1;
+    for (const Value& value : object.required("jobs").as_array(1, kMostRows)) {
+      Row row = read_row(value);
+      row.first = first;
+      first += row.count;
+      if (first > kMostJobs + 1)
+        config::fail(value, fmt::format("with this row there are more than {} jobs", kMostJobs));
+      check(row, catalogue);
+      note_inputs(row);
+      rows_.push_back(std::move(row));
+    }
+  });
+}
+
+void CampaignPlan::read_budget(const Value& value) {
+  config::read_object(value, [&](config::ObjectReader& object) {
+    if (const auto time = object.optional("time")) time_ = time_of(*time);
+    if (const auto jobs = object.optional("jobs")) most_jobs_ = jobs->as_integer<std::uint64_t>(1, kMostJobs);
+    const auto goal = object.optional("confidence");
+    if (!goal) return;
+    constexpr double kLeastRate = 1e-15;
+    confidence_.emplace();
+    config::read_object(*goal, [&](config::ObjectReader& read) {
+      confidence_->rate = read.required("rate").as_number(kLeastRate, 0.5);
+      if (const auto level = read.optional("level"))
+        confidence_->confidence = level->as_number(0.5, 0.999999);
+      if (const auto of = read.optional("of"))
+        confidence_->is_of_corrupted = of->as_choice<bool>({{"sent", false}, {"corrupted", true}});
+    });
+  });
+}
+
+CampaignPlan::Row CampaignPlan::read_row(const Value& value) {
+  return config::read_object(value, [&](config::ObjectReader& object) {
+    Row row{value, {}, {}};
+    row.verb = kCampaignVerbs.at(object.required("verb").as_choice(kCampaignVerbs));
+    if (const auto of = object.optional("of")) row.axes.push_back(read_axis(*of, nullptr));
+    for (const Option& option : options()) {
+      if (!is_of_a_row(option, row.verb)) continue;
+      if (const auto given = object.optional(file_key(option)))
+        row.axes.push_back(read_axis(*given, &option));
+    }
+    const auto place = [](const Axis& axis) { return std::pair(axis.value.line(), axis.value.column()); };
+    std::ranges::sort(row.axes, {}, place);
+    for (const Axis& axis : row.axes) {
+      if (axis.size() > kMostJobs || row.count * axis.size() > kMostJobs)
+        config::fail(axis.value, fmt::format("with these values the row has more than {} jobs", kMostJobs));
+      row.count *= axis.size();
+    }
+    return row;
+  });
+}
+
+CampaignPlan::Axis CampaignPlan::read_axis(const Value& value, const Option* option) {
+  Axis axis{value, option, {}, {}};
+  if (value.is_object()) {
+    if (option == nullptr || option->value_name != "N")
+      config::fail(value,
+                   "\"from\" and \"count\" are of numbers alone; write a value, or an array of values");
+    config::read_object(value, [&](config::ObjectReader& object) {
+      axis.from = object.required("from").as_integer<std::uint64_t>();
+      axis.range = object.required("count").as_integer<std::uint64_t>(1, kMostJobs);
+      if (axis.from > std::numeric_limits<std::uint64_t>::max() - axis.range)
+        config::fail(value, "the last of these numbers is greater than 2^64 - 1");
+    });
+  } else if (value.is_array()) {
+    axis.places = value.as_array(1, kMostChoices);
+  } else {
+    axis.places = {value};
+  }
+  for (const Value& one : axis.places) axis.choices.push_back(words_of(one, option));
+  return axis;
+}
+
+// What one choice is on the command line.
+CampaignPlan::Words CampaignPlan::words_of(const Value& value, const Option* option) {
+  if (option != nullptr && option->kind == OptionKind::flag) {
+    return value.as_bool() ? Words{fmt::format("--{}", option->name)} : Words{};
+  }
+  const bool may_be_several = option == nullptr || option->kind == OptionKind::list;
+  if (value.is_array() && !may_be_several)
+    config::fail(value, "a job has one of these; write it without the inner array");
+  Words words;
+  for (const Value& one : value.is_array() ? value.as_array(1, kMostChoices) : std::vector<Value>{value}) {
+    const std::string word = option == nullptr ? std::string(one.as_string()) : scalar_of(one);
+    if (option == nullptr && (word.empty() || word.starts_with('-')))
+      config::fail(one, "what a verb is about is a selector, a protocol or a role, not an option");
+    words.push_back(option == nullptr ? word : fmt::format("--{}={}", option->name, word));
+  }
+  return words;
+}
+
+CampaignPlan::Words CampaignPlan::words_at(const Row& row, std::uint64_t n) {
+  std::vector<std::uint64_t> places(row.axes.size());
+  for (std::size_t i = row.axes.size(); i-- > 0;) {
+    places[i] = n % row.axes[i].size();
+    n /= row.axes[i].size();
+  }
+  Words words;
+  // What the verb is about comes first, wherever it stands in the row.
+  for (const bool is_operand : {true, false}) {
+    for (std::size_t i = 0; i < row.axes.size(); ++i) {
+      if ((row.axes[i].option == nullptr) != is_operand) continue;
+      std::ranges::move(row.axes[i].at(places[i]), std::back_inserter(words));
+    }
+  }
+  return words;
+}
+
+// Each value with the first ones of all others.
+void CampaignPlan::check(const Row& row, const conformance::Catalogue& catalogue) {
+  const auto none = [](const std::string&) -> std::optional<std::string> { return std::nullopt; };
+  const auto check_one = [&](std::uint64_t n, const Value& place) {
+    try {
+      Words words = {"fieldproof", row.verb};
+      std::ranges::move(words_at(row, n), std::back_inserter(words));
+      const Parsed parsed = parse_command_line(words);
+      if (!parsed.command) config::fail(place, "this asks for help");
+      const Settings settings(*parsed.command, none);
+      for (const Option& option : options()) {
+        if (is_known_to(option, row.verb)) check_values(settings, option);
+      }
+      check_operands(row.verb, parsed.command->operands, catalogue);
+    } catch (const kernel::Error& refused) {
+      config::fail(place, fmt::format("fieldproof {} refuses it: {}", row.verb, refused.what()));
+    }
+  };
+  if (row.axes.empty()) check_one(0, row.value);
+  std::uint64_t stride = row.count;
+  for (const Axis& axis : row.axes) {
+    stride /= axis.size();
+    if (axis.range > 0) check_one(stride * (axis.range - 1), axis.value);
+    for (std::size_t i = 0; i < axis.choices.size(); ++i) check_one(stride * i, axis.places[i]);
+  }
+}
+
+void CampaignPlan::note_inputs(const Row& row) {
+  for (const Axis& axis : row.axes) {
+    for (const Words& words : axis.choices) {
+      for (const std::string& word : words) {
+        const auto file = file_named_by(word, axis.option);
+        if (is_file(file) && !hashes_.contains(*file))
+          hashes_[*file] = campaign::hash_of(config::read_text(*file));
+      }
+    }
+  }
+}
+
+std::string CampaignPlan::hash() const {
+  return campaign::hash_of(nlohmann::ordered_json::parse(text(), nullptr, true, true).dump());
+}
+
+std::uint64_t CampaignPlan::count() const {
+  const std::uint64_t all = rows_.back().first + rows_.back().count - 1;
+  return most_jobs_ ? std::min(all, *most_jobs_) : all;
+}
+
+std::vector<campaign::InputFile> CampaignPlan::inputs() const {
+  std::vector<campaign::InputFile> files;
+  for (const auto& [path, hash] : hashes_) files.push_back({path, hash});
+  return files;
+}
+
+campaign::Job CampaignPlan::job(std::uint64_t id) const {
+  const auto after = std::ranges::upper_bound(rows_, id, {}, &Row::first);
+  const Row& row = *std::prev(after);
+  campaign::Job job;
+  job.id = id;
+  job.verb = row.verb;
+  job.arguments = words_at(row, id - row.first);
+  job.limit = limit_;
+  for (const auto& [option, file] :
+       {std::pair{"json", campaign::kDocument}, {"out", "out"}, {"case", "found.case.json"}}) {
+    if (find_option(option, row.verb) != nullptr) job.outputs.push_back({fmt::format("--{}", option), file});
+  }
+  if (find_option("quiet", row.verb) != nullptr) job.manner.emplace_back("--quiet");
+  // Jobs are many already.
+  if (find_option("jobs", row.verb) != nullptr) job.manner.emplace_back("--jobs=1");
+  for (const std::string& word : job.arguments) {
+    const std::string_view name = std::string_view(word).substr(0, word.find('='));
+    const Option* option = word.starts_with("--") ? find_option(name.substr(2), row.verb) : nullptr;
+    const auto file = file_named_by(word, option);
+    const auto known = file ? hashes_.find(*file) : hashes_.end();
+    if (known != hashes_.end()) job.inputs.push_back({known->first, known->second});
+  }
+  return job;
+}
+
+}  // namespace fieldproof::cli
