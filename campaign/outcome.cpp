@@ -82,11 +82,17 @@ Outcome outcome_of(const JobResult& result) {
 }
 
 std::string to_json(const Outcome& outcome) {
-  const ordered_json json = {{"id", outcome.id},           {"exit_code", outcome.exit_code},
-                             {"killed", outcome.killed},   {"headline", outcome.headline},
-                             {"message", outcome.message}, {"files", outcome.files},
-                             {"cases", outcome.cases},     {"failed", outcome.failed},
-                             {"ledger", outcome.ledger},   {"wall_time_ms", outcome.wall_time_ms}};
+  const ordered_json json = {{"id", outcome.id},
+                             {"exit_code", outcome.exit_code},
+                             {"killed", outcome.killed},
+                             {"headline", outcome.headline},
+                             {"message", outcome.message},
+                             {"files", outcome.files},
+                             {"cases", outcome.cases},
+                             {"failed", outcome.failed},
+                             {"ledger", outcome.ledger},
+                             {"caveats", outcome.caveats},
+                             {"wall_time_ms", outcome.wall_time_ms}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 

@@ -15,6 +15,7 @@
 #include "campaign/ranks.hpp"
 #include "cli/build_info.hpp"
 #include "cli/campaign_plan.hpp"
+#include "cli/campaign_preview.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
 #include "cli/run_setup.hpp"
@@ -184,6 +185,12 @@ void check_call(const Session& session) {
   const Settings& settings = session.settings;
   if (settings.is_set("resume") && settings.origin("out") == Origin::command_line)
     settings.refuse("out", "a campaign that goes on stays in the folder of --resume; leave one of them out");
+  if (settings.is_set("watch")) {
+    if (!session.operands.empty()) refuse_call("--watch shows a folder; leave the file out");
+    return;
+  }
+  if (settings.is_set("dry-run") && settings.is_set("resume"))
+    refuse_call("a campaign that goes on is not estimated; leave out --dry-run or --resume");
   if (session.operands.empty() && !settings.is_set("resume"))
     refuse_call(
         "campaign needs a file; write for example: fieldproof campaign examples/campaigns/small.json");
@@ -203,12 +210,15 @@ int run_campaign(Session& session) {
     return kAllAsExpected;
   }
   std::unique_ptr<campaign::Slots> slots;
+  const std::size_t slots_of_all = ranks ? workers * static_cast<std::size_t>(ranks->count()) : workers;
   if (ranks) {
     slots = std::make_unique<campaign::RankSlots>(*ranks, workers, program);
   } else {
     slots = std::make_unique<campaign::LocalSlots>(workers);
   }
   check_call(session);
+  if (session.settings.is_set("watch")) return watch_campaign(session);
+  if (session.settings.is_set("dry-run")) return estimate_campaign(session, slots_of_all);
   return CampaignRun(session).run(*slots);
 }
 

@@ -20,7 +20,9 @@ namespace {
 using config::Value;
 
 constexpr std::size_t kMostRows = 1000;
-constexpr std::size_t kMostChoices = 100'000;
+constexpr std::size_t kMostChoices = 1000;
+constexpr std::size_t kMostChecked = 10'000;   // values in a file, each of which is tried
+constexpr std::size_t kLimitOfPlan = 1 << 20;  // octets
 constexpr std::uint64_t kMostJobs = 1'000'000;
 constexpr std::chrono::hours kUsualLimit{1};
 
@@ -101,7 +103,7 @@ CampaignPlan::Words CampaignPlan::Axis::at(std::uint64_t n) const {
 }
 
 CampaignPlan::CampaignPlan(const std::filesystem::path& file, const conformance::Catalogue& catalogue)
-    : document_(config::Document::load(file)), limit_(kUsualLimit) {
+    : document_(config::Document::load(file, {.size = kLimitOfPlan})), limit_(kUsualLimit) {
   read(catalogue);
 }
 
@@ -110,18 +112,32 @@ void CampaignPlan::read(const conformance::Catalogue& catalogue) {
     if (const auto title = object.optional("title")) title_ = title->as_string();
     if (const auto limit = object.optional("job_limit")) limit_ = time_of(*limit);
     if (const auto budget = object.optional("budget")) read_budget(*budget);
-    std::uint64_t first = 1;
-    for (const Value& value : object.required("jobs").as_array(1, kMostRows)) {
-      Row row = read_row(value);
-      row.first = first;
-      first += row.count;
-      if (first > kMostJobs + 1)
-        config::fail(value, fmt::format("with this row there are more than {} jobs", kMostJobs));
-      check(row, catalogue);
-      note_inputs(row);
-      rows_.push_back(std::move(row));
-    }
+    for (const Value& value : object.required("jobs").as_array(1, kMostRows))
+      add_rows(read_row(value), catalogue);
   });
+}
+
+// One row for each thing that the verb is about: they have little else in common, so their time is estimated
+// apart.
+void CampaignPlan::add_rows(const Row& whole, const conformance::Catalogue& catalogue) {
+  const auto about = std::ranges::find(whole.axes, nullptr, &Axis::option);
+  const std::size_t parts = about == whole.axes.end() ? 1 : about->choices.size();
+  for (std::size_t part = 0; part < parts; ++part) {
+    Row row = whole;
+    if (about != whole.axes.end()) {
+      Axis& axis = row.axes.at(static_cast<std::size_t>(about - whole.axes.begin()));
+      axis.choices = {about->choices[part]};
+      axis.places = {about->places[part]};
+    }
+    row.count = whole.count / parts;
+    row.first = rows_.empty() ? 1 : rows_.back().first + rows_.back().count;
+    if (row.first + row.count > kMostJobs + 1)
+      config::fail(row.value, fmt::format("with this row there are more than {} jobs", kMostJobs));
+    // The options are the same in all parts.
+    check(row, catalogue, part == 0);
+    note_inputs(row);
+    rows_.push_back(std::move(row));
+  }
 }
 
 void CampaignPlan::read_budget(const Value& value) {
@@ -220,9 +236,11 @@ CampaignPlan::Words CampaignPlan::words_at(const Row& row, std::uint64_t n) {
 }
 
 // Each value with the first ones of all others.
-void CampaignPlan::check(const Row& row, const conformance::Catalogue& catalogue) {
+void CampaignPlan::check(const Row& row, const conformance::Catalogue& catalogue, bool has_new_options) {
   const auto none = [](const std::string&) -> std::optional<std::string> { return std::nullopt; };
   const auto check_one = [&](std::uint64_t n, const Value& place) {
+    if (++checked_ > kMostChecked)
+      config::fail(place, fmt::format("with this there are more than {} values", kMostChecked));
     try {
       Words words = {"fieldproof", row.verb};
       std::ranges::move(words_at(row, n), std::back_inserter(words));
@@ -241,6 +259,7 @@ void CampaignPlan::check(const Row& row, const conformance::Catalogue& catalogue
   std::uint64_t stride = row.count;
   for (const Axis& axis : row.axes) {
     stride /= axis.size();
+    if (axis.option != nullptr && !has_new_options) continue;
     if (axis.range > 0) check_one(stride * (axis.range - 1), axis.value);
     for (std::size_t i = 0; i < axis.choices.size(); ++i) check_one(stride * i, axis.places[i]);
   }

@@ -4,8 +4,8 @@
 // in a configuration file. Each of them is one value, an array of values that are taken one after the other,
 // or, of a number, {"from": 1, "count": 100}; where an option may be given several times, or a verb has
 // several selectors, an array inside the array is all of them for one job. A row is the product of its
-// values, the last one changing the fastest. Jobs are numbered from 1 in the order of the rows and are made
-// when they are asked for, so a row may have millions.
+// values: what it is about changes the slowest, of the options the last one the fastest. Jobs are numbered
+// from 1 in the order of the rows and are made when they are asked for, so a row may have millions.
 //
 // Every value is held against the tables of the program before anything runs: what is refused is a
 // kernel::Error(configuration) with file, line and pointer.
@@ -46,7 +46,7 @@ class CampaignPlan {
   std::optional<std::chrono::milliseconds> time() const { return time_; }
   const std::optional<campaign::ConfidenceGoal>& confidence() const { return confidence_; }
 
-  // The number of rows, and which jobs a row is.
+  // Rows, one for each thing that the verb is about, and which jobs they are.
   std::size_t rows() const { return rows_.size(); }
   std::uint64_t first_of(std::size_t row) const { return rows_.at(row).first; }
   std::uint64_t count_of(std::size_t row) const { return rows_.at(row).count; }
@@ -78,7 +78,8 @@ class CampaignPlan {
   static Axis read_axis(const config::Value& value, const Option* option);
   static Words words_of(const config::Value& value, const Option* option);
   void read_budget(const config::Value& value);
-  static void check(const Row& row, const conformance::Catalogue& catalogue);
+  void add_rows(const Row& whole, const conformance::Catalogue& catalogue);
+  void check(const Row& row, const conformance::Catalogue& catalogue, bool has_new_options);
   static Words words_at(const Row& row, std::uint64_t n);
   void note_inputs(const Row& row);
 
@@ -90,6 +91,7 @@ class CampaignPlan {
   std::optional<std::uint64_t> most_jobs_;
   std::optional<campaign::ConfidenceGoal> confidence_;
   std::chrono::milliseconds limit_;  // of each job
+  std::size_t checked_ = 0;
 };
 
 // The verbs that a campaign may have.

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kSarifSchema =
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sarif-schema-2.1.0.json";
 constexpr const char* kCaseFile = "case.json";
-constexpr std::size_t kMostOfAKind = 100;  // in the flow of one case
+constexpr std::size_t kMostInAFlow = 100;  // in the flow of one case
 
 // "[text](address)" would be a link.
 Json message(std::string_view text) {
@@ -126,7 +126,7 @@ void add_moments(std::vector<Moment>& moments, const Json& timeline, const char*
     moment.text += one.at("text").get<std::string>();
     if (moment.time_ps <= until) found.push_back(std::move(moment));
   }
-  const std::size_t first = found.size() - std::min(found.size(), kMostOfAKind);
+  const std::size_t first = found.size() - std::min(found.size(), kMostInAFlow);
   moments.insert(moments.end(), found.begin() + static_cast<std::ptrdiff_t>(first), found.end());
 }
 

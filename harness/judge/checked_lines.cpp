@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <optional>
 #include <utility>
 
 #include "harness/config/document.hpp"
@@ -32,16 +31,6 @@ constexpr std::size_t kLargestFile = std::size_t{1} << 30;  // octets
 
 constexpr std::string_view kResultKey = R"("result":)";
 
-// The text of the result, or nothing when the line is not what `append` wrote.
-std::optional<std::string_view> intact_result(std::string_view line) {
-  const std::size_t key = line.find(kResultKey);
-  if (key == std::string_view::npos || line.back() != '}') return std::nullopt;
-  const std::size_t begin = key + kResultKey.size();
-  const std::string_view result = line.substr(begin, line.size() - begin - 1);
-  if (line.substr(0, begin) != head_of(result)) return std::nullopt;
-  return result;
-}
-
 }  // namespace
 
 std::uint64_t check_of(std::string_view text) {
@@ -51,6 +40,15 @@ std::uint64_t check_of(std::string_view text) {
     check *= 0x100000001b3;
   }
   return check;
+}
+
+std::optional<std::string_view> intact_result(std::string_view line) {
+  const std::size_t key = line.find(kResultKey);
+  if (key == std::string_view::npos || !line.ends_with('}')) return std::nullopt;
+  const std::size_t begin = key + kResultKey.size();
+  const std::string_view result = line.substr(begin, line.size() - begin - 1);
+  if (line.substr(0, begin) != head_of(result)) return std::nullopt;
+  return result;
 }
 
 // A file that is closed also when the constructor that opened it throws.

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,9 @@ enum class Durability : std::uint8_t { written, synced };
 
 // FNV-1a: enough to know a torn or changed text; it guards against accidents only.
 std::uint64_t check_of(std::string_view text);
+
+// The text of the result of a line without its line break, or nothing when the line is not what was appended.
+std::optional<std::string_view> intact_result(std::string_view line);
 
 // What reading found besides the results themselves.
 struct LinesRead {
