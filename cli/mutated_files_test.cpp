@@ -151,7 +151,8 @@ class MutatedFiles : public ProgramFixture {
     const std::string run = at("run");
     const std::string found = at("found.json");
     write("pics.json", R"({ "items": { "bit_rate": 9600, "address_tens": 0, "address_units": 5 } })");
-    call({"run", kCase, "--iut", "mutant:check_is_sum", "--record", "all", "--out", "run"});
+    // As a part of a whole, so that a report joins it.
+    call({"run", kCase, "--iut", "mutant:check_is_sum", "--record", "all", "--shard", "1/1", "--out", "run"});
     call(
         {"check", "valve_bus/node", "--iut", "mutant:check_is_sum", "--cases", "40", "--case", "found.json"});
     call({"measure", "interbus", "--duration", "1ms", "--json", "measured.json"});
@@ -170,6 +171,9 @@ class MutatedFiles : public ProgramFixture {
           "1ms",     "--signal",          "50Hz",      "--max-time",    "2s"};
     };
     const std::vector<std::string> differ = {"diff", run, run};
+    const std::vector<std::string> formats = {"report",       run,          "--sarif",
+                                              at("ci.sarif"), "--ctrf",     at("ctrf.json"),
+                                              "--junit",      at("ci.xml"), "--github"};
     const fs::path of_case = folder_ / "run/cases/valve_bus+node+read+is_answered";
     std::vector<ReadFile> all = {
         {example("flipped_check_bit.plan.json"), verify("--faults", at("flipped_check_bit.plan.json")), 200},
@@ -183,6 +187,10 @@ class MutatedFiles : public ProgramFixture {
         {run + "/results.json", differ, 150},
         {run + "/manifest.json", differ, 100},
         {run + "/timings.json", differ, 50},
+        {run + "/results.json", formats, 100},
+        {run + "/manifest.json", formats, 50},
+        {run + "/configuration.json", formats, 100},
+        {of_case / "timeline.json", formats, 100},
         {run + "/journal.jsonl", {"judge", run}, 150},
         {found, {"replay", found}, 150},
         {at("accepted.json"),

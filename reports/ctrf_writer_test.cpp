@@ -23,6 +23,10 @@ PageRun ctrf_sample() {
   return run;
 }
 
+TEST(CtrfWriter, WritesTheApprovedDocument) {
+  expect_approved("ctrf.json", ctrf_json(ctrf_sample(), {}));
+}
+
 TEST(CtrfWriter, IsValidByThePublishedSchema) {
   expect_valid_by_published_schema(kPublishedCtrf, ctrf_json(ctrf_sample(), {}));
 }

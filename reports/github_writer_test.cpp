@@ -8,6 +8,7 @@
 
 #include "harness/judge/arbitrary_result.hpp"
 #include "harness/kernel/arbitrary_text.hpp"
+#include "reports/approved_text.hpp"
 #include "reports/sample_run.hpp"
 
 namespace fieldproof::reports {
@@ -27,6 +28,10 @@ reports::Run failing_cases(std::size_t count) {
                                     n == 20 ? judge::Verdict::error : judge::Verdict::fail, "late"));
   }
   return run;
+}
+
+TEST(GithubAnnotations, AndTheSummaryAreTheApprovedTexts) {
+  expect_approved("github.txt", github_annotations(sample_run(), {}) + github_summary(sample_run(), {}));
 }
 
 // GitHub shows ten.

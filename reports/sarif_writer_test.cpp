@@ -37,6 +37,10 @@ const Json* result_of_case(const Json& run, const std::string& end) {
   return nullptr;
 }
 
+TEST(SarifWriter, WritesTheApprovedDocument) {
+  expect_approved("ci.sarif", sarif_json(sarif_sample()));
+}
+
 TEST(SarifWriter, IsValidByThePublishedSchema) {
   expect_valid_by_published_schema(kPublished, sarif_json(sarif_sample()));
 }
