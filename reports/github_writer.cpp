@@ -56,7 +56,7 @@ std::vector<const CaseResult*> worst_first(const Run& run, const OutcomeRules& r
 }
 
 std::string annotation_text(const RunIdentity& identity, const CaseResult& result) {
-  std::string text = fmt::format("{}: {}", name(result.verdict), outcome_message(result));
+  std::string text = verdict_message(result);
   if (!result.findings.empty()) {
     const judge::Finding& finding = result.findings.front();
     text += fmt::format("\nrequirement: {}\nactual: {}", finding.requirement, finding.actual);

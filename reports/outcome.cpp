@@ -42,6 +42,12 @@ std::string outcome_message(const judge::CaseResult& result) {
   return result.reason;
 }
 
+std::string verdict_message(const judge::CaseResult& result) {
+  const std::string message = outcome_message(result);
+  const std::string verdict(name(result.verdict));
+  return message.starts_with(verdict + ":") ? message : verdict + ": " + message;
+}
+
 std::vector<Complaint> complaints_about(const Run& run, const OutcomeRules& rules) {
   std::vector<Complaint> all;
   if (!run.is_complete()) {

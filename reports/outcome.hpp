@@ -29,6 +29,8 @@ Outcome outcome_of(const judge::CaseResult& result, const OutcomeRules& rules);
 
 // One line: why the case is what it is; empty for most that pass. Not escaped.
 std::string outcome_message(const judge::CaseResult& result);
+// The same with its verdict: "fail: no_answer".
+std::string verdict_message(const judge::CaseResult& result);
 
 struct Complaint {
   std::string_view name;  // "is_complete"

@@ -177,7 +177,7 @@ Json code_flows(const PageRun& run, const CaseResult& result, const Json& place)
 
 Json result_of(const PageRun& run, const CaseResult& result, std::size_t rule) {
   const Standing standing = standing_of(result.verdict);
-  std::string text = fmt::format("{}: {}", name(result.verdict), outcome_message(result));
+  std::string text = verdict_message(result);
   if (!result.findings.empty()) text += "\n" + finding_line(result.findings.front());
   text += "\nreproduce: " + reproduce_command(run.stored.run.identity, result.id);
   const Json place = stored_at(run, result);
