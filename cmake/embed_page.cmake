@@ -6,7 +6,7 @@
 
 set(page_modules
   dom format data later table charts time_line_model time_line case_detail case_table summary timing immunity residual publication
-  matrix coverage cover page)
+  matrix coverage cover appendix page)
 
 # The octets of a hexadecimal number as base64.
 function(fieldproof_base64 hexadecimal result)

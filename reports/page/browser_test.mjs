@@ -354,6 +354,17 @@ await check("paper shows every case that did not pass, the first ones opened, al
   expect(pdf.subarray(0, 5).toString() === "%PDF-" && pdf.length > 20000, "no PDF");
 });
 
+await check("tables of all numbers stand in the appendix on paper, and in their places on a screen", async (page) => {
+  await whole(page);
+  const raw = await page.locator("table.raw, table.many").count();
+  expectEqual(await page.locator("#appendix table").count(), 0, "tables that are away on a screen");
+  await page.emulateMedia({media: "print"});
+  const stand = (selector) => page.waitForFunction(([one, count]) => document.querySelectorAll(one).length === count, [selector, raw]);
+  await stand("#appendix :is(table.raw, table.many)");
+  await page.emulateMedia({media: "screen"});
+  await stand("section:not(#appendix) :is(table.raw, table.many)");
+});
+
 await check("nothing is wider than paper", async (page) => {
   await page.emulateMedia({media: "print"});
   await page.waitForSelector("body[data-is-whole]");

@@ -6,7 +6,8 @@ import { drawn, element } from "./dom.js";
 import { number, scientific } from "./format.js";
 
 const places = new Set();
-const kPaperWidth = 640;
+const kPaperWidth = 660;
+const kPaperHeight = 150;
 
 const nearView = new IntersectionObserver((entries) => {
   for (const entry of entries) if (entry.isIntersecting) draw(entry.target);
@@ -36,7 +37,7 @@ function draw(place) {
   place.chart?.destroy();
   place.drawnWidth = width;
   const { options, data } = place.make();
-  place.chart = new uPlot({width, height: place.chartHeight, ...options}, data, place);
+  place.chart = new uPlot({width, height: isPrinting() ? Math.min(place.chartHeight, kPaperHeight) : place.chartHeight, ...options}, data, place);
 }
 
 export function drawAllCharts() {
@@ -55,7 +56,7 @@ export function watchCharts() {
 function chartPlace(label, height, make, widest) {
   const place = element("div", {class: "chart", role: "img", "aria-label": label});
   Object.assign(place, {make, chartHeight: height, widest});
-  place.style.minHeight = `${height}px`;
+  place.style.minHeight = `min(${height}px, var(--chart-height, 100vh))`;
   places.add(place);
   nearView.observe(place);
   widths.observe(place);

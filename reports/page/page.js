@@ -1,4 +1,5 @@
 // Reads the data of the page and shows them.
+import { appendixSection } from "./appendix.js";
 import { caseSection } from "./case_table.js";
 import { watchCharts } from "./charts.js";
 import { coverSection } from "./cover.js";
@@ -14,7 +15,7 @@ import { summarySection } from "./summary.js";
 import { timingSection } from "./timing.js";
 
 const kSections = [coverSection, summarySection, caseSection, timingSection, immunitySection, residualSection, publicationSection,
-  matrixSection, coverageSection];
+  matrixSection, coverageSection, appendixSection];
 
 // The same verdict in the title, the headline and the icon of the tab.
 function titleOf({ joined, cover, runs }) {
@@ -45,14 +46,14 @@ function showPage() {
   const data = unpack(JSON.parse(document.getElementById("data").textContent));
   document.title = visible(titleOf(data));
   showIcon(data.joined.verdict);
+  makeLater();
   const sections = kSections.map((make) => make(data)).filter(Boolean);
   const [first, ...others] = sections;
   replaceContent(document.getElementById("content"), element("h1", {class: "unseen"}, titleOf(data)), first, contentsList(sections), others);
-  append(document.getElementById("sections"), sections.map((one) => element("a", {href: `#${one.id}`}, shortName(one))));
+  append(document.getElementById("sections"), sections.filter((one) => !one.classList.contains("paper-only")).map((one) => element("a", {href: `#${one.id}`}, shortName(one))));
   append(document.getElementById("end"), [element("p", {},
       "One file, no network: this page asks for nothing. Simulated time is virtual; what a source does not verify is marked unverified. ",
       "Charts by uPlot (MIT licence, in the source of this page).")]);
-  makeLater();
   watchCharts();
   sections.find((one) => one.id === "cases")?.openAddress();
 }

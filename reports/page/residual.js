@@ -64,7 +64,7 @@ function checkPart({ name, content }) {
       table("Code words by weight", [
         {title: "weight", kind: "number", cell: (one) => String(one.weight)},
         {title: "code words", kind: "number", cell: (one) => one.count},
-      ], content.weights));
+      ], content.weights, "raw"));
 }
 
 export function residualSection(data) {

@@ -47,7 +47,7 @@ function distributions(series, phases) {
     {title: "phase", cell: ({phase}) => phase},
     {title: "count", amount: ({values}) => values.count},
     ...kKeys.map((key) => ({title: kTitles[key] ?? key, kind: "number", cell: ({values}) => about(key, values) + text(values[key])})),
-  ], phases);
+  ], phases, "raw");
 }
 
 // The theory of a quantity, where the document compares it: the whole, or the least and the largest.
