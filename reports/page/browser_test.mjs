@@ -127,22 +127,22 @@ function withManyCases(count) {
   return html.replace(/(<script type="application\/json" id="data">).*?(<\/script>)/s, (all, open, close) => open + text + close);
 }
 
+// What is held is processor time, because the machine may be busy.
 if (firstRun && !process.env.FIELDPROOF_ANY_LOAD_TIME) {
+  const kMostSeconds = 1.5e-3 * kMostLoadMs;
   const folder = mkdtempSync(join(tmpdir(), "fieldproof-"));
   const many = join(folder, "many.html");
   writeFileSync(many, withManyCases(1e5));
   const page = await (await browser.newContext()).newPage();
-  const tries = [];
-  for (let n = 0; n < 3 && !(tries.at(-1) < 1.5 * kMostLoadMs); n += 1) {
-    await page.goto(pathToFileURL(many).href);
-    tries.push(await page.evaluate(() => performance.getEntriesByType("navigation")[0].loadEventEnd));
-  }
   const session = await page.context().newCDPSession(page);
-  await session.send("Performance.enable");
-  const metrics = (await session.send("Performance.getMetrics")).metrics;
-  const heap = metrics.find(({ name }) => name === "JSHeapUsedSize").value / 1e6;
-  await check(`a hundred thousand results open in less than ${1.5 * kMostLoadMs} ms: ${tries.map(Math.round).join(", ")}; ${Math.round(heap)} MB of objects`, async () => {
-    expect(Math.min(...tries) < 1.5 * kMostLoadMs, "it takes longer");
+  await session.send("Performance.enable", {timeDomain: "threadTicks"});
+  await page.goto(pathToFileURL(many).href);
+  const {metrics} = await session.send("Performance.getMetrics");
+  const metric = (wanted) => metrics.find(({ name }) => name === wanted).value;
+  const seconds = metric("TaskDuration");
+  const heap = metric("JSHeapUsedSize") / 1e6;
+  await check(`a hundred thousand results take ${seconds.toFixed(2)} s of ${kMostSeconds} s and ${Math.round(heap)} MB of objects`, async () => {
+    expect(seconds > 0 && seconds < kMostSeconds, "they take longer");
     expect(heap < 150, "they take more memory");
     expectEqual(await page.locator("tr.case").count(), 500, "lines that are made at once");
     await page.locator(".more-lines").click();
