@@ -98,9 +98,9 @@ std::string campaign_schema_text() {
       {"$schema", "http://json-schema.org/draft-07/schema#"},
       {"title", "Campaign"},
       {"description",
-       "Many jobs, for fieldproof campaign. Comments are allowed. A row is the product of its values, the "
-       "last one "
-       "changing the fastest; what a verb refuses is refused before anything runs."},
+       "Many jobs, for fieldproof campaign. Comments are allowed. A row is the product of its values: what "
+       "it is about changes the slowest, of the options the last one the fastest. What a verb refuses is "
+       "refused before anything runs."},
       {"type", "object"},
       {"additionalProperties", false},
       {"required", {"jobs"}},

@@ -53,10 +53,14 @@ TEST_F(CampaignVerb, HasTheSameBytesForAnyNumberOfWorkers) {
   const std::string expected = whole();
   EXPECT_HOLDS(expected,
                "\"command\": \"fieldproof run valve_bus/node/read/is_answered --volume=quick --seed=12\"");
-  for (const std::string workers : {"1", "4"}) {
-    EXPECT_EQ(campaign({"some.json", "--workers", workers, "--out", "by" + workers}).exit_code, 1);
-    EXPECT_EQ(read("by" + workers + "/campaign.json"), expected);
-  }
+  EXPECT_EQ(campaign({"some.json", "--workers", "1", "--out", "one"}).exit_code, 1);
+  EXPECT_EQ(read("one/campaign.json"), expected);
+  // And whatever the environment says.
+  const Called four = in_shell(
+      "FIELDPROOF_SEED=99 FIELDPROOF_IUT=mutant:check_is_sum \"$F\" campaign some.json --workers 4 --out "
+      "four");
+  EXPECT_EQ(four.exit_code, 1) << four.err;
+  EXPECT_EQ(read("four/campaign.json"), expected);
   const auto document = json("whole/campaign.json");
   EXPECT_EQ(document["counts"]["jobs"], 18);
   EXPECT_EQ(document["jobs"][13]["failed"][0], "valve_bus/node/write/drives_the_valves");
@@ -71,14 +75,6 @@ TEST_F(CampaignVerb, LeavesTheCaseOfAFailureForReplay) {
       call({"replay", "whole/jobs/14/out/cases/valve_bus+node+write+drives_the_valves/case.json"});
   EXPECT_EQ(called.exit_code, 1) << called.err;
   EXPECT_HOLDS(called.out, "equal: verdict, reason and fingerprint are those of the stored run");
-}
-
-TEST_F(CampaignVerb, TakesNothingFromTheEnvironment) {
-  const std::string expected = whole();
-  const Called called =
-      in_shell("FIELDPROOF_SEED=99 FIELDPROOF_IUT=mutant:check_is_sum \"$F\" campaign some.json --out other");
-  EXPECT_EQ(called.exit_code, 1) << called.err;
-  EXPECT_EQ(read("other/campaign.json"), expected);
 }
 
 struct Refusal {
@@ -141,10 +137,10 @@ TEST_F(CampaignVerb, IsOnlyGoneOnWithWithTheSameFiles) {
   EXPECT_HOLDS(changed.err, "faults.json has changed since");
 }
 
-// The whole of it, at random instants. FIELDPROOF_KILLS says how many, where 5 are too few.
+// The whole of it, at random instants. FIELDPROOF_KILLS says how many, where 4 are too few.
 TEST_F(CampaignVerb, GoesOnAfterAKillAtAnyInstant) {
   const std::string expected = whole();
-  const auto kills = static_cast<int>(kernel::campaign_count("FIELDPROOF_KILLS", 5));
+  const auto kills = static_cast<int>(kernel::campaign_count("FIELDPROOF_KILLS", 4));
   kernel::Random random(5);
   int with_rest = 0;
   for (int n = 0; n < kills; ++n) {
@@ -211,6 +207,45 @@ TEST_F(CampaignVerb, FindsAJobThatHangs) {
   const Called called = campaign({"slow.json", "--out", "slow"});
   EXPECT_EQ(called.exit_code, 1) << called.err;
   EXPECT_HOLDS(called.out, "its process did not end within its limit of 200 ms, 3 times");
+}
+
+// The first job of a row tells what is refused, and how long the others take.
+TEST_F(CampaignVerb, IsEstimatedBeforeItRuns) {
+  const Called called = campaign({"some.json", "--dry-run", "--workers", "4"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_HOLDS(called.out, "        12  ");
+  EXPECT_HOLDS(called.out, "fieldproof emc valve_bus --duration=1s --test-levels=3");
+  EXPECT_HOLDS(called.out, "18 jobs, about ");
+  EXPECT_HOLDS(called.out, " in 4 at a time");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "campaigns"));
+  write("no.json",
+        R"({"jobs": [{"verb": "run", "of": "valve_bus/node/read/is_answered", "iut": "exec:./nowhere"}]})");
+  const Called refused = campaign({"no.json", "--dry-run"});
+  EXPECT_EQ(refused.exit_code, 5);
+  EXPECT_HOLDS(refused.out, "job 1: exit code 5: fieldproof: ");
+}
+
+TEST_F(CampaignVerb, IsWatchedFromElsewhereUntilItEnds) {
+  const Called watched = in_shell(
+      "\"$F\" campaign some.json --workers 1 --out seen >/dev/null & until [ -s seen/manifest.json ]; do "
+      "sleep 0.01; done; "
+      "\"$F\" campaign --watch seen");
+  EXPECT_EQ(watched.exit_code, 1) << watched.err;
+  EXPECT_HOLDS(watched.out, "job 14: exit code 1\n");
+  EXPECT_HOLDS(watched.out, "18 of 18 jobs done, ");
+  EXPECT_HOLDS(watched.out, "ended with exit code 1\n");
+  std::filesystem::remove(folder_ / "seen/campaign.json");
+  const Called left = campaign({"--watch", "seen"});
+  EXPECT_EQ(left.exit_code, 2);
+  EXPECT_HOLDS(left.out, "nobody works on it any more; go on: fieldproof campaign --resume seen\n");
+}
+
+TEST_F(CampaignVerb, HasNoDefaultFolderTwice) {
+  write("one.json",
+        R"({"jobs": [{"verb": "run", "of": "valve_bus/node/read/is_answered", "volume": "quick"}]})");
+  EXPECT_EQ(campaign({"one.json"}).exit_code, 0);
+  EXPECT_EQ(campaign({"one.json"}).exit_code, 0);
+  EXPECT_EQ(read("campaigns/one/campaign.json"), read("campaigns/one-2/campaign.json"));
 }
 
 TEST_F(CampaignVerb, EndsWhenEnoughIsKnown) {
@@ -298,6 +333,19 @@ TEST_F(CampaignOverRanks, SaysWhichRankCannotReadAFile) {
   EXPECT_HOLDS(called.err, " cannot be done: rank 1 on ");
   EXPECT_HOLDS(called.err, "faults.json");
   EXPECT_HOLDS(read("ranks/campaign.json"), "\"is_complete\": false");
+}
+
+TEST_F(CampaignOverRanks, LosesNothingByAWrongHostFileOrATermination) {
+  // mpirun itself says what is wrong, and gives its ranks no time to write more than they have.
+  const std::string expected = whole();
+  write("hosts", "no.such.host.invalid slots=2\n");
+  EXPECT_NE(mpirun("-n 2 --hostfile hosts \"$F\" campaign --resume whole").exit_code, 0);
+  EXPECT_EQ(read("whole/campaign.json"), expected);
+  mpirun(
+      "-n 2 \"$F\" campaign some.json --out ended & until [ -s ended/journal.jsonl ]; do sleep 0.01; done; "
+      "kill -TERM $!; wait $!");
+  EXPECT_EQ(campaign({"--resume", "ended"}).exit_code, 1);
+  EXPECT_EQ(read("ended/campaign.json"), expected);
 }
 
 TEST_F(CampaignOverRanks, TellsWhereMpiIsMissing) {

@@ -161,6 +161,12 @@ class MutatedFiles : public ProgramFixture {
     write("accepted.json", "{\"expected\": [{\"case\": \"" + kCase +
                                "\", \"finding\": \"no_answer\", \"reason\": \"known\", "
                                "\"expires\": \"2099-01-01\"}]}");
+    write("campaign.json",
+          R"({"title": "x", "job_limit": "1min", "budget": {"jobs": 1, "time": "1h"}, "jobs": [
+      {"verb": "run", "of": "valve_bus/node/read/*", "volume": "quick", "seed": {"from": 1, "count": 3}},
+      {"verb": "emc", "of": ["valve_bus"], "iut": [["node@1=ref"], "ref"], "duration": "1s"}]})");
+    call({"campaign", "campaign.json", "--out", "campaign"});
+    const std::vector<std::string> resume = {"campaign", at("campaign.json"), "--resume", at("campaign")};
     const auto verify = [](std::string option, std::string file) {
       return std::vector<std::string>{"verify",          kCase,          "--volume", "quick",
                                       std::move(option), std::move(file)};
@@ -193,6 +199,8 @@ class MutatedFiles : public ProgramFixture {
         {of_case / "timeline.json", formats, 100},
         {run + "/journal.jsonl", {"judge", run}, 150},
         {found, {"replay", found}, 150},
+        {at("campaign.json"), resume, 100},
+        {at("campaign/manifest.json"), resume, 50},
         {at("accepted.json"),
          {"run", kCase, "--volume", "quick", "--baseline", at("accepted.json"), "--out", at("again")},
          100},

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/baseline.hpp"
+#include "cli/campaign_plan.hpp"
 #include "cli/matrix_text.hpp"
 #include "cli/named_schemas.hpp"
 #include "cli/options.hpp"
@@ -304,6 +305,51 @@ TEST_F(Schemas, OfAConfiguration) {
                  Settings({"run", {}, {{"config", {file.string()}}}},
                           [](const std::string&) -> std::optional<std::string> { return std::nullopt; });
                });
+}
+
+TEST(CampaignSchema, IsMadeOfTheTableOfOptions) {
+  EXPECT_EQ(shipped("cli/campaign.schema.json"), campaign_schema_text())
+      << "'fieldproof schema campaign' prints what the file must have";
+}
+
+TEST_F(Schemas, OfACampaign) {
+  const auto row = [](const std::string& members) {
+    return R"({"jobs": [{"verb": "run", )" + members + "}]}";
+  };
+  const auto budget = [](const std::string& members) {
+    return R"({"jobs": [{"verb": "matrix", "of": "valve_bus"}], "budget": {)" + members + "}}";
+  };
+  std::vector<Sample> samples = {
+      bad("{}"),
+      bad(R"({"jobs": []})"),
+      bad(R"({"jobs": [{}]})"),
+      bad(R"({"jobs": [{"verb": "list"}]})"),
+      good(row(R"("of": "valve_bus/node/**", "seed": 1)")),
+      good(row(R"("seed": [1, "2"], "strict": [true, false])")),
+      good(row(R"("seed": {"from": 1, "count": 100}, "volume": ["quick", "full"])")),
+      good(row(R"("iut": ["ref", ["node@1=ref", "node@2=mutant:check_is_sum"]])")),
+      good(row(R"("of": [["valve_bus/node/read/*", "!valve_bus/node/read/is_answered"]])")),
+      bad(row(R"("seed": {"from": 1})")),
+      bad(row(R"("seed": {"from": 1, "count": 0})")),
+      bad(row(R"("seed": [[1]])")),
+      bad(row(R"("seed": -1)")),
+      bad(row(R"("volume": "half")")),
+      bad(row(R"("strict": "yes")")),
+      bad(row(R"("max_time": "1s")")),
+      bad(row(R"("out": "x")")),
+      bad(row(R"("of": "--strict")")),
+      bad(row(R"("iut": [])")),
+      bad_to_the_reader_only(row(R"("of": "nothing/at/all")")),
+      good(budget(R"("time": "1.5 h", "jobs": 1)")),
+      bad_to_the_reader_only(budget(R"("time": "long")")),
+      bad(budget(R"("jobs": 0)")),
+      good(budget(R"("confidence": {"rate": 1e-7, "level": 0.99, "of": "corrupted"})")),
+      bad(budget(R"("confidence": {"level": 0.9})")),
+      bad(budget(R"("confidence": {"rate": 1})"))};
+  for (const auto& file : fs::directory_iterator(kSourceFolder / "examples/campaigns"))
+    samples.push_back(good(shipped("examples/campaigns" / file.path().filename())));
+  expect_alike("cli/campaign.schema.json", samples,
+               [](const fs::path& file) { CampaignPlan(file, catalogue()); });
 }
 
 TEST_F(Schemas, OfAMatrix) {
