@@ -14,6 +14,7 @@
 
 #include "cli/burst_options.hpp"
 #include "cli/emc_case.hpp"
+#include "cli/emc_fit.hpp"
 #include "cli/emc_run.hpp"
 #include "cli/emc_search.hpp"
 #include "cli/emc_text.hpp"
@@ -337,6 +338,7 @@ int code_of(const EmcCampaign& campaign, std::size_t worst_allowed) {
 }  // namespace
 
 int emc_protocol(Session& session) {
+  if (session.settings.is_set("fit")) return fit_emc(session);
   const std::size_t worst_allowed = session.settings.choice("worst");
   Campaign campaign(session);
   campaign.run();

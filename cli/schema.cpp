@@ -33,6 +33,7 @@ void add_files(std::vector<NamedText>& all) {
                                    {"profile", emc::profile_schema},
                                    {"diff", reports::diff_schema},
                                    {"emc", reports::emc_schema},
+                                   {"emc_fit", reports::emc_fit_schema},
                                    {"journal", reports::journal_schema},
                                    {"manifest", reports::manifest_schema},
                                    {"measurement", reports::measurement_schema},
