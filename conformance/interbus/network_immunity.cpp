@@ -116,6 +116,7 @@ class BurstExchange {
   }
 
   void judge_words() {
+    statistics_.end();
     const std::uint64_t wrong = statistics_.counts().wrong_exchanges;
     if (wrong == 0) return;
     // Where the bursts of the case are left out, what a plan flips was chosen: there nothing is by chance.
