@@ -1,7 +1,7 @@
 // The cover of a page that is handed over: what was tested, with what, and what came out, with limits and
 // margins. It is there when the report was asked for one.
 import { definitions, element, section } from "./dom.js";
-import { fixed, number, part } from "./format.js";
+import { fixed, number, part, plural } from "./format.js";
 import { mutantsCaught } from "./matrix.js";
 import { caveatList, documentsOf, headlineOf, implementationText, partsOf, sentence } from "./summary.js";
 import { table } from "./table.js";
@@ -75,7 +75,7 @@ function rowsOfMeasurement({ name, content }) {
   const ofWorst = (one) => {
     const over = one.is_bound ? one.deviation_percent : Math.abs(one.deviation_percent);
     return {test: `${name}: ${one.quantity}`, result: `${number(one.measured)} ${one.unit}`,
-      limit: `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit}${one.is_bound ? "" : ` \u00b1 ${number(content.tolerance_percent)} %`}`,
+      limit: `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit}${one.is_bound ? "" : ` \u00b1 ${number(content.tolerance_percent)} % ${one.whole}`}`,
       margin: `${fixed(content.tolerance_percent - over, 2)} % ${one.whole}`};
   };
   return [...worst.values()].map(ofWorst);
@@ -94,8 +94,8 @@ function rowsOfBursts({ name, content }) {
   if (recovered.length > 0 && content.recovery_limit) {
     const { exchanges, exchange } = content.recovery_limit;
     const most = Math.max(...recovered);
-    rows.push({test: `${name}: recovery after the last pulse, the longest`, result: `${number(most)} ${exchange}s`, limit: `${number(exchanges)} ${exchange}s`,
-      margin: `${number(exchanges - most)} ${exchange}s`});
+    rows.push({test: `${name}: recovery after the last pulse, the longest`, result: plural(most, exchange), limit: plural(exchanges, exchange),
+      margin: plural(exchanges - most, exchange)});
   }
   return rows;
 }
