@@ -28,7 +28,8 @@ const html = readFileSync(file, "utf8");
 const data = JSON.parse(/<script type="application\/json" id="data">(.*?)<\/script>/s.exec(html)[1]);
 const { unpack } = await import("./data.js");
 unpack(data);
-const cases = data.runs.flatMap((run) => run.results.cases);
+const cases = data.runs.flatMap((run, at) =>
+  run.results.cases.map((one) => ({...one, address: at === 0 ? one.id : `${at + 1}:${one.id}`})));
 const firstRun = data.runs[0];
 const failing = cases.filter((one) => one.verdict === "fail");
 const withTimeLine = Object.entries(firstRun?.cases ?? {}).find(([, more]) => more.timeline)?.[0];
@@ -215,9 +216,9 @@ await check("heads sort up and down", async (page) => {
 
 await check("a row opens by the keyboard to all that is known of its case", async (page) => {
   const one = failing[0];
-  await caseLine(page, one.id).locator(".opener").focus();
+  await caseLine(page, one.address).locator(".opener").focus();
   await page.keyboard.press("Enter");
-  const detail = page.locator(`[id="detail-${one.id}"]`);
+  const detail = page.locator(`[id="detail-${one.address}"]`);
   const text = await detail.textContent();
   for (const part of [one.requirement, one.findings[0].reason, ...one.findings[0].expected, one.seed]) {
     expect(text.includes(part), `"${part}" is not shown`);
@@ -227,12 +228,12 @@ await check("a row opens by the keyboard to all that is known of its case", asyn
 });
 
 await check("a deep link opens its case", async (page) => {
-  expect(await page.locator(`[id="detail-${failing.at(-1).id}"] .case-detail`).isVisible(), "it is not open");
-  const box = await caseLine(page, failing.at(-1).id).boundingBox();
+  expect(await page.locator(`[id="detail-${failing.at(-1).address}"] .case-detail`).isVisible(), "it is not open");
+  const box = await caseLine(page, failing.at(-1).address).boundingBox();
   expect(box.y >= 0 && box.y < 900, `it is out of view: ${box.y}`);
-  await page.evaluate((id) => { location.hash = id; }, encodeURIComponent(failing[0].id));
-  await page.locator(`[id="detail-${failing[0].id}"] .case-detail`).waitFor({state: "visible"});
-}, {}, `#${encodeURIComponent(failing.at(-1)?.id ?? "")}`);
+  await page.evaluate((id) => { location.hash = id; }, encodeURIComponent(failing[0].address));
+  await page.locator(`[id="detail-${failing[0].address}"] .case-detail`).waitFor({state: "visible"});
+}, {}, `#${encodeURIComponent(failing.at(-1)?.address ?? "")}`);
 
 if (withTimeLine) {
   await check("the time line zooms and pans by keys, wheel and buttons", async (page) => {
