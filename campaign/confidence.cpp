@@ -16,7 +16,7 @@ std::uint64_t count_of(const Counts& counts, std::string_view name) {
 bool Confidence::add(const Outcome& outcome) {
   if (decision_ != Decision::open) return true;
   if (outcome.ledger.empty()) return false;
-  total_ += count_of(outcome.ledger, goal_.is_of_corrupted ? "corrupted" : "sent");
+  total_ += count_of(outcome.ledger, goal_.is_of_differed ? "data_differed" : "sent");
   wrong_ += count_of(outcome.ledger, "wrong_cycles");
   ++jobs_;
   if (std::has_single_bit(jobs_)) look();
@@ -32,7 +32,7 @@ void Confidence::look() {
   if (total_ == 0) return;
   const auto k = static_cast<double>(looks_);
   const double confidence = 1 - (1 - goal_.confidence) / (k * (k + 1));
-  // A wrong word may outlive the exchange that was corrupted.
+  // Bounds take no more than there are.
   const std::uint64_t wrong = std::min(wrong_, total_);
   upper_ = bound_(wrong, total_, confidence);
   lower_ = wrong == 0 ? 0 : 1 - bound_(total_ - wrong, total_, confidence);

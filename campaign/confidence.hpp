@@ -22,7 +22,7 @@ using UpperBound = std::function<double(std::uint64_t wrong, std::uint64_t total
 struct ConfidenceGoal {
   double rate = 0;  // 0 < rate < 1
   double confidence = 0.95;
-  bool is_of_corrupted = false;  // else of all exchanges that were sent
+  bool is_of_differed = false;  // else of all exchanges that were sent
 };
 
 enum class Decision : std::uint8_t { open, below, above };

@@ -14,9 +14,9 @@ double bound_of_none(std::uint64_t wrong, std::uint64_t total, double confidence
   return 1 - std::pow(1 - confidence, 1 / static_cast<double>(total - wrong));
 }
 
-Outcome job(std::uint64_t sent, std::uint64_t wrong, std::uint64_t corrupted = 0) {
+Outcome job(std::uint64_t sent, std::uint64_t wrong, std::uint64_t differed = 0) {
   Outcome outcome;
-  outcome.ledger = {{"sent", sent}, {"corrupted", corrupted}, {"wrong_cycles", wrong}};
+  outcome.ledger = {{"sent", sent}, {"data_differed", differed}, {"wrong_cycles", wrong}};
   return outcome;
 }
 
@@ -48,7 +48,7 @@ TEST(ConfidenceTest, IsBelowFromTheFirstTotalThatShowsIt) {
 }
 
 TEST(ConfidenceTest, IsAboveWhereTheLowerBoundIs) {
-  Confidence confidence({.rate = 0.1, .is_of_corrupted = true}, bound_of_none);
+  Confidence confidence({.rate = 0.1, .is_of_differed = true}, bound_of_none);
   EXPECT_TRUE(confidence.add(job(1'000'000, 50, 50)));
   EXPECT_EQ(confidence.decision(), Decision::above);
   EXPECT_GT(confidence.lower(), 0.9);

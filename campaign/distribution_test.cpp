@@ -44,7 +44,7 @@ JobResult result_of(const Job& job) {
   if (job.id % 2 == 1) return result;
   result.files.push_back(
       {kDocument, R"({"schema": "fieldproof/emc/1", "unverified": ["a caveat"], "channels": [],
-    "tests": [{"criterion": "B", "ledger": {"sent": 1000, "corrupted": 10, "wrong_cycles": )" +
+    "tests": [{"criterion": "B", "ledger": {"sent": 1000, "balance": {"data_differed": 10}, "wrong_cycles": )" +
                       std::to_string(job.id % 10 == 0 ? 1 : 0) + "}}]}"});
   return result;
 }
@@ -91,7 +91,7 @@ class Campaigned {
 
   // Whether it has come to its end.
   bool go_on(Slots& slots, std::stop_token stop) {
-    confidence_ = Confidence({.rate = 0.0012, .confidence = 0.95, .is_of_corrupted = false}, kBound);
+    confidence_ = Confidence({.rate = 0.0012, .confidence = 0.95, .is_of_differed = false}, kBound);
     Distribution::Plan plan;
     plan.count = kJobs;
     plan.job = [](std::uint64_t id) { return job_of(id); };

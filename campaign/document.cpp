@@ -46,7 +46,7 @@ WrongShare share_of(const Report& report, const Counts& ledger, std::string_view
 ordered_json ledger_json(const Report& report, const Totals& totals) {
   ordered_json json = totals.ledger;
   ordered_json shares = ordered_json::array();
-  for (const char* whole : {"sent", "corrupted"}) {
+  for (const char* whole : {"sent", "data_differed"}) {
     const WrongShare share = share_of(report, totals.ledger, whole);
     shares.push_back(
         {{"of", whole}, {"wrong", share.wrong}, {"total", share.total}, {"upper_bound_95", share.upper}});
@@ -57,7 +57,7 @@ ordered_json ledger_json(const Report& report, const Totals& totals) {
 ordered_json confidence_json(const Confidence& confidence) {
   return {{"rate", confidence.goal().rate},
           {"confidence", confidence.goal().confidence},
-          {"of", confidence.goal().is_of_corrupted ? "corrupted" : "sent"},
+          {"of", confidence.goal().is_of_differed ? "data_differed" : "sent"},
           {"wrong", confidence.wrong()},
           {"total", confidence.total()},
           {"looks", confidence.looks()},
@@ -103,7 +103,7 @@ std::string counted(const auto& counts, std::string_view each) {
 
 std::string confidence_text(const Confidence& confidence) {
   const std::string goal = fmt::format("{:g} of the exchanges {} with {:g} %", confidence.goal().rate,
-                                       confidence.goal().is_of_corrupted ? "corrupted" : "sent",
+                                       confidence.goal().is_of_differed ? "data_differed" : "sent",
                                        confidence.goal().confidence * 100);
   if (confidence.decision() == Decision::open) return fmt::format("not decided: {}", goal);
   return fmt::format("accepted wrong: shown to be {} {}", word_of(confidence.decision()), goal);
@@ -182,12 +182,11 @@ std::string report_text(const Report& report) {
   if (!totals.cases.empty()) text += fmt::format("cases: {}\n", counted(totals.cases, ""));
   if (!totals.ledger.empty()) {
     const WrongShare sent = share_of(report, totals.ledger, "sent");
-    const WrongShare corrupted = share_of(report, totals.ledger, "corrupted");
+    const WrongShare differed = share_of(report, totals.ledger, "data_differed");
     text += fmt::format(
-        "exchanges: {} sent, {} corrupted, {} with a wrong word accepted; at most {:.3g} of those sent, "
-        "{:.3g} "
-        "of those corrupted (one-sided 95 %)\n",
-        sent.total, corrupted.total, sent.wrong, sent.upper, corrupted.upper);
+        "exchanges: {} sent, data differed in {}, {} accepted wrong; at most {:.3g} of those sent, {:.3g} of "
+        "those whose data differed (one-sided 95 %)\n",
+        sent.total, differed.total, sent.wrong, sent.upper, differed.upper);
   }
   if (report.confidence != nullptr) text += confidence_text(*report.confidence) + "\n";
   if (!report.incomplete_because.empty()) text += fmt::format("incomplete: {}\n", report.incomplete_because);

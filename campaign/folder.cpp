@@ -73,6 +73,12 @@ Folder Folder::create_at(const fs::path& path, const Manifest& manifest, std::st
   if (fs::exists(path, failure) && !(fs::is_directory(path, failure) && fs::is_empty(path, failure)))
     refuse_folder(path, "the path is taken; name one that does not exist, or go on with it by --resume");
   make_folders(path);
+  // Creating this one claims the folder, where two begin at once.
+  if (!fs::create_directory(path / "jobs", failure)) {
+    if (!failure) refuse_folder(path, "another campaign has begun here");
+    throw kernel::Error(kernel::ErrorKind::output, fmt::format("{}: nothing can be created in it: {}",
+                                                               path.string(), failure.message()));
+  }
   Folder folder(path, manifest);
   folder.begin(plan);
   return folder;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -68,5 +69,7 @@ JobResult result_from_json(std::string_view text);
 
 // 16 hexadecimal digits over a content.
 std::string hash_of(std::string_view content);
+// Of a program or library, in octets.
+inline constexpr std::size_t kLargestInput = std::size_t{1} << 30;
 
 }  // namespace fieldproof::campaign

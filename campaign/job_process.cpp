@@ -106,7 +106,7 @@ JobProcess::~JobProcess() {
 void JobProcess::check_inputs() {
   for (const InputFile& input : job_.inputs) {
     try {
-      if (hash_of(config::read_text(input.path)) == input.hash) continue;
+      if (hash_of(config::read_text(input.path, kLargestInput)) == input.hash) continue;
       obstacle_ = fmt::format("{}: the file is another one here, or has changed since the campaign began",
                               input.path);
     } catch (const kernel::Error& error) {

@@ -12,6 +12,7 @@
 #include "cli/networks.hpp"
 #include "cli/sequence_file.hpp"
 #include "cli/settings.hpp"
+#include "harness/iut/process.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::cli {
@@ -48,6 +49,19 @@ std::chrono::milliseconds time_of(const Value& value) {
   return *time;
 }
 
+// Of an implementation: its program or library, and what stands on its command line.
+std::vector<std::string> files_of_implementation(std::string_view uri) {
+  constexpr std::string_view kProcess = "exec:";
+  constexpr std::string_view kLibrary = "plugin:";
+  if (const auto at = uri.find(kProcess); at != std::string_view::npos)
+    return iut::words_of(std::string(uri.substr(at + kProcess.size())));
+  if (const auto at = uri.find(kLibrary); at != std::string_view::npos) {
+    const std::string_view path = uri.substr(at + kLibrary.size());
+    return {std::string(path.substr(0, path.find('?')))};
+  }
+  return {};
+}
+
 // The file that a word of the command line would name.
 std::optional<std::string> file_named_by(std::string_view word, const Option* option) {
   if (option != nullptr) {
@@ -64,6 +78,18 @@ std::optional<std::string> file_named_by(std::string_view word, const Option* op
 bool is_file(const std::optional<std::string>& path) {
   std::error_code failure;
   return path && std::filesystem::is_regular_file(*path, failure);
+}
+
+// All files that are there and that a word of the command line names.
+std::vector<std::string> input_files_of(std::string_view word, const Option* option) {
+  std::vector<std::string> files;
+  if (option != nullptr && option->name == "iut") {
+    files = files_of_implementation(word);
+  } else if (const auto file = file_named_by(word, option)) {
+    files.push_back(*file);
+  }
+  std::erase_if(files, [](const std::string& file) { return !is_file(file); });
+  return files;
 }
 
 // Values are read as what the table calls them.
@@ -153,7 +179,7 @@ void CampaignPlan::read_budget(const Value& value) {
       if (const auto level = read.optional("level"))
         confidence_->confidence = level->as_number(0.5, 0.999999);
       if (const auto of = read.optional("of"))
-        confidence_->is_of_corrupted = of->as_choice<bool>({{"sent", false}, {"corrupted", true}});
+        confidence_->is_of_differed = of->as_choice<bool>({{"sent", false}, {"data_differed", true}});
     });
   });
 }
@@ -188,7 +214,7 @@ CampaignPlan::Axis CampaignPlan::read_axis(const Value& value, const Option* opt
     config::read_object(value, [&](config::ObjectReader& object) {
       axis.from = object.required("from").as_integer<std::uint64_t>();
       axis.range = object.required("count").as_integer<std::uint64_t>(1, kMostJobs);
-      if (axis.from > std::numeric_limits<std::uint64_t>::max() - axis.range)
+      if (axis.from > std::numeric_limits<std::uint64_t>::max() - (axis.range - 1))
         config::fail(value, "the last of these numbers is greater than 2^64 - 1");
     });
   } else if (value.is_array()) {
@@ -269,9 +295,10 @@ void CampaignPlan::note_inputs(const Row& row) {
   for (const Axis& axis : row.axes) {
     for (const Words& words : axis.choices) {
       for (const std::string& word : words) {
-        const auto file = file_named_by(word, axis.option);
-        if (is_file(file) && !hashes_.contains(*file))
-          hashes_[*file] = campaign::hash_of(config::read_text(*file));
+        for (const std::string& file : input_files_of(word, axis.option)) {
+          if (!hashes_.contains(file))
+            hashes_[file] = campaign::hash_of(config::read_text(file, campaign::kLargestInput));
+        }
       }
     }
   }
@@ -310,9 +337,10 @@ campaign::Job CampaignPlan::job(std::uint64_t id) const {
   for (const std::string& word : job.arguments) {
     const std::string_view name = std::string_view(word).substr(0, word.find('='));
     const Option* option = word.starts_with("--") ? find_option(name.substr(2), row.verb) : nullptr;
-    const auto file = file_named_by(word, option);
-    const auto known = file ? hashes_.find(*file) : hashes_.end();
-    if (known != hashes_.end()) job.inputs.push_back({known->first, known->second});
+    for (const std::string& file : input_files_of(word, option)) {
+      if (const auto known = hashes_.find(file); known != hashes_.end())
+        job.inputs.push_back({known->first, known->second});
+    }
   }
   return job;
 }

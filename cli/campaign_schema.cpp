@@ -73,8 +73,8 @@ ordered_json budget_schema() {
        {"level",
         {{"description", "Default 0.95."}, {"type", "number"}, {"minimum", 0.5}, {"maximum", 0.999999}}},
        {"of",
-        {{"description", "All exchanges, the default, or the corrupted ones."},
-         {"enum", {"sent", "corrupted"}}}}},
+        {{"description", "All exchanges, the default, or those whose data differed."},
+         {"enum", {"sent", "data_differed"}}}}},
       {"rate"});
   return object_schema(
       "When it is enough.",

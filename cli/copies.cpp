@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/untrusted_text.hpp"
@@ -28,10 +30,23 @@ void add_to(const char* file, const std::string& text) {
 }  // namespace
 
 void check_copies(const Settings& settings) {
-  for (const reports::Format& format : reports::formats()) {
-    if (settings.is_set(format.name)) reports::check_writable(settings.text(format.name));
-  }
-  if (settings.is_set("html")) reports::check_writable(settings.text("html"));
+  std::map<std::string, std::string> options;  // by the file that they name
+  const auto check = [&](const std::string& option) {
+    if (!settings.is_set(option)) return;
+    const std::string file = settings.text(option);
+    reports::check_writable(file);
+    const auto [other, is_first] = options.emplace(file, option);
+    std::error_code failure;
+    const std::filesystem::file_status found = std::filesystem::status(file, failure);
+    // What is no file, as /dev/stdout, takes several one after the other.
+    const bool is_stream = std::filesystem::exists(found) && !std::filesystem::is_regular_file(found);
+    if (!is_first && !is_stream)
+      throw kernel::Error(
+          kernel::ErrorKind::usage,
+          fmt::format("--{} and --{} name one file, {}; each needs its own", other->second, option, file));
+  };
+  for (const reports::Format& format : reports::formats()) check(std::string(format.name));
+  check("html");
 }
 
 bool asks_for_copies(const Settings& settings) {

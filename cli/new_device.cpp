@@ -80,13 +80,19 @@ int new_device(Session& session) {
     write_new(session, fs::path(folder) / kHeaderFile, std::string(fieldproof_plugin_h_text));
   }
   // A library without a folder would be looked for where the system has its own.
-  const std::string place = reports::shell_quoted(fs::path(folder).is_absolute() ? folder : "./" + folder);
-  const auto in_place = [&](std::string_view words) { return fmt::format(fmt::runtime(words), place); };
+  const std::string place = fs::path(folder).is_absolute() ? folder : "./" + folder;
+  const auto in_place = [](std::string_view words, const std::string& where) {
+    return fmt::format(fmt::runtime(words), where);
+  };
+  // A library is one path, a process a command line.
+  const bool is_command = language.iut.starts_with("exec:");
   std::string text = fmt::format("{} is a {} of {} that does nothing yet. It is judged by\n", file.string(),
                                  role.name, role.protocol);
-  if (!language.build.empty()) text += fmt::format("  {}\n", in_place(language.build));
-  text += fmt::format("  fieldproof run {} --iut {}\n", reports::shell_quoted(role.path() + "/**"),
-                      reports::shell_quoted(in_place(language.iut)));
+  if (!language.build.empty())
+    text += fmt::format("  {}\n", in_place(language.build, reports::shell_quoted(place)));
+  text += fmt::format(
+      "  fieldproof run {} --iut {}\n", reports::shell_quoted(role.path() + "/**"),
+      reports::shell_quoted(in_place(language.iut, is_command ? reports::shell_quoted(place) : place)));
   session.terminal.print(reports::escaped_block(text));
   return kAllAsExpected;
 }

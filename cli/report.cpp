@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -37,6 +39,14 @@ JoinedRun one_run(const Session& session) {
   return joined(session, directories);
 }
 
+// What was not judged in it is not green.
+void say_that_it_is_a_part(const std::string& directory, reports::RunIdentity& identity) {
+  const std::string shard = shard_of(directory);
+  if (shard.empty() || !identity.incomplete_because.empty()) return;
+  identity.incomplete_because = fmt::format(
+      "it is part {} of a run; name all parts, with --junit or another format, to join them", shard);
+}
+
 // With the one run that the other formats are of, or with each directory as a run of its own.
 void write_page(const Session& session, const std::optional<JoinedRun>& only) {
   const std::string file = session.settings.text("html");
@@ -48,6 +58,7 @@ void write_page(const Session& session, const std::optional<JoinedRun>& only) {
       content.documents.push_back(reports::page_document(operand, document_kinds()));
     } else if (!only) {
       content.runs.push_back(reports::page_run(reports::RunDirectory::open(operand)));
+      say_that_it_is_a_part(operand, content.runs.back().stored.run.identity);
     }
   }
   content.cover = {session.settings.text("title"), session.settings.text("device"),

@@ -173,6 +173,7 @@ TEST_F(ReportVerb, RefusesWhatItCannotShow) {
   expect_refusal({"report", "a", "--html", "a"}, 74, "folder");
   expect_refusal({"report", "residual.json", "--junit", "r.html"}, 65, "residual.json");
   expect_refusal({"report", "a", "--sarif", "a"}, 74, "folder");
+  expect_refusal({"report", "a", "--junit", "a.out", "--sarif", "a.out"}, 64, "--sarif name one file, a.out");
 }
 
 }  // namespace

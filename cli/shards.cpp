@@ -33,14 +33,25 @@ struct Part {
                       fmt::format("{}: {}", kernel::escaped_line(part.directory), sentence));
 }
 
+Settings settings_of(const reports::RunDirectory& run) {
+  Settings settings({"run", {}, {}}, [](const std::string&) { return std::nullopt; });
+  const std::filesystem::path file = run.path() / kConfigurationFile;
+  if (std::filesystem::exists(file)) settings.add_file(file, Origin::stored_run);
+  return settings;
+}
+
 Part read_part(const std::string& directory) {
   const auto opened = reports::RunDirectory::open(directory);
-  const Command run{"run", {}, {}};
-  Settings settings(run, [](const std::string&) { return std::nullopt; });
-  const std::filesystem::path file = opened.path() / kConfigurationFile;
-  if (std::filesystem::exists(file)) settings.add_file(file, Origin::stored_run);
-  return {directory, reports::page_run(opened), std::move(settings)};
+  return {directory, reports::page_run(opened), settings_of(opened)};
 }
+
+}  // namespace
+
+std::string shard_of(const std::string& directory) {
+  return settings_of(reports::RunDirectory::open(directory)).text("shard");
+}
+
+namespace {
 
 // What of the configuration is no matter of RunIdentity: of files only whether there is one, because each
 // part may have its own path to it.

@@ -20,6 +20,9 @@ struct JoinedRun {
 // results, and of every format but for times. Parts of another seed, suite, configuration or implementation,
 // one part twice, and parts that are missing are a kernel::Error(configuration) that names the directory. A
 // part that did not end makes a whole that did not end.
+// "1/4" of a run that is a part; empty of a whole one.
+std::string shard_of(const std::string& directory);
+
 JoinedRun joined(const Session& session, const std::vector<std::string>& directories);
 
 }  // namespace fieldproof::cli

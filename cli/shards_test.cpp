@@ -94,6 +94,25 @@ TEST_F(JoinedShards, AreRefusedWhereTheyAreNoWhole) {
   }
 }
 
+TEST_F(JoinedShards, OnePartIsNoPassOnAPage) {
+  probe({"run", "probe/**", "--shard", "1/2", "--out", "half"});
+  const Called page = probe({"report", "half", "--html", "half.html"});
+  EXPECT_EQ(page.exit_code, 0) << page.err;
+  EXPECT_TRUE(page.out.starts_with("inconclusive: ")) << page.out;
+}
+
+// More parts than cases: some have none.
+TEST_F(JoinedShards, APartWithoutCasesIsJoined) {
+  std::vector<std::string> report{"report"};
+  for (const char* part : {"1", "2", "3", "4", "5", "6", "7"}) {
+    const std::string shard = std::string(part) + "/7";
+    probe({"run", "probe/**", "--iut", "ref", "--shard", shard, "--out", part});
+    report.emplace_back(part);
+  }
+  report.insert(report.end(), {"--json", "whole.json"});
+  EXPECT_EQ(probe(report).exit_code, 0) << probe(report).err;
+}
+
 // Selectors may stand in a file, which may have changed since.
 TEST_F(JoinedShards, OfOtherCasesThanNowAreRefused) {
   write("some.txt", "probe/**\n");

@@ -180,13 +180,16 @@ class Run final : private network::ExchangeWatcher {
   }
 
   void on_exchange(const Exchange& exchange) override {
+    const std::uint64_t refused = statistics_.counts().refused;
     statistics_.on_exchange(exchange, effect_on_line());
     const bool is_served = exchange.outcome == network::Outcome::served;
     if (is_served && exchange.kind == network::ExchangeKind::data && network_.state() == State::exchanging) {
       is_exchanging_ = true;
     }
     bad_run_ = is_served ? 0 : bad_run_ + 1;
-    if (!first_trouble_ && (!is_served || exchange.retries > 0)) first_trouble_ = exchange.end;
+    // Also where it was served and a sink did not take over its word.
+    if (!first_trouble_ && (!is_served || exchange.retries > 0 || statistics_.counts().refused > refused))
+      first_trouble_ = exchange.end;
     result_.longest_bad_run = std::max(result_.longest_bad_run, bad_run_);
     result_.poor_quality = result_.poor_quality || network_.reports_poor_quality();
     if (is_recovering_) ++recovery_exchanges_;
@@ -277,7 +280,8 @@ class Run final : private network::ExchangeWatcher {
                      fmt::format("recovery took {} exchanges, and recovery_cycles = {} allow {}",
                                  result_.recovery_exchanges, acceptance_.recovery_cycles, limit));
     }
-    if (result_.longest_bad_run == 0 && result_.counts.retried == 0) return Criterion::a;
+    const network::ErrorStatistics& counts = result_.counts;
+    if (result_.longest_bad_run == 0 && counts.retried == 0 && counts.refused == 0) return Criterion::a;
     return because(Criterion::b, "exchange_not_served_at_once", {}, first_trouble_);
   }
 
@@ -324,7 +328,7 @@ std::string_view name(Criterion criterion) {
 std::string_view text_of(Criterion criterion) {
   switch (criterion) {
     case Criterion::a:
-      return "every exchange was served at the first attempt";
+      return "every exchange was served at the first attempt, and its words were taken over";
     case Criterion::b:
       return "exchanges were rejected or repeated and old data held; it recovered by itself within its limit";
     case Criterion::c:

@@ -57,12 +57,32 @@ void judge_bursts(const Document& tests, Said& said) {
   add(has_criterion('C'), Verdict::fail, "criterion C");
   add(tests_that(tests, [](const Document& test) { return test.at("came_up") == false; }),
       Verdict::inconclusive, "the network did not come up");
+  add(tests_that(tests,
+                 [](const Document& test) {
+                   return test.at("came_up") == true && test.at("evidence").at("text") == "";
+                 }),
+      Verdict::inconclusive, "no burst met a receiver");
   if (said.sentence.empty()) add(has_criterion('B'), Verdict::warn, "criterion B at worst,");
 }
 
 void judge_channels(const Document& channels, Said& said) {
   constexpr double kRefuted = 1e-3;
+  constexpr std::uint64_t kFewExchanges = 100;
   if (!channels.empty()) said.verdict = std::max(said.verdict, Verdict::pass);
+  const auto add = [&](std::size_t count, Verdict verdict, const std::string& words) {
+    if (count == 0) return;
+    said.verdict = std::max(said.verdict, verdict);
+    add_words(said.sentence,
+              fmt::format("{} on {} of {}", words, count, several(channels.size(), "channel")));
+  };
+  add(tests_that(channels, [](const Document& test) { return test.at("bus_stops") > 0; }), Verdict::fail,
+      "the bus stopped");
+  add(tests_that(channels,
+                 [](const Document& test) {
+                   return test.at("came_up") == false || test.at("ledger").at("sent") < kFewExchanges ||
+                          !has_theory(test);
+                 }),
+      Verdict::inconclusive, "too little to tell");
   const std::size_t refuted = tests_that(channels, [](const Document& test) {
     return test.at("came_up") == true &&
            ((has_theory(test) && test.at("chance_of_count") < kRefuted) || !works_again(test));
@@ -83,7 +103,10 @@ Said said_by_emc(const Document& document) {
     add_words(said.sentence, "the campaign under bursts is incomplete");
   }
   if (said.sentence.empty()) {
-    said.sentence = fmt::format("criterion A in {}", several(document.at("tests").size(), "burst test"));
+    const std::size_t tests = document.at("tests").size();
+    said.sentence = tests > 0 ? fmt::format("criterion A in {}", several(tests, "burst test"))
+                              : fmt::format("no more wrong words than theory lets pass on {}",
+                                            several(document.at("channels").size(), "channel"));
   }
   return said;
 }

@@ -82,8 +82,11 @@ Said said_by_run(const Run& run) {
   const bool is_whole = run.is_complete() && count(run).not_run() == 0;
   if (sums.judged == 0 || !is_whole) said.verdict = std::max(said.verdict, Verdict::inconclusive);
   if (!is_whole) {
-    said.sentence += fmt::format("; the run is incomplete: {} of {} have no verdict", count(run).not_run(),
-                                 several(sums.selected, "selected case"));
+    const std::size_t not_run = count(run).not_run();
+    said.sentence += "; the run is incomplete: ";
+    said.sentence += not_run == 0 ? run.identity.incomplete_because
+                                  : fmt::format("{} of {} have no verdict", not_run,
+                                                several(sums.selected, "selected case"));
   }
   if (!run.identity.stale_expectations.empty()) {
     said.verdict = std::max(said.verdict, Verdict::warn);

@@ -101,6 +101,19 @@ TEST(JoinedVerdict, BurstsSayThatTheBusStopped) {
   EXPECT_EQ(of_document(emc).verdict, Verdict::fail);
 }
 
+TEST(JoinedVerdict, BurstsThatMetNoReceiverAndChannelsThatStoppedAreNoPass) {
+  OrderedJson emc = quiet_emc();
+  emc["tests"][0]["evidence"]["text"] = "";
+  EXPECT_EQ(of_document(emc).verdict, Verdict::inconclusive);
+  EXPECT_EQ(of_document(emc).documents[0].sentence, "no burst met a receiver in 1 of 16 burst tests");
+  emc = quiet_emc();
+  emc["channels"][0]["bus_stops"] = 14;
+  EXPECT_EQ(of_document(emc).verdict, Verdict::fail);
+  emc = quiet_emc();
+  emc["channels"][0]["ledger"]["sent"] = 20;
+  EXPECT_EQ(of_document(emc).verdict, Verdict::inconclusive);
+}
+
 TEST(JoinedVerdict, OtherDocumentsCountAsWell) {
   OrderedJson measurement = OrderedJson::parse(measurement_json(sample_measurement()));
   for (const auto& [agreement, verdict] :

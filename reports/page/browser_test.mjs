@@ -313,7 +313,7 @@ await check("each document has its section, its charts and its command", async (
     await chart.locator("canvas").waitFor();
   }
   for (const { content } of data.documents.filter((one) => one.content.schema === "fieldproof/emc/1")) {
-    for (const caveat of content.unverified) expect((await page.locator("#immunity").innerText()).includes(caveat), `not told: ${caveat}`);
+    for (const caveat of content.unverified) expect((await page.locator("body").innerText()).includes(caveat), `not told: ${caveat}`);
   }
 });
 

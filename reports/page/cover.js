@@ -65,17 +65,18 @@ function rowsOfRun(run, said) {
       limit: `${isOneSided(one) ? "at most" : `${number(one.low)} to`} ${number(one.high)} ${one.unit}`, margin: `${number(one.margin)} ${one.unit}`}))];
 }
 
-// Of each quantity the series that deviates most.
+// Of each quantity the series that deviates most, in the quiet phase: bursts and recovery decide nothing.
 function rowsOfMeasurement({ name, content }) {
   const worst = new Map();
   for (const one of content.series.flatMap((series) => series.comparisons)) {
+    if ((one.phase ?? "quiet") !== "quiet") continue;
     const known = worst.get(one.quantity);
     if (!known || Math.abs(one.deviation_percent) > Math.abs(known.deviation_percent)) worst.set(one.quantity, one);
   }
   const ofWorst = (one) => {
     const over = one.is_bound ? one.deviation_percent : Math.abs(one.deviation_percent);
-    return {test: `${name}: ${one.quantity}`, result: `${number(one.measured)} ${one.unit}`,
-      limit: `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit}${one.is_bound ? "" : ` \u00b1 ${number(content.tolerance_percent)} % ${one.whole}`}`,
+    return {test: `${name}: ${one.quantity}`, result: `${number(one.measured)} ${one.unit} (${one.agreement})`,
+      limit: `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit} ${one.is_bound ? "+" : "\u00b1"} ${number(content.tolerance_percent)} % ${one.whole}`,
       margin: `${fixed(content.tolerance_percent - over, 2)} % ${one.whole}`};
   };
   return [...worst.values()].map(ofWorst);
@@ -85,17 +86,20 @@ function rowsOfBursts({ name, content }) {
   const levels = distinct(content.tests.map((test) => test.level));
   const rows = levels.map((level) => {
     const tests = content.tests.filter((test) => test.level === level);
-    const worst = tests.map((test) => (test.came_up ? test.criterion : "did not come up")).sort().at(-1);
+    const judged = tests.filter((test) => test.came_up);
+    const worst = judged.map((test) => test.criterion).sort().at(-1);
     const stops = tests.filter((test) => test.bus_stops > 0).length;
-    return {test: `${name}: bursts, level ${level}`, result: `criterion ${worst}${stops ? `, the bus stopped in ${part(stops, tests.length)} tests` : ""}`,
+    const said = [worst && `criterion ${worst}`, stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
+      judged.length < tests.length && `the network did not come up in ${part(tests.length - judged.length, tests.length)} tests`];
+    return {test: `${name}: bursts, level ${level}`, result: said.filter(Boolean).join(", "),
       limit: "B, and no stop", margin: ""};
   });
   const recovered = content.tests.filter((test) => test.came_up && test.recovered_by_itself).map((test) => test.recovery_cycles);
   if (recovered.length > 0 && content.recovery_limit) {
     const { exchanges, exchange } = content.recovery_limit;
     const most = Math.max(...recovered);
-    rows.push({test: `${name}: recovery after the last pulse, the longest`, result: plural(most, exchange), limit: plural(exchanges, exchange),
-      margin: plural(exchanges - most, exchange)});
+    rows.push({test: `${name}: recovery after the last pulse, the longest`, result: `${number(most)} \u00d7 ${exchange}`,
+      limit: `${number(exchanges)} \u00d7 ${exchange}`, margin: `${number(exchanges - most)} \u00d7 ${exchange}`});
   }
   return rows;
 }

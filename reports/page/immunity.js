@@ -152,8 +152,6 @@ function campaign({ name, content }) {
         ["Seed", content.seed], ["Each test", `${number(content.duration_s)} s`]]),
       documentCommand(content, name),
       content.is_complete ? null : notice("The campaign ended before all of its tests were made: what is not here was not tested."),
-      content.unverified.length ? notice(element("strong", {}, "Unverified and uncalibrated"),
-          element("ul", {}, content.unverified.map((text) => element("li", {}, text)))) : null,
       thresholdsPart(content),
       hasBursts ? [heatMap(content.tests), criteriaPart(content)] : null, sensitivityPart(content), totalPart(content),
       content.channels.length ? channels(content.channels) : null, hasBursts ? [balance(content.tests), ledger(content.tests)] : null);
