@@ -343,7 +343,7 @@ TEST_F(Schemas, OfACampaign) {
       good(budget(R"("time": "1.5 h", "jobs": 1)")),
       bad_to_the_reader_only(budget(R"("time": "long")")),
       bad(budget(R"("jobs": 0)")),
-      good(budget(R"("confidence": {"rate": 1e-7, "level": 0.99, "of": "corrupted"})")),
+      good(budget(R"("confidence": {"rate": 1e-7, "level": 0.99, "of": "data_differed"})")),
       bad(budget(R"("confidence": {"level": 0.9})")),
       bad(budget(R"("confidence": {"rate": 1})"))};
   for (const auto& file : fs::directory_iterator(kSourceFolder / "examples/campaigns"))
