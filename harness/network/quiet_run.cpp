@@ -34,7 +34,9 @@ class Run final : private ExchangeWatcher {
   QuietRun result() const { return run_; }
 
  private:
-  void on_exchange(const Exchange& exchange) override { statistics_.on_exchange(exchange, LineEffect::untouched); }
+  void on_exchange(const Exchange& exchange) override {
+    statistics_.on_exchange(exchange, LineEffect::untouched);
+  }
   void on_shown(std::size_t signal, std::uint16_t word, kernel::Time when) override {
     statistics_.on_shown(signal, word, when);
   }
