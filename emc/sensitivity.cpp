@@ -7,12 +7,12 @@
 namespace fieldproof::emc {
 
 std::vector<double> values_around(const CouplingParameter& parameter, const Coupling& coupling) {
-  constexpr std::array kSteps{-2, -1, 1, 2};
+  constexpr std::array kSensitivitySteps{-2, -1, 1, 2};
   constexpr double kStepDb = 3;
   const double value = coupling.*parameter.member;
   std::vector<double> values;
   if (parameter.standing == Standing::standard || !std::isfinite(value)) return values;
-  for (const int step : kSteps) {
+  for (const int step : kSensitivitySteps) {
     const double tried = parameter.unit == "dB" ? value + step * kStepDb : value * std::exp2(step / 2.0);
     const double within = std::clamp(tried, parameter.smallest, parameter.largest);
     if (within != value && std::ranges::find(values, within) == values.end()) values.push_back(within);
