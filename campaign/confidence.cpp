@@ -4,14 +4,6 @@
 #include <bit>
 
 namespace fieldproof::campaign {
-namespace {
-
-std::uint64_t count_of(const Counts& counts, std::string_view name) {
-  const auto found = counts.find(name);
-  return found == counts.end() ? 0 : found->second;
-}
-
-}  // namespace
 
 bool Confidence::add(const Outcome& outcome) {
   if (decision_ != Decision::open) return true;

@@ -19,11 +19,6 @@ using nlohmann::ordered_json;
 constexpr double kConfidence = 0.95;
 constexpr std::size_t kShown = 20;  // jobs that did not end well
 
-std::uint64_t number_in(const Counts& counts, std::string_view name) {
-  const auto found = counts.find(name);
-  return found == counts.end() ? 0 : found->second;
-}
-
 std::string_view word_of(Decision decision) {
   constexpr std::array<std::string_view, 3> kWords = {"open", "below", "above"};
   return kWords.at(static_cast<std::size_t>(decision));
@@ -37,7 +32,7 @@ struct WrongShare {
 };
 
 WrongShare share_of(const Report& report, const Counts& ledger, std::string_view whole) {
-  WrongShare share{number_in(ledger, "wrong_cycles"), number_in(ledger, whole), 1};
+  WrongShare share{count_of(ledger, "wrong_cycles"), count_of(ledger, whole), 1};
   if (share.total > 0 && report.bound)
     share.upper = report.bound(std::min(share.wrong, share.total), share.total, kConfidence);
   return share;

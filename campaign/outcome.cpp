@@ -72,6 +72,11 @@ void add(const Counts& more, Counts& sum) {
   for (const auto& [name, number] : more) sum[name] += number;
 }
 
+std::uint64_t count_of(const Counts& counts, std::string_view name) {
+  const auto found = counts.find(name);
+  return found == counts.end() ? 0 : found->second;
+}
+
 Outcome outcome_of(const JobResult& result) {
   Outcome outcome;
   outcome.id = result.id;

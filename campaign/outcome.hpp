@@ -38,5 +38,7 @@ Outcome outcome_from_json(std::string_view text, const std::string& place);
 
 // Adds each number to the one of the same name.
 void add(const Counts& more, Counts& sum);
+// 0 where there is none.
+std::uint64_t count_of(const Counts& counts, std::string_view name);
 
 }  // namespace fieldproof::campaign
