@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kProbesPerTest = 20;
 
-// "factor 0.5 to 2 of ..., or": a value as a person writes it.
+// "200 pF".
 std::string with_unit(double value, std::string_view unit) {
   return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
