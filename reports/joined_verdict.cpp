@@ -69,6 +69,7 @@ Verdict by_exit_code(int code) {
     case 3:
       return Verdict::warn;
     case 5:
+    case 70:
       return Verdict::error;
     default:
       return Verdict::none;

@@ -77,6 +77,8 @@ TEST(JoinedVerdict, AnExpectedFailurePassesAndAStrictRunDoesNot) {
   EXPECT_EQ(joined_verdict(content).verdict, Verdict::warn);
   content.runs[0].stored.run.identity.exit_code = 1;
   EXPECT_EQ(joined_verdict(content).verdict, Verdict::fail);
+  content.runs[0].stored.run.identity.exit_code = 70;
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::error);
 }
 
 TEST(JoinedVerdict, BurstsSayThatTheBusStopped) {
