@@ -178,6 +178,7 @@ class Campaign {
     const std::size_t delivered = work.run();
     session_.terminal.end_progress();
     done_.is_complete = delivered == planned_.size() && done_.tests.size() == planned_.size();
+    add_to_search();
     session_.terminal.print(emc_hint(done_));
     if (!done_.has_bursts || !session_.settings.is_set("sensitivity") || !done_.is_complete) return;
     const auto highest = std::ranges::max_element(
@@ -224,6 +225,19 @@ class Campaign {
     for (const EmcTest& test : planned_) top = std::max(top, test.level.open_circuit_volts());
     done_.search = search_thresholds(probing(), response, top);
     session_.terminal.print(search_text(*done_.search));
+  }
+
+  // The tests of the table last longer than probes, and may show what these did not.
+  void add_to_search() {
+    if (!done_.search) return;
+    emc::Thresholds& found = done_.search->thresholds;
+    const std::string before = emc::text_of(found);
+    for (const EmcTest& test : done_.tests) {
+      if (test.result.came_up && test.result.was_disturbed())
+        emc::take(found, test.level.open_circuit_volts(), test.result.criterion);
+    }
+    if (const std::string now = emc::text_of(found); now != before)
+      session_.terminal.print(fmt::format("with the tests above: {}\n", now));
   }
 
   // A test of each repetition and polarity of the campaign.

@@ -12,25 +12,31 @@ namespace {
 constexpr double kRung = 2;
 constexpr double kCloseEnough = 1.05;  // ratio of two voltages
 
+// The highest voltage of an A below all that is worse.
+void settle_a(Thresholds& found) {
+  const auto& from_b = found.seen_from[static_cast<std::size_t>(Criterion::b)];
+  found.a_up_to_volts = found.certain_volts;
+  for (const auto& [volts, worst] : found.probes) {
+    if (worst == Criterion::a && (!from_b || volts < *from_b))
+      found.a_up_to_volts = std::max(found.a_up_to_volts, volts);
+  }
+}
+
 class ThresholdSearch {
  public:
   ThresholdSearch(double from, double top, const Probe& probe) : probe_(probe) {
     found_.top_volts = top;
-    found_.a_up_to_volts = std::min(std::max(0.0, std::ceil(from) - 1), top);
+    found_.certain_volts = std::min(std::max(0.0, std::ceil(from) - 1), top);
     climb();
     for (const Criterion criterion : {Criterion::b, Criterion::c, Criterion::d}) narrow(criterion);
-    const auto& from_b = found_.seen_from[static_cast<std::size_t>(Criterion::b)];
-    for (const auto& [volts, worst] : found_.probes) {
-      if (worst == Criterion::a && (!from_b || volts < *from_b))
-        found_.a_up_to_volts = std::max(found_.a_up_to_volts, volts);
-    }
+    settle_a(found_);
   }
 
   const Thresholds& found() const { return found_; }
 
  private:
   void climb() {
-    rungs_.push_back(found_.a_up_to_volts);
+    rungs_.push_back(found_.certain_volts);
     while (found_.is_complete && rungs_.back() < found_.top_volts) {
       const double next = std::min(found_.top_volts, std::max(1.0, std::round(rungs_.back() * kRung)));
       at(next);
@@ -71,6 +77,12 @@ class ThresholdSearch {
 
 Thresholds find_thresholds(double from, double top, const Probe& probe) {
   return ThresholdSearch(from, top, probe).found();
+}
+
+void take(Thresholds& found, double volts, Criterion worst) {
+  for (std::size_t n = static_cast<std::size_t>(Criterion::b); n <= static_cast<std::size_t>(worst); ++n)
+    found.seen_from.at(n) = std::min(found.seen_from.at(n).value_or(volts), volts);
+  settle_a(found);
 }
 
 std::string text_of(const Thresholds& thresholds) {

@@ -23,6 +23,7 @@ namespace fieldproof::emc {
 struct Thresholds {
   bool is_complete = true;
   double top_volts = 0;
+  double certain_volts = 0;  // up to which no output can be wrong
   double a_up_to_volts = 0;  // the highest voltage that was found A below everything else
   // By criterion: the lowest voltage at which it, or a worse one, was seen.
   std::array<std::optional<double>, 4> seen_from{};
@@ -36,6 +37,9 @@ using Probe = std::function<std::optional<Criterion>(double volts)>;
 
 // `from` is where an output can be wrong first. Voltages are whole volts.
 Thresholds find_thresholds(double from, double top, const Probe& probe);
+
+// What longer tests have shown counts, too: a voltage, and the worst criterion there.
+void take(Thresholds& found, double volts, Criterion worst);
 
 // "A up to 47 V, B from 52 V, C seen from 1504 V, D not seen up to 4000 V"
 std::string text_of(const Thresholds& thresholds);

@@ -38,6 +38,18 @@ TEST(ThresholdSearch, SaysWhereNothingComesAndWhereAllComesAtOnce) {
   EXPECT_EQ(text_of(find_thresholds(50, 4000, steps_at(1, 1, 1))), "A up to 49 V, D seen from 51 V");
 }
 
+TEST(ThresholdSearch, LongerTestsThatShowMoreBringItDown) {
+  Thresholds found = find_thresholds(40.5, 4000, steps_at(300, 1e9, 1e9));
+  take(found, 1000, Criterion::a);
+  EXPECT_NEAR(*found.seen_from[1], 300, 15);
+  take(found, 250, Criterion::c);
+  EXPECT_EQ(*found.seen_from[1], 250);
+  EXPECT_EQ(*found.seen_from[2], 250);
+  EXPECT_FALSE(found.seen_from[3].has_value());
+  EXPECT_LT(found.a_up_to_volts, 250);
+  EXPECT_GE(found.a_up_to_volts, 40);
+}
+
 TEST(ThresholdSearch, OneThatIsStoppedSaysSo) {
   int left = 3;
   const Thresholds found = find_thresholds(
