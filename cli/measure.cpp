@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
@@ -97,6 +98,16 @@ class BurstsWhileMeasuring {
   emc::BurstClamp clamp_;
 };
 
+// Those that are no references, with blanks between them.
+std::string other_stations(const Settings& settings) {
+  std::vector<std::string> others = settings.list("iut");
+  std::erase_if(others, [](const std::string& text) {
+    return text == conformance::kReferenceUri ||
+           text.ends_with(fmt::format("={}", conformance::kReferenceUri));
+  });
+  return fmt::format("{}", fmt::join(others, " "));
+}
+
 measure::Measurement measured_by(Session& session, std::stop_token stop) {
   const ProtocolEntry& row = network_entry_of(session, "measure");
   const std::unique_ptr<conformance::PlannedNetwork> planned = plan_network(session, row);
@@ -115,14 +126,8 @@ measure::Measurement measured_by(Session& session, std::stop_token stop) {
   measure::Measurement measured =
       network::measure_network([&](std::uint64_t seed) { return planned->make(seed); }, settings);
   session.terminal.end_progress();
+  measured.implementations = other_stations(session.settings);
   return measured;
-}
-
-bool has_other_stations(const Settings& settings) {
-  return std::ranges::any_of(settings.list("iut"), [](const std::string& text) {
-    return text != conformance::kReferenceUri &&
-           !text.ends_with(fmt::format("={}", conformance::kReferenceUri));
-  });
 }
 
 }  // namespace
@@ -136,7 +141,7 @@ int measure_protocol(Session& session) {
   if (interruption.signal() != 0) return kSignalBase + interruption.signal();
   if (measured.series.empty()) return kNothingJudged;
   int code = measured.failures.empty() ? code_of(measure::agreement(measured)) : kFailed;
-  if (code == kFailed && measured.failures.empty() && has_other_stations(session.settings)) {
+  if (code == kFailed && measured.failures.empty() && !measured.implementations.empty()) {
     session.terminal.print(
         "The closed forms are those of the reference stations. Others may be faster or slower within what "
         "the "

@@ -125,6 +125,9 @@ TEST(JoinedVerdict, OtherDocumentsCountAsWell) {
     measurement["failures"] = OrderedJson::array();
     EXPECT_EQ(of_document(measurement).verdict, verdict) << agreement;
   }
+  // The theory is that of references: another station may be faster or slower.
+  measurement["implementations"] = "node@3=exec:./node";
+  EXPECT_EQ(of_document(measurement).verdict, Verdict::inconclusive);
   measurement["agreement"] = "holds";
   measurement["failures"] = {"50 Hz: the bus stopped for good"};
   EXPECT_EQ(of_document(measurement).documents[0].sentence,

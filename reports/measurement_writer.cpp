@@ -183,6 +183,7 @@ std::string measurement_json(const measure::Measurement& measurement) {
                {"failures", Json::array()},
                {"conditions", Json::array()},
                {"series", Json::array()}};
+  if (!measurement.implementations.empty()) json["implementations"] = as_utf8(measurement.implementations);
   for (const measure::Phase phase : measure::kPhases) {
     if (const auto of_phase = agreement(measurement, phase)) json["phases"][name(phase)] = name(*of_phase);
   }

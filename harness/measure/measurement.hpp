@@ -54,6 +54,8 @@ struct Condition {
 struct Measurement {
   std::string protocol;
   std::string network;
+  // Others than references in it, as they were named; a difference is no failure of theirs. Empty: none.
+  std::string implementations{};
   std::uint64_t seed = 0;
   double tolerance_percent = 0;
   std::vector<Condition> conditions;
