@@ -24,7 +24,11 @@ constexpr double kLongestSeconds = 1e7;
 
 class CountsReader {
  public:
-  CountsReader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
+  // Spreadsheets write a mark of their encoding in front.
+  CountsReader(std::string_view text, const std::string& name) : rest_(text), name_(name) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    if (rest_.starts_with(kMark)) rest_.remove_prefix(kMark.size());
+  }
 
   std::vector<emc::CountedFrames> read() {
     if (rest_.size() > kMostOctets) refuse("the file is larger than 1 MiB, and holds no counts");
