@@ -285,7 +285,7 @@ class Campaign {
     test.bursts.settings.repetition = planned_[n].repetition;
     test.bursts.settings.polarity = planned_[n].polarity;
     test.flip_probability = planned_[n].flip_probability;
-    test.seed = kernel::Random(done_.seed).split(n).seed();
+    test.seed = seed_of(test, done_.seed);
     return test;
   }
 

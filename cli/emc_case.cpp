@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -158,6 +159,18 @@ emc::ImmunitySettings immunity_settings(const EmcCase& test, std::stop_token sto
   settings.seed = test.seed;
   settings.stop = std::move(stop);
   return settings;
+}
+
+std::uint64_t seed_of(const EmcCase& test, std::uint64_t campaign_seed) {
+  const kernel::Random random(campaign_seed);
+  if (test.flip_probability > 0)
+    return random.split("flips").split(std::bit_cast<std::uint64_t>(test.flip_probability)).seed();
+  const emc::BurstSettings& bursts = test.bursts.settings;
+  return random.split("bursts")
+      .split(std::bit_cast<std::uint64_t>(bursts.level.open_circuit_volts()))
+      .split(static_cast<std::uint64_t>(bursts.repetition))
+      .split(static_cast<std::uint64_t>(bursts.polarity))
+      .seed();
 }
 
 fault::Plan plan_with(const FlippedBits& bits) {

@@ -60,6 +60,9 @@ struct EmcCase {
 
 EmcEnd end_of(const emc::ImmunityResult& result);
 emc::ImmunitySettings immunity_settings(const EmcCase& test, std::stop_token stop = {});
+// Of the test that is disturbed like this one in a campaign of that seed, whichever other tests the campaign
+// has.
+std::uint64_t seed_of(const EmcCase& test, std::uint64_t campaign_seed);
 
 void write_emc_case(const std::filesystem::path& file, const EmcCase& test);
 // Its network is planned; with the limits of the session, and where that is asked for with its `--iut`.

@@ -50,7 +50,7 @@ TEST_F(StoredEmc, IsMadeSmallInEachProtocol) {
   for (const Campaign& row :
        {Campaign{"interbus", "slave@1=mutant:does_not_mark_status", bursts("5s", "+"), "wrong_word_accepted"},
         Campaign{"interbus", "master=mutant:silent_after_error", bursts("1s", "+"), "dead_after_start"},
-        Campaign{"valve_bus", "node@3=mutant:write_not_checked", bursts("5s", "-"), "wrong_word_accepted"},
+        Campaign{"valve_bus", "node@3=mutant:write_not_checked", bursts("20s", "-"), "wrong_word_accepted"},
         Campaign{"fieldbus_dll",
                  "ff_device@1=mutant:takes_violated_frames",
                  {"--channel", "bsc:0.003", "--duration", "40s"},

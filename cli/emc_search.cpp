@@ -32,11 +32,10 @@ kernel::Duration EmcProbing::duration_for(kernel::Duration test) {
 std::optional<emc::Criterion> EmcProbing::worst(const emc::LineResponse& response,
                                                 const emc::Level& level) const {
   std::vector<EmcCase> made = tests;
-  const auto volts = static_cast<std::uint64_t>(level.open_circuit_volts());
   for (std::size_t n = 0; n < made.size(); ++n) {
     made[n].bursts.settings.level = level;
     made[n].duration = duration;
-    made[n].seed = kernel::Random(made[n].seed).split("probe").split(volts).split(n).seed();
+    made[n].seed = seed_of(made[n], kernel::Random(made[n].seed).split("probe").seed());
   }
   const auto results = run(response, std::move(made));
   if (!results) return std::nullopt;

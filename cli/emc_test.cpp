@@ -50,6 +50,16 @@ TEST_F(EmcVerb, TheNumberOfThreadsChangesNothing) {
   EXPECT_FALSE(read("one.json").empty());
 }
 
+TEST_F(EmcVerb, ATestIsTheSameAloneAndAmongOthers) {
+  ASSERT_EQ(call({"--test-levels", "1..4", "--json", "all.json"}).exit_code, 0);
+  ASSERT_EQ(
+      call({"--test-levels", "3", "--repetition", "5kHz", "--polarity", "-", "--json", "one.json"}).exit_code,
+      0);
+  const nlohmann::json alone = json("one.json").at("tests").at(0);
+  const nlohmann::json tests = json("all.json").at("tests");
+  EXPECT_EQ(std::ranges::count(tests, alone), 1) << alone;
+}
+
 TEST_F(EmcVerb, EndsWithOneWhereTheCriterionIsWorseThanAllowed) {
   EXPECT_EQ(call({"--test-levels", "3", "--worst", "A"}).exit_code, 1);
   EXPECT_EQ(call({"--test-levels", "3", "--worst", "A", "--profile", "C"}).exit_code, 0);
