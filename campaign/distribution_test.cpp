@@ -144,6 +144,19 @@ TEST(Distribution, MakesAJobThatKillsItsProcessThreeTimesAFindingAndGoesOn) {
   EXPECT_NE(text.find("\"killed\": 1,"), std::string::npos);
 }
 
+TEST(WorstExitCode, AJobThatJudgedNothingIsNotHiddenByOthersThatPass) {
+  const auto worst_of = [](const std::vector<int>& codes) {
+    std::map<std::uint64_t, Outcome> outcomes;
+    for (const int code : codes) outcomes[outcomes.size()].exit_code = code;
+    return worst_exit_code(outcomes);
+  };
+  EXPECT_EQ(worst_of({0, 4, 0}), 4);
+  EXPECT_EQ(worst_of({4, 2, 0}), 2);
+  EXPECT_EQ(worst_of({0, 0}), 0);
+  EXPECT_EQ(worst_of({0, 5, 1}), 5);
+  EXPECT_EQ(worst_of({0, 99}), 70) << "a code that no verb has";
+}
+
 TEST(Distribution, EndsWhereItIsDecided) {
   const std::string text = undisturbed(true);
   EXPECT_NE(text.find("\"decision\": \"below\""), std::string::npos) << text;

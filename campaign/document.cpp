@@ -121,7 +121,7 @@ Totals totals_of(const std::map<std::uint64_t, Outcome>& outcomes) {
 }
 
 int worst_exit_code(const std::map<std::uint64_t, Outcome>& outcomes) {
-  constexpr std::array kOrder = {70, 64, 65, 74, 5, 1, 3, 2, 0, 4};
+  constexpr std::array kOrder = {70, 64, 65, 74, 5, 1, 3, 2, 4, 0};
   std::size_t worst = kOrder.size() - 1;
   for (const auto& [id, outcome] : outcomes) {
     const auto* const at = std::ranges::find(kOrder, outcome.exit_code);

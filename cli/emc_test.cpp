@@ -195,6 +195,7 @@ TEST_F(EmcVerb, ACampaignThatEndsEarlySaysSo) {
   const Called called = call({"--duration", "30s", "--max-time", "1ms", "--json", "short.json"});
   EXPECT_NE(called.exit_code, 0);
   EXPECT_FALSE(json("short.json").at("is_complete").get<bool>());
+  EXPECT_NE(called.out.find("no test came to its end"), std::string::npos) << called.out;
   expect_valid({"short.json"}, "emc");
 }
 

@@ -404,6 +404,7 @@ std::string emc_hint(const EmcCampaign& campaign) {
 }
 
 std::string emc_summary(const EmcCampaign& campaign) {
+  if (campaign.tests.empty()) return "no test came to its end: nothing is shown\n";
   const EmcTotal total = total_of(campaign);
   std::string text;
   if (campaign.has_bursts) {

@@ -63,6 +63,15 @@ fs::path claim_folder(const fs::path& parent, const std::string& stem) {
   }
 }
 
+// What a run writes first; creating it claims a folder that is there already, where two begin at once.
+void claim_results(const fs::path& folder) {
+  const fs::path first = folder / "results.json";
+  const int number = ::open(first.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (number < 0 && errno == EEXIST) refuse(folder, "another run has begun here");
+  if (number < 0) refuse_output(folder, "nothing can be created in it", std::strerror(errno));
+  ::close(number);
+}
+
 // Where a file is written until it is whole.
 fs::path part_of(const fs::path& path) {
   fs::path beside = path;
@@ -208,6 +217,7 @@ RunDirectory RunDirectory::create_at(const fs::path& path, const Manifest& manif
     refuse(path, "the path is taken; name one that does not exist, or an empty directory");
   }
   create_folders(path);
+  claim_results(path);
   const RunDirectory run(path);
   run.begin(manifest, identity);
   return run;

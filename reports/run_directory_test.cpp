@@ -9,6 +9,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
+#include <vector>
 
 #include "harness/judge/journal.hpp"
 #include "harness/kernel/arbitrary_text.hpp"
@@ -82,6 +85,24 @@ TEST(RunDirectory, RefusesWhatIsNoRun) {
             here + "/none: the file cannot be read: No such file or directory");
   EXPECT_EQ(refusal_of([&] { read_text_file(folder.path()); }),
             here + ": the file cannot be read: it is a folder; name a file in it");
+}
+
+TEST(RunDirectory, OneOfManyThatBeginInOneFolderHasIt) {
+  const TemporaryFolder folder;
+  std::atomic<int> begun = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (int n = 0; n < 8; ++n) {
+      threads.emplace_back([&] {
+        try {
+          RunDirectory::create_at(folder.path() / "x", sample_manifest(), sample_run().identity);
+          ++begun;
+        } catch (const kernel::Error&) {
+        }
+      });
+    }
+  }
+  EXPECT_EQ(begun, 1);
 }
 
 TEST(WrittenFile, ALinkStaysAndAPipeIsWrittenTo) {
