@@ -114,8 +114,9 @@ struct CycleKind {
   kernel::Duration theory{};  // zero where none holds; `form` says why
   std::string form;           // where the closed form comes from, in words
   bool is_bound = false;      // it is the most that may be, not the time
-  kernel::Duration jitter{};  // the most by which these times may differ
-  bool is_delay = false;      // it has a begin and an end of its own
+  kernel::Duration
+      jitter{};           // the most by which these times may differ; zero: no more than instants are rounded
+  bool is_delay = false;  // it has a begin and an end of its own
 };
 
 // How soon the installation has to exchange all data again.

@@ -347,8 +347,8 @@ std::vector<Comparison> compare_cycles(const CycleKind& kind, const Distribution
        times.standard_deviation() / kPerMicrosecond / std::sqrt(static_cast<double>(times.count()))});
   const bool has_jitter = kind.jitter > Duration::zero();
   rows.push_back({fmt::format("jitter of the {}, peak to peak{}", kind.name, has_jitter ? ", at most" : ""),
-                  unit, us(kind.jitter), us(times.max() - times.min()), cycle, std::string(kOfCycle), 0,
-                  has_jitter});
+                  unit, us(kind.jitter), us(times.max() - times.min()), has_jitter ? us(kind.jitter) : cycle,
+                  std::string(has_jitter ? kOfTheory : kOfCycle), 0, has_jitter});
   if (!is_sampling) return rows;
   const double highest = measure::highest_frequency_hz(kind.theory + kind.jitter);
   rows.push_back({"highest frequency without loss, by the longest cycle", "Hz", highest,

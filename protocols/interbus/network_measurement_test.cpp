@@ -197,6 +197,22 @@ TEST(NetworkMeasurementTest, AWrongTheoryDiffers) {
             measure::Agreement::differs);
 }
 
+// A bound of jitter is far less than the cycle: what is five times over it is no agreement.
+TEST(NetworkMeasurementTest, JitterIsHeldAgainstItsOwnBound) {
+  const network::CycleKind kind{
+      .name = "macrocycle", .theory = kernel::kSecond, .form = "schedule", .jitter = kernel::kMillisecond};
+  const auto with_jitter = [&](kernel::Duration jitter) {
+    measure::Distribution times;
+    for (int n = 0; n < 1000; ++n) {
+      times.add(kind.theory);
+      times.add(kind.theory + jitter);
+    }
+    return agreement(compare_cycles(kind, times, false), 2, measure::Phase::quiet);
+  };
+  EXPECT_EQ(with_jitter(kernel::kMillisecond), measure::Agreement::holds);
+  EXPECT_EQ(with_jitter(5 * kernel::kMillisecond), measure::Agreement::differs);
+}
+
 TEST(NetworkMeasurementTest, WhatTheInputNeverHadIsNoAgreement) {
   SignalRecord record = run_at(50, LatchModel::frame_edges, kSecond);
   record.paths.front().skew.foreign_words = 1;

@@ -150,12 +150,11 @@ void RunningNetwork::find_cycle() {
   // Between any two commands a refresh may come.
   if (is_refreshed)
     time += static_cast<std::int64_t>(steps_.size()) * reference_write_time(rules, seats_.back().way);
-  const Duration rounding = kernel::kNanosecond * static_cast<std::int64_t>(2 * steps_.size());
   cycles_ = {{"poll cycle", time,
               is_refreshed ? "the polls and writes of one cycle, and a refresh in front of each of them"
                            : "the polls and writes of one cycle, each by its frames and silences, after what "
                              "it waits for",
-              !steady_cycle_.is_steady, rounding}};
+              !steady_cycle_.is_steady}};
 }
 
 // ---- the installation ----
