@@ -53,6 +53,7 @@ RunningNetwork::RunningNetwork(const NetworkDescription& description, std::uint6
   segment::MediumPort& place = line_.attach("host/in", host_number_, 0, {});
   place.tap_driven(host_drives_);
   place.tap_driven(attendance_.expect("host"));
+  if (host_->capabilities().senses_activity) place.sense_activity();
   host_->wire(place, *this);
   places_.push_back({.name = place.name(),
                      .receiver = &place,
@@ -84,6 +85,7 @@ void RunningNetwork::add_node(const NodeDescription& node, const RunningStations
   seat.number = segment_.attach(*seat.device, fmt::format("node@{}", position));
   segment::MediumPort& place = line_.attach(fmt::format("node@{}/in", position), seat.number, 0, seat.way);
   place.tap_driven(node_drives_);
+  if (seat.device->capabilities().senses_activity) place.sense_activity();
   if (is_under_test) place.tap_driven(attendance_.expect(fmt::format("node@{}", position)));
   seat.device->wire(place, seat.block);
   const bool is_exposed = repeaters_before(description_.rules, position - 1) == 0;

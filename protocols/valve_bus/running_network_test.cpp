@@ -33,6 +33,17 @@ struct SwapsBoards final : Node {
   }
 };
 
+// Answers only what it heard begin.
+struct ListensForActivity final : Node {
+  using Node::Node;
+  iut::Capabilities capabilities() const override { return {.senses_activity = true}; }
+  void on_activity(segment::PortIndex, bool begins, kernel::Time) override { has_heard |= begins; }
+  void transmit(std::span<const std::uint8_t> octets, kernel::Time at) override {
+    if (std::exchange(has_heard, false)) Node::transmit(octets, at);
+  }
+  bool has_heard = false;
+};
+
 template <typename Of>
 RunningStations at(std::size_t wanted) {
   return {.make_node = [wanted](std::size_t position,
@@ -46,6 +57,13 @@ TEST(ValveBusRunningNetwork, DoesNotComeUpWithANodeThatNeverAnswers) {
   RunningNetwork network(NetworkDescription::even(0, 4, 100), 1, at<NeverAnswers>(3));
   EXPECT_FALSE(network::run_quietly(network, 10, 1).came_up);
   EXPECT_NE(network.complaint().find("node@3 did not"), std::string::npos) << network.complaint();
+}
+
+TEST(ValveBusRunningNetwork, ANodeThatAsksForActivityHearsTheLineBegin) {
+  RunningNetwork network(NetworkDescription::even(0, 4, 100), 1, at<ListensForActivity>(3));
+  const network::QuietRun run = network::run_quietly(network, 10, 1);
+  ASSERT_TRUE(run.came_up) << network.complaint();
+  EXPECT_EQ(run.counts.missing, 0U);
 }
 
 TEST(ValveBusRunningNetwork, ANodeThatAnswersNoMoreIsMissedAfterItsRetries) {
