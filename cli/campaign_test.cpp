@@ -138,9 +138,14 @@ TEST_F(CampaignVerb, IsOnlyGoneOnWithWithTheSameFiles) {
 }
 
 // The whole of it, at random instants. FIELDPROOF_KILLS says how many, where 4 are too few.
+// Of each kind: the campaign, one of its workers, a rank.
+int kills_of_a_kind() {
+  return static_cast<int>(kernel::campaign_count("FIELDPROOF_KILLS", 4));
+}
+
 TEST_F(CampaignVerb, GoesOnAfterAKillAtAnyInstant) {
   const std::string expected = whole();
-  const auto kills = static_cast<int>(kernel::campaign_count("FIELDPROOF_KILLS", 4));
+  const int kills = kills_of_a_kind();
   kernel::Random random(5);
   int with_rest = 0;
   for (int n = 0; n < kills; ++n) {
@@ -184,6 +189,22 @@ TEST_F(CampaignVerb, DoesAJobAgainWhoseWorkerWasKilled) {
   EXPECT_EQ(called.exit_code, 1) << called.err;
   EXPECT_EQ(read("wounded/campaign.json"), expected);
   EXPECT_HOLDS(read("wounded/journal.jsonl"), "\"loss\":\"was ended by signal 9 (Killed)\"");
+}
+
+TEST_F(CampaignVerb, DoesAJobAgainWhoseWorkerWasKilledAtAnyInstant) {
+  const std::string expected = whole();
+  kernel::Random random(6);
+  for (int n = 0; n < kills_of_a_kind(); ++n) {
+    const std::string out = fmt::format("wounded{}", n);
+    const double seconds = static_cast<double>(random.between(5, 300)) / 1000;
+    SCOPED_TRACE(fmt::format("{} after {} s", out, seconds));
+    const Called called = in_shell(fmt::format(
+        "\"$F\" campaign some.json --workers 2 --out {} & campaign=$!; sleep {}; "
+        "for id in $(cat /proc/$campaign/task/*/children); do kill -KILL $id; break; done; wait $campaign",
+        out, seconds));
+    EXPECT_EQ(called.exit_code, 1) << called.err;
+    EXPECT_EQ(read(out + "/campaign.json"), expected);
+  }
 }
 
 TEST_F(CampaignVerb, FindsAJobThatKillsItsWorker) {
@@ -314,6 +335,24 @@ TEST_F(CampaignOverRanks, GoesOnAfterTheKillOfARank) {
                     rank, out));
     ASSERT_TRUE(std::filesystem::exists(folder_ / out / "journal.jsonl"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / out / "campaign.json"));
+    EXPECT_EQ(campaign({"--resume", out}).exit_code, 1);
+    EXPECT_EQ(read(out + "/campaign.json"), expected);
+  }
+}
+
+TEST_F(CampaignOverRanks, GoesOnAfterTheKillOfARankAtAnyInstant) {
+  const std::string expected = whole();
+  kernel::Random random(7);
+  for (int n = 0; n < kills_of_a_kind(); ++n) {
+    const std::string out = fmt::format("rank_killed{}", n);
+    const auto rank = random.between(0, 2);
+    const double seconds = static_cast<double>(random.between(50, 900)) / 1000;
+    SCOPED_TRACE(fmt::format("{}: rank {} after {} s", out, rank, seconds));
+    mpirun(
+        fmt::format("-n 3 bash -c 'if [ $OMPI_COMM_WORLD_RANK = {0} ]; then (sleep {1}; kill -KILL $$) & fi; "
+                    "exec \"$F\" campaign some.json --out {2}'",
+                    rank, seconds, out));
+    if (!std::filesystem::exists(folder_ / out / "manifest.json")) continue;
     EXPECT_EQ(campaign({"--resume", out}).exit_code, 1);
     EXPECT_EQ(read(out + "/campaign.json"), expected);
   }
