@@ -27,6 +27,23 @@ std::size_t stop_level(const NodeScene& scene) {
   return character_format(scene.bench.rules()).bits_before_stop();
 }
 
+// A character of zeros without a stop bit between two octets of a write, without a gap.
+void write_with_a_break_inside(NodeScene& scene) {
+  NodeBench& bench = scene.bench;
+  bench.clear_observations();
+  scene.frame = scene.moving_write();
+  const std::size_t place = 1 + scene.round % (scene.frame.size() - 1);
+  bench.send(std::span(scene.frame).first(place));
+  line::Waveform low;
+  low.rate = bench.rules().bit_rate;
+  low.levels = bench.levels_of(0);
+  low.levels.fill(0, stop_level(scene) + 1, false);
+  bench.drive(low);
+  bench.wait(bench.bits(1));
+  scene.end = bench.send(std::span(scene.frame).subspan(place));
+  bench.await_response_window();
+}
+
 void write_without_a_stop_bit(NodeScene& scene) {
   write_with_wrong_level(scene, stop_level(scene));
 }
@@ -161,6 +178,18 @@ std::vector<NodeCase> node_line_cases() {
                 {stimulus("the line is low for 1 ms, 10 ms or 1 s; a delimiter", hold_low),
                  ignored("acts_on_break", "a low line says nothing"), moving_write(),
                  valves_stand("does_not_recover"), serves()}}),
+      on_chart(
+          {.id = "valve_bus/node/line/break_in_a_frame_spoils_it",
+           .purpose = "RN-22",
+           .requirement = "A character of zeros without a stop bit within a frame is part of it: there is "
+                          "none.",
+           .reference = valve_sources::derived("a stop bit is 1"),
+           .tags = {"must"},
+           .catches = {{"skips_breaks", "acts_on_break"}}},
+          {{4, 8},
+           {stimulus("a write with a low line as long as a character before each of its octets in turn",
+                     write_with_a_break_inside),
+            ignored("acts_on_break", "a character within it has no stop bit"), serves()}}),
       on_chart({.id = "valve_bus/node/line/glitches_are_no_start_bits",
                 .purpose = "RN-26",
                 .requirement = "A low pulse shorter than half a bit is no start bit; a longer one costs "

@@ -65,6 +65,8 @@ constexpr std::array kSigns{
         false},
     SignOfLife{[](const NodeScene& scene) { return Frame{scene.bench.address()}; }, false},
     SignOfLife{[](const NodeScene&) { return Frame{0x12, 0x34, 0x26}; }, false},
+    // The write that the valves stand by already.
+    SignOfLife{[](const NodeScene& scene) { return scene.frame; }, true},
 };
 
 void expect_signs_of_life(NodeScene& scene) {
@@ -79,6 +81,25 @@ void expect_signs_of_life(NodeScene& scene) {
   expect_held(scene, since, valves);
   expect_let_go(scene, since);
   bench.clear_observations();
+}
+
+NodeStep signs_of_life() {
+  return {
+      "at 0.7 times the limit a write, a read, undefined commands; commands for another node, such with a "
+      "wrong check, an octet, a response; the write of before",
+      "the valves hold for 0.9 times the limit after the last right command, and are off after 1.1 times",
+      expect_signs_of_life};
+}
+
+void send_to_others_until_it_is_over(NodeScene& scene) {
+  NodeBench& bench = scene.bench;
+  const kernel::Time since = scene.end;
+  const Frame frame = for_another(scene, bench.rules().write_command);
+  wait_until(bench, since + bench.rules().loss_limit * 8 / 10);
+  while (bench.now() < since + bench.rules().loss_limit * 11 / 10) {
+    bench.send(frame);
+    bench.wait(bench.delimiter() + bench.bits(1));
+  }
 }
 
 // ---- limits ----
@@ -141,18 +162,78 @@ std::vector<NodeCase> node_loss_cases() {
                        {"kept_alive_by_wrong_frames", "valves_hold_without_host"},
                        {"not_kept_alive_by_reads", "valves_let_go"},
                        {"not_kept_alive_by_undefined_commands", "valves_let_go"},
+                       {"not_kept_alive_by_equal_writes", "valves_let_go"},
                        {"lets_go_once", "valves_hold_without_host"},
                        {"lets_go_of_one_board", "valves_hold_without_host"}},
            .not_applicable = for_both(for_answer("loss_limit", kLimit), for_quick_line())},
-          {{kSigns.size(), kSigns.size()},
-           {valves_on(),
-            taken(),
-            {"at 0.7 times the limit a write, a read, undefined commands; commands for another node, such "
-             "with a wrong "
-             "check, an octet, a response",
-             "the valves hold for 0.9 times the limit after the last right command, and are off after 1.1 "
-             "times",
-             expect_signs_of_life},
+          {{kSigns.size(), kSigns.size()}, {valves_on(), taken(), signs_of_life(), serves()}},
+          {.loss_limit = kLimit}),
+      on_chart(
+          {.id = "valve_bus/node/loss/writes_that_are_answered_are_signs_of_life",
+           .purpose = "RN-42",
+           .requirement = "The time after which valves go off counts from each right command to a node that "
+                          "answers writes, too.",
+           .reference = valve_sources::own("loss of the host: a time after which valves go off"),
+           .tags = {"must"},
+           .catches = {{"not_kept_alive_by_answered_writes", "valves_let_go"}},
+           .not_applicable = for_both(for_both(for_answer("loss_limit", kLimit), for_quick_line()),
+                                      for_answer("answers_writes", true))},
+          {{kSigns.size(), kSigns.size()}, {valves_on(), taken(), signs_of_life(), serves()}},
+          {.answers_writes = true, .loss_limit = kLimit}),
+      on_chart({.id = "valve_bus/node/loss/afterwards_the_node_serves_as_before",
+                .purpose = "RN-42",
+                .requirement = "A node whose valves went off without a host answers reads, leaves its valves "
+                               "off until a write, and drives each write, also the one of before.",
+                .reference = valve_sources::own("loss of the host: a time after which valves go off"),
+                .tags = {"must"},
+                .catches = {{"read_restores_valves", "valves_back_without_write"},
+                            {"silent_without_host", "no_answer"},
+                            {"equal_write_not_driven", "write_not_taken"}},
+                .not_applicable = for_both(for_answer("loss_limit", kLimit), for_quick_line())},
+               {{2, 4},
+                {valves_on(), taken(),
+                 expected("the valves are off after 1.1 times the limit",
+                          [](NodeScene& scene) { expect_let_go(scene, scene.end); }),
+                 read(), answered(), no_valve_moved("valves_back_without_write", "no write has come"),
+                 valves_on(), taken(), serves()}},
+               {.loss_limit = kLimit}),
+      on_chart({.id = "valve_bus/node/loss/what_others_are_sent_delays_nothing",
+                .purpose = "RN-42",
+                .requirement = "The valves go off in time on a line that is never silent, too.",
+                .reference = valve_sources::own("loss of the host: a time after which valves go off"),
+                .tags = {"must"},
+                .catches = {{"lets_go_in_silence_only", "valves_hold_without_host"}},
+                .not_applicable = for_both(for_answer("loss_limit", kLimit), for_quick_line())},
+               {{2, 10},
+                {valves_on(), taken(),
+                 stimulus("from 0.8 times the limit on commands for another node, a delimiter between them, "
+                          "until 1.1 times",
+                          send_to_others_until_it_is_over),
+                 expected("the valves are off",
+                          [](NodeScene& scene) {
+                            expect_valves(scene.bench, scene.judge, 0, "valves_hold_without_host");
+                          }),
+                 serves()}},
+               {.loss_limit = kLimit}),
+      on_chart(
+          {.id = "valve_bus/node/loss/is_in_effect_after_each_power_up",
+           .purpose = "RN-42",
+           .requirement = "The time after which valves go off is in effect after each power-up.",
+           .reference = valve_sources::own("loss of the host: a time after which valves go off"),
+           .tags = {"must"},
+           .catches = {{"lets_go_after_the_first_power_up_only", "valves_hold_without_host"}},
+           .not_applicable = for_both(for_answer("loss_limit", kLimit),
+                                      for_item("power_can_be_switched", true, declared_node(),
+                                               "the bench cannot switch the supply of the node"))},
+          {{2, 4},
+           {stimulus("power goes and comes",
+                     [](NodeScene& scene) {
+                       scene.bench.set_power(false);
+                       scene.bench.wait(kernel::kMillisecond);
+                       scene.bench.power_up();
+                     }),
+            valves_on(), taken(),
+            expected("the valves hold for 0.9 times the limit, and are off after 1.1 times", expect_limit),
             serves()}},
           {.loss_limit = kLimit}),
       // Longer than a timer of 16 bits of milliseconds, and as long as can be.

@@ -135,6 +135,11 @@ std::vector<NodeRow> node_frame_rows() {
          if (rules.bit_rate < 375'000) rules.longest_gap_half_characters = 6;
          if (rules.bit_rate > 375'000) rules.longest_gap_half_characters = 2;
        })},
+      {"delimiter_of_ten_bits", "", "ends frames by characters of ten bits where they have parity",
+       with_rules<valve_bus::Node>([](Rules& rules) {
+         if (rules.characters == valve_bus::CharacterProfile::even_parity)
+           rules.delimiter_half_characters = 6;
+       })},
       {"long_gaps_of_ten_bit_characters", "", "allows two characters of silence where they have ten bits",
        with_rules<valve_bus::Node>([](Rules& rules) {
          if (rules.characters == valve_bus::CharacterProfile::eight_bits)
@@ -192,6 +197,25 @@ std::vector<NodeRow> node_power_rows() {
       {"not_kept_alive_by_reads", "", "takes a read for no sign of life", mutant<NotKeptAliveByReads>()},
       {"not_kept_alive_by_undefined_commands", "", "takes an undefined command for no sign of life",
        mutant<NotKeptAliveByUndefinedCommands>()},
+      {"not_kept_alive_by_equal_writes", "", "takes a write that moves no valve for no sign of life",
+       mutant<NotKeptAliveByEqualWrites>()},
+      {"not_kept_alive_by_answered_writes", "", "takes a write that it answers for no sign of life",
+       mutant<NotKeptAliveByAnsweredWrites>()},
+      {"read_restores_valves", "", "switches its valves on again at the first read after they went off",
+       mutant<ReadRestoresValves>()},
+      {"silent_without_host", "", "does not answer reads after its valves went off, until a write",
+       mutant<SilentWithoutHost>()},
+      {"equal_write_not_driven", "", "does not drive a write that is equal to the last one",
+       mutant<EqualWriteNotDriven>()},
+      {"lets_go_in_silence_only", "", "does not let go of its valves while somebody talks",
+       mutant<LetsGoInSilenceOnly>()},
+      {"lets_go_after_the_first_power_up_only", "", "lets go of its valves after the first power-up only",
+       mutant<LetsGoAfterTheFirstPowerUpOnly>()},
+      {"deaf_after_power_lost_in_an_answer", "", "takes nothing more after power was lost in its answer",
+       mutant<DeafAfterPowerLostInAnAnswer>()},
+      {"drives_with_the_answer", "", "drives a write when its answer begins, and not if that is cancelled",
+       mutant<DrivesWithTheAnswer>()},
+      {"skips_breaks", "", "leaves characters of zeros without a stop bit out", mutant<SkipsBreaks>()},
       {"lets_go_once", "", "lets go of its valves once", mutant<LetsGoOnce>()},
       {"lets_go_of_one_board", "", "lets go of the valves of its first board", mutant<LetsGoOfOneBoard>()},
       {"valves_set_at_power_up", "", "has a valve on at power-up", mutant<ValvesSetAtPowerUp>()},

@@ -64,6 +64,19 @@ void lose_power_after_a_read(NodeScene& scene) {
   bench.clear_observations();
 }
 
+// Within its answer, when an octet or more of it is out.
+void lose_power_in_an_answer(NodeScene& scene) {
+  NodeBench& bench = scene.bench;
+  bench.clear_observations();
+  const kernel::Time latest = bench.read() + bench.delimiter() + turnaround_time_span(bench.rules());
+  while (!bench.has_driven() && bench.now() < latest) bench.wait(bench.bits(1));
+  bench.wait(bench.characters(1 + scene.round % 2));
+  bench.set_power(false);
+  bench.wait(10 * kernel::kMillisecond);
+  bench.power_up();
+  bench.clear_observations();
+}
+
 void send_without_power(NodeScene& scene) {
   for (unsigned n = 0; n < 2; ++n) {
     scene.bench.send(scene.write(0x0F, 0xF0));
@@ -134,6 +147,17 @@ std::vector<NodeCase> node_power_cases() {
             ignored("acts_without_power", "it has no supply"),
             stimulus("power comes; 200 ms of silence", power_up),
             ignored("speaks_at_power_up", "nobody asked it"), serves()}}),
+      on_chart({.id = "valve_bus/node/power/power_lost_in_an_answer",
+                .purpose = "RN-34",
+                .requirement = "A loss of power in the middle of an answer is a power-up: the node receives, "
+                               "and serves.",
+                .reference = valve_sources::own("safe state after power-up"),
+                .tags = {"must"},
+                .catches = {{"deaf_after_power_lost_in_an_answer", "does_not_recover"}},
+                .not_applicable = with_switched_power},
+               {{2, 10},
+                {stimulus("a read; within its answer power goes, and comes again", lose_power_in_an_answer),
+                 serves()}}),
       on_chart(
           {.id = "valve_bus/node/power/power_lost_in_a_frame",
            .purpose = "RN-34",

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "conformance/valve_bus/node_scene.hpp"
@@ -25,13 +28,63 @@ NodeStep write_with_gap(double characters) {
                   });
 }
 
+// The valves have stood like this, at least for a moment.
+void expect_driven_once(NodeScene& scene, std::uint16_t valves, std::string_view reason) {
+  if (!scene.bench.capabilities().process_side) return;
+  const auto& changes = scene.bench.boards().changes();
+  const bool has_stood =
+      std::ranges::any_of(changes, [&](const auto& change) { return change.after == valves; });
+  scene.judge.expect(has_stood, reason, [&] {
+    return Mismatch{
+        {fmt::format("first {}, by the write before the last", valves_text(valves))},
+        fmt::format("{} moves, and {} at the end", changes.size(), valves_text(scene.bench.valves()))};
+  });
+}
+
 void write_after_a_delimiter(NodeScene& scene) {
   scene.bench.clear_observations();
-  scene.frame = scene.moving_write();
+  // Neither is what the valves stand by.
+  const std::uint16_t before = scene.bench.valves();
+  scene.frame = scene.write((before & 0xFFU) ^ 0x0FU, (before >> 8U) ^ 0xF0U);
+  const std::uint16_t first = scene.valves();
   scene.bench.send(scene.frame);
   scene.bench.wait_after_write();
-  scene.send(
-      scene.write(static_cast<std::uint8_t>(~scene.frame[2]), static_cast<std::uint8_t>(~scene.frame[3])));
+  scene.send_next(scene.write((before & 0xFFU) ^ 0x33U, (before >> 8U) ^ 0x33U));
+  expect_driven_once(scene, first, "misses_frames_behind_delimiter");
+}
+
+// An octet, and so little silence that what follows is no frame of its own.
+void write_after_a_short_delimiter(NodeScene& scene) {
+  constexpr double kTooShort = 3.3;  // of 3.5 characters
+  scene.bench.clear_observations();
+  scene.bench.send({0x55});
+  scene.bench.wait(scene.bench.characters(kTooShort));
+  scene.frame = scene.moving_write();
+  scene.end = scene.bench.send(scene.frame);
+  scene.bench.await_response_window();
+}
+
+// A write whose answer has not begun, and something that cancels it: the valves move all the same.
+void expect_write_and_no_answer(NodeScene& scene) {
+  NodeBench& bench = scene.bench;
+  bench.clear_observations();
+  scene.frame = scene.moving_write();
+  const std::uint16_t first = scene.valves();
+  bench.send(scene.frame);
+  bench.wait(bench.delimiter() + bench.bits(1) / 4);
+  const auto other = static_cast<unsigned>(bench.address() ^ 1U);
+  const std::array frames{scene.write(0x3C, 0xC3),
+                          scene.command(other, bench.rules().write_command, 0x12, 0x34),
+                          std::vector<std::uint8_t>{0x55}};
+  const bool is_own = scene.round % frames.size() == 0;
+  scene.send_next(frames.at(scene.round % frames.size()));
+  expect_driven_once(scene, first, "write_lost");
+  if (!is_own) {
+    expect_silence(bench, scene.judge, "answers_into_a_command", "something was sent before it had answered");
+    return;
+  }
+  expect_valves(bench, scene.judge, scene.valves(), "write_lost");
+  expect_one_answer(bench, scene.judge, scene.frame[2], scene.frame[3], scene.end);
 }
 
 NodeStep write_of(unsigned data0, unsigned data1) {
@@ -50,22 +103,25 @@ struct NodeSettingRow {
 NodeCase settings_case(NodeSettingRow row) {
   using namespace node_chart;
   constexpr unsigned kRounds = valve_bus::kCommandOctets - 1;
-  return on_chart({.id = "valve_bus/node/settings/serves_" + row.name,
-                   .purpose = "RN-41",
-                   .requirement = fmt::format(
-                       "A node {} takes writes, answers reads, and keeps its limits of silence.", row.what),
-                   .reference = valve_sources::own("what of a node can be set"),
-                   .tags = {"must"},
-                   .catches = std::move(row.catches),
-                   .not_applicable = std::move(row.not_applicable)},
-                  {{kRounds, 10 * kRounds},
-                   {write(), taken(), write_of(0xFF, 0xFF), taken(), read(), answered(), write_of(0x00, 0x80),
-                    taken(), write_with_gap(1.4), taken(), write_with_gap(1.6),
-                    ignored("takes_long_gap", "1.6 characters of silence are in the frame"),
-                    stimulus("a write; 3.5 characters of silence after it, or after its answer, another",
-                             write_after_a_delimiter),
-                    valves_stand("misses_frames_behind_delimiter"), serves()}},
-                  std::move(row.needs));
+  return on_chart(
+      {.id = "valve_bus/node/settings/serves_" + row.name,
+       .purpose = "RN-41",
+       .requirement =
+           fmt::format("A node {} takes writes, answers reads, and keeps its limits of silence.", row.what),
+       .reference = valve_sources::own("what of a node can be set"),
+       .tags = {"must"},
+       .catches = std::move(row.catches),
+       .not_applicable = std::move(row.not_applicable)},
+      {{kRounds, 10 * kRounds},
+       {write(), taken(), write_of(0xFF, 0xFF), taken(), read(), answered(), write_of(0x00, 0x80), taken(),
+        write_with_gap(1.4), taken(), write_with_gap(1.6),
+        ignored("takes_long_gap", "1.6 characters of silence are in the frame"),
+        stimulus("an octet, 3.3 characters of silence, and a write", write_after_a_short_delimiter),
+        ignored("delimiter_too_short", "3.3 characters of silence end no frame"),
+        stimulus("a write; 3.5 characters of silence after it, or after its answer, another",
+                 write_after_a_delimiter),
+        valves_stand("misses_frames_behind_delimiter"), serves()}},
+      std::move(row.needs));
 }
 
 // Where the node holds its valves, however slow its line is.
@@ -92,7 +148,7 @@ std::vector<NodeCase> node_settings_cases() {
             {.bit_rate = kFastest, .loss_limit = kernel::Duration{}}},
            {"characters_with_parity",
             "with characters P1",
-            {{"parity_inverted", "write_not_taken"}},
+            {{"parity_inverted", "write_not_taken"}, {"delimiter_of_ten_bits", "delimiter_too_short"}},
             for_characters("P1"),
             {.characters = CharacterProfile::even_parity}},
            {"characters_of_ten_bits",
@@ -112,6 +168,25 @@ std::vector<NodeCase> node_settings_cases() {
             {.boards = 1, .answers_writes = true}}}) {
     all.push_back(settings_case(std::move(row)));
   }
+  using namespace node_chart;
+  all.push_back(
+      on_chart({.id = "valve_bus/node/settings/what_follows_cancels_the_answer_to_a_write",
+                .purpose = "RN-43",
+                .requirement =
+                    "What is sent after a write, before a node that answers writes has begun to, cancels the "
+                    "answer, and not the write.",
+                .reference = valve_sources::derived("a command before a response has begun cancels it"),
+                .tags = {"must"},
+                .catches = {{"drives_with_the_answer", "write_lost"}},
+                .not_applicable = for_answer("answers_writes", true)},
+               {{6, 60},
+                {write(),
+                 taken(),
+                 {"3.5 characters after a write another one, a write for another node, an octet",
+                  "the valves have moved as the first write says; only another write is answered",
+                  expect_write_and_no_answer},
+                 serves()}},
+               {.answers_writes = true}));
   return all;
 }
 
