@@ -19,6 +19,15 @@ Frame one_wrong_bit(NodeScene& scene) {
   return frame;
 }
 
+void send_many_wrong_frames(NodeScene& scene) {
+  constexpr unsigned kMany = 300;  // more than a counter of 8 bits has
+  for (unsigned n = 0; n < kMany; ++n) {
+    Frame frame = scene.moving_write();
+    frame.back() ^= static_cast<std::uint8_t>(1 + n % 255);
+    n == 0 ? scene.send(frame) : scene.send_next(frame);
+  }
+}
+
 constexpr unsigned kFrameColumnPairs = 80;
 constexpr unsigned kFrameOtherPairs = 700;
 
@@ -79,6 +88,17 @@ std::vector<NodeCase> node_check_cases() {
   using namespace node_chart;
   const NodeStep no_check = ignored("acts_on_wrong_check", "the check is no exclusive or");
   return {
+      on_chart(
+          {.id = "valve_bus/node/check/wrong_frames_in_a_row_change_nothing",
+           .purpose = "RN-09",
+           .requirement = "However many frames with a wrong check come in a row, the node takes the next "
+                          "right one.",
+           .reference = valve_sources::paper("node on a wrong block check"),
+           .tags = {"must"},
+           .catches = {{"deaf_after_100_wrong_checks", "does_not_recover"}}},
+          {{1, 4},
+           {valves_on(), stimulus("300 writes with a wrong check", send_many_wrong_frames),
+            ignored("acts_on_wrong_check", "no check is right"), serves()}}),
       on_chart(
           {.id = "valve_bus/node/check/single_bit_errors_are_refused",
            .purpose = "RN-09",

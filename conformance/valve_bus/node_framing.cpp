@@ -95,6 +95,14 @@ constexpr std::array kTimerPeriods{65'536 * kernel::kMicrosecond,
                                    kernel::Duration{std::int64_t{1} << 32} * 1'000'000,
                                    65'536 * kernel::kMillisecond, 256 * kernel::kMillisecond};
 
+// The other write comes when such a timer shows more than a frame may have within it, and less than ends one.
+void write_after_a_timer(NodeScene& scene) {
+  constexpr double kBetween = 2.5;  // characters
+  scene.bench.write(0x0F, 0xF0);
+  scene.bench.wait(kTimerPeriods.at(scene.round) + scene.bench.characters(kBetween));
+  scene.send(scene.write(0xF0, 0x0F));
+}
+
 // The other octets come when such a timer shows half a character.
 void send_around_a_timer(NodeScene& scene) {
   const kernel::Duration period = kTimerPeriods.at(scene.round);
@@ -193,7 +201,9 @@ std::vector<NodeCase> node_framing_cases() {
            .requirement = "However long it lasts, silence ends a frame, and what comes then is a new one.",
            .reference = silence,
            .tags = {"must"},
-           .catches = {{"gap_timer_of_16_bits", "joins_frames"}, {"deaf_after_a_minute", "write_not_taken"}},
+           .catches = {{"gap_timer_of_16_bits", "joins_frames"},
+                       {"deaf_after_a_minute", "write_not_taken"},
+                       {"delimiter_timer_of_16_bits", "write_not_taken"}},
            // Its valves stand still.
            .not_applicable = for_answer("loss_limit", kernel::Duration{})},
           {{kTimerPeriods.size(), kTimerPeriods.size()},
@@ -204,7 +214,9 @@ std::vector<NodeCase> node_framing_cases() {
             ignored("joins_frames", "silence ends a frame"), valves_on(), taken(),
             stimulus("as much silence",
                      [](NodeScene& scene) { scene.bench.wait(kTimerPeriods.at(scene.round)); }),
-            read(), answered(), serves()}},
+            read(), answered(),
+            stimulus("a write, 2.5 characters more than as much silence, and another", write_after_a_timer),
+            taken(), serves()}},
           {.loss_limit = kernel::Duration{}}),
       on_chart(
           {.id = "valve_bus/node/framing/joined_frames_are_no_write",

@@ -232,4 +232,28 @@ class GivesUpOnCollision : public Node {
   bool has_given_up_ = false;
 };
 
+// Looks at the silence in front of a frame as at one within it, with a timer that wraps.
+class DelimiterTimerOf16Bits : public Node {
+  using Node::Node;
+  void on_character(const UartCharacter& character) override {
+    constexpr Duration kWrap = 65'536 * kernel::kMicrosecond;
+    UartCharacter heard = character;
+    const Duration shown = (character.start - last_) % kWrap;
+    const bool is_between = shown > longest_gap(rules()) && shown < delimiter(rules());
+    if (state() != valve_bus::NodeState::collecting && is_between) heard.is_stop_missing = true;
+    last_ = character.busy_until;
+    Node::on_character(heard);
+  }
+  Time last_{};
+};
+
+class StopBitIgnoredWithParity : public Node {
+  using Node::Node;
+  UartCharacter judged(const UartCharacter& character) const override {
+    UartCharacter heard = Node::judged(character);
+    if (rules().characters == valve_bus::CharacterProfile::even_parity) heard.is_stop_missing = false;
+    return heard;
+  }
+};
+
 }  // namespace fieldproof::conformance::node_seeded_faults

@@ -9,24 +9,6 @@ namespace {
 
 using valve_bus::CharacterProfile;
 
-// A write of all valves, with a level of one character inverted, another one in each round.
-void write_with_wrong_level(NodeScene& scene, std::size_t level) {
-  scene.bench.clear_observations();
-  scene.frame = scene.moving_write();
-  for (std::size_t n = 0; n < scene.frame.size(); ++n) {
-    line::Waveform wave;
-    wave.rate = scene.bench.rules().bit_rate;
-    wave.levels = scene.bench.levels_of(scene.frame[n]);
-    if (n == scene.round) wave.levels.flip(level);
-    scene.bench.drive(wave);
-  }
-  scene.bench.await_response_window();
-}
-
-std::size_t stop_level(const NodeScene& scene) {
-  return character_format(scene.bench.rules()).bits_before_stop();
-}
-
 // A character of zeros without a stop bit between two octets of a write, without a gap.
 void write_with_a_break_inside(NodeScene& scene) {
   NodeBench& bench = scene.bench;
@@ -37,7 +19,7 @@ void write_with_a_break_inside(NodeScene& scene) {
   line::Waveform low;
   low.rate = bench.rules().bit_rate;
   low.levels = bench.levels_of(0);
-  low.levels.fill(0, stop_level(scene) + 1, false);
+  low.levels.fill(0, scene.stop_level() + 1, false);
   bench.drive(low);
   bench.wait(bench.bits(1));
   scene.end = bench.send(std::span(scene.frame).subspan(place));
@@ -45,12 +27,12 @@ void write_with_a_break_inside(NodeScene& scene) {
 }
 
 void write_without_a_stop_bit(NodeScene& scene) {
-  write_with_wrong_level(scene, stop_level(scene));
+  scene.write_with_wrong_level(scene.stop_level());
 }
 
 // Parity, or the ninth bit.
 void write_with_wrong_last_bit(NodeScene& scene) {
-  write_with_wrong_level(scene, stop_level(scene) - 1);
+  scene.write_with_wrong_level(scene.stop_level() - 1);
 }
 
 void hold_low(NodeScene& scene) {

@@ -14,6 +14,7 @@ namespace {
 using Frame = std::vector<std::uint8_t>;
 
 constexpr kernel::Duration kLimit = 500 * kernel::kMillisecond;
+constexpr kernel::Duration kShortLimit = 8 * kernel::kMillisecond;
 
 void wait_until(NodeBench& bench, kernel::Time when) {
   bench.wait(std::max(kernel::Duration{}, when - bench.now()));
@@ -110,6 +111,17 @@ void expect_limit(NodeScene& scene) {
   expect_let_go(scene, scene.end);
 }
 
+// Commands and what they need have to fit into the limit many times.
+Applicability for_least_bit_rate(std::int64_t slowest) {
+  return [slowest](const judge::Pics& pics) -> std::optional<std::string> {
+    if (pics.number("bit_rate", slowest) >= slowest) return std::nullopt;
+    return "commands take too long at this bit rate";
+  };
+}
+Applicability for_quick_line() {
+  return for_least_bit_rate(62'500);
+}
+
 NodeCase limit_case(std::string name, kernel::Duration limit, std::vector<MustCatch> catches) {
   using namespace node_chart;
   return on_chart(
@@ -122,27 +134,19 @@ NodeCase limit_case(std::string name, kernel::Duration limit, std::vector<MustCa
        .reference = valve_sources::own("loss of the host: a time after which valves go off"),
        .tags = {"must"},
        .catches = std::move(catches),
-       .not_applicable = for_answer("loss_limit", limit)},
+       .not_applicable =
+           for_both(for_answer("loss_limit", limit), for_least_bit_rate(limit < kLimit ? 250'000 : 0))},
       {{2, 4},
        {stimulus("",
                  [](NodeScene& scene) {
-                   if (scene.bench.capabilities().is_wall_clock &&
-                       scene.bench.rules().loss_limit > kernel::kSecond)
-                     throw iut::CannotBeDone("a real line takes as long as that");
+                   const kernel::Duration set = scene.bench.rules().loss_limit;
+                   if (scene.bench.capabilities().is_wall_clock && (set > kernel::kSecond || set < kLimit))
+                     throw iut::CannotBeDone("a real line takes as long as that, or is too slow for it");
                  }),
         valves_on(), taken(),
         expected("the valves hold for 0.9 times the limit, and are off after 1.1 times", expect_limit),
         serves()}},
       {.loss_limit = limit});
-}
-
-// Commands and what they need have to fit into the limit many times.
-Applicability for_quick_line() {
-  return [](const judge::Pics& pics) -> std::optional<std::string> {
-    constexpr std::int64_t kSlowest = 62'500;
-    if (pics.number("bit_rate", kSlowest) >= kSlowest) return std::nullopt;
-    return "commands take too long at this bit rate";
-  };
 }
 
 }  // namespace
@@ -237,6 +241,7 @@ std::vector<NodeCase> node_loss_cases() {
             serves()}},
           {.loss_limit = kLimit}),
       // Longer than a timer of 16 bits of milliseconds, and as long as can be.
+      limit_case("8_milliseconds", kShortLimit, {{"loss_limit_at_least_10_ms", "valves_hold_without_host"}}),
       limit_case("70_seconds", 70 * kernel::kSecond, {{"loss_limit_in_16_bits", "valves_let_go"}}),
       limit_case("an_hour", 3'600 * kernel::kSecond, {{"lets_go_after_half_an_hour", "valves_let_go"}}),
   };

@@ -36,6 +36,13 @@ void power_up(NodeScene& scene) {
   scene.bench.wait(200 * kernel::kMillisecond);
 }
 
+void power_anew(NodeScene& scene) {
+  scene.bench.set_power(false);
+  scene.bench.wait(kernel::kMillisecond);
+  scene.bench.power_up();
+  scene.bench.clear_observations();
+}
+
 void lose_power(NodeScene& scene) {
   scene.bench.clear_observations();
   scene.frame = scene.write(0x0F, 0xF0);
@@ -55,9 +62,11 @@ void return_power(NodeScene& scene) {
 void lose_power_after_a_read(NodeScene& scene) {
   NodeBench& bench = scene.bench;
   bench.clear_observations();
+  // As long as it took for its last answer, but for a microsecond.
+  const kernel::Duration took = scene.answer.driver_on - scene.end;
   bench.read();
-  if (scene.round % 2 == 1)
-    bench.wait(bench.delimiter() + character_notice(bench.rules()) + kernel::kMicrosecond);
+  const kernel::Duration sure = bench.delimiter() + character_notice(bench.rules()) + kernel::kMicrosecond;
+  if (scene.round % 2 == 1) bench.wait(std::max(sure, took - kernel::kMicrosecond));
   if (bench.has_driven()) bench.await_response_window();
   bench.set_power(false);
   bench.wait(bench.delimiter());
@@ -147,6 +156,18 @@ std::vector<NodeCase> node_power_cases() {
             ignored("acts_without_power", "it has no supply"),
             stimulus("power comes; 200 ms of silence", power_up),
             ignored("speaks_at_power_up", "nobody asked it"), serves()}}),
+      on_chart(
+          {.id = "valve_bus/node/power/settings_hold_after_each_power_up",
+           .purpose = "RN-33",
+           .requirement = "What a node is set to holds after each power-up.",
+           .reference = valve_sources::own("what of a node can be set"),
+           .tags = {"must"},
+           .catches = {{"answers_writes_once", "no_answer"}},
+           .not_applicable = for_both(with_switched_power, for_both(for_answer("answers_writes", true),
+                                                                    for_answer("boards", std::int64_t{1})))},
+          {{2, 4},
+           {stimulus("power goes and comes", power_anew), write(), taken(), read(), answered(), serves()}},
+          {.boards = 1, .answers_writes = true}),
       on_chart({.id = "valve_bus/node/power/power_lost_in_an_answer",
                 .purpose = "RN-34",
                 .requirement = "A loss of power in the middle of an answer is a power-up: the node receives, "

@@ -285,4 +285,28 @@ class SkipsBreaks : public Node {
   }
 };
 
+class AnswersWrongWrites : public Node {
+  using Node::Node;
+  void on_frame(const CollectedFrame& frame, Time now) override {
+    const auto octets = frame.whole(valve_bus::kCommandOctets);
+    const bool is_wrong_write = octets && !fits(*octets) && is_meant((*octets)[0]) &&
+                                (*octets)[1] == rules().write_command && rules().answers_writes;
+    Node::on_frame(frame, now);
+    if (is_wrong_write) answer_at({(*octets)[2], (*octets)[3]}, frame.busy_until + turnaround_time());
+  }
+};
+
+class AnswersWritesOnce : public Node {
+  using Node::Node;
+  void on_power_up(Time) override { ++power_ups_; }
+  void on_command(const Command& command, Time now) override {
+    if (power_ups_ > 1 && command.command == rules().write_command) {
+      actuate(valves_of(command), now);
+    } else {
+      Node::on_command(command, now);
+    }
+  }
+  unsigned power_ups_ = 0;
+};
+
 }  // namespace fieldproof::conformance::node_seeded_faults

@@ -50,6 +50,19 @@ std::vector<std::uint8_t> NodeScene::moving_write() const {
   return {octets.begin(), octets.end()};
 }
 
+void NodeScene::write_with_wrong_level(std::size_t level) {
+  bench.clear_observations();
+  frame = moving_write();
+  for (std::size_t n = 0; n < frame.size(); ++n) {
+    line::Waveform wave;
+    wave.rate = bench.rules().bit_rate;
+    wave.levels = bench.levels_of(frame[n]);
+    if (n == round % frame.size()) wave.levels.flip(level);
+    bench.drive(wave);
+  }
+  bench.await_response_window();
+}
+
 namespace node_chart {
 
 NodeStep sent(std::string text, MakeFrame frame) {

@@ -37,6 +37,9 @@ struct NodeScene : Scene<NodeBench> {
   }
   // Of all valves.
   std::vector<std::uint8_t> moving_write() const;
+  // A write of all valves, with this level of one character inverted, of another one in each round.
+  void write_with_wrong_level(std::size_t level);
+  std::size_t stop_level() const { return character_format(bench.rules()).bits_before_stop(); }
   // The valves that the frame drives, which is a write.
   std::uint16_t valves() const { return bench.valves_of(frame.at(2), frame.at(3)); }
 };

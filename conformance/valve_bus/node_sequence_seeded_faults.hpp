@@ -67,14 +67,19 @@ class CheckSkippedBehindError : public RememberingNode {
   bool is_skipped_ = false;
 };
 
-class DeafAfterThreeErrors : public RememberingNode {
-  using RememberingNode::RememberingNode;
+class DeafAfterErrors : public RememberingNode {
+ public:
+  DeafAfterErrors(const valve_bus::NodeConfiguration& configuration, unsigned most)
+      : RememberingNode(configuration), most_(most) {}
+
+ private:
   void on_frame(const CollectedFrame& frame, Time now) override {
-    if (errors_ == 3) return;
+    if (errors_ == most_) return;
     errors_ = is_refused(frame) ? errors_ + 1 : 0;
     Node::on_frame(frame, now);
   }
   void on_power_up(Time) override { errors_ = 0; }
+  unsigned most_;
   unsigned errors_ = 0;
 };
 
