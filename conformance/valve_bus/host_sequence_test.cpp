@@ -59,6 +59,18 @@ TEST(HostSequence, AnOctetIntoTheDriverAccusesNobody) {
   EXPECT_EQ(result.verdict, judge::Verdict::pass) << result.reason;
 }
 
+// Each with a fault that no order and no answer alone can show.
+TEST(HostSequence, FindsWhatTakesManyCommandsOrAnInstant) {
+  for (const char* name :
+       {"loses_commands", "fifo_wraps_one_early", "overflow_drops_octets", "resyncs_early",
+        "busy_told_as_silence", "requests_late_in_turns", "dip_read_in_operation", "write_distance_missing",
+        "refreshes_each_100_ms", "refreshes_go_first", "time_out_fixed", "time_out_long", "late_not_counted",
+        "takes_early_response", "right_after_wrong_taken"}) {
+    const SequenceSearchResult result = search(host_search_of(std::string("mutant:") + name, 3'000));
+    EXPECT_TRUE(result.found) << name;
+  }
+}
+
 // Also with a host whose receiver stays on, or that reads after each write.
 TEST(HostSequence, TheReferenceIsNeverAccusedWithItsOptions) {
   for (const char* option : {"receives_own_echo", "verifies_writes"}) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "conformance/valve_bus/host_expect.hpp"
+#include "protocols/valve_bus/command_fifo.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -25,7 +26,14 @@ Observation observed(const HostEvent& event) {
 void HostSide::order(const valve_bus::Command& command) {
   ++orders_;
   ids_.insert(command.id);
+  // With less room it depends on when the host takes the one before.
+  is_overflow_doubtful_ |= bench_.fifo_room() < 2 * valve_bus::CommandFifo::kWritten;
   bench_.order(command);
+}
+
+void HostSide::order_octets(std::span<const std::uint8_t> octets, std::size_t commands) {
+  orders_ += commands;
+  bench_.write(octets);
 }
 
 void HostSide::order_part(std::span<const std::uint8_t> octets) {
@@ -40,6 +48,14 @@ bool HostSide::awaits_response(const valve_bus::Command& command) const {
 
 bool HostSide::is_flooded() const {
   return requests_.size() > kMostRequestsOfAnOrder * (orders_ + 1);
+}
+
+bool HostSide::await_command() {
+  const kernel::Time limit = bench_.now() + bench_.observation_timeout();
+  while (const auto frame = bench_.next_frame(std::max(kernel::Duration{}, limit - bench_.now()))) {
+    if (note(*frame) || is_flooded()) return true;
+  }
+  return false;
 }
 
 bool HostSide::await_request() {
@@ -58,10 +74,17 @@ bool HostSide::await_request() {
 
 void HostSide::answer(const line::Levels& levels, kernel::Duration turnaround_time, bool is_whole) {
   is_end_sure_ = is_whole;
+  pace_.on_answer();
   bench_.answer_levels(levels, turnaround_time);
   const auto bits = static_cast<std::int64_t>(levels.size());
   bench_.wait(turnaround_time + bench_.bits(bits));
   take_indications();
+}
+
+void HostSide::answer(const valve_bus::Response& response, kernel::Duration turnaround_time) {
+  pace_.on_answer();
+  const kernel::Time end = bench_.answer(response, turnaround_time);
+  wait(end - bench_.now());
 }
 
 void HostSide::drain() {
@@ -72,6 +95,7 @@ void HostSide::drain() {
     if (note(*frame)) limit = bench_.now() + bench_.observation_timeout();
   }
   take_indications();
+  pace_.expect_refreshed();
 }
 
 void HostSide::say(std::span<const std::uint8_t> octets) {
@@ -80,7 +104,21 @@ void HostSide::say(std::span<const std::uint8_t> octets) {
   unnoticed_from_ = bench_.now();
   unnoticed_until_ = bench_.now() + 2 * valve_bus::character_notice(bench_.rules());
   bench_.say(octets);
+  pace_.on_noise();
   wait(bench_.observation_timeout());
+}
+
+// With gaps in which no host is sure of silence.
+void HostSide::talk(kernel::Duration duration, const valve_bus::Command& command) {
+  pace_.on_noise();
+  const kernel::Time end = bench_.now() + duration;
+  for (unsigned n = 0; n < 3 || bench_.now() < end; ++n) {
+    if (n == 2) order(command);
+    bench_.say(std::array<std::uint8_t, 1>{0x55});
+    bench_.wait(bench_.characters(2));
+  }
+  wait(bench_.observation_timeout());
+  pace_.on_noise();
 }
 
 void HostSide::wait(kernel::Duration duration) {
@@ -90,12 +128,19 @@ void HostSide::wait(kernel::Duration duration) {
     if (is_flooded() || bench_.now() >= limit) break;
   }
   take_indications();
+  pace_.expect_refreshed();
 }
 
 void HostSide::restart() {
   take_indications();
-  bench_.restart(static_cast<unsigned>(bench_.pics().number("dip", 0)));
+  bench_.restart(dip_);
+  pace_.on_power();
   ids_.clear();
+}
+
+void HostSide::note_fifo() {
+  fifo_states_.push_back(
+      {{bench_.has_overflowed() ? 1 : 0, static_cast<std::int64_t>(bench_.fifo_room())}, bench_.now()});
 }
 
 bool HostSide::is_doubtful() const {
@@ -103,7 +148,12 @@ bool HostSide::is_doubtful() const {
 }
 
 void HostSide::take_indications() {
-  while (bench_.was_told()) indications_.push_back(observed(*bench_.next_told({})));
+  while (bench_.was_told()) {
+    const HostEvent event = *bench_.next_told({});
+    if (const auto* error = std::get_if<valve_bus::HostError>(&event.what))
+      pace_.on_error(*error, event.when);
+    indications_.push_back(observed(event));
+  }
 }
 
 std::optional<valve_bus::Command> HostSide::note(const HostFrame& frame) {
@@ -116,9 +166,12 @@ std::optional<valve_bus::Command> HostSide::note(const HostFrame& frame) {
   if (judge_ != nullptr && is_sure) expect_form(bench_, *judge_, frame);
   const std::vector<std::uint8_t> octets = frame.sent.octets();
   std::optional<valve_bus::Command> command;
+  take_indications();
   if (octets.size() == valve_bus::kCommandOctets) {
     command = frame.command();
-    if (bench_.is_refresh(*command)) return std::nullopt;
+    const bool is_refresh = bench_.is_refresh(*command);
+    pace_.on_frame(frame, is_refresh);
+    if (is_refresh) return std::nullopt;
     bench_.note_write(*command);
   }
   requests_.push_back({{octets.begin(), octets.end()}, frame.start});

@@ -4,6 +4,7 @@
 
 #include "conformance/comparison/observation.hpp"
 #include "conformance/valve_bus/host_bench.hpp"
+#include "conformance/valve_bus/host_pace.hpp"
 
 // One of the two benches of a sequence for a host module: what the tester does there as PC and as nodes, and
 // what the host sends and reports.
@@ -14,28 +15,52 @@ namespace fieldproof::conformance {
 class HostSide {
  public:
   // `judge`: of the form of its frames; null: it is not judged.
-  HostSide(HostBench& bench, CaseJudge* judge) : bench_(bench), judge_(judge) {}
+  HostSide(HostBench& bench, CaseJudge* judge)
+      : bench_(bench),
+        judge_(judge),
+        pace_(bench, judge),
+        dip_(static_cast<unsigned>(bench.pics().number("dip", 0))) {}
 
   const Observations& requests() const { return requests_; }
   const Observations& indications() const { return indications_; }
+  // Of the FIFO, where there is no doubt about them: overflow, octets that there is room for.
+  const Observations& fifo_states() const { return fifo_states_; }
   // Nodes for which something was ordered since power-up.
   const std::set<std::uint8_t>& ids() const { return ids_; }
   HostBench& bench() { return bench_; }
+  // For data that no command before has had.
+  unsigned next_number() { return number_++; }
+  void note_id(std::uint8_t id) { ids_.insert(id); }
+  const HostPace& pace() const { return pace_; }
+  // Something may have been lost that another host has room for.
+  bool is_overflow_doubtful() const { return is_overflow_doubtful_; }
 
   void order(const valve_bus::Command& command);
   // The first octets of a command of which the rest does not come; nothing is open before.
   void order_part(std::span<const std::uint8_t> octets);
+  // As many octets as they are, of so many commands, at once.
+  void order_octets(std::span<const std::uint8_t> octets, std::size_t commands);
+  // The writes that were ordered last stand in the FIFO.
+  void expect_turns(std::size_t writes) { pace_.on_writes_ordered(writes); }
   // To the end of the next request that awaits a response; false when none comes.
   bool await_request();
+  // To the end of the next frame that is no refresh.
+  bool await_command();
   // Answers the request that was awaited, and runs to the end of the answer.
   // `is_whole`: without faults, so everybody knows when it has ended.
   void answer(const line::Levels& levels, kernel::Duration turnaround_time, bool is_whole);
+  // Character by character, as a node does.
+  void answer(const valve_bus::Response& response, kernel::Duration turnaround_time);
   // Until every order has ended; nothing is answered.
   void drain();
   // With nothing open: what the nodes say is a surprise.
   void say(std::span<const std::uint8_t> octets);
+  // With nothing open: the line is not silent for so long, and the PC orders this soon.
+  void talk(kernel::Duration duration, const valve_bus::Command& command);
   void wait(kernel::Duration duration);
+  void turn_dip(unsigned position) { bench_.set_dip(dip_ = position); }
   void restart();
+  void note_fifo();
   // What receivers may differ about has arrived at the host.
   bool is_doubtful() const;
 
@@ -50,6 +75,11 @@ class HostSide {
   CaseJudge* judge_;
   Observations requests_;
   Observations indications_;
+  Observations fifo_states_;
+  HostPace pace_;
+  unsigned dip_;
+  unsigned number_ = 1;
+  bool is_overflow_doubtful_ = false;
   std::set<std::uint8_t> ids_;
   std::size_t orders_ = 0;
   bool is_end_sure_ = true;        // of what was last said on the line

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "conformance/valve_bus/node_scene.hpp"
+#include "harness/iut/misbehaviour.hpp"
 
 // A node that is set to let go of its valves without a host: what it takes for a sign of life, and when.
 namespace fieldproof::conformance {

@@ -1,0 +1,173 @@
+#include "conformance/valve_bus/host_vocabulary.hpp"
+
+#include <array>
+#include <iterator>
+#include <string_view>
+
+#include "conformance/sequence_settings.hpp"
+#include "conformance/valve_bus/host_bench.hpp"
+#include "protocols/valve_bus/host_settings.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::array<std::int64_t, 5> kGaps{5, 13, 22, 33, 45};
+constexpr std::array<std::int64_t, 4> kNodes{1, 2, 1, 99};
+constexpr std::array<std::int64_t, 5> kIds{0, 1, 100, 255, 2};
+constexpr std::array<std::int64_t, 4> kCommands{0, 1, 2, 255};
+constexpr std::array<std::int64_t, 6> kData{0x00, 0xFF, 0x01, 0x05, 0x80, 0xA5};
+constexpr std::array<std::int64_t, 3> kBursts{2, 12, 60};
+constexpr std::array<std::int64_t, 2> kFillings{2, 130};
+// Nobody waits for less than a time-out in vain, and after all attempts of a read everybody has.
+constexpr std::array<std::int64_t, 2> kTalks{1, 8};
+constexpr std::array<std::int64_t, 4> kTornWaits{1, 20, 50, 80};
+// On either side of what is too early for a response.
+constexpr std::array<std::int64_t, 4> kQuarters{3, 5, 7, 10};
+constexpr std::array<std::int64_t, 4> kWaits{1, 10, 60, 200};
+// Bits between a request and its answer: nobody doubts that it begins within the time-out, and the last of
+// its octets does so as well, whatever gaps are in it.
+constexpr std::array<std::int64_t, 4> kTurnarounds{45, 60, 150, 700};
+
+SequenceNumber octet(std::string_view name) {
+  return {name, 0, 0xFF, 0, kData};
+}
+
+SequenceNumber node() {
+  return {"id", 1, 99, 1, kNodes};
+}
+
+SequenceNumber turnaround() {
+  return {"turnaround", 45, 700, 60, kTurnarounds, true};
+}
+
+// Makes an exclusive or fit: of the first three octets, of the last three, or of none.
+SequenceNumber fit() {
+  return {"fit", 0, 2, 0};
+}
+
+// There are no words for nodes that acknowledge writes.
+constexpr std::array<std::string_view, 2> kFixedOfHost{"answers_writes", "dip"};
+
+// What a host has been ordered, waits for or has lost.
+std::vector<std::vector<NamedCommand>> states_of_a_host() {
+  const NamedCommand answered{"answer", {{"data0", 0xA5}, {"data1", 0x3C}}};
+  const NamedCommand written{"write", {{"data0", 0x5A}, {"data1", 0xC3}}};
+  return {{answered, {"read"}, {"wait"}},
+          {{"unanswered"}, {"read"}, {"wait"}},
+          {{"part", {{"count", 2}}}},
+          {written, {"read"}, {"read", {{"id", 2}}}},
+          {written, {"wait"}, {"power"}}};
+}
+
+// Orders and answers, one by one.
+std::vector<SequenceWord> single_words() {
+  return {{.word = "read", .meaning = "the PC orders a read", .numbers = {node()}, .weight = 6},
+          {.word = "write",
+           .meaning = "the PC orders a write",
+           .numbers = {node(), octet("data0"), octet("data1")},
+           .weight = 3},
+          {.word = "command",
+           .meaning = "the PC orders any command to any address",
+           .numbers =
+               {{"id", 0, 0xFF, 1, kIds}, {"command", 0, 0xFF, 1, kCommands}, octet("data0"), octet("data1")},
+           .weight = 2},
+          {.word = "part",
+           .meaning = "the PC gives so many octets of a command, and no more",
+           .numbers = {{"count", 1, 3, 1}},
+           .weight = 1},
+          {.word = "answer",
+           .meaning = "the next read on the line is answered",
+           .numbers = {octet("data0"), octet("data1"), turnaround()},
+           .units = kHostAnswerOctets,
+           .weight = 6},
+          {.word = "octets",
+           .meaning = "the next read on the line is answered with octets that are no response, or "
+                      "happen to be one",
+           .numbers = {fit(), turnaround()},
+           .most_octets = 6,
+           .weight = 2},
+          {.word = "unanswered", .meaning = "the next read on the line is not answered", .weight = 2},
+          {.word = "stray",
+           .meaning = "octets on the line when everything has ended",
+           .numbers = {fit()},
+           .most_octets = 8,
+           .weight = 1},
+          {.word = "wait",
+           .meaning = "everything ends, then so many milliseconds pass",
+           .numbers = {{"ms", 1, 1'000, 10, kWaits}},
+           .weight = 1},
+          {.word = "power",
+           .meaning = "the supply goes and comes: 0, when everything has ended; 1, with the next "
+                      "read on the line",
+           .numbers = {{"open", 0, 1, 0}},
+           .weight = 1,
+           .is_loss = true}};
+}
+
+// What takes a host many commands or an exact instant to show.
+std::vector<SequenceWord> long_words() {
+  return {
+      {.word = "burst",
+       .meaning = "everything ends, then the PC orders so many commands at once, one for each of the nodes "
+                  "from 1 on and the rest for the next, reads or writes, and so many octets of another; "
+                  "nothing is answered",
+       .numbers =
+           {{"count", 2, 60, 2, kBursts, true}, {"nodes", 0, 8, 1}, {"reads", 0, 1, 0}, {"part", 0, 3, 0}},
+       .weight = 1},
+      {.word = "fill",
+       .meaning =
+           "while a read waits for its response the PC orders so many writes, of which 128 fit, and so "
+           "many octets of another, the rest of which comes when one has been sent",
+       .numbers = {{"count", 2, 130, 2, kFillings, true}, {"part", 0, 3, 0}},
+       .weight = 1},
+      {.word = "torn",
+       .meaning = "the PC gives so many octets of a command, and the rest so many milliseconds later",
+       .numbers = {{"count", 1, 3, 1}, {"ms", 1, 90, 20, kTornWaits}},
+       .weight = 1},
+      {.word = "early",
+       .meaning = "the next read on the line is answered so many quarters of a character after it",
+       .numbers = {octet("data0"), octet("data1"), {"quarters", 3, 10, 7, kQuarters, true}},
+       .weight = 2},
+      {.word = "second",
+       .meaning = "the next read on the line is answered with one octet, and rightly after a delimiter",
+       .numbers = {octet("first"), octet("data0"), octet("data1")},
+       .weight = 2},
+      {.word = "late",
+       .meaning = "everything ends, then a read is answered 5 % after the time-out of its last attempt",
+       .numbers = {node(), octet("data0"), octet("data1")},
+       .weight = 1},
+      {.word = "talk",
+       .meaning = "everything ends, then the line is not silent for so many halves of a time-out and the PC "
+                  "orders a read; where nothing was written since power-up",
+       .numbers = {node(), {"halves", 1, 8, 1, kTalks, true}},
+       .weight = 1},
+      {.word = "cycle",
+       .meaning = "everything ends, then so many nodes are read in turn, three times, and answer alike",
+       .numbers = {{"nodes", 1, 8, 1}},
+       .weight = 1},
+      {.word = "dip",
+       .meaning = "the DIP switches are turned, for the next power-up",
+       .numbers = {{"position", 0, 7, 0}},
+       .weight = 1}};
+}
+
+std::vector<SequenceWord> host_words() {
+  std::vector<SequenceWord> words = single_words();
+  std::vector<SequenceWord> more = long_words();
+  words.insert(words.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  return words;
+}
+
+}  // namespace
+
+SequenceVocabulary host_vocabulary() {
+  const valve_bus::HostConfiguration host = host_configuration({}, declared_host());
+  return with_beginnings({.words = host_words(),
+                          .unit = "character",
+                          .levels_per_unit = 11,
+                          .gaps = kGaps,
+                          .settings = sequence_settings(valve_bus::kHostTable, &host, kFixedOfHost)},
+                         states_of_a_host());
+}
+
+}  // namespace fieldproof::conformance
