@@ -71,19 +71,51 @@ class NodeSequenceRun final : private segment::Tap {
       case NodeWord::switches:
         set_switches(static_cast<std::uint16_t>(command.numbers[0] | command.numbers[1] << 8));
         break;
+      case NodeWord::line_break:
+        drive_break(command.numbers[0]);
+        break;
+      case NodeWord::glitch:
+        drive_glitch(command.numbers[0]);
+        break;
+      case NodeWord::poll:
+        for (std::int64_t n = 0; n < command.numbers[0] && !is_over_; ++n) poll();
+        break;
+      case NodeWord::sign:
+        give_sign_of_life(command.numbers[0]);
+        break;
+      case NodeWord::rate:
+        bench_.wait(bench_.delimiter() + bench_.bits(6));
+        send(octets_of(word, command, bench_), {}, command.numbers[0]);
+        break;
       default:
-        send(octets_of(word, command, bench_), command.faults);
+        send(octets_of(word, command, bench_), faults_of(command));
     }
-    const bool has_silence = word != NodeWord::wait && word != NodeWord::switches;
+    const bool has_silence = word != NodeWord::wait && word != NodeWord::switches && word != NodeWord::poll &&
+                             word != NodeWord::sign;
     if (has_silence) bench_.wait(bench_.bits(command.numbers.back()));
     compare();
   }
 
+  // With those that a word is about.
+  std::vector<SequenceFault> faults_of(const SequenceCommand& command) const {
+    const std::size_t length = bench_.levels_of(0).size();
+    const auto unit = static_cast<std::uint32_t>(command.numbers.front());
+    constexpr std::uint32_t kAfterData = 9;
+    constexpr std::size_t kWithParity = 11;
+    if (static_cast<NodeWord>(command.word) == NodeWord::parity && length >= kWithParity)
+      return {{SequenceFaultKind::flip, unit, kAfterData}};
+    if (static_cast<NodeWord>(command.word) == NodeWord::spaced)
+      return {{SequenceFaultKind::gap, unit,
+               static_cast<std::uint32_t>(length) * static_cast<std::uint32_t>(command.numbers[1]) / 10}};
+    return command.faults;
+  }
+
   // Character by character, as stations do: who listens learns of each when it is over.
-  void send(const std::vector<std::uint8_t>& octets, const std::vector<SequenceFault>& faults) {
+  void send(const std::vector<std::uint8_t>& octets, const std::vector<SequenceFault>& faults,
+            std::int64_t rate_percent = 100) {
     for (std::size_t n = 0; n < octets.size(); ++n) {
       line::Waveform wave;
-      wave.rate = bench_.rules().bit_rate;
+      wave.rate = bench_.rules().bit_rate * rate_percent / 100;
       wave.levels = bench_.levels_of(octets[n]);
       bool is_dropped = false;
       std::int64_t gap = 0;
@@ -117,6 +149,50 @@ class NodeSequenceRun final : private segment::Tap {
       piece.levels.append_fill(false, static_cast<std::size_t>(std::min(left, character)));
       bench_.drive(piece);
     }
+  }
+
+  // On a silent line: a receiver would know of it before a line tells it.
+  void drive_break(std::int64_t characters) {
+    bench_.wait(bench_.delimiter() + bench_.bits(6));
+    line::Waveform low;
+    low.rate = bench_.rules().bit_rate;
+    low.levels.append_fill(false, bench_.levels_of(0).size() * static_cast<std::size_t>(characters));
+    bench_.drive(low);
+  }
+
+  void drive_glitch(std::int64_t sixteenths) {
+    line::Waveform low;
+    low.rate = bench_.rules().bit_rate * 16;
+    low.levels.append_fill(false, static_cast<std::size_t>(sixteenths));
+    bench_.drive(low);
+  }
+
+  void send_command(std::uint8_t id, std::uint8_t command, std::uint8_t inverted = 0) {
+    const auto check = static_cast<std::uint8_t>(id ^ command ^ 0xA5 ^ 0x3C ^ inverted);
+    send({id, command, 0xA5, 0x3C, check}, {});
+  }
+
+  void poll() {
+    send_command(bench_.address(), static_cast<std::uint8_t>(bench_.rules().read_command));
+    bench_.wait(bench_.delimiter() + bench_.bits(6));
+    compare();
+  }
+
+  void give_sign_of_life(std::int64_t kind) {
+    const kernel::Duration limit = bench_.rules().loss_limit;
+    if (limit == kernel::Duration{} || bench_.capabilities().is_wall_clock) return;
+    const kernel::Duration part = limit / 10 * 7;
+    const std::uint8_t own = bench_.address();
+    constexpr std::uint8_t kUndefined = 2;
+    send_command(own, static_cast<std::uint8_t>(bench_.rules().write_command));
+    bench_.wait(part);
+    compare();
+    if (is_over_) return;
+    if (kind == 0) send_command(own, static_cast<std::uint8_t>(bench_.rules().read_command));
+    if (kind == 1) send_command(own, kUndefined);
+    if (kind == 2) send_command(static_cast<std::uint8_t>(own == 1 ? 2 : 1), 0);
+    if (kind == 3) send_command(own, 0, 1);
+    bench_.wait(part);
   }
 
   void set_switches(std::uint16_t switches) {

@@ -1,6 +1,7 @@
 #include "conformance/valve_bus/node_vocabulary.hpp"
 
 #include <array>
+#include <utility>
 
 #include "conformance/sequence_settings.hpp"
 #include "protocols/valve_bus/node_settings.hpp"
@@ -15,6 +16,13 @@ constexpr std::int64_t kDelimiterBits = 45;
 constexpr std::array<std::int64_t, 6> kData{0x00, 0xFF, 0x01, 0x05, 0x80, 0xA5};
 constexpr std::array<std::int64_t, 7> kIds{1, 0, 5, 69, 133, 4, 255};
 constexpr std::array<std::int64_t, 6> kCommands{0, 1, 2, 128, 129, 255};
+constexpr std::array<std::int64_t, 5> kChecks{0xFF, 0x01, 0x80, 0x0F, 0xA5};
+// Of a character: allowed inside a frame, and too long for it, whatever the characters are.
+constexpr std::array<std::int64_t, 3> kTenths{10, 17, 30};
+// Far from any that a receiver may take.
+constexpr std::array<std::int64_t, 2> kRates{50, 170};
+constexpr std::array<std::int64_t, 2> kSixteenths{2, 4};
+constexpr std::array<std::int64_t, 5> kPolls{2, 20, 2, 20, 410};
 constexpr std::array<std::int64_t, 5> kWaits{1, 10, 66, 100, 1000};
 
 SequenceNumber octet(std::string_view name, std::span<const std::int64_t> likely = kData) {
@@ -26,9 +34,7 @@ SequenceNumber silence() {
   return {"silence", 0, 100'000, kDelimiterBits, kSilences, true};
 }
 
-}  // namespace
-
-SequenceVocabulary node_vocabulary() {
+SequenceVocabulary vocabulary_of_commands() {
   const valve_bus::NodeConfiguration node = node_configuration({}, declared_node());
   // In the order of NodeWord.
   return {.words = {{.word = "write",
@@ -81,6 +87,62 @@ SequenceVocabulary node_vocabulary() {
           .objection = objection_of(valve_bus::kNodeTable, node, expect_judgeable)};
 }
 
+std::vector<SequenceWord> words_of_spoilt_writes() {
+  return {{.word = "check",
+           .meaning = "a write of the node's own, the bits of its check inverted where these are 1",
+           .numbers = {{"bits", 1, 0xFF, 0xFF, kChecks}, octet("data0"), octet("data1"), silence()},
+           .weight = 1},
+          {.word = "parity",
+           .meaning =
+               "a write of the node's own with the bit after the eight data bits of one character inverted",
+           .numbers = {{"character", 0, 4, 0}, octet("data0"), octet("data1"), silence()},
+           .weight = 2},
+          {.word = "spaced",
+           .meaning = "a write of the node's own with so many tenths of a character of silence after one",
+           .numbers = {{"character", 0, 3, 0},
+                       {"tenths", 10, 30, 10, kTenths, true},
+                       octet("data0"),
+                       octet("data1"),
+                       silence()},
+           .weight = 2},
+          {.word = "rate",
+           .meaning = "silence, then a write of the node's own at so many hundredths of the bit rate",
+           .numbers = {{"percent", 50, 170, 50, kRates, true}, octet("data0"), octet("data1"), silence()},
+           .weight = 1}};
+}
+
+std::vector<SequenceWord> words_of_lines_and_times() {
+  return {
+      {.word = "break",
+       .meaning = "silence, then the line is low for so many characters without an edge",
+       .numbers = {{"characters", 2, 20, 4}, silence()},
+       .weight = 1},
+      {.word = "glitch",
+       .meaning = "the line is low for so many sixteenths of a bit",
+       .numbers = {{"sixteenths", 2, 4, 2, kSixteenths, true}, silence()},
+       .weight = 2},
+      {.word = "poll",
+       .meaning = "so many reads of the node's own, one after the other",
+       .numbers = {{"count", 2, 410, 2, kPolls, true}},
+       .weight = 1},
+      {.word = "sign",
+       .meaning = "where valves go off without a command: a write, seven tenths of that time, a read (0), an "
+                  "undefined command (1), a command for another (2), one with a wrong check (3) or "
+                  "nothing (4), and seven tenths",
+       .numbers = {{"kind", 0, 4, 0}},
+       .weight = 3}};
+}
+
+}  // namespace
+
+SequenceVocabulary node_vocabulary() {
+  SequenceVocabulary vocabulary = vocabulary_of_commands();
+  for (auto* make : {words_of_spoilt_writes, words_of_lines_and_times}) {
+    for (SequenceWord& word : make()) vocabulary.words.push_back(std::move(word));
+  }
+  return vocabulary;
+}
+
 std::vector<std::uint8_t> octets_of(NodeWord word, const SequenceCommand& command, const NodeBench& bench) {
   const auto number = [&](std::size_t n) { return static_cast<std::uint8_t>(command.numbers.at(n)); };
   std::vector<std::uint8_t> octets;
@@ -93,6 +155,14 @@ std::vector<std::uint8_t> octets_of(NodeWord word, const SequenceCommand& comman
     case NodeWord::command:
       octets = {number(0), number(1), number(2), number(3)};
       break;
+    case NodeWord::check:
+    case NodeWord::parity:
+    case NodeWord::rate:
+      octets = {bench.address(), 0, number(1), number(2)};
+      break;
+    case NodeWord::spaced:
+      octets = {bench.address(), 0, number(2), number(3)};
+      break;
     case NodeWord::response:
       octets = {number(0), number(1)};
       break;
@@ -101,7 +171,7 @@ std::vector<std::uint8_t> octets_of(NodeWord word, const SequenceCommand& comman
   }
   std::uint8_t check = 0;
   for (const std::uint8_t one : octets) check ^= one;
-  octets.push_back(check);
+  octets.push_back(word == NodeWord::check ? static_cast<std::uint8_t>(check ^ number(0)) : check);
   return octets;
 }
 

@@ -9,7 +9,26 @@
 // The words of sequences for a local node, and the octets that some of them put on the line.
 namespace fieldproof::conformance {
 
-enum class NodeWord : std::uint8_t { write, read, command, response, octets, low, wait, power, switches };
+// In this order, to the end of which new ones are added: stored inputs of the fuzzers know them by it.
+enum class NodeWord : std::uint8_t {
+  write,
+  read,
+  command,
+  response,
+  octets,
+  low,
+  wait,
+  power,
+  switches,
+  check,
+  parity,
+  spaced,
+  rate,
+  line_break,
+  glitch,
+  poll,
+  sign
+};
 
 SequenceVocabulary node_vocabulary();
 // Without faults; none for a word that sends no characters.
