@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -18,8 +19,7 @@ constexpr std::string_view kOneHalves = "0110";
 constexpr std::string_view kZeroHalves = "1001";
 constexpr std::string_view kFirstNonData = "0101";
 constexpr std::string_view kSecondNonData = "1010";
-constexpr std::size_t kSymbolHalves = 4;
-constexpr std::size_t kOctetHalves = 8 * kSymbolHalves;
+constexpr unsigned kOctetHalves = 32;
 constexpr std::size_t kCrcOctets = 4;
 
 std::string delimiter_text(bool is_end, bool more_follows, bool has_error) {
@@ -34,19 +34,35 @@ const line::FrameCheck& crc_32() {
   return check;
 }
 
-// Octets from a half bit on, until there is none.
-Octets octets_from(std::string_view halves) {
+// The half bits of an octet, the first in bit 0.
+constexpr std::uint32_t halves_of_octet(unsigned octet) {
+  constexpr std::uint32_t kOne = 0b0110;
+  constexpr std::uint32_t kZero = 0b1001;
+  std::uint32_t halves = 0;
+  for (unsigned bit = 0; bit < 8; ++bit) halves |= ((octet >> bit & 1U) != 0 ? kOne : kZero) << 4 * bit;
+  return halves;
+}
+
+// Octets from a half bit on, until there is none. The second half bit of a symbol says which it would be.
+Octets octets_from(const line::Levels& halves, std::size_t at) {
   Octets octets;
-  for (; halves.size() >= kOctetHalves; halves.remove_prefix(kOctetHalves)) {
+  for (; at + kOctetHalves <= halves.size(); at += kOctetHalves) {
+    const auto window = static_cast<std::uint32_t>(halves.window(at));
     unsigned octet = 0;
-    for (std::size_t bit = 0; bit < 8; ++bit) {
-      const std::string_view symbol = halves.substr(bit * kSymbolHalves, kSymbolHalves);
-      if (symbol != kOneHalves && symbol != kZeroHalves) return octets;
-      octet |= (symbol == kOneHalves ? 1U : 0U) << bit;
-    }
+    for (unsigned bit = 0; bit < 8; ++bit) octet |= (window >> (4 * bit + 1) & 1U) << bit;
+    if (halves_of_octet(octet) != window) return octets;
     octets.push_back(static_cast<std::uint8_t>(octet));
   }
   return octets;
+}
+
+// Where the first start delimiter is.
+std::optional<std::size_t> start_delimiter_in(const line::Levels& halves) {
+  static const auto delimiter =
+      static_cast<std::uint32_t>(line::Levels::of_text(delimiter_text(false, false, false)).window(0));
+  for (std::size_t at = 0; at + kOctetHalves <= halves.size(); ++at)
+    if (static_cast<std::uint32_t>(halves.window(at)) == delimiter) return at;
+  return std::nullopt;
 }
 
 // Half bits are found in runs, so each may be a quarter too long: a transmission may not.
@@ -123,29 +139,22 @@ Octets with_crc_32(std::span<const std::uint8_t> octets) {
 }
 
 line::Levels half_bits_around(std::span<const std::uint8_t> octets, const FrameForm& form) {
-  // The first half in bit 0.
-  constexpr std::uint64_t kOne = 0b0110;
-  constexpr std::uint64_t kZero = 0b1001;
   line::Levels levels;
-  for (unsigned n = 0; n < 8 * form.preamble_octets; ++n) levels.append(kOne, kSymbolHalves);
+  levels.make_room((form.preamble_octets + octets.size() + 2) * kOctetHalves);
+  for (unsigned n = 0; n < form.preamble_octets; ++n) levels.append(halves_of_octet(0xFF), kOctetHalves);
   levels.append(line::Levels::of_text(delimiter_text(false, false, false)));
-  for (const std::uint8_t octet : octets) {
-    for (unsigned bit = 0; bit < 8; ++bit)
-      levels.append((octet >> bit & 1) != 0 ? kOne : kZero, kSymbolHalves);
-  }
+  for (const std::uint8_t octet : octets) levels.append(halves_of_octet(octet), kOctetHalves);
   levels.append(line::Levels::of_text(delimiter_text(true, form.more_follows, form.has_error)));
   return levels;
 }
 
 void DrivenFrames::on_wave(const line::Waveform& wave) {
   const line::Levels half_bits = line::half_bits_of(wave, phy_bit_rate_);
-  const std::string text = half_bits.text();
   DrivenFrame driven{.begin = wave.start, .end = wave.end(), .address_octets = address_octets_};
-  const std::string start = delimiter_text(false, false, false);
-  const std::size_t at = text.find(start);
-  if (at != std::string::npos && at % kOctetHalves == 0) {
-    driven.preamble_octets = static_cast<unsigned>(at / kOctetHalves);
-    driven.octets = octets_from(std::string_view(text).substr(at + start.size()));
+  const auto at = start_delimiter_in(half_bits);
+  if (at && *at % kOctetHalves == 0) {
+    driven.preamble_octets = static_cast<unsigned>(*at / kOctetHalves);
+    driven.octets = octets_from(half_bits, *at + kOctetHalves);
     driven.is_well_formed =
         half_bits == half_bits_around(driven.octets, {.preamble_octets = driven.preamble_octets}) &&
         lasts(wave, half_bits.size(), 2 * phy_bit_rate_);

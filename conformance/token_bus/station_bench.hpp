@@ -101,6 +101,7 @@ class TokenBench final : public LineBench {
   // The next frame that the IUT begins before `limit`, when it is over; none: it was silent.
   std::optional<DrivenFrame> next(kernel::Time limit);
   std::span<const DrivenFrame> driven() const { return driven_.all(); }
+  const DrivenFrames& driven_frames() const { return driven_; }
   std::span<const DrivenFrame> sent() const { return sent_.all(); }
 
   // ---- stress ----

@@ -1,6 +1,7 @@
 #include "conformance/token_bus/station_twin.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace fieldproof::conformance {
 
@@ -10,20 +11,28 @@ Observations frames_of(std::span<const DrivenFrame> driven) {
   return all;
 }
 
-Observations indications_of(const TokenUser& user, const token_bus::Rules& rules) {
+Observations indications_of(std::span<const token_bus::Frame> frames, const token_bus::Rules& rules) {
   Observations all;
-  for (const token_bus::Frame& one : user.frames) {
+  for (const token_bus::Frame& one : frames) {
     const Octets octets = token_bus::octets_of(one, rules);
     all.push_back({{octets.begin(), octets.end()}, {}});
   }
   return all;
 }
 
+Observations events_of(std::span<const TokenUser::Reported> events) {
+  Observations all;
+  for (const TokenUser::Reported& one : events) {
+    all.push_back({{static_cast<std::int64_t>(one.event.kind), static_cast<std::int64_t>(one.event.address)},
+                   one.when});
+  }
+  return all;
+}
+
 TokenTwin::TokenTwin(const token_bus::StationConfiguration& configuration, segment::MediumPort& tester,
-                     kernel::Time now)
+                     const DrivenFrames& followed, kernel::Time now)
     : line_(segment_, "line", segment::ContentionRule::noise, kernel::Random(1)),
-      rules_(configuration.rules),
-      station_(configuration),
+      station_(configuration, followed),
       driven_(configuration.rules.phy_bit_rate, token_bus::address_octets(configuration.rules)) {
   tester_ = &line_.attach("tester/in", segment_.attach(*this, "tester"), 0, {});
   seat_ = segment_.attach(station_, "reference");
@@ -37,41 +46,43 @@ TokenTwin::TokenTwin(const token_bus::StationConfiguration& configuration, segme
   tester.tap_driven(*this);
 }
 
-void TokenTwin::on_wave(const line::Waveform& wave) {
-  segment_.run_until(std::max(wave.start, segment_.now()));
-  line::Waveform copy = wave;
-  tester_->drive(copy);
+void TokenTwin::keep(kernel::Time when, std::function<void(kernel::Time)> act) {
+  acts_.push_back({when, std::move(act)});
 }
 
-bool TokenTwin::submit(const token_bus::DataRequest& request, kernel::Time now) {
-  run_until(now);
-  const bool is_taken = station_.submit(request, now);
-  segment_.refresh(seat_);
-  return is_taken;
+void TokenTwin::on_wave(const line::Waveform& wave) {
+  keep(wave.start, [this, wave](kernel::Time) {
+    line::Waveform copy = wave;
+    tester_->drive(copy);
+  });
+}
+
+void TokenTwin::set_power(bool is_on, kernel::Time now) {
+  keep(now, [this, is_on](kernel::Time when) { is_on ? void(station_.start(when)) : station_.stop(when); });
+}
+
+void TokenTwin::submit(const token_bus::DataRequest& request, kernel::Time now) {
+  keep(now, [this, request](kernel::Time when) { taken_.push_back(station_.submit(request, when)); });
 }
 
 void TokenTwin::set_in_ring_desired(bool is_desired, kernel::Time now) {
-  run_until(now);
-  station_.set_in_ring_desired(is_desired, now);
-  segment_.refresh(seat_);
+  keep(now, [this, is_desired](kernel::Time when) { station_.set_in_ring_desired(is_desired, when); });
 }
 
 void TokenTwin::set_response(const Octets& data, kernel::Time now) {
-  run_until(now);
-  station_.set_response(data, now);
+  keep(now, [this, data](kernel::Time when) { station_.set_response(data, when); });
+}
+
+// What it waits for has changed with what the other has driven since.
+void TokenTwin::catch_up(kernel::Time now) {
   segment_.refresh(seat_);
-}
-
-Observations TokenTwin::frames() const {
-  return frames_of(driven_.all());
-}
-
-kernel::Time TokenTwin::last_begin() const {
-  return driven_.all().empty() ? kernel::kStart : driven_.all().back().begin;
-}
-
-Observations TokenTwin::indications() const {
-  return indications_of(user_, rules_);
+  for (; !acts_.empty(); acts_.pop_front()) {
+    const kernel::Time when = std::max(acts_.front().when, segment_.now());
+    segment_.run_until(when);
+    acts_.front().act(when);
+    segment_.refresh(seat_);
+  }
+  segment_.run_until(now);
 }
 
 }  // namespace fieldproof::conformance

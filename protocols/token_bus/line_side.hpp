@@ -25,6 +25,7 @@ class LineSide {
   // What is seen of a reception that is over; nothing where it is hidden.
   std::optional<line::Waveform> seen(const line::Waveform& reception);
   bool is_of_own_time(const line::Waveform& reception) const { return reception.start < driven_until_; }
+  kernel::Time blanked_until() const { return blanked_until_; }
   // A transmission has ended with an end delimiter that says so.
   void blank_from(kernel::Time end);
 

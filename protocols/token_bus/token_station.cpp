@@ -194,8 +194,9 @@ void TokenStation::send(const Frame& frame, kernel::Time earliest, bool waits_fo
 
 kernel::Time TokenStation::pending_due() const {
   if (!pending_) return kernel::kNever;
-  if (!pending_->waits_for_silence) return pending_->earliest;
-  return line_.is_active() ? kernel::kNever : earliest_begin(pending_->earliest);
+  if (!pending_->waits_for_silence) return begin_of(pending_->frame, pending_->earliest);
+  if (line_.is_active()) return kernel::kNever;
+  return begin_of(pending_->frame, earliest_begin(pending_->earliest));
 }
 
 kernel::Time TokenStation::earliest_begin(kernel::Time now) const {

@@ -76,6 +76,7 @@ class TokenStation : public StationDevice {
   const Rules& rules() const { return configuration_.rules; }
   StationUser& user() { return *user_; }
   LineSide& line() { return line_; }
+  const LineSide& line() const { return line_; }
   kernel::Random& random() { return random_; }
   virtual bool wants_ring() const;
 
@@ -111,7 +112,8 @@ class TokenStation : public StationDevice {
   virtual bool yields_in_delay() const { return true; }
   virtual bool forgets_offer() const { return true; }
   virtual bool follows(const Frame& who_follows) const {
-    return is_in_ring_ && address_of(who_follows.data) == predecessor_;
+    // Who is alone follows nobody.
+    return is_in_ring_ && predecessor_ != address() && address_of(who_follows.data) == predecessor_;
   }
 
   // ---- decisions: holding ----
@@ -124,11 +126,16 @@ class TokenStation : public StationDevice {
   virtual Duration hold_time(unsigned place, Time now);
   virtual bool may_begin(unsigned /*place*/, Time begin) const { return begin < hold_until_; }
   virtual line::Levels written(const Frame& frame, Time begin) const;
+  // Of what is due then: a station that is in time may still begin later.
+  virtual Time begin_of(const Frame&, Time due) const { return due; }
   virtual bool drops_token_on(const Frame&) const { return true; }
   virtual unsigned request_repetitions() const { return rules().max_retry_limit; }
 
   // ---- decisions: passing ----
   virtual bool opens_window(Time now);
+  // Asked of a station in a ring that is fast enough: `count` tokens are still to go by.
+  virtual bool is_window_due(unsigned count) { return count == 0; }
+  virtual unsigned drawn_count_bits() { return static_cast<unsigned>(random_.below(4)); }
   virtual bool is_lowest() const { return successor_ > address(); }
   virtual PassStage stage_after(unsigned attempts) const;
   virtual NoiseAfterToken noise_after_token() const { return NoiseAfterToken::wait_on; }

@@ -38,9 +38,9 @@ bool TokenStation::opens_window(kernel::Time now) {
   const bool is_in_time = residual(kRingMaintenancePlace, now) > kernel::Duration::zero();
   reload(kRingMaintenancePlace, now);
   if (successor_ == address()) return true;
-  if (inter_solicit_count_ > 0 || !is_in_time) return false;
+  if (!is_in_time || !is_window_due(inter_solicit_count_)) return false;
   // Stations that began together do not go on together.
-  inter_solicit_count_ = (rules().max_inter_solicit_count & ~3U) | static_cast<unsigned>(random_.below(4));
+  inter_solicit_count_ = (rules().max_inter_solicit_count & ~3U) | drawn_count_bits();
   return true;
 }
 
