@@ -206,7 +206,7 @@ class TokenSequenceRun {
   // Until the station has nothing more to say. One that is alone solicits for ever.
   void settle(kernel::Duration silence) {
     constexpr unsigned kMostFrames = 60;
-    constexpr unsigned kMostWindows = 3;
+    constexpr unsigned kMostWindows = 2;
     unsigned windows = 0;
     is_alone_ = false;
     for (unsigned n = 0; n < kMostFrames && windows < kMostWindows; ++n) {

@@ -223,6 +223,10 @@ void TokenTester::do_what_is_due(const DrivenFrame& one, std::int64_t after) {
     case TokenCue::request:
       bench_.send(bench_.data_frame(kResponseOfSix, own, one.destination(), bench_.numbered_data(2)));
       break;
+    case TokenCue::successor:
+      // Who has solicited passes it the token.
+      bench_.send(bench_.frame(TokenControl::token, own, one.destination()));
+      break;
     default:
       bench_.send(bench_.frame(TokenControl::set_successor, own, kJoins, kJoins));
       break;

@@ -17,7 +17,7 @@ constexpr std::array<std::int64_t, 4> kTokenWaits{1, 3, 5, 9};
 constexpr std::array<std::int64_t, 4> kTokenSizes{0, 1, 20, 300};
 constexpr std::array<std::int64_t, 4> kTimesOff{0, 2, 9, 40};
 constexpr std::array<std::int64_t, 6> kPreambles{4, 5, 16, 17, 31, 32};
-constexpr std::array<std::int64_t, 5> kBitsLost{0, 0, 1, 14, 15};
+constexpr std::array<std::int64_t, 4> kBitsLost{0, 1, 14, 15};
 constexpr std::array<std::int64_t, 7> kAfterOctets{8, 3, 4, 20, 30, 60, 100};
 constexpr std::array<std::int64_t, 5> kReplyTimes{1, 2, 3, 10, 20};
 constexpr std::array<std::int64_t, 8> kSymbolsBetween{64, 26, 27, 30, 34, 160, 300, 700};
@@ -117,17 +117,19 @@ std::vector<SequenceWord> later_words() {
            .weight = 16},
           {.word = "form",
            .meaning = "the next frame has such a preamble, of which so many bits are lost, and such an end",
-           .numbers = {{"preamble", 4, 32, 4, kPreambles},
-                       {"lost", 0, 15, 0, kBitsLost},
+           .numbers = {{"preamble", 4, 32, 4, kPreambles, true},
+                       {"lost", 0, 15, 0, kBitsLost, true},
                        {"ending", 0, static_cast<std::int64_t>(TokenEnding::long_and_wrong), 0}},
-           .weight = 5},
+           .weight = 5,
+           .is_no_frame = true},
           {.word = "reply",
            .meaning = "what comes after a frame of the station, so many octet durations after it, so often",
            .numbers = {{"to", 0, kTokenCues - 1, 0},
                        {"with", 0, kMostTokenReply, 0},
                        {"after", 3, 300, 8, kAfterOctets},
-                       {"times", 1, 20, 1, kReplyTimes}},
-           .weight = 8},
+                       {"times", 1, 20, 1, kReplyTimes, true}},
+           .weight = 8,
+           .is_no_frame = true},
           {.word = "soon",
            .meaning = "what comes after the next command comes so many MAC symbols after it",
            .numbers = {{"symbols", 26, 2'000, 64, kSymbolsBetween}},
@@ -136,7 +138,8 @@ std::vector<SequenceWord> later_words() {
           {.word = "spike",
            .meaning = "signal without a start delimiter, of so many MAC symbols",
            .numbers = {{"symbols", 1, 40, 16, kSpikes}},
-           .weight = 1},
+           .weight = 1,
+           .is_no_frame = true},
           {.word = "many",
            .meaning = "rounds of the token, without data or with, noise, or faulty frames, so often",
            .numbers = {{"what", 0, static_cast<std::int64_t>(TokenSeries::too_long), 0},
@@ -168,10 +171,25 @@ std::vector<std::vector<NamedCommand>> states_of_a_station() {
   const NamedCommand passed{"token"};
   const NamedCommand urgent{"submit", {{"size", 20}}};
   const NamedCommand bulk{"submit", {{"priority", 0}, {"size", 300}}};
-  return {{offered, passed},                                    // a member
-          {urgent, bulk, offered, passed},                      // that has had data of several classes
-          {{"respond", {{"size", 10}}}, offered, passed},       // with a response
-          {offered, passed, {"peer", {{"does", 0}}}, urgent}};  // among others that are silent
+  const NamedCommand long_one{"ask", {{"size", 1'000}}};
+  // Who has solicited passes it the token when it has answered, or resolves contention before.
+  const NamedCommand taken_in{"reply", {{"to", 6}, {"with", 1}}};
+  const NamedCommand contended{"reply", {{"to", 6}, {"with", 13}, {"times", 3}}};
+  const NamedCommand silent{"peer", {{"does", 0}}};
+  const NamedCommand noise_follows{"reply", {{"with", 2}, {"times", 2}}};
+  const NamedCommand asks{"submit_request"};
+  return {{offered, passed},                                           // a member whose offer is forgotten
+          {urgent, bulk, offered, passed},                             // that has had data of several classes
+          {{"respond", {{"size", 10}}}, offered, passed},              // with a response
+          {offered, passed, silent, urgent},                           // among others that are silent
+          {taken_in, offered},                                         // between two others
+          {taken_in, offered, {"in_ring", {{"desired", 0}}}, passed},  // that has left
+          {taken_in, offered, silent, noise_follows, passed},
+          {taken_in, offered, {"many", {{"times", 17}}}},  // that opens its window soon
+          {taken_in, offered, long_one, long_one, long_one, long_one, bulk, urgent, passed},
+          {taken_in, offered, asks, {"reply", {{"to", 1}, {"with", 10}}}, passed},
+          {contended, offered},
+          {{"silence"}}};  // alone
 }
 
 // Stored inputs name settings by their place: those of later come last.

@@ -182,11 +182,12 @@ bool FrameCheck::check_bit(State state, unsigned k) const {
 void FrameCheck::append_check(std::vector<std::uint8_t>& message) const {
   const unsigned width = parameters_.width;
   FIELDPROOF_CHECK(width % 8 == 0, "only a check of whole octets can be appended to octets");
-  const State state = update(start_, message);
+  const FrameCheckValue check = finish(update(start_, message));
   for (unsigned octet = 0; octet < width / 8; ++octet) {
     unsigned value = 0;
     for (unsigned bit = 0; bit < 8; ++bit) {
-      const unsigned in = check_bit(state, 8 * octet + bit) ? 1 : 0;
+      const unsigned k = 8 * octet + bit;  // as check_bit has it
+      const auto in = static_cast<unsigned>(check >> (parameters_.refout ? k : width - 1 - k) & 1);
       value |= in << (parameters_.refin ? bit : 7 - bit);
     }
     message.push_back(static_cast<std::uint8_t>(value));

@@ -97,14 +97,28 @@ void append(line::Levels& half_bits, std::span<const PhySymbol> symbols) {
   for (const PhySymbol symbol : symbols) phy_code().append(half_bits, line_symbol_of(symbol));
 }
 
+// Its two half bits, the first in bit 0.
+static std::uint64_t halves_of(PhySymbol symbol) {
+  static const std::array<std::uint64_t, 3> halves = [] {
+    std::array<std::uint64_t, 3> all{};
+    for (const PhySymbol one : {cd0, cd1, idl}) {
+      line::Levels levels;
+      append(levels, std::array{one});
+      all.at(static_cast<std::size_t>(one)) = levels.window(0) & 3U;
+    }
+    return all;
+  }();
+  return halves[static_cast<std::size_t>(symbol)];
+}
+
 line::Levels half_bits_of(std::span<const MacSymbol> symbols) {
-  constexpr std::size_t kHalfBitsOfSymbol = 4;
+  constexpr unsigned kHalfBitsOfSymbol = 4;
   line::Levels half_bits;
   half_bits.make_room(kHalfBitsOfSymbol * symbols.size());
   MacEncoder encoder;
   for (const MacSymbol symbol : symbols) {
     const PhyPair pair = encoder.encode(symbol);
-    append(half_bits, std::array{pair.first, pair.second});
+    half_bits.append(halves_of(pair.first) | halves_of(pair.second) << 2, kHalfBitsOfSymbol);
   }
   return half_bits;
 }
