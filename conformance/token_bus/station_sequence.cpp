@@ -366,7 +366,7 @@ const SequenceRole& token_station_sequence_role() {
       {{DerivedKind::values, {"delivers_from_another", "indication_other"}},
        {DerivedKind::faults, {"data_of_members_only", "indication_missing"}},
        {DerivedKind::words, {"delivers_with_another_priority", "indication_other"}},
-       {DerivedKind::states, {"response_of_the_asked_only", "frame_missing"}},
+       {DerivedKind::states, {"response_of_the_asked_only", "indication_missing"}},
        {DerivedKind::repetitions, {"offer_kept", "frame_other"}},
        {DerivedKind::settings, {"preamble_of_four_octets", "preamble_short"}}}};
   return role;
