@@ -69,9 +69,43 @@ ordered_json job_json(const Report& report, const Outcome& outcome) {
   if (!outcome.message.empty()) json["message"] = outcome.message;
   if (!outcome.cases.empty()) json["cases"] = outcome.cases;
   if (!outcome.failed.empty()) json["failed"] = outcome.failed;
+  if (!outcome.search.empty()) json["search"] = outcome.search;
   if (!outcome.ledger.empty()) json["ledger"] = outcome.ledger;
   if (!outcome.files.empty()) json["files"] = outcome.files;
   return json;
+}
+
+std::vector<const Outcome*> jobs_of(const MergedCorpus& corpus, const Report& report) {
+  std::vector<const Outcome*> jobs;
+  for (const std::uint64_t id : corpus.jobs) jobs.push_back(&report.outcomes->at(id));
+  return jobs;
+}
+
+ordered_json search_json(const Report& report, const Totals& totals) {
+  ordered_json corpora = ordered_json::array();
+  for (const MergedCorpus& one : report.corpora) {
+    ordered_json growth = ordered_json::array();
+    for (const JointGrowth& point : joint_growth(jobs_of(one, report)))
+      growth.push_back({{"run", point.run}, {"all", point.all}, {"edges", point.edges}});
+    corpora.push_back({{"name", one.name},
+                       {"command", one.command},
+                       {"jobs", one.jobs},
+                       {"sequences", one.sequences},
+                       {"edges", one.edges},
+                       {"growth", std::move(growth)}});
+    if (!one.message.empty()) corpora.back()["message"] = one.message;
+  }
+  return {{"counts", totals.search}, {"corpora", std::move(corpora)}};
+}
+
+std::string corpus_text(const Report& report, const MergedCorpus& corpus) {
+  const std::string growth = text_of(joint_growth(jobs_of(corpus, report)));
+  if (!corpus.message.empty()) {
+    return fmt::format("{}: {}; {} sequences in corpus/{}, not made smaller: {}\n", corpus.name, growth,
+                       corpus.sequences, corpus.name, kernel::escaped_line(corpus.message));
+  }
+  return fmt::format("{}: {} in each of {} jobs; {} sequences in corpus/{} pass {} together\n", corpus.name,
+                     growth, corpus.jobs.size(), corpus.sequences, corpus.name, corpus.edges);
 }
 
 std::string job_text(const Report& report, const Outcome& outcome) {
@@ -115,6 +149,12 @@ Totals totals_of(const std::map<std::uint64_t, Outcome>& outcomes) {
     totals.failed_cases += outcome.failed.size();
     add(outcome.cases, totals.cases);
     add(outcome.ledger, totals.ledger);
+    if (!outcome.search.empty()) {
+      add({{"jobs", 1},
+           {"run", count_of(outcome.search, "run")},
+           {"found", count_of(outcome.search, "found")}},
+          totals.search);
+    }
     totals.caveats.insert(outcome.caveats.begin(), outcome.caveats.end());
   }
   return totals;
@@ -152,6 +192,7 @@ std::string document_text(const Report& report) {
     document["cases"] = {{"by_verdict", totals.cases}, {"failed", totals.failed_cases}};
   }
   if (!totals.ledger.empty()) document["ledger"] = ledger_json(report, totals);
+  if (!totals.search.empty()) document["search"] = search_json(report, totals);
   if (!totals.caveats.empty()) document["unverified"] = totals.caveats;
   if (report.confidence != nullptr) document["confidence"] = confidence_json(*report.confidence);
   document["jobs"] = ordered_json::array();
@@ -183,6 +224,11 @@ std::string report_text(const Report& report) {
         "those whose data differed (one-sided 95 %)\n",
         sent.total, differed.total, sent.wrong, sent.upper, differed.upper);
   }
+  if (!totals.search.empty()) {
+    text += fmt::format("searches: {}, {} sequences, {} findings\n", count_of(totals.search, "jobs"),
+                        count_of(totals.search, "run"), count_of(totals.search, "found"));
+  }
+  for (const MergedCorpus& corpus : report.corpora) text += corpus_text(report, corpus);
   if (report.confidence != nullptr) text += confidence_text(*report.confidence) + "\n";
   if (!report.incomplete_because.empty()) text += fmt::format("incomplete: {}\n", report.incomplete_because);
   return text;

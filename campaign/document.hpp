@@ -9,8 +9,10 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "campaign/confidence.hpp"
+#include "campaign/growth.hpp"
 #include "campaign/outcome.hpp"
 
 namespace fieldproof::campaign {
@@ -24,6 +26,7 @@ struct Report {
   int exit_code = 0;
   const std::map<std::uint64_t, Outcome>* outcomes = nullptr;
   std::function<std::string(std::uint64_t id)> command;  // of a job
+  std::vector<MergedCorpus> corpora;                     // what searches have left
   const Confidence* confidence = nullptr;                // null: no such goal
   UpperBound bound;
 };
@@ -36,6 +39,7 @@ struct Totals {
   std::uint64_t failed_cases = 0;
   Counts cases;   // of run, by verdict
   Counts ledger;  // of emc
+  Counts search;  // of fuzz: "jobs", "run", "found"
   std::set<std::string> caveats;
 };
 Totals totals_of(const std::map<std::uint64_t, Outcome>& outcomes);

@@ -28,6 +28,9 @@ struct OutputFile {
 // The document of a job: what its verb writes as JSON.
 inline constexpr const char* kDocument = "document.json";
 
+// The folder of a job with the sequences that its search leaves: a file each.
+inline constexpr const char* kCorpus = "corpus";
+
 struct Job {
   std::uint64_t id = 0;  // 1, 2, 3 ...
   std::string verb;

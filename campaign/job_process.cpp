@@ -32,6 +32,7 @@ constexpr const char* kLog = "log.txt";
 constexpr std::size_t kLogKept = 2000;                             // octets
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{64} << 20;  // octets
 constexpr std::size_t kMostFiles = 64;
+constexpr std::size_t kMostOfCorpus = 20'000;
 constexpr int kLostOutput = 74;
 constexpr int kSignalBase = 128;
 
@@ -195,12 +196,20 @@ void JobProcess::collect(JobResult& result) const {
   result.log = without_folder(last_of(folder_ / kLog));
   std::error_code failure;
   std::vector<fs::path> found;
+  std::vector<fs::path> corpus;
   for (const auto& entry : fs::recursive_directory_iterator(folder_, failure)) {
-    if (entry.is_regular_file(failure) && is_kept(entry.path()) && entry.file_size(failure) <= kLargestFile)
+    if (!entry.is_regular_file(failure) || entry.file_size(failure) > kLargestFile) continue;
+    if (entry.path().parent_path() == folder_ / kCorpus) {
+      corpus.push_back(entry.path());
+    } else if (is_kept(entry.path())) {
       found.push_back(entry.path());
+    }
   }
   std::ranges::sort(found);
+  std::ranges::sort(corpus);
   if (found.size() > kMostFiles) found.resize(kMostFiles);
+  if (corpus.size() > kMostOfCorpus) corpus.resize(kMostOfCorpus);
+  found.insert(found.end(), corpus.begin(), corpus.end());
   for (const fs::path& file : found)
     result.files.push_back({file.lexically_relative(folder_).generic_string(), config::read_text(file)});
 }

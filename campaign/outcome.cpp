@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/untrusted_text.hpp"
@@ -48,10 +49,24 @@ void read_emc(const ordered_json& document, Outcome& outcome) {
   }
 }
 
+void read_fuzz(const ordered_json& document, Outcome& outcome) {
+  const auto& stored = document.at("stored");
+  outcome.search = {{"run", document.at("run").get<std::uint64_t>() + stored.at("run").get<std::uint64_t>()},
+                    {"stored", stored.at("read").get<std::uint64_t>()},
+                    {"edges", document.at("edges").get<std::uint64_t>()},
+                    {"kept", document.at("kept").get<std::uint64_t>()},
+                    {"found", document.contains("found") ? 1 : 0}};
+  for (const ordered_json& point : document.at("growth"))
+    outcome.growth.push_back({point.at("run").get<std::uint64_t>(), point.at("edges").get<std::uint64_t>()});
+  const std::size_t left_out = stored.at("left_out").size();
+  if (left_out > 0) outcome.caveats.push_back(fmt::format("{} stored sequences were left out", left_out));
+}
+
 void read_document(const ordered_json& document, Outcome& outcome) {
   const std::string kind = document.value("schema", "");
   if (kind == "fieldproof/results/1") read_run(document, outcome);
   if (kind == "fieldproof/emc/1") read_emc(document, outcome);
+  if (kind == "fieldproof/fuzz/1") read_fuzz(document, outcome);
   if (kind == "fieldproof/measurement/1") outcome.headline = document.at("agreement");
   if (kind == "fieldproof/matrix/1")
     outcome.headline =
@@ -67,6 +82,10 @@ std::string last_line(const std::string& log) {
 }
 
 }  // namespace
+
+bool is_of_corpus(std::string_view name) {
+  return name.starts_with(std::string(kCorpus) + "/");
+}
 
 void add(const Counts& more, Counts& sum) {
   for (const auto& [name, number] : more) sum[name] += number;
@@ -84,7 +103,7 @@ Outcome outcome_of(const JobResult& result) {
   outcome.wall_time_ms = result.wall_time_ms;
   if (result.exit_code > kLastVerdict) outcome.message = last_line(result.log);
   for (const KeptFile& file : result.files)
-    if (file.name != kDocument) outcome.files.push_back(file.name);
+    if (file.name != kDocument && !is_of_corpus(file.name)) outcome.files.push_back(file.name);
   const std::string_view text = result.file(kDocument);
   if (text.empty()) return outcome;
   try {
@@ -97,6 +116,8 @@ Outcome outcome_of(const JobResult& result) {
 }
 
 std::string to_json(const Outcome& outcome) {
+  ordered_json growth = ordered_json::array();
+  for (const GrowthPoint& point : outcome.growth) growth.push_back({point.run, point.edges});
   const ordered_json json = {{"id", outcome.id},
                              {"exit_code", outcome.exit_code},
                              {"killed", outcome.killed},
@@ -105,6 +126,8 @@ std::string to_json(const Outcome& outcome) {
                              {"files", outcome.files},
                              {"cases", outcome.cases},
                              {"failed", outcome.failed},
+                             {"search", outcome.search},
+                             {"growth", std::move(growth)},
                              {"ledger", outcome.ledger},
                              {"caveats", outcome.caveats},
                              {"wall_time_ms", outcome.wall_time_ms}};
@@ -123,6 +146,9 @@ Outcome outcome_from_json(std::string_view text, const std::string& place) {
     json.at("files").get_to(outcome.files);
     json.at("cases").get_to(outcome.cases);
     json.at("failed").get_to(outcome.failed);
+    json.at("search").get_to(outcome.search);
+    for (const ordered_json& point : json.at("growth"))
+      outcome.growth.push_back({point.at(0).get<std::uint64_t>(), point.at(1).get<std::uint64_t>()});
     json.at("ledger").get_to(outcome.ledger);
     json.at("caveats").get_to(outcome.caveats);
     json.at("wall_time_ms").get_to(outcome.wall_time_ms);

@@ -14,6 +14,7 @@
 #include "campaign/rank_slots.hpp"
 #include "campaign/ranks.hpp"
 #include "cli/build_info.hpp"
+#include "cli/campaign_corpora.hpp"
 #include "cli/campaign_plan.hpp"
 #include "cli/campaign_preview.hpp"
 #include "cli/exit_code.hpp"
@@ -165,6 +166,9 @@ class CampaignRun {
     report.exit_code = code;
     report.outcomes = &distribution.outcomes();
     report.command = [this](std::uint64_t id) { return command_of(opened_.plan.job(id)); };
+    // When it was told to end at once, --resume does it.
+    const auto is_interrupted = [this] { return interruption_.signal() != 0; };
+    report.corpora = merge_corpora(opened_.plan, opened_.folder, distribution.outcomes(), is_interrupted);
     report.confidence = confidence_ ? &*confidence_ : nullptr;
     report.bound = bound();
     session_.terminal.print(campaign::report_text(report));

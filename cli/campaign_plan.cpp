@@ -10,6 +10,7 @@
 
 #include "cli/command_line.hpp"
 #include "cli/networks.hpp"
+#include "cli/sequence_corpus.hpp"
 #include "cli/sequence_file.hpp"
 #include "cli/settings.hpp"
 #include "harness/iut/process.hpp"
@@ -83,7 +84,10 @@ bool is_file(const std::optional<std::string>& path) {
 // All files that are there and that a word of the command line names.
 std::vector<std::string> input_files_of(std::string_view word, const Option* option) {
   std::vector<std::string> files;
-  if (option != nullptr && option->name == "iut") {
+  if (option != nullptr && option->name == "corpus") {
+    const std::filesystem::path folder = word.substr(option->name.size() + 3);
+    for (const auto& file : corpus_files(folder)) files.push_back(file.string());
+  } else if (option != nullptr && option->name == "iut") {
     files = files_of_implementation(word);
   } else if (const auto file = file_named_by(word, option)) {
     files.push_back(*file);
@@ -100,6 +104,7 @@ void check_values(const Settings& settings, const Option& option) {
   if (is_choice) settings.choice(option.name);
   if (option.value_name == "N") settings.number(option.name, 0, std::numeric_limits<std::uint64_t>::max());
   if (option.value_name == "T") settings.duration(option.name);
+  if (option.name == "corpus") corpus_files(settings.text(option.name));
 }
 
 void check_operands(const std::string& verb, const std::vector<std::string>& words,
@@ -119,8 +124,9 @@ std::span<const std::string_view> campaign_verbs() {
 }
 
 bool is_of_a_row(const Option& option, std::string_view verb) {
-  return is_known_to(option, verb) && (option.decides_outcome || option.decides_exit_code ||
-                                       option.name == "cases" || option.name == "runs");
+  return is_known_to(option, verb) &&
+         (option.decides_outcome || option.decides_exit_code || option.name == "cases" ||
+          option.name == "corpus" || option.name == "runs");
 }
 
 CampaignPlan::Words CampaignPlan::Axis::at(std::uint64_t n) const {
@@ -327,8 +333,10 @@ campaign::Job CampaignPlan::job(std::uint64_t id) const {
   job.verb = row.verb;
   job.arguments = words_at(row, id - row.first);
   job.limit = limit_;
-  for (const auto& [option, file] :
-       {std::pair{"json", campaign::kDocument}, {"out", "out"}, {"case", "found.case.json"}}) {
+  for (const auto& [option, file] : {std::pair{"json", campaign::kDocument},
+                                     {"out", "out"},
+                                     {"case", "found.case.json"},
+                                     {"corpus-out", campaign::kCorpus}}) {
     if (find_option(option, row.verb) != nullptr) job.outputs.push_back({fmt::format("--{}", option), file});
   }
   if (find_option("quiet", row.verb) != nullptr) job.manner.emplace_back("--quiet");

@@ -28,6 +28,7 @@ void add_files(std::vector<NamedText>& all) {
                                    {"configuration", configuration_schema},
                                    {"detection", detection_schema},
                                    {"emc_case", emc_case_schema},
+                                   {"fuzz", fuzz_schema},
                                    {"matrix", matrix_schema},
                                    {"faults", fault::plan_schema},
                                    {"profile", emc::profile_schema},

@@ -2,9 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <span>
+#include <vector>
+
+#include "cli/case_file.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/implementations.hpp"
 #include "cli/run_setup.hpp"
+#include "cli/sequence_corpus.hpp"
+#include "conformance/sequence_octets.hpp"
 #include "harness/judge/result_json.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
@@ -34,6 +40,20 @@ std::string lines_of(const SequenceFile& file) {
     text += fmt::format("    {}. {}\n", ++number, line);
   }
   return text;
+}
+
+constexpr std::size_t kLongestInput = 512;  // of the fuzz targets of roles
+
+// Octets as libFuzzer keeps them: the first is the seed, the rest the sequence.
+void take_octets(const Session& session, const std::string& text, SequenceFile& target) {
+  if (text.size() < 2 || text.size() > kLongestInput) {
+    session.settings.refuse(
+        "input", fmt::format("an input of a fuzz target has 2 to {} octets, this one has {}", kLongestInput,
+                             text.size()));
+  }
+  const std::vector<std::uint8_t> octets(text.begin(), text.end());
+  target.setup.seed = octets.front();
+  target.sequence = conformance::sequence_of_octets(std::span(octets).subspan(1), target.role->vocabulary);
 }
 
 int code_of(const judge::CaseResult& result) {
@@ -80,6 +100,25 @@ std::string shrunk_text(const conformance::Sequence& before, const conformance::
 
 std::string replay_command(const std::string& file) {
   return fmt::format("fieldproof replay {}", reports::shell_quoted(file));
+}
+
+int case_of_input(Session& session, SequenceFile& target, const std::string& path) {
+  const Settings& settings = session.settings;
+  for (const char* other : {"corpus", "corpus-out", "max-time", "json"}) {
+    if (settings.is_set(other)) settings.refuse(other, "one input is no search; leave it out, or --input");
+  }
+  const std::string file = settings.text("input");
+  if (has_schema(file, kCorpusSchema)) {
+    target.sequence =
+        read_corpus_file(file, *target.role, target.suite->vocabulary(*target.role, target.setup));
+  } else {
+    take_octets(session, config::read_text(file), target);
+  }
+  session.terminal.print(reports::run_header(identity_of(session, target.setup, 1), manifest_of(session, 1)));
+  const conformance::Outcome outcome =
+      conformance::run_sequence(*target.suite, *target.role, target.sequence, target.setup);
+  keep_sequence(session, target, outcome.result, path);
+  return code_of(outcome.result);
 }
 
 int replay_sequence(Session& session) {

@@ -26,6 +26,9 @@ std::string shrunk_text(const conformance::Sequence& before, const conformance::
 
 std::string replay_command(const std::string& file);
 
+// `fuzz --input`: one input of a fuzz target, or one sequence of a corpus, run once and stored as a case.
+int case_of_input(Session& session, SequenceFile& target, const std::string& path);
+
 // `replay` of a stored sequence.
 int replay_sequence(Session& session);
 

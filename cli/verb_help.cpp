@@ -30,8 +30,8 @@ constexpr std::array kHelp = {
         {"check {role} --iut mutant:NAME --case found.json", "keep what was found, for replay"}}}},
     VerbHelp{"fuzz", kJudge, {{
         {"fuzz {role} --iut plugin:./libdevice.so --max-time 15min", "guided by the coverage of your own library"},
-        {"fuzz {role} --iut plugin:./device.so?in-process", "faster, without protection against a crash"},
-        {"fuzz {role} --iut ref --cases 100", "try it on the reference"}}}},
+        {"fuzz {role} --iut plugin:./device.so?in-process --corpus kept", "in this process, which sees coverage; goes on where the last search ended"},
+        {"fuzz {role} --iut ref --input crash-1234 --case found.json", "an input of a fuzz target as a case"}}}},
     VerbHelp{"matrix", kJudge, {{
         {"matrix {protocol}", "which case kills which mutant of the reference"},
         {"matrix {protocol} --jobs 2 --json matrix.json", "the same as JSON"},

@@ -28,6 +28,11 @@ if(NOT FIELDPROOF_SANITIZE AND NOT FIELDPROOF_COVERAGE AND CMAKE_C_COMPILER_ID S
   target_link_options(valve_node_plugin PRIVATE -fuse-ld=bfd)  # lld does not know the objects of g++
 endif()
 
+# The same node as whoever fuzzes it builds it.
+add_library(counting_node MODULE examples/valve_node/plugin.c examples/valve_node/valve_node.c)
+fieldproof_c89(counting_node)
+target_compile_options(counting_node PRIVATE -O1 -fsanitize-coverage=trace-pc)
+
 # fieldproof_odd_plugins(test): libraries that no station would be, and their paths for the test.
 function(fieldproof_odd_plugins test)
   foreach(kind IN ITEMS "" _OTHER_VERSION _LEAVES_OUT _NO_ENTRY _LEVELS_ONLY)

@@ -10,6 +10,8 @@ option(FIELDPROOF_TESTS "Build the tests and the replay of the fuzz corpora" ON)
 option(FIELDPROOF_BENCHMARKS "Build the benchmarks where Google Benchmark is installed" ON)
 option(FIELDPROOF_MPI "Build the module for mpirun where MPI is installed" ON)
 option(FIELDPROOF_FUZZ "Build the libFuzzer programs (clang only)" OFF)
+set(FIELDPROOF_FUZZ_ENGINE "" CACHE STRING
+  "With FIELDPROOF_FUZZ: what links another fuzzing engine, as LIB_FUZZING_ENGINE of OSS-Fuzz; CXXFLAGS then instrument")
 option(FIELDPROOF_COVERAGE "Count executed lines and branches (g++ only)" OFF)
 option(FIELDPROOF_PRECOMPILE "Precompile GoogleTest and RapidCheck once for all test programs" ON)
 option(FIELDPROOF_UNITY "Compile several sources at once: less time for all, more for one file" OFF)
@@ -44,6 +46,9 @@ if(FIELDPROOF_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     message(FATAL_ERROR "FIELDPROOF_FUZZ needs clang (libFuzzer is part of it): use the preset 'fuzz'.")
   endif()
+endif()
+# Who brings an engine brings the instrumentation that it needs, too.
+if(FIELDPROOF_FUZZ AND NOT FIELDPROOF_FUZZ_ENGINE)
   set(fuzz_sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
   target_compile_options(fieldproof_instrumented INTERFACE -fsanitize=fuzzer-no-link
     -fno-sanitize-coverage=trace-cmp ${fuzz_sanitizers} -fno-omit-frame-pointer)

@@ -17,6 +17,7 @@ namespace fieldproof::fuzz {
 namespace {
 
 constexpr std::size_t kOwnCounters = std::size_t{1} << 16U;
+constexpr std::size_t kClasses = 8;
 
 // A place in a library, wherever that is loaded.
 struct PlaceInImage {
@@ -42,18 +43,25 @@ struct CallingImage {
   KeptImage kept{};
 };
 
+// What was seen of them in all runs.
+struct KnownCounters {
+  std::vector<std::uint8_t> classes;  // bits, by counter
+  std::uint64_t first_feature = 0;
+};
+
 // In a function: code may report before the objects of this file are made.
 struct Record {
   std::array<std::uint8_t, kOwnCounters> own{};    // of guards and of call sites
   std::array<std::uint8_t, kOwnCounters> known{};  // bits of the classes that were seen, by counter
-  std::map<PlaceInImage, std::vector<std::uint8_t>> known_inline;
+  std::map<PlaceInImage, KnownCounters> known_inline;
+  std::uint64_t features = kOwnCounters * kClasses;  // that have numbers
   std::vector<InlineCounters> inline_counters;
   std::map<PlaceInImage, std::uint32_t> first_guards;
   std::uint32_t guards = 0;
   std::vector<CallingImage> calling;  // in this run
   std::map<std::string, std::uintptr_t> first_calls;
   bool is_used = false;
-  bool is_recording = false;  // between begin_coverage and take_new_coverage
+  bool is_recording = false;  // between begin_coverage and take_coverage
 };
 
 Record& record() {
@@ -138,19 +146,21 @@ void end_run() {
 
 // 1, 2, 3, 4.. 8.. 16.. 32.. 128..: a bit each.
 std::uint8_t class_of(std::uint8_t count) {
-  constexpr std::array<unsigned, 8> kLeast{1, 2, 3, 4, 8, 16, 32, 128};
+  constexpr std::array<unsigned, kClasses> kLeast{1, 2, 3, 4, 8, 16, 32, 128};
   const auto above = std::ranges::upper_bound(kLeast, static_cast<unsigned>(count));
   return static_cast<std::uint8_t>(1U << static_cast<unsigned>(above - kLeast.begin() - 1));
 }
 
-std::size_t taken(std::span<const std::uint8_t> counters, std::span<std::uint8_t> known) {
-  std::size_t found = 0;
+void take(std::span<const std::uint8_t> counters, std::span<std::uint8_t> known, std::uint64_t first_feature,
+          RunCoverage& run) {
   for (std::size_t n = 0; n < counters.size(); ++n) {
-    if (counters[n] == 0 || (known[n] & class_of(counters[n])) != 0) continue;
-    known[n] = static_cast<std::uint8_t>(known[n] | class_of(counters[n]));
-    ++found;
+    if (counters[n] == 0) continue;
+    const std::uint8_t bit = class_of(counters[n]);
+    run.features.push_back(first_feature + n * kClasses + static_cast<unsigned>(std::countr_zero(bit)));
+    run.new_edges += known[n] == 0 ? 1U : 0U;
+    run.new_features += (known[n] & bit) == 0 ? 1U : 0U;
+    known[n] = static_cast<std::uint8_t>(known[n] | bit);
   }
-  return found;
 }
 
 }  // namespace
@@ -168,18 +178,24 @@ void begin_coverage() {
   all.is_recording = true;
 }
 
-std::size_t take_new_coverage() {
+RunCoverage take_coverage() {
   Record& all = record();
-  if (!all.is_recording) return 0;
-  std::size_t found = taken(all.own, all.known);
+  RunCoverage run;
+  if (!all.is_recording) return run;
+  take(all.own, all.known, 0, run);
   for (const InlineCounters& one : all.inline_counters) {
     if (!one.can_be_read()) continue;
-    auto& known = all.known_inline[one.place];
-    known.resize(std::max(known.size(), one.counters.size()));
-    found += taken(one.counters, known);
+    KnownCounters& known = all.known_inline[one.place];
+    if (known.classes.size() < one.counters.size()) {
+      known.classes.resize(one.counters.size());
+      known.first_feature = std::exchange(all.features, all.features + one.counters.size() * kClasses);
+    }
+    take(one.counters, known.classes, known.first_feature, run);
   }
   end_run();
-  return found;
+  std::ranges::sort(run.features);
+  if (run.new_features == 0) run.features.clear();
+  return run;
 }
 
 }  // namespace fieldproof::fuzz

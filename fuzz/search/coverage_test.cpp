@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -56,7 +58,7 @@ class Coverage : public testing::TestWithParam<const char*> {
     {
       Library(GetParam()).walk(edge, count);
     }
-    const std::size_t found = take_new_coverage();
+    const std::size_t found = take_coverage().new_features;
     EXPECT_FALSE(Library::is_loaded(GetParam()));
     return found;
   }
@@ -81,10 +83,10 @@ TEST_P(Coverage, OfALibraryThatWasThereBeforeTheRunIsSeen) {
     const Library before(GetParam());
     begin_coverage();
     before.walk(2, 1);
-    EXPECT_GT(take_new_coverage(), 0U);
+    EXPECT_GT(take_coverage().new_features, 0U);
     begin_coverage();
     before.walk(2, 1);
-    EXPECT_EQ(take_new_coverage(), 0U);
+    EXPECT_EQ(take_coverage().new_features, 0U);
   }
   EXPECT_EQ(run(2, 1), 0U);
 }
@@ -96,9 +98,30 @@ TEST_P(Coverage, OfNoRunIsNotSeenAndKeepsNothing) {
       Library(GetParam()).walk(3, 1);
     }
     EXPECT_FALSE(Library::is_loaded(GetParam()));
-    EXPECT_EQ(take_new_coverage(), 0U);
+    EXPECT_EQ(take_coverage().new_features, 0U);
   }
   EXPECT_GT(run(3, 1), 0U);
+}
+
+// A feature has one number: what two runs have in common is seen in both, wherever the library was.
+TEST_P(Coverage, HasTheSameNumbersInEachRun) {
+  const auto features_of = [](unsigned edge, unsigned count) {
+    begin_coverage();
+    {
+      Library(GetParam()).walk(edge, count);
+    }
+    return take_coverage();
+  };
+  const RunCoverage first = features_of(4, 5);
+  const Obstacle one;
+  const RunCoverage second = features_of(4, 40);
+  EXPECT_EQ(second.new_edges, 0U);
+  EXPECT_GT(second.new_features, 0U);
+  EXPECT_TRUE(std::ranges::is_sorted(second.features));
+  std::vector<std::uint64_t> added;
+  std::ranges::set_difference(second.features, first.features, std::back_inserter(added));
+  EXPECT_EQ(added.size(), second.new_features);
+  EXPECT_EQ(features_of(4, 40).features, std::vector<std::uint64_t>{}) << "nothing is new";
 }
 
 INSTANTIATE_TEST_SUITE_P(OfLibraries, Coverage,

@@ -5,6 +5,7 @@
 
 #include "conformance/sequence_draw.hpp"
 #include "conformance/sequence_octets.hpp"
+#include "fuzz/search/corpus_cover.hpp"
 #include "fuzz/search/coverage.hpp"
 #include "harness/kernel/random.hpp"
 
@@ -23,13 +24,15 @@ class Pool {
   Pool(const conformance::SequenceVocabulary& vocabulary, std::uint64_t seed)
       : vocabulary_(vocabulary), source_(vocabulary, seed), random_(seed) {}
 
-  std::size_t size() const { return kept_.size(); }
-  void keep(Octets octets) { kept_.push_back(std::move(octets)); }
+  const std::vector<CoveringInput>& kept() const { return kept_; }
+  void keep(Octets octets, std::vector<std::uint64_t> features) {
+    kept_.push_back({std::move(octets), std::move(features)});
+  }
 
   Octets next() {
     if (kept_.empty() || random_.below(10) < kDrawnOfTen)
       return octets_of_sequence(source_.draw(drawn_++), vocabulary_);
-    Octets octets = kept_[random_.below(kept_.size())];
+    Octets octets = kept_[random_.below(kept_.size())].octets;
     for (std::uint64_t left = 1 + random_.below(kMostMutations); left > 0; --left) mutate(octets);
     if (octets.size() > kMostOctets) octets.resize(kMostOctets);
     return octets;
@@ -61,7 +64,7 @@ class Pool {
                          std::min<std::ptrdiff_t>(left, static_cast<std::ptrdiff_t>(1 + random_.below(6))));
         return;
       default: {  // a part of another
-        const Octets& other = kept_[random_.below(kept_.size())];
+        const Octets& other = kept_[random_.below(kept_.size())].octets;
         const std::ptrdiff_t from = place_in(other);
         const std::ptrdiff_t most = static_cast<std::ptrdiff_t>(other.size()) - from;
         const std::ptrdiff_t count =
@@ -75,7 +78,7 @@ class Pool {
   const conformance::SequenceVocabulary& vocabulary_;
   conformance::SequenceSource source_;
   kernel::Random random_;
-  std::vector<Octets> kept_;
+  std::vector<CoveringInput> kept_;
   std::uint64_t drawn_ = 0;
 };
 
@@ -87,34 +90,111 @@ conformance::SequenceFound made_smaller(const SequenceFuzz& fuzz, const conforma
   return {sequence, sequence, std::move(outcome), std::move(first), 0, false};
 }
 
+// After other seeds other sequences are drawn: a search that goes on does not begin with the same ones again.
+std::uint64_t seed_after(std::uint64_t seed, const std::vector<Octets>& seeds) {
+  constexpr std::uint64_t kPrime = 0x100000001B3;  // FNV-1a
+  for (const Octets& octets : seeds) {
+    for (const std::uint8_t octet : octets) seed = (seed ^ octet) * kPrime;
+    seed = (seed ^ octets.size()) * kPrime;
+  }
+  return seed;
+}
+
+bool is_shown(std::uint64_t run) {
+  while (run >= 10 && run % 10 == 0) run /= 10;
+  return run == 1 || run == 2 || run == 5;
+}
+
+class SearchRun {
+ public:
+  explicit SearchRun(const SequenceFuzz& fuzz)
+      : fuzz_(fuzz),
+        vocabulary_(fuzz.suite->vocabulary(*fuzz.role, fuzz.setup)),
+        seeds_(octets_of_seeds()),
+        pool_(vocabulary_, seed_after(fuzz.setup.seed, seeds_)) {}
+
+  SequenceFuzzResult run() {
+    run_seeds();
+    while (!result_.found && result_.run < fuzz_.runs && !fuzz_.stop.stop_requested()) {
+      if (fuzz_.on_progress) fuzz_.on_progress(result_.run);
+      run_one(pool_.next());
+      if (!result_.found) ++result_.run;
+    }
+    note_growth();
+    result_.kept = pool_.kept().size();
+    result_.has_coverage = has_coverage();
+    result_.corpus = corpus();
+    return std::move(result_);
+  }
+
+ private:
+  std::vector<Octets> octets_of_seeds() const {
+    std::vector<Octets> all;
+    for (const conformance::Sequence& seed : fuzz_.seeds)
+      all.push_back(octets_of_sequence(seed, vocabulary_));
+    return all;
+  }
+
+  void run_seeds() {
+    for (const Octets& octets : seeds_) {
+      if (fuzz_.stop.stop_requested()) return;
+      run_one(octets);
+      result_.is_found_in_seed = result_.found.has_value();
+      if (result_.found) return;
+      ++result_.seeds_run;
+    }
+    if (!seeds_.empty()) note_growth();
+  }
+
+  void run_one(Octets octets) {
+    const auto sequence = conformance::sequence_of_octets(octets, vocabulary_);
+    begin_coverage();
+    conformance::Outcome outcome =
+        conformance::run_sequence(*fuzz_.suite, *fuzz_.role, sequence, fuzz_.setup);
+    RunCoverage coverage = take_coverage();
+    const judge::Verdict verdict = outcome.result.verdict;
+    if (verdict >= judge::Verdict::fail) {
+      result_.found = made_smaller(fuzz_, sequence, std::move(outcome));
+      return;
+    }
+    const bool has_passed = verdict == judge::Verdict::pass;
+    result_.passed += has_passed ? 1 : 0;
+    result_.silent += has_passed && !outcome.result.has_driven ? 1 : 0;
+    result_.inconclusive += verdict == judge::Verdict::inconclusive ? 1 : 0;
+    result_.edges += coverage.new_edges;
+    if (coverage.new_features > 0 && !octets.empty())
+      pool_.keep(std::move(octets), std::move(coverage.features));
+    if (is_shown(++run_)) note_growth();
+  }
+
+  void note_growth() {
+    const GrowthPoint point{run_, result_.edges, pool_.kept().size()};
+    if (run_ > 0 && (result_.growth.empty() || result_.growth.back().run != run_))
+      result_.growth.push_back(point);
+  }
+
+  std::vector<conformance::Sequence> corpus() const {
+    if (!has_coverage()) return fuzz_.seeds;
+    std::vector<conformance::Sequence> all;
+    for (const std::size_t place : smallest_cover(pool_.kept()))
+      all.push_back(conformance::sequence_of_octets(pool_.kept()[place].octets, vocabulary_));
+    const auto not_run = fuzz_.seeds.begin() + static_cast<std::ptrdiff_t>(result_.seeds_run);
+    all.insert(all.end(), not_run, fuzz_.seeds.end());
+    return all;
+  }
+
+  const SequenceFuzz& fuzz_;
+  conformance::SequenceVocabulary vocabulary_;
+  std::vector<Octets> seeds_;
+  Pool pool_;
+  SequenceFuzzResult result_;
+  std::uint64_t run_ = 0;
+};
+
 }  // namespace
 
 SequenceFuzzResult search(const SequenceFuzz& fuzz) {
-  const conformance::SequenceVocabulary vocabulary = fuzz.suite->vocabulary(*fuzz.role, fuzz.setup);
-  Pool pool(vocabulary, fuzz.setup.seed);
-  SequenceFuzzResult result;
-  for (; result.run < fuzz.runs && !fuzz.stop.stop_requested(); ++result.run) {
-    if (fuzz.on_progress) fuzz.on_progress(result.run);
-    Octets octets = pool.next();
-    const auto sequence = conformance::sequence_of_octets(octets, vocabulary);
-    begin_coverage();
-    conformance::Outcome outcome = conformance::run_sequence(*fuzz.suite, *fuzz.role, sequence, fuzz.setup);
-    const std::size_t edges = take_new_coverage();
-    const judge::Verdict verdict = outcome.result.verdict;
-    if (verdict >= judge::Verdict::fail) {
-      result.found = made_smaller(fuzz, sequence, std::move(outcome));
-      break;
-    }
-    const bool has_passed = verdict == judge::Verdict::pass;
-    result.passed += has_passed ? 1 : 0;
-    result.silent += has_passed && !outcome.result.has_driven ? 1 : 0;
-    result.inconclusive += verdict == judge::Verdict::inconclusive ? 1 : 0;
-    result.edges += edges;
-    if (edges > 0 && !octets.empty()) pool.keep(std::move(octets));
-  }
-  result.kept = pool.size();
-  result.has_coverage = has_coverage();
-  return result;
+  return SearchRun(fuzz).run();
 }
 
 }  // namespace fieldproof::fuzz
