@@ -3,8 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "cli/case_file.hpp"
-
 namespace fieldproof::cli {
 namespace {
 
@@ -29,7 +27,7 @@ ordered_json found_json(const conformance::SequenceFound& found) {
 }  // namespace
 
 std::string fuzz_json(const fuzz::SequenceFuzzResult& result, const SequenceFile& target,
-                      const SequenceCorpus& corpus) {
+                      const std::string& implementations, const SequenceCorpus& corpus) {
   ordered_json left_out = ordered_json::array();
   for (const LeftOutFile& one : corpus.left_out)
     left_out.push_back({{"file", one.file.filename().string()}, {"because", one.because}});
@@ -37,7 +35,7 @@ std::string fuzz_json(const fuzz::SequenceFuzzResult& result, const SequenceFile
       {"schema", "fieldproof/fuzz/1"},
       {"role", role_path(*target.role)},
       {"seed", std::to_string(target.setup.seed)},
-      {"implementations", ordered_json::parse(implementations_json(target.setup.implementations))},
+      {"implementations", ordered_json::parse(implementations)},
       {"run", result.run},
       {"stored", {{"read", corpus.read.size()}, {"run", result.seeds_run}, {"left_out", left_out}}},
       {"passed", result.passed},

@@ -9,7 +9,8 @@
 
 namespace fieldproof::cli {
 
+// `implementations` is what implementations_json gives.
 std::string fuzz_json(const fuzz::SequenceFuzzResult& result, const SequenceFile& target,
-                      const SequenceCorpus& corpus);
+                      const std::string& implementations, const SequenceCorpus& corpus);
 
 }  // namespace fieldproof::cli

@@ -7,6 +7,7 @@
 
 #include "campaign/growth.hpp"
 #include "cli/attachments.hpp"
+#include "cli/case_file.hpp"
 #include "cli/fuzz_document.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/searched_role.hpp"
@@ -146,7 +147,9 @@ int fuzz_role(Session& session) {
   const Interruption interruption(settings.duration("max-time"));
   const fuzz::SequenceFuzzResult result = searched(session, target, corpus, interruption);
   if (settings.is_set("json"))
-    reports::write_text_file(settings.text("json"), fuzz_json(result, target, corpus.stored));
+    reports::write_text_file(
+        settings.text("json"),
+        fuzz_json(result, target, implementations_json(target.setup.implementations), corpus.stored));
   keep_corpus(session, target, corpus, result);
   if (result.found)
     return keep_found(session, target, path, *result.found, found_in(result, corpus), interruption);
