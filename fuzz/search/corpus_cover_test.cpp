@@ -35,8 +35,10 @@ TEST(CorpusCover, OfNothingIsNothing) {
 
 RC_GTEST_PROP(CorpusCover, PassesAllAndHasNoneTooMany, ()) {
   std::vector<CoveringInput> inputs;
-  for (const auto& features : *rc::gen::container<std::vector<std::set<std::uint64_t>>>(
-           rc::gen::container<std::set<std::uint64_t>>(rc::gen::inRange<std::uint64_t>(0, 12)))) {
+  const auto drawn = *rc::gen::container<std::vector<std::vector<std::uint64_t>>>(
+      rc::gen::container<std::vector<std::uint64_t>>(rc::gen::inRange<std::uint64_t>(0, 12)));
+  for (const auto& numbers : drawn) {
+    const std::set<std::uint64_t> features(numbers.begin(), numbers.end());
     inputs.push_back({*rc::gen::arbitrary<std::vector<std::uint8_t>>(), {features.begin(), features.end()}});
   }
   Places all(inputs.size());
