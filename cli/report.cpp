@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/copies.hpp"
@@ -12,6 +14,7 @@
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "harness/kernel/error.hpp"
+#include "reports/history.hpp"
 #include "reports/html_writer.hpp"
 #include "reports/joined_verdict.hpp"
 #include "reports/text_summary.hpp"
@@ -24,12 +27,20 @@ bool is_directory(const std::string& operand) {
   return std::filesystem::is_directory(operand);
 }
 
+// The file to show, also of the folder of a campaign; empty: it is the directory of a run.
+std::string document_of(const std::string& operand) {
+  if (!is_directory(operand)) return operand;
+  const std::filesystem::path campaign = std::filesystem::path(operand) / "campaign.json";
+  return std::filesystem::is_regular_file(campaign) ? campaign.string() : "";
+}
+
 // The run of `--json`, `--junit` and the others: one, or joined from its parts.
 JoinedRun one_run(const Session& session) {
   std::vector<std::string> directories;
   for (const std::string& operand : session.operands) {
     // A document goes to the page; what is nothing at all is refused.
-    if (session.settings.is_set("html") && std::filesystem::is_regular_file(operand)) continue;
+    if (session.settings.is_set("html") && std::filesystem::exists(operand) && !document_of(operand).empty())
+      continue;
     directories.push_back(operand);
   }
   if (directories.empty()) {
@@ -48,32 +59,56 @@ void say_that_it_is_a_part(const std::string& directory, reports::RunIdentity& i
 }
 
 // With the one run that the other formats are of, or with each directory as a run of its own.
-void write_page(const Session& session, const std::optional<JoinedRun>& only) {
-  const std::string file = session.settings.text("html");
+void write_page(const Session& session, const std::optional<JoinedRun>& only,
+                std::shared_ptr<const reports::History> history) {
+  const std::string page = session.settings.text("html");
   reports::PageContent content;
   content.catalogue = page_catalogue(session.catalogue);
   if (only) content.runs.push_back(only->run);
   for (const std::string& operand : session.operands) {
-    if (!is_directory(operand)) {
-      content.documents.push_back(reports::page_document(operand, document_kinds()));
+    if (const std::string file = document_of(operand); !file.empty()) {
+      content.documents.push_back(reports::page_document(file, document_kinds()));
     } else if (!only) {
       content.runs.push_back(reports::page_run(reports::RunDirectory::open(operand)));
       say_that_it_is_a_part(operand, content.runs.back().stored.run.identity);
     }
   }
+  content.history = std::move(history);
   content.cover = {session.settings.text("title"), session.settings.text("device"),
                    session.settings.text("customer"), session.settings.text("note")};
-  reports::write_text_file(file, reports::html_page(content));
+  reports::write_text_file(page, reports::html_page(content));
   session.terminal.print(reports::joined_text(reports::joined_verdict(content)));
-  session.terminal.print("the report is in " + reports::escaped_line(file) + "\n");
+  session.terminal.print("the report is in " + reports::escaped_line(page) + "\n");
+}
+
+std::shared_ptr<const reports::History> history_of(const Session& session) {
+  if (!session.settings.is_set("history")) return nullptr;
+  constexpr std::uint64_t kMostRuns = 10'000;
+  return std::make_shared<reports::History>(reports::history_of(
+      session.settings.text("history"),
+      static_cast<std::size_t>(session.settings.number("last", 1, kMostRuns)), document_kinds()));
+}
+
+void check_operands(const Session& session) {
+  if (session.settings.is_set("history")) return;
+  if (session.operands.empty()) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        "report needs directories of runs or documents, or --history DIR; write for example "
+                        "report runs/latest --html report.html");
+  }
+  if (session.settings.origin("last") == Origin::command_line)
+    session.settings.refuse("last", "it is of --history DIR; leave it out");
 }
 
 }  // namespace
 
 int report(Session& session) {
+  check_operands(session);
   const bool has_page = session.settings.is_set("html");
   const bool has_copies = asks_for_copies(session.settings);
-  if (!has_page && !has_copies) {
+  const std::shared_ptr<const reports::History> history = history_of(session);
+  if (history) session.terminal.print(reports::history_text(*history));
+  if (!has_page && !has_copies && !history) {
     throw kernel::Error(kernel::ErrorKind::usage,
                         "report needs the file to write: --html, --json, --junit, --sarif or --ctrf, or "
                         "--github; write for example --html report.html");
@@ -81,7 +116,7 @@ int report(Session& session) {
   check_copies(session.settings);
   std::optional<JoinedRun> run;
   if (has_copies) run = one_run(session);
-  if (has_page) write_page(session, run);
+  if (has_page) write_page(session, run, history);
   if (run) write_copies(session, run->run, run->rules);
   return kAllAsExpected;
 }

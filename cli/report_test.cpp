@@ -109,6 +109,46 @@ TEST_F(ReportVerb, ADocumentHoldsItsCommand) {
   EXPECT_EQ(read("again.json"), first);
 }
 
+// A campaign by its file or by its folder, beside the fit of a laboratory's counts.
+TEST_F(ReportVerb, ShowsCampaignsAndFits) {
+  write("plan.json", R"({"title": "two seeds", "jobs": [{"verb": "run", "of": "interbus/slave/frame_check/**",
+      "iut": "mutant:latches_in_spite_of_own_error", "volume": "quick", "seed": {"from": 1, "count": 2}}]})");
+  EXPECT_EQ(call({"campaign", "plan.json", "--out", "nightly", "--workers", "1", "--quiet"}).exit_code, 1);
+  write("counts.csv", "level_v,repetition,polarity,time_s,frames,frames_bad,undetected\n1000,5kHz,+,60,70000,400,0\n");
+  EXPECT_EQ(call({"emc", "interbus", "--fit", "counts.csv", "--bits", "182", "--json", "fit.json"}).exit_code,
+            2);
+  EXPECT_NE(json("fit.json")["command"].get<std::string>().find("--fit counts.csv"), std::string::npos);
+  for (const char* campaign : {"nightly", "nightly/campaign.json"}) {
+    const Called made = call({"report", campaign, "fit.json", "--html", "r.html"});
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_NE(made.out.find("\n  fail          nightly/campaign.json: 2 of 2 jobs of a campaign failed\n"),
+              std::string::npos)
+        << made.out;
+    EXPECT_NE(made.out.find("\n  inconclusive  fit.json: "), std::string::npos) << made.out;
+    const nlohmann::json content = data_of("r.html")["documents"][0]["content"];
+    ASSERT_EQ(content["rows"].size(), 1U);
+    EXPECT_EQ(content["rows"][0]["jobs"], 2);
+    ASSERT_EQ(content["findings"].size(), 2U);
+    EXPECT_EQ(content["findings"][1]["command"], json("nightly/campaign.json")["jobs"][1]["command"]);
+  }
+}
+
+TEST_F(ReportVerb, ShowsHowRunsWentOneAfterAnother) {
+  EXPECT_EQ(call({"run", "interbus/slave/frame_check/**", "--out", "nightly/1"}).exit_code, 0);
+  run("nightly/2");
+  write("nightly/damaged/results.json", "{");
+  const Called told = call({"report", "--history", "nightly"});
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_EQ(told.out.find("2 runs below nightly, the oldest first\n"), 0U) << told.out;
+  EXPECT_NE(told.out.find("left out (1)\n  damaged: "), std::string::npos) << told.out;
+  const Called made = call({"report", "--history", "nightly", "--last", "1", "--html", "r.html"});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  const nlohmann::json data = data_of("r.html");
+  ASSERT_EQ(data["history"]["runs"].size(), 1U);
+  EXPECT_EQ(data["history"]["counts"]["older"], 1);
+  EXPECT_EQ(data["joined"]["verdict"], "fail");
+}
+
 // One table of formats: a stored run says the same as the run itself.
 TEST_F(ReportVerb, WritesTheFormatsThatTheRunWrites) {
   std::vector<std::string> formats;
@@ -167,6 +207,9 @@ TEST_F(ReportVerb, RefusesWhatItCannotShow) {
   expect_refusal({"report", "a"}, 64, "--html");
   expect_refusal({"report", "--html", "r.html"}, 64, "");
   expect_refusal({"report", "none", "--html", "r.html"}, 65, "none");
+  expect_refusal({"report", "--history", "none", "--html", "r.html"}, 65, "none: there is no such folder");
+  expect_refusal({"report", "--history", "a/cases", "--html", "r.html"}, 65, "there is no run");
+  expect_refusal({"report", "a", "--last", "2", "--html", "r.html"}, 64, "--history");
   expect_refusal({"report", "a/cases", "--html", "r.html"}, 65, "manifest.json");
   expect_refusal({"report", "a", "wrong.json", "--html", "r.html"}, 65, "wrong.json:1");
   expect_refusal({"report", "a", "other.json", "--html", "r.html"}, 65, "fieldproof/emc/1");

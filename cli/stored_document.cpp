@@ -3,6 +3,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "campaign/embedded_schemas.hpp"
 #include "cli/embedded_schemas.hpp"
 #include "reports/embedded_schemas.hpp"
 #include "reports/results.hpp"
@@ -36,6 +37,8 @@ std::span<const reports::DocumentKind> document_kinds() {
       reports::DocumentKind{"fieldproof/publication/2", reports::publication_schema},
       reports::DocumentKind{"fieldproof/residual/1", reports::residual_schema},
       reports::DocumentKind{"fieldproof/matrix/1", matrix_schema},
+      reports::DocumentKind{"fieldproof/emc_fit/1", reports::emc_fit_schema},
+      reports::DocumentKind{"fieldproof/campaign/1", campaign::campaign_result_schema},
   };
   return kinds;
 }

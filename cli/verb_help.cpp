@@ -73,7 +73,7 @@ constexpr std::array kHelp = {
         {"diff runs/before runs/latest --json diff.json", "the same as JSON"},
         {"diff main/run branch/run", "of two branches"}}}},
     VerbHelp{"report", kAgain, {{
-        {"report runs/latest --html report.html", "one page of a stored run"},
+        {"report --history nightly --last 50 --html history.html", "how the last runs went, what is flaky, what began to fail, what drifts"},
         {"report runs/latest emc.json measure.json --html report.html --title Acceptance --device N8", "with bursts and cycle times of the same device, and a cover to hand it over"},
         {"report shard1 shard2 shard3 --junit ci.xml --sarif ci.sarif", "the parts of --shard 1/3 to 3/3 as one run"}}}},
     VerbHelp{"emc", kNetwork, {{

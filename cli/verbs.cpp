@@ -22,7 +22,7 @@ constexpr std::array kVerbs = {
     Verb{"replay", "CASEFILE", 1, 1, "run a stored case again and compare it bit for bit", &replay},
     Verb{"shrink", "CASEFILE", 1, 1, "make a stored case that fails smaller: the fewest commands, faults and flipped bits", &shrink},
     Verb{"diff", "RUN_A RUN_B", 2, 2, "new failures, fixed ones and drifted measurements", &diff},
-    Verb{"report", "RUNDIR|FILE...", 1, kAny, "stored runs and documents (emc, measure, paper, residual, matrix) as one HTML page; a run, or all parts of one that --shard cut, in the formats of CI servers", &report},
+    Verb{"report", "[RUNDIR|FILE...]", 0, kAny, "stored runs and documents (emc, measure, paper, residual, matrix, campaign) as one HTML page; a run, or all parts of one that --shard cut, in the formats of CI servers", &report},
     Verb{"emc", "PROTOCOL", 1, 1, "a network under IEC 61000-4-4 bursts: criterion and error statistics by test level, repetition, polarity", &emc_protocol},
     Verb{"measure", "PROTOCOL", 1, 1, "cycle time, jitter and skew of a network, with the closed forms they are compared with", &measure_protocol},
     Verb{"residual", "", 0, 0, "probability that a frame check does not detect a corrupted telegram", &residual},

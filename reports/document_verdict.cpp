@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "reports/campaign_content.hpp"
+
 namespace fieldproof::reports {
 
 std::string several(std::size_t count, std::string_view one) {
@@ -174,10 +176,23 @@ Said said_by_publication(const Document& document) {
   return {Verdict::pass, "a publication is reproduced"};
 }
 
+// Counts of a laboratory against the burst model.
+Said said_by_fit(const Document& document) {
+  const auto rows = document.at("rows").size();
+  const std::string counts = fmt::format("the counts of {}", several(rows, "condition"));
+  if (document.at("verdict") == "consistent")
+    return {Verdict::pass, fmt::format("{} follow the burst model", counts)};
+  if (document.at("verdict") == "contradicts")
+    return {Verdict::fail, fmt::format("{} contradict the burst model", counts)};
+  return {Verdict::inconclusive, fmt::format("{} are too few to put the burst model to the test", counts)};
+}
+
 }  // namespace
 
 Said said_by_document(const Document& document) {
   const auto schema = document.at("schema").get<std::string>();
+  if (schema.starts_with("fieldproof/campaign/")) return said_by_campaign(document);
+  if (schema.starts_with("fieldproof/emc_fit/")) return said_by_fit(document);
   if (schema.starts_with("fieldproof/emc/")) return said_by_emc(document);
   if (schema.starts_with("fieldproof/measurement/")) return said_by_measurement(document);
   if (schema.starts_with("fieldproof/matrix/")) return said_by_matrix(document);

@@ -8,7 +8,9 @@
 #include <string_view>
 
 #include "harness/kernel/untrusted_text.hpp"
+#include "reports/campaign_content.hpp"
 #include "reports/embedded_page.hpp"
+#include "reports/history.hpp"
 #include "reports/joined_verdict.hpp"
 #include "reports/json_writer.hpp"
 #include "reports/packed_timeline.hpp"
@@ -27,6 +29,13 @@ constexpr const char* kAnyCase = "@CASE@";
 // Stored documents may have comments.
 Json parsed(const std::string& text) {
   return Json::parse(text, nullptr, true, true);
+}
+
+// A campaign has as many jobs as its user has time for.
+Json shown(const PageDocument& document) {
+  Json content = parsed(document.json);
+  const bool is_campaign = content.at("schema").get<std::string>().starts_with("fieldproof/campaign/");
+  return is_campaign ? campaign_content(std::move(content)) : content;
 }
 
 Json strings_json(const std::vector<std::string>& strings) {
@@ -100,11 +109,9 @@ Json parts_json(const std::vector<JudgedPart>& parts) {
 }
 
 Json joined_json(const JoinedVerdict& joined) {
-  Json json = {{"verdict", judge::name(joined.verdict)},
-               {"sentence", as_utf8(joined.sentence)},
-               {"runs", parts_json(joined.runs)},
-               {"documents", parts_json(joined.documents)},
-               {"caveats", Json::array()}};
+  Json json = {{"verdict", judge::name(joined.verdict)},    {"sentence", as_utf8(joined.sentence)},
+               {"runs", parts_json(joined.runs)},           {"documents", parts_json(joined.documents)},
+               {"histories", parts_json(joined.histories)}, {"caveats", Json::array()}};
   for (const JoinedCaveat& caveat : joined.caveats) {
     json["caveats"].push_back({{"text", as_utf8(caveat.text)}, {"names", strings_json(caveat.names)}});
   }
@@ -134,9 +141,10 @@ class DataWriter {
                  {"runs", Json::array()},
                  {"documents", Json::array()}};
     if (content.cover != PageCover{}) json["cover"] = cover_json(content.cover);
+    if (content.history) json["history"] = history_json(*content.history);
     for (const PageRun& run : content.runs) json["runs"].push_back(run_json(run));
     for (const PageDocument& document : content.documents) {
-      json["documents"].push_back({{"name", as_utf8(document.name)}, {"content", parsed(document.json)}});
+      json["documents"].push_back({{"name", as_utf8(document.name)}, {"content", shown(document)}});
     }
     return json;
   }

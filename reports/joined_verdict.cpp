@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/document_verdict.hpp"
+#include "reports/history.hpp"
 #include "reports/text_summary.hpp"
 
 namespace fieldproof::reports {
@@ -140,15 +141,44 @@ std::string documents_text(const JoinedVerdict& joined) {
   return words;
 }
 
+// The newest run of each setup says how it is now; what comes and goes, or drifts, is at least a warning.
+JudgedPart judged_history(const History& history) {
+  JudgedPart part{fmt::format("history of {}", history.folder), Verdict::none, ""};
+  for (std::size_t setup = 0; setup < history.setups.size(); ++setup) {
+    const auto newest = std::find_if(history.runs.rbegin(), history.runs.rend(),
+                                     [setup](const HistoryRun& run) { return run.setup == setup; });
+    if (newest == history.runs.rend() || (newest->verdict <= part.verdict && !part.sentence.empty()))
+      continue;
+    part.verdict = newest->verdict;
+    part.sentence = fmt::format("the newest run, {}: {}", newest->name, newest->sentence);
+  }
+  const auto drifts = std::ranges::count_if(
+      history.quantities, [&](const Quantity& quantity) { return history.drifts(quantity) == Drifts::yes; });
+  const auto add = [&part](std::size_t count, std::string_view one, std::string_view of_one,
+                           std::string_view of_many) {
+    if (count == 0) return;
+    part.verdict = std::max(part.verdict, Verdict::warn);
+    add_words(part.sentence, fmt::format("{} {}", several(count, one), count == 1 ? of_one : of_many), "; ");
+  };
+  add(history.broken.size(), "case", "began to fail", "began to fail");
+  add(history.flaky.size(), "case", "is flaky", "are flaky");
+  add(static_cast<std::size_t>(drifts), "measured number", "drifts", "drift");
+  return part;
+}
+
 }  // namespace
+
+JudgedPart judged_run(const std::string& name, const Run& run) {
+  const Said said = said_by_run(run);
+  return {name, said.verdict, said.sentence};
+}
 
 JoinedVerdict joined_verdict(const PageContent& content) {
   JoinedVerdict joined;
   CaseSums sums;
   for (const PageRun& run : content.runs) {
-    const Said said = said_by_run(run.stored.run);
     sums.add(run.stored.run);
-    joined.runs.push_back({run.name, said.verdict, said.sentence});
+    joined.runs.push_back(judged_run(run.name, run.stored.run));
     for (const std::string& caveat : run.stored.run.identity.caveats) add_caveat(joined, caveat, run.name);
   }
   for (const PageDocument& document : content.documents) {
@@ -159,19 +189,21 @@ JoinedVerdict joined_verdict(const PageContent& content) {
       add_caveat(joined, caveat.get<std::string>(), document.name);
     }
   }
-  for (const auto* parts : {&joined.runs, &joined.documents}) {
+  if (content.history) joined.histories.push_back(judged_history(*content.history));
+  for (const auto* parts : {&joined.runs, &joined.documents, &joined.histories}) {
     for (const JudgedPart& part : *parts) joined.verdict = std::max(joined.verdict, part.verdict);
   }
   if (!joined.runs.empty()) joined.sentence = runs_text(joined, sums);
   add_words(joined.sentence, documents_text(joined), "; ");
+  if (!joined.histories.empty()) add_words(joined.sentence, joined.histories.front().sentence, "; ");
   if (joined.sentence.empty()) joined.sentence = "nothing here has a verdict";
   return joined;
 }
 
 std::string joined_text(const JoinedVerdict& joined) {
   std::string text = fmt::format("{}: {}\n", name(joined.verdict), escaped_line(joined.sentence));
-  if (joined.runs.size() + joined.documents.size() < 2) return text;
-  for (const auto* parts : {&joined.runs, &joined.documents}) {
+  if (joined.runs.size() + joined.documents.size() + joined.histories.size() < 2) return text;
+  for (const auto* parts : {&joined.runs, &joined.documents, &joined.histories}) {
     for (const JudgedPart& part : *parts) {
       text +=
           fmt::format("  {:<13} {}: {}\n", part.verdict == Verdict::none ? "no verdict" : name(part.verdict),

@@ -35,8 +35,12 @@ struct JoinedVerdict {
   std::string sentence;               // "4 runs: 2 failed (12 of 170 judged cases failed)"
   std::vector<JudgedPart> runs;       // in the order of the page
   std::vector<JudgedPart> documents;  // likewise
+  std::vector<JudgedPart> histories;  // none or one
   std::vector<JoinedCaveat> caveats;  // each text once
 };
+
+// What one run says by itself.
+JudgedPart judged_run(const std::string& name, const Run& run);
 
 JoinedVerdict joined_verdict(const PageContent& content);
 

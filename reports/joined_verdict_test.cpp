@@ -144,6 +144,14 @@ TEST(JoinedVerdict, OtherDocumentsCountAsWell) {
   EXPECT_EQ(of_document(publication).verdict, Verdict::pass);
   publication["rows"]["DIFFERS"] = 1;
   EXPECT_EQ(of_document(publication).verdict, Verdict::fail);
+  OrderedJson fit = sample_fit("network");
+  EXPECT_EQ(of_document(fit).documents[0].sentence, "the counts of 12 conditions follow the burst model");
+  EXPECT_EQ(of_document(fit).verdict, Verdict::pass);
+  fit["verdict"] = "open";
+  EXPECT_EQ(of_document(fit).verdict, Verdict::inconclusive);
+  fit["verdict"] = "contradicts";
+  EXPECT_EQ(of_document(fit).verdict, Verdict::fail);
+  EXPECT_EQ(of_document(sample_campaign("title")).verdict, Verdict::fail);
   EXPECT_EQ(of_document(sample_residual()).verdict, Verdict::pass) << "it has no verdict";
 }
 

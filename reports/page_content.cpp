@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kTimeline = "timeline.json";
+constexpr const char* kCampaign = "campaign.json";
 
 std::string timeline_from(const fs::path& file) {
   const config::Document document = config::Document::load(file);
@@ -71,7 +72,10 @@ PageDocument page_document(const fs::path& file, std::span<const DocumentKind> k
                              kernel::escaped_line(id)));
   }
   check_against_schema(document.root(), kind->schema);
-  return {file.filename().string(), document.text()};
+  // All campaigns call it the same; the folder tells which.
+  const std::string name = file.filename().string();
+  return {name == kCampaign ? fmt::format("{}/{}", name_of(fs::absolute(file).parent_path()), name) : name,
+          document.text()};
 }
 
 }  // namespace fieldproof::reports

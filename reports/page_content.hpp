@@ -8,12 +8,17 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "reports/run_directory.hpp"
+
+namespace fieldproof::reports {
+struct History;
+}  // namespace fieldproof::reports
 
 namespace fieldproof::reports {
 
@@ -68,6 +73,7 @@ struct PageContent {
   PageCatalogue catalogue;
   std::vector<PageRun> runs;
   std::vector<PageDocument> documents;
+  std::shared_ptr<const History> history;  // none: it shows none
   PageCover cover;
 };
 

@@ -6,9 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "reports/history.hpp"
 #include "reports/html_writer.hpp"
 #include "reports/measurement_writer.hpp"
 #include "reports/publication.hpp"
+#include "reports/sample_campaign.hpp"
 #include "reports/sample_measurement.hpp"
 #include "reports/sample_run.hpp"
 
@@ -309,7 +311,9 @@ inline PageContent sample_page() {
                        {"emc.json", sample_emc().dump()},
                        {"residual.json", sample_residual().dump()},
                        {"publication.json", publication_json(sample_publication())},
-                       {"matrix.json", sample_matrix().dump()}};
+                       {"matrix.json", sample_matrix().dump()},
+                       {"nightly/campaign.json", sample_campaign(kHostileName).dump()},
+                       {"fit.json", sample_fit(kHostileName).dump()}};
   content.cover = {"A test report", kHostileName, "a customer", kHostileName};
   return content;
 }

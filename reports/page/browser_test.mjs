@@ -33,7 +33,8 @@ const cases = data.runs.flatMap((run, at) =>
 const firstRun = data.runs[0];
 const failing = cases.filter((one) => one.verdict === "fail");
 const withTimeLine = Object.entries(firstRun?.cases ?? {}).find(([, more]) => more.timeline)?.[0];
-const sections = ["fieldproof/measurement/1", "fieldproof/emc/1", "fieldproof/residual/1", "fieldproof/publication/2", "fieldproof/matrix/1"]
+const sections = ["fieldproof/measurement/1", "fieldproof/emc/1", "fieldproof/residual/1", "fieldproof/publication/2", "fieldproof/matrix/1",
+  "fieldproof/campaign/1", "fieldproof/emc_fit/1"]
     .filter((schema) => data.documents.some(({ content }) => content.schema === schema));
 
 function expect(condition, sentence) {
@@ -300,7 +301,7 @@ if (withTimeLine) {
 await check("each document has its section, its charts and its command", async (page) => {
   await whole(page);
   const ids = {"fieldproof/measurement/1": "timing", "fieldproof/emc/1": "immunity", "fieldproof/residual/1": "residual",
-    "fieldproof/publication/2": "publication", "fieldproof/matrix/1": "matrix"};
+    "fieldproof/publication/2": "publication", "fieldproof/matrix/1": "matrix", "fieldproof/campaign/1": "campaign", "fieldproof/emc_fit/1": "fit"};
   for (const schema of sections) {
     const place = page.locator(`section#${ids[schema]}`);
     expectEqual(await place.count(), 1, schema);
@@ -314,6 +315,23 @@ await check("each document has its section, its charts and its command", async (
   }
   for (const { content } of data.documents.filter((one) => one.content.schema === "fieldproof/emc/1")) {
     for (const caveat of content.unverified) expect((await page.locator("body").innerText()).includes(caveat), `not told: ${caveat}`);
+  }
+});
+
+await check("a campaign tells each finding with its command, its decision, and the criterion of each level and pulses", async (page) => {
+  await whole(page);
+  const campaigns = data.documents.filter(({ content }) => content.schema === "fieldproof/campaign/1");
+  for (const [at, { content }] of campaigns.entries()) {
+    const place = page.locator("#campaign > article").nth(at);
+    const text = await place.textContent();
+    for (const { command } of [...content.findings, ...content.rows]) expect(text.includes(command), `not there: ${command}`);
+    if (content.confidence) expect(text.includes({open: "not decided", below: "below", above: "above"}[content.confidence.decision]), "no decision");
+    const cells = new Set(content.rows.filter((row) => row.ledger.sent).map((row) => row.command));
+    expectEqual(await place.locator("td.heat").count() > 0, cells.size > 1, "a heat map");
+    for (const row of content.rows.filter(({ ledger }) => ledger.sent)) {
+      const share = Number(((100 * row.ledger.detected) / row.ledger.sent).toPrecision(3));
+      expect(text.includes(`${share} % rejected`), `no ${share} %`);
+    }
   }
 });
 

@@ -236,6 +236,73 @@ export function linearCurves(label, xLabel, yLabel, series) {
   return chartPlace(label, 240, make, 720);
 }
 
+// The interval of Wilson for a share, which stays within 0 and 1.
+function wilson(count, whole) {
+  const kZ = 1.96;
+  const share = count / whole;
+  const middle = (share + (kZ * kZ) / (2 * whole)) / (1 + (kZ * kZ) / whole);
+  const reach = (kZ / (1 + (kZ * kZ) / whole)) * Math.sqrt((share * (1 - share)) / whole + (kZ * kZ) / (4 * whole * whole));
+  return [Math.max(middle - reach, 0), Math.min(middle + reach, 1)];
+}
+
+// Upright bars {x, low, high, colour}, each with a short line at both ends.
+function intervalBars(bars) {
+  return (plot) => {
+    const {ctx} = plot;
+    const reach = 4 * devicePixelRatio;
+    ctx.save();
+    ctx.lineWidth = 1.5 * devicePixelRatio;
+    for (const bar of bars) {
+      const x = plot.valToPos(bar.x, "x", true);
+      const ends = [bar.low, bar.high].map((value) => plot.valToPos(value, "y", true));
+      ctx.strokeStyle = colour(bar.colour);
+      ctx.beginPath();
+      ctx.moveTo(x, ends[0]);
+      ctx.lineTo(x, ends[1]);
+      for (const y of ends) {
+        ctx.moveTo(x - reach, y);
+        ctx.lineTo(x + reach, y);
+      }
+      ctx.stroke();
+    }
+    ctx.restore();
+  };
+}
+
+// Shares of bad frames over the level: series {name, rows}, the rows of a fit in the order of their levels.
+export function countedShares(label, series) {
+  const colours = ["accent", "second", "third"];
+  const levels = [...new Set(series.flatMap(({rows}) => rows.map((row) => row.level_v)))].sort((a, b) => a - b);
+  const bars = series.flatMap(({rows}, at) => rows.map((row) => {
+    const [low, high] = wilson(row.frames_bad, row.frames);
+    return {x: row.level_v, low: 100 * low, high: 100 * high, colour: colours[at]};
+  }));
+  const most = Math.max(...bars.map(({high}) => high), ...series.flatMap(({rows}) => rows.map((row) => (100 * row.expected_bad) / row.frames)));
+  const margin = Math.max((levels.at(-1) - levels[0]) * 0.04, levels[0] * 0.04);
+  const of = (rows, member) => {
+    const values = new Map(rows.map((row) => [row.level_v, (100 * row[member]) / row.frames]));
+    return levels.map((level) => values.get(level) ?? null);
+  };
+  const shown = (plot, value) => (value === null ? "" : number(value, 3));
+  const make = () => ({
+    data: [levels, ...series.flatMap(({rows}) => [of(rows, "frames_bad"), of(rows, "expected_bad")])],
+    options: {
+      ...kQuiet,
+      hooks: {draw: [intervalBars(bars)]},
+      scales: {x: {time: false, range: () => [levels[0] - margin, levels.at(-1) + margin]}, y: {range: () => [0, most * 1.05 || 1]}},
+      axes: [axis("level, V", {size: 32}), axis("bad frames, %", {size: 60})],
+      series: [
+        {label: "V", value: shown},
+        ...series.flatMap(({name}, at) => [
+          {label: `${name}, counted`, stroke: colour(colours[at]), paths: () => null, points: {show: true, size: 6, fill: colour(colours[at])}, value: shown},
+          {label: "fitted", stroke: colour(colours[at]), width: 1.5, spanGaps: true, points: {show: false}, value: shown},
+        ]),
+      ],
+    },
+  });
+  return chartPlace(label, 240, make, 720);
+}
+
 // Grid and labels at powers of ten, at most ten of them.
 const kDecades = {
   splits: (plot, which, low, high) => {

@@ -1,7 +1,7 @@
 // The cover of a page that is handed over: what was tested, with what, and what came out, with limits and
 // margins. It is there when the report was asked for one.
 import { definitions, element, section } from "./dom.js";
-import { fixed, number, part, plural } from "./format.js";
+import { fixed, number, part, plural, scientific } from "./format.js";
 import { mutantsCaught } from "./matrix.js";
 import { caveatList, documentsOf, headlineOf, implementationText, partsOf, sentence } from "./summary.js";
 import { table } from "./table.js";
@@ -109,11 +109,26 @@ function rowsOfMatrix({ name, content }) {
     result: part(mutantsCaught(role), role.mutants.length), limit: "all", margin: ""}));
 }
 
+function rowsOfFit({ name, content }) {
+  return [{test: `${name}: counts of ${content.rows.length} conditions beside the burst model`, result: content.verdict,
+    limit: "consistent", margin: ""}];
+}
+
+function rowsOfCampaign(data, { name, content }) {
+  const said = data.joined.documents[data.documents.findIndex((one) => one.name === name)];
+  const rows = [{test: name, result: sentence(said.sentence), limit: "exit code 0 of each job", margin: ""}];
+  const goal = content.confidence;
+  if (goal) rows.push({test: `${name}: share of ${goal.of === "sent" ? "all exchanges" : "exchanges whose data differed"} in which a wrong word was accepted`,
+    result: `${part(goal.wrong, goal.total)}, at most ${scientific(goal.upper_bound)}`, limit: scientific(goal.rate), margin: ""});
+  return rows;
+}
+
 function resultRows(data) {
   const of = (schema, rows) => documentsOf(data, schema).flatMap(rows);
   const said = new Map(data.documents.map((document, at) => [document, data.joined.documents[at]]));
   return [...data.runs.flatMap((run, at) => rowsOfRun(run, data.joined.runs[at])), ...of("fieldproof/measurement/1", rowsOfMeasurement),
-    ...of("fieldproof/emc/1", rowsOfBursts), ...of("fieldproof/matrix/1", rowsOfMatrix),
+    ...of("fieldproof/emc/1", rowsOfBursts), ...of("fieldproof/matrix/1", rowsOfMatrix), ...of("fieldproof/emc_fit/1", rowsOfFit),
+    ...of("fieldproof/campaign/1", (document) => rowsOfCampaign(data, document)),
     ...of("fieldproof/publication/2", (document) => [{test: document.name, result: sentence(said.get(document).sentence), limit: "no row DIFFERS", margin: ""}])];
 }
 

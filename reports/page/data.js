@@ -28,3 +28,14 @@ export function caseCommand(run, id) {
   const [before, ...after] = run.case_command.split("@CASE@");
   return before + (run.cases[id]?.quoted ?? id) + after.join("@CASE@");
 }
+
+// Pairs of a key and all of `values` that have it, in the order in which the keys come.
+export function grouped(values, keyOf) {
+  const groups = new Map();
+  for (const value of values) {
+    const key = keyOf(value);
+    if (groups.has(key)) groups.get(key).push(value);
+    else groups.set(key, [value]);
+  }
+  return [...groups];
+}

@@ -1,46 +1,26 @@
 // Networks under bursts: the performance criterion by level, repetition and polarity, and the ledger of errors.
 import { definitions, element, notice, section } from "./dom.js";
 import { number, part, plural, scientific } from "./format.js";
+import { heatMap, shareLines } from "./heat_map.js";
 import { later } from "./later.js";
 import { documentCommand, documentsOf } from "./summary.js";
 import { table } from "./table.js";
 import { sensitivityPart, thresholdsPart } from "./thresholds.js";
-
-function wrongOf({ ledger }) {
-  return ledger.accepted_wrong_inputs + ledger.accepted_wrong_outputs;
-}
 
 function recoveryText(test) {
   if (test.recovered_by_itself) return number(test.recovery_cycles);
   return test.recovered_after_start ? "after a start" : "never";
 }
 
-function unique(values) {
-  return [...new Set(values)];
-}
-
-function heatCell(test) {
-  if (!test) return element("td", {class: "heat"}, "not tested");
-  if (!test.came_up) return element("td", {class: "heat none"}, "does not come up");
-  const { ledger } = test;
-  return element("td", {class: `heat criterion-${test.criterion}`}, element("strong", {}, test.criterion),
-      element("small", {}, `${number(ledger.balance?.rejected ?? ledger.detected)} rejected`, element("br"),
-          test.bursts ? [`in ${plural(test.bursts, "burst")}`, element("br")] : null,
-          `${part(ledger.balance ? ledger.sent - ledger.balance.untouched : ledger.corrupted, ledger.sent)} hit`,
-          wrongOf(test) ? [element("br"), `${number(wrongOf(test))} wrong`] : null));
-}
-
-function heatMap(tests) {
-  const levels = unique(tests.map((test) => test.level)).reverse();
-  const columns = unique(tests.map((test) => `${test.repetition}\n${test.polarity}`)).map((key) => key.split("\n"));
-  const head = element("tr", {}, element("th", {scope: "col"}, "level"),
-      columns.map(([repetition, polarity]) => element("th", {scope: "col"}, `${repetition} ${polarity === "-" ? "−" : polarity}`)));
-  const rows = levels.map((level) => element("tr", {}, element("th", {scope: "row"}, level),
-      columns.map(([repetition, polarity]) =>
-          heatCell(tests.find((test) => test.level === level && test.repetition === repetition && test.polarity === polarity)))));
-  return element("div", {class: "scroll", role: "region", tabindex: "0", "aria-label": "Performance criterion"},
-      element("table", {class: "heat-map"}, element("caption", {}, "Performance criterion by level, repetition rate and polarity"),
-          element("thead", {}, head), element("tbody", {}, rows)));
+function heatOf(tests) {
+  return heatMap("Performance criterion by level, repetition rate and polarity", tests.map((test) => ({
+    ...test,
+    letter: test.came_up ? test.criterion : "",
+    said: "does not come up",
+    lines: [...shareLines(test.ledger, test.ledger.balance?.rejected ?? test.ledger.detected),
+      test.bursts ? `in ${plural(test.bursts, "burst")}` : null,
+      `${part(test.ledger.balance ? test.ledger.sent - test.ledger.balance.untouched : test.ledger.corrupted, test.ledger.sent)} hit`],
+  })));
 }
 
 function criteriaPart(content) {
@@ -91,6 +71,8 @@ function ledger(tests) {
     ...whichTest,
     column("levels changed", ({ledger: one}) => number(one.corrupted)),
     column("not served", ({ledger: one}) => number(one.detected)),
+    column("retries", ({ledger: one}) => number(one.retried)),
+    column("held", ({ledger: one}) => number(one.detected - Math.min(one.detected, one.partly_latched))),
     column("repeated", ({ledger: one}) => number(one.repeated)),
     column("wrong inputs accepted", ({ledger: one}) => number(one.accepted_wrong_inputs)),
     column("wrong outputs accepted", ({ledger: one}) => number(one.accepted_wrong_outputs)),
@@ -153,7 +135,7 @@ function campaign({ name, content }) {
       documentCommand(content, name),
       content.is_complete ? null : notice("The campaign ended before all of its tests were made: what is not here was not tested."),
       thresholdsPart(content),
-      hasBursts ? [heatMap(content.tests), criteriaPart(content)] : null, sensitivityPart(content), totalPart(content),
+      hasBursts ? [heatOf(content.tests), criteriaPart(content)] : null, sensitivityPart(content), totalPart(content),
       content.channels.length ? channels(content.channels) : null, hasBursts ? [balance(content.tests), ledger(content.tests)] : null);
 }
 

@@ -1,11 +1,14 @@
 // Reads the data of the page and shows them.
 import { appendixSection } from "./appendix.js";
+import { campaignSection } from "./campaign.js";
 import { caseSection } from "./case_table.js";
 import { watchCharts } from "./charts.js";
 import { coverSection } from "./cover.js";
 import { coverageSection } from "./coverage.js";
 import { unpack } from "./data.js";
 import { append, element, replaceContent, visible } from "./dom.js";
+import { fitSection } from "./fit.js";
+import { historySection } from "./history.js";
 import { immunitySection } from "./immunity.js";
 import { makeLater } from "./later.js";
 import { matrixSection } from "./matrix.js";
@@ -14,7 +17,7 @@ import { residualSection } from "./residual.js";
 import { summarySection } from "./summary.js";
 import { timingSection } from "./timing.js";
 
-const kSections = [coverSection, summarySection, caseSection, timingSection, immunitySection, residualSection, publicationSection,
+const kSections = [coverSection, summarySection, historySection, campaignSection, caseSection, timingSection, immunitySection, fitSection, residualSection, publicationSection,
   matrixSection, coverageSection, appendixSection];
 
 // The same verdict in the title, the headline and the icon of the tab.

@@ -110,6 +110,8 @@ const kDocuments = {
   "fieldproof/publication/2": ["publication", "a paper beside its reproduction"],
   "fieldproof/residual/1": ["residual", "undetected errors of a frame check"],
   "fieldproof/matrix/1": ["matrix", "cases and mutants"],
+  "fieldproof/emc_fit/1": ["fit", "counts of a laboratory beside the burst model"],
+  "fieldproof/campaign/1": ["campaign", "many jobs of other verbs"],
 };
 
 // The program writes its sentences without a capital, to be joined.
@@ -129,7 +131,8 @@ export function partsOf(data) {
     const [target, what] = kDocuments[data.documents[at].content.schema];
     return {...said, at, what, target};
   });
-  return [...runs, ...documents];
+  const histories = joined.histories.map((said, at) => ({...said, at, what: "runs one after another", target: "history"}));
+  return [...runs, ...histories, ...documents];
 }
 
 function partsTable(parts) {
