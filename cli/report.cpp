@@ -74,6 +74,13 @@ void write_page(const Session& session, const std::optional<JoinedRun>& only,
     }
   }
   content.history = std::move(history);
+  content.is_comparison = session.settings.is_set("compare");
+  if (content.is_comparison && content.runs.size() != 2) {
+    session.settings.refuse("compare",
+                            fmt::format("it is of two runs, and {} are named; write for example report "
+                                        "runs/before runs/after --compare --html report.html",
+                                        content.runs.size()));
+  }
   content.cover = {session.settings.text("title"), session.settings.text("device"),
                    session.settings.text("customer"), session.settings.text("note")};
   reports::write_text_file(page, reports::html_page(content));
@@ -116,6 +123,9 @@ int report(Session& session) {
   check_copies(session.settings);
   std::optional<JoinedRun> run;
   if (has_copies) run = one_run(session);
+  if (session.settings.is_set("compare") && (!has_page || has_copies))
+    session.settings.refuse("compare",
+                            "it is of a page, with --html alone; 'fieldproof diff' prints the same as text");
   if (has_page) write_page(session, run, history);
   if (run) write_copies(session, run->run, run->rules);
   return kAllAsExpected;

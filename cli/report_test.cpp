@@ -114,7 +114,8 @@ TEST_F(ReportVerb, ShowsCampaignsAndFits) {
   write("plan.json", R"({"title": "two seeds", "jobs": [{"verb": "run", "of": "interbus/slave/frame_check/**",
       "iut": "mutant:latches_in_spite_of_own_error", "volume": "quick", "seed": {"from": 1, "count": 2}}]})");
   EXPECT_EQ(call({"campaign", "plan.json", "--out", "nightly", "--workers", "1", "--quiet"}).exit_code, 1);
-  write("counts.csv", "level_v,repetition,polarity,time_s,frames,frames_bad,undetected\n1000,5kHz,+,60,70000,400,0\n");
+  write("counts.csv",
+        "level_v,repetition,polarity,time_s,frames,frames_bad,undetected\n1000,5kHz,+,60,70000,400,0\n");
   EXPECT_EQ(call({"emc", "interbus", "--fit", "counts.csv", "--bits", "182", "--json", "fit.json"}).exit_code,
             2);
   EXPECT_NE(json("fit.json")["command"].get<std::string>().find("--fit counts.csv"), std::string::npos);
@@ -133,9 +134,28 @@ TEST_F(ReportVerb, ShowsCampaignsAndFits) {
   }
 }
 
+TEST_F(ReportVerb, PutsTwoRunsSideBySide) {
+  EXPECT_EQ(call({"run", "interbus/slave/frame_check/**", "--record", "all", "--out", "good"}).exit_code, 0);
+  run("bad");
+  const Called made = call({"report", "good", "bad", "--compare", "--html", "r.html"});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.out.find("; since good: "), std::string::npos) << made.out;
+  const nlohmann::json data = data_of("r.html");
+  const nlohmann::json& failures = data["comparison"]["new_failures"];
+  ASSERT_FALSE(failures.empty());
+  for (const nlohmann::json& one : failures) {
+    const auto id = one["id"].get<std::string>();
+    for (const nlohmann::json& side : data["runs"]) EXPECT_TRUE(side["cases"][id].contains("timeline")) << id;
+  }
+  EXPECT_EQ(call({"report", "bad", "good", "--compare", "--html", "r.html"}).out.find("pass: "), 0U);
+  EXPECT_EQ(call({"report", "good", "--compare", "--html", "r.html"}).exit_code, 64);
+  EXPECT_EQ(call({"report", "good", "bad", "--compare"}).exit_code, 64);
+}
+
 TEST_F(ReportVerb, ShowsHowRunsWentOneAfterAnother) {
   EXPECT_EQ(call({"run", "interbus/slave/frame_check/**", "--out", "nightly/1"}).exit_code, 0);
   run("nightly/2");
+  fs::create_directories(folder_ / "nightly" / "damaged");
   write("nightly/damaged/results.json", "{");
   const Called told = call({"report", "--history", "nightly"});
   EXPECT_EQ(told.exit_code, 0) << told.err;

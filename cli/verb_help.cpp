@@ -74,7 +74,7 @@ constexpr std::array kHelp = {
         {"diff main/run branch/run", "of two branches"}}}},
     VerbHelp{"report", kAgain, {{
         {"report --history nightly --last 50 --html history.html", "how the last runs went, what is flaky, what began to fail, what drifts"},
-        {"report runs/latest emc.json measure.json --html report.html --title Acceptance --device N8", "with bursts and cycle times of the same device, and a cover to hand it over"},
+        {"report runs/latest emc.json measure.json --html report.html --title Acceptance --device N8", "a run as one page, with bursts and cycle times of the same device, and a cover to hand it over"},
         {"report shard1 shard2 shard3 --junit ci.xml --sarif ci.sarif", "the parts of --shard 1/3 to 3/3 as one run"}}}},
     VerbHelp{"emc", kNetwork, {{
         {"emc {protocol} --iut {name}@2=exec:./device", "burst immunity of a network with your device in it"},

@@ -29,7 +29,8 @@ std::string setup_of(const RunIdentity& identity) {
   std::string text;
   for (const Implementation& one : identity.implementations) {
     const std::string place = one.position > 0 ? fmt::format("@{}", one.position) : "";
-    text += fmt::format("{}{}{}={}", text.empty() ? "" : "; ", one.role, place, one.uri);
+    text += fmt::format("{}{}{}{}{}", text.empty() ? "" : "; ", one.role, place, one.role.empty() ? "" : "=",
+                        one.uri);
   }
   if (text.empty()) text = "ref";
   text += fmt::format(", volume {}", identity.volume);
@@ -111,7 +112,9 @@ class Builder {
     for (const judge::CaseResult& result : stored.run.cases) {
       const std::optional<CaseEnding> ending = ending_of_case(counted_verdict(result));
       if (!ending) continue;
-      ++(*ending == CaseEnding::good ? run.passed : *ending == CaseEnding::bad ? run.failed : run.inconclusive);
+      ++(*ending == CaseEnding::good  ? run.passed
+         : *ending == CaseEnding::bad ? run.failed
+                                      : run.inconclusive);
     }
     run.not_run = count(stored.run).not_run();
     run.wall_time_us = stored.manifest.wall_time_us;

@@ -9,6 +9,7 @@
 
 #include "harness/kernel/untrusted_text.hpp"
 #include "reports/campaign_content.hpp"
+#include "reports/diff.hpp"
 #include "reports/embedded_page.hpp"
 #include "reports/history.hpp"
 #include "reports/joined_verdict.hpp"
@@ -118,6 +119,10 @@ Json joined_json(const JoinedVerdict& joined) {
   return json;
 }
 
+Json comparison_json(const PageContent& content) {
+  return parsed(diff_json(compare(content.runs.at(0).stored.run, content.runs.at(1).stored.run)));
+}
+
 Json cover_json(const PageCover& cover) {
   return {{"title", as_utf8(cover.title)},
           {"device", as_utf8(cover.device)},
@@ -141,6 +146,7 @@ class DataWriter {
                  {"runs", Json::array()},
                  {"documents", Json::array()}};
     if (content.cover != PageCover{}) json["cover"] = cover_json(content.cover);
+    if (content.is_comparison) json["comparison"] = comparison_json(content);
     if (content.history) json["history"] = history_json(*content.history);
     for (const PageRun& run : content.runs) json["runs"].push_back(run_json(run));
     for (const PageDocument& document : content.documents) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "reports/diff.hpp"
 #include "reports/document_verdict.hpp"
 #include "reports/history.hpp"
 #include "reports/text_summary.hpp"
@@ -141,6 +142,25 @@ std::string documents_text(const JoinedVerdict& joined) {
   return words;
 }
 
+// Of two runs that are compared the second says how it is now; the first only what has changed.
+Said said_by_comparison(const PageRun& before, const PageRun& after) {
+  Said said = said_by_run(after.stored.run);
+  const Difference difference = compare(before.stored.run, after.stored.run);
+  std::string words;
+  const auto add = [&words](std::size_t count, std::string_view one, std::string_view many) {
+    if (count > 0) add_words(words, fmt::format("{} {}", count, count == 1 ? one : many));
+  };
+  add(difference.new_failures.size(), "new failure", "new failures");
+  add(difference.fixed.size(), "case is fixed", "cases are fixed");
+  add(difference.disappeared.size(), "case is gone", "cases are gone");
+  if (words.empty()) words = "nothing fails that did not, and nothing is fixed";
+  said.sentence += fmt::format("; since {}: {}", before.name, words);
+  // Of what is not judged any more nobody knows.
+  if (!difference.incomplete.empty() || !difference.disappeared.empty())
+    said.verdict = std::max(said.verdict, Verdict::inconclusive);
+  return said;
+}
+
 // The newest run of each setup says how it is now; what comes and goes, or drifts, is at least a warning.
 JudgedPart judged_history(const History& history) {
   JudgedPart part{fmt::format("history of {}", history.folder), Verdict::none, ""};
@@ -191,9 +211,16 @@ JoinedVerdict joined_verdict(const PageContent& content) {
   }
   if (content.history) joined.histories.push_back(judged_history(*content.history));
   for (const auto* parts : {&joined.runs, &joined.documents, &joined.histories}) {
+    if (parts == &joined.runs && content.is_comparison) continue;
     for (const JudgedPart& part : *parts) joined.verdict = std::max(joined.verdict, part.verdict);
   }
-  if (!joined.runs.empty()) joined.sentence = runs_text(joined, sums);
+  if (content.is_comparison) {
+    const Said said = said_by_comparison(content.runs.at(0), content.runs.at(1));
+    joined.verdict = std::max(joined.verdict, said.verdict);
+    joined.sentence = said.sentence;
+  } else if (!joined.runs.empty()) {
+    joined.sentence = runs_text(joined, sums);
+  }
   add_words(joined.sentence, documents_text(joined), "; ");
   if (!joined.histories.empty()) add_words(joined.sentence, joined.histories.front().sentence, "; ");
   if (joined.sentence.empty()) joined.sentence = "nothing here has a verdict";

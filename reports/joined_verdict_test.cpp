@@ -162,6 +162,20 @@ TEST(JoinedVerdict, APageOfNumbersAloneIsNoPass) {
   EXPECT_EQ(joined_verdict({}).verdict, Verdict::none);
 }
 
+TEST(JoinedVerdict, OfTwoRunsThatAreComparedTheSecondCounts) {
+  PageContent content;
+  content.is_comparison = true;
+  content.runs = {run_of("before", {Verdict::fail, Verdict::pass}),
+                  run_of("after", {Verdict::pass, Verdict::pass})};
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::pass);
+  EXPECT_EQ(joined_verdict(content).sentence, "all 2 judged cases passed; since before: 1 case is fixed");
+  std::swap(content.runs[0], content.runs[1]);
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::fail);
+  EXPECT_EQ(joined_verdict(content).sentence, "1 of 2 judged cases failed; since after: 1 new failure");
+  content.runs[1] = run_of("less", {Verdict::pass});
+  EXPECT_EQ(joined_verdict(content).verdict, Verdict::inconclusive) << "a case is gone";
+}
+
 TEST(JoinedVerdict, EachCaveatIsSaidOnce) {
   PageContent content;
   content.runs = {run_of("a", {Verdict::pass}), run_of("b", {Verdict::pass})};

@@ -73,6 +73,7 @@ struct PageContent {
   PageCatalogue catalogue;
   std::vector<PageRun> runs;
   std::vector<PageDocument> documents;
+  bool is_comparison = false;              // of the first of its two runs with the second
   std::shared_ptr<const History> history;  // none: it shows none
   PageCover cover;
 };

@@ -2,7 +2,7 @@
 import { element, section } from "./dom.js";
 
 const kRaw = "table.raw, table.many";
-const kWithRaw = ["fieldproof/measurement/1", "fieldproof/emc/1", "fieldproof/residual/1"];
+const kWithRaw = ["fieldproof/measurement/1", "fieldproof/emc/1", "fieldproof/residual/1", "fieldproof/emc_fit/1"];
 
 function moveToEnd(place) {
   for (const table of document.querySelectorAll(kRaw)) {
@@ -23,7 +23,8 @@ function moveBack(place) {
 }
 
 export function appendixSection(data) {
-  if (!data.documents.some(({ content }) => kWithRaw.includes(content.schema))) return null;
+  const isOfRuns = data.history || data.comparison?.drifts.length > 0;
+  if (!isOfRuns && !data.documents.some(({ content }) => kWithRaw.includes(content.schema))) return null;
   const place = section("appendix", "Appendix: tables of all numbers");
   place.classList.add("paper-only");
   addEventListener("beforeprint", () => moveToEnd(place));

@@ -318,6 +318,29 @@ await check("each document has its section, its charts and its command", async (
   }
 });
 
+await check("two runs that are compared show what changed first, and both time lines of a case", async (page) => {
+  await whole(page);
+  expectEqual(await page.locator("#comparison").count(), data.comparison ? 1 : 0, "comparisons");
+  if (!data.comparison) return;
+  const text = await page.locator("#comparison").innerText();
+  for (const {id} of [...data.comparison.new_failures, ...data.comparison.fixed].slice(0, 20)) expect(text.includes(id), `not there: ${id}`);
+  const pairs = page.locator("#comparison details.pair");
+  if (await pairs.count() > 0) {
+    await pairs.first().locator(".side").first().waitFor();
+    expectEqual(await pairs.first().locator(".side").count(), 2, "sides");
+  }
+});
+
+await check("a history tells what is flaky, what began to fail and what was left out", async (page) => {
+  await whole(page);
+  expectEqual(await page.locator("#history").count(), data.history ? 1 : 0, "histories");
+  if (!data.history) return;
+  const text = await page.locator("#history").textContent();
+  for (const {id} of [...data.history.flaky, ...data.history.broken]) expect(text.includes(id), `not there: ${id}`);
+  for (const {name} of data.history.left_out) expect(text.includes(name), `not named: ${name}`);
+  for (const {words} of data.history.quantities) expect(text.toLowerCase().includes(words.toLowerCase()), `not told: ${words}`);
+});
+
 await check("a campaign tells each finding with its command, its decision, and the criterion of each level and pulses", async (page) => {
   await whole(page);
   const campaigns = data.documents.filter(({ content }) => content.schema === "fieldproof/campaign/1");

@@ -3,6 +3,7 @@ import { appendixSection } from "./appendix.js";
 import { campaignSection } from "./campaign.js";
 import { caseSection } from "./case_table.js";
 import { watchCharts } from "./charts.js";
+import { comparisonSection } from "./comparison.js";
 import { coverSection } from "./cover.js";
 import { coverageSection } from "./coverage.js";
 import { unpack } from "./data.js";
@@ -17,7 +18,7 @@ import { residualSection } from "./residual.js";
 import { summarySection } from "./summary.js";
 import { timingSection } from "./timing.js";
 
-const kSections = [coverSection, summarySection, historySection, campaignSection, caseSection, timingSection, immunitySection, fitSection, residualSection, publicationSection,
+const kSections = [coverSection, summarySection, comparisonSection, historySection, campaignSection, caseSection, timingSection, immunitySection, fitSection, residualSection, publicationSection,
   matrixSection, coverageSection, appendixSection];
 
 // The same verdict in the title, the headline and the icon of the tab.
