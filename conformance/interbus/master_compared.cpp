@@ -210,6 +210,7 @@ void change_all_codings(interbus::Rules& rules) {
 }
 
 void change_times_of_a_master(interbus::Rules& rules) {
+  rules.bit_rate = 2'000'000;
   rules.telegram_gap_millibits = 3'700;
   rules.status_pitch_bits = 300;
   rules.software_time = 3 * kernel::kMillisecond;
@@ -255,7 +256,7 @@ std::vector<MasterCase> master_compared_cases() {
                       {{"outputs_one_cycle_late", "cycle_wrong"}},
                       each_beside(each_value_for_a_master, 10, change_all_codings)),
       compared_master("other_times", "The same with other times and counts.",
-                      {{"inputs_frozen", "new_inputs_missed"}},
+                      {{"inputs_frozen", "new_inputs_missed"}, {"bit_rate_kept", "state_wrong"}},
                       each_beside(run_after_run, 8, change_times_of_a_master))};
 }
 

@@ -60,6 +60,8 @@ std::vector<MasterMutants::Row> master_rows() {
        mutant<SelectDroppedInCheck>()},
       {"branches_not_searched", "", "never looks after a second outgoing interface",
        mutant<BranchesNotSearched>()},
+      {"bit_rate_kept", "", "drives and reads at 500 kbit/s whatever it is set to",
+       with_rules<interbus::Master>([](Rules& rules) { rules.bit_rate = 500'000; })},
       {"station_limit_ignored", "", "takes more stations than allowed",
        with_rules<interbus::Master>([](Rules& rules) { rules.max_stations *= 2; })},
       {"point_limit_ignored", "", "takes more I/O points than allowed",

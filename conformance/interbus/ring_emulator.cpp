@@ -129,7 +129,9 @@ void RingEmulator::receive(segment::PortIndex, const line::Waveform& reception) 
     const auto size =
         static_cast<std::size_t>(kernel::levels_within(reception.end() - reception.start, rules_.bit_rate));
     out_.levels.clear();
-    if (!*faults_.stuck) out_.levels.append_fill(false, size);
+    // What a receiver takes for telegrams in it is over before the next transmission begins.
+    constexpr std::size_t kTail = 2 * line::kDataTelegramLevels;
+    if (!*faults_.stuck && size > kTail) out_.levels.append_fill(false, size - kTail);
   }
   if (!was_open && !out_.levels.empty()) back_->drive(out_);
 }
