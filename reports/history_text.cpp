@@ -14,7 +14,7 @@ namespace {
 
 using HistoryJson = nlohmann::ordered_json;
 
-constexpr std::size_t kMostTold = 20;       // of a kind, at a terminal
+constexpr std::size_t kMostTold = 20;        // of a kind, at a terminal
 constexpr std::size_t kMostOnPage = 200;     // cases of a kind
 constexpr std::size_t kMostQuantities = 60;  // with their values
 
