@@ -1,6 +1,7 @@
 #include <array>
 
 #include "conformance/fieldbus_dll/isa_scene.hpp"
+#include "conformance/fieldbus_dll/link_transmission.hpp"
 
 // Frames on the line: preambles, clocks and jitter that a receiver must take.
 namespace fieldproof::conformance {
@@ -16,23 +17,6 @@ Octets long_du(IsaScene& scene) {
                 scene.bench.address(), IsaBench::kPeer};
   for (const std::uint8_t octet : scene.fresh(kLongData)) octets.push_back(octet);
   return with_frame_check(octets);
-}
-
-// Each edge moved by up to a tenth of a bit, in hundredths of a half bit.
-line::Waveform jittered(IsaBench& bench, const line::Levels& half_bits) {
-  constexpr std::int64_t kFiner = 100;
-  constexpr std::uint64_t kMost = 20;
-  line::Waveform wave{bench.now(), 2 * bench.rules().link.bit_rate * kFiner, {}};
-  std::size_t written = 0;
-  for (std::size_t at = 0; at < half_bits.size();) {
-    const std::size_t end = half_bits.end_of_run(at);
-    std::size_t edge = end * kFiner;
-    if (end < half_bits.size()) edge += bench.random().below(2 * kMost + 1) - kMost;
-    wave.levels.append_fill(half_bits[at], edge - written);
-    written = edge;
-    at = end;
-  }
-  return wave;
 }
 
 IsaCase at_rate(std::int64_t bit_rate, const std::string& name) {
@@ -80,11 +64,9 @@ std::vector<IsaCase> isa_line_cases() {
            {stimulus<IsaScene>("a DU of 205 octets at 100, 100.2 and 99.8 % of the bit rate, in turn",
                                [](IsaScene& scene) {
                                  constexpr std::array<std::int64_t, 3> kPerMille{1'000, 1'002, 998};
-                                 IsaBench& bench = scene.bench;
-                                 bench.send_wave(
-                                     {bench.now(),
-                                      2 * bench.rules().link.bit_rate * kPerMille[scene.round % 3] / 1'000,
-                                      half_bits_of_frame(long_du(scene))});
+                                 const line::Levels half_bits = half_bits_of_frame(long_du(scene));
+                                 scene.bench.send_wave(
+                                     clocked(scene.bench, half_bits, kPerMille[scene.round % 3]));
                                }),
             wait(32), delivered("the frame", "clock_not_taken")}}),
       on_chart(must_in_time("fieldbus_dll/isa_dle/line/jitter_is_taken", "ISA-40",

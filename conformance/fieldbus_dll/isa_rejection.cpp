@@ -1,19 +1,13 @@
 #include <array>
 
 #include "conformance/fieldbus_dll/isa_scene.hpp"
-#include "harness/line/frame_check.hpp"
+#include "conformance/fieldbus_dll/link_transmission.hpp"
 
 // What is no token for the IUT.
 namespace fieldproof::conformance {
 namespace {
 
 using fieldbus_dll::Priority;
-
-// The two octets that another variant of the check would have.
-Octets check_of_variant(line::FrameCheckParameters parameters, const Octets& octets) {
-  const auto check = static_cast<unsigned>(line::FrameCheck(parameters).compute(octets));
-  return {static_cast<std::uint8_t>(check >> 8), static_cast<std::uint8_t>(check & 0xFF)};
-}
 
 // The half bits of an ET with symbols that are no data in place of a bit of its second octet.
 line::Levels with_violation(const line::Levels& frame, std::size_t bit, bool high) {
@@ -35,27 +29,9 @@ line::Levels right_et(IsaScene& scene) {
 }
 
 line::Levels isa_with_other_check(IsaScene& scene) {
-  const line::FrameCheckParameters right = line::frame_check_named("CRC-16/PROFIBUS");
-  std::array variants{right,
-                      right,
-                      right,
-                      right,
-                      line::frame_check_named("CRC-16/IBM-3740"),
-                      line::frame_check_named("CRC-16/GENIBUS")};
-  variants[0].xorout = variants[2].xorout = 0;
-  variants[1].init = variants[2].init = 0;
-  variants[3].refin = variants[3].refout = true;
-  const std::size_t variant = scene.turn % (variants.size() + 1);
-  Octets octets = scene.turn < 7 ? scene.bench.et(Priority::time_available)
-                                 : scene.bench.es(Priority::time_available, 1'000);
-  if (variant == variants.size()) {
-    octets = with_frame_check(octets);
-    std::swap(octets.end()[-2], octets.end()[-1]);
-  } else {
-    for (const std::uint8_t octet : check_of_variant(variants.at(variant), Octets(octets)))
-      octets.push_back(octet);
-  }
-  return half_bits_of_frame(octets);
+  const Octets octets = scene.turn < kOtherChecks ? scene.bench.et(Priority::time_available)
+                                                  : scene.bench.es(Priority::time_available, 1'000);
+  return half_bits_with_other_check(octets, scene.turn % kOtherChecks);
 }
 
 // The last bit of the last octet is left out, the end delimiter follows.

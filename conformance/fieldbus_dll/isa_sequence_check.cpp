@@ -8,9 +8,9 @@
 
 #include "conformance/fieldbus_dll/isa_cases.hpp"
 #include "conformance/fieldbus_dll/isa_model.hpp"
+#include "conformance/fieldbus_dll/isa_vocabulary.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
-#include "conformance/sequence_settings.hpp"
-#include "protocols/fieldbus_dll/isa_settings.hpp"
+#include "conformance/fieldbus_dll/link_transmission.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -18,172 +18,7 @@ namespace {
 using fieldbus_dll::IsaService;
 using fieldbus_dll::Priority;
 
-constexpr std::array<std::int64_t, 16> kIsaDurations{1,  9,  10,  17,  30,    31,     33,     34,
-                                                     60, 61, 127, 200, 1'000, 32'768, 33'000, 65'535};
-constexpr std::array<std::int64_t, 12> kIsaSizes{0, 1, 2, 8, 9, 10, 63, 64, 65, 128, 129, 256};
-constexpr std::array<std::int64_t, 8> kIsaTimes{1, 1, 1, 1, 1, 1, 40, 150};
-constexpr std::array<std::int64_t, 23> kIsaToStations{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                                                      0, 0, 0, 0, 1, 1, 2, 3, 4, 5, 6};
-constexpr std::array<std::int64_t, 22> kIsaTo{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                                              0, 0, 0, 0, 0, 1, 1, 2, 3, 4, 5};
-constexpr std::array<std::int64_t, 18> kIsaFrom{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 1, 2, 3, 4, 5};
-constexpr std::array<std::int64_t, 16> kIsaPriorities{1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 0};
-constexpr std::array<std::int64_t, 4> kIsaRequestPriorities{1, 2, 3, 2};
-constexpr std::array<std::int64_t, 18> kIsaWorks{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 12, 22, 24, 25, 60};
-constexpr std::array<std::int64_t, 6> kIsaPeers{1, 1, 1, 2, 3, 4};
-constexpr std::array<std::int64_t, 6> kIsaPeerAfter{8, 8, 8, 20, 30, 31};
 constexpr std::uint8_t kStranger = 0x23;
-
-enum class IsaWord : std::uint8_t {
-  single,
-  sequence,
-  compel,
-  other,
-  data,
-  reply,
-  noise,
-  submit,
-  peer,
-  supply,
-  one,
-  wait,
-  framed
-};
-
-// What the tester does after a CD of the station.
-enum class Peer : std::uint8_t {
-  silent,
-  replies,
-  replies_empty,
-  replies_without_final,
-  stranger_replies,
-  replies_to_stranger,
-  sends_data,
-  stranger_sends,
-  compels,
-  delegates,
-  takes_back,
-  sends_none,
-  makes_noise
-};
-
-SequenceNumber isa_priority(std::string_view name = "priority") {
-  return {name, 0, 3, 2, kIsaPriorities, true};
-}
-SequenceNumber isa_to() {
-  return {"to", 0, 6, 0, kIsaToStations, true};
-}
-SequenceNumber isa_from() {
-  return {"from", 0, 5, 0, kIsaFrom, true};
-}
-SequenceNumber isa_truth(std::string_view name) {
-  return {name, 0, 1, 0};
-}
-
-// Of a DU and a DT.
-std::vector<SequenceNumber> isa_numbers_of_data() {
-  return {isa_to(),      isa_from(), isa_priority(), isa_truth("final"), {"size", 0, 260, 8, kIsaSizes},
-          link_silence()};
-}
-
-// The tester does not wait longer for who waits for a reply.
-constexpr std::array kBoundsOfIsaDle{SettingBound{"reply_wait_octets", {1, kLinkSettles / 2}}};
-
-std::vector<SequenceWord> isa_dle_words() {
-  // In the order of IsaWord.
-  return {{.word = "single",
-           .meaning = "an ET for what is at least as urgent, to the station or to others",
-           .numbers = {isa_to(), isa_from(), isa_priority("least"), link_length(), link_silence()},
-           .units = 7,
-           .weight = 12},
-          {.word = "sequence",
-           .meaning = "an ES for what is at least as urgent, to the station or to others",
-           .numbers = {isa_to(),
-                       isa_from(),
-                       isa_priority("least"),
-                       {"octets", 0, 65'535, 200, kIsaDurations},
-                       link_length(),
-                       link_silence()},
-           .units = 9,
-           .weight = 18},
-          {.word = "compel",
-           .meaning = "a CD, to the station or to others; its user works on data until so many octets after "
-                      "it, 0: it does not",
-           .numbers = {isa_to(),
-                       isa_from(),
-                       isa_priority("least"),
-                       {"works", 0, 60, 0, kIsaWorks, true},
-                       link_length(),
-                       link_silence()},
-           .units = 7,
-           .weight = 15},
-          {.word = "other",
-           .meaning = "EE, TL, or what is none, with this in its last octet",
-           .numbers =
-               {{"kind", 0, 6, 0}, isa_to(), isa_from(), {"value", 0, 255, 0}, link_length(), link_silence()},
-           .units = 8,
-           .weight = 6},
-          {.word = "data", .meaning = "a DU", .numbers = isa_numbers_of_data(), .units = 9, .weight = 8},
-          {.word = "reply",
-           .meaning = "a DT, for which the station has not asked",
-           .numbers = isa_numbers_of_data(),
-           .units = 9,
-           .weight = 5},
-          {.word = "noise",
-           .meaning = "levels on the line that are no frame",
-           .numbers = {{"octets", 1, 60, 4}, link_silence()},
-           .weight = 3,
-           .is_no_frame = true},
-          {.word = "submit",
-           .meaning = "the user submits: 0 data, 1 a CD, 2 data for a CD; so many times",
-           .numbers = {{"service", 0, 2, 0},
-                       {"priority", 1, 3, 2, kIsaRequestPriorities},
-                       {"to", 0, 5, 0, kIsaTo, true},
-                       {"size", 0, 260, 0, kIsaSizes},
-                       {"times", 1, 300, 1, kIsaTimes, true}},
-           .weight = 27},
-          {.word = "peer",
-           .meaning = "what the tester does so many octets after a CD of the station",
-           .numbers = {{"does", 0, 12, 0, kIsaPeers}, {"after", 8, 60, 8, kIsaPeerAfter}},
-           .weight = 10},
-          link_supply(),
-          {.word = "one", .meaning = "until the station has sent one DLPDU, or does not", .weight = 8},
-          {.word = "wait",
-           .meaning = "silence of so many octet durations",
-           .numbers = {link_wait()},
-           .weight = 3},
-          link_framed()};
-}
-
-// What an entity has to send, holds, waits for or has lost.
-std::vector<std::vector<NamedCommand>> states_of_an_entity() {
-  const NamedCommand data{"submit"};
-  const NamedCommand asks{"submit", {{"service", 1}}};
-  const NamedCommand reply{"submit", {{"service", 2}}};
-  const NamedCommand token_held{"sequence", {{"silence", 4}}};
-  const NamedCommand answer_due{"compel", {{"silence", 4}}};
-  const NamedCommand lost{"supply"};
-  return {{{"submit", {{"priority", 3}, {"size", 64}}}, data, {"submit", {{"priority", 1}}}},
-          {reply, reply},
-          {data, token_held},
-          {reply, answer_due},
-          {asks, {"single", {{"silence", 4}}}, {"one"}},  // its CD is out, and nobody has replied
-          {asks, token_held, {"one"}},
-          {{"peer", {{"does", 1}}}, asks},
-          {{"submit", {{"times", 150}}}},
-          {data, asks, reply, token_held, lost},
-          {data, reply, answer_due, lost},
-          {{"supply", {{"how", kSupplyGoes}}}}};
-}
-
-SequenceVocabulary isa_dle_vocabulary() {
-  const fieldbus_dll::IsaConfiguration as_made;
-  return {.words = isa_dle_words(),
-          .unit = "octet",
-          .levels_per_unit = kFlipsOfAnOctet,
-          .settings = sequence_settings(fieldbus_dll::kIsaTable, &as_made, kFixedOfLink, kBoundsOfIsaDle),
-          .objection = objection_of(fieldbus_dll::kIsaTable, as_made, expect_judgeable_isa)};
-}
 
 class IsaSequenceRun {
  public:
@@ -205,15 +40,22 @@ class IsaSequenceRun {
         await_response_window();
         return bench_.wait(bench_.octets(numbers[0]));
       case IsaWord::one:
-        if (const auto one = bench_.next()) return judge_next(*one);
+        if (const auto one = next()) return judge_next(*one);
         return await_response_window();
       case IsaWord::supply:
         return switch_supply(numbers[0], bench_, model_);
       case IsaWord::peer:
         await_response_window();
         peer_ = static_cast<Peer>(numbers[0]);
-        peer_after_ = std::max(numbers[1], std::int64_t{bench_.link().inter_pdu_delay_octets});
+        peer_after_ = bench_.octets(std::max(numbers[1], std::int64_t{bench_.link().inter_pdu_delay_octets}));
         return;
+      case IsaWord::answered:
+        await_response_window();
+        peer_ = static_cast<Peer>(numbers[0]);
+        peer_after_ = bench_.reply_wait() + quarters_of_a_bit(numbers[1]);
+        return;
+      case IsaWord::late:
+        return compel_late(command);
       case IsaWord::submit:
         return submit(numbers);
       case IsaWord::noise:
@@ -224,6 +66,13 @@ class IsaSequenceRun {
         return compel(command);
       case IsaWord::framed:
         return send_framed_data(numbers);
+      case IsaWord::received:
+        return send_by_line(numbers);
+      case IsaWord::checked:
+        bench_.send_half_bits(half_bits_with_other_check(bench_.et(Priority::time_available),
+                                                         static_cast<unsigned>(numbers[0])));
+        model_.hear_noise(bench_.now());
+        return settle(numbers.back());
       default:
         send(command);
         return settle(numbers.back());
@@ -250,6 +99,33 @@ class IsaSequenceRun {
     for (const Octets& dlpdu : heard) model_.hear(dlpdu, begin, bench_.now());
     if (heard.empty()) model_.hear_noise(bench_.now());
     settle(numbers.back());
+  }
+
+  void send_by_line(const Numbers& numbers) {
+    constexpr std::int64_t kSize = 200;
+    const Octets octets =
+        octets_of(IsaWord::data, {0, 1, static_cast<std::int64_t>(Priority::time_available), 0, kSize});
+    const kernel::Time begin = bench_.now();
+    send_received(bench_, octets, numbers[0]);
+    model_.hear(octets, begin, bench_.now());
+    settle(numbers.back());
+  }
+
+  kernel::Duration quarters_of_a_bit(std::int64_t count) const { return bench_.octets(count) / 32; }
+
+  // When V(FD) is over, or a little before it or after it.
+  void compel_late(const SequenceCommand& command) {
+    const Numbers& numbers = command.numbers;
+    await_response_window();
+    work_on_reply(true);
+    const Octets cd = header(bench_.rules().codes.cd, numbers[1], {0, 0});
+    const kernel::Time begin = bench_.now();
+    bench_.send(cd);
+    model_.hear(cd, begin, bench_.now());
+    const kernel::Time there = bench_.now() + bench_.reply_forming() + quarters_of_a_bit(numbers[0]);
+    while (bench_.next_begins(there)) judge_next(*bench_.next());
+    submit_one(IsaService::reply_data, Priority::urgent, IsaBench::kPeer, bench_.numbered_data(4));
+    await_response_window();
   }
 
   // Its user has the data so many octets after the CD, or has said that there are none.
@@ -289,6 +165,8 @@ class IsaSequenceRun {
         es.push_back(static_cast<std::uint8_t>(numbers[3]));
         return with_length(std::move(es), numbers[4]);
       }
+      case IsaWord::control:
+        return {static_cast<std::uint8_t>(numbers[0]), bench_.address(), IsaBench::kScheduler};
       case IsaWord::compel:
         return with_length(header(codes.cd, numbers[2], numbers), numbers[4]);
       case IsaWord::other:
@@ -365,8 +243,14 @@ class IsaSequenceRun {
     });
   }
 
+  // Who waits for a reply is silent for longer.
+  std::optional<DrivenDlpdu> next() {
+    const kernel::Duration silence = std::max(bench_.observation_timeout(), 2 * bench_.reply_wait());
+    return bench_.next(bench_.now() + silence);
+  }
+
   void await_response_window() {
-    while (const auto one = bench_.next()) judge_next(*one);
+    while (const auto one = next()) judge_next(*one);
     object(model_.be_silent(), "silence", bench_.now());
     work_on_reply(false);
     judge_reports();
@@ -377,7 +261,7 @@ class IsaSequenceRun {
     const auto node = model_.compelled();
     if (!node || peer_ == Peer::silent) return;
     // Who is compelled may be as late as its time-out, or later.
-    const kernel::Time begin = one.end + bench_.octets(peer_after_);
+    const kernel::Time begin = one.end + peer_after_;
     if (bench_.next_begins(begin)) return judge_next(*bench_.next());
     if (peer_ == Peer::makes_noise) {
       send_noise(bench_, 4);
@@ -436,7 +320,7 @@ class IsaSequenceRun {
   CaseJudge& judge_;
   IsaModel model_;
   Peer peer_ = Peer::silent;
-  std::int64_t peer_after_ = 0;
+  kernel::Duration peer_after_{};
 };
 
 std::vector<PartialSource> isa_check_details() {

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include "conformance/fieldbus_dll/link_bench.hpp"
+#include "conformance/sequence.hpp"
+
+// How a frame can look on its line: with the check of another kind of line, with a long preamble, by another
+// clock, with edges that are off.
+namespace fieldproof::conformance {
+
+// Without complement, beginning with 0, both, reflected, CCITT, CCITT with complement, with its octets
+// exchanged.
+inline constexpr unsigned kOtherChecks = 7;
+line::Levels half_bits_with_other_check(const Octets& octets, unsigned kind);
+
+// Each edge moved by up to a tenth of a bit, in hundredths of a half bit.
+line::Waveform jittered(LinkBench& bench, const line::Levels& half_bits);
+// At so many per mille of the bit rate.
+line::Waveform clocked(const LinkBench& bench, const line::Levels& half_bits, std::int64_t per_mille);
+
+// ---- words of sequences ----
+
+// How a frame comes to its receiver: up to 8, with so many octets of preamble; then by a clock that is fast,
+// by one that is slow, and with edges that are off.
+inline constexpr std::int64_t kMostPreamble = 8;
+inline constexpr std::int64_t kClockIsFast = 9;
+inline constexpr std::int64_t kClockIsSlow = 10;
+inline constexpr std::int64_t kEdgesAreOff = 11;
+SequenceWord link_received();
+void send_received(LinkBench& bench, const Octets& octets, std::int64_t how);
+SequenceWord link_checked();
+
+}  // namespace fieldproof::conformance
