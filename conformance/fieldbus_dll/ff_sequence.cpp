@@ -8,9 +8,10 @@
 
 #include "conformance/fieldbus_dll/ff_cases.hpp"
 #include "conformance/fieldbus_dll/ff_model.hpp"
+#include "conformance/fieldbus_dll/ff_vocabulary.hpp"
+#include "conformance/fieldbus_dll/link_scene.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
-#include "conformance/sequence_settings.hpp"
-#include "protocols/fieldbus_dll/ff_settings.hpp"
+#include "conformance/fieldbus_dll/link_transmission.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -24,170 +25,8 @@ constexpr FfAddress kLongPublished = kFfLink | FfBench::kPublished;
 constexpr FfAddress kLongSubscribed = kFfLink | FfBench::kSubscribed;
 constexpr unsigned kFfLongBit = 0x08;
 
-constexpr std::array<std::int64_t, 16> kFfNodes{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4};
-constexpr std::array<std::int64_t, 10> kFfProbedNodes{0, 0, 0, 0, 2, 2, 2, 1, 3, 4};
-constexpr std::array<std::int64_t, 24> kFfBuffers{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1,
-                                                  1, 1, 2, 2, 2, 3, 4, 5, 6, 7, 8, 9};
-constexpr std::array<std::int64_t, 11> kFfWritten{0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 3};
-constexpr std::array<std::int64_t, 10> kFfWriteSizes{0, 1, 2, 8, 9, 63, 64, 65, 127, 128};
-constexpr std::array<std::int64_t, 16> kFfPriorities{1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 0};
-constexpr std::array<std::int64_t, 5> kFfRequestPriorities{1, 2, 3, 2, 3};
-constexpr std::array<std::int64_t, 20> kFfDurations{
-    1, 12, 13, 14, 15, 20, 28, 29, 30, 31, 60, 61, 127, 200, 256, 1'000, 4'096, 32'768, 33'000, 65'535};
-constexpr std::array<std::int64_t, 12> kFfSizes{0, 1, 2, 8, 9, 10, 63, 64, 65, 128, 129, 256};
-constexpr std::array<std::int64_t, 8> kFfTimes{1, 1, 1, 1, 1, 1, 40, 150};
-constexpr std::array<std::int64_t, 8> kFfWrites{1, 1, 1, 1, 2, 2, 128, 255};
-
 constexpr std::int64_t kToUser = 0;  // of "to" of data
 constexpr std::int64_t kToAnother = 3;
-constexpr std::int64_t kSameAgain = 4;  // of "first": the data of the DT1 before
-
-enum class FfWord : std::uint8_t {
-  token,
-  compel,
-  probe,
-  other,
-  data,
-  published,
-  activation,
-  noise,
-  submit,
-  write,
-  supply,
-  one,
-  wait,
-  framed
-};
-
-SequenceNumber ff_priority(std::string_view name = "priority") {
-  return {name, 0, 3, 2, kFfPriorities, true};
-}
-SequenceNumber ff_truth(std::string_view name) {
-  return {name, 0, 1, 0};
-}
-SequenceNumber ff_node() {
-  return {"node", 0, 4, 0, kFfNodes, true};
-}
-
-void expect_judgeable_device(const fieldbus_dll::FfConfiguration& device) {
-  expect_time_for_answers(device.rules.link);
-}
-
-std::vector<SequenceWord> ff_device_words() {
-  // In the order of FfWord.
-  return {{.word = "token",
-           .meaning = "a PT for what is at least as urgent; to the device, or to others",
-           .numbers = {ff_node(),
-                       ff_priority("least"),
-                       {"octets", 0, 65'535, 200, kFfDurations},
-                       ff_truth("first"),
-                       link_length(),
-                       link_silence()},
-           .units = 8,
-           .weight = 20},
-          {.word = "compel",
-           .meaning = "a CD for a buffer of the device, or for other addresses",
-           .numbers = {{"buffer", 0, 9, 0, kFfBuffers, true},
-                       ff_priority(),
-                       ff_truth("final"),
-                       link_length(),
-                       link_silence()},
-           .units = 7,
-           .weight = 18},
-          {.word = "probe",
-           .meaning = "a PN, to the device, or to others",
-           .numbers = {{"node", 0, 4, 0, kFfProbedNodes, true}, link_length(), link_silence()},
-           .units = 6,
-           .weight = 5},
-          {.word = "other",
-           .meaning = "TD, CL, TL, RT, SR, RI, PR, CT, IDLE, or what is none, with this in its last octet",
-           .numbers = {{"kind", 0, 11, 0}, {"value", 0, 255, 1}, link_length(), link_silence()},
-           .units = 7,
-           .weight = 8},
-          {.word = "data",
-           .meaning = "a DT1 to the device, to all or to others, from a user or an entity",
-           .numbers = {{"to", 0, 9, 0},
-                       {"from", 0, 4, 0},
-                       ff_priority(),
-                       ff_truth("final"),
-                       {"first", 0, kSameAgain, 0},
-                       {"size", 0, 260, 8, kFfSizes},
-                       link_silence()},
-           .units = 11,
-           .weight = 9},
-          {.word = "published",
-           .meaning = "a DT3 to which the device has subscribed, or another",
-           .numbers = {{"from", 0, 5, 0},
-                       ff_priority(),
-                       ff_truth("final"),
-                       {"number", 0, 255, 1},
-                       {"size", 0, 260, 8, kFfSizes},
-                       link_silence()},
-           .units = 10,
-           .weight = 6},
-          {.word = "activation",
-           .meaning = "a DT1 of the scheduler's entity to that of the device: 01, and more",
-           .numbers = {ff_priority(), {"long", 0, 1, 0}, {"more", 0, 2, 0}, link_silence()},
-           .units = 11,
-           .weight = 6},
-          {.word = "noise",
-           .meaning = "levels on the line that are no frame",
-           .numbers = {{"octets", 1, 60, 4}, link_silence()},
-           .weight = 3,
-           .is_no_frame = true},
-          {.word = "submit",
-           .meaning = "the user submits data for another node, so many times",
-           .numbers = {{"priority", 1, 3, 2, kFfRequestPriorities},
-                       {"to", 0, 4, 0},
-                       {"size", 0, 260, 8, kFfSizes},
-                       {"times", 1, 300, 1, kFfTimes, true}},
-           .weight = 20},
-          {.word = "write",
-           .meaning = "the user writes a buffer, so many times",
-           .numbers = {{"buffer", 0, 3, 0, kFfWritten, true},
-                       {"size", 0, 257, 8, kFfWriteSizes},
-                       {"times", 1, 300, 1, kFfWrites},
-                       ff_truth("same")},
-           .weight = 18},
-          link_supply(),
-          {.word = "one", .meaning = "until the device has sent one DLPDU, or does not", .weight = 8},
-          {.word = "wait",
-           .meaning = "silence of so many octet durations",
-           .numbers = {link_wait()},
-           .weight = 3},
-          link_framed()};
-}
-
-// What a device has to send, holds, waits for or has lost.
-std::vector<std::vector<NamedCommand>> states_of_a_device() {
-  const NamedCommand large{"submit", {{"priority", 3}, {"size", 64}}};
-  const NamedCommand usual{"submit"};
-  const NamedCommand small{"submit", {{"priority", 1}, {"size", 1}}};
-  const NamedCommand written{"write"};
-  const NamedCommand token_held{"token", {{"silence", 4}}};
-  const NamedCommand answer_due{"compel", {{"silence", 4}}};
-  const NamedCommand lost{"supply"};
-  return {{large, usual, small},  // data of each priority
-          {written,
-           {"write", {{"buffer", 1}, {"times", 2}, {"same", 1}}},
-           {"write", {{"buffer", 2}}}},  // what it publishes
-          {written, answer_due},
-          {usual, token_held},
-          {large, usual, written, token_held, lost},
-          {large, usual, written, answer_due, lost, {"activation"}},
-          {lost, {"activation", {{"priority", 3}, {"long", 1}, {"more", 2}}}},
-          {{"published"}, {"data"}},
-          {{"supply", {{"how", kSupplyGoes}}}}};
-}
-
-SequenceVocabulary ff_device_vocabulary() {
-  const fieldbus_dll::FfConfiguration as_made;
-  return {.words = ff_device_words(),
-          .unit = "octet",
-          .levels_per_unit = kFlipsOfAnOctet,
-          .settings = sequence_settings(fieldbus_dll::kFfTable, &as_made, kFixedOfLink),
-          .objection = objection_of(fieldbus_dll::kFfTable, as_made, expect_judgeable_device)};
-}
 
 // What the words of a sequence send, from the numbers of a command.
 class FfWords {
@@ -211,6 +50,8 @@ class FfWords {
         return data(numbers);
       case FfWord::published:
         return published(numbers);
+      case FfWord::control:
+        return {static_cast<std::uint8_t>(numbers[0]), node(0), 0x01, 0xF4};
       default:
         return activation(numbers);
     }
@@ -356,6 +197,8 @@ class FfSequenceRun {
   }
 
  private:
+  static constexpr std::int64_t kDuration = 100;  // of a token that is asked for
+
   void execute(const SequenceCommand& command) {
     const auto word = static_cast<FfWord>(command.word);
     switch (word) {
@@ -363,7 +206,7 @@ class FfSequenceRun {
         await_response_window();
         return bench_.wait(bench_.octets(command.numbers[0]));
       case FfWord::one:
-        if (const auto one = bench_.next()) return object(model_.say(*one), bench_.words(*one), one->begin);
+        if (const auto one = bench_.next()) return judge_one(*one);
         return await_response_window();
       case FfWord::supply:
         return switch_supply(command.numbers[0], bench_, model_);
@@ -377,6 +220,21 @@ class FfSequenceRun {
         return settle(command.numbers.back());
       case FfWord::framed:
         return send_framed_data(command.numbers);
+      case FfWord::checked:
+        bench_.send_half_bits(half_bits_with_other_check(bench_.pt(Priority::time_available, kDuration),
+                                                         static_cast<unsigned>(command.numbers[0])));
+        model_.hear_noise(bench_.now());
+        return settle(command.numbers.back());
+      case FfWord::ended:
+        return end_before_it_begins(command.numbers);
+      case FfWord::busy:
+        return answer_beside_its_end(command.numbers);
+      case FfWord::room:
+        return leave_room(command.numbers);
+      case FfWord::many:
+        for (std::int64_t n = 0; n < command.numbers[0]; ++n) send(words_.octets_of(FfWord::probe, {1, 0}));
+        send(words_.octets_of(FfWord::probe, {0, 0}));
+        return await_response_window();
       default:
         break;
     }
@@ -395,6 +253,54 @@ class FfSequenceRun {
     for (const Octets& dlpdu : heard) model_.hear(dlpdu, bench_.now());
     if (heard.empty()) model_.hear_noise(bench_.now());
     settle(numbers.back());
+  }
+
+  void send(const Octets& octets) {
+    bench_.send(octets);
+    model_.hear(octets, bench_.now());
+  }
+  // 0: a PT, 1: a CD, 2: a PN for the device.
+  Octets asked(std::int64_t what) {
+    constexpr std::int64_t kUrgency = 2;
+    if (what == 0) return words_.octets_of(FfWord::token, {0, kUrgency, kDuration, 0, 0});
+    if (what == 1) return words_.octets_of(FfWord::compel, {0, kUrgency, 0, 0});
+    return words_.octets_of(FfWord::probe, {0, 0});
+  }
+  kernel::Duration quarters_of_a_bit(std::int64_t count) const { return bench_.octets(count) / 32; }
+
+  void end_before_it_begins(const std::vector<std::int64_t>& numbers) {
+    await_response_window();
+    send(asked(numbers[0]));
+    send(words_.octets_of(FfWord::other, {numbers[1], numbers[2], 0}));
+    await_response_window();
+  }
+
+  void keep_busy_until(kernel::Time until, DlpduIsNone kind) {
+    if (keep_busy(bench_, until - bench_.least_gap(), kind)) model_.hear_noise(bench_.now());
+    await_response_window();
+  }
+
+  // How soon it answers is seen first: as soon it can answer again.
+  void answer_beside_its_end(const std::vector<std::int64_t>& numbers) {
+    await_response_window();
+    send(asked(numbers[0]));
+    await_response_window();
+    send(asked(numbers[0]));
+    keep_busy_until(bench_.now() + bench_.response_delay() + quarters_of_a_bit(numbers[1]),
+                    numbers[2] != 0 ? DlpduIsNone::by_its_check : DlpduIsNone::by_its_first_octet);
+  }
+
+  void leave_room(const std::vector<std::int64_t>& numbers) {
+    constexpr std::int64_t kToPeer = 0;
+    constexpr std::int64_t kUrgent = 3;
+    constexpr std::int64_t kSize = 8;
+    constexpr std::size_t kDt1Octets = 13;
+    await_response_window();
+    if (numbers[0] != 0) submit({kUrgent, kToPeer, kSize, 1});
+    send(asked(0));
+    const kernel::Time over = bench_.now() + bench_.octets(kDuration);
+    keep_busy_until(over - bench_.frame(numbers[0] != 0 ? kDt1Octets : 1) + quarters_of_a_bit(numbers[1]),
+                    DlpduIsNone::by_its_check);
   }
 
   void settle(std::int64_t silence) {
@@ -433,14 +339,27 @@ class FfSequenceRun {
   void judge_said() {
     while (bench_.next_begins(bench_.now())) {
       const DrivenDlpdu one = *bench_.next();
-      object(model_.say(one), bench_.words(one), one.begin);
+      judge_one(one);
     }
   }
 
   void await_response_window() {
-    for (const DrivenDlpdu& one : bench_.listen()) object(model_.say(one), bench_.words(one), one.begin);
+    for (const DrivenDlpdu& one : bench_.listen()) judge_one(one);
     object(model_.be_silent(), "silence", bench_.now());
     judge_reports();
+  }
+
+  void judge_one(const DrivenDlpdu& one) {
+    object(model_.say(one), bench_.words(one), one.begin);
+    const kernel::Duration length = one.end - one.begin;
+    const kernel::Duration right = bench_.frame(one.octets.size());
+    judge_.expect(length + kLinkRounding >= right && length <= right + kLinkRounding, "frame_length_wrong",
+                  [&] {
+                    return Mismatch{{fmt::format("{}: {} octets of preamble", kernel::describe(right),
+                                                 bench_.link().preamble_octets)},
+                                    kernel::describe(length),
+                                    one.begin};
+                  });
   }
 
   void object(const std::optional<LinkObjection>& objection, const std::string& actual, kernel::Time when) {

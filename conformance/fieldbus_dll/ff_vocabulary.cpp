@@ -1,0 +1,218 @@
+#include "conformance/fieldbus_dll/ff_vocabulary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "conformance/fieldbus_dll/link_sequence.hpp"
+#include "conformance/fieldbus_dll/link_transmission.hpp"
+#include "conformance/sequence_settings.hpp"
+#include "protocols/fieldbus_dll/ff_settings.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+constexpr std::array<std::int64_t, 16> kFfNodes{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4};
+constexpr std::array<std::int64_t, 10> kFfProbedNodes{0, 0, 0, 0, 2, 2, 2, 1, 3, 4};
+constexpr std::array<std::int64_t, 24> kFfBuffers{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1,
+                                                  1, 1, 2, 2, 2, 3, 4, 5, 6, 7, 8, 9};
+constexpr std::array<std::int64_t, 11> kFfWritten{0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 3};
+constexpr std::array<std::int64_t, 10> kFfWriteSizes{0, 1, 2, 8, 9, 63, 64, 65, 127, 128};
+constexpr std::array<std::int64_t, 16> kFfPriorities{1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 0};
+constexpr std::array<std::int64_t, 5> kFfRequestPriorities{1, 2, 3, 2, 3};
+constexpr std::array<std::int64_t, 20> kFfDurations{
+    1, 12, 13, 14, 15, 20, 28, 29, 30, 31, 60, 61, 127, 200, 256, 1'000, 4'096, 32'768, 33'000, 65'535};
+constexpr std::array<std::int64_t, 12> kFfSizes{0, 1, 2, 8, 9, 10, 63, 64, 65, 128, 129, 256};
+constexpr std::array<std::int64_t, 8> kFfTimes{1, 1, 1, 1, 1, 1, 40, 150};
+constexpr std::array<std::int64_t, 8> kFfWrites{1, 1, 1, 1, 2, 2, 128, 255};
+constexpr std::array<std::int64_t, 8> kFfControls{0x38, 0x39, 0x3A, 0x3B, 0x3D, 0x30, 0x35, 0xB1};
+constexpr std::array<std::int64_t, 4> kFfAsked{0, 0, 1, 2};
+constexpr std::array<std::int64_t, 8> kFfEnding{0, 0, 0, 1, 2, 3, 8, 9};
+constexpr std::array<std::int64_t, 8> kFfBeside{-2, -1, -1, 1, 1, 2, -32, 32};
+constexpr std::array<std::int64_t, 4> kFfMany{1, 2, 40, 260};
+// Each of them so that there is time left for the others as they are.
+constexpr std::array kBoundsOfFfDevice{SettingBound{"inter_pdu_delay_octets", {1, 24}}};
+// First octets that no DLPDU has, for some of them.
+struct FfOtherCode {
+  std::string_view name;
+  std::int64_t value;
+};
+constexpr std::array kFfOtherCodes{FfOtherCode{"code_cd", 0xC0}, FfOtherCode{"code_pt", 0x40},
+                                   FfOtherCode{"code_td", 0x19}};
+
+SequenceNumber ff_priority(std::string_view name = "priority") {
+  return {name, 0, 3, 2, kFfPriorities, true};
+}
+SequenceNumber ff_truth(std::string_view name) {
+  return {name, 0, 1, 0};
+}
+SequenceNumber ff_node() {
+  return {"node", 0, 4, 0, kFfNodes, true};
+}
+
+void expect_judgeable_device(const fieldbus_dll::FfConfiguration& device) {
+  expect_time_for_answers(device.rules.link);
+}
+
+std::vector<SequenceWord> ff_device_words() {
+  // In the order of FfWord.
+  return {
+      {.word = "token",
+       .meaning = "a PT for what is at least as urgent; to the device, or to others",
+       .numbers = {ff_node(),
+                   ff_priority("least"),
+                   {"octets", 0, 65'535, 200, kFfDurations},
+                   ff_truth("first"),
+                   link_length(),
+                   link_silence()},
+       .units = 8,
+       .weight = 20},
+      {.word = "compel",
+       .meaning = "a CD for a buffer of the device, or for other addresses",
+       .numbers = {{"buffer", 0, 9, 0, kFfBuffers, true},
+                   ff_priority(),
+                   ff_truth("final"),
+                   link_length(),
+                   link_silence()},
+       .units = 7,
+       .weight = 18},
+      {.word = "probe",
+       .meaning = "a PN, to the device, or to others",
+       .numbers = {{"node", 0, 4, 0, kFfProbedNodes, true}, link_length(), link_silence()},
+       .units = 6,
+       .weight = 5},
+      {.word = "other",
+       .meaning = "TD, CL, TL, RT, SR, RI, PR, CT, IDLE, or what is none, with this in its last octet",
+       .numbers = {{"kind", 0, 11, 0}, {"value", 0, 255, 1}, link_length(), link_silence()},
+       .units = 7,
+       .weight = 8},
+      {.word = "data",
+       .meaning = "a DT1 to the device, to all or to others, from a user or an entity",
+       .numbers = {{"to", 0, 9, 0},
+                   {"from", 0, 4, 0},
+                   ff_priority(),
+                   ff_truth("final"),
+                   {"first", 0, kSameAgain, 0},
+                   {"size", 0, 260, 8, kFfSizes},
+                   link_silence()},
+       .units = 11,
+       .weight = 9},
+      {.word = "published",
+       .meaning = "a DT3 to which the device has subscribed, or another",
+       .numbers = {{"from", 0, 5, 0},
+                   ff_priority(),
+                   ff_truth("final"),
+                   {"number", 0, 255, 1},
+                   {"size", 0, 260, 8, kFfSizes},
+                   link_silence()},
+       .units = 10,
+       .weight = 6},
+      {.word = "activation",
+       .meaning = "a DT1 of the scheduler's entity to that of the device: 01, and more",
+       .numbers = {ff_priority(), {"long", 0, 1, 0}, {"more", 0, 2, 0}, link_silence()},
+       .units = 11,
+       .weight = 6},
+      {.word = "noise",
+       .meaning = "levels on the line that are no frame",
+       .numbers = {{"octets", 1, 60, 4}, link_silence()},
+       .weight = 3,
+       .is_no_frame = true},
+      {.word = "submit",
+       .meaning = "the user submits data for another node, so many times",
+       .numbers = {{"priority", 1, 3, 2, kFfRequestPriorities},
+                   {"to", 0, 4, 0},
+                   {"size", 0, 260, 8, kFfSizes},
+                   {"times", 1, 300, 1, kFfTimes, true}},
+       .weight = 20},
+      {.word = "write",
+       .meaning = "the user writes a buffer, so many times",
+       .numbers = {{"buffer", 0, 3, 0, kFfWritten, true},
+                   {"size", 0, 257, 8, kFfWriteSizes},
+                   {"times", 1, 300, 1, kFfWrites},
+                   ff_truth("same")},
+       .weight = 18},
+      link_supply(),
+      {.word = "one", .meaning = "until the device has sent one DLPDU, or does not", .weight = 8},
+      {.word = "wait",
+       .meaning = "silence of so many octet durations",
+       .numbers = {link_wait()},
+       .weight = 3},
+      link_framed(),
+      link_checked(),
+      {.word = "control",
+       .meaning = "this first octet, with what makes a PT for the device after it",
+       .numbers = {{"octet", 0, 255, 0x38, kFfControls}, link_silence()},
+       .units = 8,
+       .weight = 4},
+      {.word = "ended",
+       .meaning = "0: a PT for the device, 1: a CD, 2: a PN; then, before it may begin, what \"other\" sends",
+       .numbers = {{"asks", 0, 2, 0, kFfAsked}, {"kind", 0, 11, 0, kFfEnding}, {"value", 0, 255, 1}},
+       .weight = 6},
+      {.word = "busy",
+       .meaning = "a PN or a CD for the device, after which the line is busy, so that V(MID) is over so "
+                  "many quarters of a bit after V(MRD) x V(ST)",
+       .numbers = {{"asks", 1, 2, 2}, {"quarters", -64, 64, -1, kFfBeside}, ff_truth("check")},
+       .weight = 7},
+      {.word = "room",
+       .meaning = "a PT for the device, after which the line is busy, so that 0: an RT, 1: data of 8 octets "
+                  "would end so many quarters of a bit after the token does",
+       .numbers = {ff_truth("data"), {"quarters", -64, 64, 1, kFfBeside}},
+       .weight = 5},
+      {.word = "many",
+       .meaning = "a PN for another, so many times, and one for the device",
+       .numbers = {{"times", 1, 300, 1, kFfMany, true}},
+       .weight = 2}};
+}
+
+// What DLPDUs are called, at the end: what was stored before keeps its places.
+std::vector<SequenceSetting> settings_of_a_device(const fieldbus_dll::FfConfiguration& as_made) {
+  std::vector<SequenceSetting> all =
+      sequence_settings(fieldbus_dll::kFfTable, &as_made, kFixedOfLink, kBoundsOfFfDevice);
+  for (SequenceSetting& setting : sequence_settings(fieldbus_dll::kFfTable, &as_made)) {
+    const auto other = std::ranges::find(kFfOtherCodes, setting.name, &FfOtherCode::name);
+    if (other == kFfOtherCodes.end()) continue;
+    setting.likely = {other->value};
+    setting.is_likely_only = true;
+    all.push_back(std::move(setting));
+  }
+  return all;
+}
+
+}  // namespace
+
+// What a device has to send, holds, waits for or has lost.
+std::vector<std::vector<NamedCommand>> states_of_a_device() {
+  const NamedCommand large{"submit", {{"priority", 3}, {"size", 64}}};
+  const NamedCommand usual{"submit"};
+  const NamedCommand small{"submit", {{"priority", 1}, {"size", 1}}};
+  const NamedCommand written{"write"};
+  const NamedCommand token_held{"token", {{"silence", 4}}};
+  const NamedCommand answer_due{"compel", {{"silence", 4}}};
+  const NamedCommand lost{"supply"};
+  return {{large, usual, small},  // data of each priority
+          {written,
+           {"write", {{"buffer", 1}, {"times", 2}, {"same", 1}}},
+           {"write", {{"buffer", 2}}}},  // what it publishes
+          {written, answer_due},
+          {usual, token_held},
+          {large, usual, written, token_held, lost},
+          {large, usual, written, answer_due, lost, {"activation"}},
+          {lost, {"activation", {{"priority", 3}, {"long", 1}, {"more", 2}}}},
+          {{"published"}, {"data"}},
+          {{"supply", {{"how", kSupplyGoes}}}},
+          // What is no activation: another SPDU, and one for everybody.
+          {lost, {"data", {{"to", 2}, {"from", 1}, {"first", 3}}}},
+          {lost, {"data", {{"to", 1}, {"from", 1}, {"first", 2}}}},
+          {written, answer_due, written}};  // and while it is due, another value
+}
+
+SequenceVocabulary ff_device_vocabulary() {
+  const fieldbus_dll::FfConfiguration as_made;
+  return {.words = ff_device_words(),
+          .unit = "octet",
+          .levels_per_unit = kFlipsOfAnOctet,
+          .settings = settings_of_a_device(as_made),
+          .objection = objection_of(fieldbus_dll::kFfTable, as_made, expect_judgeable_device)};
+}
+
+}  // namespace fieldproof::conformance
