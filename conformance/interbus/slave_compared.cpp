@@ -209,7 +209,7 @@ void run(SlaveTwins& twins, CaseJudge& judge, const Commands& commands) {
   SlaveActs acts(twins);
   std::string done;
   for (const SequenceCommand& one : commands) {
-    acts.act(one);
+    acts.act(one, judge);
     done += (done.empty() ? "" : "; ") + command_lines({.commands = {one}}, vocabulary()).front();
     if (!twins.agree(judge, done)) return;
   }

@@ -1,11 +1,13 @@
 #include "conformance/interbus/slave_sequence.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_words.hpp"
 #include "conformance/sequence_settings.hpp"
+#include "harness/field/walk.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/interbus/network.hpp"
 #include "protocols/interbus/slave_settings.hpp"
@@ -31,6 +33,9 @@ void expect_judgeable_slave(const field::Settings& settings) {
 constexpr std::array kBoundsOfSlave{SettingBound{"bit_rate", {100'000, 2'000'000}},
                                     SettingBound{"silence_tolerance", {200'000'000, 1'000'000'000'000'000}}};
 
+// Of 24 and of 32 words.
+constexpr std::array<std::int64_t, 4> kCodesOfManyWords{0x1303, 0x1403, 0x1303, 0x1403};
+
 // What a slave was identified with, has switched on or has lost.
 std::vector<std::vector<NamedCommand>> states_of_a_slave() {
   const NamedCommand identified{"id"};
@@ -41,7 +46,32 @@ std::vector<std::vector<NamedCommand>> states_of_a_slave() {
           {plugged, on, {"silence"}},
           {identified, {"data"}, {"periphery"}},
           {plugged, on, {"data"}, {"power"}},
-          {identified, {"telegrams"}}};
+          {identified, {"telegrams"}},
+          {identified, {"inputs"}, {"good"}},
+          {plugged, {"id", {{"orders", 0}, {"reserved", 0x0100}}}, {"good"}},
+          {plugged, on, {"good"}, {"id", {{"orders", 4}}}, {"good"}},
+          {plugged, on, {"good"}, {"silence", {{"how_long", 0}}}, {"returns"}, {"silence"}}};
+}
+
+// Lengths between the ends, too.
+std::vector<SequenceSetting> settings_of_a_slave(const interbus::SlaveConfiguration& as_made) {
+  std::vector<SequenceSetting> all =
+      sequence_settings(interbus::kSlaveTable, &as_made, kFixedOfSlave, kBoundsOfSlave);
+  const auto code = std::ranges::find(all, std::string_view("id_code"), &SequenceSetting::name);
+  if (code != all.end())
+    code->likely.insert(code->likely.end(), kCodesOfManyWords.begin(), kCodesOfManyWords.end());
+  // The final XOR of the frame check, at the end: with the other one it is a check of the catalogues, too.
+  field::walk(interbus::kSlaveTable, &as_made, [&](const field::Leaf& leaf) {
+    if (leaf.name != "frame_check") return;
+    all.push_back({.name = "check_final_xor",
+                   .row = &leaf.row,
+                   .least = 0,
+                   .most = 0xFFFF,
+                   .simple = 0,
+                   .likely = {0xFFFF},
+                   .is_likely_only = true});
+  });
+  return all;
 }
 
 SequenceVocabulary slave_vocabulary() {
@@ -50,7 +80,7 @@ SequenceVocabulary slave_vocabulary() {
   return {.words = slave_words(),
           .unit = "telegram",
           .levels_per_unit = line::kDataTelegramLevels,
-          .settings = sequence_settings(interbus::kSlaveTable, &as_made, kFixedOfSlave, kBoundsOfSlave),
+          .settings = settings_of_a_slave(as_made),
           .objection = objection_of(expect_judgeable_slave)};
 }
 
@@ -74,7 +104,7 @@ const SequenceRole& slave_sequence_role() {
        .catches = {}},
       with_beginnings(slave_vocabulary(), states_of_a_slave()),
       {{DerivedKind::values, {"sends_check_of_received_bits", "octet_wrong"}},
-       {DerivedKind::faults, {"id_register_in_data_cycle", "octet_wrong"}},
+       {DerivedKind::faults, {"clears_outputs_on_rejected_cycle", "outputs_wrong"}},
        {DerivedKind::words, {"output_octets_swapped", "outputs_wrong"}},
        {DerivedKind::states, {"does_not_resynchronise", "telegram_not_passed"}},
        {DerivedKind::repetitions, {"latches_5_ms_late", "outputs_at_another_time"}},
@@ -92,7 +122,7 @@ void run_slave_sequence(const Sequence& sequence, SlaveBench& bench, CaseJudge& 
   twins.each([](SlaveBench& one) { one.bring_up(); });
   const SequenceVocabulary& vocabulary = slave_sequence_role().vocabulary;
   for (const SequenceCommand& command : sequence.commands) {
-    acts.act(command);
+    acts.act(command, judge);
     if (!twins.agree(judge, command_lines({.commands = {command}}, vocabulary).front())) return;
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "conformance/interbus/moved_edges.hpp"
 #include "conformance/interbus/slave_scene.hpp"
 
 // IS-23 to IS-25, IS-37 and IS-38: bit rate, jitter, gaps, delay and retiming.
@@ -79,24 +80,6 @@ void measure_accepted_rates(SlaveScene& scene) {
 
 // ---- edges ----
 
-constexpr std::int64_t kPerBit = 20;
-
-// Writes levels at twenty per bit, each edge moved by `shift(is_falling)` twentieths; no edge overtakes one.
-template <typename Shift>
-line::Levels with_moved_edges(const line::Levels& levels, Shift&& shift) {
-  line::Levels moved;
-  moved.append_idle(kPerBit);
-  bool level = true;
-  for (std::size_t n = 0; n <= levels.size(); ++n) {
-    if (levels[n] == level) continue;
-    const auto edge = static_cast<std::int64_t>((n + 1) * kPerBit) + shift(level);
-    moved.append_fill(level, static_cast<std::size_t>(edge) - moved.size());
-    level = !level;
-  }
-  moved.append_idle(4 * kPerBit);
-  return moved;
-}
-
 void accept_jitter(SlaveScene& scene) {
   SlaveBench& bench = scene.bench;
   bench.require_line_interface();
@@ -106,7 +89,7 @@ void accept_jitter(SlaveScene& scene) {
     // At the limits more often than between them.
     return std::clamp<std::int64_t>(bench.random().between(-5, 5), -3, 3);
   });
-  scene.judge.expect(is_accepted(bench, {bench.now(), bench.rules().bit_rate * kPerBit, levels}, words),
+  scene.judge.expect(is_accepted(bench, {bench.now(), bench.rules().bit_rate * kEdgesPerBit, levels}, words),
                      "jitter_rejected", [&] {
                        return Mismatch{
                            .expected = {"a cycle whose edges lie within 15 % of a bit is accepted"},
@@ -154,27 +137,6 @@ void delay_is_constant(SlaveBench& bench, CaseJudge& judge) {
   judge.expect_between("delay from receiver to return line", "bit", in_bits(most), 0, 3, "delay_above_limit");
 }
 
-// The largest distance of an edge that left from the grid of its telegram, in bits.
-double worst_edge(SlaveBench& bench) {
-  const auto telegrams = bench.out().telegrams();
-  const auto bit = static_cast<double>(bench.bits(1).count());
-  double worst = 0;
-  std::size_t next = 0;
-  for (const line::Waveform& wave : bench.out().waves()) {
-    bool level = true;
-    for (std::size_t n = 0; n <= wave.levels.size(); ++n) {
-      if (wave.levels[n] == level) continue;
-      level = !level;
-      const kernel::Time edge = wave.time_of(n);
-      while (next + 1 < telegrams.size() && bench.out().start_of(telegrams[next + 1]) <= edge) ++next;
-      if (next >= telegrams.size()) return worst;
-      const double at = static_cast<double>((edge - bench.out().start_of(telegrams[next])).count()) / bit;
-      worst = std::max(worst, std::abs(at - std::round(at)));
-    }
-  }
-  return worst;
-}
-
 void pulses_are_retimed(SlaveBench& bench, CaseJudge& judge) {
   bench.require_line_interface();
   double worst = 0;
@@ -184,7 +146,7 @@ void pulses_are_retimed(SlaveBench& bench, CaseJudge& judge) {
     const std::vector<std::uint16_t> words = bench.random_words();
     const line::Levels levels =
         with_moved_edges(bench.direct_data_cycle(words, 2), [&](bool falls) { return falls ? 0 : shift; });
-    judge.expect(is_accepted(bench, {bench.now(), bench.rules().bit_rate * kPerBit, levels}, words),
+    judge.expect(is_accepted(bench, {bench.now(), bench.rules().bit_rate * kEdgesPerBit, levels}, words),
                  "pulse_width_rejected", "a cycle with pulses 15 % of a bit longer or shorter is accepted",
                  "it was rejected");
     worst = std::max(worst, worst_edge(bench));

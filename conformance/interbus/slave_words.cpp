@@ -1,8 +1,13 @@
 #include "conformance/interbus/slave_words.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
+
+#include "conformance/interbus/moved_edges.hpp"
+#include "conformance/interbus/slave_expect.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -16,6 +21,10 @@ constexpr std::array<std::int64_t, 5> kGaps{0, 1, 2, 13, 100};
 constexpr std::array<std::int64_t, 3> kTimes{1, 2, 3};
 constexpr std::array<std::int64_t, 4> kCounts{1, 2, 4, 40};
 constexpr std::array<std::int64_t, 2> kMilliseconds{1, 40};
+constexpr std::array<std::int64_t, 8> kManyCycles{1, 1, 1, 2, 2, 3, 210, 830};
+constexpr std::array<std::int64_t, 4> kStopGaps{2, 2, 1, 13};
+constexpr std::array<std::int64_t, 2> kOffRates{-60, 60};
+constexpr std::array<std::int64_t, 2> kOffPulses{-3, 3};
 // Of a control word, whatever their places are.
 constexpr std::int64_t kRemoteOff = 1;
 constexpr std::int64_t kBranchOff = 2;
@@ -106,6 +115,34 @@ std::uint16_t control_word(SlaveBench& bench, std::int64_t orders, std::int64_t 
   if ((orders & kReset) != 0 && may_reset) word |= r.control_reset;
   if ((orders & kAcknowledge) != 0) word |= r.control_acknowledge;
   return word;
+}
+
+constexpr std::array<std::int64_t, 4> kNothingWrong{0, 0, kUsualFront, 2};
+
+// The words turn round from cycle to cycle. In trains: an implementation answers a transmission in one call.
+void send_good(SlaveBench& bench, Numbers numbers) {
+  constexpr std::int64_t kTrain = 16;
+  bench.channel().on_next();
+  for (std::int64_t done = 0; done < numbers[2];) {
+    bench.begin();
+    for (const std::int64_t end = std::min(numbers[2], done + kTrain); done < end; ++done) {
+      const std::int64_t turn = done % 2 == 0 ? 0 : 0xFFFF;
+      const auto words = words_of(bench, numbers[0] ^ turn, numbers[1] ^ turn);
+      append_cycle(bench, false, bench.data_octets(words, kBehind), kNothingWrong);
+    }
+    bench.send();
+  }
+}
+
+// A cycle that is right but for the stop level of a telegram.
+void append_no_stop(SlaveBench& bench, const SequenceCommand& command) {
+  const Numbers numbers = command.numbers;
+  const auto words = words_of(bench, numbers[0], ~numbers[0] & 0xFFFF);
+  const std::array<std::int64_t, 4> shape{0, 0, kUsualFront, numbers[2]};
+  append_cycle(bench, false, bench.data_octets(words, kBehind), shape);
+  const CyclePlace& cycle = bench.train().cycles().back();
+  const std::size_t telegram = static_cast<std::size_t>(numbers[1]) % cycle.telegrams();
+  bench.train().levels().set(cycle.level_of(telegram, TrainWriter::kStopLevel), false);
 }
 
 void append_id(SlaveBench& bench, const SequenceCommand& command) {
@@ -205,10 +242,32 @@ std::vector<SequenceWord> slave_words() {
        .meaning = "the supply goes and comes back",
        .numbers = {{"milliseconds", 1, 100, 1, kMilliseconds}},
        .is_loss = true},
-      {"glitch", "a low pulse that is no start level", {{"eighths", 1, 3, 3}}}};
+      {"glitch", "a low pulse that is no start level", {{"eighths", 1, 3, 3}}},
+      {"good",
+       "so many right data cycles, with the two words in turn",
+       {slave_word("word0", 0x1234), slave_word("word1", 0xFEDC), {"times", 1, 850, 1, kManyCycles, true}},
+       0,
+       0,
+       3},
+      {"no_stop",
+       "a data cycle that is right but for the stop level of a telegram",
+       {slave_word("word", 0x1234), {"telegram", 0, 13, 0}, {"gap", 1, 100, 2, kStopGaps}},
+       0,
+       0,
+       2},
+      {.word = "rate",
+       .meaning =
+           "a data cycle so many per mille faster than its bit rate; then the supply goes and comes back",
+       .numbers = {{"per_mille", -60, 60, 60, kOffRates, true}, slave_word("word", 0xAAAA)},
+       .is_loss = true,
+       .is_no_frame = true},
+      {.word = "pulses",
+       .meaning = "a data cycle whose low pulses are so many twentieths of a bit longer",
+       .numbers = {{"longer", -3, 3, 3, kOffPulses}, slave_word("word", 0x1234)},
+       .is_no_frame = true}};
 }
 
-void SlaveActs::act(const SequenceCommand& command) {
+void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
   const Numbers numbers = command.numbers;
   switch (static_cast<SlaveWord>(command.word)) {
     case SlaveWord::data:
@@ -235,15 +294,62 @@ void SlaveActs::act(const SequenceCommand& command) {
     case SlaveWord::kept_alive:
       return keep_alive(numbers[0]);
     case SlaveWord::power:
-      return twins_.each([&](SlaveBench& one) {
-        one.set_power(false);
-        one.silence(numbers[0] * kernel::kMillisecond);
-        one.set_power(true);
-      });
+      return lose_supply(numbers[0] * kernel::kMillisecond);
     case SlaveWord::glitch:
       twins_.each([&](SlaveBench& one) { drive_glitch(one, numbers[0]); });
       return note_what_came(false);
+    case SlaveWord::good:
+      twins_.each([&](SlaveBench& one) { send_good(one, numbers); });
+      return note_what_came(false);
+    case SlaveWord::no_stop:
+      return send(command, append_no_stop);
+    case SlaveWord::rate:
+      return drive_at_rate(command, judge);
+    case SlaveWord::pulses:
+      return drive_pulses(command, judge);
   }
+}
+
+void SlaveActs::lose_supply(kernel::Duration duration) {
+  twins_.each([&](SlaveBench& one) {
+    one.set_power(false);
+    one.silence(duration);
+    one.set_power(true);
+  });
+}
+
+// What a slave reads of it is its own affair, as long as it does not take it. What it keeps of it is lost.
+void SlaveActs::drive_at_rate(const SequenceCommand& command, CaseJudge& judge) {
+  constexpr std::int64_t kPerMille = 1'000;
+  twins_.bench().require_line_interface();
+  const auto word = static_cast<std::uint16_t>(command.numbers[1]);
+  twins_.each([&](SlaveBench& one) {
+    const std::int64_t rate = one.rules().bit_rate * (kPerMille + command.numbers[0]) / kPerMille;
+    line::Waveform wave{one.now(), rate, one.direct_data_cycle(words_of(one, word, word), 2)};
+    one.drive_at_receiver(wave);
+  });
+  judge.expect(!left_clean(twins_.bench()), "rate_beyond_limit_accepted",
+               "a cycle at 6 % beside the bit rate is rejected", "one left with a clean status word");
+  twins_.each([](SlaveBench& one) { one.clear_views(); });
+  lose_supply(kernel::kMillisecond);
+}
+
+void SlaveActs::drive_pulses(const SequenceCommand& command, CaseJudge& judge) {
+  constexpr double kMostOff = 0.03;
+  twins_.bench().require_line_interface();
+  const auto word = static_cast<std::uint16_t>(command.numbers[1]);
+  twins_.each([&](SlaveBench& one) {
+    const line::Levels levels =
+        with_moved_edges(one.direct_data_cycle(words_of(one, word, ~word & 0xFFFF), 2),
+                         [&](bool falls) { return falls ? 0 : command.numbers[0]; });
+    line::Waveform wave{one.now(), one.rules().bit_rate * kEdgesPerBit, levels};
+    one.drive_at_receiver(wave);
+  });
+  note_what_came(false);
+  const double worst = worst_edge(twins_.bench());
+  judge.expect(worst <= kMostOff, "output_not_retimed",
+               "every edge that leaves lies within 3 % of a bit of its place",
+               fmt::format("one is {:.0f} % of a bit off", 100 * worst));
 }
 
 void SlaveActs::send(const SequenceCommand& command, void (*append)(SlaveBench&, const SequenceCommand&)) {

@@ -23,6 +23,10 @@ enum class SlaveWord : std::uint8_t {
   kept_alive,
   power,
   glitch,
+  good,
+  no_stop,
+  rate,
+  pulses,
 };
 
 std::vector<SequenceWord> slave_words();
@@ -32,10 +36,14 @@ class SlaveActs {
  public:
   explicit SlaveActs(SlaveTwins& twins) : twins_(twins) {}
 
-  void act(const SequenceCommand& command);
+  // What the twins cannot tell is judged here.
+  void act(const SequenceCommand& command, CaseJudge& judge);
 
  private:
   void send(const SequenceCommand& command, void (*append)(SlaveBench&, const SequenceCommand&));
+  void drive_at_rate(const SequenceCommand& command, CaseJudge& judge);
+  void drive_pulses(const SequenceCommand& command, CaseJudge& judge);
+  void lose_supply(kernel::Duration duration);
   void periphery(const SequenceCommand& command);
   void be_silent(std::int64_t how_long);
   void keep_alive(std::int64_t how_long);
