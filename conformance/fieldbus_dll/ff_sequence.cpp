@@ -408,7 +408,7 @@ const SequenceRole& ff_device_sequence_role() {
       {{DerivedKind::values, {"tells_twice", "delivered_unasked"}},
        {DerivedKind::faults, {"no_probe_response", "no_answer"}},
        {DerivedKind::words, {"subscribed_to_none", "not_delivered"}},
-       {DerivedKind::states, {"mute_after_activation", "token_not_returned"}},
+       {DerivedKind::states, {"returns_twice", "speaks_unasked"}},
        {DerivedKind::repetitions, {"tells_other_source", "delivered_otherwise"}},
        {DerivedKind::settings, {"tells_no_writes", "delivered_otherwise"}}}};
   return role;
