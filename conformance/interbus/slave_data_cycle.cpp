@@ -1,5 +1,4 @@
 #include "conformance/interbus/slave_scene.hpp"
-#include "conformance/interbus/slave_signals.hpp"
 
 #include <fmt/format.h>
 
@@ -25,6 +24,19 @@ void outputs_change_after_the_check(SlaveBench& bench, CaseJudge& judge) {
   }
   judge.measure("latest output change after the last check telegram", "us",
                 static_cast<double>(latest.count()) / 1e6);
+}
+
+// Inputs that jump between 0000h and FFFFh at instants that have nothing to do with the cycle.
+std::uint16_t jumping(kernel::Time when, std::uint64_t seed) {
+  constexpr std::int64_t kPiece = 7'300'000;  // ps
+  std::uint64_t mixed = static_cast<std::uint64_t>(when.time_since_epoch().count() / kPiece) + seed;
+  mixed = (mixed ^ mixed >> 31) * 0x9E3779B97F4A7C15U;
+  return (mixed >> 40 & 1U) != 0 ? 0xFFFF : 0x0000;
+}
+
+// A clock at the terminals: tells when it was looked at, in microseconds.
+std::uint16_t clock_word(kernel::Time when, std::uint64_t = 0) {
+  return static_cast<std::uint16_t>(when.time_since_epoch().count() / 1'000'000 & 0xFFFF);
 }
 
 void set_signals(SlaveBench& bench, std::uint16_t (*signal)(kernel::Time, std::uint64_t),
@@ -85,7 +97,7 @@ SampleInstants sample_instants(SlaveBench& bench, CaseJudge& judge) {
 void check_sample_instant(SlaveScene& scene) {
   SlaveBench& bench = scene.bench;
   CaseJudge& judge = scene.judge;
-  set_signals(bench, [](kernel::Time when, std::uint64_t) { return clock_word(when); }, 0);
+  set_signals(bench, clock_word, 0);
   SampleInstants all;
   for (unsigned n = 0; n < bench.volume(40U, 1'000U); ++n) {
     bench.silence(bench.bits(static_cast<std::int64_t>(bench.random().below(300))));

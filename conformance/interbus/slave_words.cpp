@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <utility>
 
 #include "conformance/interbus/moved_edges.hpp"
 #include "conformance/interbus/slave_expect.hpp"
-#include "conformance/interbus/slave_signals.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -208,24 +206,6 @@ void drive_glitch(SlaveBench& bench, std::int64_t eighths) {
   bench.drive_at_receiver(wave);
 }
 
-// The words of cycle n are of one instant; a clock may tick between two of them.
-void judge_sample(SlaveBench& bench, CaseJudge& judge, std::size_t n, bool is_clock) {
-  const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), n);
-  if (!out) return;
-  const std::uint16_t first = bench.words() > 0 ? out->word(0) : std::uint16_t{0};
-  for (unsigned word = 0; word < bench.words(); ++word) {
-    const std::uint16_t seen = out->word(2 * word);
-    const auto ticks = static_cast<std::int16_t>(static_cast<std::uint16_t>(seen - first));
-    const bool is_one = is_clock ? ticks >= -1 && ticks <= 1 : seen == 0x0000 || seen == 0xFFFF;
-    judge.expect(is_one, is_clock ? "input_words_not_of_one_instant" : "input_word_torn", [&] {
-      return Mismatch{
-          .expected = {is_clock ? fmt::format("{:04X}h, give or take 1", first) : "0000h or FFFFh"},
-          .actual = fmt::format("{:04X}h", seen),
-          .first_difference = fmt::format("input word {} of cycle {}", word, n)};
-    });
-  }
-}
-
 }  // namespace
 
 std::vector<SequenceWord> slave_words() {
@@ -284,10 +264,7 @@ std::vector<SequenceWord> slave_words() {
       {.word = "pulses",
        .meaning = "a data cycle whose low pulses are so many twentieths of a bit longer",
        .numbers = {{"longer", -3, 3, 3, kOffPulses}, slave_word("word", 0x1234)},
-       .is_no_frame = true},
-      {"signals",
-       "an ID cycle, and data cycles while all inputs 0: jump, 1: show a clock",
-       {truth("clock", 0)}}};
+       .is_no_frame = true}};
 }
 
 void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
@@ -330,8 +307,6 @@ void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
       return drive_at_rate(command, judge);
     case SlaveWord::pulses:
       return drive_pulses(command, judge);
-    case SlaveWord::signals:
-      return sample_signals(command, judge);
   }
 }
 
@@ -375,28 +350,6 @@ void SlaveActs::drive_pulses(const SequenceCommand& command, CaseJudge& judge) {
   judge.expect(worst <= kMostOff, "output_not_retimed",
                "every edge that leaves lies within 3 % of a bit of its place",
                fmt::format("one is {:.0f} % of a bit off", 100 * worst));
-}
-
-// When a slave samples is its own affair, as long as all that a cycle carries is of one instant.
-void SlaveActs::sample_signals(const SequenceCommand& command, CaseJudge& judge) {
-  constexpr unsigned kCycles = 12;
-  SlaveBench& bench = twins_.bench();
-  const bool is_clock = command.numbers[0] != 0;
-  const std::uint64_t seed = bench.random().next();
-  twins_.each([&](SlaveBench& one) {
-    one.bring_up();
-    for (unsigned word = 0; word < one.words(); ++word)
-      one.terminals().set_signal(
-          word, [=](kernel::Time when) { return is_clock ? clock_word(when) : jumping(when, seed); });
-    send_good(one, std::array<std::int64_t, 3>{0, 0, kCycles});
-  });
-  for (unsigned n = 0; n < kCycles && bench.pics().supports("inputs"); ++n)
-    judge_sample(bench, judge, n, is_clock);
-  note_what_came(false);
-  twins_.each([](SlaveBench& one) {
-    one.set_inputs(words_of(one, 0, 0));
-    one.clear_views();
-  });
 }
 
 void SlaveActs::send(const SequenceCommand& command, void (*append)(SlaveBench&, const SequenceCommand&)) {

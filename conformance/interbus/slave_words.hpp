@@ -27,7 +27,6 @@ enum class SlaveWord : std::uint8_t {
   no_stop,
   rate,
   pulses,
-  signals,
 };
 
 std::vector<SequenceWord> slave_words();
@@ -44,7 +43,6 @@ class SlaveActs {
   void send(const SequenceCommand& command, void (*append)(SlaveBench&, const SequenceCommand&));
   void drive_at_rate(const SequenceCommand& command, CaseJudge& judge);
   void drive_pulses(const SequenceCommand& command, CaseJudge& judge);
-  void sample_signals(const SequenceCommand& command, CaseJudge& judge);
   void lose_supply(kernel::Duration duration);
   void periphery(const SequenceCommand& command);
   void be_silent(std::int64_t how_long);
