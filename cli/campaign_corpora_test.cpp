@@ -17,7 +17,7 @@ constexpr const char* kSearches = R"({
   "title": "searches",
   "jobs": [
     { "verb": "fuzz", "of": "valve_bus/node", "iut": "plugin:NODE?in-process", "cases": 40, "seed": [1, 2, 3] },
-    { "verb": "fuzz", "of": "valve_bus/node", "iut": "ref", "cases": 5 }
+    { "verb": "fuzz", "of": "valve_bus/node", "iut": "ref", "cases": 20 }
   ]
 })";
 
@@ -65,7 +65,7 @@ TEST_F(CampaignOfSearches, LeavesOneCorpusWhateverTheNumberOfWorkers) {
   }
   EXPECT_GE(all["edges"], all["growth"].back()["edges"]);
   EXPECT_LT(merged.size(), of_jobs);
-  EXPECT_HOLDS(one.out, "searches: 4, 125 sequences, 0 findings");
+  EXPECT_HOLDS(one.out, "searches: 4, 140 sequences, 0 findings");
   EXPECT_HOLDS(one.out, " after 40 in each of 3 jobs; ");
   EXPECT_FALSE(fs::exists(folder_ / "one/merging"));
   expect_valid({"one/campaign.json"}, "../../campaign/campaign_result");
