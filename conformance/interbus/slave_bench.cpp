@@ -101,8 +101,12 @@ SlaveBench::SlaveBench(interbus::NetworkDescription network, const SlaveSetting&
   install(setting.plan);
 }
 
+bool SlaveBench::has_line_interface() {
+  return ring_.slave(position_).has_line_interface();
+}
+
 void SlaveBench::require_line_interface() {
-  if (ring_.slave(position_).has_line_interface()) return;
+  if (has_line_interface()) return;
   throw iut::CannotBeDone(
       "the slave receives and sends telegrams; the levels of its lines are the bench's own");
 }

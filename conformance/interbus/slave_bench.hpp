@@ -67,6 +67,7 @@ class SlaveBench final : public CaseBench, private segment::Station {
 
   // For a case about nothing but finding telegrams in levels and making levels of them. Throws
   // iut::CannotBeDone for an implementation that leaves both to the bench.
+  bool has_line_interface();
   void require_line_interface();
 
   // ---- upper tester ----
