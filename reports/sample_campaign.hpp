@@ -9,8 +9,8 @@ namespace fieldproof::reports {
 
 // Three jobs of each of eight levels and pulses, and a run that fails.
 inline nlohmann::ordered_json sample_campaign(const char* hostile) {
-  using Json = nlohmann::ordered_json;
-  Json jobs = Json::array();
+  using Ordered = nlohmann::ordered_json;
+  Ordered jobs = Ordered::array();
   for (int n = 0; n < 24; ++n) {
     jobs.push_back(
         {{"id", n + 1},
@@ -64,8 +64,8 @@ inline nlohmann::ordered_json sample_campaign(const char* hostile) {
 }
 
 inline nlohmann::ordered_json sample_fit(const char* hostile) {
-  using Json = nlohmann::ordered_json;
-  Json rows = Json::array();
+  using Ordered = nlohmann::ordered_json;
+  Ordered rows = Ordered::array();
   for (int n = 0; n < 12; ++n) {
     rows.push_back({{"level_v", 250 << (n / 4)},
                     {"repetition", n % 4 < 2 ? "5kHz" : "100kHz"},
@@ -76,7 +76,7 @@ inline nlohmann::ordered_json sample_fit(const char* hostile) {
                     {"undetected", 0},
                     {"expected_bad", 20.0 * n + 3}});
   }
-  const Json factor = {
+  const Ordered factor = {
       {"value", 0.7}, {"from", 0.6}, {"to", 0.9}, {"is_open_below", true}, {"is_open_above", false}};
   return {{"schema", "fieldproof/emc_fit/1"},
           {"protocol", "interbus"},

@@ -20,18 +20,18 @@ inline constexpr const char* kHostileName = "</script><img src=x onerror=alert(1
 
 // Forty frames that two stations send in turn; every seventh is changed by a fault.
 inline std::string sample_timeline(const std::string& case_id) {
-  using Json = nlohmann::ordered_json;
+  using Ordered = nlohmann::ordered_json;
   constexpr std::int64_t kFrame = 26'000'000;
   constexpr std::int64_t kBegin = 1'000'000'000'000'000;  // beyond what a double counts in picoseconds
-  Json json = {{"schema", "fieldproof/timeline/1"},
-               {"case", case_id},
-               {"is_cut", true},
-               {"channels", {{{"name", "master to slave"}}, {{"name", kHostileName}}}},
-               {"transmissions", Json::array()},
-               {"faults", Json::array()},
-               {"observations", Json::array()},
-               {"findings", Json::array()},
-               {"windows", Json::array()}};
+  Ordered json = {{"schema", "fieldproof/timeline/1"},
+                  {"case", case_id},
+                  {"is_cut", true},
+                  {"channels", {{{"name", "master to slave"}}, {{"name", kHostileName}}}},
+                  {"transmissions", Ordered::array()},
+                  {"faults", Ordered::array()},
+                  {"observations", Ordered::array()},
+                  {"findings", Ordered::array()},
+                  {"windows", Ordered::array()}};
   for (std::int64_t n = 0; n < 40; ++n) {
     const std::int64_t start = kBegin + n * 2 * kFrame;
     json["transmissions"].push_back({{"channel", n % 2},
@@ -84,8 +84,8 @@ inline PageRun sample_page_run() {
 }
 
 inline nlohmann::ordered_json sample_emc() {
-  using Json = nlohmann::ordered_json;
-  Json json = {
+  using Ordered = nlohmann::ordered_json;
+  Ordered json = {
       {"schema", "fieldproof/emc/1"},
       {"protocol", "interbus"},
       {"command", "fieldproof emc interbus --seed 7"},
@@ -94,11 +94,11 @@ inline nlohmann::ordered_json sample_emc() {
       {"profile", "A"},
       {"threshold_volts", 47.5},
       {"unverified", {"The coupling is not calibrated.", "clamp_pf has no verified source."}},
-      {"criteria", Json::array()},
+      {"criteria", Ordered::array()},
       {"seed", "7"},
       {"is_complete", true},
       {"duration_s", 3.0},
-      {"tests", Json::array()},
+      {"tests", Ordered::array()},
       {"places",
        {{{"receiver", "slave@1/in"}, {"exposed", true}},
         {{"receiver", "slave@2/in"}, {"exposed", false}, {"why_not", "a local bus"}}}},
@@ -206,43 +206,43 @@ inline nlohmann::ordered_json sample_emc() {
            {"pulses", 590},
            {"wrong_levels", 630}}}});
   }
-  Json channel = {{"channel", "bsc"},
-                  {"flip_probability", 0.002},
-                  {"receivers", 2},
-                  {"undetected_by_code_word", 1e-12},
-                  {"undetected_by_shift", 1e-9},
-                  {"undetected_by_misframing", 1e-10},
-                  {"expected_wrong_cycles_at_most", 7.2e-6},
-                  {"chance_of_count", 1.0}};
+  Ordered channel = {{"channel", "bsc"},
+                     {"flip_probability", 0.002},
+                     {"receivers", 2},
+                     {"undetected_by_code_word", 1e-12},
+                     {"undetected_by_shift", 1e-9},
+                     {"undetected_by_misframing", 1e-10},
+                     {"expected_wrong_cycles_at_most", 7.2e-6},
+                     {"chance_of_count", 1.0}};
   for (const auto& [key, value] : json["tests"].front().items()) {
     if (key != "level" && key != "open_circuit_volts" && key != "repetition" && key != "polarity") {
       channel[key] = value;
     }
   }
-  json["channels"] = Json::array({std::move(channel)});
+  json["channels"] = Ordered::array({std::move(channel)});
   return json;
 }
 
 inline nlohmann::ordered_json sample_residual() {
-  using Json = nlohmann::ordered_json;
-  const Json worst = {{"ber", 0.05}, {"probability", 1.8e-5}, {"rises_throughout", false}};
-  Json json = {{"schema", "fieldproof/residual/1"},
-               {"frame_check", "CRC-16/IBM-3740"},
-               {"width", 16},
-               {"polynomial", "0x1021"},
-               {"bits", 120},
-               {"hamming_distance", 4},
-               {"weights_up_to", 6},
-               {"weights", {{{"weight", 0}, {"count", "1"}}, {{"weight", 4}, {"count", "470"}}}},
-               {"worst", worst},
-               {"worst_up_to_usual", worst},
-               {"usual_ber", 0.01},
-               {"safety_source", "IEC 61784-3"},
-               {"safety_standing", "memory"},
-               {"messages_per_hour", 3600},
-               {"receivers", 1},
-               {"seed", "7"},
-               {"points", Json::array()}};
+  using Ordered = nlohmann::ordered_json;
+  const Ordered worst = {{"ber", 0.05}, {"probability", 1.8e-5}, {"rises_throughout", false}};
+  Ordered json = {{"schema", "fieldproof/residual/1"},
+                  {"frame_check", "CRC-16/IBM-3740"},
+                  {"width", 16},
+                  {"polynomial", "0x1021"},
+                  {"bits", 120},
+                  {"hamming_distance", 4},
+                  {"weights_up_to", 6},
+                  {"weights", {{{"weight", 0}, {"count", "1"}}, {{"weight", 4}, {"count", "470"}}}},
+                  {"worst", worst},
+                  {"worst_up_to_usual", worst},
+                  {"usual_ber", 0.01},
+                  {"safety_source", "IEC 61784-3"},
+                  {"safety_standing", "memory"},
+                  {"messages_per_hour", 3600},
+                  {"receivers", 1},
+                  {"seed", "7"},
+                  {"points", Ordered::array()}};
   double probability = 4.7e-22;
   for (const double ber : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
     json["points"].push_back({{"ber", ber},
@@ -257,15 +257,15 @@ inline nlohmann::ordered_json sample_residual() {
 }
 
 inline nlohmann::ordered_json sample_matrix() {
-  using Json = nlohmann::ordered_json;
-  const Json passed = {{"kind", "passed"}, {"verdict", "pass"}};
-  const Json caught = {{"kind", "caught"}, {"verdict", "fail"}, {"reason", "late"}, {"declared", "late"}};
-  const Json missed = {{"kind", "missed"}, {"verdict", "pass"}, {"declared", "late"}};
-  Json role = {{"role", "slave"},
-               {"mutants",
-                {{{"name", "answers_late"}, {"label", "MS1"}, {"description", kHostileName}},
-                 {{"name", "never_answers"}, {"label", ""}, {"description", "says nothing"}}}},
-               {"cases", Json::array()}};
+  using Ordered = nlohmann::ordered_json;
+  const Ordered passed = {{"kind", "passed"}, {"verdict", "pass"}};
+  const Ordered caught = {{"kind", "caught"}, {"verdict", "fail"}, {"reason", "late"}, {"declared", "late"}};
+  const Ordered missed = {{"kind", "missed"}, {"verdict", "pass"}, {"declared", "late"}};
+  Ordered role = {{"role", "slave"},
+                  {"mutants",
+                   {{{"name", "answers_late"}, {"label", "MS1"}, {"description", kHostileName}},
+                    {{"name", "never_answers"}, {"label", ""}, {"description", "says nothing"}}}},
+                  {"cases", Ordered::array()}};
   role["cases"].push_back({{"id", "interbus/slave/sample/case_0"},
                            {"purpose", "IS-1"},
                            {"reference", passed},
