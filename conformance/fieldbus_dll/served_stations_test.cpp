@@ -84,7 +84,8 @@ void expect_judged_alike(const TestCase& test_case, const Outcome& outside, cons
   // same verdict and reason.
   const bool is_other_trace = test_case.id == "fieldbus_dll/isa_dle/derived/each_command_in_each_state" &&
                               inside.result.verdict == judge::Verdict::fail;
-  if (!is_other_trace) EXPECT_EQ(outside.result.fingerprint, inside.result.fingerprint) << test_case.id;
+  if (is_other_trace) return;
+  EXPECT_EQ(outside.result.fingerprint, inside.result.fingerprint) << test_case.id;
 }
 
 class ServedLinkRoles : public testing::TestWithParam<std::string> {};
