@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "conformance/valve_bus/node_seeded_faults.hpp"
@@ -154,6 +156,35 @@ class FallsSilent : public Node {
     if (++answers_ <= 400) Node::transmit(octets, start);
   }
   unsigned answers_ = 0;
+};
+
+class DrivesWithTheAnswer : public Node {
+  using Node::Node;
+  void on_command(const Command& command, Time now) override {
+    pending_.reset();
+    if (command.command == rules().write_command && rules().answers_writes) {
+      pending_ = valves_of(command);
+      answer_at({command.data0, command.data1}, now);
+    } else {
+      Node::on_command(command, now);
+    }
+  }
+  void transmit(Octets octets, Time start) override {
+    if (const auto pending = std::exchange(pending_, std::nullopt)) actuate(*pending, start);
+    Node::transmit(octets, start);
+  }
+  std::optional<std::uint16_t> pending_;
+};
+
+class AnswersWrongWrites : public Node {
+  using Node::Node;
+  void on_frame(const CollectedFrame& frame, Time now) override {
+    const auto octets = frame.whole(valve_bus::kCommandOctets);
+    const bool is_wrong_write = octets && !fits(*octets) && is_meant((*octets)[0]) &&
+                                (*octets)[1] == rules().write_command && rules().answers_writes;
+    Node::on_frame(frame, now);
+    if (is_wrong_write) answer_at({(*octets)[2], (*octets)[3]}, frame.busy_until + turnaround_time());
+  }
 };
 
 }  // namespace fieldproof::conformance::node_seeded_faults

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "conformance/valve_bus/bit_pairs.hpp"
 #include "conformance/valve_bus/node_scene.hpp"
 
@@ -21,10 +23,11 @@ Frame one_wrong_bit(NodeScene& scene) {
 
 void send_many_wrong_frames(NodeScene& scene) {
   constexpr unsigned kMany = 300;  // more than a counter of 8 bits has
+  scene.bench.clear_observations();
   for (unsigned n = 0; n < kMany; ++n) {
     Frame frame = scene.moving_write();
     frame.back() ^= static_cast<std::uint8_t>(1 + n % 255);
-    n == 0 ? scene.send(frame) : scene.send_next(frame);
+    scene.send_next(std::move(frame));
   }
 }
 

@@ -256,4 +256,11 @@ class StopBitIgnoredWithParity : public Node {
   }
 };
 
+class SkipsBreaks : public Node {
+  using Node::Node;
+  void on_character(const UartCharacter& character) override {
+    if (!character.is_stop_missing || character.octet() != 0) Node::on_character(character);
+  }
+};
+
 }  // namespace fieldproof::conformance::node_seeded_faults

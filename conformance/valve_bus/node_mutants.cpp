@@ -4,6 +4,7 @@
 #include "conformance/valve_bus/node_answer_seeded_faults.hpp"
 #include "conformance/valve_bus/node_command_seeded_faults.hpp"
 #include "conformance/valve_bus/node_framing_seeded_faults.hpp"
+#include "conformance/valve_bus/node_loss_seeded_faults.hpp"
 #include "conformance/valve_bus/node_power_seeded_faults.hpp"
 #include "conformance/valve_bus/node_sequence_seeded_faults.hpp"
 #include "conformance/valve_bus/node_terminal_seeded_faults.hpp"
@@ -107,6 +108,10 @@ std::vector<NodeRow> node_answer_rows() {
       {"drives_now_and_then", "", "says something unasked after each fifth write",
        mutant<DrivesNowAndThen>()},
       {"falls_silent_after_400_reads", "", "answers 400 reads and no more", mutant<FallsSilent>()},
+      {"drives_with_the_answer", "", "drives a write when its answer begins, and not if that is cancelled",
+       mutant<DrivesWithTheAnswer>()},
+      {"answers_wrong_writes", "", "answers writes with a wrong check where it answers writes",
+       mutant<AnswersWrongWrites>()},
   };
 }
 
@@ -154,6 +159,9 @@ std::vector<NodeRow> node_frame_rows() {
       {"deaf_behind_response", "", "does not receive the frame after the response of another node",
        mutant<DeafBehindResponse>()},
       {"deaf_behind_write", "", "receives nothing for 1 ms after a write", mutant<DeafBehindWrite>()},
+      {"delimiter_timer_of_16_bits", "",
+       "takes silences with a timer of 16 bits of microseconds for short ones",
+       mutant<DelimiterTimerOf16Bits>()},
   };
 }
 
@@ -177,10 +185,13 @@ std::vector<NodeRow> node_character_rows() {
       {"hears_while_driving", "", "takes what comes while it drives the line", mutant<HearsWhileDriving>()},
       {"gives_up_on_collision", "", "answers no more when another talked into its answer",
        mutant<GivesUpOnCollision>()},
+      {"stop_bit_ignored_with_parity", "", "does not look at the stop bit where there is parity",
+       mutant<StopBitIgnoredWithParity>()},
+      {"skips_breaks", "", "leaves characters of zeros without a stop bit out", mutant<SkipsBreaks>()},
   };
 }
 
-std::vector<NodeRow> node_power_rows() {
+std::vector<NodeRow> node_loss_rows() {
   using namespace node_seeded_faults;
   return {
       {"lets_go_after_5_s", "", "switches its valves off after 5 s without a command",
@@ -213,27 +224,19 @@ std::vector<NodeRow> node_power_rows() {
        mutant<LetsGoInSilenceOnly>()},
       {"lets_go_after_the_first_power_up_only", "", "lets go of its valves after the first power-up only",
        mutant<LetsGoAfterTheFirstPowerUpOnly>()},
-      {"deaf_after_power_lost_in_an_answer", "", "takes nothing more after power was lost in its answer",
-       mutant<DeafAfterPowerLostInAnAnswer>()},
-      {"drives_with_the_answer", "", "drives a write when its answer begins, and not if that is cancelled",
-       mutant<DrivesWithTheAnswer>()},
-      {"answers_wrong_writes", "", "answers writes with a wrong check where it answers writes",
-       mutant<AnswersWrongWrites>()},
-      {"answers_writes_once", "", "answers writes after the first power-up only",
-       mutant<AnswersWritesOnce>()},
-      {"stop_bit_ignored_with_parity", "", "does not look at the stop bit where there is parity",
-       mutant<StopBitIgnoredWithParity>()},
-      {"delimiter_timer_of_16_bits", "",
-       "takes silences with a timer of 16 bits of microseconds for short ones",
-       mutant<DelimiterTimerOf16Bits>()},
       {"loss_limit_at_least_10_ms", "", "holds its valves for 10 ms at least",
        with_rules<valve_bus::Node>([](Rules& rules) {
          if (rules.loss_limit > kernel::Duration{})
            rules.loss_limit = std::max(rules.loss_limit, 10 * kernel::kMillisecond);
        })},
-      {"skips_breaks", "", "leaves characters of zeros without a stop bit out", mutant<SkipsBreaks>()},
       {"lets_go_once", "", "lets go of its valves once", mutant<LetsGoOnce>()},
       {"lets_go_of_one_board", "", "lets go of the valves of its first board", mutant<LetsGoOfOneBoard>()},
+  };
+}
+
+std::vector<NodeRow> node_power_rows() {
+  using namespace node_seeded_faults;
+  return {
       {"valves_set_at_power_up", "", "has a valve on at power-up", mutant<ValvesSetAtPowerUp>()},
       {"works_without_supply", "", "works when its supply is off", mutant<WorksWithoutSupply>()},
       {"speaks_at_power_up", "", "says something at power-up", mutant<SpeaksAtPowerUp>()},
@@ -241,6 +244,10 @@ std::vector<NodeRow> node_power_rows() {
        mutant<KeepsOctetsOverPowerLoss>()},
       {"keeps_valves_over_power_loss", "", "sets its valves at power-up as they were",
        mutant<KeepsValvesOverPowerLoss>()},
+      {"deaf_after_power_lost_in_an_answer", "", "takes nothing more after power was lost in its answer",
+       mutant<DeafAfterPowerLostInAnAnswer>()},
+      {"answers_writes_once", "", "answers writes after the first power-up only",
+       mutant<AnswersWritesOnce>()},
   };
 }
 
@@ -288,7 +295,7 @@ std::vector<NodeRow> node_sequence_rows() {
 const NodeMutants& node_mutants() {
   static const NodeMutants table(
       "node", {node_check_rows, node_command_rows, node_process_rows, node_answer_rows, node_frame_rows,
-               node_character_rows, node_power_rows, node_sequence_rows});
+               node_character_rows, node_loss_rows, node_power_rows, node_sequence_rows});
   return table;
 }
 
