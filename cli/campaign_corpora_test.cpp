@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -32,12 +31,6 @@ class CampaignOfSearches : public ProgramFixture {
     words.insert(words.begin(), "campaign");
     return call(std::move(words));
   }
-  std::map<std::string, std::string> corpus(const fs::path& name) const {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : fs::directory_iterator(folder_ / name))
-      files[entry.path().filename().string()] = read(name / entry.path().filename());
-    return files;
-  }
 };
 
 TEST_F(CampaignOfSearches, LeavesOneCorpusWhateverTheNumberOfWorkers) {
@@ -46,8 +39,8 @@ TEST_F(CampaignOfSearches, LeavesOneCorpusWhateverTheNumberOfWorkers) {
   EXPECT_EQ(one.exit_code, 0) << one.out << one.err;
   EXPECT_EQ(campaign({"plan.json", "--workers", "3", "--out", "three"}).exit_code, 0);
   EXPECT_EQ(read("one/campaign.json"), read("three/campaign.json"));
-  const auto merged = corpus("one/corpus/valve_bus-node");
-  EXPECT_EQ(merged, corpus("three/corpus/valve_bus-node"));
+  const auto merged = read_all("one/corpus/valve_bus-node");
+  EXPECT_EQ(merged, read_all("three/corpus/valve_bus-node"));
   const auto document = json("one/campaign.json");
   const auto& search = document["search"];
   EXPECT_EQ(search["counts"], (nlohmann::json{{"jobs", 4}, {"run", 140}, {"found", 0}}));
@@ -61,7 +54,7 @@ TEST_F(CampaignOfSearches, LeavesOneCorpusWhateverTheNumberOfWorkers) {
   std::size_t of_jobs = 0;
   for (const std::string job : {"1", "2", "3"}) {
     EXPECT_GE(all["edges"], json("one/jobs/" + job + "/document.json")["edges"]);
-    of_jobs += corpus("one/jobs/" + job + "/corpus").size();
+    of_jobs += read_all("one/jobs/" + job + "/corpus").size();
   }
   EXPECT_GE(all["edges"], all["growth"].back()["edges"]);
   EXPECT_LT(merged.size(), of_jobs);
@@ -74,7 +67,7 @@ TEST_F(CampaignOfSearches, LeavesOneCorpusWhateverTheNumberOfWorkers) {
 TEST_F(CampaignOfSearches, GoesOnFromTheCorpusOfAnother) {
   write("plan.json", with_node(kSearches));
   EXPECT_EQ(campaign({"plan.json", "--out", "first"}).exit_code, 0);
-  const auto before = corpus("first/corpus/valve_bus-node");
+  const auto before = read_all("first/corpus/valve_bus-node");
   write("next.json",
         with_node(R"({"jobs": [{"verb": "fuzz", "of": "valve_bus/node", "iut": "plugin:NODE?in-process",
     "cases": 10, "seed": [4, 5], "corpus": "first/corpus/valve_bus-node"}]})"));
@@ -84,7 +77,7 @@ TEST_F(CampaignOfSearches, GoesOnFromTheCorpusOfAnother) {
   EXPECT_EQ(document["jobs"][0]["search"]["stored"], before.size());
   EXPECT_GE(document["search"]["corpora"][0]["edges"],
             json("first/campaign.json")["search"]["corpora"][0]["edges"]);
-  EXPECT_EQ(corpus("first/corpus/valve_bus-node"), before) << "it is read alone";
+  EXPECT_EQ(read_all("first/corpus/valve_bus-node"), before) << "it is read alone";
   // What a campaign began with must be there, and the same, when it goes on.
   write("first/corpus/valve_bus-node/" + before.begin()->first, "{}");
   EXPECT_HOLDS(campaign({"--resume", "next"}).err, "has changed since");

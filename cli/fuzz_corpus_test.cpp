@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -23,13 +22,6 @@ class FuzzCorpus : public ProgramFixture {
     words.insert(words.begin(), {"fuzz", "valve_bus/node", "--iut", uri});
     return call(std::move(words));
   }
-  // The files of a corpus with their texts.
-  std::map<std::string, std::string> corpus(const fs::path& name) const {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : fs::directory_iterator(folder_ / name))
-      files[entry.path().filename().string()] = read(name / entry.path().filename());
-    return files;
-  }
 };
 
 TEST_F(FuzzCorpus, GoesOnWhereTheLastSearchEnded) {
@@ -40,14 +32,14 @@ TEST_F(FuzzCorpus, GoesOnWhereTheLastSearchEnded) {
   EXPECT_HOLDS(first.out, " after 60");
   const auto before = json("first.json");
   EXPECT_GT(before["edges"], 20);
-  EXPECT_EQ(before["corpus"], corpus("kept").size());
+  EXPECT_EQ(before["corpus"], read_all("kept").size());
   EXPECT_LT(before["corpus"], before["kept"]) << "what is not needed is left out";
   // No sequence more: the stored ones pass all that the search had passed.
   const Called again = fuzz({"--cases", "0", "--corpus", "kept", "--json", "again.json"});
   EXPECT_EQ(again.exit_code, 0) << again.out << again.err;
   EXPECT_EQ(json("again.json")["edges"], before["edges"]);
   EXPECT_EQ(json("again.json")["stored"]["run"], before["corpus"]);
-  const auto smallest = corpus("kept");
+  const auto smallest = read_all("kept");
   const Called more = fuzz({"--cases", "60", "--corpus", "kept", "--json", "more.json"});
   EXPECT_EQ(more.exit_code, 0) << more.out << more.err;
   EXPECT_GE(json("more.json")["edges"], before["edges"]);
@@ -62,16 +54,16 @@ TEST_F(FuzzCorpus, IsTheSameForEqualSeedCorpusAndCode) {
         fuzz({"--cases", "40", "--corpus", "start", "--corpus-out", name, "--json", name + ".json"});
     EXPECT_EQ(called.exit_code, 0) << called.err;
   }
-  EXPECT_EQ(corpus("one"), corpus("two"));
+  EXPECT_EQ(read_all("one"), read_all("two"));
   EXPECT_EQ(read("one.json"), read("two.json"));
   // From another beginning other sequences are tried.
   fuzz({"--cases", "40", "--corpus-out", "three"});
-  EXPECT_NE(corpus("one"), corpus("three"));
+  EXPECT_NE(read_all("one"), read_all("three"));
 }
 
 TEST_F(FuzzCorpus, NamesWhatItCannotRead) {
   fuzz({"--cases", "30", "--corpus", "kept"});
-  const auto whole = corpus("kept");
+  const auto whole = read_all("kept");
   const std::string name = whole.begin()->first;
   write("kept/" + name, whole.begin()->second.substr(0, whole.begin()->second.size() / 2));
   write("kept/other.json",
@@ -81,22 +73,22 @@ TEST_F(FuzzCorpus, NamesWhatItCannotRead) {
   EXPECT_HOLDS(called.err, "left out: kept/" + name);
   EXPECT_HOLDS(called.err, "this is a sequence of valve_bus/host, not of valve_bus/node");
   EXPECT_EQ(json("found.json")["stored"]["left_out"].size(), 2U);
-  const auto after = corpus("kept");
+  const auto after = read_all("kept");
   EXPECT_TRUE(after.contains("other.json")) << "what is not ours stays";
   EXPECT_TRUE(after.contains(name));
 }
 
 TEST_F(FuzzCorpus, LosesNothingWithoutCoverageOrWithAFinding) {
   fuzz({"--cases", "30", "--corpus", "kept"});
-  const auto whole = corpus("kept");
+  const auto whole = read_all("kept");
   const Called blind = fuzz({"--cases", "5", "--corpus", "kept"}, "ref");
   EXPECT_EQ(blind.exit_code, 0) << blind.err;
-  EXPECT_EQ(corpus("kept"), whole);
+  EXPECT_EQ(read_all("kept"), whole);
   const Called called =
       fuzz({"--cases", "5", "--corpus", "kept", "--case", "found.json"}, "mutant:check_is_sum");
   EXPECT_EQ(called.exit_code, 1) << called.out << called.err;
   EXPECT_HOLDS(called.out, "the stored sequence kept/");
-  EXPECT_EQ(corpus("kept"), whole);
+  EXPECT_EQ(read_all("kept"), whole);
   EXPECT_EQ(call({"replay", "found.json"}).exit_code, 1);
 }
 
@@ -135,7 +127,7 @@ TEST_F(FuzzCorpus, MakesACaseOfAnInputOfAFuzzTarget) {
 TEST_F(FuzzCorpus, MakesACaseOfAStoredSequence) {
   fuzz({"--cases", "20", "--corpus", "kept"});
   const Called called =
-      fuzz({"--input", "kept/" + corpus("kept").begin()->first, "--case", "one.json"}, kCounting);
+      fuzz({"--input", "kept/" + read_all("kept").begin()->first, "--case", "one.json"}, kCounting);
   EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
   EXPECT_EQ(call({"replay", "one.json"}).exit_code, 0);
 }

@@ -8,12 +8,14 @@
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::conformance {
+bool means_setting(std::string_view text, std::string_view name) {
+  return text.ends_with('*') ? name.starts_with(text.substr(0, text.size() - 1)) : name == text;
+}
+
 namespace {
 
 bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
-  return std::ranges::any_of(names, [&](std::string_view one) {
-    return one.ends_with('*') ? name.starts_with(one.substr(0, one.size() - 1)) : name == one;
-  });
+  return std::ranges::any_of(names, [&](std::string_view one) { return means_setting(one, name); });
 }
 
 SequenceSetting setting_of(const field::Leaf& leaf, std::span<const SettingBound> bounds) {

@@ -21,9 +21,12 @@ struct SettingBound {
   field::Range range;
 };
 
+// Whether a text means the setting of that name: the name, or its beginning and a star, "code_*".
+bool means_setting(std::string_view text, std::string_view name);
+
 // Each number, truth, choice and duration of the table, from end to end of its range; `object` is what the
 // bench gives when nothing is said. Lists and custom members are the bench's to fill. `fixed`: what the
-// tester rests on, whole names or beginnings, "code_*"; `bounds`: ranges that are narrower here.
+// tester rests on, names or their beginnings; `bounds`: ranges that are narrower here.
 std::vector<SequenceSetting> sequence_settings(const field::AnyTable& table, const void* object,
                                                std::span<const std::string_view> fixed = {},
                                                std::span<const SettingBound> bounds = {});

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -32,6 +33,13 @@ class ProgramFixture : public testing::Test {
   std::string read(const std::filesystem::path& file) const {
     std::ifstream input(folder_ / file);
     return {std::istreambuf_iterator<char>(input), {}};
+  }
+  // The files of one of its folders, by name.
+  std::map<std::string, std::string> read_all(const std::filesystem::path& name) const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / name))
+      files[entry.path().filename().string()] = read(name / entry.path().filename());
+    return files;
   }
   nlohmann::json json(const std::filesystem::path& file) const { return nlohmann::json::parse(read(file)); }
   void write(const std::filesystem::path& file, const std::string& text) const {

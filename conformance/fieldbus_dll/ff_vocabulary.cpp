@@ -1,6 +1,5 @@
 #include "conformance/fieldbus_dll/ff_vocabulary.hpp"
 
-#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -32,14 +31,6 @@ constexpr std::array<std::int64_t, 8> kFfBeside{-2, -1, -1, 1, 1, 2, -32, 32};
 constexpr std::array<std::int64_t, 4> kFfMany{1, 2, 40, 260};
 // Each of them so that there is time left for the others as they are.
 constexpr std::array kBoundsOfFfDevice{SettingBound{"inter_pdu_delay_octets", {1, 24}}};
-// First octets that no DLPDU has, for some of them.
-struct FfOtherCode {
-  std::string_view name;
-  std::int64_t value;
-};
-constexpr std::array kFfOtherCodes{FfOtherCode{"code_cd", 0xC0}, FfOtherCode{"code_pt", 0x40},
-                                   FfOtherCode{"code_td", 0x19}};
-
 SequenceNumber ff_priority(std::string_view name = "priority") {
   return {name, 0, 3, 2, kFfPriorities, true};
 }
@@ -112,11 +103,7 @@ std::vector<SequenceWord> ff_device_words() {
        .numbers = {ff_priority(), {"long", 0, 1, 0}, {"more", 0, 2, 0}, link_silence()},
        .units = 11,
        .weight = 6},
-      {.word = "noise",
-       .meaning = "levels on the line that are no frame",
-       .numbers = {{"octets", 1, 60, 4}, link_silence()},
-       .weight = 3,
-       .is_no_frame = true},
+      link_noise(),
       {.word = "submit",
        .meaning = "the user submits data for another node, so many times",
        .numbers = {{"priority", 1, 3, 2, kFfRequestPriorities},
@@ -132,11 +119,8 @@ std::vector<SequenceWord> ff_device_words() {
                    ff_truth("same")},
        .weight = 18},
       link_supply(),
-      {.word = "one", .meaning = "until the device has sent one DLPDU, or does not", .weight = 8},
-      {.word = "wait",
-       .meaning = "silence of so many octet durations",
-       .numbers = {link_wait()},
-       .weight = 3},
+      link_one(),
+      link_wait(),
       link_framed(),
       link_checked(),
       {.word = "control",
@@ -164,18 +148,9 @@ std::vector<SequenceWord> ff_device_words() {
        .weight = 2}};
 }
 
-// What DLPDUs are called, at the end: what was stored before keeps its places.
-std::vector<SequenceSetting> settings_of_a_device(const fieldbus_dll::FfConfiguration& as_made) {
-  std::vector<SequenceSetting> all =
-      sequence_settings(fieldbus_dll::kFfTable, &as_made, kFixedOfLink, kBoundsOfFfDevice);
-  for (SequenceSetting& setting : sequence_settings(fieldbus_dll::kFfTable, &as_made)) {
-    const auto other = std::ranges::find(kFfOtherCodes, setting.name, &FfOtherCode::name);
-    if (other == kFfOtherCodes.end()) continue;
-    setting.likely = {other->value};
-    setting.is_likely_only = true;
-    all.push_back(std::move(setting));
-  }
-  return all;
+// First octets that no DLPDU has, for some of them.
+std::vector<OtherCodes> ff_other_codes() {
+  return {{"code_cd", {0xC0}}, {"code_pt", {0x40}}, {"code_td", {0x19}}};
 }
 
 }  // namespace
@@ -211,7 +186,7 @@ SequenceVocabulary ff_device_vocabulary() {
   return {.words = ff_device_words(),
           .unit = "octet",
           .levels_per_unit = kFlipsOfAnOctet,
-          .settings = settings_of_a_device(as_made),
+          .settings = link_settings(fieldbus_dll::kFfTable, &as_made, kBoundsOfFfDevice, ff_other_codes()),
           .objection = objection_of(fieldbus_dll::kFfTable, as_made, expect_judgeable_device)};
 }
 

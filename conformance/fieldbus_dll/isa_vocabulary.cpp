@@ -32,8 +32,6 @@ constexpr std::array<std::int64_t, 12> kIsaControls{0x49, 0x4A, 0x4B, 0x19, 0x1A
                                                     0x59, 0x29, 0x39, 0x4D, 0x81, 0xC1};
 constexpr std::array<std::int64_t, 8> kIsaLate{-30, -4, -2, -1, 1, 2, 24, 30};
 constexpr std::array<std::int64_t, 6> kIsaAnswered{-2, -1, 1, 1, 2, 4};
-// Upper halves of first octets that no DLPDU has.
-constexpr std::array<std::int64_t, 3> kIsaOtherCodes{0x80, 0xC0, 0xF0};
 constexpr std::array<std::int64_t, 6> kIsaPeers{1, 1, 1, 2, 3, 4};
 constexpr std::array<std::int64_t, 6> kIsaPeerAfter{8, 8, 8, 20, 30, 31};
 SequenceNumber isa_priority(std::string_view name = "priority") {
@@ -112,11 +110,7 @@ std::vector<SequenceWord> isa_dle_words() {
        .numbers = isa_numbers_of_data(),
        .units = 9,
        .weight = 5},
-      {.word = "noise",
-       .meaning = "levels on the line that are no frame",
-       .numbers = {{"octets", 1, 60, 4}, link_silence()},
-       .weight = 3,
-       .is_no_frame = true},
+      link_noise(),
       {.word = "submit",
        .meaning = "the user submits: 0 data, 1 a CD, 2 data for a CD; so many times",
        .numbers = {{"service", 0, 2, 0},
@@ -130,11 +124,8 @@ std::vector<SequenceWord> isa_dle_words() {
        .numbers = {{"does", 0, 12, 0, kIsaPeers}, {"after", 8, 60, 8, kIsaPeerAfter}},
        .weight = 10},
       link_supply(),
-      {.word = "one", .meaning = "until the station has sent one DLPDU, or does not", .weight = 8},
-      {.word = "wait",
-       .meaning = "silence of so many octet durations",
-       .numbers = {link_wait()},
-       .weight = 3},
+      link_one(),
+      link_wait(),
       link_framed(),
       link_received(),
       link_checked(),
@@ -168,17 +159,9 @@ void expect_judgeable_entity(const fieldbus_dll::IsaConfiguration& station) {
                   rules.link.inter_pdu_delay_octets, rules.reply_forming_octets, rules.reply_wait_octets));
 }
 
-// What DLPDUs are called, at the end: what was stored before keeps its places.
-std::vector<SequenceSetting> settings_of_an_entity(const fieldbus_dll::IsaConfiguration& as_made) {
-  std::vector<SequenceSetting> all =
-      sequence_settings(fieldbus_dll::kIsaTable, &as_made, kFixedOfLink, kBoundsOfIsaDle);
-  for (SequenceSetting& setting : sequence_settings(fieldbus_dll::kIsaTable, &as_made)) {
-    if (!setting.name.starts_with("code_")) continue;
-    setting.likely.assign(kIsaOtherCodes.begin(), kIsaOtherCodes.end());
-    setting.is_likely_only = true;
-    all.push_back(std::move(setting));
-  }
-  return all;
+// Upper halves of first octets that no DLPDU has.
+std::vector<OtherCodes> isa_other_codes() {
+  return {{"code_*", {0x80, 0xC0, 0xF0}}};
 }
 
 }  // namespace
@@ -213,7 +196,7 @@ SequenceVocabulary isa_dle_vocabulary() {
   return {.words = isa_dle_words(),
           .unit = "octet",
           .levels_per_unit = kFlipsOfAnOctet,
-          .settings = settings_of_an_entity(as_made),
+          .settings = link_settings(fieldbus_dll::kIsaTable, &as_made, kBoundsOfIsaDle, isa_other_codes()),
           .objection = objection_of(fieldbus_dll::kIsaTable, as_made, expect_judgeable_entity)};
 }
 

@@ -53,8 +53,38 @@ SequenceWord link_supply() {
           .is_loss = true};
 }
 
-SequenceNumber link_wait() {
-  return {"octets", 1, 50'000, 40, kLinkWaits};
+SequenceWord link_wait() {
+  return {.word = "wait",
+          .meaning = "silence of so many octet durations",
+          .numbers = {{"octets", 1, 50'000, 40, kLinkWaits}},
+          .weight = 3};
+}
+
+SequenceWord link_noise() {
+  return {.word = "noise",
+          .meaning = "levels on the line that are no frame",
+          .numbers = {{"octets", 1, 60, 4}, link_silence()},
+          .weight = 3,
+          .is_no_frame = true};
+}
+
+SequenceWord link_one() {
+  return {.word = "one", .meaning = "until the station has sent one DLPDU, or does not", .weight = 8};
+}
+
+std::vector<SequenceSetting> link_settings(const field::AnyTable& table, const void* as_made,
+                                           std::span<const SettingBound> bounds,
+                                           std::span<const OtherCodes> codes) {
+  std::vector<SequenceSetting> all = sequence_settings(table, as_made, kFixedOfLink, bounds);
+  for (SequenceSetting& setting : sequence_settings(table, as_made)) {
+    const auto other = std::ranges::find_if(
+        codes, [&](const OtherCodes& one) { return means_setting(one.names, setting.name); });
+    if (other == codes.end()) continue;
+    setting.likely = other->values;
+    setting.is_likely_only = true;
+    all.push_back(std::move(setting));
+  }
+  return all;
 }
 
 Octets with_length(Octets dlpdu, std::int64_t more) {

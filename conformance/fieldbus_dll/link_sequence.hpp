@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "conformance/fieldbus_dll/link_bench.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/sequence.hpp"
+#include "conformance/sequence_settings.hpp"
 
 // What sequences of every profile of the data link have in common: the silence after a command, and how it
 // is put on the line with its faults. A unit is an octet of a frame, its delimiters included; the preamble is
@@ -50,7 +52,20 @@ void switch_supply(std::int64_t how, Bench& bench, Model& model) {
   }
 }
 // Silence of timers of 16 bits in microseconds, of a second, of ten.
-SequenceNumber link_wait();
+SequenceWord link_wait();
+SequenceWord link_noise();
+SequenceWord link_one();
+
+// Settings that are codes of DLPDUs, "code_*", and others that no DLPDU has.
+struct OtherCodes {
+  std::string_view names;
+  std::vector<std::int64_t> values;
+};
+// Those of the table that a sequence may begin with; and the codes at the end, so that what was stored before
+// keeps its places.
+std::vector<SequenceSetting> link_settings(const field::AnyTable& table, const void* as_made,
+                                           std::span<const SettingBound> bounds,
+                                           std::span<const OtherCodes> codes);
 Octets with_length(Octets dlpdu, std::int64_t more);
 // Of so many octets: levels that are no frame.
 void send_noise(LinkBench& bench, std::int64_t octets);
