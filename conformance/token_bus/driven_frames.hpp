@@ -53,6 +53,11 @@ struct DrivenFrame {
   std::uint64_t number(std::size_t at) const;
 };
 
+// Frame controls of data of priority 6: without an answer, with one, and the answer.
+inline constexpr std::uint8_t kDataOfSix = 0x62;      // 01 000 110
+inline constexpr std::uint8_t kRequestOfSix = 0x72;   // 01 001 110
+inline constexpr std::uint8_t kResponseOfSix = 0x6A;  // 01 010 110
+
 Octets with_crc_32(std::span<const std::uint8_t> octets);
 // How a frame is drawn: the bits of the end delimiter, and what a case makes otherwise.
 struct FrameForm {

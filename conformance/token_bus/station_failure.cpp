@@ -88,7 +88,6 @@ TokenCase faulty_after(const std::string& id, const std::string& times, std::vec
 }
 
 // 01 010 110: the priority is 6, its highest bit first.
-constexpr std::uint8_t kResponseOfSix = 0x6A;
 
 }  // namespace
 

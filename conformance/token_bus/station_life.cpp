@@ -10,7 +10,6 @@ namespace {
 constexpr std::uint64_t kContender = 0xF000;
 
 // 01 001 110: the priority is 6, its highest bit first.
-constexpr std::uint8_t kRequestOfSix = 0x72;
 
 // Two bits each, the most significant pair first.
 unsigned pairs_of(const TokenBench& bench) {

@@ -16,10 +16,6 @@ using token_sources::controller;
 using token_sources::mib;
 using token_sources::own;
 
-constexpr std::uint8_t kDataOfSix = 0x62;      // 01 000 110
-constexpr std::uint8_t kRequestOfSix6 = 0x72;  // 01 001 110
-constexpr std::uint8_t kResponseOfSix = 0x6A;  // 01 010 110
-
 constexpr std::array<std::uint64_t, 4> kResponders{0x0006, TokenBench::kBelow, TokenBench::kAbove, 0xFFFE};
 
 TokenStep responds_each() {
@@ -43,8 +39,8 @@ const std::vector<NoResponse>& no_responses() {
                                            {kDataOfSix, kOwnAddress, {1}},
                                            {kDataOfSix, TokenBench::kBelow, {1}},
                                            {kDataOfSix, 0xFFFF, {1}},
-                                           {kRequestOfSix6, kOwnAddress, {1}},
-                                           {kRequestOfSix6, TokenBench::kBelow, {1}},
+                                           {kRequestOfSix, kOwnAddress, {1}},
+                                           {kRequestOfSix, TokenBench::kBelow, {1}},
                                            {0x00, 0x0000, {}},       // claim_token
                                            {0x20, 0x0020, {}},       // resolve_contention
                                            {0x10, 0x0004, {}},       // a token

@@ -1,43 +1,22 @@
 #include "conformance/token_bus/station_sequence.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <array>
-#include <deque>
-#include <string>
+#include <utility>
 
 #include "conformance/token_bus/station_cases.hpp"
+#include "conformance/token_bus/station_comparison.hpp"
 #include "conformance/token_bus/station_tester.hpp"
 #include "conformance/token_bus/station_twin.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
-std::string octets_in_words(std::span<const std::int64_t> values) {
-  constexpr std::size_t kMost = 24;
-  return fmt::format("{:02X}{}", fmt::join(values.first(std::min(values.size(), kMost)), " "),
-                     values.size() > kMost ? fmt::format(" and {} more", values.size() - kMost) : "");
-}
-
-std::string event_in_words(std::span<const std::int64_t> values) {
-  return fmt::format("{} about {:04X}", token_bus::text_of(static_cast<token_bus::EventKind>(values[0])),
-                     values[1]);
-}
-
-constexpr EventKind kTokenFrames{"frames", "frame_missing", "frame_unasked", "frame_other", octets_in_words};
-constexpr EventKind kTokenIndications{"indications", "indication_missing", "indication_unasked",
-                                      "indication_other", octets_in_words};
-constexpr EventKind kTokenEvents{"events", "event_missing", "event_unasked", "event_other", event_in_words};
-
 class TokenSequenceRun {
  public:
   TokenSequenceRun(TokenBench& bench, CaseJudge& judge)
       : bench_(bench),
-        judge_(judge),
         tester_(bench),
-        twin_(bench.configuration(), bench.tester_place(), bench.driven_frames(), bench.now()) {}
+        twin_(bench.configuration(), bench.tester_place(), bench.driven_frames(), bench.now()),
+        comparison_(bench, twin_, judge) {}
 
   void run(const Sequence& sequence) {
     for (std::size_t n = 0; n < sequence.commands.size(); ++n) {
@@ -147,7 +126,7 @@ class TokenSequenceRun {
 
   void submit(const token_bus::DataRequest& request) {
     twin_.submit(request, bench_.now());
-    submitted_.push_back({request.data.size(), bench_.submit(request)});
+    comparison_.note_submission(request.data.size(), bench_.submit(request));
   }
 
   // Nobody asks itself.
@@ -228,122 +207,16 @@ class TokenSequenceRun {
   void compare() {
     twin_.catch_up(bench_.now());
     is_over_ |= twin_.is_doubtful();
-    if (is_over_) return;
-    compare_submissions();
-    compare_frames();
-    compare_new(kTokenIndications, indications_of(rest(bench_.user().frames, indications_), bench_.rules()),
-                indications_of(rest(twin_.user().frames, indications_), bench_.rules()));
-    indications_ = bench_.user().frames.size();
-    compare_all_events();
-    compare_counters();
-  }
-
-  template <typename T>
-  static std::span<const T> rest(const std::vector<T>& all, std::size_t known) {
-    return std::span<const T>(all).subspan(std::min(known, all.size()));
-  }
-
-  void compare_new(const EventKind& kind, const Observations& seen, const Observations& right) {
-    compare_events(kind, seen, std::array{right}, true, judge_);
-  }
-
-  // That it is alone a station knows when it has claimed the token, or when a window was silent: by the end
-  // of some windows it has said it as often.
-  void compare_all_events() {
-    const auto is_sole = [](const TokenUser::Reported& one) {
-      return one.event.kind == token_bus::EventKind::sole_station;
-    };
-    std::vector<TokenUser::Reported> seen(bench_.user().all_events);
-    std::vector<TokenUser::Reported> right(twin_.user().all_events);
-    const auto sole_seen = std::ranges::count_if(seen, is_sole);
-    const auto sole_right = std::ranges::count_if(right, is_sole);
-    const bool is_about_another = std::ranges::any_of(seen, [&](const TokenUser::Reported& one) {
-      return is_sole(one) && one.event.address != bench_.address();
-    });
-    // One that is named as its own successor may say that, or that it is alone.
-    const auto is_about_alone = [&](const TokenUser::Reported& one) {
-      const bool is_change = one.event.kind == token_bus::EventKind::successor_changed;
-      return is_sole(one) || (is_change && one.event.address == bench_.address());
-    };
-    std::erase_if(seen, is_about_alone);
-    std::erase_if(right, is_about_alone);
-    compare_new(kTokenEvents, events_of(rest(seen, events_)), events_of(rest(right, events_)));
-    events_ = seen.size();
-    judge_.expect(!is_about_another, kTokenEvents.different, "sole station about itself",
-                  "sole station about another");
-    judge_.expect(sole_seen <= sole_right, kTokenEvents.surplus, "sole station when it becomes so",
-                  "it is reported again");
-    if (!is_alone_) return;
-    judge_.expect(sole_right == sole_right_ || sole_seen > sole_seen_, kTokenEvents.missing, "sole station",
-                  "it is not reported");
-    sole_seen_ = sole_seen;
-    sole_right_ = sole_right;
-  }
-
-  void compare_submissions() {
-    for (; !submitted_.empty(); submitted_.pop_front(), ++submissions_) {
-      const Submission& one = submitted_.front();
-      const bool is_right = twin_.taken().at(submissions_);
-      judge_.expect(one.is_taken == is_right, is_right ? "data_refused" : "data_taken_unasked", [&] {
-        return Mismatch{{fmt::format("data of {} octets is {}", one.size, is_right ? "taken" : "refused")},
-                        one.is_taken ? "taken" : "refused"};
-      });
-    }
-  }
-
-  void compare_frames() {
-    const auto seen = rest(bench_.driven_frames().all(), frames_);
-    const auto right = rest(twin_.driven(), frames_);
-    // What begins at another time is said first: what comes then is often something else.
-    for (std::size_t n = 0; n < std::min(seen.size(), right.size()); ++n) {
-      if (seen[n].octets != right[n].octets) break;
-      expect_in_time(seen[n], twin_.spans().at(frames_ + n));
-    }
-    compare_new(kTokenFrames, frames_of(seen), frames_of(right));
-    frames_ += seen.size();
-  }
-
-  void expect_in_time(const DrivenFrame& one, const BeginSpan& span) {
-    const auto expect = [&](bool holds, std::string_view reason) {
-      judge_.expect(holds, reason, [&] {
-        return Mismatch{{fmt::format("{}, begun {} to {}", one.text(), kernel::describe(span.earliest),
-                                     kernel::describe(span.latest))},
-                        fmt::format("begun {}", kernel::describe(one.begin)),
-                        one.begin};
-      });
-    };
-    expect(one.begin >= span.earliest, "begins_too_early");
-    expect(one.begin <= span.latest, "begins_too_late");
-  }
-
-  void compare_counters() {
-    const token_bus::Counters seen = bench_.counters();
-    const token_bus::Counters right = twin_.counters();
-    judge_.expect(seen == right, "counter_wrong", [&] {
-      return Mismatch{{fmt::format("faulty receptions {}", fmt::join(right, " "))},
-                      fmt::format("{}", fmt::join(seen, " "))};
-    });
+    if (!is_over_) comparison_.compare(is_alone_);
   }
 
   static constexpr std::int64_t kPauseOctets = 8;
-  struct Submission {
-    std::size_t size;
-    bool is_taken;
-  };
 
   TokenBench& bench_;
-  CaseJudge& judge_;
   TokenTester tester_;
   TokenTwin twin_;
+  TokenComparison comparison_;
   std::int64_t soon_symbols_ = 0;
-  std::deque<Submission> submitted_{};
-  // What has been compared.
-  std::size_t submissions_ = 0;
-  std::size_t frames_ = 0;
-  std::size_t indications_ = 0;
-  std::size_t events_ = 0;
-  std::ptrdiff_t sole_seen_ = 0;
-  std::ptrdiff_t sole_right_ = 0;
   bool is_alone_ = false;  // it has solicited again and again, and nobody has answered
   bool is_over_ = false;
 };

@@ -9,12 +9,10 @@ namespace {
 
 constexpr std::size_t kHalfBitsOfOctet = 32;
 constexpr std::size_t kHalfBitsOfSymbol = 4;
+constexpr std::uint64_t kZeroSymbol = 0b1001;
 constexpr std::size_t kHalfBitsOfDelimiter = 8 * kHalfBitsOfSymbol;
 constexpr std::size_t kCheck = 4;
 constexpr std::int64_t kReactionOctets = 8;
-constexpr std::uint8_t kDataOfSix = 0x62;
-constexpr std::uint8_t kRequestOfSix = 0x72;
-constexpr std::uint8_t kResponseOfSix = 0x6A;
 constexpr std::uint64_t kJoins = 0x0006;
 
 std::optional<TokenCue> cue_of(const DrivenFrame& one) {
@@ -52,6 +50,35 @@ void make_long(Octets& octets, TokenEnding ending, const token_bus::Rules& rules
   octets.resize(std::max(octets.size(), size), 0x5A);
 }
 
+// With its check, or what stands there.
+Octets ended(const Octets& octets, TokenEnding ending) {
+  switch (ending) {
+    case TokenEnding::both_errors:
+    case TokenEnding::wrong_check:
+    case TokenEnding::too_long_and_wrong:
+    case TokenEnding::long_and_wrong:
+      return with_wrong_check(octets);
+    case TokenEnding::check_reversed: {
+      Octets checked = with_crc_32(octets);
+      std::reverse(checked.end() - static_cast<std::ptrdiff_t>(kCheck), checked.end());
+      return checked;
+    }
+    case TokenEnding::abort:
+      return {};
+    default:
+      return with_crc_32(octets);
+  }
+}
+
+// Three bits in front of the end delimiter.
+line::Levels with_bits_too_many(const line::Levels& levels) {
+  const std::size_t content = levels.size() - kHalfBitsOfDelimiter;
+  line::Levels more = levels.slice(0, content);
+  for (unsigned n = 0; n < 3; ++n) more.append(kZeroSymbol, kHalfBitsOfSymbol);
+  more.append(levels, content, kHalfBitsOfDelimiter);
+  return more;
+}
+
 }  // namespace
 
 void TokenTester::take_form(std::span<const std::int64_t> numbers) {
@@ -59,74 +86,43 @@ void TokenTester::take_form(std::span<const std::int64_t> numbers) {
            static_cast<TokenEnding>(numbers[2])};
 }
 
-line::Levels TokenTester::shaped(Octets octets, const Form& form) {
-  FrameForm around{.preamble_octets = form.preamble};
-  const auto data_first = [&](bool is_damaged) {
-    const Octets data =
-        bench_.data_frame(kDataOfSix, bench_.address(), TokenBench::kAbove, bench_.numbered_data(3));
-    return half_bits_around(is_damaged ? with_wrong_check(data) : with_crc_32(data), {.more_follows = true});
-  };
+line::Levels TokenTester::data_around(bool is_damaged, FrameForm form) {
+  const Octets data =
+      bench_.data_frame(kDataOfSix, bench_.address(), TokenBench::kAbove, bench_.numbered_data(3));
+  return half_bits_around(is_damaged ? with_wrong_check(data) : with_crc_32(data), form);
+}
+
+// What comes in front of it in the same transmission.
+line::Levels TokenTester::before(TokenEnding ending) {
   line::Levels levels;
+  const bool is_damaged = ending == TokenEnding::damaged_before;
+  const bool are_two = ending == TokenEnding::two_before;
+  if (is_damaged || are_two || ending == TokenEnding::data_before)
+    levels = data_around(is_damaged, {.more_follows = true});
+  if (are_two) levels.append(data_around(false, {.more_follows = true}));
+  return levels;
+}
+
+line::Levels TokenTester::shaped(Octets octets, const Form& form) {
   if (is_long(form.ending)) make_long(octets, form.ending, bench_.rules());
-  Octets checked = with_crc_32(octets);
-  switch (form.ending) {
-    case TokenEnding::error_bit:
-      around.has_error = true;
-      break;
-    case TokenEnding::both_errors:
-      around.has_error = true;
-      checked = with_wrong_check(octets);
-      break;
-    case TokenEnding::wrong_check:
-    case TokenEnding::too_long_and_wrong:
-    case TokenEnding::long_and_wrong:
-      checked = with_wrong_check(octets);
-      break;
-    case TokenEnding::check_reversed:
-      std::reverse(checked.end() - static_cast<std::ptrdiff_t>(kCheck), checked.end());
-      break;
-    case TokenEnding::abort:
-      checked.clear();
-      break;
-    case TokenEnding::data_after:
-    case TokenEnding::nothing_after:
-      around.more_follows = true;
-      break;
-    case TokenEnding::data_before:
-    case TokenEnding::damaged_before:
-      levels = data_first(form.ending == TokenEnding::damaged_before);
-      break;
-    case TokenEnding::two_before:
-      levels = data_first(false);
-      levels.append(data_first(false));
-      break;
-    default:
-      break;
-  }
-  levels.append(half_bits_around(checked, around));
+  line::Levels levels = before(form.ending);
+  levels.append(half_bits_around(
+      ended(octets, form.ending),
+      {.preamble_octets = form.preamble,
+       .more_follows = form.ending == TokenEnding::data_after || form.ending == TokenEnding::nothing_after,
+       .has_error = form.ending == TokenEnding::error_bit || form.ending == TokenEnding::both_errors}));
   if (form.ending == TokenEnding::no_end) return levels.slice(0, levels.size() - kHalfBitsOfDelimiter);
-  if (form.ending == TokenEnding::bits_too_many) {
-    constexpr std::uint64_t kZero = 0b1001;
-    const std::size_t content = levels.size() - kHalfBitsOfDelimiter;
-    line::Levels more = levels.slice(0, content);
-    for (unsigned n = 0; n < 3; ++n) more.append(kZero, kHalfBitsOfSymbol);
-    more.append(levels, content, kHalfBitsOfDelimiter);
-    return more;
-  }
-  if (form.ending == TokenEnding::data_after) {
-    const Octets data =
-        bench_.data_frame(kDataOfSix, bench_.address(), TokenBench::kAbove, bench_.numbered_data(3));
-    levels.append(half_bits_around(with_crc_32(data)));
-  }
+  if (form.ending == TokenEnding::bits_too_many) return with_bits_too_many(levels);
+  if (form.ending == TokenEnding::data_after) levels.append(data_around(false, {}));
   return levels;
 }
 
 void TokenTester::send(Octets octets, const std::vector<SequenceFault>& faults) {
   const Form form = std::exchange(form_, {});
   line::Levels levels = shaped(std::move(octets), form);
-  // Where frames follow each other it is not said what is left of the next one.
-  for (const SequenceFault& fault :
-       form.ending == TokenEnding::right ? faults : std::vector<SequenceFault>{}) {
+  for (const SequenceFault& fault : faults) {
+    // Where frames follow each other it is not said what is left of the next one.
+    if (form.ending != TokenEnding::right) break;
     const std::size_t first = (form.preamble + fault.unit) * kHalfBitsOfOctet;
     if (first + kHalfBitsOfOctet > levels.size()) continue;
     if (fault.kind == SequenceFaultKind::drop) levels.fill(first, first + kHalfBitsOfOctet, true);
@@ -139,9 +135,8 @@ void TokenTester::send(Octets octets, const std::vector<SequenceFault>& faults) 
 }
 
 void TokenTester::send_noise(std::size_t symbols) {
-  constexpr std::uint64_t kZero = 0b1001;
   line::Levels levels;
-  for (std::size_t n = 0; n < symbols; ++n) levels.append(kZero, kHalfBitsOfSymbol);
+  for (std::size_t n = 0; n < symbols; ++n) levels.append(kZeroSymbol, kHalfBitsOfSymbol);
   bench_.send_half_bits(std::move(levels));
 }
 
@@ -185,11 +180,6 @@ void TokenTester::talk(std::int64_t octets) {
 void TokenTester::take_reply(std::span<const std::int64_t> numbers) {
   replies_.at(static_cast<std::size_t>(numbers[0])) = {static_cast<TokenReply>(numbers[1]), numbers[2],
                                                        numbers[3]};
-}
-
-bool TokenTester::has_reply_to(const DrivenFrame& one) const {
-  const auto cue = cue_of(one);
-  return cue && replies_.at(static_cast<std::size_t>(*cue)).left > 0;
 }
 
 bool TokenTester::reply_to(const DrivenFrame& one) {

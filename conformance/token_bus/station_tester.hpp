@@ -30,8 +30,6 @@ class TokenTester {
   void take_reply(std::span<const std::int64_t> numbers);
   // True: something was driven.
   bool reply_to(const DrivenFrame& one);
-  // Whether there is anything that it would be replied with.
-  bool has_reply_to(const DrivenFrame& one) const;
 
  private:
   struct Form {
@@ -46,6 +44,9 @@ class TokenTester {
   };
 
   line::Levels shaped(Octets octets, const Form& form);
+  line::Levels before(TokenEnding ending);
+  // Data for the station.
+  line::Levels data_around(bool is_damaged, FrameForm form);
   void do_what_is_due(const DrivenFrame& one, std::int64_t after);
   void reply(const DrivenFrame& one, TokenReply with);
 
