@@ -48,6 +48,18 @@ class VerbTable : public ProgramFixture, public testing::WithParamInterface<Judg
     std::cout << fmt::format("{:8} {:24} {:8} {}\n", verb, GetParam().path(), attachment, text);
     return text;
   }
+
+  // What it called, and the folder of the run. On a real line again until this machine was quiet enough to
+  // judge.
+  std::pair<Called, std::string> run_of(const std::string& one, const std::string& kind,
+                                        const std::string& iut) const {
+    for (int attempt = 1;; ++attempt) {
+      const std::string out = fmt::format("run_{}_{}", kind.substr(0, kind.find(':')), attempt);
+      const Called run =
+          call({"run", one, "--iut", iut, "--volume", "quick", "--record", "all", "--quiet", "--out", out});
+      if (kind != "serial:" || run.exit_code != 2 || attempt == 20) return {run, out};
+    }
+  }
 };
 
 TEST_P(VerbTable, HasNoEmptySquare) {
@@ -57,9 +69,9 @@ TEST_P(VerbTable, HasNoEmptySquare) {
   const std::string one = fmt::format("{}/{}", role, GetParam().test_case);
   const std::string protocol = GetParam().protocol;
   for (const auto& [kind, iut] : attachments()) {
-    const std::string out = "run_" + kind.substr(0, kind.size() - (kind.ends_with(':') ? 1 : 0));
-    const Called run =
-        call({"run", one, "--iut", iut, "--volume", "quick", "--record", "all", "--quiet", "--out", out});
+    const auto [run, out] = run_of(one, kind, iut);
+    if (kind == "serial:" && run.exit_code == 2)
+      GTEST_SKIP() << "not judged: this machine was never quiet enough for " << one;
     const bool runs = print("run", kind, run) == "works";
     const bool must_run = kind == "ref" || kind == "exec:" || role == "valve_bus/node" ||
                           (kind == "serial:" && role == "valve_bus/host");
