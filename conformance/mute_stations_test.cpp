@@ -16,6 +16,7 @@
 #include "conformance/suite_given.hpp"
 #include "conformance/token_bus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
+#include "harness/kernel/sanitized.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
 #include "protocols/fieldbus_dll/ff_las.hpp"
@@ -141,8 +142,8 @@ SuiteGiven given_mute(MakeServed make) {
 std::set<std::string> passed_by(const std::string& uri, const Suite& suite, const std::string& role) {
   std::set<std::string> passed;
   const std::string prefix = std::string(suite.protocol()) + "/" + role + "/";
-  for (const TestCase& one : suite.cases()) {
-    if (!one.id.starts_with(prefix)) continue;
+  for (kernel::FewerIfSanitized few(4); const TestCase& one : suite.cases()) {
+    if (!one.id.starts_with(prefix) || few.leaves_out()) continue;
     Setup setup;
     setup.volume = Volume::quick;
     setup.implementations.push_back({role, 0, uri});

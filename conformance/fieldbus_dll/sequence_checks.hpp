@@ -27,7 +27,8 @@ class SequenceChecks {
   // In several seeds, and by all of them: a sequence that nobody can judge shows nothing.
   void expect_reference_follows(std::uint64_t wanted) const {
     const std::uint64_t cases = fewer_if_slow(wanted);
-    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    for (kernel::FewerIfSanitized few(3); const std::uint64_t seed : {1U, 2U, 3U}) {
+      if (few.leaves_out()) continue;
       SequenceSearch one = search_of("ref", cases);
       one.setup.seed = seed;
       const SequenceSearchResult result = search(one);

@@ -11,6 +11,7 @@
 #include "conformance/interbus/slave_mutants.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/runner.hpp"
+#include "harness/kernel/sanitized.hpp"
 #include "protocols/interbus/attached_master.hpp"
 #include "protocols/interbus/attached_slave.hpp"
 #include "protocols/interbus/master.hpp"
@@ -81,8 +82,8 @@ const std::set<std::string>& unsayable() {
 void expect_reference_is_judged_as_inside(const std::string& role) {
   const auto suite = in_telegrams("");
   int judged = 0;
-  for (const TestCase& test_case : suite->cases()) {
-    if (test_case.role() != role) continue;
+  for (kernel::FewerIfSanitized few(4); const TestCase& test_case : suite->cases()) {
+    if (test_case.role() != role || few.leaves_out()) continue;  // the way out and back is the same for all
     ++judged;
     const Outcome told = suite->run(test_case, telegram_setup(role, "outside"));
     const Outcome known = judged_inside().run(test_case, telegram_setup(role, "ref"));
@@ -94,7 +95,7 @@ void expect_reference_is_judged_as_inside(const std::string& role) {
     EXPECT_EQ(told.result.verdict, known.result.verdict) << test_case.id << told.result.reason;
     EXPECT_EQ(told.result.reason, known.result.reason) << test_case.id;
   }
-  EXPECT_GT(judged, 40);
+  EXPECT_GT(judged, kernel::kIsSanitized ? 10 : 40);
 }
 
 TEST(ServedTelegrams, ReferenceSlaveIsJudgedInEveryCaseAsInside) {

@@ -61,7 +61,7 @@ TEST(InterbusSuite, CanariesFail) {
 }
 
 TEST(InterbusSuite, NoTwoAnswersOfAPicsAccuseAReference) {
-  const std::vector<AnswerPairs> roles = pairs_of_answers(suite(), kernel::kIsSanitized ? 8 : 1);
+  const std::vector<AnswerPairs> roles = pairs_of_answers(suite(), kernel::kIsSanitized ? 40 : 1);
   ASSERT_EQ(roles.size(), 1U);  // what masters declare are texts
   for (const AnswerPairs& one : roles) {
     EXPECT_THAT(one.accused, testing::IsEmpty()) << one.role;

@@ -51,7 +51,9 @@ TEST(ServedTokenStation, TheReferenceIsJudgedInEveryCaseAsInside) {
   const auto inside = token_bus_suite();
   const auto outside = token_suite_outside("");
   ASSERT_GT(inside->cases().size(), 40U);
-  for (const TestCase& test_case : inside->cases()) expect_alike_outside(*outside, *inside, test_case, "ref");
+  for (kernel::FewerIfSanitized few(4); const TestCase& test_case : inside->cases()) {
+    if (!few.leaves_out()) expect_alike_outside(*outside, *inside, test_case, "ref");
+  }
 }
 
 TEST(ServedTokenStation, MutantsAreJudgedAsInside) {

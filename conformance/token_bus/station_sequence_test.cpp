@@ -33,7 +33,7 @@ TEST(TokenStationSequence, TheReferenceFollowsItsTwin) {
 
 TEST(TokenStationSequence, FindsEachStationForCheckWithFewCommands) {
   const auto suite = token_bus_suite();
-  for (kernel::FewerIfSanitized few(3); const Mutant& mutant : suite->mutants()) {
+  for (kernel::FewerIfSanitized few(9); const Mutant& mutant : suite->mutants()) {
     if (!mutant.is_for_check || mutant.role != "station" || few.leaves_out()) continue;
     const SequenceSearchResult result = searched("mutant:" + mutant.name, 2'000);
     ASSERT_TRUE(result.found) << mutant.name;
