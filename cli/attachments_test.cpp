@@ -1,5 +1,6 @@
 #include "cli/attachments.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,13 +57,16 @@ class Attachments : public ProgramFixture {
   };
   using Cases = std::map<std::string, Case>;
 
-  // The real program over these cases of the suite.
+  // The real program over these cases of the suite; under a sanitizer, which sees the same way to the
+  // implementation in each of them, over a share of a whole suite.
   Cases judged(const std::string& uri, const std::string& cases = "**",
                const std::map<std::string, std::string>& environment = {}, const std::string& pics = {},
                const std::string& suite = std::string(kSuite)) {
     const std::string out = "run" + std::to_string(++runs_);
     std::vector<std::string> words{"run",  suite + cases, "--volume", "quick", "--record",
                                    "none", "--iut",       uri,        "--out", out};
+    if (kernel::kIsSanitized && cases == "**")
+      words.insert(words.end(), {"--shard", "1/" + std::to_string(kOneOf)});
     if (!pics.empty()) {
       write("node.pics.json", pics);
       words.insert(words.end(), {"--pics", "node.pics.json"});
@@ -81,8 +85,10 @@ class Attachments : public ProgramFixture {
     return found;
   }
 
+  // How many cases of a whole suite are judged.
   std::size_t count_of(const std::string& suite) {
-    return std::stoul(prepared({"list", suite + "**", "--count"}).run().out);
+    const std::size_t all = std::stoul(prepared({"list", suite + "**", "--count"}).run().out);
+    return (all + kOneOf - 1) / kOneOf;
   }
 
   // Who hears telegrams hears whole ones: cases under bursts and about broken codes are not for it.
@@ -99,6 +105,8 @@ class Attachments : public ProgramFixture {
   }
 
  private:
+  static constexpr std::size_t kOneOf = kernel::kIsSanitized ? 8 : 1;
+
   int runs_ = 0;
 };
 
@@ -190,7 +198,7 @@ TEST_F(Attachments, StationsOfANetworkAreProcesses) {
   const std::string slave = "exec:" + in_quotes(FIELDPROOF_EXE) + " station interbus/slave ";
   const std::string suite = "interbus/network/";
   const Cases inside = judged("ref", "**", {}, {}, suite);
-  EXPECT_EQ(inside.size(), 7U);
+  EXPECT_EQ(inside.size(), count_of(suite));
   EXPECT_EQ(judged("slave@2=" + slave, "**", {}, {}, suite), inside);
   const std::string master = "exec:" + in_quotes(FIELDPROOF_EXE) + " station interbus/master ";
   EXPECT_EQ(judged("master=" + master, "**", {}, {}, suite), inside);
@@ -217,7 +225,10 @@ TEST_F(Attachments, NodeInCPassesAtTheLowestBitRateWithAcknowledge) {
                                              "loss/writes_that_are_answered_are_signs_of_life",
                                              "settings/serves_1000000_bits_per_second",
                                              "settings/serves_1200_bits_per_second"};
-  EXPECT_EQ(not_applicable, at_other_rates);
+  if (kernel::kIsSanitized)
+    EXPECT_THAT(at_other_rates, testing::IsSupersetOf(not_applicable));
+  else
+    EXPECT_EQ(not_applicable, at_other_rates);
 }
 
 TEST_F(Attachments, NodeInCPassesAsALibraryInAProcessOfItsOwn) {
@@ -259,7 +270,7 @@ TEST_F(Attachments, InterbusSlaveInPythonPassesInTelegrams) {
       EXPECT_EQ(one.verdict, "pass") << id << ": " << one.reason << one.findings;
     }
   }
-  EXPECT_EQ(not_applicable, 4);
+  EXPECT_TRUE(not_applicable == 4 || kernel::kIsSanitized) << not_applicable;
   expect_passes("slave@2=" + uri, "interbus/network/");
 }
 

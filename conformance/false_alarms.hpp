@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "conformance/runner.hpp"
@@ -19,12 +20,13 @@ inline std::uint64_t many_seeds() {
 // Of derived cases, which are many sequences each, one seed in so many.
 constexpr std::uint64_t kFewerSeedsOfSequences = 7;
 
-// The cases in which the references of a suite get such a verdict.
+// The cases in which the references of a suite get such a verdict; of one role, or of all.
 template <typename IsSuch>
-std::vector<std::string> cases_where(const Suite& suite, const Setup& setup, IsSuch is_such) {
+std::vector<std::string> cases_where(const Suite& suite, const Setup& setup, IsSuch is_such,
+                                     std::string_view role = {}) {
   std::vector<std::string> cases;
   for (const TestCase& test_case : suite.cases()) {
-    if (is_canary(test_case)) continue;
+    if (is_canary(test_case) || (!role.empty() && test_case.role() != role)) continue;
     if (setup.seed % kFewerSeedsOfSequences != 1 && has_tag(test_case, "derived")) continue;
     const judge::CaseResult result = run_case({&suite, &test_case}, setup).outcome.result;
     if (is_such(result.verdict))

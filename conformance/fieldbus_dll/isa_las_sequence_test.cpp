@@ -13,7 +13,7 @@ const SequenceChecks& isa_las_checks() {
 }
 
 TEST(IsaLasSequence, TheReferenceFollowsTheRules) {
-  isa_las_checks().expect_reference_follows(2'000);
+  isa_las_checks().expect_reference_follows(700);
 }
 
 TEST(IsaLasSequence, FindsEachSchedulerForCheckWithFewCommands) {

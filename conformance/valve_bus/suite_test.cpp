@@ -61,7 +61,7 @@ TEST(ValveBusSuite, NoBitRateAccusesTheHost) {
     setup.volume = Volume::quick;
     setup.pics.emplace().declare("dip", dip);
     const auto is_accused = [](judge::Verdict verdict) { return verdict >= judge::Verdict::fail; };
-    EXPECT_THAT(cases_where(*suite, setup, is_accused), testing::IsEmpty()) << dip;
+    EXPECT_THAT(cases_where(*suite, setup, is_accused, "host"), testing::IsEmpty()) << dip;
   }
 }
 
