@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -45,6 +47,16 @@ class LineBench : public CaseBench, private segment::Station {
     tester_->drive(wave);
     if (end > now()) segment().run_until(end);
     return end;
+  }
+  // In steps until it is seen, or to the limit. Where nothing fires for several steps they are one: a silence
+  // of seconds on a fast line has millions.
+  template <typename IsSeen>
+  void run_in_steps(kernel::Time limit, kernel::Duration step, IsSeen is_seen) {
+    while (!is_seen() && now() < limit) {
+      const kernel::Duration idle = std::min(limit, segment().scheduler().next()) - now();
+      const auto steps = std::max<std::int64_t>(1, (idle + step - kernel::kPicosecond) / step);
+      segment().run_until(std::min(limit, now() + steps * step));
+    }
   }
 
  private:

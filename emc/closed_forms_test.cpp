@@ -292,7 +292,8 @@ TEST(ClosedFormsTest, TheReceiverOfTelegramsHearsAsManyBadCycles) {
   const WrongOutput wrong = forced_low(300 * kNanosecond);
   double bad = 0;
   double pulses = 0;
-  for (std::uint64_t run = 0; run < 60; ++run) {
+  constexpr std::uint64_t kRuns = kernel::kIsSanitized ? 10 : 60;
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
     const kernel::Random random = kernel::Random(7).split(run);
     const BurstSettings settings;
     trace::Trace trace;
@@ -337,7 +338,7 @@ TEST(ClosedFormsTest, TheReceiverOfTelegramsHearsAsManyBadCycles) {
   const double flips = pulses * kActivity * ones * 300.0 / 2000;
   const double formula = flips * (1 - 0.035);
   print_row("bad cycles by the receiver of telegrams, 300 ns, 5 kHz", formula, bad);
-  EXPECT_NEAR(bad / formula, 1, 0.05);
+  EXPECT_NEAR(bad / formula, 1, kernel::kIsSanitized ? 0.12 : 0.05);
 }
 
 // A profile's own wrong times, several pieces for both levels.

@@ -92,7 +92,7 @@ std::vector<DrivenDlpdu> LinkBench::arrived_unsent() const {
 
 bool LinkBench::next_begins(kernel::Time limit) {
   // In steps of an octet: the ear knows at once what the IUT begins, and no frame is as short.
-  while (!driven_.has_new(limit) && now() < limit) run_until(std::min(limit, now() + octets(1)));
+  run_in_steps(limit, octets(1), [&] { return driven_.has_new(limit); });
   return driven_.has_new(limit);
 }
 

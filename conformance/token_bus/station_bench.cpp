@@ -138,7 +138,7 @@ void TokenBench::run_until(kernel::Time time) {
 
 std::optional<DrivenFrame> TokenBench::next(kernel::Time limit) {
   // In steps of an octet: the ear knows at once what the IUT begins, and no frame is as short.
-  while (!driven_.has_new(limit) && now() < limit) run_until(std::min(limit, now() + octets(1)));
+  run_in_steps(limit, octets(1), [&] { return driven_.has_new(limit); });
   if (!driven_.has_new(limit)) return std::nullopt;
   const DrivenFrame one = driven_.take_one();
   run_until(one.end);
