@@ -26,10 +26,13 @@ kernel::Duration Transmission::longest_gap() const {
   return longest;
 }
 
+kernel::Duration DrivenLine::pause() const {
+  return kernel::levels_duration(1, kIdlePieces * bit_rate_) + kRoundedStart;
+}
+
 std::vector<Transmission> DrivenLine::transmissions() {
   std::vector<Transmission> all;
   line::Waveform together;
-  const kernel::Duration pause = kernel::levels_duration(1, kIdlePieces * bit_rate_) + kRoundedStart;
   const auto finish = [&] {
     if (!together.levels.empty()) add(together, all.back());
     together.levels.clear();
@@ -39,7 +42,7 @@ std::vector<Transmission> DrivenLine::transmissions() {
                          std::chrono::abs(wave.start - together.end()) <= kRoundedStart;
     if (!follows) {
       finish();
-      if (all.empty() || wave.start - all.back().driver_off > pause) {
+      if (all.empty() || wave.start - all.back().driver_off > pause()) {
         all.push_back({wave.start, wave.end(), {}});
       }
       together.start = wave.start;

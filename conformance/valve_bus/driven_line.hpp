@@ -57,6 +57,8 @@ class DrivenLine final : public segment::Tap {
     bit_rate_ = bit_rate;
   }
 
+  // The longest silence within a transmission: idle levels are driven in pieces.
+  kernel::Duration pause() const;
   // Since the last clear. Waves that follow each other without a gap are one transmission; idle levels are
   // driven in pieces, of which the last one may end a little before the start bit.
   std::vector<Transmission> transmissions();

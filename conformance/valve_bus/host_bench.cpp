@@ -209,8 +209,16 @@ void HostBench::collect() {
          has_driven_by(seen.back().driver_off + longest_gap(rules()))) {
     seen = driven_.transmissions();
   }
+  while (is_followed_by_a_tail(seen.back())) seen = driven_.transmissions();
   last_waves_ = driven_.take();
   frames_.insert(frames_.end(), seen.begin(), seen.end());
+}
+
+// Who says when its driver goes off as it goes off drives what is behind the last stop bit in pieces.
+bool HostBench::is_followed_by_a_tail(const Transmission& sent) {
+  if (sent.characters.size() < valve_bus::kCommandOctets) return false;
+  const kernel::Time longest = sent.characters.back().busy_until + bits(rules().driver_off_bits + 1);
+  return sent.driver_off < longest && has_driven_by(sent.driver_off + driven_.pause());
 }
 
 std::optional<HostFrame> HostBench::next_frame(kernel::Duration within) {
@@ -241,6 +249,12 @@ HostFrame HostBench::frame_of(Transmission sent) {
   }
   std::erase_if(said_, [&](const Span& span) { return span.end < frame.start; });
   return frame;
+}
+
+kernel::Duration HostBench::late_turnaround_time() {
+  const kernel::Time rest_ends = last_end_ + time_out() * 105 / 100;
+  if (now() < rest_ends) await(rest_ends - now());
+  return std::max(time_out(), was_told() ? now() - last_end_ + time_out() / 100 : rest_ends - last_end_);
 }
 
 kernel::Time HostBench::answer(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time) {

@@ -116,6 +116,10 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   std::optional<HostFrame> next_frame(kernel::Duration within);
   // Levels as the IUT drove them in the frame that was got last.
   const std::vector<line::Waveform>& last_waves() const { return last_waves_; }
+  // Of an answer that is too late, after the last attempt of a read: as soon as the PC was told that there is
+  // none. The host rests then for another 5 % of the time-out, and begins its next request at the earliest
+  // when these are over. Waits for what the PC is told, at most so long.
+  kernel::Duration late_turnaround_time();
   // Gives the line the octets, the first start bit so long after the last frame's last stop bit. Does not
   // run. Gives their end.
   kernel::Time answer(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time);
@@ -177,6 +181,7 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   void adopt_rate(unsigned dip);
   void set_power(bool is_on);
   bool has_driven_by(kernel::Time limit);
+  bool is_followed_by_a_tail(const Transmission& sent);
   void collect();
   HostFrame frame_of(Transmission sent);
   void note(Seen seen);

@@ -96,7 +96,7 @@ void serve_late(HostSide& side, std::uint8_t id, const valve_bus::Response& resp
   for (unsigned attempt = 0; attempt < bench.rules().read_attempts; ++attempt) {
     if (!side.await_request()) return;
   }
-  side.answer(response, bench.time_out() * 105 / 100);
+  side.answer(response, bench.late_turnaround_time());
 }
 
 // A host may take the command for a refresh that is due, and reports what it likes of that.

@@ -203,6 +203,8 @@ class HostSequenceRun {
     return compare_events(kRequests, iut.requests(), std::span(&twin.requests(), 1), is_settled, judge_) &&
            compare_events(kIndications, iut.indications(), std::span(&twin.indications(), 1), is_settled,
                           judge_) &&
+           compare_events(kIndications, iut.fifo_errors(), std::span(&twin.fifo_errors(), 1), is_settled,
+                          judge_) &&
            compare_events(kFifoStates, iut.fifo_states(), std::span(&twin.fifo_states(), 1), is_settled,
                           judge_);
   }

@@ -21,6 +21,12 @@ Observation observed(const HostEvent& event) {
   return {{1, response.id, response.data0, response.data1, response.is_old ? 1 : 0}, event.when};
 }
 
+bool is_of_the_fifo(const HostEvent& event) {
+  const auto* error = std::get_if<valve_bus::HostError>(&event.what);
+  return error != nullptr && (error->kind == valve_bus::HostErrorKind::fifo_overflow ||
+                              error->kind == valve_bus::HostErrorKind::part_of_command);
+}
+
 }  // namespace
 
 void HostSide::order(const valve_bus::Command& command) {
@@ -152,7 +158,7 @@ void HostSide::take_indications() {
     const HostEvent event = *bench_.next_told({});
     if (const auto* error = std::get_if<valve_bus::HostError>(&event.what))
       pace_.on_error(*error, event.when);
-    indications_.push_back(observed(event));
+    (is_of_the_fifo(event) ? fifo_errors_ : indications_).push_back(observed(event));
   }
 }
 

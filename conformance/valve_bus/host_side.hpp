@@ -22,7 +22,10 @@ class HostSide {
         dip_(static_cast<unsigned>(bench.pics().number("dip", 0))) {}
 
   const Observations& requests() const { return requests_; }
+  // Of what the host has done on the line, or refused to.
   const Observations& indications() const { return indications_; }
+  // Of commands that did not come whole or were lost: when, in between, depends on how fast it sends.
+  const Observations& fifo_errors() const { return fifo_errors_; }
   // Of the FIFO, where there is no doubt about them: overflow, octets that there is room for.
   const Observations& fifo_states() const { return fifo_states_; }
   // Nodes for which something was ordered since power-up.
@@ -75,6 +78,7 @@ class HostSide {
   CaseJudge* judge_;
   Observations requests_;
   Observations indications_;
+  Observations fifo_errors_;
   Observations fifo_states_;
   HostPace pace_;
   unsigned dip_;

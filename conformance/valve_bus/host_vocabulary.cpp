@@ -133,7 +133,8 @@ std::vector<SequenceWord> long_words() {
        .numbers = {octet("first"), octet("data0"), octet("data1")},
        .weight = 2},
       {.word = "late",
-       .meaning = "everything ends, then a read is answered 5 % after the time-out of its last attempt",
+       .meaning = "everything ends, then a read is answered after the time-out of its last attempt, while "
+                  "the host rests",
        .numbers = {node(), octet("data0"), octet("data1")},
        .weight = 1},
       {.word = "talk",

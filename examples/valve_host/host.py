@@ -69,12 +69,14 @@ class Host:
     def __init__(self, stream, settings):
         self.stream, self.settings = stream, settings
         self.counters = {}
+        self.driver_off_at = NEVER  # said when it comes, as firmware does whose transmitter tells its end
         self.power(False, 0)
 
     # ---- supply ----
 
     def power(self, is_on, now):
         self.is_on = is_on
+        self.release_driver(now)
         self.fifo = Fifo(self)
         self.known, self.written = {}, {}  # last response of each node; what was written to it and when
         self.request, self.verification, self.attempt = None, None, 0
@@ -211,7 +213,7 @@ class Host:
     def next_time(self):
         if not self.is_on:
             return NEVER
-        times = [self.fifo.deadline, self.silence_known() if self.frame else NEVER]
+        times = [self.driver_off_at, self.fifo.deadline, self.silence_known() if self.frame else NEVER]
         if self.is_awaiting:
             times.append(self.response_known() + (self.time_out if self.is_being_answered() else 0))
         elif self.request or self.verification or self.fifo.has_command():
@@ -227,6 +229,8 @@ class Host:
     def on_time(self, now):
         if not self.is_on:
             return
+        if now >= self.driver_off_at:
+            self.release_driver(now)
         if self.frame and now >= self.silence_known():
             self.end_frame(now)
         if now >= self.fifo.deadline:
@@ -237,6 +241,11 @@ class Host:
             elif now >= self.response_known() + self.time_out:
                 self.give_up(LINE_BUSY, now)
         self.go_on(now)
+
+    def release_driver(self, now):
+        if self.driver_off_at != NEVER:
+            self.stream.send(DRIVER, "BBq", LINE, 0, now)
+        self.driver_off_at = NEVER
 
     # ---- what is done next ----
 
@@ -292,7 +301,7 @@ class Host:
         self.own_end = self.busy_until = self.own_start + 10 * self.half
         self.stream.send(DRIVER, "BBq", LINE, 1, now)
         self.stream.send(CHARACTERS, "BqH5H", LINE, self.own_start, 5, *(ninth | octet for octet in octets))
-        self.stream.send(DRIVER, "BBq", LINE, 0, self.own_end + self.bit)
+        self.driver_off_at = self.own_end + self.bit
         self.asked, self.was_wrong = None, False
         if request.command == WRITE:
             self.written[request.id] = request.data0, request.data1, self.own_end
