@@ -162,7 +162,7 @@ class Campaign {
     work.count = planned_.size();
     work.threads = jobs_from(session_.settings);
     work.stop = interruption_.token();
-    work.work = [&](std::size_t n) { return run_one(response, case_of(n)); };
+    work.work = [&](std::size_t n) { return run_one(response, case_of(planned_[n])); };
     work.deliver = [&](std::size_t n, Ran&& ran) {
       if (!ran.result.is_complete) return false;
       planned_[n].result = std::move(ran.result);
@@ -170,7 +170,7 @@ class Campaign {
       done_.tests.push_back(planned_[n]);
       if (done_.places.empty()) describe(ran);
       session_.terminal.print(emc_line(done_.tests.back()));
-      if (!folder_.empty()) store(response, n);
+      if (!folder_.empty()) store(response, planned_[n], n + 1);
       return true;
     };
     work.idle = [&](std::size_t finished) { session_.terminal.progress(finished); };
@@ -178,6 +178,7 @@ class Campaign {
     const std::size_t delivered = work.run();
     session_.terminal.end_progress();
     done_.is_complete = delivered == planned_.size() && done_.tests.size() == planned_.size();
+    add_worst_probe(response);
     add_to_search();
     session_.terminal.print(emc_hint(done_));
     if (!done_.has_bursts || !session_.settings.is_set("sensitivity") || !done_.is_complete) return;
@@ -223,8 +224,39 @@ class Campaign {
     if (!is_searching_) return;
     double top = emc::Level::standard(emc::PortKind::power, 4).open_circuit_volts();
     for (const EmcTest& test : planned_) top = std::max(top, test.level.open_circuit_volts());
-    done_.search = search_thresholds(probing(), response, top);
+    EmcProbing probes = probing();
+    probes.note = [this](const EmcCase& test, const emc::ImmunityResult& result) {
+      note_probe(test, result);
+    };
+    done_.search = search_thresholds(probes, response, top);
     session_.terminal.print(search_text(*done_.search));
+  }
+
+  // The worst of the voltages that the table reaches.
+  void note_probe(const EmcCase& probe, const emc::ImmunityResult& result) {
+    const emc::BurstSettings& bursts = probe.bursts.settings;
+    const auto reaches = [&](const EmcTest& test) {
+      return test.level.open_circuit_volts() >= bursts.level.open_circuit_volts();
+    };
+    if (!result.came_up || !result.was_disturbed() || std::ranges::none_of(planned_, reaches)) return;
+    if (worst_probe_ && worst_probe_->result.criterion >= result.criterion) return;
+    worst_probe_.emplace();
+    worst_probe_->level = bursts.level;
+    worst_probe_->repetition = bursts.repetition;
+    worst_probe_->polarity = bursts.polarity;
+    worst_probe_->of_search = {probe.duration, probe.seed};
+    worst_probe_->result = result;
+  }
+
+  // A probe is a test: where it saw what no test of the table shows it stands among them, and is judged.
+  void add_worst_probe(const emc::LineResponse& response) {
+    const auto is_as_bad = [&](const EmcTest& test) {
+      return test.result.came_up && test.result.criterion >= worst_probe_->result.criterion;
+    };
+    if (!worst_probe_ || !done_.is_complete || std::ranges::any_of(done_.tests, is_as_bad)) return;
+    done_.tests.push_back(*worst_probe_);
+    session_.terminal.print(emc_line(done_.tests.back()));
+    if (!folder_.empty()) store(response, done_.tests.back(), done_.tests.size());
   }
 
   // The tests of the table last longer than probes, and may show what these did not.
@@ -246,7 +278,7 @@ class Campaign {
     made.duration = EmcProbing::duration_for(done_.duration);
     const std::size_t of_a_level = planned_.size() / levels_from(session_.settings).size();
     for (std::size_t n = 0; n < of_a_level; ++n) {
-      made.tests.push_back(case_of(n));
+      made.tests.push_back(case_of(planned_[n]));
       made.tests.back().seed = done_.seed;
     }
     made.run = [this](const emc::LineResponse& response, const std::vector<EmcCase>& tests) {
@@ -279,13 +311,14 @@ class Campaign {
     }
   }
 
-  EmcCase case_of(std::size_t n) const {
+  EmcCase case_of(const EmcTest& planned) const {
     EmcCase test = stored_;
-    test.bursts.settings.level = planned_[n].level;
-    test.bursts.settings.repetition = planned_[n].repetition;
-    test.bursts.settings.polarity = planned_[n].polarity;
-    test.flip_probability = planned_[n].flip_probability;
-    test.seed = seed_of(test, done_.seed);
+    test.bursts.settings.level = planned.level;
+    test.bursts.settings.repetition = planned.repetition;
+    test.bursts.settings.polarity = planned.polarity;
+    test.flip_probability = planned.flip_probability;
+    test.seed = planned.of_search ? planned.of_search->seed : seed_of(test, done_.seed);
+    if (planned.of_search) test.duration = planned.of_search->duration;
     return test;
   }
 
@@ -300,12 +333,12 @@ class Campaign {
   }
 
   // A test that fails; and the first wrong word of the campaign, in a test that ends where it was accepted.
-  void store(const emc::LineResponse& response, std::size_t n) {
-    EmcCase test = case_of(n);
-    const emc::ImmunityResult& result = planned_[n].result;
+  void store(const emc::LineResponse& response, const EmcTest& tested, std::size_t number) {
+    EmcCase test = case_of(tested);
+    const emc::ImmunityResult& result = tested.result;
     test.end = end_of(result);
-    const std::string name = fmt::format("{}-{}-{}", row_.name, done_.seed, n + 1);
-    if (is_failure(planned_[n], static_cast<std::size_t>(test.worst))) keep(test, name);
+    const std::string name = fmt::format("{}-{}-{}", row_.name, done_.seed, number);
+    if (is_failure(tested, static_cast<std::size_t>(test.worst))) keep(test, name);
     if (has_first_wrong_ || !result.first_wrong) return;
     const kernel::Duration until = result.first_wrong->when - result.on + kernel::kPicosecond;
     test.duration = std::min(test.duration, until);
@@ -328,6 +361,7 @@ class Campaign {
   std::filesystem::path folder_;  // of what is stored; empty: nothing is
   bool is_searching_ = false;
   bool has_first_wrong_ = false;
+  std::optional<EmcTest> worst_probe_;
   std::vector<EmcTest> planned_;
   EmcCampaign done_;
 };

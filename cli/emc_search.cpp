@@ -37,10 +37,12 @@ std::optional<emc::Criterion> EmcProbing::worst(const emc::LineResponse& respons
     made[n].duration = duration;
     made[n].seed = seed_of(made[n], kernel::Random(made[n].seed).split("probe").seed());
   }
-  const auto results = run(response, std::move(made));
+  const auto results = run(response, made);
   if (!results) return std::nullopt;
   emc::Criterion worst = emc::Criterion::a;
-  for (const emc::ImmunityResult& result : *results) {
+  for (std::size_t n = 0; n < results->size(); ++n) {
+    const emc::ImmunityResult& result = (*results)[n];
+    if (note) note(made[n], result);
     if (!result.came_up || (result.complaint.empty() && !result.was_disturbed())) return std::nullopt;
     worst = std::max(worst, result.criterion);
   }

@@ -167,6 +167,7 @@ ordered_json test_json(const EmcTest& test) {
                        {"open_circuit_volts", test.level.open_circuit_volts()},
                        {"repetition", emc::text_of(test.repetition)},
                        {"polarity", emc::text_of(test.polarity)}};
+  if (test.of_search) json["of_search_s"] = static_cast<double>(test.of_search->duration.count()) / 1e12;
   json.update(result_json(test.result));
   return json;
 }
@@ -328,6 +329,9 @@ std::string emc_line(const EmcTest& test) {
                   counts.refused, counts.wrong_exchanges, counts.retried,
                   counts.detected - std::min(counts.detected, counts.partly_latched), counts.missed_outputs,
                   result.longest_bad_run, recovery_text(result), result.stops, counts.cleared_outputs);
+  if (test.of_search)
+    line +=
+        fmt::format("    seen by the search, in a test of {}\n", kernel::describe(test.of_search->duration));
   line += evidence_lines(result);
   if (!result.complaint.empty()) line += fmt::format("    {}\n", reports::escaped_line(result.complaint));
   if (result.complaint.empty() && !result.was_disturbed())

@@ -18,6 +18,12 @@ struct EmcTest {
   emc::Level level = emc::Level::standard(emc::PortKind::signal, 1);
   emc::Repetition repetition = emc::Repetition::khz_5;
   emc::Polarity polarity = emc::Polarity::positive;
+  // One of the search, with its own time and seed; nothing: one of the table.
+  struct OfSearch {
+    kernel::Duration duration{};
+    std::uint64_t seed = 0;
+  };
+  std::optional<OfSearch> of_search{};
   // Instead of bursts, the binary symmetric channel that disturbs each cable. 0: bursts.
   double flip_probability = 0;
   std::vector<UndetectedPart> undetected;  // on that channel
