@@ -83,6 +83,7 @@ class BurstsWhileMeasuring {
     measurement.phase_during = [this](kernel::Time from, kernel::Time to) {
       return clamp_.phase_during(from, to);
     };
+    measurement.next_disturbance = [this](kernel::Time after) { return clamp_.burst_after(after); };
     measurement.conditions.push_back(
         {"bursts",
          fmt::format("{}, {}, level {}, profile {} ({})", emc::text_of(bursts_.repetition),

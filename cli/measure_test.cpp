@@ -1,6 +1,7 @@
 // Subject: the verbs `measure` and `paper` as their user meets them, on the program itself.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -93,6 +94,41 @@ TEST_F(MeasureVerb, EndsWithTheSignalsThatAreThrough) {
   EXPECT_HOLDS(called.err, "--max-time");
 }
 
+// The longest cycle of the course is that of the distribution, in every protocol, and the points are bounded.
+TEST_F(MeasureVerb, EachProtocolSaysWhenItsCyclesWereLong) {
+  for (const std::string protocol : {"interbus", "valve_bus", "fieldbus_dll", "token_bus"}) {
+    call({"measure", protocol, "--signal", "5Hz,7Hz", "--bursts", "4", "--duration", "20s", "--json",
+          "m.json"});
+    const Json document = json("m.json");
+    std::size_t courses = 0;
+    for (const Json& series : document.at("series")) {
+      if (!series.contains("course")) continue;
+      ++courses;
+      const Json& course = series.at("course");
+      ASSERT_EQ(course.at("runs").size(), 2U) << protocol;
+      double longest = 0;
+      std::uint64_t count = 0;
+      for (const Json& run : course.at("runs")) {
+        EXPECT_LE(run.at("points").size(), 3 * 200U);
+        EXPECT_FALSE(run.at("bursts").empty()) << protocol;
+        if (!run.at("longest").empty())
+          longest = std::max(longest, run.at("longest")[0].at("value").get<double>());
+        for (const Json& point : run.at("points")) count += point.at("count").get<std::uint64_t>();
+      }
+      double greatest = 0;
+      std::uint64_t values = 0;
+      for (const Json& phase : series.at("distributions").at(0).at("phases")) {
+        greatest = std::max(greatest, phase.at("max").get<double>());
+        values += phase.at("count").get<std::uint64_t>();
+      }
+      EXPECT_EQ(longest, greatest) << protocol;
+      EXPECT_EQ(count, values) << protocol;
+    }
+    EXPECT_GE(courses, 1U) << protocol;
+    expect_valid({"m.json"}, "measurement");
+  }
+}
+
 TEST_F(MeasureVerb, TellsQuietBurstAndRecoveryApart) {
   const Called called = call({"measure", "interbus", "--signal", "50Hz", "--bursts", "2", "--duration", "30s",
                               "--json", "bursts.json"});
@@ -106,6 +142,11 @@ TEST_F(MeasureVerb, TellsQuietBurstAndRecoveryApart) {
   const auto& delays = document.at("series").at(1).at("distributions").at(0).at("phases");
   EXPECT_GT(delays.at("burst").at("max").get<double>(), delays.at("quiet").at("max").get<double>());
   EXPECT_GT(delays.at("quiet").at("count").get<int>(), delays.at("burst").at("count").get<int>());
+  const auto& run = document.at("series").at(0).at("course").at("runs").at(0);
+  // One every 300 ms, give or take a fifth; none are so near to each other that they are joined.
+  EXPECT_GE(run.at("bursts").size(), 80U);
+  for (const auto& band : run.at("bursts")) EXPECT_EQ(band.at("count"), 1);
+  EXPECT_EQ(run.at("longest").at(0).at("phase"), "burst");
   expect_valid({"bursts.json"}, "measurement");
 }
 

@@ -61,6 +61,18 @@ measure::Phase BurstClamp::phase_during(kernel::Time from, kernel::Time to) {
   return is_recovery ? measure::Phase::recovery : measure::Phase::quiet;
 }
 
+std::optional<measure::Span> BurstClamp::burst_after(kernel::Time after) {
+  const BurstTiming& timing = schedule_.timing();
+  // A burst that has begun before may have its last pulses, or only its last pitch, still to come.
+  const kernel::Duration burst = timing.pulses * timing.pitch + 2 * timing.jitter;
+  for (kernel::Time pulse = schedule_.first_from(after - burst); pulse != kernel::kNever;) {
+    const BurstSchedule::Window window = schedule_.window_of(pulse);
+    if (window.to > after) return measure::Span{window.from, window.to};
+    pulse = schedule_.first_from(window.to + timing.jitter);
+  }
+  return std::nullopt;
+}
+
 std::uint64_t BurstClamp::bursts_between(kernel::Time from, kernel::Time to) {
   std::uint64_t bursts = 0;
   for (kernel::Time pulse = schedule_.first_from(from); pulse < to;

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 
 #include "emc/burst_channel.hpp"
 #include "emc/generator.hpp"
 #include "harness/kernel/random.hpp"
 #include "harness/kernel/time.hpp"
 #include "harness/measure/phase.hpp"
+#include "harness/measure/time_course.hpp"
 #include "harness/network/network.hpp"
 
 // Bursts on an installation: all cables that are exposed lie in the clamp, and one generator drives it.
@@ -26,6 +28,9 @@ class BurstClamp {
 
   // Whether an interval meets a burst, or else a recovery.
   measure::Phase phase_during(kernel::Time from, kernel::Time to);
+
+  // The first burst that ends after an instant, from its first pulse to one pitch after its last.
+  std::optional<measure::Span> burst_after(kernel::Time after);
 
   // How many bursts have a pulse in an interval.
   std::uint64_t bursts_between(kernel::Time from, kernel::Time to);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "emc/coupling.hpp"
@@ -67,6 +68,34 @@ RC_GTEST_PROP(BurstClampPhases, AreThoseOfTheWindowsOneByOne, ()) {
       if (is_recovery) expected = Phase::recovery;
     }
     RC_ASSERT(clamped.clamp.phase_during(from, to) == expected);
+  }
+}
+
+RC_GTEST_PROP(BurstClampSpans, TheBurstAfterAnInstantIsTheFirstWindowThatEndsThen, ()) {
+  const auto seed = *rc::gen::inRange<std::uint64_t>(1, 100);
+  const Time on = kStart + *rc::gen::inRange<std::int64_t>(0, 1000) * kMillisecond;
+  Clamped clamped(seed, on);
+  BurstSchedule asked = clamped.clamp.channels().front().schedule();
+  std::vector<BurstSchedule::Window> windows;
+  for (Time pulse = asked.first_from(on); pulse < on + 3'000 * kMillisecond;
+       pulse = asked.first_from(windows.back().to + asked.timing().jitter)) {
+    windows.push_back(asked.window_of(pulse));
+  }
+  // At the edges of windows, and anywhere.
+  std::vector<Time> instants;
+  for (const auto& window : windows) {
+    for (const Time edge : {window.from, window.to}) {
+      for (const int by : {-1, 0, 1}) instants.push_back(edge + Duration{by});
+    }
+  }
+  for (int n = 0; n < 20; ++n)
+    instants.push_back(on + *rc::gen::inRange<std::int64_t>(-100'000, 2'500'000) * kMicrosecond);
+  for (const Time after : instants) {
+    const auto wanted = std::ranges::find_if(windows, [after](const auto& one) { return one.to > after; });
+    if (wanted == windows.end()) continue;
+    const auto found = clamped.clamp.burst_after(after);
+    RC_ASSERT(found.has_value());
+    RC_ASSERT(found->from == wanted->from && found->to == wanted->to);
   }
 }
 

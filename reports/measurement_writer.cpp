@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/kernel/untrusted_text.hpp"
+#include "reports/course_json.hpp"
 #include "reports/text_summary.hpp"
 #include "reports/trace_json.hpp"
 
@@ -83,6 +84,7 @@ Json series_json(const measure::Series& series, double tolerance_percent) {
   for (const measure::Count& one : series.counts) {
     json["counts"].push_back({{"what", as_utf8(one.what)}, {"count", one.count}, {"of", one.of}});
   }
+  if (series.course) json["course"] = course_json(*series.course);
   return json;
 }
 
@@ -152,7 +154,9 @@ std::string series_text(const measure::Series& series, double tolerance_percent)
                         "deviation");
   }
   for (const Comparison& one : series.comparisons) text += comparison_line(one, tolerance_percent);
-  return text + distributions_text(series.curves) + counts_text(series.counts);
+  text += distributions_text(series.curves);
+  if (series.course) text += course_text(*series.course);
+  return text + counts_text(series.counts);
 }
 
 std::string channel_text(const std::vector<measure::Trace::Edge>& edges, kernel::Duration length,

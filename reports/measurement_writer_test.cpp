@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "reports/approved_text.hpp"
@@ -56,6 +57,41 @@ TEST(MeasurementWriter, DistributionsStandInTheirUnitAndByPhase) {
   std::uint64_t in_bins = 0;
   for (const Json& bin : delays["phases"]["quiet"]["histogram"]) in_bins += bin["count"].get<std::uint64_t>();
   EXPECT_EQ(in_bins, 4U);
+}
+
+TEST(MeasurementWriter, ACourseSaysWhenValuesCame) {
+  const Json json = Json::parse(measurement_json(sample_measurement()));
+  const Json& course = json["series"][0]["course"];
+  EXPECT_EQ(course["theory"], 814.0);
+  const Json& run = course["runs"][0];
+  EXPECT_EQ(run["length_s"], 1.0);
+  EXPECT_EQ(run["window_s"], 0.02);
+  EXPECT_EQ(run["stopped_s"], 0.9);
+  ASSERT_EQ(run["bursts"].size(), 3U);
+  EXPECT_EQ(run["bursts"][1]["from_s"], 0.4);
+  EXPECT_EQ(run["bursts"][1]["to_s"], 0.425);
+  EXPECT_EQ(run["bursts"][1]["count"], 2);
+  // The longest cycle is the last one in the last burst.
+  EXPECT_EQ(run["longest"][0]["at_s"], 0.72);
+  EXPECT_EQ(run["longest"][0]["phase"], "burst");
+  EXPECT_EQ(run["longest"][0]["value"], 814.0 + 814 + 40 * 72);
+  const auto points = run["points"];
+  const auto burst = std::ranges::find_if(
+      points, [](const Json& point) { return point["from_s"] == 0.42 && point["phase"] == "burst"; });
+  ASSERT_NE(burst, points.end());
+  EXPECT_EQ((*burst)["count"], 1);
+  EXPECT_EQ((*burst)["max"], 814.0 + 814 + 40 * 42);
+}
+
+TEST(MeasurementWriter, TheTextNamesTheLongestUnlessAllAreEqual) {
+  measure::Measurement measurement = sample_measurement();
+  EXPECT_NE(
+      measurement_text(measurement).find("longest cycle time, 50 Hz: 4508.000 us at 0.720000 s (burst)"),
+      std::string::npos);
+  auto& values = measurement.series[0].course->runs[0].values;
+  values = measure::TimeCourse(kernel::kSecond, 10);
+  for (int n = 0; n < 10; ++n) values.add(n * 100 * kernel::kMillisecond, measure::Phase::quiet, 814'000'000);
+  EXPECT_EQ(measurement_text(measurement).find("longest cycle time"), std::string::npos);
 }
 
 TEST(MeasurementWriter, TextOfAFileNeverReachesTheTerminalAsAControl) {

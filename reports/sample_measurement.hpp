@@ -5,6 +5,27 @@
 
 namespace fieldproof::reports {
 
+// A second in which three bursts come, the cycles of which are longer; then the bus stops.
+inline measure::Course sample_course() {
+  using measure::Phase;
+  measure::TimeCourse values(kernel::kSecond, 50);
+  measure::CourseRun run{"50 Hz", values};
+  for (std::int64_t n = 1; n <= 90; ++n) {
+    const kernel::Duration when = 10 * n * kernel::kMillisecond;
+    const std::int64_t place = n % 30;
+    const Phase phase = place >= 10 && place < 13 ? Phase::burst
+                        : place == 13             ? Phase::recovery
+                                                  : Phase::quiet;
+    const std::int64_t more = phase == Phase::quiet ? n % 7 : phase == Phase::burst ? 814 + 40 * n : 200;
+    run.values.add(when, phase, (814 + more) * 1'000'000);
+    if (place == 10) run.bands.push_back({when, when + 25 * kernel::kMillisecond, 2});
+  }
+  run.stopped_after = 900 * kernel::kMillisecond;
+  measure::Course course{"cycle time", "us", 1e6, 814.0};
+  course.runs = {run};
+  return course;
+}
+
 inline measure::Measurement sample_measurement() {
   using measure::Phase;
   measure::Measurement measurement;
@@ -26,6 +47,7 @@ inline measure::Measurement sample_measurement() {
   series.trace.length = kernel::kMillisecond;
   series.trace.input = {{kernel::kMicrosecond, true}};
   series.trace.output = {{3 * kernel::kMicrosecond, true}};
+  series.course = sample_course();
   measurement.series = {series};
   return measurement;
 }

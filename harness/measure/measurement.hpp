@@ -8,6 +8,7 @@
 #include "harness/kernel/time.hpp"
 #include "harness/measure/comparison.hpp"
 #include "harness/measure/phase.hpp"
+#include "harness/measure/time_course.hpp"
 
 // All of a measurement as whoever writes it down needs it: comparisons with the theory, distributions and
 // counts, in words and numbers without any protocol.
@@ -19,6 +20,25 @@ struct Curve {
   std::string unit;
   double per_unit = 1;
   PhasedDistribution values;
+};
+
+// One run in it: the network with one signal.
+struct CourseRun {
+  std::string name;  // "50 Hz"
+  TimeCourse values;
+  std::vector<Band> bands{};  // in which bursts were on the line
+  // The network stopped for good: its last data exchange.
+  std::optional<kernel::Duration> stopped_after{};
+};
+
+// When the values of a quantity came, in runs one after another. Units as those of a curve.
+struct Course {
+  std::string quantity;
+  std::string unit;
+  double per_unit = 1;
+  std::optional<double> theory{};  // in the unit; nothing where no closed form holds
+  bool is_bound = false;           // the theory is the most that may be
+  std::vector<CourseRun> runs{};
 };
 
 struct Count {
@@ -44,6 +64,7 @@ struct Series {
   std::vector<Curve> curves;
   std::vector<Count> counts;
   Trace trace;
+  std::optional<Course> course{};
 };
 
 struct Condition {

@@ -26,6 +26,8 @@ constexpr std::string_view kOfCycle = "of the cycle time";
 constexpr std::string_view kOfTheory = "of the theory";
 // A kind of sample of which the theory expects fewer may be missing altogether.
 constexpr double kFewSamples = 10;
+// Of the time courses of all signals together.
+constexpr std::size_t kMostWindows = 400;
 
 double us(double picoseconds) {
   return picoseconds / kPerMicrosecond;
@@ -286,6 +288,8 @@ class CycleSeries {
     } else {
       for (std::size_t n = 0; n < cycles_.size(); ++n) cycles_[n].times.add(record.cycles[n].times);
     }
+    runs_.resize(cycles_.size());
+    for (std::size_t n = 0; n < cycles_.size(); ++n) runs_[n].push_back(course_run(record, n));
     add_counts(faults_, record.delivery_faults);
     add_counts(remarks_, record.remarks);
     data_ += record.data_exchanges;
@@ -307,6 +311,7 @@ class CycleSeries {
       }
       series.curves = {{cycle.kind.name + (cycle.kind.is_delay ? "" : " time"), std::string(kMicrosecond),
                         kPerMicrosecond, cycle.times}};
+      series.course = course_of(series.curves.front(), cycle.kind, runs_[all.size() - 1]);
     }
     if (all.empty()) return all;
     for (const measure::Count& fault : faults_)
@@ -321,7 +326,24 @@ class CycleSeries {
   }
 
  private:
+  static measure::CourseRun course_run(const SignalRecord& record, std::size_t kind) {
+    measure::CourseRun run{measure::describe(record.settings.wave.frequency), record.cycles[kind].course,
+                           record.bands};
+    if (record.has_stopped) run.stopped_after = record.stopped_after;
+    return run;
+  }
+
+  static measure::Course course_of(const measure::Curve& curve, const CycleKind& kind,
+                                   const std::vector<measure::CourseRun>& runs) {
+    measure::Course course{curve.quantity, curve.unit, curve.per_unit};
+    if (kind.theory > Duration::zero()) course.theory = us(kind.theory);
+    course.is_bound = kind.is_bound;
+    course.runs = runs;
+    return course;
+  }
+
   std::vector<CycleRecord> cycles_;
+  std::vector<std::vector<measure::CourseRun>> runs_;  // by kind, then by signal
   std::vector<measure::Count> faults_;
   std::vector<measure::Count> remarks_;
   std::uint64_t data_ = 0;
@@ -388,11 +410,14 @@ std::optional<SignalRecord> record_until_stopped(Network& network, const measure
   if (settings.stop.stop_requested()) return std::nullopt;
   const segment::StopScope scope(settings.stop);
   try {
-    return record_signal(network, {.wave = wave,
-                                   .duration = settings.duration,
-                                   .seed = settings.seed,
-                                   .disturb = settings.disturb,
-                                   .phase_during = settings.phase_during});
+    return record_signal(network,
+                         {.wave = wave,
+                          .duration = settings.duration,
+                          .seed = settings.seed,
+                          .disturb = settings.disturb,
+                          .phase_during = settings.phase_during,
+                          .next_disturbance = settings.next_disturbance,
+                          .most_windows = std::max<std::size_t>(1, kMostWindows / settings.signals.size())});
   } catch (const segment::Interrupted&) {
     return std::nullopt;
   }

@@ -28,6 +28,7 @@ struct MeasurementSettings {
   // A disturbance of each signal's run, in words by `conditions`; see SignalSettings.
   std::function<void(Network&)> disturb{};
   measure::PhaseDuring phase_during{};
+  measure::NextDisturbance next_disturbance{};
   std::vector<measure::Condition> conditions{};
   std::function<void(std::size_t done)> on_progress{};  // after each signal
   // A stop ends it with the signals that are through: it is not complete then.

@@ -131,6 +131,8 @@ class SignalRun final : private ExchangeWatcher {
                          settings_.periods_per_train);
     }
     std::ranges::fill(last_begin_, std::nullopt);
+    for (CycleRecord& cycle : record_.cycles)
+      cycle.course = measure::TimeCourse(trains_ * span_, settings_.most_windows);
   }
 
   void on_exchange(const Exchange& exchange) override {
@@ -155,17 +157,20 @@ class SignalRun final : private ExchangeWatcher {
 
   void on_cycle_begin(std::size_t kind, Time when) override {
     std::optional<Time>& before = last_begin_.at(kind);
-    if (before && is_recording_) {
-      record_.cycles[kind].times.add(measure::phase_during(settings_.phase_during, *before, when),
-                                     when - *before);
-    }
+    if (before && is_recording_) record_time(kind, *before, when);
     if (before && kind == 0) measured_cycle_ = when - *before;
     before = when;
   }
 
   void on_delay(std::size_t kind, Time from, Time to) override {
-    if (is_recording_)
-      record_.cycles.at(kind).times.add(measure::phase_during(settings_.phase_during, from, to), to - from);
+    if (is_recording_) record_time(kind, from, to);
+  }
+
+  void record_time(std::size_t kind, Time from, Time to) {
+    const measure::Phase phase = measure::phase_during(settings_.phase_during, from, to);
+    CycleRecord& cycle = record_.cycles.at(kind);
+    cycle.times.add(phase, to - from);
+    cycle.course.add(to - begin_, phase, (to - from).count());
   }
 
   measure::Trace trace_of(const measure::TwoChannelRecorder& recorder) const {
@@ -185,6 +190,10 @@ class SignalRun final : private ExchangeWatcher {
     record_.settings = settings_;
     record_.trains = trains_;
     record_.lasted = trains_ * span_;
+    // Bands that are nearer to each other than half a window are not told apart either.
+    record_.bands =
+        measure::bands_between(settings_.next_disturbance, begin_, record_.lasted,
+                               record_.lasted / (2 * static_cast<std::int64_t>(settings_.most_windows)));
     record_.delivery_faults = network_.delivery_faults();
     record_.remarks = network_.remarks();
     record_.has_stopped = network_.state() != State::exchanging;

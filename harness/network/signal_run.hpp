@@ -32,6 +32,10 @@ struct SignalSettings {
   std::function<void(Network&)> disturb{};
   // Tells quiet, burst and recovery of that disturbance apart.
   measure::PhaseDuring phase_during{};
+  // Says when it is on the line.
+  measure::NextDisturbance next_disturbance{};
+  // Of the time courses of cycles; equally long ones.
+  std::size_t most_windows = 400;
 };
 
 struct PathRecord {
@@ -44,6 +48,7 @@ struct PathRecord {
 struct CycleRecord {
   CycleKind kind;
   measure::PhasedDistribution times{};
+  measure::TimeCourse course{};  // since the begin of the first train
 };
 
 struct SignalRecord {
@@ -52,6 +57,7 @@ struct SignalRecord {
   kernel::Duration lasted{};  // of trains and rests together
   std::vector<CycleRecord> cycles;
   std::vector<PathRecord> paths;
+  std::vector<measure::Band> bands;  // of the disturbance, since the begin of the first train
   // Images of the words that are copied together from one station to one other.
   std::uint64_t images = 0;
   std::uint64_t torn_images = 0;

@@ -135,6 +135,45 @@ TEST(SignalRunTest, ADisturbanceIsPutOnTheRingAndToldApart) {
   EXPECT_GT(record.cycles.front().times.total().max(), kernel::Duration(cycle).count());
 }
 
+TEST(SignalRunTest, TheCourseSaysWhenCyclesWereLongAndWhenItWasDisturbed) {
+  LossyReturn lossy;
+  SignalSettings settings = settings_at(50, 4 * kSecond);
+  settings.disturb = [&](network::Network& network) {
+    const auto places = network.places();
+    std::ranges::find(places, "master/in", &network::Place::name)->receiver->set_channel(&lossy);
+  };
+  settings.phase_during = [](kernel::Time from, kernel::Time) {
+    return (from - kernel::kStart) / kSecond % 2 == 1 ? Phase::burst : Phase::quiet;
+  };
+  settings.next_disturbance = [](kernel::Time after) -> std::optional<measure::Span> {
+    const auto number = (after - kernel::kStart) / kSecond;
+    const kernel::Time from = kernel::kStart + (number + (number % 2 == 1 ? 0 : 1)) * kSecond;
+    return measure::Span{from, from + kSecond};
+  };
+  settings.most_windows = 40;
+  const SignalRecord record = record_signal(paper_network(), settings);
+  const measure::TimeCourse& course = record.cycles.front().course;
+  const measure::Distribution all = record.cycles.front().times.total();
+  EXPECT_EQ(course.length(), record.lasted);
+  EXPECT_EQ(course.longest().front().value, all.max());
+  std::uint64_t count = 0;
+  std::int64_t max = 0;
+  std::map<Phase, std::uint64_t> by_phase;
+  for (const auto& point : course.points()) {
+    count += point.count;
+    max = std::max(max, point.max);
+    by_phase[point.phase] += point.count;
+  }
+  EXPECT_EQ(count, all.count());
+  EXPECT_EQ(max, all.max());
+  EXPECT_LE(course.points().size(), 80U) << "at most 40 windows of two phases";
+  for (const Phase phase : {Phase::quiet, Phase::burst})
+    EXPECT_EQ(by_phase[phase], record.cycles.front().times.in(phase).count());
+  ASSERT_EQ(record.bands.size(), 2U);
+  EXPECT_LT(record.bands[0].from, kSecond) << "since the begin of the trains, not of the run";
+  EXPECT_EQ(record.bands[1].from - record.bands[0].from, 2 * kSecond);
+}
+
 // A slave that shifts the words of its image in time: the second one is a sample after.
 class TearingSlave final : public Slave {
  public:

@@ -318,6 +318,51 @@ await check("each document has its section, its charts and its command", async (
   }
 });
 
+// What is drawn differs by shape, too; here that the legend tells it, and that what never changes has no chart.
+await check("cycle times stand over time, with bursts, phases, closed form and the longest", async (page) => {
+  await whole(page);
+  const courses = data.documents.filter(({ content }) => content.schema === "fieldproof/measurement/1")
+      .flatMap(({ content }) => content.series).map(({ course }) => course).filter((course) => course?.runs.some(({ points }) => points.length));
+  const pointsOf = ({ runs }) => runs.flatMap(({ points }) => points);
+  const isConstant = (course) => pointsOf(course).every(({ min, max }) => max - min <= 1e-6 * max && Math.abs(max - pointsOf(course)[0].max) <= 1e-6 * max);
+  const drawn = courses.filter((course) => !isConstant(course));
+  expectEqual(await page.locator("figure.course").count(), drawn.length, "charts");
+  expectEqual(await page.getByText("so there is no chart of it").count(), courses.length - drawn.length, "sentences in the place of a chart");
+  for (const [at, course] of drawn.entries()) {
+    const figure = page.locator("figure.course").nth(at);
+    await figure.scrollIntoViewIfNeeded();
+    await figure.locator("canvas").waitFor();
+    const text = await figure.innerText();
+    for (const phase of new Set(pointsOf(course).map((one) => one.phase))) expect(text.includes(phase), `no ${phase}`);
+    const bursts = course.runs.flatMap((run) => run.bursts).reduce((sum, { count }) => sum + count, 0);
+    expectEqual(text.includes(`${bursts} burst`), bursts > 0, "bursts");
+    expectEqual(text.includes("closed form"), course.theory !== undefined, "the closed form");
+    for (const run of course.runs) expectEqual(text.includes(`${run.name}: the bus stopped`), run.stopped_s !== undefined, "the stop");
+    expect((await figure.getByRole("img").getAttribute("aria-label")).startsWith(`${course.quantity} over time: `), "no label");
+    const table = page.locator("table", {hasText: `${course.quantity}: the longest`}).nth(0);
+    expect((await table.innerText()).includes(course.runs[0].longest[0].at_s.toFixed(6)), "when the longest ended");
+  }
+});
+
+// The band is the one thing that is warm at the top of the plot.
+await check("bands of bursts are drawn where bursts were", async (page) => {
+  await whole(page);
+  const course = data.documents.flatMap(({ content }) => content.series ?? []).map((one) => one.course).find((one) => one?.runs.some(({ bursts }) => bursts.length));
+  if (!course) return;
+  const figure = page.locator("figure.course").first();
+  await figure.scrollIntoViewIfNeeded();
+  await figure.locator("canvas").waitFor();
+  const shares = await figure.locator(".chart").evaluate((place, [run, whole]) => {
+    const { ctx, bbox } = place.chart;
+    const strip = ctx.getImageData(0, bbox.top + 2, ctx.canvas.width, 1).data;
+    const at = (second) => [...strip.slice(4 * Math.round(place.chart.valToPos(second, "x", true))).slice(0, 4)];
+    const [band] = run.bursts;
+    return {inside: at((band.from_s + band.to_s) / 2), outside: at(band.from_s - 0.02 * whole)};
+  }, [course.runs[0], course.runs.reduce((sum, { length_s }) => sum + length_s, 0)]);
+  expect(shares.inside[3] > 200 && shares.inside[0] > shares.inside[2] + 60, `inside ${shares.inside}`);
+  expect(shares.outside[3] < 50, `outside ${shares.outside}`);
+});
+
 await check("two runs that are compared show what changed first, and both time lines of a case", async (page) => {
   await whole(page);
   expectEqual(await page.locator("#comparison").count(), data.comparison ? 1 : 0, "comparisons");

@@ -27,7 +27,7 @@ function widthOf(place) {
   return isPrinting() ? Math.min(kPaperWidth, place.widest ?? kPaperWidth) : Math.min(place.clientWidth, place.widest ?? 1200);
 }
 
-function colour(name) {
+export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
@@ -53,7 +53,7 @@ export function watchCharts() {
   addEventListener("beforeprint", drawAllCharts);
 }
 
-function chartPlace(label, height, make, widest) {
+export function chartPlace(label, height, make, widest) {
   const place = element("div", {class: "chart", role: "img", "aria-label": label});
   Object.assign(place, {make, chartHeight: height, widest});
   place.style.minHeight = `min(${height}px, var(--chart-height, 100vh))`;
@@ -63,7 +63,7 @@ function chartPlace(label, height, make, widest) {
   return place;
 }
 
-function axis(label, more = {}) {
+export function axis(label, more = {}) {
   return {
     stroke: colour("quiet"),
     grid: {stroke: colour("line"), width: 1},
@@ -80,17 +80,18 @@ function axis(label, more = {}) {
 
 const kDashes = [[], [6, 3], [2, 3], [10, 3, 2, 3]];
 
-// A chart under its title, and above a legend that paper has as well. Entries are {colour, text, dash}.
+// A chart under its title, and above a legend that paper has as well. Entries are {colour, text, dash}, or with a
+// `key` that was drawn already.
 export function chartFigure(title, detail, chart, legend, classes = "") {
   const key = ({colour: name, dash}) => drawn("svg", {viewBox: "0 0 24 8", width: 24, height: 8, "aria-hidden": "true"},
       drawn("line", {x1: 0, y1: 4, x2: 24, y2: 4, class: `stroke-${name}`, "stroke-width": 2.5, "stroke-dasharray": kDashes[dash]?.join(" ") || null}));
   return element("figure", {class: classes},
       element("figcaption", {}, element("strong", {}, title), element("span", {class: "quiet"}, ` ${detail}`)), chart,
-      element("ul", {class: "legend"}, legend.map((one) => element("li", {}, key(one), one.text))));
+      element("ul", {class: "legend"}, legend.map((one) => element("li", {}, one.key === undefined ? key(one) : one.key, one.text))));
 }
 
 // The cursor shows the value under it.
-const kQuiet = {legend: {show: true, live: true}, cursor: {drag: {x: true, y: false}}};
+export const kQuiet = {legend: {show: true, live: true}, cursor: {drag: {x: true, y: false}}};
 
 // Upright lines at values that a reader compares the bars with.
 function markLines(marks) {

@@ -1,6 +1,7 @@
 // Measurements: theory beside measurement, distributions with histograms, and input and output as on an
 // oscilloscope.
 import { chartFigure, histogram, oscilloscope } from "./charts.js";
+import { courseFigure } from "./course.js";
 import { definitions, element, section } from "./dom.js";
 import { alike, number, part } from "./format.js";
 import { later } from "./later.js";
@@ -98,7 +99,7 @@ export function traceFigure(name, trace) {
 
 function seriesPart(series, tolerance) {
   const phases = phasesOf(series);
-  return element("article", {}, element("h4", {}, series.name), traceFigure(series.name, series.trace), comparisons(series),
+  return element("article", {}, element("h4", {}, series.name), traceFigure(series.name, series.trace), comparisons(series), courseFigure(series.course),
       phases.length ? [distributions(series, phases), histograms(series, phases, tolerance)] : null, counts(series));
 }
 
