@@ -55,7 +55,14 @@ TEST_F(FuzzCorpus, IsTheSameForEqualSeedCorpusAndCode) {
     EXPECT_EQ(called.exit_code, 0) << called.err;
   }
   EXPECT_EQ(read_all("one"), read_all("two"));
-  EXPECT_EQ(read("one.json"), read("two.json"));
+  // But for the folder in their commands.
+  const auto without_command = [&](const std::string& name) {
+    auto document = json(name);
+    EXPECT_HOLDS(document.at("command").get<std::string>(), "--cases 40 --corpus start --corpus-out ");
+    document.erase("command");
+    return document;
+  };
+  EXPECT_EQ(without_command("one.json"), without_command("two.json"));
   // From another beginning other sequences are tried.
   fuzz({"--cases", "40", "--corpus-out", "three"});
   EXPECT_NE(read_all("one"), read_all("three"));

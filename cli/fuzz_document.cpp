@@ -15,19 +15,33 @@ ordered_json growth_json(std::span<const fuzz::GrowthPoint> growth) {
   return points;
 }
 
-ordered_json found_json(const conformance::SequenceFound& found) {
-  ordered_json json = {{"commands", found.smallest.commands.size()},
-                       {"faults", conformance::faults_in(found.smallest)},
-                       {"is_confirmed", found.is_confirmed}};
+// Of one that does not do the same again, what was seen: as the case file has it.
+ordered_json found_json(const conformance::SequenceFound& found, const SequenceFile& target,
+                        const FuzzEnd& end) {
+  const conformance::Sequence& sequence = found.is_confirmed ? found.smallest : found.drawn;
+  ordered_json json = {{"found_in", end.found_in},
+                       {"commands", sequence.commands.size()},
+                       {"faults", conformance::faults_in(sequence)},
+                       {"is_confirmed", found.is_confirmed},
+                       {"drawn_commands", found.drawn.commands.size()},
+                       {"shrinking_runs", found.shrinking_runs},
+                       {"input", conformance::sequence_lines(sequence, target.role->vocabulary)},
+                       {"reproduce", end.reproduce}};
   const judge::CaseResult& result = found.is_confirmed ? found.outcome.result : found.first;
-  if (!result.findings.empty()) json["reason"] = result.findings.front().reason;
+  if (!result.findings.empty()) {
+    const judge::Finding& finding = result.findings.front();
+    json["reason"] = finding.reason;
+    json["requirement"] = finding.requirement;
+    json["expected"] = finding.expected;
+    json["actual"] = finding.actual;
+  }
   return json;
 }
 
 }  // namespace
 
 std::string fuzz_json(const fuzz::SequenceFuzzResult& result, const SequenceFile& target,
-                      const std::string& implementations, const SequenceCorpus& corpus) {
+                      const std::string& implementations, const SequenceCorpus& corpus, const FuzzEnd& end) {
   ordered_json left_out = ordered_json::array();
   for (const LeftOutFile& one : corpus.left_out)
     left_out.push_back({{"file", one.file.filename().string()}, {"because", one.because}});
@@ -46,7 +60,9 @@ std::string fuzz_json(const fuzz::SequenceFuzzResult& result, const SequenceFile
       {"kept", result.kept},
       {"corpus", result.corpus.size()},
       {"growth", growth_json(result.growth)}};
-  if (result.found) json["found"] = found_json(*result.found);
+  if (end.is_interrupted) json["is_interrupted"] = true;
+  if (!end.because.empty()) json["ended_because"] = end.because;
+  if (result.found) json["found"] = found_json(*result.found, target, end);
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -12,6 +12,7 @@
 #include "cli/run_setup.hpp"
 #include "cli/searched_role.hpp"
 #include "cli/sequence_corpus.hpp"
+#include "cli/stored_document.hpp"
 #include "cli/stored_sequence.hpp"
 #include "cli/verbs.hpp"
 #include "harness/kernel/untrusted_text.hpp"
@@ -133,6 +134,25 @@ fuzz::SequenceFuzzResult searched(Session& session, const SequenceFile& target, 
   return result;
 }
 
+// The number of sequences and the corpus say what to do now; without them the same would not be tried.
+std::string options_of_the_moment(const Settings& settings) {
+  std::string words;
+  for (const char* name : {"cases", "corpus", "corpus-out"}) {
+    if (settings.origin(name) == Origin::fallback) continue;
+    words +=
+        fmt::format("{}--{} {}", words.empty() ? "" : " ", name, reports::shell_quoted(settings.text(name)));
+  }
+  return words;
+}
+
+void keep_document(const Session& session, const SequenceFile& target, const CorpusOfCall& corpus,
+                   const fuzz::SequenceFuzzResult& result, const FuzzEnd& end) {
+  write_document(
+      session, "fuzz",
+      fuzz_json(result, target, implementations_json(target.setup.implementations), corpus.stored, end),
+      options_of_the_moment(session.settings));
+}
+
 }  // namespace
 
 int fuzz_role(Session& session) {
@@ -146,10 +166,9 @@ int fuzz_role(Session& session) {
   session.terminal.print(reports::run_header(identity_of(session, target.setup, 1), manifest_of(session, 1)));
   const Interruption interruption(settings.duration("max-time"));
   const fuzz::SequenceFuzzResult result = searched(session, target, corpus, interruption);
-  if (settings.is_set("json"))
-    reports::write_text_file(
-        settings.text("json"),
-        fuzz_json(result, target, implementations_json(target.setup.implementations), corpus.stored));
+  keep_document(session, target, corpus, result,
+                {result.found ? found_in(result, corpus) : "", replay_command(path), interruption.reason(),
+                 interruption.signal() != 0});
   keep_corpus(session, target, corpus, result);
   if (result.found)
     return keep_found(session, target, path, *result.found, found_in(result, corpus), interruption);

@@ -12,20 +12,23 @@
 namespace fieldproof::cli {
 namespace {
 
-std::string command_of(const Session& session, const std::string& verb) {
+std::string command_of(const Session& session, const std::string& verb, const std::string& more) {
   std::string command = "fieldproof " + verb;
   for (const std::string& operand : session.operands) command += " " + reports::shell_quoted(operand);
   const std::string options = session.settings.reproduce_options();
-  return options.empty() ? command : command + " " + options;
+  for (const std::string& words : {options, more})
+    if (!words.empty()) command += " " + words;
+  return command;
 }
 
 }  // namespace
 
-void write_document(const Session& session, const std::string& verb, const std::string& json) {
+void write_document(const Session& session, const std::string& verb, const std::string& json,
+                    const std::string& more) {
   if (!session.settings.is_set("json")) return;
   using nlohmann::ordered_json;
   ordered_json document = ordered_json::parse(json);
-  document["command"] = command_of(session, verb);
+  document["command"] = command_of(session, verb, more);
   reports::write_text_file(session.settings.text("json"),
                            document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
@@ -39,6 +42,7 @@ std::span<const reports::DocumentKind> document_kinds() {
       reports::DocumentKind{"fieldproof/matrix/1", matrix_schema},
       reports::DocumentKind{"fieldproof/emc_fit/1", reports::emc_fit_schema},
       reports::DocumentKind{"fieldproof/campaign/1", campaign::campaign_result_schema},
+      reports::DocumentKind{"fieldproof/fuzz/1", fuzz_schema},
   };
   return kinds;
 }

@@ -10,8 +10,9 @@
 namespace fieldproof::cli {
 
 // Writes the JSON of a verb's result to the file of `--json`, with the command that makes it again as its
-// last member; nothing when the option is not given.
-void write_document(const Session& session, const std::string& verb, const std::string& json);
+// last member; nothing when the option is not given. `more` are options of the moment that it needs, too.
+void write_document(const Session& session, const std::string& verb, const std::string& json,
+                    const std::string& more = "");
 
 std::span<const reports::DocumentKind> document_kinds();
 

@@ -187,6 +187,31 @@ Said said_by_fit(const Document& document) {
   return {Verdict::inconclusive, fmt::format("{} are too few to put the burst model to the test", counts)};
 }
 
+// What a search of `fuzz` comes to, as its exit code: what cannot be repeated, or was not tried, is no pass.
+Said said_by_fuzz(const Document& document) {
+  const auto role = document.at("role").get<std::string>();
+  const auto run = document.at("run").get<std::size_t>() + document.at("stored").at("run").get<std::size_t>();
+  const std::string tried = fmt::format("{} of fuzzing {}", several(run, "sequence"), role);
+  if (const auto found = document.find("found"); found != document.end()) {
+    const std::string reason = found->value("reason", "a failure");
+    if (found->at("is_confirmed") == true) {
+      const auto where = found->at("found_in").get<std::string>();
+      return {Verdict::fail, fmt::format("fuzzing {} found {} in {}", role, reason, where)};
+    }
+    return {Verdict::inconclusive, fmt::format("fuzzing {} found {} once and not again", role, reason)};
+  }
+  if (document.value("is_interrupted", false))
+    return {Verdict::inconclusive, fmt::format("the search was interrupted after {}", tried)};
+  const auto passed = document.at("passed").get<std::size_t>();
+  if (passed == 0) return {Verdict::inconclusive, fmt::format("none of {} was judged", tried)};
+  if (document.at("silent").get<std::size_t>() == passed)
+    return {Verdict::inconclusive, fmt::format("the implementation drove nothing in {}", tried)};
+  if (const auto open = document.at("inconclusive").get<std::size_t>(); open > 0)
+    return {Verdict::inconclusive, fmt::format("{} of {} could not be told; none failed", open, tried)};
+  return {Verdict::pass, fmt::format("no finding in {}{}", tried,
+                                     document.at("has_coverage") == true ? "" : ", without coverage")};
+}
+
 }  // namespace
 
 Said said_by_document(const Document& document) {
@@ -195,6 +220,7 @@ Said said_by_document(const Document& document) {
   if (schema.starts_with("fieldproof/emc_fit/")) return said_by_fit(document);
   if (schema.starts_with("fieldproof/emc/")) return said_by_emc(document);
   if (schema.starts_with("fieldproof/measurement/")) return said_by_measurement(document);
+  if (schema.starts_with("fieldproof/fuzz/")) return said_by_fuzz(document);
   if (schema.starts_with("fieldproof/matrix/")) return said_by_matrix(document);
   if (schema.starts_with("fieldproof/publication/")) return said_by_publication(document);
   return {Verdict::none, "holds numbers and no verdict"};

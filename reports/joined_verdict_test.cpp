@@ -155,6 +155,32 @@ TEST(JoinedVerdict, OtherDocumentsCountAsWell) {
   EXPECT_EQ(of_document(sample_residual()).verdict, Verdict::pass) << "it has no verdict";
 }
 
+TEST(JoinedVerdict, ASearchOfFuzzCountsAsItEnded) {
+  OrderedJson fuzz = sample_fuzz("ref");
+  EXPECT_EQ(of_document(fuzz).verdict, Verdict::fail);
+  EXPECT_EQ(of_document(fuzz).documents[0].sentence,
+            "fuzzing valve_bus/node found write_not_taken in sequence 341");
+  fuzz["found"]["is_confirmed"] = false;
+  EXPECT_EQ(of_document(fuzz).verdict, Verdict::inconclusive);
+  fuzz.erase("found");
+  EXPECT_EQ(of_document(fuzz).documents[0].sentence,
+            "1 of 341 sequences of fuzzing valve_bus/node could not be told; none failed");
+  EXPECT_EQ(of_document(fuzz).verdict, Verdict::inconclusive);
+  fuzz["inconclusive"] = 0;
+  EXPECT_EQ(of_document(fuzz).verdict, Verdict::pass) << "--max-time ends a search as its user asked for";
+  EXPECT_EQ(of_document(fuzz).documents[0].sentence, "no finding in 341 sequences of fuzzing valve_bus/node");
+  fuzz["has_coverage"] = false;
+  EXPECT_NE(of_document(fuzz).documents[0].sentence.find("without coverage"), std::string::npos);
+  fuzz["silent"] = fuzz["passed"];
+  EXPECT_EQ(of_document(fuzz).verdict, Verdict::inconclusive);
+  fuzz["passed"] = 0;
+  EXPECT_EQ(of_document(fuzz).verdict, Verdict::inconclusive);
+  fuzz["passed"] = 340;
+  fuzz["silent"] = 0;
+  fuzz["is_interrupted"] = true;
+  EXPECT_EQ(of_document(fuzz).verdict, Verdict::inconclusive);
+}
+
 TEST(JoinedVerdict, APageOfNumbersAloneIsNoPass) {
   PageContent content;
   content.documents = {{"residual.json", sample_residual().dump()}};

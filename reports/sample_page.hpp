@@ -11,6 +11,7 @@
 #include "reports/measurement_writer.hpp"
 #include "reports/publication.hpp"
 #include "reports/sample_campaign.hpp"
+#include "reports/sample_fuzz.hpp"
 #include "reports/sample_measurement.hpp"
 #include "reports/sample_run.hpp"
 
@@ -313,7 +314,8 @@ inline PageContent sample_page() {
                        {"publication.json", publication_json(sample_publication())},
                        {"matrix.json", sample_matrix().dump()},
                        {"nightly/campaign.json", sample_campaign(kHostileName).dump()},
-                       {"fit.json", sample_fit(kHostileName).dump()}};
+                       {"fit.json", sample_fit(kHostileName).dump()},
+                       {"fuzz.json", sample_fuzz(kHostileName).dump()}};
   content.cover = {"A test report", kHostileName, "a customer", kHostileName};
   return content;
 }

@@ -34,7 +34,7 @@ const firstRun = data.runs[0];
 const failing = cases.filter((one) => one.verdict === "fail");
 const withTimeLine = Object.entries(firstRun?.cases ?? {}).find(([, more]) => more.timeline)?.[0];
 const sections = ["fieldproof/measurement/1", "fieldproof/emc/1", "fieldproof/residual/1", "fieldproof/publication/2", "fieldproof/matrix/1",
-  "fieldproof/campaign/1", "fieldproof/emc_fit/1"]
+  "fieldproof/campaign/1", "fieldproof/emc_fit/1", "fieldproof/fuzz/1"]
     .filter((schema) => data.documents.some(({ content }) => content.schema === schema));
 
 function expect(condition, sentence) {
@@ -301,7 +301,7 @@ if (withTimeLine) {
 await check("each document has its section, its charts and its command", async (page) => {
   await whole(page);
   const ids = {"fieldproof/measurement/1": "timing", "fieldproof/emc/1": "immunity", "fieldproof/residual/1": "residual",
-    "fieldproof/publication/2": "publication", "fieldproof/matrix/1": "matrix", "fieldproof/campaign/1": "campaign", "fieldproof/emc_fit/1": "fit"};
+    "fieldproof/publication/2": "publication", "fieldproof/matrix/1": "matrix", "fieldproof/campaign/1": "campaign", "fieldproof/emc_fit/1": "fit", "fieldproof/fuzz/1": "fuzz"};
   for (const schema of sections) {
     const place = page.locator(`section#${ids[schema]}`);
     expectEqual(await place.count(), 1, schema);
@@ -361,6 +361,23 @@ await check("bands of bursts are drawn where bursts were", async (page) => {
   }, [course.runs[0], course.runs.reduce((sum, { length_s }) => sum + length_s, 0)]);
   expect(shares.inside[3] > 200 && shares.inside[0] > shares.inside[2] + 60, `inside ${shares.inside}`);
   expect(shares.outside[3] < 50, `outside ${shares.outside}`);
+});
+
+await check("a search of fuzz tells its finding with input and command, what was tried, and how coverage grew", async (page) => {
+  await whole(page);
+  const searches = data.documents.filter(({ content }) => content.schema === "fieldproof/fuzz/1");
+  for (const [at, { content }] of searches.entries()) {
+    const place = page.locator("#fuzz > article").nth(at);
+    const text = await place.textContent();
+    expect(text.includes(`Sequences executed${content.run + content.stored.run + (content.found ? 1 : 0)}`), "sequences");
+    expect(text.includes(`Edges${content.has_coverage ? content.edges : "no coverage"}`), "edges");
+    for (const one of content.stored.left_out) expect(text.includes(one.because), `not told: ${one.because}`);
+    for (const part of content.found ? [content.found.reproduce, content.found.reason, content.found.actual, ...content.found.input, ...content.found.expected] : []) {
+      expect(text.includes(part), `not there: ${part}`);
+    }
+    const grew = content.has_coverage && content.growth.some(({ edges }) => edges !== content.growth[0].edges);
+    expectEqual(await place.locator(".chart canvas, .chart").count() > 0, grew, "a chart");
+  }
 });
 
 await check("two runs that are compared show what changed first, and both time lines of a case", async (page) => {

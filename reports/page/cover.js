@@ -15,10 +15,15 @@ function dates(runs) {
   return days.length > 1 ? `${days[0]} to ${days.at(-1)}` : days[0];
 }
 
+// Documents of networks name their stations in one text, those of one role as a run does.
+function testedIn(content) {
+  return Array.isArray(content.implementations) ? implementationText(content) : content.implementations;
+}
+
 function testedPart({ runs, documents }) {
   const identities = runs.map(({ results }) => results.run);
   return definitions([
-    ["Implementation", distinct([...identities.map(implementationText), ...documents.map(({ content }) => content.implementations)]).join("; ")],
+    ["Implementation", distinct([...identities.map(implementationText), ...documents.map(({ content }) => testedIn(content))]).join("; ")],
     ["Suite", distinct(identities.map((one) => one.suite_version)).join("; ")],
     ["Cases", distinct(identities.flatMap((one) => one.selectors)).join(" ")],
     ["Networks", distinct(documents.map(({ content }) => content.network)).join("; ")],
@@ -129,6 +134,7 @@ function resultRows(data) {
   return [...data.runs.flatMap((run, at) => rowsOfRun(run, data.joined.runs[at])), ...of("fieldproof/measurement/1", rowsOfMeasurement),
     ...of("fieldproof/emc/1", rowsOfBursts), ...of("fieldproof/matrix/1", rowsOfMatrix), ...of("fieldproof/emc_fit/1", rowsOfFit),
     ...of("fieldproof/campaign/1", (document) => rowsOfCampaign(data, document)),
+    ...of("fieldproof/fuzz/1", (document) => [{test: document.name, result: sentence(said.get(document).sentence), limit: "no finding", margin: ""}]),
     ...of("fieldproof/publication/2", (document) => [{test: document.name, result: sentence(said.get(document).sentence), limit: "no row DIFFERS", margin: ""}])];
 }
 

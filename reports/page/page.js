@@ -9,6 +9,7 @@ import { coverageSection } from "./coverage.js";
 import { unpack } from "./data.js";
 import { append, element, replaceContent, visible } from "./dom.js";
 import { fitSection } from "./fit.js";
+import { fuzzSection } from "./fuzz.js";
 import { historySection } from "./history.js";
 import { immunitySection } from "./immunity.js";
 import { makeLater } from "./later.js";
@@ -18,7 +19,7 @@ import { residualSection } from "./residual.js";
 import { summarySection } from "./summary.js";
 import { timingSection } from "./timing.js";
 
-const kSections = [coverSection, summarySection, comparisonSection, historySection, campaignSection, caseSection, timingSection, immunitySection, fitSection, residualSection, publicationSection,
+const kSections = [coverSection, summarySection, comparisonSection, historySection, campaignSection, caseSection, timingSection, immunitySection, fuzzSection, fitSection, residualSection, publicationSection,
   matrixSection, coverageSection, appendixSection];
 
 // The same verdict in the title, the headline and the icon of the tab.

@@ -112,6 +112,7 @@ const kDocuments = {
   "fieldproof/matrix/1": ["matrix", "cases and mutants"],
   "fieldproof/emc_fit/1": ["fit", "counts of a laboratory beside the burst model"],
   "fieldproof/campaign/1": ["campaign", "many jobs of other verbs"],
+  "fieldproof/fuzz/1": ["fuzz", "a search for sequences that fail"],
 };
 
 // The program writes its sentences without a capital, to be joined.
