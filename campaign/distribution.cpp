@@ -26,7 +26,15 @@ Distribution::Distribution(Plan plan, const Folder& folder)
       folder_(folder),
       journal_(folder.journal(), plan_.durability,
                [this](std::string_view text, const std::string& place) { read_line(text, place); }) {
+  forget_what_has_no_files();
   go_on_in_order();
+}
+
+// The journal keeps them: a job gives the same again, and the outcome that comes then takes the place of
+// this.
+void Distribution::forget_what_has_no_files() {
+  without_files_ = std::erase_if(
+      outcomes_, [this](const auto& one) { return !folder_.holds(one.first, one.second.kept); });
 }
 
 void Distribution::read_line(std::string_view text, const std::string& place) {

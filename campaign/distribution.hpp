@@ -46,8 +46,11 @@ class Distribution {
   bool is_decided() const { return is_decided_; }
   // Of the jobs that are part of it.
   const std::map<std::uint64_t, Outcome>& outcomes() const { return outcomes_; }
+  // Jobs that the journal has an outcome of, but whose files are gone from the folder: they are done again.
+  std::uint64_t without_files() const { return without_files_; }
 
  private:
+  void forget_what_has_no_files();
   void read_line(std::string_view text, const std::string& place);
   bool give_next(Slots& slots);
   void take(JobResult&& result);
@@ -64,6 +67,7 @@ class Distribution {
   std::uint64_t next_ = 1;      // to be given
   std::uint64_t in_order_ = 1;  // to be told
   bool is_decided_ = false;
+  std::uint64_t without_files_ = 0;
   judge::CheckedLines journal_;
 };
 

@@ -121,6 +121,18 @@ void Folder::write_job(const JobResult& result) const {
     reports::write_text_file(path_ / "jobs" / std::to_string(result.id) / file.name, file.text);
 }
 
+bool Folder::holds(std::uint64_t job, std::uint64_t files) const {
+  std::uint64_t found = 0;
+  std::error_code failure;
+  if (files == 0) return true;
+  for (fs::recursive_directory_iterator at(path_ / "jobs" / std::to_string(job), failure), end;
+       !failure && at != end; at.increment(failure)) {
+    std::error_code gone;
+    found += at->is_regular_file(gone) ? 1U : 0U;
+  }
+  return found >= files;
+}
+
 void Folder::write_document(std::string_view text) const {
   reports::write_text_file(document(), text);
 }

@@ -45,6 +45,8 @@ class Folder {
   std::filesystem::path document() const { return path_ / "campaign.json"; }
 
   void write_job(const JobResult& result) const;
+  // Whether so many files of a job are still there.
+  bool holds(std::uint64_t job, std::uint64_t files) const;
   void write_document(std::string_view text) const;
 
  private:

@@ -101,6 +101,7 @@ Outcome outcome_of(const JobResult& result) {
   outcome.id = result.id;
   outcome.exit_code = result.exit_code;
   outcome.wall_time_ms = result.wall_time_ms;
+  outcome.kept = result.files.size();
   if (result.exit_code > kLastVerdict) outcome.message = last_line(result.log);
   for (const KeptFile& file : result.files)
     if (file.name != kDocument && !is_of_corpus(file.name)) outcome.files.push_back(file.name);
@@ -124,6 +125,7 @@ std::string to_json(const Outcome& outcome) {
                              {"headline", outcome.headline},
                              {"message", outcome.message},
                              {"files", outcome.files},
+                             {"kept", outcome.kept},
                              {"cases", outcome.cases},
                              {"failed", outcome.failed},
                              {"search", outcome.search},
@@ -144,6 +146,7 @@ Outcome outcome_from_json(std::string_view text, const std::string& place) {
     json.at("headline").get_to(outcome.headline);
     json.at("message").get_to(outcome.message);
     json.at("files").get_to(outcome.files);
+    json.at("kept").get_to(outcome.kept);
     json.at("cases").get_to(outcome.cases);
     json.at("failed").get_to(outcome.failed);
     json.at("search").get_to(outcome.search);

@@ -28,6 +28,7 @@ struct Outcome {
   std::string headline;              // the document in a word: "pass", "B", "holds". Empty: it has none
   std::string message;               // the last line of standard error of a call that was refused
   std::vector<std::string> files;    // below its folder, besides its document and corpus
+  std::uint64_t kept = 0;            // files below its folder, all of them
   Counts cases;                      // of run: cases by verdict
   std::vector<std::string> failed;   // of run: ids of cases that failed, in the order of the suite
   Counts search;                     // of fuzz: "run", "stored", "edges", "kept", "found"

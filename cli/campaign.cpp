@@ -105,6 +105,10 @@ class CampaignRun {
     if (!distribution.outcomes().empty())
       session_.terminal.log(fmt::format("{} of {} jobs are done already", distribution.outcomes().size(),
                                         opened_.plan.count()));
+    if (distribution.without_files() > 0)
+      session_.terminal.log(fmt::format("the files of {} jobs are gone from {}; these are done again",
+                                        distribution.without_files(),
+                                        (opened_.folder.path() / "jobs").string()));
     session_.terminal.begin_progress(opened_.plan.count(), "jobs");
     try {
       distribution.run(slots, interruption_.token());

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -161,6 +163,31 @@ TEST_F(CampaignVerb, GoesOnAfterAKillAtAnyInstant) {
     EXPECT_EQ(read(out + "/campaign.json"), expected);
   }
   EXPECT_GE(with_rest, kills / 4) << "most were killed after their end";
+}
+
+// What the journal says is done, but is not there, is done again, and ends in the same bytes.
+TEST_F(CampaignVerb, DoesAgainWhatFilesOfAreGone) {
+  const std::string expected = whole();
+  const auto files_of = [&] {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "whole/jobs")) {
+      const auto path = std::filesystem::relative(entry.path(), folder_).string();
+      if (entry.is_regular_file()) files[path] = read(path);
+    }
+    return files;
+  };
+  const auto before = files_of();
+  ASSERT_FALSE(before.empty());
+  std::filesystem::remove_all(folder_ / "whole/jobs");
+  const Called all = campaign({"--resume", "whole"});
+  EXPECT_EQ(all.exit_code, 1) << all.err;
+  EXPECT_HOLDS(all.err, " jobs are gone from whole/jobs; these are done again");
+  EXPECT_EQ(files_of(), before);
+  EXPECT_EQ(read("whole/campaign.json"), expected);
+  std::filesystem::remove(folder_ / before.begin()->first);
+  EXPECT_HOLDS(campaign({"--resume", "whole"}).err, "the files of 1 jobs are gone");
+  EXPECT_EQ(files_of(), before);
+  EXPECT_EQ(campaign({"--resume", "whole"}).err.find("are gone"), std::string::npos);
 }
 
 TEST_F(CampaignVerb, GoesOnAfterAnInterruption) {
