@@ -50,14 +50,6 @@ JoinedRun one_run(const Session& session) {
   return joined(session, directories);
 }
 
-// What was not judged in it is not green.
-void say_that_it_is_a_part(const std::string& directory, reports::RunIdentity& identity) {
-  const std::string shard = shard_of(directory);
-  if (shard.empty() || !identity.incomplete_because.empty()) return;
-  identity.incomplete_because = fmt::format(
-      "it is part {} of a run; name all parts, with --junit or another format, to join them", shard);
-}
-
 // With the one run that the other formats are of, or with each directory as a run of its own.
 void write_page(const Session& session, const std::optional<JoinedRun>& only,
                 std::shared_ptr<const reports::History> history) {

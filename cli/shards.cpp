@@ -23,6 +23,7 @@ struct Part {
   std::string directory;
   reports::PageRun run;
   Settings settings;  // those that it ran with
+  bool has_no_configuration = false;
 
   const reports::RunIdentity& identity() const { return run.stored.run.identity; }
   std::string shard() const { return settings.text("shard"); }
@@ -33,22 +34,40 @@ struct Part {
                       fmt::format("{}: {}", kernel::escaped_line(part.directory), sentence));
 }
 
+bool has_configuration(const reports::RunDirectory& run) {
+  return std::filesystem::exists(run.path() / kConfigurationFile);
+}
+
 Settings settings_of(const reports::RunDirectory& run) {
   Settings settings({"run", {}, {}}, [](const std::string&) { return std::nullopt; });
-  const std::filesystem::path file = run.path() / kConfigurationFile;
-  if (std::filesystem::exists(file)) settings.add_file(file, Origin::stored_run);
+  if (has_configuration(run)) settings.add_file(run.path() / kConfigurationFile, Origin::stored_run);
   return settings;
+}
+
+// Nothing else tells a part from a whole: what may be a part is not whole.
+void say_that_it_may_be_a_part(const reports::RunDirectory& directory, reports::RunIdentity& identity) {
+  if (has_configuration(directory) || !identity.incomplete_because.empty()) return;
+  identity.incomplete_because =
+      fmt::format("its {} is missing, so it may be only a part of a run (--shard); copy its whole directory",
+                  kConfigurationFile);
 }
 
 Part read_part(const std::string& directory) {
   const auto opened = reports::RunDirectory::open(directory);
-  return {directory, reports::page_run(opened), settings_of(opened)};
+  Part part{directory, reports::page_run(opened), settings_of(opened), !has_configuration(opened)};
+  say_that_it_may_be_a_part(opened, part.run.stored.run.identity);
+  return part;
 }
 
 }  // namespace
 
-std::string shard_of(const std::string& directory) {
-  return settings_of(reports::RunDirectory::open(directory)).text("shard");
+void say_that_it_is_a_part(const std::string& directory, reports::RunIdentity& identity) {
+  const auto opened = reports::RunDirectory::open(directory);
+  say_that_it_may_be_a_part(opened, identity);
+  const std::string shard = settings_of(opened).text("shard");
+  if (shard.empty() || !identity.incomplete_because.empty()) return;
+  identity.incomplete_because = fmt::format(
+      "it is part {} of a run; name all parts, with --junit or another format, to join them", shard);
 }
 
 namespace {
@@ -73,6 +92,11 @@ void check_parts(const std::vector<Part>& parts) {
   const Part& first = parts.front();
   std::map<std::string, const Part*> shards;
   for (const Part& part : parts) {
+    if (part.has_no_configuration) {
+      refuse(part, fmt::format("{} is missing in it, so nobody knows which part of a run it is; copy its "
+                               "whole directory",
+                               kConfigurationFile));
+    }
     if (part.shard().empty()) refuse(part, "this run is no part of a whole (--shard); name it alone");
     std::string sentence = difference(part.identity(), first.identity());
     if (sentence.empty()) sentence = configured_otherwise(part, first);

@@ -1,6 +1,7 @@
 // Subject: a run that was cut by --shard, joined again by report.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <regex>
 #include <string>
 #include <vector>
@@ -102,6 +103,23 @@ TEST_F(JoinedShards, OnePartIsNoPassOnAPage) {
 }
 
 // More parts than cases: some have none.
+// Without the file that says so nobody can tell a part from a whole run.
+TEST_F(JoinedShards, APartWithoutItsConfigurationIsNoWholeRun) {
+  run("1", {"--shard", "1/2"});
+  run("2", {"--shard", "2/2"});
+  for (const char* part : {"1", "2"}) std::filesystem::remove(folder_ / part / "configuration.json");
+  expect_refusal({"1", "2"},
+                 "1: configuration.json is missing in it, so nobody knows which part of a run it is");
+  const Called page = probe({"report", "1", "--html", "page.html"});
+  EXPECT_EQ(page.exit_code, 0) << page.err;
+  EXPECT_HOLDS(page.out, "the run is incomplete: its configuration.json is missing");
+  const Called alone = probe({"report", "1", "--json", "alone.json"});
+  EXPECT_EQ(alone.exit_code, 0) << alone.err;
+  EXPECT_EQ(json("alone.json")["run"]["complete"], false);
+  EXPECT_HOLDS(json("alone.json")["run"]["incomplete_because"].get<std::string>(),
+               "configuration.json is missing");
+}
+
 TEST_F(JoinedShards, APartWithoutCasesIsJoined) {
   std::vector<std::string> report{"report"};
   for (const char* part : {"1", "2", "3", "4", "5", "6", "7"}) {
