@@ -11,16 +11,19 @@
 #include "cli/protocol_entry.hpp"
 #include "cli/serial_pool.hpp"
 #include "cli/verbs.hpp"
+#include "harness/iut/misbehaviour.hpp"
 #include "harness/iut/plugin.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/untrusted_text.hpp"
 
-// `fieldproof doctor`: can an implementation be attached, and how well does this machine know instants? What
-// it cannot use ends the program with exit code 5, as a run would.
+// `fieldproof doctor`: can an implementation be attached and get through a case, and how well does this
+// machine know instants? What it cannot use ends the program with exit code 5, as a run would.
 namespace fieldproof::cli {
 namespace {
 
 constexpr unsigned kRounds = 200;
+// Reasons of what an implementation does to the bench begin so; those of what it does on the line do not.
+constexpr std::string_view kMisbehaves = "implementation_";
 
 // What was measured so many times.
 class Samples {
@@ -47,7 +50,7 @@ class Doctor {
   Doctor(Session& session, iut::RoleName role) : session_(session), role_(std::move(role)) {}
 
   void examine_machine();
-  void examine(const std::string& uri);
+  void examine(const conformance::Assignment& one);
 
  private:
   void say(std::string_view what, const std::string& finding) {
@@ -55,6 +58,7 @@ class Doctor {
   }
   void examine_channel(iut::DevicePool& pool, std::string_view what);
   void examine_line(const std::string& uri);
+  void try_a_case(const conformance::Assignment& one);
 
   Session& session_;
   iut::RoleName role_;
@@ -146,7 +150,31 @@ void Doctor::examine_line(const std::string& uri) {
     say("latency", fmt::format("{} each way, as the URI says", kernel::describe(*settings.latency)));
 }
 
-void Doctor::examine(const std::string& uri) {
+// What answers an echo may still crash, hang or be mute in its calls when a case begins. How it is judged is
+// a matter of `run`. A box at a real line moves real things: it is not asked for one.
+void Doctor::try_a_case(const conformance::Assignment& one) {
+  const std::vector<std::string> cases_of_role{fmt::format("{}/{}/**", role_.protocol, role_.role)};
+  const std::vector<conformance::Entry> entries = session_.catalogue.select(cases_of_role);
+  conformance::Setup setup;
+  setup.implementations = {one};
+  setup.volume = conformance::Volume::quick;
+  const conformance::Entry& first = entries.front();
+  const judge::CaseResult result = first.suite->run(*first.test_case, setup).result;
+  say("a case", fmt::format("{}: {}{}{}", result.id, judge::name(result.verdict),
+                            result.reason.empty() ? "" : ", ", result.reason));
+  const bool misbehaves =
+      result.reason.starts_with(kMisbehaves) && result.reason != iut::reasons::kUnsupported;
+  if (result.verdict != judge::Verdict::error && !misbehaves) return;
+  throw kernel::Error(
+      kernel::ErrorKind::implementation,
+      fmt::format("'{}' is not usable as {}/{}: it does not get through {} ({}){}{}",
+                  kernel::escaped_line(one.uri), role_.protocol, role_.role, result.id, result.reason,
+                  result.findings.empty() ? "" : ": ",
+                  result.findings.empty() ? "" : kernel::escaped_line(result.findings.front().actual)));
+}
+
+void Doctor::examine(const conformance::Assignment& one) {
+  const std::string& uri = one.uri;
   session_.terminal.print(fmt::format("{}\n", kernel::escaped_line(uri)));
   if (!is_attachment(uri)) {
     say("built in", "nothing is attached");
@@ -160,6 +188,9 @@ void Doctor::examine(const std::string& uri) {
     const auto pool = pool_of(uri, role_);
     examine_channel(*pool, "implementation");
   }
+  if (!is_attachment(uri) || uri.starts_with(iut::kSerialUri)) return;
+  say("role", fmt::format("{}/{}", role_.protocol, role_.role));
+  try_a_case(one);
 }
 
 // Whose case it is that a real one would be asked for.
@@ -181,7 +212,7 @@ int doctor(Session& session) {
       parse_implementations(session.settings.list("iut"), session.catalogue, session.catalogue.entries());
   Doctor(session, {}).examine_machine();
   for (const conformance::Assignment& one : implementations) {
-    Doctor(session, role_of(one)).examine(one.uri);
+    Doctor(session, role_of(one)).examine(one);
   }
   return kAllAsExpected;
 }

@@ -1,6 +1,7 @@
 // Subject: cli/doctor.cpp
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <string>
 
 #include "cli/probe/program_fixture.hpp"
@@ -46,6 +47,33 @@ TEST_F(DoctorTest, TakesABoxForWhatItsUpperChannelSays) {
                               "' station valve_bus/host ref --serial ./line"});
   EXPECT_EQ(called.exit_code, 0) << called.err;
   EXPECT_HOLDS(called.out, "upper channel");
+}
+
+// It answers hello and echo, and ends when a case begins.
+TEST_F(DoctorTest, WhatDoesNotGetThroughACaseIsFive) {
+  const std::string node = "examples/valve_node/node.py";
+  std::ifstream file(kSourceFolder / node);
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  const std::string begin = "            case, settings = case_of(message)\n";
+  const std::size_t place = text.find(begin);
+  ASSERT_NE(place, std::string::npos);
+  text.insert(place + begin.size(), "            if case.startswith('valve_bus/'): sys.exit(3)\n");
+  write("node.py", text);
+  const Called crashed = call({"doctor", "--iut", "exec:python3 node.py"});
+  EXPECT_EQ(crashed.exit_code, 5) << crashed.out << crashed.err;
+  EXPECT_HOLDS(crashed.out, "echo, unknown case        as they should be");
+  EXPECT_HOLDS(crashed.err, "exit code 3");
+  const Called right = call({"doctor", "--iut", "exec:python3 " + (kSourceFolder / node).string()});
+  EXPECT_EQ(right.exit_code, 0) << right.err;
+  EXPECT_HOLDS(right.out, "role                      valve_bus/node");
+  EXPECT_HOLDS(right.out, ": pass");
+}
+
+// One that is wrong on the line is attached and can be judged: that is what `run` is for.
+TEST_F(DoctorTest, WhatIsOnlyWrongIsUsable) {
+  const Called called =
+      call({"doctor", "--iut", "exec:'" FIELDPROOF_EXE "' station valve_bus/node mutant:check_is_sum"});
+  EXPECT_EQ(called.exit_code, 0) << called.out << called.err;
 }
 
 TEST_F(DoctorTest, WhatCannotBeUsedIsFive) {

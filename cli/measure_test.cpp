@@ -97,7 +97,7 @@ TEST_F(MeasureVerb, EndsWithTheSignalsThatAreThrough) {
 // The longest cycle of the course is that of the distribution, in every protocol, and the points are bounded.
 TEST_F(MeasureVerb, EachProtocolSaysWhenItsCyclesWereLong) {
   for (const std::string protocol : {"interbus", "valve_bus", "fieldbus_dll", "token_bus"}) {
-    call({"measure", protocol, "--signal", "5Hz,7Hz", "--bursts", "4", "--duration", "20s", "--json",
+    call({"measure", protocol, "--signal", "5Hz,7Hz", "--bursts", "4", "--duration", "3s", "--json",
           "m.json"});
     const Json document = json("m.json");
     std::size_t courses = 0;
