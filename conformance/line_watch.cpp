@@ -8,11 +8,14 @@ namespace fieldproof::conformance {
 namespace {
 
 constexpr kernel::Duration kWindow = 10 * kernel::kMillisecond;
+// Of an implementation that counts in whole nanoseconds, or adds bits that were rounded one by one.
+constexpr kernel::Duration kRounding = 1 * kernel::kNanosecond;
 
 }  // namespace
 
 LineWatch::LineWatch(kernel::Duration shortest_transmission,
                      std::optional<kernel::Duration> longest_transmission) {
+  rules_.rounding = kRounding;
   rules_.longest_drive = longest_transmission;
   rules_.window = kWindow;
   rules_.most_transmissions = static_cast<std::size_t>(kWindow / shortest_transmission) + 1;

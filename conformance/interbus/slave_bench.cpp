@@ -10,6 +10,7 @@
 #include "harness/kernel/error.hpp"
 #include "protocols/interbus/cycle_fields.hpp"
 #include "protocols/interbus/network.hpp"
+#include "protocols/interbus/slave.hpp"
 #include "protocols/interbus/slave_settings.hpp"
 #include "protocols/interbus/timing.hpp"
 
@@ -81,8 +82,10 @@ SlaveBench::SlaveBench(interbus::NetworkDescription network, const SlaveSetting&
       ring_(segment(), network_, seat_,
             [&](int position,
                 const interbus::SlaveConfiguration& configuration) -> std::unique_ptr<interbus::SlaveDevice> {
-              if (position != setting.position || !setting.make_device) return nullptr;
-              return setting.make_device(configuration);
+              if (position != setting.position) return nullptr;
+              auto slave = setting.make_device ? setting.make_device(configuration)
+                                               : std::make_unique<interbus::Slave>(configuration);
+              return std::make_unique<SlaveInParts>(std::move(slave), configuration.rules, setting.returns);
             }),
       pics_(
           setting.pics.value_or(judge::Pics{}).completed_by(declared_slave(ring_.configuration(position_)))),
@@ -304,6 +307,7 @@ std::unique_ptr<SlaveBench> SlaveBench::twin(int side) const {
   network.rules.silence_tolerance += side * (tolerance / 8 - tolerance);
   SlaveSetting setting;
   setting.position = position_;
+  setting.returns = side < 0 ? ReturnParts::telegrams : ReturnParts::whole;
   std::unique_ptr<SlaveBench> made(new SlaveBench(std::move(network), setting));
   made->kept_alive_ = kept_alive_;
   return made;

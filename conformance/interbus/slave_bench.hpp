@@ -12,6 +12,7 @@
 
 #include "conformance/case_bench.hpp"
 #include "conformance/interbus/declarations.hpp"
+#include "conformance/interbus/slave_in_parts.hpp"
 #include "conformance/interbus/slave_line.hpp"
 #include "conformance/interbus/slave_model.hpp"
 #include "harness/fault/channel_chain.hpp"
@@ -41,10 +42,11 @@ struct SlaveNeeds {
 
 class SlaveBench;
 
-// Who plays, and where.
+// Who plays, where, and how it is given what comes back.
 struct SlaveSetting : PlannedSetting<interbus::SlaveDevice, interbus::SlaveConfiguration> {
   int position = 1;
-  int stations = 1;                                       // of the bench's own network, at least `position`
+  int stations = 1;  // of the bench's own network, at least `position`
+  ReturnParts returns = ReturnParts::whole;
   std::optional<interbus::NetworkDescription> network{};  // instead of the bench's own
 };
 
@@ -132,7 +134,8 @@ class SlaveBench final : public CaseBench, private segment::Station {
   // ---- a twin ----
   // The same ring with a reference slave at the IUT's position. It takes silence for a reset as early (-1) or
   // as late (1) as the tolerance lets it, and ends the time of control_reset an eighth of it earlier or
-  // later.
+  // later. Where the ways change while something comes back, the early one passes on what comes after that
+  // the new way, the late one all of a transmission as it began.
   std::unique_ptr<SlaveBench> twin(int side) const;
 
   // The case is over. What the IUT does then is still its verdict.

@@ -129,15 +129,15 @@ class Slave:
             if self.phase != "pause":
                 self.reject()
             return octet
-        self.is_wrong |= not stop
         n, self.count = self.count, self.count + 1
         if n < 2:
-            self.is_wrong |= octet != self.expected[n]
+            self.is_wrong |= octet != self.expected[n] or not stop
             return self.check_sent[n]
         shift = 8 * (3 - n)
         self.is_clean &= octet == self.s["status_clean"] >> shift & 0xFF
         if self.is_wrong:
             octet |= self.s["status_marked"] >> shift & 0xFF
+        self.is_wrong |= not stop  # the octet leaves before its stop level has come
         if n == 3:
             self.finish(is_id, when + 13 * self.bit)
         return octet

@@ -78,7 +78,7 @@ void LineMonitor::check_pause(kernel::Time start) {
   const kernel::Duration gap = start - heard_until_;
   if (gap == kernel::Duration{}) return;
   if (gap < kernel::Duration{}) {
-    note(ViolationKind::overlap, start, -gap);
+    if (-gap > rules_.rounding) note(ViolationKind::overlap, start, -gap);
   } else if (rules_.shortest_gap && gap < *rules_.shortest_gap) {
     note(ViolationKind::short_gap, start, gap);
   } else if (rules_.longest_silence && gap > *rules_.longest_silence) {

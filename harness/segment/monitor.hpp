@@ -24,6 +24,8 @@ namespace fieldproof::segment {
 struct MonitorRules {
   // Silence between two transmissions, and from the last one to `finish`. Before the first nothing is asked.
   std::optional<kernel::Duration> longest_silence;
+  // An overlap of no more is none: it comes from instants that were rounded.
+  kernel::Duration rounding{};
   // A gap that is not zero (transmissions that follow without a gap are one).
   std::optional<kernel::Duration> shortest_gap;
   // Babble: transmissions that follow each other without a gap, together; told once per such run.

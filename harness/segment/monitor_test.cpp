@@ -49,6 +49,15 @@ TEST_F(Monitor, SeesOverlapsWithoutAnyRule) {
   EXPECT_EQ(monitor.count(), 2U);
 }
 
+TEST_F(Monitor, TakesAnOverlapWithinRoundingForNone) {
+  LineMonitor monitor = made({.rounding = kNanosecond});
+  monitor.on_wave(wave(Duration{}, 10));
+  monitor.on_wave(wave(10 * kMicrosecond - kNanosecond, 10));
+  EXPECT_EQ(text(monitor), "");
+  monitor.on_wave(wave(20 * kMicrosecond - 2 * kNanosecond - kPicosecond, 1));
+  EXPECT_EQ(text(monitor), "monitor: overlap 1.001 ns; ");
+}
+
 TEST_F(Monitor, TakesWhatIsKnownLaterAndLiesInTheSilenceBefore) {
   LineMonitor monitor = made({});
   monitor.on_wave(wave(Duration{}, 10));

@@ -55,6 +55,9 @@ Slave::Slave(const SlaveConfiguration& configuration, line::TelegramReceiverOpti
 
 void Slave::wire(const SlavePorts& ports, Terminals& terminals) {
   ports_ = ports;
+  ways_[kFromUpstream].port = ports.upstream;
+  ways_[kFromBranch].port = ports.branch;
+  ways_[kFromRemote].port = ports.remote;
   terminals_ = &terminals;
   shifts_status_ = status_telegram_shifts();
   clear_outputs(kernel::kStart);
@@ -76,32 +79,31 @@ void Slave::set_power(bool is_on, kernel::Time now) {
 
 // ---- the way of a telegram through the station ----
 
-segment::Port* Slave::next_after(segment::PortIndex from) const {
-  if (from == kFromUpstream && forward_branch_on_) return ports_.branch;
+segment::PortIndex Slave::next_after(segment::PortIndex from) const {
+  if (from == kFromUpstream && forward_branch_on_) return kFromBranch;
   const bool remote = from == kFromUpstream ? forward_remote_on_ : return_remote_on_;
-  if (from != kFromRemote && remote) return ports_.remote;
-  return ports_.upstream;
+  return from != kFromRemote && remote ? kFromRemote : kFromUpstream;
 }
 
 // The way out costs the forward delay once, the way back the return delay once, also in the station that
 // closes the ring.
-kernel::Duration Slave::delay_to(const segment::Port* port, segment::PortIndex from) const {
+kernel::Duration Slave::delay_to(segment::PortIndex to, segment::PortIndex from) const {
   kernel::Duration delay{};
   if (from == kFromUpstream) delay += delays_[0];
-  if (port == ports_.upstream) delay += delays_[1];
+  if (to == kFromUpstream) delay += delays_[1];
   return delay;
 }
 
-void Slave::open_forward() {
-  segment::Port* port = next_after(kFromUpstream);
-  relays_[kFromUpstream].open(port, delay_to(port, kFromUpstream), now_);
+void Slave::open_way(segment::PortIndex from, kernel::Time now) {
+  const segment::PortIndex to = next_after(from);
+  relays_[from].open(ways_[to], delay_to(to, from), now);
 }
 
 void Slave::receive(segment::PortIndex port, const line::Waveform& reception) {
   if (!is_supplied_) return;
   now_ = reception.start;
   if (port != kFromUpstream) return relay_only(port, reception);
-  open_forward();
+  open_way(kFromUpstream, now_);
   // The ends of the last telegrams are counted in levels and become times once for a whole reception.
   std::size_t status_end = 0;
   std::size_t data_end = 0;
@@ -144,8 +146,7 @@ void Slave::relay_only(segment::PortIndex from, const line::Waveform& reception)
   const bool is_on = from == kFromBranch ? return_branch_on_ : return_remote_on_;
   if (!is_on) return;
   TelegramRelay& relay = relays_[from];
-  segment::Port* port = next_after(from);
-  relay.open(port, delay_to(port, from), now_);
+  open_way(from, now_);
   const bool counts = is_sign_of_life(from);
   receivers_[from].receive(reception, [&](const line::Waveform& wave, const line::Telegram& telegram) {
     relay.put(wave, telegram);
@@ -164,7 +165,6 @@ void Slave::on_upstream(const line::Waveform& wave, const line::Telegram& telegr
     if (shifts_status_ && phase_ == Phase::data_transfer) shift_.shift(0xFF, check_);
     return;
   }
-  if (telegram.is_stop_missing() && !is_telegram_valid(telegram)) own_error_ = true;
   const std::uint8_t out = on_data(wave, telegram);
   relays_[kFromUpstream].put(wave, telegram.level, code_.levels_of(header, out), line::kDataTelegramLevels);
   if (telegram.is_stop_missing() && !resynchronises()) is_deaf_ = true;
@@ -178,7 +178,7 @@ void Slave::switch_forward_ways(const line::Telegram& telegram) {
   forward_branch_on_ = branch_on_;
   forward_remote_on_ = remote_on_;
   relays_[kFromUpstream].close();
-  open_forward();
+  open_way(kFromUpstream, now_);
 }
 
 // ---- the cycle ----
@@ -195,8 +195,8 @@ std::uint8_t Slave::on_transfer(bool id_cycle, const line::Waveform& wave, const
     // A transfer that breaks into a cycle abandons it; the new one begins here, and with it a new error.
     if (phase_ != Phase::pause) abandon_cycle(when);
     enter_transfer(id_cycle, when);
-    if (telegram.is_stop_missing() && !is_telegram_valid(telegram)) own_error_ = true;
   }
+  if (lacks_stop(telegram)) own_error_ = true;
   const std::uint8_t out = shift_.shift(telegram.data, check_);
   if (id_cycle) on_control_octet(wave.time_of(telegram.level));
   return out;
@@ -233,13 +233,15 @@ std::uint8_t Slave::on_check(bool id_cycle, const line::Waveform& wave, const li
   }
   const unsigned n = check_octets_seen_++;
   if (n < kCheckOctets) {
-    if (!check_octet_fits(n, telegram.data, check_expected_.at(n))) own_error_ = true;
+    if (!check_octet_fits(n, telegram.data, check_expected_.at(n)) || lacks_stop(telegram)) own_error_ = true;
     return check_sent_.at(n);
   }
   const auto mark = n == kCheckOctets ? high(rules().status_marked) : low(rules().status_marked);
   const auto clean = n == kCheckOctets ? high(rules().status_clean) : low(rules().status_clean);
   if (telegram.data != clean) upstream_clean_ = false;
+  // The octet leaves before the stop level has come.
   const std::uint8_t out = status_octet_to_send(telegram.data, mark, own_error_);
+  if (lacks_stop(telegram)) own_error_ = true;
   if (n + 1 == kCheckOctets + kStatusOctets) finish_cycle(end_of(wave, telegram));
   return out;
 }
@@ -315,8 +317,7 @@ void Slave::flush_receivers(kernel::Time now) {
   for (const segment::PortIndex from : {kFromUpstream, kFromBranch, kFromRemote}) {
     line::TelegramReceiver& receiver = receivers_[from];
     if (receiver.pending_until() > now) continue;
-    segment::Port* port = next_after(from);
-    relays_[from].open(port, delay_to(port, from), now);
+    open_way(from, now);
     receiver.flush([&](const line::Waveform& wave, const line::Telegram& telegram) {
       if (from == kFromUpstream) {
         on_upstream(wave, telegram);

@@ -121,7 +121,6 @@ class Slave : public SlaveDevice {
   void finish_id_cycle(bool good, kernel::Time end);
   void abandon_cycle(kernel::Time when);
   void relay_only(segment::PortIndex port, const line::Waveform& reception);
-  void open_forward();
   void enter_reset(kernel::Time now);
   void switch_forward_ways(const line::Telegram& telegram);
   void switch_return_ways();
@@ -130,14 +129,19 @@ class Slave : public SlaveDevice {
   bool is_silence_ending() const;
   kernel::Time end_of(const line::Waveform& wave, const line::Telegram& telegram) const;
   void note_life(const line::Waveform& wave, const line::Telegram& telegram);
-  kernel::Duration delay_to(const segment::Port* port, segment::PortIndex from) const;
-  segment::Port* next_after(segment::PortIndex from) const;
+  kernel::Duration delay_to(segment::PortIndex to, segment::PortIndex from) const;
+  segment::PortIndex next_after(segment::PortIndex from) const;
+  void open_way(segment::PortIndex from, kernel::Time now);
+  bool lacks_stop(const line::Telegram& telegram) const {
+    return telegram.is_stop_missing() && !is_telegram_valid(telegram);
+  }
 
   SlaveConfiguration configuration_;
   const line::TelegramCode& code_;
   const line::FrameCheck16& check_;
   std::array<line::TelegramReceiver, 3> receivers_;  // by PortIndex
   std::array<TelegramRelay, 3> relays_;
+  std::array<TelegramRelay::Way, 3> ways_;  // out, by PortIndex, too: kFromRemote leads to OUT1
   std::array<kernel::Duration, 2> delays_;  // forward, return
   SlavePorts ports_;
   Terminals* terminals_ = nullptr;

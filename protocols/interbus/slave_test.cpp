@@ -28,20 +28,27 @@ class Hand final : public segment::Station {
 
   void send(const std::vector<Sent>& telegrams, kernel::Time when, segment::Port& out) {
     line::Waveform wave{when, rate_, {}};
-    for (const Sent& t : telegrams) code_.append(wave.levels, t.header, t.data);
+    for (const Sent& t : telegrams) {
+      code_.append(wave.levels, t.header, t.data);
+      if ((t.header & line::kStopMissing) == 0) continue;
+      wave.levels.set(wave.levels.size() - 1, false);
+      wave.levels.append_idle(1);
+    }
     out.drive(wave);
   }
 
   void receive(segment::PortIndex, const line::Waveform& wave) override {
     receiver_.receive(wave, [&](const line::Waveform& w, const line::Telegram& t) {
       heard.push_back({t.header, t.data});
-      if (heard.size() == 1) first_heard = w.time_of(t.level);
+      starts.push_back(w.time_of(t.level));
+      if (heard.size() == 1) first_heard = starts.back();
     });
   }
   void on_time(kernel::Time) override {}
   kernel::Time next_time() const override { return kernel::kNever; }
 
   std::vector<Sent> heard;
+  std::vector<kernel::Time> starts;
   kernel::Time first_heard{};
 
  private:
@@ -230,6 +237,43 @@ TEST_F(SlaveTest, AWrongBitIsMarkedNotLatchedAndToldInTheNextIdCycle) {
   EXPECT_EQ(octets_heard()[0], 0x42);
   send(id_cycle());
   EXPECT_EQ(octets_heard()[0], 0x02);
+}
+
+// An octet of the status word has left when its own stop level comes.
+TEST_F(SlaveTest, AMissingStopLevelCountsFromTheNextTelegramOn) {
+  constexpr std::size_t kLastOfCheck = 7;
+  const std::vector<std::vector<std::uint8_t>> status{{0xFF, 0xFF}, {0x00, 0xFF}, {0x00, 0x00}};
+  send(id_cycle());
+  for (std::size_t n = 0; n < status.size(); ++n) {
+    std::vector<Sent> bad = data_cycle(0xCAFE, 0xBEEF);
+    bad[kLastOfCheck + n].header |= line::kStopMissing;
+    send(bad);
+    ASSERT_EQ(hand.heard.size(), 10U);
+    EXPECT_EQ(octets_heard()[8], status[n][0]) << n;
+    EXPECT_EQ(octets_heard()[9], status[n][1]) << n;
+    EXPECT_EQ(terminals.output(0), 0) << n;
+    send(id_cycle());
+    EXPECT_EQ(octets_heard()[0], 0x42) << n;
+  }
+}
+
+// What a cut telegram delays leaves in time again as soon as there is time between telegrams.
+TEST_F(SlaveTest, IsLateNoLongerThanWhatLeftBeforeTakes) {
+  const line::TelegramCode code{Rules{}.telegram};
+  line::Waveform cut{segment.now(), 500'000, {}};
+  cut.levels.append(code.levels_of(line::kDataTelegram, 0xFF), 4);
+  forward->drive(cut);
+  line::Waveform train{segment.now() + 36 * kernel::kMicrosecond, 500'000, {}};
+  for (int n = 0; n < 5; ++n) {
+    code.append(train.levels, line::kDataTelegram, 0x00);
+    train.levels.append_idle(2);
+  }
+  forward->drive(train);
+  segment.run_for(2 * kMillisecond);
+  std::vector<std::int64_t> starts;
+  for (const kernel::Time start : hand.starts)
+    starts.push_back((start - kernel::kStart) / kernel::kMicrosecond);
+  EXPECT_EQ(starts, (std::vector<std::int64_t>{26, 52, 78, 104, 132, 162}));
 }
 
 // A fragment whose check fits by chance: one octet and its own check, as a flipped SL bit can leave it.

@@ -9,17 +9,23 @@
 #include "harness/segment/station.hpp"
 
 // Retimes telegrams: each one that goes through a station leaves it a constant delay after it began to
-// arrive, on the station's own bit rate. Telegrams that arrive on the grid of the station's bits leave as one
-// waveform; off that grid each leaves as its own.
+// arrive, on the station's own bit rate, or when what left before has ended. Telegrams that arrive on the
+// grid of the station's bits and leave in time do so as one waveform; others each as their own.
 namespace fieldproof::interbus {
 
 class TelegramRelay {
  public:
   explicit TelegramRelay(std::int64_t bit_rate) { out_.rate = bit_rate; }
 
-  // What follows comes from `reception` and goes to `port` (null: nothing is plugged in).
-  void open(segment::Port* port, kernel::Duration delay, kernel::Time now) {
-    port_ = port;
+  // Until when something is driven at a port, whichever relay drives it.
+  struct Way {
+    segment::Port* port = nullptr;  // null: nothing is plugged in
+    kernel::Time driven_until{kernel::Duration::min()};
+  };
+
+  // What follows goes this way.
+  void open(Way& way, kernel::Duration delay, kernel::Time now) {
+    way_ = &way;
     delay_ = delay;
     now_ = now;
   }
@@ -41,27 +47,27 @@ class TelegramRelay {
   void close() {
     reception_ = nullptr;
     if (out_.levels.empty()) return;
-    if (port_ == nullptr) return out_.levels.clear();
-    driven_until_ = out_.end();
-    port_->drive(out_);
+    if (way_->port == nullptr) return out_.levels.clear();
+    way_->driven_until = out_.end();
+    way_->port->drive(out_);
   }
 
  private:
   void begin(const line::Waveform& reception, std::uint32_t level) {
     close();
-    // Off the grid the next telegram begins a waveform of its own.
-    if (reception.rate == out_.rate) reception_ = &reception;
     base_ = level;
     out_.levels.make_room(reception.levels.size() - level + line::kDataTelegramLevels);
     // A telegram that only a later reception completed would have left before now.
-    out_.start = std::max({reception.time_of(level) + delay_, now_, driven_until_});
+    const kernel::Time in_time = reception.time_of(level) + delay_;
+    out_.start = std::max({in_time, now_, way_->driven_until});
+    // Off the grid, or late, the next telegram begins a waveform of its own: it may be in time.
+    if (reception.rate == out_.rate && out_.start == in_time) reception_ = &reception;
   }
 
   line::Waveform out_;
-  segment::Port* port_ = nullptr;
+  Way* way_ = nullptr;
   kernel::Duration delay_{};
   kernel::Time now_{};
-  kernel::Time driven_until_{kernel::Duration::min()};
   const line::Waveform* reception_ =
       nullptr;              // what is collected now; null when the next telegram begins anew
   std::uint32_t base_ = 0;  // level of the reception with which out_ begins
