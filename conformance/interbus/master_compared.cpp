@@ -167,6 +167,34 @@ std::vector<MasterCommands> many_cycles_of_a_master() {
   return {many, window};
 }
 
+// Each ring, with all words copied: its inputs and outputs change, and the cable to each station is cut.
+std::vector<MasterCommands> each_ring() {
+  constexpr std::int64_t kRings = 7;
+  constexpr std::int64_t kMostStations = 4;
+  std::vector<MasterCommands> all;
+  for (std::int64_t number = 0; number < kRings; ++number) {
+    for (std::int64_t copies = 0; copies < 3; ++copies) {
+      all.push_back({order(MasterWord::power, {{0, number}, {1, 1}, {2, copies}}),
+                     order(MasterWord::inputs, {{0, 0x1234}, {1, 0x8765}}),
+                     order(MasterWord::outputs, {{0, 0x0F1E}, {1, 0x2D3C}}), cycles(2),
+                     order(MasterWord::inputs, {{0, 0x4321}, {1, 0x5678}}), order(MasterWord::bad), cycles(2),
+                     order(MasterWord::outputs, {{0, 0x4B5A}, {1, 0x6978}}), cycles(2)});
+    }
+    for (std::int64_t station = 0; station < kMostStations; ++station)
+      all.push_back({ring(number), order(MasterWord::cut, {{0, station}})});
+  }
+  return all;
+}
+
+std::vector<MasterCommands> orders_in_each_state() {
+  std::vector<MasterCommands> all;
+  for (std::int64_t state = 0; state < 4; ++state) {
+    for (std::int64_t given = 0; given < 4; ++given)
+      all.push_back({order(MasterWord::early_order, {{0, state}, {1, given}}), order(MasterWord::start)});
+  }
+  return all;
+}
+
 // ---- a case ----
 
 Sequence between(const MasterCommands& middle) {
@@ -248,6 +276,16 @@ std::vector<MasterCase> master_compared_cases() {
                       each_beside(one_order_after_another, 50)),
       compared_master("run_after_run", "What ends a run, a start, and what ends the next one.",
                       {{"changed_ring_ignored", "state_missing"}}, each_beside(run_after_run, 60)),
+      compared_master("each_ring",
+                      "Each ring, with no, two and all words copied, and cut in front of each station.",
+                      {{"later_words_of_a_station_frozen", "new_inputs_missed"},
+                       {"third_copy_lost", "cycle_wrong"},
+                       {"lone_station_not_placed", "state_wrong"}},
+                      each_beside(each_ring, 49)),
+      compared_master("orders_in_each_state",
+                      "Start, stop, an ID cycle and an output are ordered in each state but run.",
+                      {{"stop_before_run_ignored", "not_silent"}, {"early_output_kept", "early_output_kept"}},
+                      each_beside(orders_in_each_state, 16)),
       compared_master("many_cycles", "300 cycles, some of them bad, each with other inputs.",
                       {{"outputs_torn", "cycle_wrong"}}, each_beside(many_cycles_of_a_master, 2)),
       compared_master("drawn_sequences", "Sequences of all words at random.",

@@ -110,6 +110,13 @@ std::vector<MasterMutants::Row> master_rows() {
        mutant<PausesIn<MasterState::identification>>()},
       {"pauses_in_locating", "", "waits 30 ms in silence between the cycles of the search for a fault",
        mutant<PausesIn<MasterState::locating>>()},
+      {"later_words_of_a_station_frozen", "", "renews the first three input words of a station only",
+       mutant<LaterWordsOfAStationFrozen>()},
+      {"third_copy_lost", "", "copies two words and no more", mutant<ThirdCopyLost>()},
+      {"lone_station_not_placed", "", "finds no place of a fault in a ring of one station",
+       mutant<LoneStationNotPlaced>()},
+      {"stop_before_run_ignored", "", "ignores a stop in any state but run", mutant<StopBeforeRunIgnored>()},
+      {"early_output_kept", "", "sends an output that was written before it ran", mutant<EarlyOutputKept>()},
       {"pulse_widths_even", "", "copies pulses of an odd number of cycles one cycle shorter",
        mutant<PulseWidthsEven>()},
   };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "protocols/interbus/master.hpp"
@@ -15,6 +16,7 @@ namespace fieldproof::conformance::seeded_faults {
 
 using interbus::FaultLocation;
 using interbus::Master;
+using interbus::MasterConfiguration;
 using interbus::MasterStatus;
 using interbus::ReturnedCycle;
 
@@ -389,6 +391,64 @@ struct PulseWidthsEven final : Master {
   }
   std::vector<std::uint16_t> before_;
   std::vector<unsigned> cycles_;  // that each word is not 0
+};
+
+// Of each station it renews the first three words of inputs only.
+struct LaterWordsOfAStationFrozen final : Master {
+  using Master::Master;
+  void run_copy_task() override {
+    constexpr unsigned kRenewed = 3;
+    if (first_.size() != inputs().size()) first_ = inputs();
+    unsigned begin = 0;
+    for (const auto& station : status().stations) {
+      for (unsigned word = kRenewed; word < station.words; ++word)
+        inputs()[begin + word] = first_[begin + word];
+      begin += station.words;
+    }
+    Master::run_copy_task();
+  }
+  std::vector<std::uint16_t> first_;
+};
+
+struct ThirdCopyLost final : Master {
+  explicit ThirdCopyLost(MasterConfiguration configuration) : Master(with_two(std::move(configuration))) {}
+  static MasterConfiguration with_two(MasterConfiguration configuration) {
+    if (configuration.copy.size() > 2) configuration.copy.resize(2);
+    return configuration;
+  }
+};
+
+// Where there is one station, it looks for the fault in vain.
+struct LoneStationNotPlaced final : Master {
+  using Master::Master;
+  MasterStatus status() const override {
+    MasterStatus status = Master::status();
+    const bool has_stopped = status.state == interbus::MasterState::bus_stop;
+    if (has_stopped && status.stations.size() == 1) status.has_fault_location = false;
+    return status;
+  }
+};
+
+struct StopBeforeRunIgnored final : Master {
+  using Master::Master;
+  void stop(kernel::Time now) override {
+    if (status().state == interbus::MasterState::run) Master::stop(now);
+  }
+};
+
+// Keeps an output that is written before it runs, and sends it as soon as it does.
+struct EarlyOutputKept final : Master {
+  using Master::Master;
+  void write_output(unsigned word, std::uint16_t value, kernel::Time now) override {
+    if (status().state != interbus::MasterState::run) kept_ = {word, value};
+    Master::write_output(word, value, now);
+  }
+  void run_copy_task() override {
+    Master::run_copy_task();
+    if (kept_) Master::write_output(kept_->first, kept_->second, {});
+    kept_.reset();
+  }
+  std::optional<std::pair<unsigned, std::uint16_t>> kept_;
 };
 
 }  // namespace fieldproof::conformance::seeded_faults

@@ -46,6 +46,9 @@ std::string state_text(std::span<const std::int64_t> values) {
   return text;
 }
 
+constexpr std::array kStatesOfOrders{interbus::MasterState::ready, interbus::MasterState::identification,
+                                     interbus::MasterState::locating, interbus::MasterState::bus_stop};
+
 constexpr EventKind kCycles{"cycles", "no_data_cycle", "cycle_unasked", "cycle_wrong", cycle_text};
 constexpr EventKind kInputs{"verdicts", "no_data_cycle", "cycle_unasked", "inputs_wrong", inputs_text};
 constexpr EventKind kReports{"reports", "no_data_cycle", "cycle_unasked", "report_wrong", report_text};
@@ -121,6 +124,8 @@ class MasterSequenceRun {
         return side.start(word(0));
       case MasterWord::power:
         return side.power(scene_of(command));
+      case MasterWord::early_order:
+        return side.order_in(kStatesOfOrders.at(word(0)), static_cast<EarlyOrder>(numbers[1]));
       case MasterWord::wait:
         return side.wait(numbers[0] * kernel::kMillisecond);
       default:

@@ -27,6 +27,12 @@ std::vector<interbus::FoundStation> found(const std::vector<VirtualStation>& rin
   return stations;
 }
 
+// Of the words of a large register no two are alike, and the first ones are those of the command.
+std::uint16_t in_turn(unsigned word, std::uint16_t even, std::uint16_t odd) {
+  const unsigned pair = word / 2;
+  return static_cast<std::uint16_t>((word % 2 == 0 ? even : odd) ^ (pair * 0x0101U));
+}
+
 CycleFaults changed_answer() {
   CycleFaults faults;
   faults.flips = {{0, 0x01, false}};
@@ -58,8 +64,10 @@ void MasterSide::power(const MasterScene& scene) {
   unsigned words = 0;
   for (const VirtualStation& one : scene.ring) words += one.words;
   configuration.copy.clear();
-  if (scene.copies && words > 0) configuration.copy = {{0, words - 1}};
-  if (scene.copies && words > 1) configuration.copy.push_back({words - 1, 0});
+  for (unsigned word = 0; word < words && scene.copies != Copies::none; ++word) {
+    const bool is_end = word == 0 || word + 1 == words;
+    if (is_end || scene.copies == Copies::all) configuration.copy.push_back({word, words - 1 - word});
+  }
   if (!bench_.may_answer("request_below_minimum", "clipped")) configuration.cycle_time = {};
   const interbus::Rules usual = bench_.rules();
   limit_ring(scene);
@@ -213,6 +221,76 @@ void MasterSide::stop(bool is_disturbed) {
   note_state(false);
 }
 
+// ---- orders in other states than run ----
+
+void MasterSide::order_in(MasterState state, EarlyOrder order) {
+  if (!is_running() || !is_ring_right_) return;
+  const bool is_before_run = state == MasterState::ready || state == MasterState::identification;
+  if (is_before_run) {
+    stop(false);
+    is_stopped_ = false;
+    bench_.start();
+  } else {
+    bench_.ring().cut_after(-1);
+    while (is_running() && bench_.run_cycle()) {
+    }
+  }
+  const bool is_there = bench_.run_until([&] { return bench_.status().state == state; }, kernel::kSecond);
+  expect(is_there, "state_missing", fmt::format("the state {}", interbus::name(state)), "another one");
+  give(order);
+  if (order == EarlyOrder::stop) {
+    await_stop();
+  } else if (is_before_run || (state == MasterState::bus_stop && order == EarlyOrder::start)) {
+    bench_.ring().mend();
+    await_outputs_of_run();
+  } else {
+    settle();
+  }
+  bench_.ring().mend();
+  // Before the recognition it was silent, as it must.
+  bench_.ring().forget_statistics();
+  states_seen_ = 0;
+  is_running() ? enter_run() : note_state(false);
+}
+
+void MasterSide::give(EarlyOrder order) {
+  switch (order) {
+    case EarlyOrder::start:
+      return bench_.start();
+    case EarlyOrder::stop:
+      return bench_.stop();
+    case EarlyOrder::id_cycle:
+      return bench_.request_id_cycle();
+    case EarlyOrder::output:
+      return bench_.write_output(0, 0xFFFF);
+  }
+}
+
+// No data cycle with outputs 0 is owed: it ends at once.
+void MasterSide::await_stop() {
+  bench_.run_until([this] { return bench_.status().state == MasterState::off; }, kernel::kMillisecond);
+  bench_.run_for(kernel::kMillisecond);
+  is_stopped_ = true;
+  const std::uint64_t cycles = bench_.ring().cycle_count();
+  bench_.run_for(kIdle);
+  expect(bench_.ring().cycle_count() == cycles && bench_.status().state == MasterState::off, "not_silent",
+         "off, and no cycle, when it is stopped before it runs", "it goes on");
+}
+
+// What was written before has no effect.
+void MasterSide::await_outputs_of_run() {
+  bench_.run_until([this] { return !is_idle(); }, 10 * kernel::kMillisecond);
+  if (!bench_.wait_for_run()) return settle();
+  constexpr int kUntilWritten = 3;
+  for (int n = 0; n < kUntilWritten && bench_.run_cycle(); ++n) {
+  }
+  bool is_zero = true;
+  for (unsigned word = 0; word < bench_.ring().word_count(); ++word)
+    is_zero = is_zero && bench_.master().output(word) == 0;
+  expect(is_zero || !bench_.configuration().copy.empty(), "early_output_kept",
+         "outputs of 0 until the application writes some in run", "others");
+}
+
 // Until it has nothing more to do with a bus that it has given up.
 void MasterSide::settle() {
   for (int n = 0; n < kMostIdles; ++n) {
@@ -247,7 +325,7 @@ void MasterSide::write(unsigned word, std::uint16_t value) {
 }
 
 void MasterSide::write_all(std::uint16_t even, std::uint16_t odd) {
-  for (unsigned word = 0; word < bench_.ring().word_count(); ++word) write(word, word % 2 == 0 ? even : odd);
+  for (unsigned word = 0; word < bench_.ring().word_count(); ++word) write(word, in_turn(word, even, odd));
 }
 
 void MasterSide::request_id_cycle() {
@@ -256,7 +334,7 @@ void MasterSide::request_id_cycle() {
 
 void MasterSide::offer(std::uint16_t even, std::uint16_t odd) {
   for (unsigned word = 0; word < bench_.ring().word_count(); ++word)
-    bench_.ring().set_input(word, word % 2 == 0 ? even : odd);
+    bench_.ring().set_input(word, in_turn(word, even, odd));
 }
 
 void MasterSide::set_messages(std::size_t station, std::uint16_t bits) {

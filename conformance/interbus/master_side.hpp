@@ -37,11 +37,18 @@ enum class Limits : std::uint8_t {
   levels_exceeded,
 };
 
+// Words that a master copies: none, the first and the last one to each other's place, each to the place that
+// is as far from the end.
+enum class Copies : std::uint8_t { none, ends, all };
+
+// What an application orders in another state than run.
+enum class EarlyOrder : std::uint8_t { start, stop, id_cycle, output };
+
 // What a master finds when its supply comes.
 struct MasterScene {
   std::vector<interbus::VirtualStation> ring;
   std::vector<interbus::VirtualStation> expected{};  // empty: any ring is taken
-  bool copies = false;                               // the first input word to the last output word
+  Copies copies = Copies::none;
   kernel::Duration cycle_time{};
   unsigned disturbed = 0;  // the first cycles come back changed
   Limits limits = Limits::usual;
@@ -67,6 +74,8 @@ class MasterSide {
   // Nothing unless it is off or has given up the bus.
   void start(unsigned disturbed);
   void stop(bool is_disturbed);
+  // In run: the master is brought to that state, ordered this, and what comes of it is awaited.
+  void order_in(interbus::MasterState state, EarlyOrder order);
   // In run, up to the end of the next cycle, which suffers the faults.
   void cycle(const interbus::CycleFaults& faults = {});
   // The application; nothing unless it is in run.
@@ -86,6 +95,9 @@ class MasterSide {
   using Values = std::vector<std::int64_t>;
 
   bool is_idle() const;
+  void give(EarlyOrder order);
+  void await_stop();
+  void await_outputs_of_run();
   void limit_ring(const MasterScene& scene);
   void on_ring_cycle(bool is_id_cycle, interbus::CycleFaults& faults);
   void await_run();

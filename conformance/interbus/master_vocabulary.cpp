@@ -82,11 +82,11 @@ std::vector<SequenceWord> words_of_answers() {
 
 std::vector<SequenceWord> words_of_users() {
   return {{.word = "inputs",
-           .meaning = "the inputs of the stations stand like this",
+           .meaning = "the inputs of the stations stand like this, 0101h changed more from pair to pair",
            .numbers = {image_word("even"), image_word("odd")},
            .weight = 5},
           {.word = "outputs",
-           .meaning = "the application writes all outputs",
+           .meaning = "the application writes all outputs, 0101h changed more from pair to pair",
            .numbers = {image_word("even"), image_word("odd")},
            .weight = 3},
           {.word = "output",
@@ -101,37 +101,43 @@ std::vector<SequenceWord> words_of_users() {
 }
 
 std::vector<SequenceWord> words_of_rings() {
-  return {
-      {.word = "cut",
-       .meaning = "the cable in front of a station is cut until the bus is given up",
-       .numbers = {station()},
-       .weight = 1},
-      {.word = "ring",
-       .meaning = "another station of the same length (0, 3, 4), one more, or one less",
-       .numbers = {{"change", 0, 4, 0}, station()},
-       .weight = 1},
-      {.word = "stop",
-       .meaning = "the application stops the bus; the last cycle comes back changed",
-       .numbers = {{"disturbed", 0, 1, 0}},
-       .weight = 2},
-      {.word = "start",
-       .meaning = "the application starts the bus; the first cycles come back changed",
-       .numbers = {disturbed()},
-       .weight = 4},
-      {.word = "power",
-       .meaning = "the supply goes and comes, with a ring, and the configuration expects any (0), this "
-                  "or another one (2): the last station elsewhere (3), on another interface (4), missing (5)",
-       .numbers = {{"ring", 0, kRings - 1, 0},
-                   {"expects", 0, 5, 0, kExpectations},
-                   {"copies", 0, 1, 0},
-                   {"cycle_ms", 0, 70, 0, kRequests, true},
-                   disturbed(),
-                   {"limits", 0, 6, 0}},
-       .weight = 2},
-      {.word = "wait",
-       .meaning = "so many milliseconds without cycles",
-       .numbers = {{"ms", 1, 200, 1, kMilliseconds}},
-       .weight = 1}};
+  return {{.word = "cut",
+           .meaning = "the cable in front of a station is cut until the bus is given up",
+           .numbers = {station()},
+           .weight = 1},
+          {.word = "ring",
+           .meaning = "another station of the same length (0, 3, 4), one more, or one less",
+           .numbers = {{"change", 0, 4, 0}, station()},
+           .weight = 1},
+          {.word = "stop",
+           .meaning = "the application stops the bus; the last cycle comes back changed",
+           .numbers = {{"disturbed", 0, 1, 0}},
+           .weight = 2},
+          {.word = "start",
+           .meaning = "the application starts the bus; the first cycles come back changed",
+           .numbers = {disturbed()},
+           .weight = 4},
+          {.word = "power",
+           .meaning =
+               "the supply goes and comes, with a ring, and the configuration expects any (0), this "
+               "or another one (2): the last station elsewhere (3), on another interface (4), missing (5); "
+               "no word is copied, two (1), or each (2)",
+           .numbers = {{"ring", 0, kRings - 1, 0},
+                       {"expects", 0, 5, 0, kExpectations},
+                       {"copies", 0, 2, 0},
+                       {"cycle_ms", 0, 70, 0, kRequests, true},
+                       disturbed(),
+                       {"limits", 0, 6, 0}},
+           .weight = 2},
+          {.word = "wait",
+           .meaning = "so many milliseconds without cycles",
+           .numbers = {{"ms", 1, 200, 1, kMilliseconds}},
+           .weight = 1},
+          {.word = "early_order",
+           .meaning = "an order (0 start, 1 stop, 2 an ID cycle, 3 an output) in the state ready (0), "
+                      "identification (1), locating (2), bus stop (3)",
+           .numbers = {{"state", 0, 3, 0}, {"order", 0, 3, 0}},
+           .weight = 1}};
 }
 
 // As many as a sequence has: the printed window takes a million cycles.
@@ -235,7 +241,7 @@ MasterScene scene_of(const SequenceCommand& command) {
   if (numbers[1] == 1) scene.expected = scene.ring;
   if (numbers[1] == 2) scene.expected = ring_of((numbers[0] + 1) % kRings);
   if (numbers[1] > 2) scene.expected = misplaced(scene.ring, numbers[1]);
-  scene.copies = numbers[2] != 0;
+  scene.copies = static_cast<Copies>(numbers[2]);
   scene.cycle_time = numbers[3] * kernel::kMillisecond;
   scene.disturbed = static_cast<unsigned>(numbers[4]);
   scene.limits = static_cast<Limits>(numbers[5]);

@@ -26,7 +26,8 @@ enum class MasterWord : std::uint8_t {
   stop,
   start,
   power,
-  wait
+  wait,
+  early_order
 };
 
 SequenceVocabulary master_vocabulary();

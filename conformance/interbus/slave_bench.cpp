@@ -339,6 +339,18 @@ void SlaveBench::drive_at_receiver(line::Waveform& wave) {
   segment().run_until(end + settling_);
 }
 
+void SlaveBench::drive_at_receiver(const line::Levels& levels, std::size_t cut) {
+  keep_way_alive();
+  clear_views();
+  sent_at_ = now();
+  const line::Waveform whole{now(), rules().bit_rate, levels};
+  line::Waveform first{whole.start, whole.rate, levels.slice(0, cut)};
+  line::Waveform second{whole.time_of(cut), whole.rate, levels.slice(cut, levels.size() - cut)};
+  ring_.link_to(position_).drive(first);
+  ring_.link_to(position_).drive(second);
+  segment().run_until(whole.end() + settling_);
+}
+
 void SlaveBench::drive_return(bool on_branch, line::Waveform& wave) {
   const int neighbour = neighbours_.at(on_branch ? 1 : 0);
   FIELDPROOF_CHECK(neighbour > 0, "a case drives only what its needs have put there");

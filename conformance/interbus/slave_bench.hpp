@@ -126,6 +126,8 @@ class SlaveBench final : public CaseBench, private segment::Station {
   // Drives the IUT's incoming line itself and runs until it has answered. Clears the views before; the start
   // is set to now. After other stations it may send status telegrams through the ring first.
   void drive_at_receiver(line::Waveform& wave);
+  // The same with these levels in two transmissions without a gap between them.
+  void drive_at_receiver(const line::Levels& levels, std::size_t cut);
   // Drives the line that comes back from the station after OUT1 or OUT2, now, beside whatever else is driven.
   void drive_return(bool on_branch, line::Waveform& wave);
   // A whole data cycle as the station in front of the IUT would send it, alone in the ring.

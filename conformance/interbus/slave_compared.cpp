@@ -226,6 +226,47 @@ void run_between(SlaveTwins& twins, CaseJudge& judge, const Commands& middle) {
   run(twins, judge, commands);
 }
 
+// What shows each coding: in a word that is marked, in one whose check is wrong, in orders and messages.
+std::vector<Commands> all_codings() {
+  std::vector<SequenceCommand> commands;
+  for (const std::int64_t orders : {1, 2, 0}) {
+    commands.push_back(id(orders));
+    commands.push_back(command(SlaveWord::data, {{2, 1}}));
+    commands.push_back(command(SlaveWord::data, {{3, 0x8000}}));
+  }
+  for (const std::int64_t message : {1, 2, 0}) {
+    commands.push_back(command(SlaveWord::periphery, {{0, message & 1}, {1, message >> 1}}));
+    commands.push_back(id(0));
+  }
+  commands.push_back(id(4));
+  commands.push_back(id(0));
+  return {commands};
+}
+
+// What a receiver that samples in the middle of a bit stands, and one that samples beside it does not.
+std::vector<Commands> edges_at_both_limits() {
+  std::vector<Commands> all;
+  for (const std::int64_t longer : {-3, 3}) {
+    for (const std::int64_t per_mille : {-10, 10}) {
+      for (const std::int64_t word : {0x5555, 0x00FE})
+        all.push_back({command(SlaveWord::pulses, {{0, longer}, {1, word}, {2, per_mille}})});
+    }
+  }
+  return all;
+}
+
+// A right cycle in two transmissions, cut at each level of its first telegrams and of its last ones.
+std::vector<Commands> each_cut() {
+  std::vector<Commands> all;
+  for (const std::int64_t telegram : {0, 1, 5, 8, 9}) {
+    for (std::int64_t level = 1; level < line::kDataTelegramLevels; ++level) {
+      for (const std::int64_t gap : {0, 2})
+        all.push_back({command(SlaveWord::parts, {{0, telegram}, {1, level}, {3, gap}})});
+    }
+  }
+  return all;
+}
+
 struct Share {
   std::vector<Commands> (*family)();
   std::size_t quick;
@@ -245,6 +286,17 @@ std::function<void(SlaveBench&, CaseJudge&)> each_of(std::vector<Share> shares) 
         run_between(twins, judge, all[(first + n * all.size() / count) % all.size()]);
     }
   };
+}
+
+// With outputs that are 0, because nobody can say when the slave resets itself: by then it may have.
+void silence_in_a_reset(SlaveBench& bench, CaseJudge& judge) {
+  SlaveTwins twins(bench);
+  for (std::int64_t orders = 0; orders < 3; ++orders) {
+    run(twins, judge,
+        {command(SlaveWord::inputs), id(0), id(4), command(SlaveWord::silence, {{0, 5}}), id(orders),
+         returns(false), returns(true), command(SlaveWord::data), command(SlaveWord::kept_alive), id(0),
+         returns(false), returns(true), command(SlaveWord::data)});
+  }
 }
 
 void drawn(SlaveBench& bench, CaseJudge& judge) {
@@ -308,9 +360,17 @@ SlaveCase compared(std::string_view id, std::string stimulus, std::vector<MustCa
   return made;
 }
 
-}  // namespace
+std::vector<SlaveCase> cases_of_other_codings() {
+  std::vector<SlaveCase> all;
+  for (const OtherCoding& coding : other_codings()) {
+    all.push_back(compared(coding.id, fmt::format("The same with {}.", coding.setting),
+                           {{std::string(coding.mutant), std::string(coding.reason)}},
+                           each_of({{all_codings, 1}, {each_value, 2, 60}}), coding.change));
+  }
+  return all;
+}
 
-std::vector<SlaveCase> slave_compared_cases() {
+std::vector<SlaveCase> compared_as_usual() {
   const std::string after = " after a data cycle with both interfaces on; then cycles that show the state.";
   return {
       compared("each_value_of_each_word", "Each word of sequences with each boundary value," + after,
@@ -331,18 +391,40 @@ std::vector<SlaveCase> slave_compared_cases() {
       compared("within_a_reset_of_the_outgoing_bus",
                "ID cycles, silence and supply at both ends of the time of control_reset," + after,
                {{"outgoing_reset_clears_outputs", "outputs_wrong"}}, each_of({{within_a_reset, 63}})),
+      compared("silence_within_a_reset_of_the_outgoing_bus",
+               "Silence that resets the slave while it keeps the outgoing bus in reset, then an ID cycle.",
+               {{"reset_ends_outgoing_reset", "octet_wrong"}}, silence_in_a_reset),
+      compared("each_cut_of_a_cycle", "A data cycle in two transmissions without a gap," + after,
+               {{"loses_the_rest_of_a_cut_telegram", "outputs_wrong"}}, each_of({{each_cut, 24}})),
+      compared("edges_at_both_limits",
+               "A data cycle at 1 % beside the bit rate whose edges lie 15 % of a bit beside their places," +
+                   after,
+               {{"samples_late", "outputs_wrong"}},
+               [](SlaveBench& bench, CaseJudge& judge) {
+                 bench.require_line_interface();
+                 each_of({{edges_at_both_limits, 8}})(bench, judge);
+               }),
       compared("many_cycles", "270 data cycles and 270 ID cycles," + after,
                {{"loses_every_200th_cycle", "outputs_wrong"}}, each_of({{many_cycles, 2}})),
       compared("drawn_sequences", "Sequences of all words at random.", {{"crc_preset_zero", "octet_wrong"}},
-               drawn),
-      compared("other_codings", "The same with each coding another one.",
-               {{"final_xor_hard_coded", "octet_wrong"}}, some_of_all(), change_each_coding),
-      compared("short_times", "The same with short delays and a short silence.",
-               {{"delays_four_bits", "passed_at_another_time"}}, some_of_all(), change_to_short),
-      compared("long_times", "The same with long delays and a long silence.",
-               {{"latches_5_ms_late", "outputs_at_another_time"}}, some_of_all(), change_to_long),
-      compared("many_words", "The same with 255 words.", {{"loses_input_words_above_16", "octet_wrong"}},
-               each_of({{each_value, 8, 60}}), change_to_many_words, kCodeOfMany)};
+               drawn)};
+}
+
+std::vector<SlaveCase> compared_elsewhere() {
+  return {compared("other_codings", "The same with each coding another one.",
+                   {{"final_xor_hard_coded", "octet_wrong"}}, some_of_all(), change_each_coding),
+          compared("short_times", "The same with short delays and a short silence.",
+                   {{"delays_four_bits", "passed_at_another_time"}}, some_of_all(), change_to_short),
+          compared("long_times", "The same with long delays and a long silence.",
+                   {{"latches_5_ms_late", "outputs_at_another_time"}}, some_of_all(), change_to_long),
+          compared("many_words", "The same with 255 words.", {{"loses_input_words_above_16", "octet_wrong"}},
+                   each_of({{each_value, 8, 60}}), change_to_many_words, kCodeOfMany)};
+}
+
+}  // namespace
+
+std::vector<SlaveCase> slave_compared_cases() {
+  return joined({compared_as_usual(), cases_of_other_codings(), compared_elsewhere()});
 }
 
 }  // namespace fieldproof::conformance

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 
 namespace fieldproof::conformance::slave_seeded_faults {
 
@@ -74,6 +75,44 @@ void DoesNotRetime::change(line::Waveform& wave) {
   }
   wave.levels = distorted;
   wave.rate *= static_cast<std::int64_t>(kPerBit);
+}
+
+namespace {
+
+constexpr std::int64_t kFinePerBit = 100;
+constexpr std::int64_t kLate = 24;  // of these
+
+}  // namespace
+
+void SamplesLate::receive(segment::PortIndex port, const line::Waveform& reception) {
+  told_ = reception.start;
+  if (port != interbus::kFromUpstream) return Slave::receive(port, reception);
+  const std::int64_t bit_rate = rules().bit_rate;
+  const auto factor = static_cast<std::size_t>(
+      std::max<std::int64_t>(1, (kFinePerBit * bit_rate + reception.rate / 2) / reception.rate));
+  line::Waveform fine{reception.start, reception.rate * static_cast<std::int64_t>(factor), {}};
+  for (std::size_t n = 0; n < reception.levels.size(); ++n)
+    fine.levels.append_fill(reception.levels[n], factor);
+  finder_.receive(reception, [&](const line::Waveform& wave, const line::Telegram& telegram) {
+    if (&wave != &reception) return;
+    for (std::size_t n = 0; n < kLate; ++n) fine.levels.set(telegram.level * factor + n, true);
+  });
+  Slave::receive(port, fine);
+}
+
+void SamplesLate::change(line::Waveform& wave) {
+  wave.start = std::max(told_, wave.start - kernel::levels_duration(kLate, rules().bit_rate * kFinePerBit));
+}
+
+void LosesTheRestOfACutTelegram::receive(segment::PortIndex port, const line::Waveform& reception) {
+  if (port != interbus::kFromUpstream) return Slave::receive(port, reception);
+  const bool has_cut = finder_.pending_from() != kernel::kNever;
+  const kernel::Time until = finder_.pending_until();
+  finder_.receive(reception, [](const line::Waveform&, const line::Telegram&) {});
+  if (!has_cut || until <= reception.start) return Slave::receive(port, reception);
+  line::Waveform rest = reception;
+  for (std::size_t n = 0; n < rest.levels.size() && rest.time_of(n) < until; ++n) rest.levels.set(n, true);
+  Slave::receive(port, rest);
 }
 
 void SendsDataAtPowerUp::on_time(kernel::Time now) {

@@ -87,6 +87,36 @@ class DoesNotRetime : public ChangesWhatItDrives {
   void change(line::Waveform& wave) override;
 };
 
+// Its clock starts a quarter of a bit after the edge; what it passes on leaves as early as if it did not.
+class SamplesLate : public ChangesWhatItDrives {
+ public:
+  explicit SamplesLate(const SlaveConfiguration& configuration)
+      : ChangesWhatItDrives(configuration),
+        finder_(line::shared_telegram_code(configuration.rules.telegram), configuration.rules.bit_rate) {}
+  void receive(segment::PortIndex port, const line::Waveform& reception) override;
+  void on_time(kernel::Time now) override {
+    told_ = now;
+    Slave::on_time(now);
+  }
+
+ private:
+  void change(line::Waveform& wave) override;
+  line::TelegramReceiver finder_;
+  kernel::Time told_{};
+};
+
+// What goes on with a telegram that the transmission before has cut is idle to it.
+class LosesTheRestOfACutTelegram : public Slave {
+ public:
+  explicit LosesTheRestOfACutTelegram(const SlaveConfiguration& configuration)
+      : Slave(configuration),
+        finder_(line::shared_telegram_code(configuration.rules.telegram), configuration.rules.bit_rate) {}
+  void receive(segment::PortIndex port, const line::Waveform& reception) override;
+
+ private:
+  line::TelegramReceiver finder_;
+};
+
 class SendsDataAtPowerUp : public Slave {
  public:
   using Slave::Slave;

@@ -1,5 +1,8 @@
 #include "conformance/interbus/slave_mutants.hpp"
 
+#include <algorithm>
+
+#include "conformance/interbus/other_codings.hpp"
 #include "conformance/interbus/slave_driving_seeded_faults.hpp"
 #include "conformance/interbus/slave_frame_seeded_faults.hpp"
 #include "conformance/interbus/slave_register_seeded_faults.hpp"
@@ -80,6 +83,10 @@ std::vector<SlaveRow> slave_telegram_rows() {
        mutant<IgnoresSelectInsideACycle>()},
       {"needs_idle_between_telegrams", "", "misses a start bit right after a stop bit",
        mutant<NeedsIdleBetweenTelegrams>()},
+      {"loses_the_rest_of_a_cut_telegram", "",
+       "takes the rest of a telegram that comes in two transmissions for idle",
+       mutant<LosesTheRestOfACutTelegram>()},
+      {"samples_late", "", "samples three quarters into each bit", mutant<SamplesLate>()},
       {"follows_any_rate", "", "adapts its clock to any bit rate within 10 %", mutant<FollowsAnyRate>()},
       {"clock_too_fast", "", "has a clock that runs 3.5 % fast",
        with_rules<interbus::Slave>([](Rules& rules) { rules.bit_rate += rules.bit_rate * 35 / 1000; })},
@@ -155,6 +162,8 @@ std::vector<SlaveRow> slave_management_rows() {
        with_rules<interbus::Slave>([](Rules& rules) { rules.silence_limit = Rules{}.silence_limit; })},
       {"kept_alive_by_returns", "", "takes telegrams from its outgoing interfaces for a sign of life",
        mutant<KeptAliveByReturns>()},
+      {"reset_ends_outgoing_reset", "", "ends a reset of the outgoing bus when silence resets itself",
+       mutant<ResetEndsOutgoingReset>()},
       {"reset_leaves_interfaces_on", "", "leaves its outgoing interfaces on in a reset",
        mutant<ResetLeavesInterfacesOn>()},
       {"keeps_all_without_supply", "", "goes on after the supply was away as if nothing had been",
@@ -203,11 +212,22 @@ std::vector<SlaveRow> slave_management_rows() {
   };
 }
 
+// Each has one coding as usual, whatever its setting says.
+std::vector<SlaveRow> slave_coding_rows() {
+  std::vector<SlaveRow> rows;
+  for (const OtherCoding& coding : other_codings()) {
+    if (coding.does.empty() || std::ranges::find(rows, coding.mutant, &SlaveRow::name) != rows.end())
+      continue;
+    rows.push_back({coding.mutant, "", coding.does, with_rules<interbus::Slave>(coding.keep)});
+  }
+  return rows;
+}
+
 }  // namespace
 
 const SlaveMutants& slave_mutants() {
-  static const SlaveMutants table(
-      "slave", {slave_check_rows, slave_telegram_rows, slave_register_rows, slave_management_rows});
+  static const SlaveMutants table("slave", {slave_check_rows, slave_telegram_rows, slave_register_rows,
+                                            slave_management_rows, slave_coding_rows});
   return table;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "conformance/interbus/slave_seeded_faults.hpp"
 
@@ -39,6 +40,20 @@ class ResetLeavesInterfacesOn : public Slave {
 };
 
 // Takes no order of a control word that has a bit without a meaning.
+// Begins anew as if the supply came back, but for its messages.
+class ResetEndsOutgoingReset : public Slave {
+  using Slave::Slave;
+  void on_reset(kernel::Time now) override {
+    Slave::on_reset(now);
+    if (std::exchange(is_beginning_, true)) return;
+    const std::uint16_t kept = messages();
+    set_power(true, now);
+    set_messages(kept);
+    is_beginning_ = false;
+  }
+  bool is_beginning_ = false;
+};
+
 class IgnoresWordsWithReservedBits : public Slave {
   using Slave::Slave;
   std::uint16_t control_word(std::uint16_t received) override {

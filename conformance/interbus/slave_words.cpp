@@ -25,12 +25,15 @@ constexpr std::array<std::int64_t, 8> kManyCycles{1, 1, 1, 2, 2, 3, 210, 830};
 constexpr std::array<std::int64_t, 4> kStopGaps{2, 2, 1, 13};
 constexpr std::array<std::int64_t, 2> kOffRates{-60, 60};
 constexpr std::array<std::int64_t, 2> kOffPulses{-3, 3};
+constexpr std::array<std::int64_t, 3> kRightRates{0, -10, 10};
+constexpr std::array<std::int64_t, 5> kCuts{1, 2, 4, 7, 12};
 // Of a control word, whatever their places are.
 constexpr std::int64_t kRemoteOff = 1;
 constexpr std::int64_t kBranchOff = 2;
 constexpr std::int64_t kReset = 4;
 constexpr std::int64_t kAcknowledge = 8;
 
+constexpr std::int64_t kPerMille = 1'000;
 constexpr std::size_t kUsualFront = 6;  // loopback word, and a word for a station after each interface
 constexpr std::array<std::uint16_t, 2> kBehind{0x7E57, 0x1EA5};
 
@@ -229,8 +232,9 @@ std::vector<SequenceWord> slave_words() {
        }(),
        0, 0, 2},
       {"silence",
-       "silence: 0 half of the limit, 1 up to the limit, 2 beyond it, 3 three limits, 4 70 s",
-       {{"how_long", 0, 4, 2}},
+       "silence: 0 half of the limit, 1 up to the limit, 2 beyond it, 3 three limits, 4 70 s, 5 beyond it by "
+       "half of its tolerance",
+       {{"how_long", 0, 5, 2}},
        0,
        0,
        2},
@@ -262,9 +266,19 @@ std::vector<SequenceWord> slave_words() {
        .is_loss = true,
        .is_no_frame = true},
       {.word = "pulses",
-       .meaning = "a data cycle whose low pulses are so many twentieths of a bit longer",
-       .numbers = {{"longer", -3, 3, 3, kOffPulses}, slave_word("word", 0x1234)},
-       .is_no_frame = true}};
+       .meaning = "a data cycle whose low pulses are so many twentieths of a bit longer, so many per mille "
+                  "faster than its bit rate",
+       .numbers = {{"longer", -3, 3, 3, kOffPulses},
+                   slave_word("word", 0x1234),
+                   {"per_mille", -10, 10, 0, kRightRates, true}},
+       .is_no_frame = true},
+      {.word = "parts",
+       .meaning = "a right data cycle in two transmissions without a gap, cut at a level of a telegram",
+       .numbers = {{"telegram", 0, 13, 0},
+                   {"level", 1, 12, 6, kCuts},
+                   slave_word("word", 0x1234),
+                   {"gap", 0, 100, 2, kGaps}},
+       .weight = 2}};
 }
 
 void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
@@ -307,6 +321,8 @@ void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
       return drive_at_rate(command, judge);
     case SlaveWord::pulses:
       return drive_pulses(command, judge);
+    case SlaveWord::parts:
+      return drive_parts(command);
   }
 }
 
@@ -321,7 +337,6 @@ void SlaveActs::lose_supply(kernel::Duration duration) {
 // Who receives telegrams has no levels that could be off: nothing comes. What a slave reads of it is its own
 // affair, as long as it does not take it. What it keeps of it is lost.
 void SlaveActs::drive_at_rate(const SequenceCommand& command, CaseJudge& judge) {
-  constexpr std::int64_t kPerMille = 1'000;
   if (!twins_.bench().has_line_interface()) return;
   const auto word = static_cast<std::uint16_t>(command.numbers[1]);
   twins_.each([&](SlaveBench& one) {
@@ -335,6 +350,19 @@ void SlaveActs::drive_at_rate(const SequenceCommand& command, CaseJudge& judge) 
   lose_supply(kernel::kMillisecond);
 }
 
+void SlaveActs::drive_parts(const SequenceCommand& command) {
+  const Numbers numbers = command.numbers;
+  twins_.each([&](SlaveBench& one) {
+    const auto gap = static_cast<std::size_t>(numbers[3]);
+    const line::Levels levels =
+        one.direct_data_cycle(words_of(one, numbers[2], ~numbers[2] & 0xFFFF), static_cast<unsigned>(gap));
+    const std::size_t pitch = line::kDataTelegramLevels + gap;
+    const std::size_t telegram = static_cast<std::size_t>(numbers[0]) % (levels.size() / pitch);
+    one.drive_at_receiver(levels, telegram * pitch + static_cast<std::size_t>(numbers[1]));
+  });
+  note_what_came(false);
+}
+
 void SlaveActs::drive_pulses(const SequenceCommand& command, CaseJudge& judge) {
   constexpr double kMostOff = 0.03;
   if (!twins_.bench().has_line_interface()) return;
@@ -343,7 +371,8 @@ void SlaveActs::drive_pulses(const SequenceCommand& command, CaseJudge& judge) {
     const line::Levels levels =
         with_moved_edges(one.direct_data_cycle(words_of(one, word, ~word & 0xFFFF), 2),
                          [&](bool falls) { return falls ? 0 : command.numbers[0]; });
-    line::Waveform wave{one.now(), one.rules().bit_rate * kEdgesPerBit, levels};
+    const std::int64_t rate = one.rules().bit_rate * (kPerMille + command.numbers[2]) / kPerMille;
+    line::Waveform wave{one.now(), rate * kEdgesPerBit, levels};
     one.drive_at_receiver(wave);
   });
   note_what_came(false);
@@ -384,9 +413,10 @@ void SlaveActs::be_silent(std::int64_t how_long) {
   const interbus::Rules& rules = twins_.bench().rules();
   const kernel::Duration beyond =
       rules.silence_tolerance + rules.silence_tolerance / 2 + twins_.bench().bits(2);
-  const std::array<kernel::Duration, 5> lengths{rules.silence_limit / 2, rules.silence_limit - beyond,
-                                                rules.silence_limit + beyond,
-                                                3 * rules.silence_limit + beyond, 70 * kernel::kSecond};
+  const std::array<kernel::Duration, 6> lengths{
+      rules.silence_limit / 2,      rules.silence_limit - beyond,
+      rules.silence_limit + beyond, 3 * rules.silence_limit + beyond,
+      70 * kernel::kSecond,         rules.silence_limit + rules.silence_tolerance / 2};
   const kernel::Time until = std::max(twins_.bench().now() + twins_.bench().bits(1),
                                       last_telegram_ + lengths.at(static_cast<std::size_t>(how_long)));
   twins_.each([&](SlaveBench& one) { one.segment().run_until(until); });

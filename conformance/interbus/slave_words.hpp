@@ -27,6 +27,7 @@ enum class SlaveWord : std::uint8_t {
   no_stop,
   rate,
   pulses,
+  parts,
 };
 
 std::vector<SequenceWord> slave_words();
@@ -42,6 +43,7 @@ class SlaveActs {
  private:
   void send(const SequenceCommand& command, void (*append)(SlaveBench&, const SequenceCommand&));
   void drive_at_rate(const SequenceCommand& command, CaseJudge& judge);
+  void drive_parts(const SequenceCommand& command);
   void drive_pulses(const SequenceCommand& command, CaseJudge& judge);
   void lose_supply(kernel::Duration duration);
   void periphery(const SequenceCommand& command);
