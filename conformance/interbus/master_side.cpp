@@ -235,7 +235,8 @@ void MasterSide::order_in(MasterState state, EarlyOrder order) {
     while (is_running() && bench_.run_cycle()) {
     }
   }
-  const bool is_there = bench_.run_until([&] { return bench_.status().state == state; }, kernel::kSecond);
+  const bool is_there =
+      bench_.run_until([&] { return bench_.status().state == state; }, longest_recognition());
   expect(is_there, "state_missing", fmt::format("the state {}", interbus::name(state)), "another one");
   give(order);
   if (order == EarlyOrder::stop) {
@@ -266,6 +267,12 @@ void MasterSide::give(EarlyOrder order) {
   }
 }
 
+// With the silence before it.
+kernel::Duration MasterSide::longest_recognition() const {
+  const interbus::Rules& rules = bench_.rules();
+  return kernel::kSecond + 2 * (rules.silence_limit + 2 * rules.silence_tolerance);
+}
+
 // No data cycle with outputs 0 is owed: it ends at once.
 void MasterSide::await_stop() {
   bench_.run_until([this] { return bench_.status().state == MasterState::off; }, kernel::kMillisecond);
@@ -279,7 +286,7 @@ void MasterSide::await_stop() {
 
 // What was written before has no effect.
 void MasterSide::await_outputs_of_run() {
-  bench_.run_until([this] { return !is_idle(); }, 10 * kernel::kMillisecond);
+  bench_.run_until([this] { return is_running(); }, longest_recognition());
   if (!bench_.wait_for_run()) return settle();
   constexpr int kUntilWritten = 3;
   for (int n = 0; n < kUntilWritten && bench_.run_cycle(); ++n) {

@@ -98,6 +98,7 @@ class MasterSide {
   void give(EarlyOrder order);
   void await_stop();
   void await_outputs_of_run();
+  kernel::Duration longest_recognition() const;
   void limit_ring(const MasterScene& scene);
   void on_ring_cycle(bool is_id_cycle, interbus::CycleFaults& faults);
   void await_run();
