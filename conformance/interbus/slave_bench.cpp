@@ -368,6 +368,15 @@ line::Levels SlaveBench::direct_data_cycle(std::span<const std::uint16_t> words,
   return writer.levels();
 }
 
+line::Levels SlaveBench::direct_id_cycle(std::uint16_t control) {
+  TrainWriter writer(rules());
+  octets_.clear();
+  put_word(loopback_word_);
+  put_word(control);
+  writer.cycle(true, octets_, model_.check().of(octets_), rules().status_clean);
+  return writer.levels();
+}
+
 // ---- views ----
 
 std::optional<CycleOnLine> SlaveBench::cycle_on(LineView& view, std::size_t n) {

@@ -132,6 +132,7 @@ class SlaveBench final : public CaseBench, private segment::Station {
   void drive_return(bool on_branch, line::Waveform& wave);
   // A whole data cycle as the station in front of the IUT would send it, alone in the ring.
   line::Levels direct_data_cycle(std::span<const std::uint16_t> words, unsigned gap_bits);
+  line::Levels direct_id_cycle(std::uint16_t control);
 
   // ---- a twin ----
   // The same ring with a reference slave at the IUT's position. It takes silence for a reset as early (-1) or

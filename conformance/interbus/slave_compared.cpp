@@ -233,6 +233,9 @@ std::vector<Commands> all_codings() {
     commands.push_back(id(orders));
     commands.push_back(command(SlaveWord::data, {{2, 1}}));
     commands.push_back(command(SlaveWord::data, {{3, 0x8000}}));
+    // A station in front has put its own check in the place of a wrong one.
+    commands.push_back(command(SlaveWord::data));
+    commands.back().faults.push_back({SequenceFaultKind::flip, 3, 6});
   }
   for (const std::int64_t message : {1, 2, 0}) {
     commands.push_back(command(SlaveWord::periphery, {{0, message & 1}, {1, message >> 1}}));
@@ -291,11 +294,22 @@ std::function<void(SlaveBench&, CaseJudge&)> each_of(std::vector<Share> shares) 
 // With outputs that are 0, because nobody can say when the slave resets itself: by then it may have.
 void silence_in_a_reset(SlaveBench& bench, CaseJudge& judge) {
   SlaveTwins twins(bench);
-  for (std::int64_t orders = 0; orders < 3; ++orders) {
-    run(twins, judge,
-        {command(SlaveWord::inputs), id(0), id(4), command(SlaveWord::silence, {{0, 5}}), id(orders),
-         returns(false), returns(true), command(SlaveWord::data), command(SlaveWord::kept_alive), id(0),
-         returns(false), returns(true), command(SlaveWord::data)});
+  const interbus::Rules& rules = bench.rules();
+  const std::array<std::uint16_t, 3> orders{0, rules.control_remote_off, rules.control_local_off};
+  for (const std::uint16_t control : orders) {
+    run(twins, judge, {command(SlaveWord::inputs), id(0), id(4), command(SlaveWord::silence, {{0, 5}})});
+    // The stations in front have reset themselves, too.
+    twins.each([&](SlaveBench& one) {
+      line::Waveform wave{one.now(), one.rules().bit_rate, one.direct_id_cycle(control)};
+      one.drive_at_receiver(wave);
+    });
+    if (!twins.agree(judge, "an ID cycle in the time of the reset")) continue;
+    twins.each([&](SlaveBench& one) {
+      const std::vector<std::uint16_t> words(one.words(), 0x1234);
+      line::Waveform wave{one.now(), one.rules().bit_rate, one.direct_data_cycle(words, 2)};
+      one.drive_at_receiver(wave);
+    });
+    twins.agree(judge, "a data cycle after that");
   }
 }
 

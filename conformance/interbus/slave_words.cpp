@@ -233,7 +233,7 @@ std::vector<SequenceWord> slave_words() {
        0, 0, 2},
       {"silence",
        "silence: 0 half of the limit, 1 up to the limit, 2 beyond it, 3 three limits, 4 70 s, 5 beyond it by "
-       "half of its tolerance",
+       "a quarter of its tolerance",
        {{"how_long", 0, 5, 2}},
        0,
        0,
@@ -416,7 +416,7 @@ void SlaveActs::be_silent(std::int64_t how_long) {
   const std::array<kernel::Duration, 6> lengths{
       rules.silence_limit / 2,      rules.silence_limit - beyond,
       rules.silence_limit + beyond, 3 * rules.silence_limit + beyond,
-      70 * kernel::kSecond,         rules.silence_limit + rules.silence_tolerance / 2};
+      70 * kernel::kSecond,         rules.silence_limit + rules.silence_tolerance / 4};
   const kernel::Time until = std::max(twins_.bench().now() + twins_.bench().bits(1),
                                       last_telegram_ + lengths.at(static_cast<std::size_t>(how_long)));
   twins_.each([&](SlaveBench& one) { one.segment().run_until(until); });

@@ -79,18 +79,18 @@ void TelegramSpeaker::hand_over(unsigned port) {
 
 // ---- what it says ----
 
-// A station that is told a cut telegram late answers as if it had been told in time.
+// A station that is told a cut telegram late answers as if it had been told in time; so does what follows, as
+// soon as it can.
 void TelegramSpeaker::transmit(unsigned port, line::Waveform& wave) {
   line::TelegramReceiver receiver(*code_, heard_.rate);
   kernel::Time begin{};
-  kernel::Time end{};
+  kernel::Time end{kernel::Duration::min()};
   const auto say = [&] {
     if (!said_.empty()) bench_->send(port, begin, said_);
     said_.clear();
   };
-  const kernel::Duration late = std::max(kernel::Duration{}, now_ - wave.start);
   const auto take = [&](const line::Waveform& levels, const line::Telegram& telegram) {
-    const kernel::Time start = levels.time_of(telegram.level) + late;
+    const kernel::Time start = std::max({levels.time_of(telegram.level), now_, end});
     const iut::Character one = character_of(telegram, start, heard_.rate);
     if (start != end) say();
     if (said_.empty()) begin = start;
