@@ -92,6 +92,28 @@ TEST_F(EmcVerb, SearchesWhereEachCriterionIsSeenFirst) {
   EXPECT_EQ(read("one.json"), read("two.json"));
 }
 
+// One wrong word in a probe of 1 s, and none in the test of the table that lasts as long.
+TEST_F(EmcVerb, JudgesWhatTheSearchSawAtVoltagesThatTheTableReaches) {
+  const auto searched = [&](const std::string& level) {
+    return prepared({"emc", "valve_bus", "--test-levels", level, "--search", "--duration", "1s",
+                     "--repetition", "100kHz", "--polarity", "+", "--seed", "1", "--json", "emc.json",
+                     "--out", "kept"})
+        .run();
+  };
+  const Called failed = searched("x:1500");
+  EXPECT_EQ(failed.exit_code, 1) << failed.out << failed.err;
+  EXPECT_HOLDS(failed.out, "seen by the search, in a test of 1.000 s");
+  const nlohmann::json tests = json("emc.json").at("tests");
+  ASSERT_EQ(tests.size(), 2U);
+  EXPECT_EQ(tests[0].at("criterion"), "B");
+  EXPECT_EQ(tests[1].at("criterion"), "D");
+  EXPECT_EQ(tests[1].at("of_search_s"), 1.0);
+  expect_valid({"emc.json"}, "emc");
+  const Called again = prepared({"replay", "kept/valve_bus-1-2.case.json"}).run();
+  EXPECT_HOLDS(again.out, "criterion D: 1 words were accepted and nobody had sent them");
+  EXPECT_EQ(searched("x:600").exit_code, 0) << "it was seen above what is tested";
+}
+
 TEST_F(EmcVerb, SearchesBesideLevelsThatAreGivenWhereItIsAsked) {
   const Called given = call({"--test-levels", "4", "--profile", "C", "--json", "given.json"});
   EXPECT_FALSE(json("given.json").contains("thresholds"));
