@@ -90,9 +90,16 @@ bool FfBench::write(FfAddress address, const Octets& data) {
   return is_taken;
 }
 
-void FfBench::order_transfer(std::uint8_t node) {
-  station_->order_transfer(node, now());
+bool FfBench::order_transfer(std::uint8_t node) {
+  const bool is_taken = station_->order_transfer(node, now());
   refresh_iut();
+  return is_taken;
+}
+
+bool FfBench::ask_user_request(const Octets& request) {
+  const bool is_taken = station_->ask(request, now());
+  refresh_iut();
+  return is_taken;
 }
 
 std::vector<DrivenDlpdu> FfBench::serve(kernel::Time until, const Answers& answers) {

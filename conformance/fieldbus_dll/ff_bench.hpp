@@ -95,7 +95,9 @@ class FfBench final : public LinkBench {
   // False when the IUT refuses it.
   bool submit(Priority priority, const Octets& data, fieldbus_dll::FfAddress to = kPeersAddress);
   bool write(fieldbus_dll::FfAddress address, const Octets& data);
-  void order_transfer(std::uint8_t node);
+  bool order_transfer(std::uint8_t node);
+  // Octets as they are, which need not be a request.
+  bool ask_user_request(const Octets& request);
   // To which it has submitted.
   const std::set<fieldbus_dll::FfAddress>& destinations() const { return destinations_; }
 

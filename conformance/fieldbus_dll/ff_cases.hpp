@@ -25,6 +25,8 @@ std::vector<FfCase> ff_frame_cases();
 std::vector<FfCase> ff_link_settings_cases();
 std::vector<FfCase> ff_link_times_cases();
 std::vector<FfCase> ff_endings_cases();
+std::vector<FfCase> ff_request_cases();
+std::vector<FfCase> ff_reception_cases();
 std::vector<FfCase> ff_schedule_cases();
 std::vector<FfCase> ff_circulation_cases();
 std::vector<FfCase> ff_rotation_cases();

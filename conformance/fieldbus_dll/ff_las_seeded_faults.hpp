@@ -328,7 +328,7 @@ class ScheduleVersionIgnored : public FfLas {
 
 class OrderIgnored : public FfLas {
   using FfLas::FfLas;
-  void order_transfer(std::uint8_t, Time) override {}
+  bool order_transfer(std::uint8_t, Time) override { return true; }
 };
 
 class StaysBehindTransfer : public FfLas {

@@ -116,14 +116,15 @@ std::vector<FfCase> ff_link_settings_cases() {
                          ff_paper("duration of the token"),
                          {{"duration_of_12_bits", "token_not_returned"},
                           {"duration_with_sign", "token_not_returned"},
+                          {"duration_in_ns_of_32_bits", "frames_missing"},
                           {"mute_after_activation", "token_not_returned"}},
                          {{memory("the size of the duration"), {"frames_missing", "token_not_returned"}}}),
-               {{7, 7},
+               {{8, 8},
                 {submit({time_available, time_available, time_available}, 200),
-                 send("a PT for 4096, 4100, 8192, 16384, 32768, 32780, 65535 octet durations, in turn",
+                 send("a PT for 4096, 4100, 8192, 16384, 16800, 32768, 32780, 65535 octet durations, in turn",
                       [](FfScene& scene) {
-                        constexpr std::array kDurations{4'096U,  4'100U,  8'192U, 16'384U,
-                                                        32'768U, 32'780U, 65'535U};
+                        constexpr std::array kDurations{4'096U,  4'100U,  8'192U,  16'384U,
+                                                        16'800U, 32'768U, 32'780U, 65'535U};
                         return scene.bench.pt(time_available, kDurations[scene.round]);
                       }),
                  used({1, 2, 3}, {"frames_missing", "sent_twice"})}}),

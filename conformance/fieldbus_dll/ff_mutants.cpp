@@ -4,6 +4,7 @@
 #include "conformance/fieldbus_dll/ff_ending_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_sequence_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/ff_request_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_sequence_seeded_faults.hpp"
 
 namespace fieldproof::conformance {
@@ -199,6 +200,54 @@ std::vector<FfRow> ff_frame_rows() {
   };
 }
 
+std::vector<FfRow> ff_request_rows() {
+  using namespace ff_seeded_faults;
+  return {
+      {"unknown_requests_taken", "", "refuses no request that it does not know",
+       mutant<UnknownRequestsTaken>()},
+      {"orders_taken", "", "takes the order of a link master, though it is none", mutant<OrdersTaken>()},
+      {"priority_zero_accepted", "", "does not refuse data of priority 0", mutant<AcceptsPriority>(0U)},
+      {"priority_four_accepted", "", "does not refuse data of priority 4", mutant<AcceptsPriority>(4U)},
+      {"no_data_is_the_usual_data", "", "takes a longest DLSDU of 0 for that of the usual link",
+       with_rules<FfStation>([](FfRules& rules) {
+         if (rules.link.most_data[2] == 0) rules.link.most_data[2] = 64;
+       })},
+      {"buffers_of_64", "", "cuts its buffers at 64 octets, whatever its link carries",
+       mutant<BuffersOf64>()},
+      {"four_buffers", "", "publishes four buffers and no more", mutant<KnowsSoMany>(4U, 1'000U)},
+      {"eight_subscriptions", "", "subscribes to eight buffers and no more", mutant<KnowsSoMany>(1'000U, 8U)},
+      {"urgent_behind_those_of_the_token", "",
+       "sends what is submitted during a token after what waited before", mutant<UrgentBehindThose>()},
+      {"lost_beside_the_last", "", "forgets what is submitted while its last DT1 is on the line",
+       mutant<LostBesideTheLast>()},
+      {"node_with_sign", "", "spoils the link of its own address when its node is above 7F",
+       mutant<NodeWithSign>()},
+      {"duration_in_ns_of_32_bits", "", "counts the duration in nanoseconds of 32 bits",
+       mutant<DurationReadAs>(+[](std::uint16_t read) {
+         return static_cast<std::int64_t>(static_cast<std::uint32_t>(read * 256'000ULL) / 256'000U);
+       })},
+  };
+}
+
+std::vector<FfRow> ff_reception_rows() {
+  using namespace ff_seeded_faults;
+  return {
+      {"bits_counted_on", "", "counts bits on when a start delimiter cuts an octet off",
+       mutant<BitsCountedOn>()},
+      {"silence_from_the_delimiter", "", "counts silence from the end delimiter, whatever follows",
+       mutant<SilenceFromTheDelimiter>()},
+      {"last_of_a_transmission", "", "takes the last frame of a transmission only",
+       mutant<LastOfATransmission>()},
+      {"everybody_on_a_link", "", "takes FFFF with a link for everybody", mutant<TakesForEverybody>(true)},
+      {"everybody_of_a_node", "", "takes the selector FF of any node for everybody",
+       mutant<TakesForEverybody>(false)},
+      {"deaf_behind_71_minutes", "", "receives nothing more after 2^32 microseconds",
+       mutant<DeafBehind71Minutes>()},
+      {"levels_are_half_bits", "", "takes each level for half a bit, however fine they are",
+       mutant<LevelsAreHalfBits>()},
+  };
+}
+
 std::vector<FfRow> ff_sequence_rows() {
   using namespace ff_seeded_faults;
   return FfMutants::for_check({
@@ -365,8 +414,8 @@ std::vector<FfRow> ff_las_sequence_rows() {
 }  // namespace
 
 const FfMutants& ff_device_mutants() {
-  static const FfMutants table(
-      "ff_device", {ff_token_rows, ff_times_rows, ff_publisher_rows, ff_frame_rows, ff_sequence_rows});
+  static const FfMutants table("ff_device", {ff_token_rows, ff_times_rows, ff_publisher_rows, ff_frame_rows,
+                                             ff_request_rows, ff_reception_rows, ff_sequence_rows});
   return table;
 }
 

@@ -47,10 +47,10 @@ bool AttachedFfDevice::write(FfAddress address, const Octets& data, kernel::Time
   return link_.ask(octets, now);
 }
 
-void AttachedFfDevice::order_transfer(std::uint8_t node, kernel::Time now) {
+bool AttachedFfDevice::order_transfer(std::uint8_t node, kernel::Time now) {
   Octets octets = request(FfAsk::order_transfer);
   octets.push_back(node);
-  link_.ask(octets, now);
+  return link_.ask(octets, now);
 }
 
 void AttachedFfDevice::send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) {
@@ -119,7 +119,7 @@ bool ServedFfDevice::asked(const Octets& wanted, kernel::Time now) {
   };
   switch (static_cast<FfAsk>(octets[0])) {
     case FfAsk::submit: {
-      if (octets.size() < 2 + kAddress || octets[1] < 1 || octets[1] > 3) return false;
+      if (octets.size() < 2 + kAddress) return false;
       const auto address = static_cast<FfAddress>(number_at(octets, 2, kAddress));
       return station().submit({static_cast<Priority>(octets[1]), address, rest(2 + kAddress)}, now);
     }
@@ -128,10 +128,9 @@ bool ServedFfDevice::asked(const Octets& wanted, kernel::Time now) {
       return station().write(static_cast<FfAddress>(number_at(octets, 1, kAddress)), rest(1 + kAddress), now);
     case FfAsk::order_transfer:
       if (octets.size() != 2) return false;
-      station().order_transfer(octets[1], now);
-      return true;
+      return station().order_transfer(octets[1], now);
   }
-  return false;
+  return station().ask(wanted, now);
 }
 
 void ServedFfDevice::tell(FfIndication what, const FfDlpdu& dlpdu, kernel::Time when) {

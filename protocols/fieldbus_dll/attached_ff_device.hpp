@@ -36,7 +36,8 @@ class AttachedFfDevice final : public FfDevice, private iut::Bench {
   void stop(kernel::Time now) override { link_.stop(now); }
   bool submit(const FfRequest& request, kernel::Time now) override;
   bool write(FfAddress address, const Octets& data, kernel::Time now) override;
-  void order_transfer(std::uint8_t node, kernel::Time now) override;
+  bool order_transfer(std::uint8_t node, kernel::Time now) override;
+  bool ask(const Octets& request, kernel::Time now) override { return link_.ask(request, now); }
 
   void receive(segment::PortIndex, const line::Waveform& reception) override { link_.receive(reception); }
   void on_activity(segment::PortIndex, bool begins, kernel::Time now) override {

@@ -91,8 +91,10 @@ class FfDevice : public segment::Station {
   // The whole buffer at once. False: the station does not publish it, or it is too long.
   virtual bool write(FfAddress address, const Octets& data, kernel::Time now) = 0;
 
-  // Of a link master: hands the link to another, as soon as no token is out.
-  virtual void order_transfer(std::uint8_t /*node*/, kernel::Time /*now*/) {}
+  // Of a link master: hands the link to another, as soon as no token is out. False: it is none.
+  virtual bool order_transfer(std::uint8_t /*node*/, kernel::Time /*now*/) { return false; }
+  // Octets that mean none of these. False: it is refused.
+  virtual bool ask(const Octets& /*request*/, kernel::Time /*now*/) { return false; }
 };
 
 // ---- what data link entities tell each other by DT1, from selector 0 to selector 0 or to everybody ----

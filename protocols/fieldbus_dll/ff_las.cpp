@@ -43,9 +43,10 @@ bool FfLas::start(kernel::Time now) {
   return true;
 }
 
-void FfLas::order_transfer(std::uint8_t node, kernel::Time) {
+bool FfLas::order_transfer(std::uint8_t node, kernel::Time) {
   if (is_scheduler()) ordered_heir_ = node;
   blocked_until_ = kernel::kStart;
+  return true;
 }
 
 bool FfLas::submit(const FfRequest& request, kernel::Time now) {

@@ -43,7 +43,7 @@ class FfLas : public FfStation {
 
   bool start(kernel::Time now) override;
   void stop(kernel::Time now) override;
-  void order_transfer(std::uint8_t node, kernel::Time now) override;
+  bool order_transfer(std::uint8_t node, kernel::Time now) override;
   bool submit(const FfRequest& request, kernel::Time now) override;
 
   void on_activity(segment::PortIndex port, bool begins, kernel::Time now) override;

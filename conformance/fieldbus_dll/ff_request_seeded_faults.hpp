@@ -1,0 +1,174 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "conformance/fieldbus_dll/ff_seeded_faults.hpp"
+#include "harness/line/delimited_frame.hpp"
+
+// Basic devices that take other requests, keep less than their settings say, or take apart what arrives
+// otherwise.
+namespace fieldproof::conformance::ff_seeded_faults {
+
+class UnknownRequestsTaken : public FfStation {
+  using FfStation::FfStation;
+  bool ask(const Octets&, Time) override { return true; }
+};
+
+class OrdersTaken : public FfStation {
+  using FfStation::FfStation;
+  bool order_transfer(std::uint8_t, Time) override { return true; }
+};
+
+class AcceptsPriority : public FfStation {
+ public:
+  AcceptsPriority(const FfConfiguration& configuration, unsigned priority)
+      : FfStation(configuration), priority_(static_cast<Priority>(priority)) {}
+
+ private:
+  bool submit(const FfRequest& request, Time now) override {
+    return request.priority == priority_ || FfStation::submit(request, now);
+  }
+  Priority priority_;
+};
+
+class BuffersOf64 : public FfStation {
+  using FfStation::FfStation;
+  FfDlpdu published(FfAddress address, Buffer& buffer) override {
+    FfDlpdu dt3 = FfStation::published(address, buffer);
+    dt3.data.resize(std::min<std::size_t>(dt3.data.size(), 64));
+    return dt3;
+  }
+};
+
+// The first ones of its lists.
+class KnowsSoMany : public FfStation {
+ public:
+  KnowsSoMany(const FfConfiguration& configuration, std::size_t published, std::size_t subscribed)
+      : FfStation(cut(configuration, published, subscribed)) {}
+
+ private:
+  static FfConfiguration cut(FfConfiguration configuration, std::size_t published, std::size_t subscribed) {
+    configuration.published.resize(std::min(published, configuration.published.size()));
+    configuration.subscribed.resize(std::min(subscribed, configuration.subscribed.size()));
+    return configuration;
+  }
+};
+
+class UrgentBehindThose : public FfStation {
+  using FfStation::FfStation;
+  bool submit(const FfRequest& request, Time now) override {
+    has_late_ |= state() == fieldbus_dll::FfState::holding;
+    return FfStation::submit(request, now);
+  }
+  std::optional<Priority> next_to_send(const Queues& queues, Priority least) const override {
+    if (has_late_ && !queues.queue(Priority::normal).empty() && least <= Priority::normal)
+      return Priority::normal;
+    return FfStation::next_to_send(queues, least);
+  }
+  void use_token(Time now) override {
+    FfStation::use_token(now);
+    if (!token()) has_late_ = false;
+  }
+  bool has_late_ = false;
+};
+
+class LostBesideTheLast : public FfStation {
+  using FfStation::FfStation;
+  bool submit(const FfRequest& request, Time now) override {
+    const bool drives_its_last = state() == fieldbus_dll::FfState::idle && now < line().driven_until();
+    return drives_its_last || FfStation::submit(request, now);
+  }
+};
+
+class NodeWithSign : public FfStation {
+  using FfStation::FfStation;
+  Octets written(const FfDlpdu& dlpdu) const override {
+    FfDlpdu other = dlpdu;
+    if (dlpdu.has_long_addresses && node() >= 0x80) other.source |= 0xFFFF'0000U;
+    return FfStation::written(other);
+  }
+};
+
+// ---- what arrives ----
+
+class BitsCountedOn : public FfStation {
+  using FfStation::FfStation;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    constexpr std::size_t kOctet = 16;
+    const auto frames = line::delimited_frames_in(reception, rules().link.bit_rate);
+    for (std::size_t n = 1; n < frames.size(); ++n) {
+      const bool is_cut = (frames[n].half_bit - frames[n - 1].half_bit) % kOctet != 0;
+      if (frames[n - 1].end == line::FrameEnd::begun_anew && is_cut) return {};
+    }
+    return FfStation::heard_in(reception);
+  }
+};
+
+class SilenceFromTheDelimiter : public FfStation {
+  using FfStation::FfStation;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    constexpr std::size_t kOctet = 16;
+    const auto frames = line::delimited_frames_in(reception, rules().link.bit_rate);
+    over_ = reception.end();
+    if (!frames.empty()) {
+      const std::size_t last = frames.back().half_bit + kOctet * (frames.back().octets.size() + 2);
+      delimited_ =
+          kernel::level_time(reception.start, static_cast<std::int64_t>(last), 2 * rules().link.bit_rate);
+    }
+    return FfStation::heard_in(reception);
+  }
+  Time may_begin() const override {
+    const Time since = line().silent_since();
+    return since == over_ ? std::max(since, delimited_ + silence_before_sending()) : FfStation::may_begin();
+  }
+  Time over_ = kernel::kNever;
+  Time delimited_ = kernel::kStart;
+};
+
+class LastOfATransmission : public FfStation {
+  using FfStation::FfStation;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    std::vector<Arrived> all = FfStation::heard_in(reception);
+    if (all.size() > 1) all.erase(all.begin(), all.end() - 1);
+    return all;
+  }
+};
+
+// FFFF on any link, or selector FF of any node.
+class TakesForEverybody : public FfStation {
+ public:
+  TakesForEverybody(const FfConfiguration& configuration, bool has_link)
+      : FfStation(configuration), has_link_(has_link) {}
+
+ private:
+  void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {
+    const bool is_taken = has_link_ ? dlpdu.has_long_addresses && (dlpdu.destination & 0xFFFF) == 0xFFFF
+                                    : !dlpdu.has_long_addresses && (dlpdu.destination & 0xFF) == 0xFF;
+    if (dlpdu.type == FfType::dt1 && is_taken) return user().on_data(dlpdu, place.end);
+    FfStation::on_dlpdu(dlpdu, place);
+  }
+  bool has_link_;
+};
+
+class DeafBehind71Minutes : public FfStation {
+  using FfStation::FfStation;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    const bool is_deaf = reception.start - kernel::kStart > (std::int64_t{1} << 32) * kernel::kMicrosecond;
+    return is_deaf ? std::vector<Arrived>{} : FfStation::heard_in(reception);
+  }
+};
+
+class LevelsAreHalfBits : public FfStation {
+  using FfStation::FfStation;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    line::Waveform other = reception;
+    other.rate = 2 * rules().link.bit_rate;
+    std::vector<Arrived> all = FfStation::heard_in(other);
+    for (Arrived& one : all) one = {std::move(one.octets), reception.start, reception.end()};
+    return all;
+  }
+};
+
+}  // namespace fieldproof::conformance::ff_seeded_faults
