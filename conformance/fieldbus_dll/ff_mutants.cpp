@@ -214,6 +214,8 @@ std::vector<FfRow> ff_request_rows() {
        })},
       {"buffers_of_64", "", "cuts its buffers at 64 octets, whatever its link carries",
        mutant<BuffersOf64>()},
+      {"each_second_write_lost", "", "publishes each second time what it has published before",
+       mutant<EachSecondWriteLost>()},
       {"four_buffers", "", "publishes four buffers and no more", mutant<KnowsSoMany>(4U, 1'000U)},
       {"eight_subscriptions", "", "subscribes to eight buffers and no more", mutant<KnowsSoMany>(1'000U, 8U)},
       {"urgent_behind_those_of_the_token", "",

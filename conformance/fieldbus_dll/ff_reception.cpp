@@ -116,7 +116,8 @@ std::vector<FfCase> ff_reception_cases() {
                          {{"last_of_a_transmission", "frame_of_transmission_lost"}}),
                {{2, 20},
                 {FfStep{"two DT1s to the station in one transmission", "both are delivered",
-                        expect_both_delivered}}}),
+                        expect_both_delivered},
+                 serves()}}),
       on_chart(
           must_case("fieldbus_dll/ff_device/frame/nobody_is_everybody", "FF-38",
                     "FFFF without a link is everybody, and no other address is.",

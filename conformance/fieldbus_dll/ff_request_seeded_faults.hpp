@@ -42,6 +42,19 @@ class BuffersOf64 : public FfStation {
   }
 };
 
+// What was written between two CDs comes to nothing each second time.
+class EachSecondWriteLost : public FfStation {
+  using FfStation::FfStation;
+  FfDlpdu published(FfAddress address, Buffer& buffer) override {
+    if (is_kept_ = !is_kept_; is_kept_) kept_ = buffer.data;
+    FfDlpdu dt3 = FfStation::published(address, buffer);
+    dt3.data = kept_;
+    return dt3;
+  }
+  Octets kept_;
+  bool is_kept_ = false;
+};
+
 // The first ones of its lists.
 class KnowsSoMany : public FfStation {
  public:

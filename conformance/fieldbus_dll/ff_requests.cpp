@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <ranges>
-
 #include "conformance/fieldbus_dll/ff_scene.hpp"
 
 // What the user asks for, beside what its settings carry and beside what the station does at that time.
@@ -105,7 +102,7 @@ FfStep submit_meanwhile(Priority priority) {
                                        fieldbus_dll::text_of(priority)),
                            [priority](FfScene& scene) {
                              FfBench& bench = scene.bench;
-                             if (!bench.next_begins(bench.now() + bench.observation_timeout())) return;
+                             bench.next_begins(bench.now() + bench.observation_timeout());
                              bench.wait(bench.octets(2));
                              scene.submitted.push_back(bench.numbered_data(10));
                              scene.judge.expect(bench.submit(priority, scene.submitted.back()),
@@ -188,7 +185,8 @@ std::vector<FfCase> ff_request_cases() {
                          own("lists of addresses"), {{"eight_subscriptions", "subscription_not_delivered"}}),
                {{},
                 {FfStep{"a DT3 of each of ten publishers, to which it has subscribed", "all are delivered",
-                        expect_each_subscription}}},
+                        expect_each_subscription},
+                 serves()}},
                {.change = with_many_buffers}),
       on_chart(must_case("fieldbus_dll/ff_device/token/what_is_urgent_meanwhile_is_next", "FF-04",
                          "What is submitted during a token is sent in its order, too.",
