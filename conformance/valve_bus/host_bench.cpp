@@ -64,10 +64,15 @@ valve_bus::Command HostFrame::command() const {
   return valve_bus::command_of(octets);
 }
 
+std::string text_of_error(const valve_bus::HostError& error) {
+  return fmt::format("error {} of ID {:02X}: {}", static_cast<unsigned>(error.kind), error.id,
+                     describe(error.kind));
+}
+
 std::string text_of(const HostEvent& told) {
   const std::string when = kernel::describe(told.when);
   if (const auto* error = std::get_if<valve_bus::HostError>(&told.what)) {
-    return fmt::format("error of {:02X}: {}, at {}", error->id, describe(error->kind), when);
+    return fmt::format("{}, at {}", text_of_error(*error), when);
   }
   const auto& response = std::get<valve_bus::HostResponse>(told.what);
   return fmt::format("response of {:02X}: {:02X} {:02X}{}, at {}", response.id, response.data0,

@@ -59,6 +59,8 @@ struct HostEvent {
 };
 
 std::string text_of(const HostEvent& told);
+// "error 8 of ID 07: part of a command"
+std::string text_of_error(const valve_bus::HostError& error);
 
 class HostBench final : public LineBench, private valve_bus::HostApplication {
  public:

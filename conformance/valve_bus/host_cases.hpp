@@ -27,6 +27,10 @@ std::vector<HostCase> host_memory_cases();
 std::vector<HostCase> host_refresh_cases();
 std::vector<HostCase> host_dip_cases();
 std::vector<HostCase> host_immunity_cases();
+std::vector<HostCase> host_supply_cases();
+std::vector<HostCase> host_attempt_cases();
+std::vector<HostCase> host_meanwhile_cases();
+std::vector<HostCase> host_endurance_cases();
 
 // Applies only to a host whose switches the bench can set.
 Applicability for_settable_dip();

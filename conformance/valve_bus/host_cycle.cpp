@@ -227,11 +227,14 @@ void expect_refresh_acknowledged(HostScene& scene) {
   HostBench& bench = scene.bench;
   bench.clear_observations();
   const auto first = bench.next_frame(bench.rules().refresh * 3 / 2);
-  scene.judge.expect(first && bench.is_refresh(first->command()), "no_refresh", "the write is refreshed",
-                     "it is not");
+  scene.judge.expect(
+      first && bench.is_refresh(first->command()), "no_refresh", "the write is refreshed",
+      first ? fmt::format("it sent {}", text_of_command(first->command())) : std::string("nothing was sent"));
   const auto again = bench.next_frame(bench.time_out() * 3 / 2);
-  scene.judge.expect(again && again->command() == first->command(), "no_retry",
-                     "a refresh that is not acknowledged is sent again", "it is not");
+  scene.judge.expect(
+      again && again->command() == first->command(), "no_retry",
+      "a refresh that is not acknowledged is sent again",
+      again ? fmt::format("it sent {}", text_of_command(again->command())) : std::string("nothing was sent"));
 }
 
 }  // namespace

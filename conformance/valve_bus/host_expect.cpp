@@ -98,14 +98,17 @@ HostFrame expect_request(HostBench& bench, CaseJudge& judge, const Command& comm
 HostFrame expect_request(HostBench& bench, CaseJudge& judge, const Command& command,
                          std::string_view missing_reason) {
   const kernel::Time limit = bench.now() + bench.observation_timeout();
+  std::string instead = "it sent nothing";
   for (;;) {
     auto frame = bench.next_frame(std::max(kernel::Duration{}, limit - bench.now()));
-    judge.expect(frame.has_value(), missing_reason, [&] {
-      return Mismatch{{fmt::format("it sends {}", text_of_command(command))}, "it sent nothing"};
-    });
+    judge.expect(frame.has_value(), missing_reason,
+                 [&] { return Mismatch{{fmt::format("it sends {}", text_of_command(command))}, instead}; });
     expect_form(bench, judge, *frame);
     const Command seen = frame->command();
-    if (seen != command && bench.is_refresh(seen)) continue;
+    if (seen != command && bench.is_refresh(seen)) {
+      instead = fmt::format("it sent refreshes only, the last one {}", text_of_command(seen));
+      continue;
+    }
     judge.expect(seen == command, "request_wrong",
                  [&] { return Mismatch{{text_of_command(command)}, text_of_command(seen), frame->start}; });
     bench.note_write(seen);
@@ -148,9 +151,7 @@ void expect_response(HostBench& bench, CaseJudge& judge, std::uint8_t id, const 
 
 void expect_error(HostBench& bench, CaseJudge& judge, const HostError& error, std::string_view told_data) {
   const auto told = bench.next_told(bench.observation_timeout());
-  const auto sighting = [&] {
-    return Mismatch{{fmt::format("an error of {:02X}: {}", error.id, describe(error.kind))}, told_text(told)};
-  };
+  const auto sighting = [&] { return Mismatch{{text_of_error(error)}, told_text(told)}; };
   judge.expect(response_told(told) == nullptr, told_data, sighting);
   judge.expect(told.has_value(), "error_not_told", sighting);
   judge.expect(std::get<HostError>(told->what) == error, "error_wrong", sighting);

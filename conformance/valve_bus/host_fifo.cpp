@@ -170,7 +170,7 @@ void expect_reads_sent_but_not_the_part(HostScene& scene) {
       if (error != nullptr && error->kind == HostErrorKind::no_response) break;
     }
   }
-  scene.judge.expect(is_reported, "does_not_resync", "an error of 63: part of a command",
+  scene.judge.expect(is_reported, "does_not_resync", "error 8 of ID 63: part of a command",
                      "it was not reported");
   expect_room(scene, fitting(scene));
 }

@@ -2,9 +2,11 @@
 
 #include "conformance/valve_bus/character_seeded_faults.hpp"
 #include "conformance/valve_bus/host_application_seeded_faults.hpp"
+#include "conformance/valve_bus/host_lasting_seeded_faults.hpp"
 #include "conformance/valve_bus/host_request_seeded_faults.hpp"
 #include "conformance/valve_bus/host_response_seeded_faults.hpp"
 #include "conformance/valve_bus/host_sequence_seeded_faults.hpp"
+#include "conformance/valve_bus/host_waiting_seeded_faults.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -191,6 +193,56 @@ std::vector<HostRow> host_telling_rows() {
   };
 }
 
+std::vector<HostRow> host_lasting_rows() {
+  using namespace host_seeded_faults;
+  return {
+      {"refresh_counts_from_rest", "", "counts the time to a refresh from the end of the rest",
+       mutant<RefreshFromRest>()},
+      {"new_write_refreshed_with_old", "", "refreshes a new write when the one before it was due",
+       mutant<NewWriteRefreshedWithOld>()},
+      {"milliseconds_of_16_bits", "", "refreshes nothing when its milliseconds have gone round 16 bits",
+       mutant<MillisecondsOf16Bits>()},
+      {"busy_refresh_is_the_last", "", "refreshes no more what it could not send to a busy line",
+       mutant<BusyRefreshIsTheLast>()},
+      {"refreshes_64_nodes", "", "refreshes 64 nodes at most", mutant<Refreshes64Nodes>()},
+      {"refreshes_lowest_first", "", "refreshes the lowest ID that is due", mutant<RefreshesLowestFirst>()},
+      {"part_over_power_loss", "", "keeps a part of a command without its supply",
+       mutant<PartOverPowerLoss>()},
+      {"verification_over_power_loss", "", "reads after power-up what it wrote before",
+       mutant<VerificationOverPowerLoss>()},
+      {"late_over_power_loss", "", "counts as late what comes after power-up", mutant<LateOverPowerLoss>()},
+      {"acknowledged_not_verified", "", "does not read back what was acknowledged",
+       mutant<AcknowledgedNotVerified>()},
+      {"verified_against_newest", "", "compares with a write that still waits",
+       mutant<VerifiedAgainstNewest>()},
+  };
+}
+
+std::vector<HostRow> host_attempt_rows() {
+  using namespace host_seeded_faults;
+  return {
+      {"no_rest_behind_wrong", "", "sends at once after a last attempt that was wrong",
+       mutant<NoRestBehindWrong>()},
+      {"late_behind_wrong", "", "counts as late what comes after a wrong response",
+       mutant<LateBehindWrong>()},
+      {"wrong_acknowledge_told_as_wrong", "", "reports a wrong response where a write was not acknowledged",
+       mutant<WrongAcknowledgeToldAsWrong>()},
+      {"first_late_counted", "", "counts the first late frame only", mutant<FirstLateCounted>()},
+      {"late_counted_for_ever", "", "counts as late what comes after the next request",
+       mutant<LateCountedForEver>()},
+      {"late_counter_of_8_bits", "", "counts late frames in 8 bits", mutant<LateCounterOf8Bits>()},
+      {"old_forgotten_when_busy", "", "does not report old data when the line is busy",
+       mutant<OldForgottenWhenBusy>()},
+      {"time_out_cut", "", "cuts its time-out to whole milliseconds", mutant<TimeOutCut>()},
+      {"pc_delays_characters", "", "sends a character later when the PC writes",
+       mutant<PcDelaysCharacters>()},
+      {"pc_restarts_time_out", "", "begins its time-out again when the PC writes",
+       mutant<PcRestartsTimeOut>()},
+      {"repeats_from_the_ring", "", "repeats what stands in its FIFO where the read stood",
+       mutant<RepeatsFromTheRing>()},
+  };
+}
+
 std::vector<HostRow> host_sequence_rows() {
   using namespace host_seeded_faults;
   return HostMutants::for_check({
@@ -214,7 +266,7 @@ std::vector<HostRow> host_sequence_rows() {
 const HostMutants& host_mutants() {
   static const HostMutants table(
       "host", {host_command_rows, host_request_rows, host_write_rows, host_wait_rows, host_response_rows,
-               host_telling_rows, host_sequence_rows});
+               host_telling_rows, host_lasting_rows, host_attempt_rows, host_sequence_rows});
   return table;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "conformance/valve_bus/node_scene.hpp"
+#include "harness/iut/misbehaviour.hpp"
 
 // What is a frame: only silence says it.
 namespace fieldproof::conformance {

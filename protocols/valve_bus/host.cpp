@@ -100,7 +100,7 @@ std::optional<Command> Host::next_valid_command(kernel::Time now) {
 std::optional<Host::Exchange> Host::next_exchange(kernel::Time now) {
   if (refresh_due_at() <= now && may_refresh(was_refresh_)) {
     was_refresh_ = true;
-    return Exchange{writes_[refresh_order_.front()].command, Purpose::refresh};
+    return Exchange{writes_[refresh_order_.at(next_refresh(now))].command, Purpose::refresh};
   }
   was_refresh_ = false;
   const auto command = next_valid_command(now);
@@ -243,9 +243,9 @@ void Host::keep_write(const Command& command) {
 }
 
 void Host::note_write(const Command& command, kernel::Time start) {
-  writes_[command.id].due = start + rules_.refresh;
+  writes_[command.id].due = refreshed_at(start);
   std::erase(refresh_order_, command.id);
-  refresh_order_.push_back(command.id);
+  if (is_refreshed(command.id)) refresh_order_.push_back(command.id);
 }
 
 // ---- responses ----
@@ -296,7 +296,7 @@ void Host::accept(const Response& response, kernel::Time now) {
 
 void Host::end_write() {
   const Exchange write = *std::exchange(exchange_, std::nullopt);
-  if (!configuration_.verifies_writes || write.purpose != Purpose::command) return;
+  if (!is_read_back(write)) return;
   // It carries what is expected; a node does not look at the data of a read.
   Command read = write.command;
   read.command = static_cast<std::uint8_t>(rules_.read_command);

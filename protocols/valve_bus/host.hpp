@@ -70,6 +70,7 @@ class Host : public HostDevice {
   const Rules& rules() const { return rules_; }
   CharacterCodec& codec() { return codec_; }
   FrameCollector& collector() { return collector_; }
+  const FrameCollector& collector() const { return collector_; }
   const CommandFifo& fifo() const { return *fifo_; }
   segment::Port& line() { return *line_; }
   const std::optional<Exchange>& exchange() const { return exchange_; }
@@ -77,6 +78,9 @@ class Host : public HostDevice {
   std::uint8_t last_id() const { return last_id_; }
   HostCounters& counted(std::uint8_t id) { return counters_.at(counters_place(id)); }
   unsigned dip() const { return dip_; }
+  // The nodes that are refreshed, the one that was written to longest ago first.
+  const std::deque<std::uint8_t>& refresh_order() const { return refresh_order_; }
+  kernel::Time refresh_due(std::uint8_t id) const { return writes_.at(id).due; }
 
   // ---- decisions: what the PC wants ----
   virtual std::optional<Command> next_command() { return fifo_->take(); }
@@ -86,6 +90,17 @@ class Host : public HostDevice {
   virtual void on_lost_command(std::uint8_t id, kernel::Time now);
   virtual void on_part(std::span<const std::uint8_t> part, kernel::Time now);
   virtual void keep_write(const Command& command);
+
+  // ---- decisions: what is sent again ----
+  // When a write that was sent at `start`, or could not be sent then, is sent again.
+  virtual kernel::Time refreshed_at(kernel::Time start) const { return start + rules_.refresh; }
+  virtual bool is_refreshed(std::uint8_t) const { return true; }
+  // The place in the order of the nodes of which a refresh is due.
+  virtual std::size_t next_refresh(kernel::Time) const { return 0; }
+  // Whether a read of the node follows this write.
+  virtual bool is_read_back(const Exchange& write) const {
+    return configuration_.verifies_writes && write.purpose == Purpose::command;
+  }
 
   // ---- decisions: requests ----
   virtual std::int64_t bit_rate_of(unsigned dip) const;
