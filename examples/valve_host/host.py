@@ -175,7 +175,7 @@ class Host:
 
     def fail(self, now):
         """Of an attempt; the third one is the last."""
-        self.is_awaiting, self.asked = False, self.request.id
+        self.is_awaiting, self.asked = False, None if self.was_wrong else self.request.id
         self.count(WRONG if self.was_wrong else SILENT, now)
         if self.attempt < ATTEMPTS:
             return
@@ -304,7 +304,7 @@ class Host:
         self.driver_off_at = self.own_end + self.bit
         self.asked, self.was_wrong = None, False
         if request.command == WRITE:
-            self.written[request.id] = request.data0, request.data1, self.own_end
+            self.written[request.id] = request.data0, request.data1, self.own_start
         self.is_awaiting = request.command == READ or bool(self.settings["answers_writes"])
         if not self.is_awaiting:
             self.request, self.rest_until = None, self.own_end + self.delimiter + MILLISECOND
