@@ -46,6 +46,14 @@ FAULTS = {
     "verifies_refreshes": ("reads back refreshes, too", "cycle/verification_comes_first",
                            "if request.is_of_pc and self.settings[\"verifies_writes\"]:",
                            "if self.settings[\"verifies_writes\"]:"),
+    "late_after_wrong": ("counts late what comes after a wrong response",
+                         "attempts/nothing_is_late_after_a_wrong_response",
+                         "None if self.was_wrong else self.request.id", "self.request.id"),
+    "refresh_from_end": ("counts the time to a refresh from the end of a write", "endurance/period_at_the_lowest_bit_rate",
+                         "request.data0, request.data1, self.own_start", "request.data0, request.data1, self.own_end"),
+    "no_rest_after_wrong": ("rests after a last attempt that nothing answered only", "attempts/rest_follows_wrong_responses",
+                            "self.time_out + self.time_out // 20",
+                            "self.time_out + (0 if self.was_wrong else self.time_out // 20)"),
 }
 
 if __name__ == "__main__":
