@@ -165,8 +165,8 @@ TEST(BurstMutants, ReferencesHaveNoneOfTheSigns) {
   for (const Line line : {Line::bursts, Line::flips}) {
     if (kernel::kIsSanitized && line == Line::flips) continue;
     EXPECT_EQ(reference(line).counts.accepted_wrong(), 0U);
-    // A missing stop level of the last telegram of a cycle marks nothing: its slave holds its outputs, and the
-    // master hears of no error.
+    // A missing stop level of the last telegram of a cycle marks nothing: its slave holds its outputs, and
+    // the master hears of no error.
     EXPECT_LT(100 * reference(line).counts.missed_outputs, reference(line).counts.repeated);
     EXPECT_GT(reference(line).counts.repeated, 0U);
   }

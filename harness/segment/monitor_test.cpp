@@ -50,11 +50,13 @@ TEST_F(Monitor, SeesOverlapsWithoutAnyRule) {
 }
 
 TEST_F(Monitor, TakesAnOverlapWithinRoundingForNone) {
-  LineMonitor monitor = made({.rounding = kNanosecond});
+  MonitorRules rules;
+  rules.rounding = kernel::kNanosecond;
+  LineMonitor monitor = made(rules);
   monitor.on_wave(wave(Duration{}, 10));
-  monitor.on_wave(wave(10 * kMicrosecond - kNanosecond, 10));
+  monitor.on_wave(wave(10 * kMicrosecond - kernel::kNanosecond, 10));
   EXPECT_EQ(text(monitor), "");
-  monitor.on_wave(wave(20 * kMicrosecond - 2 * kNanosecond - kPicosecond, 1));
+  monitor.on_wave(wave(20 * kMicrosecond - 2 * kernel::kNanosecond - kPicosecond, 1));
   EXPECT_EQ(text(monitor), "monitor: overlap 1.001 ns; ");
 }
 
