@@ -259,7 +259,8 @@ HostFrame HostBench::frame_of(Transmission sent) {
 kernel::Duration HostBench::late_turnaround_time() {
   const kernel::Time rest_ends = last_end_ + time_out() * 105 / 100;
   if (now() < rest_ends) await(rest_ends - now());
-  return std::max(time_out(), was_told() ? now() - last_end_ + time_out() / 100 : rest_ends - last_end_);
+  const kernel::Time soon = was_told() ? now() + time_out() / 100 : rest_ends;
+  return std::max(time_out(), std::min(soon, rest_ends) - last_end_);
 }
 
 kernel::Time HostBench::answer(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time) {
