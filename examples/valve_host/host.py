@@ -69,14 +69,13 @@ class Host:
     def __init__(self, stream, settings):
         self.stream, self.settings = stream, settings
         self.counters = {}
-        self.driver_off_at = NEVER  # said when it comes, as firmware does whose transmitter tells its end
         self.power(False, 0)
 
     # ---- supply ----
 
     def power(self, is_on, now):
         self.is_on = is_on
-        self.release_driver(now)
+        self.driver_off_at = NEVER  # without a supply it is off
         self.fifo = Fifo(self)
         self.known, self.written = {}, {}  # last response of each node; what was written to it and when
         self.request, self.verification, self.attempt = None, None, 0
@@ -301,6 +300,7 @@ class Host:
         self.own_end = self.busy_until = self.own_start + 10 * self.half
         self.stream.send(DRIVER, "BBq", LINE, 1, now)
         self.stream.send(CHARACTERS, "BqH5H", LINE, self.own_start, 5, *(ninth | octet for octet in octets))
+        # Said when it comes, as firmware does whose transmitter tells its end.
         self.driver_off_at = self.own_end + self.bit
         self.asked, self.was_wrong = None, False
         if request.command == WRITE:
