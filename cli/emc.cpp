@@ -238,7 +238,7 @@ class Campaign {
     const auto reaches = [&](const EmcTest& test) {
       return test.level.open_circuit_volts() >= bursts.level.open_circuit_volts();
     };
-    if (!result.came_up || !result.was_disturbed() || std::ranges::none_of(planned_, reaches)) return;
+    if (std::ranges::none_of(planned_, reaches)) return;
     if (worst_probe_ && worst_probe_->result.criterion >= result.criterion) return;
     worst_probe_.emplace();
     worst_probe_->level = bursts.level;
@@ -253,7 +253,7 @@ class Campaign {
     const auto is_as_bad = [&](const EmcTest& test) {
       return test.result.came_up && test.result.criterion >= worst_probe_->result.criterion;
     };
-    if (!worst_probe_ || !done_.is_complete || std::ranges::any_of(done_.tests, is_as_bad)) return;
+    if (!worst_probe_ || std::ranges::any_of(done_.tests, is_as_bad)) return;
     done_.tests.push_back(*worst_probe_);
     session_.terminal.print(emc_line(done_.tests.back()));
     if (!folder_.empty()) store(response, done_.tests.back(), done_.tests.size());

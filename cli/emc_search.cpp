@@ -42,8 +42,8 @@ std::optional<emc::Criterion> EmcProbing::worst(const emc::LineResponse& respons
   emc::Criterion worst = emc::Criterion::a;
   for (std::size_t n = 0; n < results->size(); ++n) {
     const emc::ImmunityResult& result = (*results)[n];
-    if (note) note(made[n], result);
     if (!result.came_up || (result.complaint.empty() && !result.was_disturbed())) return std::nullopt;
+    if (note) note(made[n], result);
     worst = std::max(worst, result.criterion);
   }
   return worst;

@@ -22,7 +22,7 @@ struct EmcProbing {
   std::vector<EmcCase> tests;
   kernel::Duration duration{};  // of each
   RunTests run;
-  // Is told each test and what it showed; may be empty.
+  // Is told each test that showed something, and what; may be empty.
   std::function<void(const EmcCase&, const emc::ImmunityResult&)> note{};
 
   // A twentieth of the time of a test, 1 s at least where a test has as much.

@@ -92,6 +92,9 @@ class MasterSide {
   void wait(kernel::Duration duration);
 
  private:
+  // Who looks for a fault waits until all stations are in reset, and begins with a ring that is ready again.
+  static constexpr kernel::Duration kIdle = 60 * kernel::kMillisecond;
+
   using Values = std::vector<std::int64_t>;
 
   bool is_idle() const;

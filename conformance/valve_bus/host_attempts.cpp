@@ -48,7 +48,7 @@ void expect_other_after_the_rest(HostScene& scene) {
   expect_error(bench, scene.judge, {scene.id, HostErrorKind::bad_response});
   expect_old_if_known(bench, scene.judge, scene.id);
   const HostFrame next = expect_request(bench, scene.judge, bench.read_of(scene.other));
-  const kernel::Duration least = bench.time_out() * 104 / 100;
+  const kernel::Duration least = bench.time_out() + bench.time_out_tolerance() * 4 / 5;
   scene.judge.expect(next.start - scene.poll.end >= least, "rest_too_short", [&] {
     return Mismatch{{fmt::format("the next request {} or more after the last attempt: the time-out, and 5 % "
                                  "of it, less 1 %",
@@ -85,7 +85,7 @@ void talk_with_a_read_waiting(HostScene& scene) {
 }
 
 kernel::Duration just_in_time(HostScene& scene) {
-  return scene.bench.time_out() * 95 / 100;
+  return earliest_repetition(scene.bench);
 }
 
 std::vector<HostCase> cases_of_late_frames() {

@@ -257,7 +257,7 @@ HostFrame HostBench::frame_of(Transmission sent) {
 }
 
 kernel::Duration HostBench::late_turnaround_time() {
-  const kernel::Time rest_ends = last_end_ + time_out() * 105 / 100;
+  const kernel::Time rest_ends = last_end_ + time_out() + time_out_tolerance();
   if (now() < rest_ends) await(rest_ends - now());
   const kernel::Time soon = was_told() ? now() + time_out() / 100 : rest_ends;
   return std::max(time_out(), std::min(soon, rest_ends) - last_end_);

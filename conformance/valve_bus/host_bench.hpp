@@ -88,6 +88,8 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   kernel::Duration characters(double count) const;
   kernel::Duration delimiter() const { return valve_bus::delimiter(rules()); }
   kernel::Duration time_out() const { return valve_bus::response_time_out(rules()); }
+  // How much longer or shorter it may be, and how long a host rests after it has given up: 5 %.
+  kernel::Duration time_out_tolerance() const { return time_out() / 20; }
   // Of a node that is neither quick nor slow.
   kernel::Duration turnaround_time() const { return delimiter() + 150 * kernel::kMicrosecond; }
   // In which a host that has been asked for something says it, or tells the PC that it cannot.

@@ -115,8 +115,7 @@ kernel::Duration polled_all(HostBench& bench, CaseJudge& judge, std::uint8_t dea
 void expect_cycles_of_99_nodes(HostScene& scene) {
   HostBench& bench = scene.bench;
   const auto& rules = bench.rules();
-  const kernel::Duration attempt =
-      bench.time_out() * 105 / 100 + character_notice(rules) + bench.characters(5) + bench.bits(3);
+  const kernel::Duration attempt = latest_repetition(bench) + bench.characters(5);
   const kernel::Duration whole = polled_all(bench, scene.judge, 0);
   // The last one would take its time for late responses after the cycle.
   const auto dead = static_cast<std::uint8_t>(bench.random().between(1, rules.last_address - 1));

@@ -184,11 +184,25 @@ void expect_nothing_told(HostBench& bench, CaseJudge& judge, kernel::Duration wi
 }
 
 kernel::Duration latest_repetition(const HostBench& bench) {
-  return bench.time_out() * 105 / 100 + character_notice(bench.rules()) + bench.bits(3);
+  return bench.time_out() + bench.time_out_tolerance() + character_notice(bench.rules()) + bench.bits(3);
+}
+
+kernel::Duration earliest_repetition(const HostBench& bench) {
+  return bench.time_out() - bench.time_out_tolerance();
 }
 
 HostFrame expect_retry(HostBench& bench, CaseJudge& judge, const HostFrame& first) {
   return expect_request(bench, judge, first.command(), "no_retry");
+}
+
+HostFrame expect_retry_in_time(HostBench& bench, CaseJudge& judge, const HostFrame& first,
+                               kernel::Time since) {
+  HostFrame again = expect_retry(bench, judge, first);
+  const double least = in_microseconds(earliest_repetition(bench));
+  const double measured = in_microseconds(again.start - since);
+  judge.expect_between("time-out", "us", measured, least, in_microseconds(latest_repetition(bench)),
+                       measured < least ? "time_out_too_short" : "time_out_too_long");
+  return again;
 }
 
 Response expect_read_served(HostBench& bench, CaseJudge& judge, std::uint8_t id) {

@@ -50,8 +50,13 @@ void expect_nothing_told(HostBench& bench, CaseJudge& judge, kernel::Duration wi
 // After the end of an attempt, the next one begins by then: a host knows of a start bit when its character is
 // over, and then switches its driver on.
 kernel::Duration latest_repetition(const HostBench& bench);
+// And not before.
+kernel::Duration earliest_repetition(const HostBench& bench);
 // The IUT polls again after an attempt that has failed: `no_retry`.
 HostFrame expect_retry(HostBench& bench, CaseJudge& judge, const HostFrame& first);
+// The same in its time after the attempt before it ended: `time_out_too_short`, `time_out_too_long`.
+HostFrame expect_retry_in_time(HostBench& bench, CaseJudge& judge, const HostFrame& first,
+                               kernel::Time since);
 // A read of this node, with a random response, is served.
 valve_bus::Response expect_read_served(HostBench& bench, CaseJudge& judge, std::uint8_t id);
 // A read is served, whatever came before: `does_not_recover`. Forgets what was seen.

@@ -35,15 +35,6 @@ void write_during_the_time_out(HostScene& scene) {
   bench.order(bench.read_of(scene.other));
 }
 
-void expect_attempt_in_its_time(HostScene& scene) {
-  const HostFrame again = expect_retry(scene.bench, scene.judge, scene.request);
-  const double measured = in_microseconds(again.start - scene.request.end);
-  const double least = in_microseconds(scene.bench.time_out() * 95 / 100);
-  scene.judge.expect_between("time-out", "us", measured, least,
-                             in_microseconds(latest_repetition(scene.bench)),
-                             measured < least ? "time_out_too_short" : "time_out_too_long");
-}
-
 HostStep other_is_next() {
   return {"the other node answers its read", "it is sent next, and the PC gets the data",
           [](HostScene& scene) {
@@ -129,7 +120,7 @@ std::vector<HostCase> cases_of_a_pc_that_goes_on() {
                   "the first one is polled again after its time-out, within 5 %",
                   [](HostScene& scene) {
                     write_during_the_time_out(scene);
-                    expect_attempt_in_its_time(scene);
+                    expect_retry_in_time(scene.bench, scene.judge, scene.request, scene.request.end);
                   }},
                  response(),
                  reported(),

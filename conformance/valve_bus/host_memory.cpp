@@ -51,8 +51,7 @@ class Reads {
       ++node.counted.retries;
       const HostFrame again = expect_retry(bench_, judge_, poll);
       judge_.expect_between("time to the next attempt", "us", in_microseconds(again.start - poll.end),
-                            in_microseconds(bench_.time_out() * 95 / 100),
-                            in_microseconds(latest_ - poll.end),
+                            in_microseconds(earliest_repetition(bench_)), in_microseconds(latest_ - poll.end),
                             again.start >= latest_ ? "time_out_too_long" : "time_out_too_short");
       poll = again;
     }

@@ -7,10 +7,6 @@ namespace {
 
 constexpr unsigned kMostRefreshesInTurn = 2;
 
-kernel::Duration earliest_repetition(const HostBench& bench) {
-  return bench.time_out() * 95 / 100;
-}
-
 }  // namespace
 
 bool HostPace::awaits_response(const valve_bus::Command& command) const {

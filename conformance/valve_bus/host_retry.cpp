@@ -9,25 +9,13 @@ namespace {
 using valve_bus::HostCounters;
 using valve_bus::HostErrorKind;
 
-constexpr double kTolerance = 0.05;  // of a time-out
-
-kernel::Duration times(kernel::Duration duration, double factor) {
-  return kernel::Duration{static_cast<std::int64_t>(static_cast<double>(duration.count()) * factor)};
-}
-
 // The node is polled again as long after the last poll as the time-out is.
 HostStep polled_again_in_time() {
   return expected(
       "the host polls the node again after the time-out, within 5 %, where it knows of a start bit when its "
       "character is over",
       [](HostScene& scene) {
-        const kernel::Time since = scene.poll.end;
-        scene.poll = expect_retry(scene.bench, scene.judge, scene.request);
-        const double least = in_microseconds(times(scene.bench.time_out(), 1 - kTolerance));
-        const double most = in_microseconds(latest_repetition(scene.bench));
-        const double measured = in_microseconds(scene.poll.start - since);
-        scene.judge.expect_between("time-out", "us", measured, least, most,
-                                   measured < least ? "time_out_too_short" : "time_out_too_long");
+        scene.poll = expect_retry_in_time(scene.bench, scene.judge, scene.request, scene.poll.end);
       });
 }
 
@@ -116,7 +104,7 @@ std::vector<HostCase> host_retry_cases() {
                {{3, 100},
                 {read(),
                  answer("the node answers rightly at 0.95 times the time-out", right_octets,
-                        [](HostScene& scene) { return times(scene.bench.time_out(), 1 - kTolerance); }),
+                        [](HostScene& scene) { return earliest_repetition(scene.bench); }),
                  reported()}}),
       on_chart(
           {.id = "valve_bus/host/retry/late_response_is_drained",

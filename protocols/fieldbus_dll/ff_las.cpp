@@ -276,11 +276,11 @@ bool FfLas::compel(kernel::Time now) {
     say(dt3, now);
     return true;
   }
-  const Place cd = question({.type = FfType::cd,
-                             .priority = item.priority,
-                             .has_long_addresses = is_long(item.address),
-                             .destination = item.address},
-                            now);
+  const Place cd = send_question({.type = FfType::cd,
+                                  .priority = item.priority,
+                                  .has_long_addresses = is_long(item.address),
+                                  .destination = item.address},
+                                 now);
   await(FfLasState::awaiting_reply, node_of(item.address), cd);
   return true;
 }
@@ -319,7 +319,7 @@ bool FfLas::transfer(kernel::Time now) {
   const FfDlpdu tl{
       .type = FfType::tl, .node = *ordered_heir_, .schedule_version = configuration().schedule.version};
   if (!has_time(tl, response_delay(rules().link), now)) return false;
-  await(FfLasState::transferring, *ordered_heir_, question(tl, now));
+  await(FfLasState::transferring, *ordered_heir_, send_question(tl, now));
   ordered_heir_.reset();
   return true;
 }
@@ -375,7 +375,7 @@ bool FfLas::pass_token(std::uint8_t node, kernel::Time now) {
   if (is_first_token_) begin_circulation(now);
   pt.priority = token_priority_;
   pt.duration = static_cast<std::uint16_t>(grant);
-  const Place passed = question(pt, now);
+  const Place passed = send_question(pt, now);
   ++turn_;
   await(FfLasState::awaiting_holder, node, passed);
   token_until_ = holder_until(passed.end, grant);
@@ -411,7 +411,7 @@ bool FfLas::probe(kernel::Time now) {
       response_delay(rules().link) + frame_time(rules().link, octets_on_line(pr, rules()));
   if (!has_time(pn, answer, now)) return false;
   last_probe_ = node;
-  await(FfLasState::awaiting_probe, node, question(pn, now));
+  await(FfLasState::awaiting_probe, node, send_question(pn, now));
   return true;
 }
 

@@ -117,7 +117,7 @@ class FfLas : public FfStation {
   void set_live(std::uint8_t node, bool is_live);
   void await(FfLasState state, std::uint8_t node, const Place& question);
   // Sends what must be answered.
-  Place question(const FfDlpdu& dlpdu, kernel::Time now) { return {now, transmit(dlpdu, now)}; }
+  Place send_question(const FfDlpdu& dlpdu, kernel::Time now) { return {now, transmit(dlpdu, now)}; }
   void say(const FfDlpdu& dlpdu, kernel::Time now);
   FfDlpdu time_dlpdu(kernel::Time now) const;
   kernel::Time next_cd() const;

@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include "conformance/interbus/master_side.hpp"
+#include "protocols/interbus/network.hpp"
+
+// What an application orders of a master in other states than run, and what must come of it.
+namespace fieldproof::conformance {
+
+using interbus::MasterState;
+
+void MasterSide::order_in(MasterState state, EarlyOrder order) {
+  if (!is_running() || !is_ring_right_) return;
+  const bool is_before_run = state == MasterState::ready || state == MasterState::identification;
+  if (is_before_run) {
+    stop(false);
+    is_stopped_ = false;
+    bench_.start();
+  } else {
+    bench_.ring().cut_after(-1);
+    // One that takes silence for a good cycle never leaves.
+    constexpr int kMost = 1'000;
+    for (int n = 0; n < kMost && is_running() && bench_.run_cycle(); ++n) {
+    }
+  }
+  const bool is_there =
+      bench_.run_until([&] { return bench_.status().state == state; }, longest_recognition());
+  expect(is_there, "state_missing", fmt::format("the state {}", interbus::name(state)), "another one");
+  give(order);
+  if (order == EarlyOrder::stop) {
+    await_stop();
+  } else if (is_before_run || (state == MasterState::bus_stop && order == EarlyOrder::start)) {
+    bench_.ring().mend();
+    await_outputs_of_run();
+  } else {
+    settle();
+  }
+  bench_.ring().mend();
+  // Before the recognition it was silent, as it must.
+  bench_.ring().forget_statistics();
+  states_seen_ = 0;
+  is_running() ? enter_run() : note_state(false);
+}
+
+void MasterSide::give(EarlyOrder order) {
+  switch (order) {
+    case EarlyOrder::start:
+      return bench_.start();
+    case EarlyOrder::stop:
+      return bench_.stop();
+    case EarlyOrder::id_cycle:
+      return bench_.request_id_cycle();
+    case EarlyOrder::output:
+      return bench_.write_output(0, 0xFFFF);
+  }
+}
+
+// With the silence before it.
+kernel::Duration MasterSide::longest_recognition() const {
+  const interbus::Rules& rules = bench_.rules();
+  return kernel::kSecond + 2 * (rules.silence_limit + 2 * rules.silence_tolerance);
+}
+
+// No data cycle with outputs 0 is owed: it ends at once.
+void MasterSide::await_stop() {
+  bench_.run_until([this] { return bench_.status().state == MasterState::off; }, kernel::kMillisecond);
+  bench_.run_for(kernel::kMillisecond);
+  is_stopped_ = true;
+  const std::uint64_t cycles = bench_.ring().cycle_count();
+  bench_.run_for(kIdle);
+  expect(bench_.ring().cycle_count() == cycles && bench_.status().state == MasterState::off, "not_silent",
+         "off, and no cycle, when it is stopped before it runs", "it goes on");
+}
+
+// What was written before has no effect.
+void MasterSide::await_outputs_of_run() {
+  bench_.run_until([this] { return is_running(); }, longest_recognition());
+  if (!bench_.wait_for_run()) return settle();
+  constexpr int kUntilWritten = 3;
+  for (int n = 0; n < kUntilWritten && bench_.run_cycle(); ++n) {
+  }
+  bool is_zero = true;
+  for (unsigned word = 0; word < bench_.ring().word_count(); ++word)
+    is_zero = is_zero && bench_.master().output(word) == 0;
+  expect(is_zero || !bench_.configuration().copy.empty(), "early_output_kept",
+         "outputs of 0 until the application writes some in run", "others");
+}
+
+}  // namespace fieldproof::conformance
