@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "cli/burst_options.hpp"
+#include "cli/emc_beside.hpp"
 #include "cli/emc_case.hpp"
 #include "cli/emc_fit.hpp"
 #include "cli/emc_run.hpp"
 #include "cli/emc_search.hpp"
+#include "cli/emc_tests.hpp"
 #include "cli/emc_text.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
@@ -33,72 +35,6 @@
 // `fieldproof emc`: a network under bursts of each level, repetition and polarity.
 namespace fieldproof::cli {
 namespace {
-
-using emc::Level;
-using emc::Polarity;
-using emc::Repetition;
-
-constexpr std::array<std::string_view, 5> kBurstOptions = {"test-levels", "repetition", "polarity", "profile",
-                                                           "worst"};
-
-bool is_typed(const Settings& settings, std::string_view option) {
-  return settings.origin(option) == Origin::command_line;
-}
-
-// Bursts, or the channel that takes their place: what is typed wins over what a file or a variable says.
-bool wants_bursts(const Settings& settings) {
-  if (!settings.is_set("channel")) return true;
-  const auto typed =
-      std::ranges::find_if(kBurstOptions, [&](auto option) { return is_typed(settings, option); });
-  if (typed == kBurstOptions.end()) return false;
-  if (!is_typed(settings, "channel")) return true;
-  settings.refuse("channel", fmt::format("a channel takes the place of bursts; leave out --{}", *typed));
-}
-
-// "bsc:0.002".
-std::vector<EmcTest> channel_tests_from(const Settings& settings) {
-  std::vector<EmcTest> tests;
-  for (const std::string& word : settings.words("channel")) {
-    const auto flips = word.starts_with("bsc:") ? real_of(std::string_view(word).substr(4)) : std::nullopt;
-    if (!flips || !(*flips >= emc::kLeastBer && *flips <= emc::kGreatestBer)) {
-      settings.refuse("channel", fmt::format("'{}' is no channel; write bsc:P with P from {:g} to {:g}", word,
-                                             emc::kLeastBer, emc::kGreatestBer));
-    }
-    EmcTest& test = tests.emplace_back();
-    test.flip_probability = *flips;
-  }
-  return tests;
-}
-
-std::vector<EmcTest> burst_tests_from(const Settings& settings) {
-  const auto repetitions = repetitions_from(settings);
-  const auto polarities = polarities_from(settings);
-  std::vector<EmcTest> tests;
-  for (const Level& level : levels_from(settings)) {
-    for (const Repetition repetition : repetitions) {
-      for (const Polarity polarity : polarities) {
-        EmcTest& test = tests.emplace_back();
-        test.level = level;
-        test.repetition = repetition;
-        test.polarity = polarity;
-      }
-    }
-  }
-  return tests;
-}
-
-std::vector<EmcTest> tests_from(const Settings& settings, bool has_bursts) {
-  std::vector<EmcTest> tests = has_bursts ? burst_tests_from(settings) : channel_tests_from(settings);
-  if (tests.empty()) {
-    throw kernel::Error(kernel::ErrorKind::configuration,
-                        "an empty list of levels, repetition rates or polarities leaves nothing to test");
-  }
-  if (tests.size() > kMostTests) {
-    settings.refuse(has_bursts ? "test-levels" : "channel",
-                    fmt::format("these are {} tests; at most {} make a campaign", tests.size(), kMostTests));
-  }
-  return tests;
-}
 
 // On a channel of the textbooks wrong data are no failure, more of them than the theory allows are, and so is
 // a network that does not work again.
@@ -123,6 +59,7 @@ class Campaign {
     stored_.network = row_.network.plan(stored_.request);
     if (row_.network.has_latch_models) stored_.latch = settings.text("latch");
     network_ = stored_.network.get();
+    references_ = plan_references(row_, stored_.request);
     done_.protocol = row_.name;
     done_.network = network_->name();
     done_.exchange = network_->exchange();
@@ -156,16 +93,18 @@ class Campaign {
     done_.threshold_volts = response.threshold_volts();
     session_.terminal.print(
         simulation_header(session_, done_.seed, session_.settings.text("network"), row_.network.own_network));
+    session_.terminal.print(players_text(stored_.request.implementations));
     search(response);
     session_.terminal.print(emc_table_head(done_.has_bursts));
     conformance::OrderedWork<Ran> work;
     work.count = planned_.size();
     work.threads = jobs_from(session_.settings);
     work.stop = interruption_.token();
-    work.work = [&](std::size_t n) { return run_one(response, case_of(planned_[n])); };
+    work.work = [&](std::size_t n) { return run_beside(response, case_of(planned_[n])); };
     work.deliver = [&](std::size_t n, Ran&& ran) {
-      if (!ran.result.is_complete) return false;
+      if (!ran.result.is_complete || (ran.reference && !ran.reference->is_complete)) return false;
       planned_[n].result = std::move(ran.result);
+      planned_[n].reference = std::move(ran.reference);
       if (!planned_[n].has_bursts()) planned_[n].bound_by(ran.frames);
       done_.tests.push_back(planned_[n]);
       if (done_.places.empty()) describe(ran);
@@ -195,6 +134,7 @@ class Campaign {
   // A test, and what its network is like.
   struct Ran {
     emc::ImmunityResult result;
+    std::optional<emc::ImmunityResult> reference;
     std::vector<EmcPlace> places;
     network::RecoveryLimit recovery;
     network::AcceptanceRules acceptance;
@@ -205,7 +145,7 @@ class Campaign {
     Ran ran;
     const emc::ImmunitySettings settings = immunity_settings(test, interruption_.token());
     try {
-      const std::unique_ptr<network::Network> network = network_->make(test.seed);
+      const std::unique_ptr<network::Network> network = test.network->make(test.seed);
       for (const network::Place& place : network->places()) {
         ran.places.push_back({place.name, place.is_exposed, std::string(place.why_not)});
       }
@@ -219,6 +159,18 @@ class Campaign {
     return ran;
   }
 
+  EmcCase with_references(EmcCase test) const {
+    test.network = references_;
+    return test;
+  }
+
+  Ran run_beside(const emc::LineResponse& response, const EmcCase& test) const {
+    Ran ran = run_one(response, test);
+    if (references_ && test.flip_probability == 0 && ran.result.is_complete)
+      ran.reference = run_one(response, with_references(test)).result;
+    return ran;
+  }
+
   // Signal ports are tested up to 2 kV, and the others up to 4 kV.
   void search(const emc::LineResponse& response) {
     if (!is_searching_) return;
@@ -229,6 +181,11 @@ class Campaign {
       note_probe(test, result);
     };
     done_.search = search_thresholds(probes, response, top);
+    if (references_) {
+      probes.note = nullptr;
+      for (EmcCase& test : probes.tests) test = with_references(test);
+      done_.search->references = search_thresholds(probes, response, top).thresholds;
+    }
     session_.terminal.print(search_text(*done_.search));
   }
 
@@ -254,6 +211,8 @@ class Campaign {
       return test.result.came_up && test.result.criterion >= worst_probe_->result.criterion;
     };
     if (!worst_probe_ || std::ranges::any_of(done_.tests, is_as_bad)) return;
+    if (references_)
+      worst_probe_->reference = run_one(response, with_references(case_of(*worst_probe_))).result;
     done_.tests.push_back(*worst_probe_);
     session_.terminal.print(emc_line(done_.tests.back()));
     if (!folder_.empty()) store(response, done_.tests.back(), done_.tests.size());
@@ -357,8 +316,9 @@ class Campaign {
   Interruption interruption_;
   const ProtocolEntry& row_;
   const conformance::PlannedNetwork* network_ = nullptr;
-  EmcCase stored_;                // what all tests have in common
-  std::filesystem::path folder_;  // of what is stored; empty: nothing is
+  std::shared_ptr<const conformance::PlannedNetwork> references_;  // the same without implementations
+  EmcCase stored_;                                                 // what all tests have in common
+  std::filesystem::path folder_;                                   // of what is stored; empty: nothing is
   bool is_searching_ = false;
   bool has_first_wrong_ = false;
   std::optional<EmcTest> worst_probe_;

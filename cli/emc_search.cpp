@@ -60,8 +60,11 @@ EmcSearch search_thresholds(const EmcProbing& probing, const emc::LineResponse& 
 }
 
 std::string search_text(const EmcSearch& search) {
-  return fmt::format("threshold search: {} ({} tests of {}; what a probe does not show may still come)\n",
-                     emc::text_of(search.thresholds), search.tests(), kernel::describe(search.duration));
+  std::string text =
+      fmt::format("threshold search: {} ({} tests of {}; what a probe does not show may still come)\n",
+                  emc::text_of(search.thresholds), search.tests(), kernel::describe(search.duration));
+  if (search.references) text += fmt::format("references alone: {}\n", emc::text_of(*search.references));
+  return text;
 }
 
 EmcSensitivity search_sensitivity(const EmcProbing& probing, const emc::Coupling& coupling,

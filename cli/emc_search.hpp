@@ -33,6 +33,7 @@ struct EmcProbing {
 
 struct EmcSearch {
   emc::Thresholds thresholds;
+  std::optional<emc::Thresholds> references{};  // of the same network without implementations of the call
   std::size_t tests_per_probe = 0;
   kernel::Duration duration{};
 

@@ -124,6 +124,33 @@ TEST_F(EmcVerb, SearchesBesideLevelsThatAreGivenWhereItIsAsked) {
   EXPECT_EQ(call({"--channel", "bsc:0.001", "--search"}).exit_code, 64);
 }
 
+// The seed draws the same bursts for both, so what differs is the device.
+TEST_F(EmcVerb, ShowsReferencesInThePlaceOfTheDevice) {
+  const Called caught = call({"--test-levels", "3", "--iut", "slave=mutant:does_not_mark_status",
+                              "--duration", "5s", "--search", "--json", "caught.json"});
+  EXPECT_EQ(caught.exit_code, 1);
+  EXPECT_HOLDS(caught.out,
+               "in it: slave@1 (mutant:does_not_mark_status); whoever is not named is a reference");
+  EXPECT_HOLDS(caught.out, "\nreferences alone: A up to ");
+  EXPECT_HOLDS(caught.out, "  references alone                   B");
+  EXPECT_HOLDS(caught.out,
+               "beside references alone, under bursts of the same seeds: the same to the last exchange in ");
+  const nlohmann::json document = json("caught.json");
+  EXPECT_TRUE(document.at("thresholds").contains("references"));
+  const auto& tests = document.at("tests");
+  EXPECT_TRUE(std::ranges::any_of(tests, [](const auto& test) { return test.at("criterion") == "D"; }));
+  ASSERT_EQ(call({"--test-levels", "3", "--duration", "5s", "--json", "references.json"}).exit_code, 0);
+  const nlohmann::json alone = json("references.json").at("tests");
+  for (std::size_t n = 0; n < alone.size(); ++n) {
+    EXPECT_FALSE(alone[n].contains("reference")) << "nobody else plays";
+    const auto& reference = tests.at(n).at("reference");
+    EXPECT_EQ(reference.at("criterion"), alone[n].at("criterion"));
+    EXPECT_EQ(reference.at("exposed"), alone[n].at("ledger").at("balance").at("exposed"));
+    EXPECT_EQ(reference.at("rejected"), alone[n].at("ledger").at("balance").at("rejected"));
+    EXPECT_EQ(reference.at("accepted_wrong"), 0);
+  }
+}
+
 TEST_F(EmcVerb, SaysOverWhichRangeOfEachParameterAVerdictHolds) {
   const Called called =
       call({"--test-levels", "x:55", "--polarity", "+", "--sensitivity", "--json", "emc.json"});

@@ -6,6 +6,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "cli/emc_beside.hpp"
 #include "emc/evidence.hpp"
 #include "emc/residual/residual_error.hpp"
 #include "harness/field/facts.hpp"
@@ -37,21 +38,26 @@ ordered_json volts_json(const std::optional<double>& volts) {
   return volts ? ordered_json(*volts) : ordered_json();
 }
 
-ordered_json search_json(const EmcSearch& search) {
-  const emc::Thresholds& found = search.thresholds;
-  ordered_json probes = ordered_json::array();
-  for (const auto& [volts, criterion] : found.probes)
-    probes.push_back({{"volts", volts}, {"criterion", emc::name(criterion)}});
+ordered_json thresholds_json(const emc::Thresholds& found) {
   return {{"is_complete", found.is_complete},
           {"text", emc::text_of(found)},
           {"a_up_to_volts", found.a_up_to_volts},
           {"b_from_volts", volts_json(found.seen_from[1])},
           {"c_seen_from_volts", volts_json(found.seen_from[2])},
           {"d_seen_from_volts", volts_json(found.seen_from[3])},
-          {"searched_to_volts", found.top_volts},
-          {"tests", search.tests()},
-          {"test_s", static_cast<double>(search.duration.count()) / 1e12},
-          {"probes", std::move(probes)}};
+          {"searched_to_volts", found.top_volts}};
+}
+
+ordered_json search_json(const EmcSearch& search) {
+  ordered_json probes = ordered_json::array();
+  for (const auto& [volts, criterion] : search.thresholds.probes)
+    probes.push_back({{"volts", volts}, {"criterion", emc::name(criterion)}});
+  ordered_json json = thresholds_json(search.thresholds);
+  json["tests"] = search.tests();
+  json["test_s"] = static_cast<double>(search.duration.count()) / 1e12;
+  json["probes"] = std::move(probes);
+  if (search.references) json["references"] = thresholds_json(*search.references);
+  return json;
 }
 
 ordered_json sensitivity_json(const EmcSensitivity& found) {
@@ -169,6 +175,7 @@ ordered_json test_json(const EmcTest& test) {
                        {"polarity", emc::text_of(test.polarity)}};
   if (test.of_search) json["of_search_s"] = static_cast<double>(test.of_search->duration.count()) / 1e12;
   json.update(result_json(test.result));
+  if (test.reference) json["reference"] = reference_json(*test.reference);
   return json;
 }
 
@@ -264,6 +271,16 @@ std::vector<std::string> unverified_of(const EmcCampaign& campaign) {
 
 namespace {
 
+std::string burst_columns(const emc::ImmunityResult& result) {
+  const network::ErrorStatistics& counts = result.counts;
+  return fmt::format("  {:>9} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8} {:>7} {:>7} {:>8} {:>14} {:>6} {:>8}\n",
+                     emc::name(result.criterion), counts.sent, counts.untouched, counts.without_effect,
+                     counts.refused, counts.wrong_exchanges, counts.retried,
+                     counts.detected - std::min(counts.detected, counts.partly_latched),
+                     counts.missed_outputs, result.longest_bad_run, recovery_text(result), result.stops,
+                     counts.cleared_outputs);
+}
+
 // The letter with what it rests on, and what decided.
 std::string evidence_lines(const emc::ImmunityResult& result) {
   const emc::Evidence evidence = emc::evidence_of(result);
@@ -322,13 +339,12 @@ std::string emc_line(const EmcTest& test) {
   const std::string where = fmt::format("{:<14} {:>8} {:>3}", test.level.text(),
                                         emc::text_of(test.repetition), emc::text_of(test.polarity));
   if (!result.came_up) return where + does_not_come_up(result);
-  const network::ErrorStatistics& counts = result.counts;
-  std::string line =
-      fmt::format("{}  {:>9} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8} {:>7} {:>7} {:>8} {:>14} {:>6} {:>8}\n",
-                  where, emc::name(result.criterion), counts.sent, counts.untouched, counts.without_effect,
-                  counts.refused, counts.wrong_exchanges, counts.retried,
-                  counts.detected - std::min(counts.detected, counts.partly_latched), counts.missed_outputs,
-                  result.longest_bad_run, recovery_text(result), result.stops, counts.cleared_outputs);
+  const std::string columns = burst_columns(result);
+  std::string line = where + columns;
+  if (test.reference && test.reference->came_up) {
+    const std::string theirs = burst_columns(*test.reference);
+    if (theirs != columns) line += fmt::format("{:<27}", "  references alone") + theirs;
+  }
   if (test.of_search)
     line +=
         fmt::format("    seen by the search, in a test of {}\n", kernel::describe(test.of_search->duration));
@@ -433,6 +449,7 @@ std::string emc_summary(const EmcCampaign& campaign) {
       total.counts.sent, total.counts.untouched, total.counts.without_effect, total.counts.refused,
       total.counts.wrong_exchanges, total.counts.accepted_wrong(), total.counts.differed,
       emc::undetected_text(total.counts, campaign.exchange));
+  text += beside_text(campaign);
   for (const emc::FrameResidual& residual : campaign.residuals)
     text += frame_residual_text(residual, total.counts.differed);
   text += places_text(campaign);

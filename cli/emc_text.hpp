@@ -28,6 +28,8 @@ struct EmcTest {
   double flip_probability = 0;
   std::vector<UndetectedPart> undetected;  // on that channel
   emc::ImmunityResult result;
+  // Of the same network with references alone; where an implementation of the call plays.
+  std::optional<emc::ImmunityResult> reference{};
 
   bool has_bursts() const { return flip_probability == 0; }
   // Where there is no closed form of exchanges: the share of corrupted frames that their check lets pass at

@@ -123,6 +123,7 @@ measure::Measurement measured_by(Session& session, std::stop_token stop) {
   settings.on_progress = [&](std::size_t done) { session.terminal.progress(done); };
   session.terminal.print(
       simulation_header(session, settings.seed, session.settings.text("network"), row.network.own_network));
+  session.terminal.print(players_text(network_implementations(session, row)));
   session.terminal.begin_progress(settings.signals.size(), "signals");
   measure::Measurement measured =
       network::measure_network([&](std::uint64_t seed) { return planned->make(seed); }, settings);

@@ -52,4 +52,18 @@ std::unique_ptr<conformance::PlannedNetwork> plan_network(const Session& session
   return entry.network.plan(network_request(session, entry));
 }
 
+bool is_no_reference(const conformance::Assignment& one) {
+  return one.uri != conformance::kReferenceUri;
+}
+
+std::string players_text(const std::vector<conformance::Assignment>& implementations) {
+  std::string text;
+  for (const conformance::Assignment& one : implementations) {
+    if (!is_no_reference(one)) continue;
+    text += fmt::format("{}{}@{} ({})", text.empty() ? "in it: " : ", ", one.role, std::max(one.position, 1),
+                        reports::escaped_line(one.uri));
+  }
+  return text.empty() ? text : text + "; whoever is not named is a reference\n";
+}
+
 }  // namespace fieldproof::cli

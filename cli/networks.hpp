@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,5 +22,9 @@ std::vector<conformance::Assignment> network_implementations(const Session& sess
 conformance::NetworkRequest network_request(const Session& session, const ProtocolEntry& entry);
 // The network of the call, with whoever `--iut` puts into it.
 std::unique_ptr<conformance::PlannedNetwork> plan_network(const Session& session, const ProtocolEntry& entry);
+
+bool is_no_reference(const conformance::Assignment& one);
+// "in it: node@2 (exec:./node); whoever is not named is a reference"; empty where nobody else plays.
+std::string players_text(const std::vector<conformance::Assignment>& implementations);
 
 }  // namespace fieldproof::cli

@@ -142,12 +142,18 @@ TEST_F(Networks, JudgeTheReferenceOutsideAsInside) {
     const std::string path = role;
     const std::string protocol = path.substr(0, path.find('/'));
     const std::string name = path.substr(path.find('/') + 1);
-    const auto ledger = [&](const std::string& iut) {
+    const auto test = [&](const std::string& iut) {
       const Called called = emc({protocol, "--duration", "1s", "--iut", name + "@1=" + iut});
       EXPECT_EQ(called.exit_code, 0) << iut << called.out << called.err;
-      return only_test().at("ledger");
+      return only_test();
     };
-    EXPECT_EQ(ledger("exec:'" FIELDPROOF_EXE "' station " + path), ledger("ref")) << path;
+    const nlohmann::json outside = test("exec:'" FIELDPROOF_EXE "' station " + path);
+    const nlohmann::json inside = test("ref");
+    EXPECT_EQ(outside.at("ledger"), inside.at("ledger")) << path;
+    EXPECT_EQ(outside.at("reference").at("exposed"), inside.at("ledger").at("sent")) << path;
+    EXPECT_EQ(outside.at("reference").at("rejected"), inside.at("ledger").at("balance").at("rejected"))
+        << path;
+    EXPECT_FALSE(inside.contains("reference")) << path;
   }
 }
 

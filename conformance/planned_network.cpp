@@ -11,6 +11,10 @@ namespace {
 
 }  // namespace
 
+std::string network_case_id(const iut::RoleName& role) {
+  return fmt::format("{}/{}/network", role.protocol, role.role);
+}
+
 void expect_roles(const NetworkRequest& request, std::span<const std::string_view> roles) {
   for (const Assignment& one : request.implementations) {
     if (one.uri == kReferenceUri && one.role.empty()) continue;

@@ -11,8 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "conformance/assigned.hpp"
 #include "conformance/mutant_table.hpp"
 #include "harness/kernel/error.hpp"
@@ -61,6 +59,8 @@ void expect_roles(const NetworkRequest& request, std::span<const std::string_vie
 // Throws for a position that the network does not have.
 void expect_place(const Assignment& assignment, std::string_view role, std::size_t position,
                   std::size_t places);
+// What an implementation outside is told in the place of a case.
+std::string network_case_id(const iut::RoleName& role);
 // The attachment of who plays in virtual time; throws for anybody else.
 iut::Attachment attached_to_network(const NetworkRequest& request, const iut::RoleName& role,
                                     const std::string& uri, const std::string& case_id, std::uint64_t seed);
@@ -73,7 +73,7 @@ class Seats {
   using Mutants = DeviceMutants<typename Kind::Device, Configuration>;
 
   Seats(const NetworkRequest& request, std::size_t places)
-      : request_(request), case_id_(fmt::format("{}/{}/network", Kind::protocol, Kind::role)) {
+      : request_(request), case_id_(network_case_id({Kind::protocol, Kind::role})) {
     for (const Assignment& one : request.implementations) {
       if (one.role != Kind::role) continue;
       const auto position = static_cast<std::size_t>(std::max(one.position, 1));

@@ -126,16 +126,25 @@ inline nlohmann::ordered_json sample_emc() {
           {"accepted_wrong", 4},
           {"data_differed", 84}}},
         {"upper_bound_of_share", 0.107}}}};
-  json["thresholds"] = {{"is_complete", true},
-                        {"text", "A up to 46 V, B from 48 V, C seen from 1472 V, D not seen up to 4000 V"},
-                        {"a_up_to_volts", 46},
-                        {"b_from_volts", 48},
-                        {"c_seen_from_volts", 1472},
-                        {"d_seen_from_volts", nullptr},
-                        {"searched_to_volts", 4000},
-                        {"tests", 4},
-                        {"test_s", 1.0},
-                        {"probes", {{{"volts", 48}, {"criterion", "B"}}}}};
+  json["thresholds"] = {
+      {"is_complete", true},
+      {"text", "A up to 46 V, B from 48 V, C seen from 1472 V, D not seen up to 4000 V"},
+      {"a_up_to_volts", 46},
+      {"b_from_volts", 48},
+      {"c_seen_from_volts", 1472},
+      {"d_seen_from_volts", nullptr},
+      {"searched_to_volts", 4000},
+      {"tests", 4},
+      {"test_s", 1.0},
+      {"references",
+       {{"is_complete", true},
+        {"text", "A up to 52 V, B from 54 V, C not seen up to 4000 V, D not seen up to 4000 V"},
+        {"a_up_to_volts", 52},
+        {"b_from_volts", 54},
+        {"c_seen_from_volts", nullptr},
+        {"d_seen_from_volts", nullptr},
+        {"searched_to_volts", 4000}}},
+      {"probes", {{{"volts", 48}, {"criterion", "B"}}}}};
   json["sensitivity"] = {{"is_complete", true},
                          {"level", "4 (2000 V)"},
                          {"criterion", "B"},
@@ -169,6 +178,17 @@ inline nlohmann::ordered_json sample_emc() {
          {"bus_stops", n / 8},
          {"quality_bit", false},
          {"cycle_time_us", 814.0},
+         {"reference",
+          {{"came_up", true},
+           {"criterion", n < 12 ? "B" : "C"},
+           {"exposed", 3600},
+           {"rejected", 2},
+           {"accepted_wrong", 0},
+           {"longest_bad_run", 1},
+           {"recovered_by_itself", true},
+           {"recovered_after_start", false},
+           {"recovery_cycles", 1},
+           {"bus_stops", 0}}},
          {"complaint", ""},
          {"cycles",
           {{{"cycle", "cycle"},
@@ -216,9 +236,9 @@ inline nlohmann::ordered_json sample_emc() {
                      {"expected_wrong_cycles_at_most", 7.2e-6},
                      {"chance_of_count", 1.0}};
   for (const auto& [key, value] : json["tests"].front().items()) {
-    if (key != "level" && key != "open_circuit_volts" && key != "repetition" && key != "polarity") {
-      channel[key] = value;
-    }
+    const bool is_of_bursts = key == "level" || key == "open_circuit_volts" || key == "repetition" ||
+                              key == "polarity" || key == "reference";
+    if (!is_of_bursts) channel[key] = value;
   }
   json["channels"] = Ordered::array({std::move(channel)});
   return json;

@@ -65,6 +65,25 @@ function balance(tests) {
   ], tests, "many");
 }
 
+// What of a result is the share of the device, and what any device shows on this cable.
+function besideReferences(tests) {
+  const both = tests.filter(({came_up: cameUp, reference}) => cameUp && reference?.came_up);
+  if (!both.length) return null;
+  const pair = (title, yours, theirs) => [
+    {title: `${title}: yours`, kind: "number", cell: yours}, {title: "references", kind: "number", cell: ({reference}) => theirs(reference)}];
+  return table("Beside the same network with references alone", [
+    {title: "level", cell: ({level}) => level},
+    {title: "pulses", cell: (test) => `${test.repetition} ${test.polarity === "-" ? "−" : test.polarity}`},
+    {title: "criterion: yours", cell: ({criterion}) => criterion},
+    {title: "references", cell: ({reference}) => reference.criterion},
+    ...pair("rejected", ({ledger: {balance: one}}) => part(one.rejected, one.exposed), (one) => part(one.rejected, one.exposed)),
+    ...pair("accepted wrong", ({ledger: {balance: one}}) => number(one.accepted_wrong), (one) => number(one.accepted_wrong)),
+    ...pair("longest bad run", (test) => number(test.longest_bad_run), (one) => number(one.longest_bad_run)),
+    ...pair("recovery, exchanges", recoveryText, recoveryText),
+    ...pair("bus stops", (test) => number(test.bus_stops), (one) => number(one.bus_stops)),
+  ], both, "many");
+}
+
 function ledger(tests) {
   const column = (title, cell) => ({title, kind: "number", cell});
   return table("Error ledger of each test", [
@@ -135,7 +154,7 @@ function campaign({ name, content }) {
       documentCommand(content, name),
       content.is_complete ? null : notice("The campaign ended before all of its tests were made: what is not here was not tested."),
       thresholdsPart(content),
-      hasBursts ? [heatOf(content.tests), criteriaPart(content)] : null, sensitivityPart(content), totalPart(content),
+      hasBursts ? [heatOf(content.tests), criteriaPart(content), besideReferences(content.tests)] : null, sensitivityPart(content), totalPart(content),
       content.channels.length ? channels(content.channels) : null, hasBursts ? [balance(content.tests), ledger(content.tests)] : null);
 }
 

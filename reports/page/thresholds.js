@@ -6,7 +6,8 @@ import { table } from "./table.js";
 export function thresholdsPart({thresholds}) {
   if (!thresholds) return null;
   return element("p", {class: "thresholds"}, element("strong", {}, "Threshold search: "), thresholds.text,
-      ` (${plural(thresholds.tests, "test")} of ${number(thresholds.test_s)} s; what a probe does not show may still come)`);
+      ` (${plural(thresholds.tests, "test")} of ${number(thresholds.test_s)} s; what a probe does not show may still come)`,
+      thresholds.references ? [element("br"), element("strong", {}, "References alone: "), thresholds.references.text] : null);
 }
 
 function valueOf(value, unit) {
