@@ -7,19 +7,24 @@ namespace fieldproof::token_bus {
 
 void ServiceInput::add(line::Waveform wave) {
   if (wave.levels.empty()) return;
-  if (waves_.empty()) taken_ = 0;
   waves_.push_back(std::move(wave));
+  if (waves_.size() == 1) begin_wave();
 }
 
-ServiceUnit ServiceInput::front() const {
+void ServiceInput::begin_wave() {
+  taken_ = 0;
+  if (waves_.empty()) return;
   const line::Waveform& wave = waves_.front();
-  return {wave.time_of(taken_ * kUnitLevels), wave.time_of((taken_ + 1) * kUnitLevels), wave.rate};
+  front_ = {wave.start, wave.time_of(kUnitLevels), wave.rate};
 }
 
 void ServiceInput::pop() {
-  if (++taken_ < units_in(levels())) return;
+  if (++taken_ < units_in(levels())) {
+    front_ = {front_.end, waves_.front().time_of((taken_ + 1) * kUnitLevels), front_.rate};
+    return;
+  }
   waves_.pop_front();
-  taken_ = 0;
+  begin_wave();
 }
 
 kernel::Time ServiceInput::end_of_piece(std::size_t units) const {

@@ -13,9 +13,9 @@ namespace fieldproof::token_bus {
 
 // One unit of an input.
 struct ServiceUnit {
-  kernel::Time begin;
-  kernel::Time end;
-  std::int64_t rate;  // of its four levels
+  kernel::Time begin{};
+  kernel::Time end{};
+  std::int64_t rate = 0;  // of its four levels
 };
 
 // What arrived on one side and has not been worked through.
@@ -25,7 +25,7 @@ class ServiceInput {
   void add(line::Waveform wave);
   bool empty() const { return waves_.empty(); }
   // Of the next unit.
-  ServiceUnit front() const;
+  const ServiceUnit& front() const { return front_; }
   const line::Levels& levels() const { return waves_.front().levels; }
   std::size_t number() const { return taken_; }  // of the next unit, in these levels
   void pop();
@@ -33,8 +33,11 @@ class ServiceInput {
   kernel::Time end_of_piece(std::size_t units) const;
 
  private:
+  void begin_wave();
+
   std::deque<line::Waveform> waves_;
   std::size_t taken_ = 0;  // of the first wave
+  ServiceUnit front_{};    // asked for far more often than it changes
 };
 
 // What is to be driven on one side: units that follow each other are one transmission.
