@@ -18,6 +18,7 @@ inline constexpr std::string_view kHangs = "implementation_hangs";
 inline constexpr std::string_view kFloods = "implementation_floods";
 inline constexpr std::string_view kGarbage = "implementation_sends_garbage";
 inline constexpr std::string_view kImpossible = "implementation_asks_the_impossible";
+inline constexpr std::string_view kNoneDelivered = "delivers_what_is_none";  // to its user
 inline constexpr std::string_view kDiedBetweenCases = "implementation_died_between_cases";
 inline constexpr std::string_view kUnsupported = "implementation_refuses_case";
 }  // namespace reasons

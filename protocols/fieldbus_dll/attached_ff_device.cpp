@@ -60,15 +60,17 @@ void AttachedFfDevice::send(unsigned port, kernel::Time start, std::span<const s
   }
   attached_.expect_in_order(start, "reports something to its user");
   const Octets octets = AttachedLink::told_octets(characters);
-  const std::uint8_t what = octets.empty() ? std::uint8_t{0} : octets.front();
-  const auto dlpdu = octets.empty() ? std::nullopt : ff_dlpdu_of(std::span(octets).subspan(1), rules_);
-  if (what == static_cast<std::uint8_t>(FfIndication::data) && dlpdu && dlpdu->type == FfType::dt1) {
-    user_->on_data(*dlpdu, start);
-  } else if (what == static_cast<std::uint8_t>(FfIndication::published) && dlpdu &&
-             dlpdu->type == FfType::dt3) {
-    user_->on_published(*dlpdu, start);
-  } else {
+  const auto what = static_cast<FfIndication>(octets.empty() ? 0 : octets.front());
+  if (what != FfIndication::data && what != FfIndication::published)
     iut::refuse_impossible("reports to its user what is neither 01 and a DT1 nor 02 and a DT3");
+  const FfType type = what == FfIndication::data ? FfType::dt1 : FfType::dt3;
+  const auto dlpdu = ff_dlpdu_of(std::span(octets).subspan(1), rules_);
+  if (!dlpdu || dlpdu->type != type) {
+    AttachedLink::refuse_delivery(what == FfIndication::data ? "DT1" : "DT3", octets, rules_.link);
+  } else if (what == FfIndication::data) {
+    user_->on_data(*dlpdu, start);
+  } else {
+    user_->on_published(*dlpdu, start);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/iut/acting_device.hpp"
@@ -88,7 +89,10 @@ class AttachedFfDeviceTest : public testing::Test, private FfUser {
     try {
       segment_.run_until(kAct + 100 * kMillisecond);
     } catch (const iut::Misbehaviour& done) {
-      EXPECT_EQ(done.reason(), iut::reasons::kImpossible);
+      const bool delivers =
+          std::string_view(done.what()).find("delivers to its user") != std::string_view::npos;
+      EXPECT_EQ(done.reason(), delivers ? iut::reasons::kNoneDelivered : iut::reasons::kImpossible);
+      EXPECT_EQ(done.evidence().size(), delivers ? 1U : 0U);
       return done.what();
     }
     return {};
@@ -222,7 +226,11 @@ INSTANTIATE_TEST_SUITE_P(
                              [](iut::Bench& bench) { bench.write(kEvent, 0x0B, kAct); }},
                     WrongAct{"reads item 0", kLevels, [](iut::Bench& bench) { bench.read(0, kAct); }},
                     WrongAct{"neither 01 and a DT1", kLevels,
+                             [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{4, 0x34}); }},
+                    WrongAct{"what is no DT1 here", kLevels,
                              [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{1, 0x34}); }},
+                    WrongAct{"what is no DT3 here", kLevels,
+                             [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{2}); }},
                     WrongAct{"neither 01 and a DT1", kLevels,
                              [](iut::Bench& bench) { bench.send(kUserPort, kAct, Sent{}); }},
                     WrongAct{"reports no octets to its user", kLevels,

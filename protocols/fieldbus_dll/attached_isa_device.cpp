@@ -47,9 +47,10 @@ void AttachedIsaDevice::send(unsigned port, kernel::Time start, std::span<const 
   attached_.expect_in_order(start, "reports something to its user");
   const Octets octets = AttachedLink::told_octets(characters);
   const auto dlpdu = octets.empty() ? std::nullopt : isa_dlpdu_of(std::span(octets).subspan(1), rules_);
-  const bool is_data = dlpdu && (dlpdu->type == IsaType::du || dlpdu->type == IsaType::dt);
-  if (!is_data || octets.front() != kIsaData)
+  if (octets.empty() || octets.front() != kIsaData)
     iut::refuse_impossible("reports to its user what is not 01 and a DU or DT");
+  const bool is_data = dlpdu && (dlpdu->type == IsaType::du || dlpdu->type == IsaType::dt);
+  if (!is_data) AttachedLink::refuse_delivery("DU or DT", octets, rules_.link);
   user_->on_data(*dlpdu, start);
 }
 

@@ -1,6 +1,7 @@
 #include "protocols/fieldbus_dll/attached_link.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -81,6 +82,17 @@ void AttachedLink::send(unsigned port, kernel::Time start, std::span<const std::
 
 Octets AttachedLink::told_octets(std::span<const std::uint16_t> characters) {
   return reported_octets(characters, kMostFrameOctets);
+}
+
+void AttachedLink::refuse_delivery(std::string_view unit, const Octets& told, const LinkRules& rules) {
+  throw iut::Misbehaviour(
+      iut::reasons::kNoneDelivered,
+      fmt::format(
+          "the implementation delivers to its user what is no {} here: its control, its addresses or its "
+          "length "
+          "are those of none, or its data are more than the {} octets of its priority that the link carries",
+          unit, fmt::join(rules.most_data, ", ")),
+      {fmt::format("delivered: {:02X}", fmt::join(told.begin() + 1, told.end(), " "))});
 }
 
 }  // namespace fieldproof::fieldbus_dll

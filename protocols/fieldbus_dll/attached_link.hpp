@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "harness/iut/user_line.hpp"
 #include "protocols/fieldbus_dll/line_end.hpp"
@@ -35,6 +36,8 @@ class AttachedLink : public iut::UserLine {
   void send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters);
   // What is sent at the user's port.
   static Octets told_octets(std::span<const std::uint16_t> characters);
+  // Of an implementation that delivers octets that are no `unit`, "DT1"; the first one is the indication.
+  [[noreturn]] static void refuse_delivery(std::string_view unit, const Octets& told, const LinkRules& rules);
 
  private:
   bool hears_frames() { return attached().unit_kind() == iut::UnitKind::telegrams; }
