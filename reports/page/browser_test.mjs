@@ -154,6 +154,10 @@ if (firstRun && !process.env.FIELDPROOF_ANY_LOAD_TIME) {
   rmSync(folder, {recursive: true});
 }
 
+await check("no button offers less than one more case", async (page) => {
+  for (const text of await page.locator(".more-lines").allTextContents()) expect(!text.includes("-"), `"${text}"`);
+});
+
 await check("numbers of the summary are those of the run", async (page) => {
   if (!firstRun) return;
   const text = await page.locator("#summary").innerText();

@@ -99,7 +99,7 @@ class CaseTable {
     this.body.replaceChildren(...lines.flatMap((row) => [this.lineOf(row), row.detail]));
     const rest = this.shown.length - this.most;
     this.more.hidden = rest <= 0;
-    this.more.textContent = `Show ${Math.min(rest, kLinesAtATime)} more of ${rest}`;
+    this.more.textContent = rest > 0 ? `Show ${Math.min(rest, kLinesAtATime)} more of ${rest}` : "All are shown";
   }
 
   order(compare) {
