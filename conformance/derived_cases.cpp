@@ -91,8 +91,10 @@ class DerivedResult {
     if (worst_.verdict == Verdict::pass && !worst_.has_driven) add(one_of_each(given_.vocabulary));
     if (worst_.verdict == Verdict::pass && !worst_.has_driven) doubt_silence();
     measure("sequences", run_);
-    measure("about one thing", given_.derived.taken);
-    measure("about one thing there are", given_.derived.singles);
+    if (given_.derived.singles > 0) {
+      measure("about one thing", given_.derived.taken);
+      measure("about one thing there are", given_.derived.singles);
+    }
     return std::move(worst_);
   }
 

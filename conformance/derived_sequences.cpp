@@ -5,11 +5,12 @@
 #include <utility>
 
 #include "conformance/covering_array.hpp"
+#include "conformance/sequence_draw.hpp"
 #include "conformance/sequence_settings.hpp"
 
 namespace fieldproof::conformance {
 
-const std::array<DerivedRow, 6> kDerivedRows{{
+const std::array<DerivedRow, 7> kDerivedRows{{
     {DerivedKind::values, "each_number_at_its_boundaries",
      "Each number of each command at both ends, beside them, at each power of two and at what the rules "
      "name, "
@@ -27,16 +28,21 @@ const std::array<DerivedRow, 6> kDerivedRows{{
      "Each setting at both ends of its range and beside them, and one of each command; and two settings at "
      "once.",
      1'000},
+    {DerivedKind::drawn, "any_commands_as_they_come",
+     "Sequences at random, as `check` draws them: any commands with any numbers, spoilt or not, from any "
+     "state.",
+     300},
 }};
 
 namespace {
 
 constexpr std::array<std::size_t, 3> kRepetitions{2, 20, 130};
 constexpr std::size_t kManyRepetitions = 300;
-constexpr std::size_t kOrder = 3;          // words of which all orders occur
-constexpr std::size_t kNewOfWalk = 4;      // words that a walk has beyond those it shares with the one before
-constexpr std::size_t kTourLength = 5;     // commands with a setting
-constexpr std::int64_t kMostChoices = 20;  // of a number: more are a quantity
+constexpr std::size_t kOrder = 3;       // words of which all orders occur
+constexpr std::size_t kNewOfWalk = 4;   // words that a walk has beyond those it shares with the one before
+constexpr std::size_t kTourLength = 5;  // commands with a setting
+constexpr std::uint64_t kShorterDrawn = 100;  // the first ones of a seed have few commands
+constexpr std::int64_t kMostChoices = 20;     // of a number: more are a quantity
 
 void add_once(std::vector<std::int64_t>& values, std::int64_t value) {
   if (std::ranges::find(values, value) == values.end()) values.push_back(value);
@@ -71,6 +77,8 @@ class Derivation {
         return repetitions();
       case DerivedKind::settings:
         return settings();
+      case DerivedKind::drawn:
+        return {};
     }
     return {};
   }
@@ -109,6 +117,8 @@ class Derivation {
         return in_turn();
       case DerivedKind::settings:
         return two_settings();
+      case DerivedKind::drawn:
+        return {};
     }
     return {};
   }
@@ -406,6 +416,14 @@ class Derivation {
   std::vector<SequenceCommand> letters_;  // of each word a usual command and another
 };
 
+DerivedSequences drawn_sequences(const SequenceVocabulary& vocabulary, std::size_t most,
+                                 kernel::Random random) {
+  DerivedSequences drawn;
+  const SequenceSource source(vocabulary, random.seed());
+  for (std::size_t n = 0; n < most; ++n) drawn.sequences.push_back(source.draw(kShorterDrawn + n));
+  return drawn;
+}
+
 }  // namespace
 
 std::vector<std::int64_t> derived_values(const SequenceNumber& number) {
@@ -438,6 +456,7 @@ bool has_derived(DerivedKind kind, const SequenceVocabulary& vocabulary) {
 
 DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
                                    kernel::Random random) {
+  if (kind == DerivedKind::drawn) return drawn_sequences(vocabulary, most, random);
   Derivation derivation(vocabulary, random.split("of_two"));
   auto singles = derivation.singles(kind);
   DerivedSequences derived{.sequences = {}, .singles = singles.size()};

@@ -13,14 +13,14 @@
 
 // Sequences that are derived from the vocabulary of a role instead of being listed or drawn: each number of
 // each word at its boundaries, each unit of each transmission spoilt, each setting at its ends, each three
-// words in each order, the same many times. A new word, number or setting gets all of it by its row.
+// words in each order, the same many times; and, at last, any sequences as `check` draws them. A new word, number or setting gets all of it by its row.
 //
 // Whatever a sequence is about stands between others: in front of it what brings the station into a state,
 // and a word that leaves something behind; after it one of each word, in their order or the other, which
 // shows what it has left behind.
 namespace fieldproof::conformance {
 
-enum class DerivedKind : std::uint8_t { values, faults, words, states, repetitions, settings };
+enum class DerivedKind : std::uint8_t { values, faults, words, states, repetitions, settings, drawn };
 
 struct DerivedRow {
   DerivedKind kind;
@@ -29,7 +29,7 @@ struct DerivedRow {
   std::size_t quick = 400;  // sequences of it at this volume
   std::size_t full = 5'000;
 };
-extern const std::array<DerivedRow, 6> kDerivedRows;
+extern const std::array<DerivedRow, 7> kDerivedRows;
 
 // What may be chosen for a number of a command: both ends, their neighbours, powers of two and their
 // neighbours, and what the vocabulary names; each once, what is simple first.
@@ -43,7 +43,7 @@ bool has_derived(DerivedKind kind, const SequenceVocabulary& vocabulary);
 
 struct DerivedSequences {
   std::vector<Sequence> sequences;
-  std::size_t singles = 0;  // one thing at a time: how many there are,
+  std::size_t singles = 0;  // one thing at a time: how many there are (of what is drawn: 0),
   std::size_t taken = 0;    // and how many of them are here
 };
 

@@ -385,7 +385,8 @@ const SequenceRole& ff_las_sequence_role() {
        {DerivedKind::words, {"token_over_due", "token_over_due"}},
        {DerivedKind::states, {"steps_back_to_the_extreme", "priority_wrong"}},
        {DerivedKind::repetitions, {"target_ignored", "priority_wrong"}},
-       {DerivedKind::settings, {"time_at_half_speed", "time_wrong"}}}};
+       {DerivedKind::settings, {"time_at_half_speed", "time_wrong"}},
+       {DerivedKind::drawn, {"token_over_due", "token_over_due"}}}};
   return role;
 }
 

@@ -326,7 +326,8 @@ const SequenceRole& isa_las_sequence_role() {
        {DerivedKind::words, {"schedule_early", "delegation_early"}},
        {DerivedKind::states, {"retakes_early", "answers_too_early"}},
        {DerivedKind::repetitions, {"waits_out_duration", "line_left_silent"}},
-       {DerivedKind::settings, {"transfer_without_version", "transfer_wrong"}}}};
+       {DerivedKind::settings, {"transfer_without_version", "transfer_wrong"}},
+       {DerivedKind::drawn, {"schedule_early", "delegation_early"}}}};
   return role;
 }
 

@@ -354,7 +354,8 @@ const SequenceRole& isa_dle_sequence_role() {
        {DerivedKind::words, {"sends_no_preamble", "frame_malformed"}},
        {DerivedKind::states, {"end_sent_twice", "speaks_unasked"}},
        {DerivedKind::repetitions, {"replies_twice", "speaks_unasked"}},
-       {DerivedKind::settings, {"no_frame_under_et", "data_held_back"}}}};
+       {DerivedKind::settings, {"no_frame_under_et", "data_held_back"}},
+       {DerivedKind::drawn, {"sends_no_preamble", "frame_malformed"}}}};
   return role;
 }
 

@@ -218,7 +218,8 @@ const SequenceRole& channel_manager_sequence_role() {
        {DerivedKind::words, {"sends_on_a_alone", "request_other"}},
        {DerivedKind::states, {"takes_the_first", "indication_other"}},
        {DerivedKind::repetitions, {"zero_and_one_exchanged_on_b", "request_other"}},
-       {DerivedKind::settings, {"sends_on_the_preferred_alone", "request_other"}}}};
+       {DerivedKind::settings, {"sends_on_the_preferred_alone", "request_other"}},
+       {DerivedKind::drawn, {"sends_on_a_alone", "request_other"}}}};
   return role;
 }
 

@@ -241,7 +241,8 @@ const SequenceRole& token_station_sequence_role() {
        {DerivedKind::words, {"delivers_with_another_priority", "indication_other"}},
        {DerivedKind::states, {"response_of_the_asked_only", "indication_missing"}},
        {DerivedKind::repetitions, {"offer_kept", "frame_other"}},
-       {DerivedKind::settings, {"preamble_of_four_octets", "preamble_short"}}}};
+       {DerivedKind::settings, {"preamble_of_four_octets", "preamble_short"}},
+       {DerivedKind::drawn, {"delivers_with_another_priority", "indication_other"}}}};
   return role;
 }
 

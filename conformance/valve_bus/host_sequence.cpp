@@ -262,7 +262,8 @@ const SequenceRole& host_sequence_role() {
        {DerivedKind::words, {"request_check_without_id", "check_wrong"}},
        {DerivedKind::states, {"sends_id_100", "indication_wrong"}},
        {DerivedKind::repetitions, {"told_twice", "indication_wrong"}},
-       {DerivedKind::settings, {"silence_told_as_data", "indication_wrong"}}}};
+       {DerivedKind::settings, {"silence_told_as_data", "indication_wrong"}},
+       {DerivedKind::drawn, {"request_check_without_id", "check_wrong"}}}};
   return role;
 }
 
