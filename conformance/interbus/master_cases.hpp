@@ -25,5 +25,6 @@ std::vector<MasterCase> master_application_cases();
 std::vector<MasterCase> master_skew_cases();
 std::vector<MasterCase> master_immunity_cases();
 std::vector<MasterCase> master_compared_cases();
+std::vector<MasterCase> master_cases_at_length();
 
 }  // namespace fieldproof::conformance

@@ -4,9 +4,8 @@
 #include <initializer_list>
 #include <utility>
 
-#include "conformance/interbus/master_cases.hpp"
+#include "conformance/interbus/compared_master.hpp"
 #include "conformance/interbus/master_sequence.hpp"
-#include "conformance/interbus/master_vocabulary.hpp"
 #include "conformance/interbus/other_codings.hpp"
 #include "conformance/sequence_draw.hpp"
 
@@ -15,24 +14,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-using MasterCommands = std::vector<SequenceCommand>;
-using MasterFamily = std::vector<MasterCommands> (*)();
-using ChangeRules = void (*)(interbus::Rules&);
-
-const SequenceVocabulary& words_of_master() {
-  static const SequenceVocabulary words = without_settings(master_sequence_role().vocabulary);
-  return words;
-}
-
-SequenceCommand order(MasterWord word, GivenNumbers given = {}) {
-  return simple_command(words_of_master(), static_cast<std::size_t>(word), given);
-}
-SequenceCommand cycles(std::int64_t count) {
-  return order(MasterWord::cycles, {{0, count}});
-}
-SequenceCommand ring(std::int64_t number) {
-  return order(MasterWord::power, {{0, number}, {1, 1}, {2, 1}});
-}
+using namespace compared_master;
 
 // ---- families of sequences ----
 
@@ -195,34 +177,6 @@ std::vector<MasterCommands> orders_in_each_state() {
   return all;
 }
 
-// ---- a case ----
-
-Sequence between(const MasterCommands& middle) {
-  Sequence sequence;
-  sequence.commands = {order(MasterWord::inputs, {{0, 0x0102}, {1, 0xFEFD}}),
-                       order(MasterWord::outputs, {{0, 0x00FF}, {1, 0x5AA5}}), cycles(2)};
-  sequence.commands.insert(sequence.commands.end(), middle.begin(), middle.end());
-  for (const SequenceCommand& one :
-       {cycles(1), order(MasterWord::inputs, {{0, 0xFF00}, {1, 0}}), order(MasterWord::outputs), cycles(3),
-        order(MasterWord::identify), cycles(2), order(MasterWord::start), cycles(2)})
-    sequence.commands.push_back(one);
-  return sequence;
-}
-
-// All of a family; in a quick run so many of it, others with each seed.
-std::function<void(MasterBench&, CaseJudge&)> each_beside(MasterFamily family, std::size_t quick,
-                                                          ChangeRules change_rules = nullptr) {
-  return [=](MasterBench& bench, CaseJudge& judge) {
-    const std::vector<MasterCommands> all = family();
-    const std::size_t count = bench.volume(std::min(quick, all.size()), all.size());
-    const std::size_t first =
-        count == all.size() ? 0 : static_cast<std::size_t>(bench.random().below(all.size()));
-    for (std::size_t n = 0; n < count; ++n)
-      run_master_sequence(between(all[(first + n * all.size() / count) % all.size()]), bench, judge,
-                          change_rules);
-  };
-}
-
 void drawn_for_a_master(MasterBench& bench, CaseJudge& judge) {
   const SequenceSource source(words_of_master(), bench.random().next());
   for (std::uint64_t n = 0; n < bench.volume(15U, 300U); ++n)
@@ -250,52 +204,38 @@ void change_times_of_a_master(interbus::Rules& rules) {
   rules.silence_tolerance = 5 * kernel::kMillisecond;
 }
 
-MasterCase compared_master(std::string_view id, std::string stimulus, std::vector<MustCatch> catches,
-                           std::function<void(MasterBench&, CaseJudge&)> procedure) {
-  MasterCase made{master_sequence_role().test_case, std::move(procedure)};
-  made.test_case.id = fmt::format("interbus/master/compared/{}", id);
-  made.test_case.purpose = "compared";
-  made.test_case.stimulus = std::move(stimulus);
-  made.test_case.tags = {"must"};
-  made.test_case.catches = std::move(catches);
-  return made;
-}
-
 }  // namespace
 
 std::vector<MasterCase> master_compared_cases() {
   return {
-      compared_master("each_value_of_each_word", "Each word of sequences with each boundary value, in run.",
-                      {{"first_station_first", "cycle_wrong"}}, each_beside(each_value_for_a_master, 160)),
-      compared_master("each_fault_on_the_way_back",
-                      "A data cycle and an ID cycle come back with a level flipped or a telegram lost.",
-                      {{"telegrams_without_gap", "cycle_time_wrong"}},
-                      each_beside(each_fault_on_the_way_back, 160)),
-      compared_master("one_thing_after_another", "Each two of all that can happen to a master, in run.",
-                      {{"cycle_start_wanders", "pause_not_filled"}},
-                      each_beside(one_order_after_another, 50)),
-      compared_master("run_after_run", "What ends a run, a start, and what ends the next one.",
-                      {{"changed_ring_ignored", "state_missing"}}, each_beside(run_after_run, 60)),
-      compared_master("each_ring",
-                      "Each ring, with no, two and all words copied, and cut in front of each station.",
-                      {{"later_words_of_a_station_frozen", "new_inputs_missed"},
-                       {"third_copy_lost", "cycle_wrong"},
-                       {"lone_station_not_placed", "state_wrong"}},
-                      each_beside(each_ring, 49)),
-      compared_master("orders_in_each_state",
-                      "Start, stop, an ID cycle and an output are ordered in each state but run.",
-                      {{"stop_before_run_ignored", "not_silent"}, {"early_output_kept", "early_output_kept"}},
-                      each_beside(orders_in_each_state, 16)),
-      compared_master("many_cycles", "300 cycles, some of them bad, each with other inputs.",
-                      {{"outputs_torn", "cycle_wrong"}}, each_beside(many_cycles_of_a_master, 2)),
-      compared_master("drawn_sequences", "Sequences of all words at random.",
-                      {{"first_station_first", "cycle_wrong"}}, drawn_for_a_master),
-      compared_master("other_codings", "The same with each coding another one.",
-                      {{"outputs_one_cycle_late", "cycle_wrong"}},
-                      each_beside(each_value_for_a_master, 10, change_all_codings)),
-      compared_master("other_times", "The same with other times and counts.",
-                      {{"inputs_frozen", "new_inputs_missed"}, {"bit_rate_kept", "state_wrong"}},
-                      each_beside(run_after_run, 8, change_times_of_a_master))};
+      compared("each_value_of_each_word", "Each word of sequences with each boundary value, in run.",
+               {{"first_station_first", "cycle_wrong"}}, each_beside(each_value_for_a_master, 160)),
+      compared("each_fault_on_the_way_back",
+               "A data cycle and an ID cycle come back with a level flipped or a telegram lost.",
+               {{"telegrams_without_gap", "cycle_time_wrong"}}, each_beside(each_fault_on_the_way_back, 160)),
+      compared("one_thing_after_another", "Each two of all that can happen to a master, in run.",
+               {{"cycle_start_wanders", "pause_not_filled"}}, each_beside(one_order_after_another, 50)),
+      compared("run_after_run", "What ends a run, a start, and what ends the next one.",
+               {{"changed_ring_ignored", "state_missing"}}, each_beside(run_after_run, 60)),
+      compared("each_ring", "Each ring, with no, two and all words copied, and cut in front of each station.",
+               {{"later_words_of_a_station_frozen", "new_inputs_missed"},
+                {"third_copy_lost", "cycle_wrong"},
+                {"lone_station_not_placed", "state_wrong"}},
+               each_beside(each_ring, 49)),
+      compared("orders_in_each_state",
+               "Start, stop, an ID cycle and an output are ordered in each state but run.",
+               {{"stop_before_run_ignored", "not_silent"}, {"early_output_kept", "early_output_kept"}},
+               each_beside(orders_in_each_state, 16)),
+      compared("many_cycles", "300 cycles, some of them bad, each with other inputs.",
+               {{"outputs_torn", "cycle_wrong"}}, each_beside(many_cycles_of_a_master, 2)),
+      compared("drawn_sequences", "Sequences of all words at random.",
+               {{"first_station_first", "cycle_wrong"}}, drawn_for_a_master),
+      compared("other_codings", "The same with each coding another one.",
+               {{"outputs_one_cycle_late", "cycle_wrong"}},
+               each_beside(each_value_for_a_master, 10, change_all_codings)),
+      compared("other_times", "The same with other times and counts.",
+               {{"inputs_frozen", "new_inputs_missed"}, {"bit_rate_kept", "state_wrong"}},
+               each_beside(run_after_run, 8, change_times_of_a_master))};
 }
 
 }  // namespace fieldproof::conformance

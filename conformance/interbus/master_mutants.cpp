@@ -1,5 +1,6 @@
 #include "conformance/interbus/master_mutants.hpp"
 
+#include "conformance/interbus/master_at_length_seeded_faults.hpp"
 #include "conformance/interbus/master_seeded_faults.hpp"
 #include "conformance/interbus/master_sequence_seeded_faults.hpp"
 
@@ -8,6 +9,11 @@ namespace fieldproof::conformance {
 namespace {
 
 using interbus::MasterState;
+
+// A count that goes round before it reaches the limit.
+unsigned never_beyond(const interbus::Rules& rules, unsigned most) {
+  return rules.stop_after_bad_cycles > most ? 1'000'000 : rules.stop_after_bad_cycles;
+}
 
 std::vector<MasterMutants::Row> master_rows() {
   using namespace seeded_faults;
@@ -115,6 +121,14 @@ std::vector<MasterMutants::Row> master_rows() {
       {"third_copy_lost", "", "copies two words and no more", mutant<ThirdCopyLost>()},
       {"lone_station_not_placed", "", "finds no place of a fault in a ring of one station",
        mutant<LoneStationNotPlaced>()},
+      {"looks_at_eight_stations", "", "reports messages of the first eight stations only",
+       mutant<LooksAtEightStations>()},
+      {"writes_256_words", "", "writes the word that eight bits of its number say", mutant<Writes256Words>()},
+      {"counts_bad_cycles_in_4_bits", "", "counts bad cycles in a row in four bits",
+       with_rules<interbus::Master>(
+           [](Rules& rules) { rules.stop_after_bad_cycles = never_beyond(rules, 15); })},
+      {"orders_of_id_cycles_add_up", "", "meets two orders for an ID cycle by two of them",
+       mutant<OrdersOfIdCyclesAddUp>()},
       {"stop_before_run_ignored", "", "ignores a stop in any state but run", mutant<StopBeforeRunIgnored>()},
       {"early_output_kept", "", "sends an output that was written before it ran", mutant<EarlyOutputKept>()},
       {"pulse_widths_even", "", "copies pulses of an odd number of cycles one cycle shorter",

@@ -193,6 +193,7 @@ void MasterSide::enter_run() {
   is_ring_known_ = true;
   data_cycles_ = rejected_ = id_cycles_ = rejected_of_all_ = 0;
   at_entry_ = bench_.status();
+  ended_at_entry_ = bench_.finished();
   note_state(false);
 }
 
@@ -216,6 +217,7 @@ void MasterSide::stop(bool is_disturbed) {
   const std::uint64_t cycles = bench_.ring().cycle_count();
   bench_.run_for(kIdle);
   expect(bench_.ring().cycle_count() == cycles, "not_silent", "no cycle when it is stopped", "cycles");
+  if (was_running) judge_counters_since_entry();
   note_state(false);
 }
 
@@ -277,6 +279,7 @@ void MasterSide::cut_before(std::size_t station) {
   is_ring_right_ = false;
   for (unsigned n = 0; n < 2 * bench_.rules().stop_after_bad_cycles && is_running(); ++n) cycle();
   if (!is_running()) bench_.run_until([this] { return bench_.status().has_fault_location; }, kernel::kSecond);
+  judge_counters_since_entry();
   note_state(true);
   bench_.ring().mend();
 }
@@ -303,6 +306,7 @@ void MasterSide::cycle(const CycleFaults& faults) {
   armed_.reset();
   settle();
   if (bench_.ring().cycle_count() > before + 1) judge_break();
+  judge_counters_since_entry();
   note_state(false);
 }
 
@@ -400,6 +404,19 @@ void MasterSide::judge_counters() {
   judge_->expect_equal(status.id_cycles - at_entry_.id_cycles, id_cycles_, "counter_wrong", "ID cycles");
   judge_->expect_equal(status.rejected_cycles - at_entry_.rejected_cycles, rejected_of_all_, "counter_wrong",
                        "rejected cycles");
+}
+
+// Also of cycles in which it is in run no more: the last one of a stop, and those that look for a fault.
+void MasterSide::judge_counters_since_entry() {
+  if (judge_ == nullptr) return;
+  const MasterStatus status = bench_.status();
+  const auto& ended = bench_.finished();
+  const std::uint64_t data = ended.data_count - ended_at_entry_.data_count;
+  const std::uint64_t all = ended.count - ended_at_entry_.count;
+  judge_->expect_equal(status.data_cycles - at_entry_.data_cycles, data, "counter_wrong",
+                       "data cycles that have ended since it runs");
+  judge_->expect_equal(status.id_cycles - at_entry_.id_cycles, all - data, "counter_wrong",
+                       "ID cycles that have ended since it runs");
 }
 
 void MasterSide::judge_silence() {

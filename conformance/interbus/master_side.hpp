@@ -114,6 +114,7 @@ class MasterSide {
   void judge_cycle(const interbus::SeenCycle& sent);
   void judge_inputs(const interbus::SeenCycle& sent, Arrival arrival);
   void judge_counters();
+  void judge_counters_since_entry();
   void judge_silence();
   void judge_line();
   void judge_break();
@@ -144,6 +145,7 @@ class MasterSide {
   std::uint64_t id_cycles_ = 0;
   std::uint64_t rejected_of_all_ = 0;
   interbus::MasterStatus at_entry_;
+  MasterBench::FinishedCycle ended_at_entry_{};
   Observations cycles_;
   Observations inputs_;
   Observations reports_;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "conformance/interbus/master_side.hpp"
+#include "protocols/interbus/master.hpp"
 #include "protocols/interbus/network.hpp"
 
 // What an application orders of a master in other states than run, and what must come of it.

@@ -187,6 +187,17 @@ SequenceVocabulary master_vocabulary() {
   return vocabulary;
 }
 
+namespace {
+
+// Couplers at the second and the ninth place; what hangs on their branch comes before what follows them.
+std::vector<VirtualStation> ring_of_twelve() {
+  return {{0x0103, 1, -1, false}, {0x0008, 0, 0, false}, {0x01BE, 1, 1, true},  {0x0203, 2, 1, false},
+          {0x0103, 1, 3, false},  {0x0103, 1, 4, false}, {0x0103, 1, 5, false}, {0x0103, 1, 6, false},
+          {0x0008, 0, 7, false},  {0x01BE, 1, 8, true},  {0x01BE, 1, 9, false}, {0x0103, 1, 8, false}};
+}
+
+}  // namespace
+
 std::vector<VirtualStation> ring_of(std::int64_t number) {
   switch (number) {
     case 0:
@@ -201,6 +212,10 @@ std::vector<VirtualStation> ring_of(std::int64_t number) {
       return interbus::line_of(1, 0x0603, 8);
     case 6:
       return interbus::line_of(5, 0x1403, 32);
+    case kLongRing:
+      return ring_of_twelve();
+    case kWideRing:
+      return interbus::line_of(10, 0x1403, 32);
     default:
       return {{0x0103, 1, -1, false}, {0x0008, 0, 0, false}, {0x01BE, 1, 1, true}, {0x0203, 2, 1, false}};
   }
@@ -241,6 +256,8 @@ MasterScene scene_of(const SequenceCommand& command) {
   if (numbers[1] == 1) scene.expected = scene.ring;
   if (numbers[1] == 2) scene.expected = ring_of((numbers[0] + 1) % kRings);
   if (numbers[1] > 2) scene.expected = misplaced(scene.ring, numbers[1]);
+  if (numbers[1] >= kAnotherExpected)
+    scene.expected = changed_ring(scene.ring, 0, numbers[1] - kAnotherExpected);
   scene.copies = static_cast<Copies>(numbers[2]);
   scene.cycle_time = numbers[3] * kernel::kMillisecond;
   scene.disturbed = static_cast<unsigned>(numbers[4]);
