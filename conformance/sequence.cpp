@@ -128,24 +128,45 @@ SequenceVocabulary without_settings(SequenceVocabulary vocabulary) {
   return vocabulary;
 }
 
+namespace {
+
+SequenceCommand command_of(const NamedCommand& named, const SequenceVocabulary& vocabulary) {
+  const SequenceWord* const word = vocabulary.find(named.word);
+  FIELDPROOF_CHECK(word != nullptr, "a state is reached by words of the vocabulary");
+  SequenceCommand command =
+      simple_command(vocabulary, static_cast<std::size_t>(word - vocabulary.words.data()));
+  for (const auto& [name, value] : named.numbers) {
+    const auto number = std::ranges::find(word->numbers, name, &SequenceNumber::name);
+    FIELDPROOF_CHECK(number != word->numbers.end() && number->least <= value && value <= number->most,
+                     "a state is reached by numbers of the vocabulary");
+    command.numbers[static_cast<std::size_t>(number - word->numbers.begin())] = value;
+  }
+  return command;
+}
+
+std::vector<SequenceCommand> commands_of(const std::vector<NamedCommand>& named,
+                                         const SequenceVocabulary& vocabulary) {
+  std::vector<SequenceCommand> commands;
+  for (const NamedCommand& one : named) commands.push_back(command_of(one, vocabulary));
+  return commands;
+}
+
+}  // namespace
+
 SequenceVocabulary with_beginnings(SequenceVocabulary vocabulary,
                                    const std::vector<std::vector<NamedCommand>>& states) {
-  const auto command_of = [&](const NamedCommand& named) {
-    const SequenceWord* const word = vocabulary.find(named.word);
-    FIELDPROOF_CHECK(word != nullptr, "a state is reached by words of the vocabulary");
-    SequenceCommand command =
-        simple_command(vocabulary, static_cast<std::size_t>(word - vocabulary.words.data()));
-    for (const auto& [name, value] : named.numbers) {
-      const auto number = std::ranges::find(word->numbers, name, &SequenceNumber::name);
-      FIELDPROOF_CHECK(number != word->numbers.end() && number->least <= value && value <= number->most,
-                       "a state is reached by numbers of the vocabulary");
-      command.numbers[static_cast<std::size_t>(number - word->numbers.begin())] = value;
-    }
-    return command;
-  };
-  for (const std::vector<NamedCommand>& state : states) {
-    std::vector<SequenceCommand>& commands = vocabulary.beginnings.emplace_back();
-    for (const NamedCommand& one : state) commands.push_back(command_of(one));
+  for (const std::vector<NamedCommand>& state : states)
+    vocabulary.beginnings.push_back(commands_of(state, vocabulary));
+  return vocabulary;
+}
+
+SequenceVocabulary with_situations(SequenceVocabulary vocabulary,
+                                   const std::vector<NamedSituation>& situations) {
+  for (const NamedSituation& one : situations) {
+    for (const ShownSetting& shown : one.shown)
+      FIELDPROOF_CHECK(vocabulary.find_setting(shown.name) != nullptr,
+                       "what a situation shows is a setting of the vocabulary");
+    vocabulary.situations.push_back({commands_of(one.commands, vocabulary), one.shown});
   }
   return vocabulary;
 }

@@ -87,6 +87,17 @@ struct SequenceCommand {
   friend bool operator==(const SequenceCommand&, const SequenceCommand&) = default;
 };
 
+// A setting that commands show, and what else must be set for that.
+struct ShownSetting {
+  std::string name;
+  field::Settings along{};
+};
+// Commands after which a fault shows that random ones would seldom meet, with the settings that matter there.
+struct SequenceSituation {
+  std::vector<SequenceCommand> commands;
+  std::vector<ShownSetting> shown{};
+};
+
 struct SequenceVocabulary {
   std::vector<SequenceWord> words;
   std::string_view unit = "character";
@@ -98,6 +109,8 @@ struct SequenceVocabulary {
   // Commands that bring a station into each of its states, for sequences that are derived; that in which it
   // begins need not be among them.
   std::vector<std::vector<SequenceCommand>> beginnings{};
+  // What every second drawn sequence begins with, where there are any.
+  std::vector<SequenceSituation> situations{};
 
   const SequenceWord* find(std::string_view word) const;
   const SequenceSetting* find_setting(std::string_view name) const;
@@ -125,6 +138,12 @@ struct NamedCommand {
 };
 SequenceVocabulary with_beginnings(SequenceVocabulary vocabulary,
                                    const std::vector<std::vector<NamedCommand>>& states);
+struct NamedSituation {
+  std::vector<NamedCommand> commands;
+  std::vector<ShownSetting> shown{};
+};
+SequenceVocabulary with_situations(SequenceVocabulary vocabulary,
+                                   const std::vector<NamedSituation>& situations);
 
 // Units of the transmission of a command, without its faults.
 std::size_t units_of(const SequenceWord& word, const SequenceCommand& command);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "conformance/sequence_settings.hpp"
@@ -109,6 +110,35 @@ std::vector<SequenceCommand> draw_beginning(const SequenceVocabulary& vocabulary
   return chosen(std::span<const std::vector<SequenceCommand>>(vocabulary.beginnings));
 }
 
+struct DrawnSituation {
+  std::vector<SequenceCommand> commands;
+  field::Settings settings;
+};
+
+// With one of the settings that it shows, or with none: each of these is as likely.
+std::optional<DrawnSituation> draw_situation(const SequenceVocabulary& vocabulary) {
+  if (vocabulary.situations.empty() || chance(kPerCent / 2)) return std::nullopt;
+  std::vector<std::pair<const SequenceSituation*, const ShownSetting*>> all;
+  for (const SequenceSituation& one : vocabulary.situations) {
+    if (one.shown.empty()) all.emplace_back(&one, nullptr);
+    for (const ShownSetting& shown : one.shown) all.emplace_back(&one, &shown);
+  }
+  const auto [situation, shown] =
+      chosen(std::span<const std::pair<const SequenceSituation*, const ShownSetting*>>(all));
+  std::vector<SettingChoice> choices;
+  const auto choose = [&](const std::string& name, std::optional<std::int64_t> value) {
+    const SequenceSetting* const setting = vocabulary.find_setting(name);
+    if (setting == nullptr) return;  // this implementation has it fixed
+    const auto which = static_cast<std::size_t>(setting - vocabulary.settings.data());
+    choices.push_back({which, value ? *value : draw_number(setting->number(), kLikelySettingPerCent)});
+  };
+  if (shown != nullptr) {
+    for (const auto& [name, value] : shown->along) choose(name, value);
+    choose(shown->name, std::nullopt);
+  }
+  return DrawnSituation{situation->commands, settings_of(choices, vocabulary)};
+}
+
 rc::Shrinkable<Sequence> drawn(const SequenceVocabulary& vocabulary, std::uint64_t seed, std::uint64_t n) {
   const auto most = static_cast<int>(std::min<std::uint64_t>(1 + n / kGrowth, vocabulary.most_commands));
   // The size of a container is its length; that of what is in it stays whole.
@@ -119,8 +149,12 @@ rc::Shrinkable<Sequence> drawn(const SequenceVocabulary& vocabulary, std::uint64
   const auto apart = [&](std::uint64_t what, auto draw) {
     return rc::gen::exec(draw)(rc::Random(rc::Random::Key{seed, n, what, 0})).value();
   };
-  const field::Settings settings = apart(1, [&] { return draw_settings(vocabulary); });
-  const std::vector<SequenceCommand> beginning = apart(2, [&] { return draw_beginning(vocabulary); });
+  field::Settings settings = apart(1, [&] { return draw_settings(vocabulary); });
+  std::vector<SequenceCommand> beginning = apart(2, [&] { return draw_beginning(vocabulary); });
+  if (auto situation = apart(3, [&] { return draw_situation(vocabulary); })) {
+    beginning = std::move(situation->commands);
+    if (!situation->settings.empty()) settings = std::move(situation->settings);
+  }
   const std::size_t room = vocabulary.most_commands;
   const auto together = [=](const std::vector<std::pair<SequenceCommand, unsigned>>& of) {
     std::vector<SequenceCommand> all = beginning;

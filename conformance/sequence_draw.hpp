@@ -8,9 +8,10 @@
 // Random sequences of a vocabulary, drawn by RapidCheck.
 //
 // Contract: the n-th sequence of a seed is the same everywhere. Small sequences come first: lengths grow with
-// n, up to the vocabulary's most. Each second one begins with one of its beginnings. Each third one has
-// settings, which say nothing about its commands: mostly one, at an end of its range or beside it, and never
-// such that the role objects to.
+// n, up to the vocabulary's most. Each second one begins with one of its situations, and with a setting that
+// shows there; of the others, each second one begins with one of its beginnings. Each third one has settings,
+// which say nothing about its commands: mostly one, at an end of its range or beside it, and never such that
+// the role objects to.
 namespace fieldproof::conformance {
 
 using SequenceFails = std::function<bool(const Sequence&)>;

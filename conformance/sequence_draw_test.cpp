@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
 #include "conformance/interbus/slave_sequence.hpp"
 #include "conformance/sequence_shrink.hpp"
@@ -58,6 +59,36 @@ TEST(SequenceDraw, DependsOnSeedAndNumberOnly) {
     if (source.draw(n) != other.draw(n)) ++different;
   }
   EXPECT_GE(different, 19U);
+}
+
+TEST(SequenceDraw, BeginsEachSecondOneWithASituationAndASettingThatShowsThere) {
+  const SequenceVocabulary vocabulary =
+      with_situations(node_sequence_role().vocabulary,
+                      {{{{"read"}, {"switches"}, {"read"}}, {{"boards", {{"bit_rate", 1'200}}}}},
+                       {{{"wait"}, {"wait"}, {"wait"}}}});
+  const SequenceSource source(vocabulary, 5);
+  std::size_t first = 0;
+  std::size_t second = 0;
+  std::size_t shown = 0;
+  for (std::uint64_t n = 0; n < 400; ++n) {
+    const Sequence drawn = source.draw(n);
+    const auto begins_with = [&](const SequenceSituation& one) {
+      return drawn.commands.size() >= 3 &&
+             std::ranges::equal(one.commands, std::span(drawn.commands).first(3));
+    };
+    if (begins_with(vocabulary.situations[1])) ++second;
+    if (!begins_with(vocabulary.situations[0])) continue;
+    ++first;
+    const bool is_along = std::ranges::find(drawn.settings, "bit_rate",
+                                            &field::Settings::value_type::first) != drawn.settings.end();
+    const bool is_shown = std::ranges::find(drawn.settings, "boards", &field::Settings::value_type::first) !=
+                          drawn.settings.end();
+    EXPECT_TRUE(is_along);
+    if (is_shown) ++shown;
+  }
+  EXPECT_NEAR(static_cast<double>(first), 100, 35);
+  EXPECT_NEAR(static_cast<double>(second), 100, 35);
+  EXPECT_GT(shown, 30U);  // a number in its range may be that of the bench
 }
 
 TEST(SequenceShrink, LeavesTheFewestCommandsFaultsAndSimpleNumbers) {

@@ -5,6 +5,7 @@
 
 #include "harness/field/boundaries.hpp"
 #include "harness/field/walk.hpp"
+#include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::conformance {
@@ -45,6 +46,30 @@ std::vector<SequenceSetting> sequence_settings(const field::AnyTable& table, con
     if (is_filled || is_one_of(fixed, leaf.name)) return;
     SequenceSetting setting = setting_of(leaf, bounds);
     if (setting.least < setting.most) all.push_back(std::move(setting));
+  });
+  return all;
+}
+
+std::vector<SequenceSetting> settings_of_elements(const field::AnyTable& table, const void* object,
+                                                  std::string_view list) {
+  std::vector<SequenceSetting> all;
+  field::walk(table, object, [&](const field::Leaf& leaf) {
+    if (leaf.name != list) return;
+    const field::List& of = leaf.row.list;
+    FIELDPROOF_CHECK(of.is_of_fixed_size && field::is_plain(*of.element), "an element is one number");
+    const field::Row& row = of.element->rows.front();
+    const void* const items = leaf.row.member(leaf.object);
+    for (std::size_t n = 0; n < of.size(items); ++n) {
+      const void* const item = of.at(items, n);
+      SequenceSetting setting{.name = field::element_name(leaf, n, row.name),
+                              .row = &row,
+                              .least = row.about.range.least,
+                              .most = row.about.range.most,
+                              .simple = row.get(item),
+                              .likely = field::boundaries_of(row, item).inside};
+      std::erase(setting.likely, setting.simple);
+      all.push_back(std::move(setting));
+    }
   });
   return all;
 }

@@ -31,6 +31,10 @@ std::vector<SequenceSetting> sequence_settings(const field::AnyTable& table, con
                                                std::span<const std::string_view> fixed = {},
                                                std::span<const SettingBound> bounds = {});
 
+// Those of the elements of a list of a fixed size, where an element is one number: "targets_0".
+std::vector<SequenceSetting> settings_of_elements(const field::AnyTable& table, const void* object,
+                                                  std::string_view list);
+
 // The objection of what throws kernel::Error(configuration) for settings that cannot be judged.
 SettingsObjection objection_of(std::function<void(const field::Settings&)> expect);
 template <typename T>

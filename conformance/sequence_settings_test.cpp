@@ -20,6 +20,7 @@
 #include "conformance/token_bus/suite.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "harness/kernel/sanitized.hpp"
+#include "protocols/token_bus/station_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -158,6 +159,20 @@ TEST(SequenceSettings, ShrinkToTheFewestAndTheNearestToTheirDefaults) {
   const Sequence smallest = shrunk(sequence, node, fails);
   EXPECT_EQ(smallest.settings, (field::Settings{{"bit_rate", rate - 700}, {"boards", 1}}));
   EXPECT_EQ(smallest.commands.size(), 1U);
+}
+
+TEST(SequenceSettings, HaveTheElementsOfAListOfAFixedSize) {
+  const token_bus::StationConfiguration as_made;
+  const auto all = settings_of_elements(token_bus::kStationTable, &as_made, "target_rotation_octets");
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[1].name, "target_rotation_octets_1");
+  EXPECT_EQ(all[1].simple, 40'000);
+  EXPECT_EQ(all[1].least, 0);
+  EXPECT_EQ(all[1].most, 2'097'151);
+  EXPECT_THAT(all[1].likely, testing::IsSupersetOf({std::int64_t{0}, std::int64_t{2'097'151}}));
+  token_bus::StationConfiguration given;
+  field::take_settings(token_bus::kStationTable, {{all[1].name, 7}}, given);
+  EXPECT_EQ(given.rules.target_rotation_octets[1], 7U);
 }
 
 TEST(SequenceSettings, AreReadInWordsAndNamedByAFinding) {

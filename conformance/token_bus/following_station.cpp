@@ -1,6 +1,8 @@
 #include "conformance/token_bus/following_station.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "conformance/token_bus/station_bench.hpp"
 
@@ -17,7 +19,11 @@ bool is_window(const DrivenFrame& one) {
 
 bool FollowingStation::start(kernel::Time now) {
   has_opened_window_ = has_passed_ = is_count_unsure_ = has_lost_request_ = false;
+  has_group_answered_ = false;
+  is_desired_ = is_desired_at_start_;
   tokens_ = tokens_more_ = 0;
+  tokens_to_windows_.clear();
+  last_claims_.clear();
   return TokenStation::start(now);
 }
 
@@ -30,9 +36,53 @@ void FollowingStation::receive(segment::PortIndex port, const line::Waveform& re
   const bool is_cut = hidden_until > reception.start + token_bus::mac_symbols(rules(), kSymbolsToLose);
   const bool answers =
       state() == token_bus::AccessState::demand_in || state() == token_bus::AccessState::idle;
-  if (line().is_of_own_time(reception) || (!is_hidden && is_cut) || (answers && has_pending()))
+  // Nor is it said whether the wait for the token of one that has answered goes on while others send.
+  const kernel::Time demand_until = std::exchange(demand_until_, kernel::kNever);
+  const bool is_over_meanwhile = reception.start <= demand_until && demand_until != kernel::kNever &&
+                                 demand_until <= reception.end() + token_bus::octets(rules(), 1);
+  if (line().is_of_own_time(reception) || is_over_meanwhile || (!is_hidden && is_cut) ||
+      (answers && has_pending()))
     is_doubtful_ = true;
   TokenStation::receive(port, reception);
+}
+
+// Who begins when a slot time ends, or within the gap after it, is in time for one station and late for
+// another.
+bool FollowingStation::is_at_an_end(kernel::Time now) const {
+  using token_bus::AccessState;
+  constexpr std::array kWaiting{AccessState::demand_in, AccessState::await_ifm_response,
+                                AccessState::check_token_pass, AccessState::await_response};
+  const kernel::Time since = line().silent_since();
+  if (since == kernel::kNever || std::ranges::find(kWaiting, state()) == kWaiting.end()) return false;
+  const kernel::Duration slot = token_bus::slots(rules(), 1);
+  const kernel::Duration octet = token_bus::octets(rules(), 1);
+  const kernel::Duration gap = token_bus::octets(rules(), rules().response_gap_octets);
+  const kernel::Duration after = (now - since + octet) % slot;
+  return now - since + octet >= slot && after <= gap + octet + octet;
+}
+
+// Others begin: what is pending has been driven by then, or waits for them.
+void FollowingStation::note_before(kernel::Time now) {
+  if (is_doubtful() || has_lost_request_ || early_begin_ || overdue_ || !has_pending()) return;
+  const DrivenFrame* const next = next_followed();
+  const bool has_begun = next != nullptr && next->begin < now;
+  if (has_begun && next->begin + kTokenRounding < due_) early_begin_ = EarlyBegin{next->begin, due_};
+  if (!has_begun && span_of_due().latest < now) overdue_ = span_of_due().latest;
+}
+
+void FollowingStation::on_activity(segment::PortIndex port, bool begins, kernel::Time now) {
+  if (begins) {
+    note_before(now);
+    // Before its windows are open, or its request is sent, others are neither answers nor responses.
+    const bool asks = state() == token_bus::AccessState::await_response ||
+                      state() == token_bus::AccessState::await_ifm_response;
+    is_doubtful_ = is_doubtful_ || is_at_an_end(now) || (asks && has_pending());
+    const bool demands =
+        state() == token_bus::AccessState::demand_in && line().silent_since() != kernel::kNever;
+    demand_until_ = demands ? line().silent_since() + token_bus::slots(rules(), rules().demand_wait_slots)
+                            : kernel::kNever;
+  }
+  TokenStation::on_activity(port, begins, now);
 }
 
 // Noise in place of a response, noise that is over before a claim is, and several frames at once for a
@@ -43,16 +93,24 @@ std::vector<token_bus::Reception> FollowingStation::received(const line::Wavefor
   const bool is_noise =
       std::ranges::none_of(all, [](const auto& one) { return one.kind == token_bus::ReceptionKind::frame; });
   const bool is_waiting = state() == AccessState::await_ifm_response || state() == AccessState::claim_token;
-  if ((is_noise && is_waiting) || (all.size() > 1 && state() != AccessState::idle)) is_doubtful_ = true;
+  // Noise may put off the end of the wait of one that has answered.
+  const bool is_put_off =
+      is_noise && state() == AccessState::demand_in &&
+      rules().demand_wait_slots + 1 >= std::min(rules().bus_idle_slots, rules().lowest_bus_idle_slots);
+  if ((is_noise && is_waiting) || is_put_off || (all.size() > 1 && state() != AccessState::idle))
+    is_doubtful_ = true;
   return all;
 }
 
-// A successor for a station that is in no ring, a group that answers, and what begins before an answer that
-// is due.
+// A successor for a station that is in no ring. Whether a group that answers costs the token is open, too,
+// but not that it is no successor.
 bool FollowingStation::is_unsaid(const Frame& frame) const {
   using token_bus::AccessState;
   if (frame.kind != token_bus::FrameKind::set_successor || frame.destination != address()) return false;
-  if (state() == AccessState::await_response) return token_bus::is_group(token_bus::address_of(frame.data));
+  if (state() == AccessState::await_response) {
+    has_group_answered_ = has_group_answered_ || token_bus::is_group(token_bus::address_of(frame.data));
+    return false;
+  }
   return frame.source != address() && !is_in_ring();
 }
 
@@ -119,13 +177,19 @@ bool FollowingStation::may_be(const DrivenFrame& claim, const Frame& own) const 
 
 line::Levels FollowingStation::written(const Frame& frame, kernel::Time begin) const {
   const DrivenFrame* const next = next_followed();
-  spans_.push_back(span_of_due());
   if (has_lost_request_ && frame.kind == token_bus::FrameKind::data) is_doubtful_ = true;
+  // A station keeps its token or drops it; what it does not is pass it to another than its successor.
+  if (std::exchange(has_group_answered_, false))
+    is_doubtful_ = is_doubtful_ || next == nullptr || !next->is(TokenControl::token) ||
+                   next->destination() == successor();
+  spans_.push_back(span_of_due());
+  if (!is_doubtful_) sure_frames_ = spans_.size();
   const bool is_claim = frame.kind == token_bus::FrameKind::claim_token;
   if (!is_claim || next == nullptr || !may_be(*next, frame)) return TokenStation::written(frame, begin);
   Frame claim = frame;
   claim.destination = next->destination();
   claim.data = next->data();
+  if (is_last_claim_) last_claims_.push_back(claim.data.size());
   return TokenStation::written(claim, begin);
 }
 
@@ -164,6 +228,24 @@ bool FollowingStation::drops_token_on(const Frame& frame) const {
   return TokenStation::drops_token_on(frame);
 }
 
+// A request that was lost with its token may keep it in the ring.
+bool FollowingStation::wants_ring() const {
+  if (has_lost_request_ && !is_desired_) is_doubtful_ = true;
+  return TokenStation::wants_ring();
+}
+
+void FollowingStation::set_in_ring_desired(bool is_desired, kernel::Time now) {
+  is_desired_ = is_desired;
+  TokenStation::set_in_ring_desired(is_desired, now);
+}
+
+// What one that has answered does when a contest goes on and on nothing says.
+bool FollowingStation::resolves(unsigned passes) const {
+  const bool does = TokenStation::resolves(passes);
+  if (!does && state() == token_bus::AccessState::demand_in) is_doubtful_ = true;
+  return does;
+}
+
 // What a timer begins may come a gap later, and then find its time over.
 bool FollowingStation::may_begin(unsigned place, kernel::Time begin) const {
   const bool may = TokenStation::may_begin(place, begin);
@@ -195,6 +277,7 @@ bool FollowingStation::is_window_due(unsigned count) {
     is_due = false;
   }
   if (!is_due) return false;
+  if (has_opened_window_ && !is_count_unsure_) tokens_to_windows_.push_back(tokens_);
   has_opened_window_ = true;
   is_count_unsure_ = false;
   tokens_ = tokens_more_ = 0;

@@ -36,7 +36,9 @@ std::span<const T> rest(const std::vector<T>& all, std::size_t known) {
 
 void TokenComparison::compare(bool is_alone) {
   compare_submissions();
-  compare_frames();
+  compare_frames(std::max(bench_.driven_frames().all().size(), twin_.driven().size()));
+  expect_nothing_overdue();
+  expect_chance();
   compare_indications();
   compare_all_events(is_alone);
   compare_counters();
@@ -53,9 +55,20 @@ void TokenComparison::compare_submissions() {
   }
 }
 
-void TokenComparison::compare_frames() {
-  const auto seen = rest(bench_.driven_frames().all(), frames_);
-  const auto right = rest(twin_.driven(), frames_);
+void TokenComparison::compare_sure_frames() {
+  expect_no_early_begin();
+  compare_frames(twin_.sure_frames());
+  if (twin_.overdue()) expect_begun_by(*twin_.overdue());
+}
+
+// The first `count` that there are.
+void TokenComparison::compare_frames(std::size_t count) {
+  const auto new_of = [&](const std::vector<DrivenFrame>& all) {
+    return rest(all, frames_)
+        .first(std::min(all.size(), std::max(count, frames_)) - std::min(frames_, all.size()));
+  };
+  const auto seen = new_of(bench_.driven_frames().all());
+  const auto right = new_of(twin_.driven());
   // What begins at another time is said first: what comes then is often something else.
   for (std::size_t n = 0; n < std::min(seen.size(), right.size()); ++n) {
     if (seen[n].octets != right[n].octets) break;
@@ -76,6 +89,43 @@ void TokenComparison::expect_in_time(const DrivenFrame& one, const BeginSpan& sp
   };
   expect(one.begin >= span.earliest, "begins_too_early");
   expect(one.begin <= span.latest, "begins_too_late");
+}
+
+void TokenComparison::expect_no_early_begin() {
+  const auto& early = twin_.early_begin();
+  judge_.expect(!early, "begins_too_early", [&] {
+    return Mismatch{{fmt::format("a transmission, begun {} at the earliest", kernel::describe(early->due))},
+                    fmt::format("begun {}", kernel::describe(early->begin)),
+                    early->begin};
+  });
+}
+
+void TokenComparison::expect_begun_by(kernel::Time latest) {
+  judge_.fail(
+      kTokenFrames.missing,
+      {{fmt::format("a transmission, begun by {}", kernel::describe(latest))}, "it is silent", latest});
+}
+
+// What was due, and might begin no later than now, has begun.
+void TokenComparison::expect_nothing_overdue() {
+  const auto until = twin_.awaited_until();
+  if (until && *until <= bench_.now() && !twin_.may_be_silent()) expect_begun_by(*until);
+}
+
+// What is drawn each time is the same so often once in a million rings.
+void TokenComparison::expect_chance() {
+  constexpr std::size_t kDraws = 12;
+  const auto expect_drawn = [&](const std::vector<std::size_t>& drawn, std::string_view reason,
+                                std::string_view text) {
+    const bool is_one = drawn.size() >= kDraws &&
+                        std::ranges::adjacent_find(drawn, std::ranges::not_equal_to()) == drawn.end();
+    judge_.expect(!is_one, reason, [&] {
+      return Mismatch{{fmt::format("{}, drawn each time", text)},
+                      fmt::format("{} each of {} times", drawn.front(), drawn.size())};
+    });
+  };
+  expect_drawn(twin_.tokens_to_windows(), "windows_not_drawn", "tokens from one window to the next");
+  expect_drawn(twin_.last_claims(), "last_claim_not_drawn", "octets of the last claim");
 }
 
 void TokenComparison::compare_indications() {

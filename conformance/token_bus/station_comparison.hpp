@@ -22,6 +22,8 @@ class TokenComparison {
   void note_submission(std::size_t size, bool is_taken) { submitted_.push_back({size, is_taken}); }
   // `is_alone`: it has solicited again and again, and nobody has answered.
   void compare(bool is_alone);
+  // What was driven before others replied to it, or did what no source says.
+  void compare_sure_frames();
 
  private:
   struct Submission {
@@ -30,7 +32,11 @@ class TokenComparison {
   };
 
   void compare_submissions();
-  void compare_frames();
+  void compare_frames(std::size_t count);
+  void expect_no_early_begin();
+  void expect_begun_by(kernel::Time latest);
+  void expect_nothing_overdue();
+  void expect_chance();
   void compare_indications();
   void compare_all_events(bool is_alone);
   void compare_counters();

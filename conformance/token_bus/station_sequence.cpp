@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "conformance/token_bus/ring_around.hpp"
 #include "conformance/token_bus/station_cases.hpp"
 #include "conformance/token_bus/station_comparison.hpp"
 #include "conformance/token_bus/station_tester.hpp"
@@ -16,7 +17,8 @@ class TokenSequenceRun {
       : bench_(bench),
         tester_(bench),
         twin_(bench.configuration(), bench.tester_place(), bench.driven_frames(), bench.now()),
-        comparison_(bench, twin_, judge) {}
+        comparison_(bench, twin_, judge),
+        ring_(bench, tester_, twin_) {}
 
   void run(const Sequence& sequence) {
     for (std::size_t n = 0; n < sequence.commands.size(); ++n) {
@@ -27,13 +29,29 @@ class TokenSequenceRun {
         bench_.wait(token_bus::mac_symbols(bench_.rules(), static_cast<unsigned>(soon)));
         continue;
       }
-      settle(quiet());
+      if (is_for_later(sequence.commands[n])) continue;
+      const bool is_settled = sequence.commands[n].word == static_cast<std::size_t>(TokenWord::failures);
+      if (!is_settled) ring_.settle();
       compare();
       if (is_over_) return;
     }
   }
 
  private:
+  // Silence after each of several would be long enough to claim the token.
+  static bool is_for_later(const SequenceCommand& command) {
+    switch (static_cast<TokenWord>(command.word)) {
+      case TokenWord::reply:
+      case TokenWord::form:
+      case TokenWord::peer:
+      case TokenWord::respond:
+      case TokenWord::load:
+        return true;
+      default:
+        return false;
+    }
+  }
+
   static bool is_of_line(const SequenceCommand& command) {
     switch (static_cast<TokenWord>(command.word)) {
       case TokenWord::submit:
@@ -43,6 +61,11 @@ class TokenSequenceRun {
       case TokenWord::respond:
       case TokenWord::power:
       case TokenWord::many:
+      case TokenWord::load:
+      case TokenWord::beside:
+      case TokenWord::failures:
+      case TokenWord::claims:
+      case TokenWord::slow_rounds:
         return false;
       default:
         return true;
@@ -60,7 +83,7 @@ class TokenSequenceRun {
         break;
       case TokenWord::wait:
       case TokenWord::silence:
-        live(bench_.slots(numbers[0]));
+        ring_.live(bench_.slots(numbers[0]));
         break;
       case TokenWord::others:
         tester_.talk(numbers[0]);
@@ -80,6 +103,25 @@ class TokenSequenceRun {
       case TokenWord::many:
         do_many(static_cast<TokenSeries>(numbers[0]), numbers[1]);
         break;
+      case TokenWord::load:
+        for (std::int64_t n = 0; n < numbers[1]; ++n)
+          submit(datum(numbers[0], static_cast<std::size_t>(numbers[2])));
+        break;
+      case TokenWord::beside:
+        for (Octets& one : frames_beside(static_cast<TokenBeside>(numbers[0]), bench_)) {
+          tester_.send(std::move(one));
+          ring_.settle();
+        }
+        break;
+      case TokenWord::failures:
+        ring_.fail(numbers[0]);
+        break;
+      case TokenWord::claims:
+        ring_.claim(numbers[0]);
+        break;
+      case TokenWord::slow_rounds:
+        for (std::int64_t n = 0; n < numbers[1] && ring_.goes_slowly(numbers[0]);) ++n;
+        break;
       default:
         execute_of_user(command);
     }
@@ -93,9 +135,7 @@ class TokenSequenceRun {
         cycle_power(bench_.slots(numbers[0]));
         break;
       case TokenWord::submit:
-        submit({.priority = static_cast<unsigned>(numbers[0]),
-                .destination = TokenBench::kBelow,
-                .data = bench_.numbered_data(static_cast<std::size_t>(numbers[1]))});
+        submit(datum(numbers[0], static_cast<std::size_t>(numbers[1])));
         break;
       case TokenWord::submit_request:
         submit({.action = token_bus::Action::request_with_response,
@@ -129,6 +169,27 @@ class TokenSequenceRun {
     comparison_.note_submission(request.data.size(), bench_.submit(request));
   }
 
+  token_bus::DataRequest datum(std::int64_t priority, std::size_t size) {
+    return {.priority = static_cast<unsigned>(priority),
+            .destination = TokenBench::kBelow,
+            .data = bench_.numbered_data(size)};
+  }
+
+  void do_many(TokenSeries what, std::int64_t times) {
+    constexpr std::int64_t kFewerOfLong = 20;
+    constexpr std::size_t kDatum = 3;
+    if (what == TokenSeries::too_long) times = 1 + times / kFewerOfLong;
+    for (std::int64_t n = 0; n < times; ++n) {
+      if (what != TokenSeries::rounds && what != TokenSeries::rounds_with_data) {
+        tester_.send_faulty(what);
+        continue;
+      }
+      if (what == TokenSeries::rounds_with_data)
+        submit({.destination = TokenBench::kBelow, .data = bench_.numbered_data(kDatum)});
+      if (!ring_.goes_round()) return;
+    }
+  }
+
   // Nobody asks itself.
   std::uint64_t asked(std::int64_t number) const {
     const std::uint64_t meant = address_meant(number, bench_);
@@ -143,81 +204,19 @@ class TokenSequenceRun {
     bench_.set_power(true);
   }
 
-  void do_many(TokenSeries what, std::int64_t times) {
-    constexpr std::int64_t kFewerOfLong = 20;
-    constexpr std::size_t kDatum = 3;
-    if (what == TokenSeries::too_long) times = 1 + times / kFewerOfLong;
-    for (std::int64_t n = 0; n < times; ++n) {
-      if (what != TokenSeries::rounds && what != TokenSeries::rounds_with_data) {
-        tester_.send_faulty(what);
-        continue;
-      }
-      if (what == TokenSeries::rounds_with_data)
-        submit({.destination = TokenBench::kBelow, .data = bench_.numbered_data(kDatum)});
-      bench_.send(bench_.frame(TokenControl::token, bench_.address(), TokenBench::kAbove));
-      if (!goes_round()) return;
-    }
-  }
-
-  // Until the successor has passed on the token that it got; false: it did not come to that.
-  bool goes_round() {
-    constexpr unsigned kMostFrames = 30;
-    for (unsigned n = 0; n < kMostFrames; ++n) {
-      const auto one = bench_.next(bench_.now() + quiet());
-      if (!one) return false;
-      const bool is_taken = tester_.reply_to(*one);
-      if (!is_taken || !one->is(TokenControl::token)) continue;
-      bench_.wait(bench_.octets(kPauseOctets));
-      return true;
-    }
-    return false;
-  }
-
-  // Longer than any wait of a station of the table that is no multiple of it.
-  kernel::Duration quiet() const { return bench_.slots(5) + bench_.octets(10); }
-
-  // Time goes by, and the tester does what its neighbours do.
-  void live(kernel::Duration duration) {
-    const kernel::Time end = bench_.now() + duration;
-    while (const auto one = bench_.next(end)) tester_.reply_to(*one);
-  }
-
-  // Until the station has nothing more to say. One that is alone solicits for ever.
-  void settle(kernel::Duration silence) {
-    constexpr unsigned kMostFrames = 60;
-    constexpr unsigned kMostWindows = 2;
-    unsigned windows = 0;
-    is_alone_ = false;
-    for (unsigned n = 0; n < kMostFrames && windows < kMostWindows; ++n) {
-      const auto one = bench_.next(bench_.now() + silence);
-      if (one) {
-        const bool is_replied_to = tester_.reply_to(*one);
-        if (one->is(TokenControl::solicit_2) && !is_replied_to) ++windows;
-        continue;
-      }
-      twin_.catch_up(bench_.now());
-      const auto until = twin_.awaited_until();
-      if (!until || *until <= bench_.now()) return;
-      silence = *until - bench_.now() + bench_.octets(1);
-    }
-    is_alone_ = windows == kMostWindows;
-    bench_.wait(bench_.octets(kPauseOctets));
-  }
-
   void compare() {
     twin_.catch_up(bench_.now());
+    comparison_.compare_sure_frames();
     is_over_ |= twin_.is_doubtful();
-    if (!is_over_) comparison_.compare(is_alone_);
+    if (!is_over_) comparison_.compare(ring_.is_alone());
   }
-
-  static constexpr std::int64_t kPauseOctets = 8;
 
   TokenBench& bench_;
   TokenTester tester_;
   TokenTwin twin_;
   TokenComparison comparison_;
+  RingAround ring_;
   std::int64_t soon_symbols_ = 0;
-  bool is_alone_ = false;  // it has solicited again and again, and nobody has answered
   bool is_over_ = false;
 };
 

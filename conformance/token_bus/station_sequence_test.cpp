@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 
 #include "conformance/sequence_check.hpp"
 #include "conformance/token_bus/suite.hpp"
@@ -28,6 +29,19 @@ TEST(TokenStationSequence, TheReferenceFollowsItsTwin) {
     const SequenceSearchResult result = searched("ref", kCases, seed);
     EXPECT_FALSE(result.found.has_value());
     EXPECT_EQ(result.passed, kCases);
+  }
+}
+
+// Each of these shows in a situation of its own, most of them with a setting.
+TEST(TokenStationSequence, FindsWhatShowsInASituation) {
+  const std::string_view names[]{
+      "noise_is_success",          "range_of_low_bits", "windows_not_drawn",
+      "last_claim_always_short",   "fault_unreported",  "timers_begin_with_the_token",
+      "response_to_another_taken", "zero_is_no_limit",  "blanks_always",
+      "low_control_bits_only",     "low_pairs_first",   "group_answers"};
+  for (kernel::FewerIfSanitized few(3); const std::string_view name : names) {
+    if (few.leaves_out()) continue;
+    EXPECT_TRUE(searched("mutant:" + std::string(name), 2'000).found) << name;
   }
 }
 

@@ -275,6 +275,10 @@ void TokenTester::reply(const DrivenFrame& one, TokenReply with) {
       return data(kRequestOfSix, own, kStranger);
     case TokenReply::who_follows:
       return control(TokenControl::who_follows, kAbove, kStranger, kAbove);
+    case TokenReply::contest_then_noise:
+      control(TokenControl::resolve, kAbove, kAbove);
+      bench_.wait(bench_.slots(1) + bench_.octets(kReactionOctets));
+      return send_noise(kNoise);
     case TokenReply::noise_then_token:
       send_noise(kNoise);
       bench_.wait(bench_.slots(1));

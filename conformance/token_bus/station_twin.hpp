@@ -35,7 +35,15 @@ class TokenTwin final : private segment::Tap, private segment::Station {
   // Until when the other may begin what is due; nothing is due: nothing.
   std::optional<kernel::Time> awaited_until() const { return station_.awaited_until(segment_.now()); }
 
+  const std::optional<FollowingStation::EarlyBegin>& early_begin() const { return station_.early_begin(); }
+  const std::optional<kernel::Time>& overdue() const { return station_.overdue(); }
+  std::size_t sure_frames() const { return station_.sure_frames(); }
+  bool may_be_silent() const { return station_.may_be_silent(); }
   bool is_doubtful() const { return station_.is_doubtful(); }
+
+  // What the station under test has drawn since it has its supply.
+  const std::vector<std::size_t>& tokens_to_windows() const { return station_.tokens_to_windows(); }
+  const std::vector<std::size_t>& last_claims() const { return station_.last_claims(); }
 
   // What it has driven, when that might begin, and what it has reported to its user.
   const std::vector<DrivenFrame>& driven() const { return driven_.all(); }

@@ -199,6 +199,9 @@ std::vector<SequenceSetting> settings_of_a_station(const token_bus::StationConfi
   auto all = sequence_settings(token_bus::kStationTable, &as_made, kFixedOfStation);
   std::ranges::stable_partition(
       all, [&](const SequenceSetting& one) { return std::ranges::find(kLater, one.name) == kLater.end(); });
+  for (SequenceSetting& one :
+       settings_of_elements(token_bus::kStationTable, &as_made, "target_rotation_octets"))
+    all.push_back(std::move(one));
   return all;
 }
 
@@ -214,8 +217,10 @@ SequenceVocabulary token_station_vocabulary() {
       .objection = objection_of(
           token_bus::kStationTable, as_made,
           +[](const token_bus::StationConfiguration& one) { expect_possible(one.rules); })};
-  for (SequenceWord& word : later_words()) vocabulary.words.push_back(std::move(word));
-  return with_beginnings(std::move(vocabulary), states_of_a_station());
+  for (auto* make : {later_words, words_of_many})
+    for (SequenceWord& word : make()) vocabulary.words.push_back(std::move(word));
+  return with_situations(with_beginnings(std::move(vocabulary), states_of_a_station()),
+                         situations_of_a_station());
 }
 
 std::uint64_t address_meant(std::int64_t number, const TokenBench& bench) {

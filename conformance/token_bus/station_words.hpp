@@ -35,7 +35,12 @@ enum class TokenWord : std::uint8_t {
   many,
   others,
   ask,
-  silence
+  silence,
+  load,
+  beside,
+  failures,
+  claims,
+  slow_rounds
 };
 
 // What follows from "ending" of a form.
@@ -91,9 +96,25 @@ enum class TokenReply : std::uint8_t {
   noise_then_token,
   station_is_successor,
   data_for_all,
-  who_follows
+  who_follows,
+  contest_then_noise
 };
-inline constexpr std::int64_t kMostTokenReply = 19;
+inline constexpr std::int64_t kMostTokenReply = 20;
+
+// What is nearly a frame that the station acts on: with another address for each octet of one, or with
+// another control code for each of its low bits.
+enum class TokenBeside : std::uint8_t {
+  token_to,
+  data_to,
+  data_from,
+  request_to,
+  successor_to,
+  solicited_below,
+  solicited_above,
+  follows_another,
+  token_from,
+  controls
+};
 
 // The frames to which it may reply.
 enum class TokenCue : std::uint8_t {
@@ -109,7 +130,13 @@ enum class TokenCue : std::uint8_t {
 inline constexpr std::size_t kTokenCues = 8;
 
 SequenceVocabulary token_station_vocabulary();
+// Those that do a row of things at once.
+std::vector<SequenceWord> words_of_many();
+// What shows seldom, and with which settings.
+std::vector<NamedSituation> situations_of_a_station();
 
+// The frames of "beside", in their order.
+std::vector<Octets> frames_beside(TokenBeside kind, TokenBench& bench);
 // Of a word that is one frame, without the check.
 Octets octets_of(TokenWord word, const std::vector<std::int64_t>& numbers, TokenBench& bench);
 // Who is meant by a number of "frame" or "ask".
