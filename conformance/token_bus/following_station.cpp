@@ -46,17 +46,32 @@ void FollowingStation::receive(segment::PortIndex port, const line::Waveform& re
   TokenStation::receive(port, reception);
 }
 
-// Who begins when a slot time ends, or within the gap after it, is in time for one station and late for
-// another.
-bool FollowingStation::is_at_an_end(kernel::Time now) const {
+namespace {
+
+bool awaits_others(token_bus::AccessState state) {
   using token_bus::AccessState;
   constexpr std::array kWaiting{AccessState::demand_in, AccessState::await_ifm_response,
                                 AccessState::check_token_pass, AccessState::await_response};
-  const kernel::Time since = line().silent_since();
-  if (since == kernel::kNever || std::ranges::find(kWaiting, state()) == kWaiting.end()) return false;
+  return std::ranges::find(kWaiting, state) != kWaiting.end();
+}
+
+}  // namespace
+
+void FollowingStation::on_time(kernel::Time now) {
+  const token_bus::AccessState before = state();
+  TokenStation::on_time(now);
+  if (awaits_others(before) && state() != before) wait_ended_ = now;
+}
+
+// Who begins when a slot time ends, or within the gap after it, is in time for one station and late for
+// another.
+bool FollowingStation::is_at_an_end(kernel::Time now) const {
   const kernel::Duration slot = token_bus::slots(rules(), 1);
   const kernel::Duration octet = token_bus::octets(rules(), 1);
   const kernel::Duration gap = token_bus::octets(rules(), rules().response_gap_octets);
+  if (wait_ended_ != kernel::kNever && now - wait_ended_ <= gap + octet + octet) return true;
+  const kernel::Time since = line().silent_since();
+  if (since == kernel::kNever || !awaits_others(state())) return false;
   const kernel::Duration after = (now - since + octet) % slot;
   return now - since + octet >= slot && after <= gap + octet + octet;
 }

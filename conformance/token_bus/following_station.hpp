@@ -35,6 +35,7 @@ class FollowingStation final : public token_bus::TokenStation {
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
 
   void on_activity(segment::PortIndex port, bool begins, kernel::Time now) override;
+  void on_time(kernel::Time now) override;
 
   // Something was received of which no source says what it means: what comes then may be anything.
   bool is_doubtful() const { return is_doubtful_ || has_group_answered_; }
@@ -91,6 +92,7 @@ class FollowingStation final : public token_bus::TokenStation {
   mutable std::vector<BeginSpan> spans_;
   mutable bool is_doubtful_ = false;
   mutable std::size_t sure_frames_ = 0;
+  kernel::Time wait_ended_ = kernel::kNever;    // by itself, for want of an answer
   kernel::Time demand_until_ = kernel::kNever;  // of one in demand_in, when what is received began
   std::optional<EarlyBegin> early_begin_{};
   std::optional<kernel::Time> overdue_{};
