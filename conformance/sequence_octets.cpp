@@ -14,6 +14,7 @@ constexpr unsigned kMostFaultsOfAStep = 3;
 constexpr unsigned kFaultKinds = 3;
 constexpr unsigned kSettings = 0xF0;  // no word is written so
 constexpr unsigned kMostSettings = 0x10;
+constexpr unsigned kSituation = 0xEF;  // nor so
 
 class Reader {
  public:
@@ -21,6 +22,11 @@ class Reader {
 
   bool is_empty() const { return left_.empty(); }
   bool begins_with(unsigned least) const { return !left_.empty() && left_.front() >= least; }
+  bool takes(unsigned octet) {
+    if (left_.empty() || left_.front() != octet) return false;
+    left_ = left_.subspan(1);
+    return true;
+  }
   unsigned octet() {
     if (left_.empty()) return 0;
     const std::uint8_t first = left_.front();
@@ -96,6 +102,27 @@ void write_settings(Writer& writer, const field::Settings& settings, const Seque
   }
 }
 
+std::vector<SequenceCommand> read_situation(Reader& reader, const SequenceVocabulary& vocabulary) {
+  const auto& all = vocabulary.situations;
+  if (all.empty() || !reader.takes(kSituation)) return {};
+  return all[reader.number_below(all.size())].commands;
+}
+
+// That which covers the most of its commands, as many as are returned.
+std::size_t write_situation(Writer& writer, const std::vector<SequenceCommand>& commands,
+                            const SequenceVocabulary& vocabulary) {
+  const auto& all = vocabulary.situations;
+  const auto covered = [&](const SequenceSituation& one) {
+    return std::ranges::mismatch(one.commands, commands).in1 == one.commands.end() ? one.commands.size() : 0;
+  };
+  const auto longest = std::ranges::max_element(all, {}, covered);
+  const std::size_t count = longest == all.end() ? 0 : covered(*longest);
+  if (count == 0) return 0;
+  writer.octet(kSituation);
+  writer.number_below(static_cast<std::uint64_t>(longest - all.begin()), all.size());
+  return count;
+}
+
 SequenceFault read_fault(Reader& reader, const SequenceVocabulary& vocabulary, std::size_t units) {
   SequenceFault fault;
   fault.kind = static_cast<SequenceFaultKind>(reader.octet() % kFaultKinds);
@@ -124,6 +151,7 @@ Sequence sequence_of_octets(std::span<const std::uint8_t> octets, const Sequence
   Reader reader(octets);
   Sequence sequence;
   sequence.settings = read_settings(reader, vocabulary);
+  sequence.commands = read_situation(reader, vocabulary);
   while (!reader.is_empty() && sequence.commands.size() < kMostFuzzedCommands) {
     SequenceCommand command;
     command.word = reader.octet() % vocabulary.words.size();
@@ -149,7 +177,8 @@ Sequence sequence_of_octets(std::span<const std::uint8_t> octets, const Sequence
 std::vector<std::uint8_t> octets_of_sequence(const Sequence& sequence, const SequenceVocabulary& vocabulary) {
   Writer writer;
   write_settings(writer, sequence.settings, vocabulary);
-  for (const SequenceCommand& command : sequence.commands) {
+  const std::size_t written = write_situation(writer, sequence.commands, vocabulary);
+  for (const SequenceCommand& command : std::span(sequence.commands).subspan(written)) {
     const SequenceWord& word = vocabulary.words[command.word];
     writer.octet(command.word);
     for (std::size_t n = 0; n < word.numbers.size(); ++n)

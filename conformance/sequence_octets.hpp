@@ -10,9 +10,11 @@
 // one octet changes one thing where it can.
 //
 // In front there may be an octet from F0h on: as many settings follow as its low half says and one, each an
-// octet that chooses it and its number. A command is an octet that chooses the word, then its numbers, its
-// octets (their count in front) and its faults (their count in front). A number is a selector: below 80h a
-// likely value of the vocabulary, else what follows, between the limits. What is missing at the end is zero.
+// octet that chooses it and its number. Then there may be EFh and the place of a situation of the vocabulary,
+// where there are any: it begins with those commands. A command is an octet that chooses the word, then its
+// numbers, its octets (their count in front) and its faults (their count in front). A number is a selector:
+// below 80h a likely value of the vocabulary, else what follows, between the limits. What is missing at the
+// end is zero.
 namespace fieldproof::conformance {
 
 inline constexpr std::size_t kMostFuzzedCommands = 40;

@@ -45,6 +45,26 @@ TEST(SequenceOctets, OnlyAnOctetFromF0OnBringsSettings) {
   }
 }
 
+TEST(SequenceOctets, AnOctetEFBeginsWithASituationWhereThereAreAny) {
+  for (const SequenceRole& role : all_roles()) {
+    const SequenceVocabulary& vocabulary = role.vocabulary;
+    ASSERT_LT(vocabulary.words.size(), 0xEFU);
+    if (vocabulary.situations.empty()) {
+      const std::vector<std::uint8_t> octets{0xEF, 0x00};
+      EXPECT_EQ(sequence_of_octets(octets, vocabulary).commands.front().word, 0xEF % vocabulary.words.size());
+      continue;
+    }
+    ASSERT_LE(vocabulary.situations.size(), 0x100U);
+    for (std::size_t n = 0; n < vocabulary.situations.size(); ++n) {
+      Sequence sequence{vocabulary.situations[n].commands, {}};
+      const std::vector<std::uint8_t> octets{0xEF, static_cast<std::uint8_t>(n)};
+      EXPECT_EQ(sequence_of_octets(octets, vocabulary), sequence) << role.test_case.id << " " << n;
+      sequence.commands.push_back(simple_command(vocabulary, 0));
+      EXPECT_EQ(sequence_of_octets(octets_of_sequence(sequence, vocabulary), vocabulary), sequence);
+    }
+  }
+}
+
 // A number outside of its limits would be refused by the reader of case files.
 RC_GTEST_PROP(SequenceOctets, EachInputIsASequenceThatCanBeStored, (std::vector<std::uint8_t> octets)) {
   static const std::vector<SequenceRole> roles = all_roles();

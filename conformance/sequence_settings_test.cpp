@@ -73,31 +73,40 @@ TEST(SequenceSettings, NoEndOfASettingAccusesAReference) {
   }
 }
 
-// Each third sequence has some, mostly one; the ends come often, what the role objects to never, and the
-// commands are those that come without any.
+void expect_within(const SequenceVocabulary& vocabulary, const field::Settings& drawn) {
+  EXPECT_FALSE(vocabulary.objection_to(drawn));
+  for (const auto& [name, value] : drawn) {
+    const SequenceSetting* setting = vocabulary.find_setting(name);
+    ASSERT_NE(setting, nullptr) << name;
+    EXPECT_GE(value, setting->least) << name;
+    EXPECT_LE(value, setting->most) << name;
+    EXPECT_NE(value, setting->simple) << name;
+  }
+}
+
+// Each third sequence that begins with no situation has some, mostly one; the ends come often, what the role
+// objects to never, and the commands are those that come without any.
 TEST(SequenceSettings, AreDrawnWithinTheVocabularyMostlyAtItsEnds) {
   for (const auto& suite : all_suites()) {
     for (const SequenceRole& role : suite->sequence_roles()) {
       SequenceVocabulary without = role.vocabulary;
       without.settings.clear();
-      const SequenceSource source(role.vocabulary, 3);
+      SequenceVocabulary anywhere = role.vocabulary;
+      anywhere.situations.clear();
+      const SequenceSource source(anywhere, 3);
+      const SequenceSource of_all(role.vocabulary, 3);
       const SequenceSource plain(without, 3);
       unsigned set = 0, several = 0, likely = 0;
       std::set<std::string> names;
       for (std::uint64_t n = 0; n < 1'500; ++n) {
         const field::Settings drawn = source.draw(n).settings;
-        EXPECT_TRUE(n % 100 != 0 || source.draw(n).commands == plain.draw(n).commands) << n;
-        EXPECT_FALSE(role.vocabulary.objection_to(drawn));
+        const Sequence of_any = of_all.draw(n);
+        EXPECT_TRUE(n % 100 != 0 || of_any.commands == plain.draw(n).commands) << n;
+        expect_within(role.vocabulary, of_any.settings);
+        expect_within(role.vocabulary, drawn);
         set += drawn.empty() ? 0U : 1U;
         several += drawn.size() > 1 ? 1U : 0U;
-        for (const auto& [name, value] : drawn) {
-          const SequenceSetting* setting = role.vocabulary.find_setting(name);
-          ASSERT_NE(setting, nullptr) << name;
-          EXPECT_GE(value, setting->least) << name;
-          EXPECT_LE(value, setting->most) << name;
-          EXPECT_NE(value, setting->simple) << name;
-          names.insert(name);
-        }
+        for (const auto& [name, value] : drawn) names.insert(name);
         if (drawn.size() == 1) {
           const auto& ends = role.vocabulary.find_setting(drawn.front().first)->likely;
           likely += std::ranges::count(ends, drawn.front().second) > 0 ? 1U : 0U;

@@ -112,7 +112,11 @@ std::vector<token_bus::Reception> FollowingStation::received(const line::Wavefor
   const bool is_put_off =
       is_noise && state() == AccessState::demand_in &&
       rules().demand_wait_slots + 1 >= std::min(rules().bus_idle_slots, rules().lowest_bus_idle_slots);
-  if ((is_noise && is_waiting) || is_put_off || (all.size() > 1 && state() != AccessState::idle))
+  // What comes within the gap before a token is passed may cost it, or shows that the pass has succeeded.
+  const bool is_passing = state() == AccessState::check_token_pass || state() == AccessState::pass_token;
+  const bool is_within_gap = !is_noise && is_passing && has_pending();
+  if ((is_noise && is_waiting) || is_put_off || is_within_gap ||
+      (all.size() > 1 && state() != AccessState::idle))
     is_doubtful_ = true;
   return all;
 }

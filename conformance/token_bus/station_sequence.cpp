@@ -25,7 +25,7 @@ class TokenSequenceRun {
       const std::int64_t soon = std::exchange(soon_symbols_, 0);
       execute(sequence.commands[n]);
       // What the user does while the station decides is taken into account or not.
-      if (soon > 0 && n + 1 < sequence.commands.size() && is_of_line(sequence.commands[n + 1])) {
+      if (soon > 0 && is_line_next(sequence, n + 1)) {
         bench_.wait(token_bus::mac_symbols(bench_.rules(), static_cast<unsigned>(soon)));
         continue;
       }
@@ -50,6 +50,16 @@ class TokenSequenceRun {
       default:
         return false;
     }
+  }
+
+  // What the next command that does something at once is.
+  static bool is_line_next(const Sequence& sequence, std::size_t n) {
+    const auto is_preparation = [](const SequenceCommand& command) {
+      const auto word = static_cast<TokenWord>(command.word);
+      return word == TokenWord::form || word == TokenWord::reply || word == TokenWord::peer;
+    };
+    while (n < sequence.commands.size() && is_preparation(sequence.commands[n])) ++n;
+    return n < sequence.commands.size() && is_of_line(sequence.commands[n]);
   }
 
   static bool is_of_line(const SequenceCommand& command) {
@@ -238,7 +248,7 @@ const SequenceRole& token_station_sequence_role() {
       {{DerivedKind::values, {"delivers_from_another", "indication_other"}},
        {DerivedKind::faults, {"data_of_members_only", "indication_missing"}},
        {DerivedKind::words, {"delivers_with_another_priority", "indication_other"}},
-       {DerivedKind::states, {"response_of_the_asked_only", "indication_missing"}},
+       {DerivedKind::states, {"response_of_the_asked_only", "frame_missing"}},
        {DerivedKind::repetitions, {"offer_kept", "frame_other"}},
        {DerivedKind::settings, {"preamble_of_four_octets", "preamble_short"}},
        {DerivedKind::drawn, {"delivers_with_another_priority", "indication_other"}}}};
