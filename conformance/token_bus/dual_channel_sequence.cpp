@@ -3,112 +3,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 
-#include "conformance/sequence_settings.hpp"
-#include "conformance/token_bus/driven_frames.hpp"
 #include "conformance/token_bus/dual_channel_cases.hpp"
-#include "conformance/token_bus/judgeable_rules.hpp"
+#include "conformance/token_bus/dual_channel_words.hpp"
 #include "conformance/token_bus/sides_sequence.hpp"
 #include "protocols/token_bus/dual_channel.hpp"
 #include "protocols/token_bus/dual_channel_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
-
-// Away from the limits of the skew and of a slot time, where one symbol decides.
-constexpr std::array<std::int64_t, 4> kLates{0, 3, 40, 160};
-constexpr unsigned kShortFrameSymbols = 120;
-
-enum class ManagerWord : std::uint8_t {
-  both,
-  alone,
-  differ,
-  wrong,
-  collide,
-  train,
-  noise,
-  request,
-  command,
-  answer,
-  wait,
-  power
-};
-
-std::vector<std::vector<NamedCommand>> states_of_a_manager() {
-  return {
-      {{"alone", {{"channel", 1}}}}, {{"wrong"}}, {{"noise"}}, {{"command"}}, {{"answer", {{"which", 2}}}},
-      {{"differ"}, {"power"}}};
-}
-
-SequenceVocabulary channel_manager_vocabulary() {
-  const token_bus::ChannelManagerConfiguration as_made;
-  const SequenceNumber on{"channel", 0, 1, 0};
-  const SequenceNumber late{"late", 0, 160, 0, kLates, true};
-  const SequenceNumber content{"content", 0, 255, 0x42};
-  // In the order of ManagerWord. Faults are of the channel that is named.
-  return {
-      .words = {{.word = "both",
-                 .meaning = "both channels carry a frame, the named one so many symbols later",
-                 .numbers = {on, late, content},
-                 .units = kShortFrameSymbols,
-                 .weight = 8},
-                {.word = "alone",
-                 .meaning = "one channel carries a frame",
-                 .numbers = {on, content},
-                 .units = kShortFrameSymbols,
-                 .weight = 4},
-                {.word = "differ",
-                 .meaning = "the channels carry different frames, the named one so many symbols later",
-                 .numbers = {on, late, content},
-                 .units = kShortFrameSymbols,
-                 .weight = 6},
-                {.word = "wrong",
-                 .meaning = "both channels carry a frame, the named one with a wrong check",
-                 .numbers = {on, content},
-                 .weight = 8},
-                {.word = "collide",
-                 .meaning = "both channels carry a frame, with bad_signal in the same place",
-                 .numbers = {{"symbol", 44, 100, 60}, content},
-                 .weight = 4},
-                {.word = "train",
-                 .meaning = "both channels carry two frames, the first with I = 1",
-                 .numbers = {on, content},
-                 .units = 2 * kShortFrameSymbols,
-                 .weight = 3},
-                {.word = "noise",
-                 .meaning = "a channel carries so many symbols without a start delimiter",
-                 .numbers = {on, {"symbols", 1, 200, 20}},
-                 .units = 20,
-                 .weight = 2},
-                {.word = "request", .meaning = "the MAC requests a frame", .numbers = {content}, .weight = 3},
-                {.word = "command",
-                 .meaning =
-                     "the MAC gives a command: RESET, DISABLE LOOPBACK, ENABLE TRANSMITTER, none, data",
-                 .numbers = {{"which", 0, 4, 0}},
-                 .weight = 1},
-                {.word = "answer",
-                 .meaning = "A answers, or B, or both and B the next one: IDLE, ACK, NACK, physical error",
-                 .numbers = {{"who", 0, 2, 2}, {"which", 0, 3, 1}},
-                 .weight = 1},
-                {.word = "wait", .meaning = "silence of so many slot times", .numbers = {{"slots", 1, 9, 1}}},
-                {.word = "power", .meaning = "the supply is switched off and on", .is_loss = true}},
-      .unit = "symbol",
-      .levels_per_unit = 2,
-      .settings = sequence_settings(token_bus::kChannelManagerTable, &as_made),
-      .objection = objection_of(
-          token_bus::kChannelManagerTable, as_made,
-          +[](const token_bus::ChannelManagerConfiguration& one) { expect_whole_half_bits(one.rules); })};
-}
-
-std::string framed(std::int64_t content, bool more_follows = false) {
-  constexpr std::size_t kData = 5;
-  const std::vector<std::uint8_t> octets(kData, static_cast<std::uint8_t>(content));
-  return frame_text(with_crc_32(octets), more_follows);
-}
-std::string received_frame(std::int64_t content, bool more_follows = false) {
-  return indicated_as(framed(content, more_follows));
-}
 
 class ManagerSequenceRun {
  public:
@@ -120,16 +25,47 @@ class ManagerSequenceRun {
 
   void run(const Sequence& sequence) {
     for (const SequenceCommand& command : sequence.commands) {
-      for (ManagerBench* one : {&bench_, &twin_}) {
-        one->clear();
-        execute(command, *one);
-        one->settle();
+      for (Begun* one : {&seen_, &right_}) {
+        one->bench->clear();
+        one->begin = one->bench->now();
+        execute(command, *one->bench);
+        one->bench->settle();
       }
-      compare();
+      if (is_unsaid(command)) {
+        for (Begun* one : {&seen_, &right_}) cycle_power(*one->bench);
+        continue;
+      }
+      compare(command);
     }
   }
 
  private:
+  struct Begun {
+    ManagerBench* bench;
+    kernel::Time begin{};  // of the command
+  };
+
+  static void cycle_power(ManagerBench& bench) {
+    bench.set_power(false);
+    bench.wait(bench.slot());
+    bench.set_power(true);
+  }
+
+  // What silence in a train ends, and what the next frame on the other channel then is, the page says in two
+  // ways; so it does of a start delimiter within a transmission that is none.
+  static bool is_unsaid(const SequenceCommand& command) {
+    constexpr std::uint32_t kSecond = 120;  // symbol, with which the second frame begins
+    constexpr std::uint32_t kHead = 40;
+    if (command.word != static_cast<std::size_t>(ManagerWord::train)) return false;
+    return std::ranges::any_of(command.faults, [](const SequenceFault& one) {
+      const bool is_in_head = one.unit + kHead >= kSecond && one.unit < kSecond + kHead;
+      return one.kind == SequenceFaultKind::drop || is_in_head;
+    });
+  }
+
+  static void carry(ManagerBench& bench, std::int64_t channel, const BothChannels& both) {
+    carry(bench, channel, both.named, both.other);
+  }
   static void carry(ManagerBench& bench, std::int64_t channel, const ChannelText& named,
                     const ChannelText& other) {
     channel == 0 ? bench.carry(named, other) : bench.carry(other, named);
@@ -176,26 +112,140 @@ class ManagerSequenceRun {
       case ManagerWord::wait:
         return bench.wait(numbers[0] * bench.slot());
       case ManagerWord::power:
-        bench.set_power(false);
-        bench.wait(bench.slot());
-        bench.set_power(true);
+        return cycle_power(bench);
+      default:
+        return execute_later(command, bench);
     }
   }
 
-  void compare() {
-    for (const Channel channel : token_bus::kChannels) {
-      compare_sides(fmt::format("requested of {}", text_of(channel)), bench_.requested(channel),
-                    twin_.requested(channel), "request_other", judge_);
+  static void execute_later(const SequenceCommand& command, ManagerBench& bench) {
+    constexpr std::size_t kLongOctets = 1'000;
+    constexpr std::int64_t kPartsPerMillion = 100;
+    const auto& numbers = command.numbers;
+    const auto& configuration = bench.configuration();
+    switch (static_cast<ManagerWord>(command.word)) {
+      case ManagerWord::limit:
+        return carry(bench, numbers[0],
+                     at_limit(static_cast<ManagerLimit>(numbers[1]), numbers[2], configuration));
+      case ManagerWord::kinds:
+        return carry(bench, numbers[0], {train_of(static_cast<TrainKind>(numbers[1]), configuration)},
+                     {train_of(static_cast<TrainKind>(numbers[2]), configuration)});
+      case ManagerWord::other_codes:
+        return carry(bench, numbers[0], {with_other_codes(received_frame(numbers[1]))},
+                     {received_frame(numbers[1])});
+      case ManagerWord::longest_request:
+        return bench.request(framed(0xB1, false, kLongestFrame));
+      case ManagerWord::turns:
+        for (std::int64_t n = 0; n < 2 * numbers[1]; ++n) {
+          carry(bench, (numbers[0] + n) % 2, {received_frame(n)}, {});
+          bench.settle();
+        }
+        return;
+      case ManagerWord::seconds:
+        return bench.wait(numbers[0] * kernel::kSecond);
+      case ManagerWord::meanwhile: {
+        const kernel::Time requested = bench.begin_request(framed(numbers[0]));
+        const std::string carried = received_frame(numbers[0] ^ 0xFF, false, 20);
+        const kernel::Time end = std::max(requested, bench.begin_carrying({carried}, {carried}));
+        return bench.wait(end - bench.now());
+      }
+      case ManagerWord::two_within:
+        return carry(bench, numbers[0], two_within_one(numbers[1] == 1, configuration));
+      case ManagerWord::stuck:
+        carry(bench, numbers[0], beside_what_is_stuck(numbers[1] == 1, configuration));
+        bench.settle();
+        return cycle_power(bench);
+      default:
+        return carry(bench, numbers[0],
+                     {received_frame(0xB1, false, kLongOctets), 0, kPartsPerMillion * numbers[1]}, {});
     }
+  }
+
+  void compare(const SequenceCommand& command) {
+    for (const Channel channel : token_bus::kChannels) {
+      const std::string side = fmt::format("requested of {}", text_of(channel));
+      compare_sides(side, bench_.requested(channel), twin_.requested(channel), "request_other", judge_);
+      expect_in_time(side, bench_.requested(channel), twin_.requested(channel), "sent_too_late");
+    }
+    expect_together();
+    if (command.word == static_cast<std::size_t>(ManagerWord::stuck)) return compare_last();
     compare_sides("indicated", bench_.indicated(), twin_.indicated(), "indication_other", judge_);
+    expect_in_time("indicated", bench_.indicated(), twin_.indicated(), "indicated_too_late");
+    if (command.word == static_cast<std::size_t>(ManagerWord::clock)) expect_rate();
+    compare_events();
+  }
+
+  void compare_events() {
     judge_.expect(bench_.events() == twin_.events(), "report_other",
                   fmt::format("reported: {}", fmt::join(twin_.events(), ", ")),
                   fmt::format("reported: {}", fmt::join(bench_.events(), ", ")));
+    if (bench_.events().empty()) return;
+    const kernel::Duration most = twin_.last_event() - right_.begin + twin_.indication_delay();
+    const kernel::Duration took = bench_.last_event() - seen_.begin;
+    judge_.expect(took <= most, "reported_too_late", kernel::describe(most), kernel::describe(took));
   }
+
+  // What a channel that is stuck leaves of the first transmission is not looked at.
+  void compare_last() {
+    const auto last = [](const SideLog& log) {
+      const std::string& text = log.text();
+      const std::size_t at = text.rfind(start_delimiter_text());
+      return at == std::string::npos ? "" : without_end(text.substr(at), 'S').substr(0, kShown);
+    };
+    const std::string right = last(twin_.indicated());
+    const std::string seen = last(bench_.indicated());
+    judge_.expect(seen == right, "indication_other", [&] { return difference(right, seen); });
+  }
+
+  // Each at the latest with the twin, which is as late as may be. They are the same letters.
+  void expect_in_time(std::string_view side, const SideLog& seen, const SideLog& right,
+                      std::string_view reason) {
+    constexpr kernel::Duration kRounding = 2 * kernel::kNanosecond;
+    const std::size_t count = without_end(right.text(), 'S').size();
+    for (std::size_t n = 0; n < std::min(count, seen.text().size()); ++n) {
+      if (right.text()[n] == 'S' || is_answer(right.text()[n])) continue;
+      const kernel::Duration most = right.time_of(n) - right_.begin;
+      const kernel::Duration took = seen.time_of(n) - seen_.begin;
+      judge_.expect(took <= most + kRounding, reason, [&] {
+        return Mismatch{
+            {fmt::format("{}: symbol {} after {} at the latest", side, n, kernel::describe(most))},
+            kernel::describe(took)};
+      });
+    }
+  }
+  static bool is_answer(char letter) {
+    return std::string_view("iane").find(letter) != std::string_view::npos;
+  }
+
+  void expect_together() {
+    const SideLog& on_a = bench_.requested(Channel::a);
+    const SideLog& on_b = bench_.requested(Channel::b);
+    if (on_a.empty() || on_b.empty()) return;
+    const kernel::Duration apart = std::max(on_a.begin() - on_b.begin(), on_b.begin() - on_a.begin());
+    const kernel::Duration most = bench_.symbols(bench_.configuration().channels.skew_symbols);
+    judge_.expect(apart <= most + kernel::kNanosecond, "channels_apart", kernel::describe(most),
+                  kernel::describe(apart));
+  }
+
+  // Each symbol lasts as long as it did on its channel.
+  void expect_rate() {
+    const std::size_t count = without_end(twin_.indicated().text(), 'S').size();
+    if (count < 2 || bench_.indicated().text().size() < count) return;
+    const auto length = [&](const SideLog& log) { return log.time_of(count - 1) - log.begin(); };
+    const kernel::Duration right = length(twin_.indicated());
+    const kernel::Duration took = length(bench_.indicated());
+    const kernel::Duration apart = std::max(took - right, right - took);
+    judge_.expect(apart < bench_.symbols(1) / 4, "indicated_at_another_rate", kernel::describe(right),
+                  kernel::describe(took));
+  }
+
+  static constexpr std::size_t kShown = 80;
 
   ManagerBench& bench_;
   CaseJudge& judge_;
   ManagerBench twin_;
+  Begun seen_{&bench_};
+  Begun right_{&twin_};
 };
 
 }  // namespace
@@ -212,7 +262,7 @@ const SequenceRole& channel_manager_sequence_role() {
        .expected = "What a reference does on a bench of its own.",
        .tags = {},
        .catches = {}},
-      with_beginnings(channel_manager_vocabulary(), states_of_a_manager()),
+      channel_manager_vocabulary(),
       // Of spoilt symbols the page leaves open what is right: for `check` only.
       {{DerivedKind::values, {"watches_the_preferred_alone", "report_other"}},
        {DerivedKind::words, {"sends_on_a_alone", "request_other"}},

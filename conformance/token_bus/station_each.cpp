@@ -69,7 +69,7 @@ TokenStep long_groups_refused() {
       "data_not_refused");
 }
 
-std::vector<TokenCase> long_addresses() {
+std::vector<TokenCase> each_octet_of_long_addresses() {
   return {
       on_chart(token_must("long_addresses/the_successor_is_sought_by_all_octets", "TB-21",
                           "Who follows is asked by all six octets of the successor.", standard("who_follows"),
@@ -263,7 +263,7 @@ std::vector<TokenCase> token_each_cases() {
                 {joined(), each_too_long(), counted("frames too long", kTooLong, 2), starts_anew(),
                  each_too_long(), counted("frames too long", kTooLong, 2), joined()}}),
   };
-  for (const auto& more : {long_addresses(), noises()}) all.insert(all.end(), more.begin(), more.end());
+  for (const auto& more : {each_octet_of_long_addresses(), noises()}) all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 

@@ -100,8 +100,12 @@ void receive_other_phase_within(TranslatorScene& scene) {
                      "phase_lost_in_blanking", "silence, and ones", seen);
 }
 
+}  // namespace
+
+namespace translator_chart {
+
 // RESET, or a failure of the supply, in the blanking; then ones, long before it would be over.
-void begin_anew_within(TranslatorScene& scene) {
+void begins_anew_within_blanking(TranslatorScene& scene) {
   constexpr unsigned kLongest = 8;
   if (scene.round % 2 == 1 && scene.bench.configuration().delay_symbols > kLongest) return;
   scene.exchange("rrrrllll");
@@ -129,7 +133,7 @@ void begin_anew_within(TranslatorScene& scene) {
   scene.bring_up();
 }
 
-}  // namespace
+}  // namespace translator_chart
 
 std::vector<TranslatorCase> translator_end_cases() {
   const auto within = static_cast<unsigned>(withins().size());
@@ -187,7 +191,7 @@ std::vector<TranslatorCase> translator_end_cases() {
                           own("what the commands do"), {{"blanking_outlives_reset", "still_blanked"}}),
           {{4, 20},
            {{"a frame, then in the blanking RESET or a failure of the supply, DISABLE LOOPBACK, and ones",
-             "the ones", begin_anew_within},
+             "the ones", begins_anew_within_blanking},
             pause()},
            {on_line()}}),
   };

@@ -116,6 +116,19 @@ void receive_errors_without_own(TranslatorScene& scene) {
   scene.bring_up();
 }
 
+}  // namespace
+
+namespace translator_chart {
+
+void receives_errors(TranslatorScene& scene) {
+  const auto rows = static_cast<unsigned>(mask_rows().size());
+  scene.round < rows ? receive_errors(scene) : receive_errors_without_own(scene);
+}
+
+}  // namespace translator_chart
+
+namespace {
+
 template <unsigned symbols>
 TranslatorNeeds with_mask() {
   return {.adjust = [](TranslatorConfiguration& one) { one.error_mask_symbols = symbols; }};

@@ -83,5 +83,10 @@ TranslatorStep requires_that(std::string text, std::function<void(TranslatorScen
 // A frame of random octets arrives and is indicated: `does_not_recover`.
 TranslatorStep receives();
 
+// One round of a walk, on line: signal errors after what is requested, and after what is not sent;
+// RESET, or a failure of the supply, within the blanking.
+void receives_errors(TranslatorScene& scene);
+void begins_anew_within_blanking(TranslatorScene& scene);
+
 }  // namespace translator_chart
 }  // namespace fieldproof::conformance
