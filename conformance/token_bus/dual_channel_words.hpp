@@ -28,7 +28,6 @@ enum class ManagerWord : std::uint8_t {
   kinds,
   other_codes,
   longest_request,
-  turns,
   seconds,
   meanwhile,
   two_within,

@@ -168,6 +168,10 @@ void receive_preamble(TranslatorScene& scene) {
 
 }  // namespace
 
+void translator_chart::receives_in_a_phase(TranslatorScene& scene, bool is_over_silence) {
+  is_over_silence ? receive_remainder(scene) : receive_hunting(scene);
+}
+
 std::vector<TranslatorCase> translator_phase_cases() {
   const auto hunting = static_cast<unsigned>(hunting_rows().size());
   const auto remainder = static_cast<unsigned>(2 * kSilences.size() * remainders().size());

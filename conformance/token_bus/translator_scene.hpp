@@ -84,9 +84,10 @@ TranslatorStep requires_that(std::string text, std::function<void(TranslatorScen
 TranslatorStep receives();
 
 // One round of a walk, on line: signal errors after what is requested, and after what is not sent;
-// RESET, or a failure of the supply, within the blanking.
+// RESET, or a failure of the supply, within the blanking; what moves the phase, or is left over silence.
 void receives_errors(TranslatorScene& scene);
 void begins_anew_within_blanking(TranslatorScene& scene);
+void receives_in_a_phase(TranslatorScene& scene, bool is_over_silence);
 
 }  // namespace translator_chart
 }  // namespace fieldproof::conformance

@@ -149,6 +149,7 @@ class LoopbackState {
       case TranslatorWord::on_line:
       case TranslatorWord::mask:
       case TranslatorWord::anew:
+      case TranslatorWord::phase:
         return note("rlt");
       case TranslatorWord::answers:
       case TranslatorWord::commands:
@@ -217,9 +218,12 @@ class TranslatorSequenceRun {
 
   // All three are on line by now, and so they are afterwards.
   void judge_by_rules(const SequenceCommand& command) {
-    TranslatorScene scene(bench_, judge_, static_cast<unsigned>(command.numbers[0]));
-    const bool is_mask = command.word == static_cast<std::size_t>(TranslatorWord::mask);
-    is_mask ? translator_chart::receives_errors(scene) : translator_chart::begins_anew_within_blanking(scene);
+    const auto word = static_cast<TranslatorWord>(command.word);
+    const std::int64_t round = word == TranslatorWord::phase ? command.numbers[1] : command.numbers[0];
+    TranslatorScene scene(bench_, judge_, static_cast<unsigned>(round));
+    if (word == TranslatorWord::mask) translator_chart::receives_errors(scene);
+    if (word == TranslatorWord::anew) translator_chart::begins_anew_within_blanking(scene);
+    if (word == TranslatorWord::phase) translator_chart::receives_in_a_phase(scene, command.numbers[0] == 1);
     bring_on_line(bench_);
     bench_.clear();
   }

@@ -23,6 +23,8 @@ constexpr std::array<std::string_view, 9> kCodes{"P", "p", "1", "0", "NN", "nN",
 constexpr std::int64_t kRows = static_cast<std::int64_t>(TranslatorRow::command_in_a_frame);
 constexpr std::int64_t kJabbers = 4;
 constexpr std::int64_t kMaskRows = 8;
+constexpr std::int64_t kHuntingRows = 18;
+constexpr std::int64_t kPhaseRows = 55;
 
 // ---- the vocabulary ----
 
@@ -82,7 +84,11 @@ std::vector<SequenceWord> later_words_of_a_translator() {
   return {
       {.word = "codes",
        .meaning = "the MAC requests symbols by any of their codes, the first one so often",
-       .numbers = {code("first"), code("second"), code("third"), {"times", 1, 70, 1, kRowsOfOne, true}},
+       .numbers = {code("first"),
+                   code("second"),
+                   code("third"),
+                   {"times", 1, 70, 1, kRowsOfOne, true},
+                   {"bare", 0, 1, 0}},
        .weight = 4},
       {.word = "answers",
        .meaning = "up to three commands directly after each other, of so many symbols each",
@@ -115,6 +121,10 @@ std::vector<SequenceWord> later_words_of_a_translator() {
       {.word = "anew",
        .meaning = "RESET, or a failure of the supply, within the blanking",
        .numbers = {{"supply", 0, 1, 0}},
+       .weight = 1},
+      {.word = "phase",
+       .meaning = "what moves the phase, or holds it, or is left of it after silence comes before a frame",
+       .numbers = {{"silence", 0, 1, 0}, {"row", 0, kPhaseRows, 0}},
        .weight = 1}};
 }
 
@@ -174,6 +184,14 @@ std::vector<NamedSituation> situations_of_a_translator() {
                    {times.at(static_cast<std::size_t>(row % 4))}});
   for (std::int64_t row = 0; row <= kMaskRows; ++row)
     all.push_back({{one_number("mask", "row", row), {"receive"}}, {{"error_mask_symbols"}}});
+  for (std::int64_t row = 0; row < kHuntingRows; ++row) {
+    const NamedCommand holds{"phase", {{"row", row}}};
+    const NamedCommand is_left{"phase", {{"silence", 1}, {"row", 3 * row}}};
+    all.push_back({.commands = {holds, is_left}});
+  }
+  all.push_back({{on_line,
+                  one_number("request_cut", "symbols", 33),
+                  {"codes", {{"first", 4}, {"second", 2}, {"third", 4}, {"bare", 1}}}}});
   for (const std::int64_t symbols : {1, 2, 64, 300})
     all.push_back({{three_commands("answers", 4, 3, 2, symbols), three_commands("commands", 0, 1, 2, 1),
                     three_commands("commands", 5, 0, 5, symbols)},
@@ -209,11 +227,12 @@ std::string translated_frame(std::int64_t content, bool more_follows) {
 
 std::string script_of_codes(const std::vector<std::int64_t>& numbers) {
   const auto code = [&](std::size_t n) { return kCodes.at(static_cast<std::size_t>(numbers[n])); };
-  std::string script(16, 'P');
+  const bool is_bare = numbers[4] == 1;
+  std::string script(is_bare ? 0 : 16, 'P');
   for (std::int64_t n = 0; n < numbers[3]; ++n) script += code(0);
   script += code(1);
   script += code(2);
-  return script + "10PP";
+  return is_bare ? script : script + "10PP";
 }
 
 std::string script_of_commands(const std::vector<std::int64_t>& numbers) {
@@ -312,10 +331,13 @@ TranslatorLook look_of(const SequenceCommand& command) {
       return TranslatorLook::answers;
     case TranslatorWord::commands:
       return TranslatorLook::last;
+    // Where a translator loops back, what begins with no preamble is in no phase: what is sent is looked at.
+    case TranslatorWord::codes:
     case TranslatorWord::jabber:
       return TranslatorLook::sent_nearly;
     case TranslatorWord::mask:
     case TranslatorWord::anew:
+    case TranslatorWord::phase:
       return TranslatorLook::by_rules;
     default:
       return TranslatorLook::all;

@@ -29,7 +29,8 @@ enum class TranslatorWord : std::uint8_t {
   jabber,
   clocks,
   mask,
-  anew
+  anew,
+  phase
 };
 
 // What comes from the line directly after each other.
@@ -49,7 +50,7 @@ enum class TranslatorRow : std::uint8_t {
 SequenceVocabulary translator_vocabulary();
 
 std::string translated_frame(std::int64_t content, bool more_follows = false);
-// Of "codes": a preamble, and any symbols after it.
+// Of "codes": any symbols, in a preamble or alone.
 std::string script_of_codes(const std::vector<std::int64_t>& numbers);
 // Of "answers" and "commands": commands directly after each other.
 std::string script_of_commands(const std::vector<std::int64_t>& numbers);
