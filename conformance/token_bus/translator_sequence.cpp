@@ -281,9 +281,8 @@ const SequenceRole& translator_sequence_role() {
       translator_vocabulary(),
       // Of cut requests and spoilt bits the page leaves open what is right: for `check` only.
       {{DerivedKind::words, {"reset_enables_transmitter", "sent_other"}},
-       {DerivedKind::repetitions, {"zero_and_one_exchanged", "indication_other"}},
-       {DerivedKind::settings, {"transmitter_on_from_the_start", "sent_other"}},
-       {DerivedKind::drawn, {"reset_enables_transmitter", "sent_other"}}}};
+       {DerivedKind::repetitions, {"zero_and_one_exchanged", "sent_other"}},
+       {DerivedKind::settings, {"transmitter_on_from_the_start", "sent_other"}}}};
   return role;
 }
 
