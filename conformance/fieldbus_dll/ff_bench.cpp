@@ -51,7 +51,8 @@ FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
   if (setting.is_link_master || !needs.is_live) return;
   wait(octets(20));
   send({rules().codes.pn, node()});
-  wait(observation_timeout());
+  // The latest answer is over by then.
+  wait(std::max(observation_timeout(), response_delay() + frame(2)));
   send(activation(node()));
   wait(observation_timeout());
   const kernel::Time begin = now();

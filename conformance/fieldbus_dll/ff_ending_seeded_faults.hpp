@@ -71,8 +71,10 @@ class ReturnsWhateverIsLeft : public FfStation {
 class QueueOf128 : public FfStation {
   using FfStation::FfStation;
   bool submit(const FfRequest& request, Time now) override {
-    const bool is_full = queues().queue(request.priority).size() >= 128;
-    return is_full || FfStation::submit(request, now);
+    if (!FfStation::submit(request, now)) return false;
+    auto& queue = queues().queue(request.priority);
+    if (queue.size() > 128) queue.pop_back();
+    return true;
   }
 };
 

@@ -55,11 +55,12 @@ Time FfLasModel::due() const {
   const auto& [version, macrocycle, items] = configuration_.schedule;
   if (items.empty()) return kernel::kNever;
   const auto cycle = static_cast<std::int64_t>(items_done_ / items.size());
-  return kernel::kStart +
+  return link_time_begin_ +
          (cycle * macrocycle + std::int64_t{items[items_done_ % items.size()].at}) * fieldbus_dll::kTick;
 }
 
 Time FfLasModel::silent_until() const {
+  if (!is_scheduler_) return silent_since_ + claim_silence() + times(2);
   return silent_since_ + times(kMostSilentSlots * rules().link.slot_time_octets);
 }
 
@@ -112,9 +113,9 @@ void FfLasModel::hear_noise(Time end) {
 // ---- who is live ----
 
 void FfLasModel::remove(std::uint8_t node) {
+  if (!nodes_.at(node).was_left_open) list_changed_ = circulations_;
   nodes_.at(node) = {};
   to_activate_.erase(node);
-  list_changed_ = circulations_;
 }
 
 void FfLasModel::show_live(std::uint8_t node) {
@@ -143,12 +144,17 @@ FfLasModel::Found FfLasModel::pass_over(unsigned first, unsigned behind_last) {
 // ---- what it says ----
 
 FfLasModel::Found FfLasModel::close_question(Time now) {
-  free_since_ = silent_since_ + times(rules().link.inter_pdu_delay_octets);
+  free_since_ = free_latest_ = silent_since_ + times(rules().link.inter_pdu_delay_octets);
   if (!question_) return std::nullopt;
   const Question question = *std::exchange(question_, std::nullopt);
-  if (!question.is_answered)
-    free_since_ =
-        std::max(free_since_, std::min(silent_since_ + response_delay(rules().link), question.token_ends));
+  if (!question.is_answered) {
+    const Time is_late = silent_since_ + response_delay(rules().link);
+    const Time over = question.token_ends;
+    free_since_ = std::max(free_since_, std::min(is_late, over));
+    const bool has_end = over != kernel::kNever;
+    const Time taken_back = has_end ? over + times(rules().link.slot_time_octets) : over;
+    free_latest_ = std::max(free_latest_, std::min(is_late, taken_back));
+  }
   if (question.is_token) count_token(question);
   if (now + kLinkRounding >= free_since_) return std::nullopt;
   return LinkObjection{"does_not_wait", "an answer, or silence for V(MRD) x V(ST), or the end of the token"};
@@ -156,6 +162,11 @@ FfLasModel::Found FfLasModel::close_question(Time now) {
 
 FfLasModel::Found FfLasModel::say(const DrivenDlpdu& dlpdu) {
   const Duration gap = times(rules().link.inter_pdu_delay_octets);
+  if (!is_scheduler_) {
+    Found in_standby = say_in_standby(dlpdu);
+    silent_since_ = dlpdu.end;
+    return in_standby;
+  }
   if (dlpdu.begin + kLinkRounding < silent_since_ + gap)
     return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
   if (dlpdu.begin >= silent_until())
@@ -177,6 +188,8 @@ FfLasModel::Found FfLasModel::say_dlpdu(const DrivenDlpdu& dlpdu) {
   const auto& codes = rules().codes;
   if (dlpdu.begin > time_told_ + rules().time_distribution_period)
     return LinkObjection{"time_not_told", "a TD once in V(TDP)"};
+  if (has_las_code(dlpdu, codes.dt3, kLongOfLas | kFinalBit | kPriorityBits)) return say_own_buffer(dlpdu);
+  if (Found missed = pass_own_items(dlpdu)) return missed;
   if (has_las_code(dlpdu, codes.cd, kLongOfLas | kFinalBit | kPriorityBits)) return say_cd(dlpdu);
   if (dlpdu.begin > due()) return LinkObjection{"compelled_late", "the CD that is due, before all else"};
   const bool has_priority = (dlpdu.octet(0) & kPriorityBits) != 0;
@@ -184,6 +197,7 @@ FfLasModel::Found FfLasModel::say_dlpdu(const DrivenDlpdu& dlpdu) {
   if (has_las_code(dlpdu, codes.pn, 0)) return say_probe(dlpdu);
   if (has_las_code(dlpdu, codes.td, 0)) return say_time(dlpdu);
   if (has_las_code(dlpdu, codes.dt1, kLongOfLas | kFinalBit | kPriorityBits)) return say_data(dlpdu);
+  if (has_las_code(dlpdu, codes.tl, 0)) return say_transfer(dlpdu);
   if (has_las_code(dlpdu, codes.idle, 0)) return std::nullopt;
   return LinkObjection{"unexpected_dlpdu", "CD, PT, PN, TD, DT1 or IDLE"};
 }
@@ -195,7 +209,7 @@ FfLasModel::Found FfLasModel::say_cd(const DrivenDlpdu& cd) {
   const FfAddress address = address_at(cd, 1, octets);
   if (address != item.address || priority_said(cd) != item.priority)
     return LinkObjection{"compelled_wrong", fmt::format("a CD for {:04X}", item.address)};
-  const Time latest = std::max(due(), free_since_) + times(rules().scheduling_overhead_octets);
+  const Time latest = std::max(due(), free_latest_) + times(rules().scheduling_overhead_octets);
   if (cd.begin + kLinkRounding < due())
     return LinkObjection{"compelled_early", fmt::format("not before {}", kernel::describe(due()))};
   if (cd.begin > latest + kLinkRounding)
@@ -250,7 +264,8 @@ FfLasModel::Found FfLasModel::begin_circulation(const DrivenDlpdu& pt) {
     if (auto left_out = pass_over(*last_token_ + 1U, kNodes)) return left_out;
     if (probes_ == 0 && has_to_probe()) return LinkObjection{"no_probe", "a PN between two circulations"};
   }
-  const bool is_first = circulations_++ == 0;
+  ++circulations_;
+  const bool is_first = std::exchange(is_first_circulation_, false);
   if (auto left_out = pass_over(0, pt.octet(1))) return left_out;
   const Priority said = priority_said(pt);
   std::vector<Priority> all{said};
@@ -313,6 +328,8 @@ FfLasModel::Found FfLasModel::say_probe(const DrivenDlpdu& pn) {
   }
   const bool is_next = !last_probe_ || node > *last_probe_ || is_lowest;
   last_probe_ = node;
+  // Of a circulation without a token the priority is nobody's to see.
+  if (!last_token_) is_first_circulation_ = false;
   if (++probes_ > 1) {
     // A circulation without a token begins at an instant that nobody sees.
     last_token_.reset();

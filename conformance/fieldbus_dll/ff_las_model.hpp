@@ -13,19 +13,24 @@
 
 // What a link active scheduler of the profile FF-P must say and may not, told from what it said before, what
 // others answered and what its user wants: a model of the rules that shares nothing with the stations but
-// their numbers. Nobody else is a scheduler, and nothing is heard that was not asked for.
+// their numbers. Nothing is heard while it speaks.
 //
+//   its own buffer, once it was written, when its item is due; a TL when its user orders it
 //   V(MID) of silence in front of each DLPDU, and never a silence of V(ST) x 16
 //   nothing while a token, a CD or a probe is out: until it is answered, the line was silent for V(MRD) x
 //   V(ST), or the token is over
 //   each item of the schedule in its order, not before it is due, and before all else when it is; at most
-//   V(MSO) after the instant at which the line is free
+//   V(MSO) after the instant at which the line is free, and who holds a token too long has had a V(ST) more
 //   tokens from V(DMDT) to V(DTHT) that end before the next item, once in a circulation to each live node,
 //   in the order of addresses, the first one marked, with the priority that the rotations before lead to
 //   between two circulations a probe, ascending, of nodes that are not live and may be polled
 //   who misses so many tokens in a row is not live any more; who answers a probe is, from the next
 //   circulation on; both is told within two circulations link time goes on in what is told of it, once in
 //   V(TDP) and to who asks
+//
+// Who hears a CD, PT, PN, TD, CL or TL of another, or anything behind its own TL, is silent, but for PR: in
+// standby. After V(ST) x V(TN) of silence it claims the link, and by a TL for it and its schedule it gets it.
+// It has learnt link time and who is live then.
 //
 // A faulty answer may be taken for an answer or for none; the model holds the scheduler to neither, until it
 // shows which.
@@ -40,6 +45,8 @@ class FfLasModel {
 
   // False: the station must refuse it.
   bool submit(Priority priority, const Octets& data);
+  bool write(const Octets& data, kernel::Time now);  // the buffer that its schedule has
+  void order_transfer(std::uint8_t node) { heir_ = node; }
 
   // ---- what others say, until `end`; instants never decrease ----
   void hear_answer(kernel::Time end);  // what ends a token or a CD
@@ -47,12 +54,21 @@ class FfLasModel {
   void hear_time_request(kernel::Time end);
   void hear_probe_response(kernel::Time end);
   void hear_noise(kernel::Time end);
+  // Of another scheduler, or of who becomes one.
+  void hear_scheduler(const Octets& octets, kernel::Time end);
 
   // ---- what the station says ----
   Found say(const DrivenDlpdu& dlpdu);
   // What must have been said by now.
   Found end() const;
 
+  bool is_scheduler() const { return is_scheduler_; }
+  // A PR is due.
+  bool is_probed() const { return is_probed_; }
+  // When the line is silent it has been claimed by then.
+  kernel::Duration claim_silence() const;
+  // In link time.
+  std::uint64_t ticks_at(kernel::Time now) const;
   // It may not be silent until then.
   kernel::Time silent_until() const;
   bool is_surely_live(std::uint8_t node) const { return nodes_.at(node).is_live && !is_open(node); }
@@ -66,6 +82,7 @@ class FfLasModel {
     // Tokens that it missed in a row, with and without its faulty answers.
     unsigned fewest_misses = 0;
     unsigned most_misses = 0;
+    bool was_left_open = false;  // when it left: whether it was removed before is not told
   };
   struct Question {
     std::uint8_t node;
@@ -80,6 +97,12 @@ class FfLasModel {
     kernel::Time end;
   };
 
+  struct OwnBuffer {
+    Octets data;
+    unsigned writes = 0;
+    kernel::Time since = kernel::kNever;
+  };
+
   const fieldbus_dll::FfRules& rules() const { return configuration_.rules; }
   // No token that is answered is a miss.
   unsigned misses_of_no_node() const { return std::max(rules().misses_until_removal, 1U); }
@@ -90,6 +113,15 @@ class FfLasModel {
   bool is_polled(unsigned node) const;
   bool has_to_probe() const;
 
+  void leave();
+  void take(kernel::Time now);
+  void learn(const fieldbus_dll::FfDlpdu& dlpdu, kernel::Time end);
+  Found say_in_standby(const DrivenDlpdu& dlpdu);
+  const fieldbus_dll::FfScheduleItem* next_item() const;
+  bool is_own_item_next() const;
+  Found pass_own_items(const DrivenDlpdu& dlpdu);
+  Found say_own_buffer(const DrivenDlpdu& dt3);
+  Found say_transfer(const DrivenDlpdu& tl);
   Found close_question(kernel::Time now);
   void count_token(const Question& token);
   void remove(std::uint8_t node);
@@ -114,18 +146,26 @@ class FfLasModel {
   std::array<Node, kNodes> nodes_{};
   std::array<std::deque<Octets>, 4> queues_;  // by priority
 
+  bool is_scheduler_ = true;
+  bool is_probed_ = false;
+  std::optional<std::uint8_t> heir_;  // it was ordered to hand the link to it
+  OwnBuffer own_;
+
   kernel::Time silent_since_ = kernel::kStart;
-  kernel::Time free_since_ = kernel::kStart;  // it may have begun what it says now
+  kernel::Time free_since_ = kernel::kStart;   // it may have begun what it says now
+  kernel::Time free_latest_ = kernel::kStart;  // a token is taken back a V(ST) after its end at the latest
   std::optional<Question> question_;
   bool is_asked_for_time_ = false;
   kernel::Time time_told_ = kernel::kStart;
   std::optional<Reported> told_;
   std::size_t items_done_ = 0;
+  kernel::Time link_time_begin_ = kernel::kStart;
 
   std::optional<std::uint8_t> last_token_;         // of this circulation
   std::optional<kernel::Time> circulation_begin_;  // not known behind a circulation without a token
   std::optional<Priority> priority_;
   std::size_t circulations_ = 0;
+  bool is_first_circulation_ = true;
   unsigned probes_ = 0;  // since the last token
   std::optional<std::uint8_t> last_probe_;
 

@@ -12,10 +12,8 @@
 #include "conformance/fieldbus_dll/ff_cases.hpp"
 #include "conformance/fieldbus_dll/ff_expect.hpp"
 #include "conformance/fieldbus_dll/ff_las_model.hpp"
+#include "conformance/fieldbus_dll/ff_las_vocabulary.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
-#include "conformance/sequence_settings.hpp"
-#include "harness/kernel/error.hpp"
-#include "protocols/fieldbus_dll/ff_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -24,130 +22,9 @@ using fieldbus_dll::FfAddress;
 using fieldbus_dll::FfConfiguration;
 using fieldbus_dll::Priority;
 
-constexpr std::array<FfAddress, 3> kItemsOfLas{0x1120, 0x1220, 0xF520};
-// Live from the beginning are the first two; the others are polled.
-constexpr std::array<std::uint8_t, 5> kNodesOfLas{0x11, 0x12, 0x13, 0x14, 0xF5};
-constexpr std::uint32_t kMacrocycleOfLas = 6'400;  // 200 ms
 constexpr FfAddress kUserOfLas = 0x1030;
 // More than it says in two macrocycles.
 constexpr int kMostSaid = 400;
-
-constexpr std::array<std::int64_t, 4> kLasCounts{1, 2, 5, 30};
-constexpr std::array<std::int64_t, 4> kLasNodes{0, 0, 1, 2};
-constexpr std::array<std::int64_t, 4> kLasSizes{0, 1, 8, 64};
-constexpr std::array<std::int64_t, 3> kLasDelays{0, 0, 16};
-
-enum class LasWord : std::uint8_t {
-  obey,
-  silent,
-  join,
-  ignore,
-  refuse,
-  publish,
-  use,
-  spend,
-  ask_time,
-  submit
-};
-
-void network_of_las(FfConfiguration& configuration) {
-  configuration.live = {kNodesOfLas[0], kNodesOfLas[1]};
-  configuration.rules.first_unpolled = 0x15;
-  configuration.rules.unpolled = 0xE0;
-  // More than a circulation takes whose tokens are returned at once, whatever is compelled and told in it;
-  // less than one with a token that is spent.
-  configuration.rules.target_rotation = 330 * kOctetAt31250;
-  configuration.rules.time_distribution_period = 2 * kernel::kSecond;
-  // The third is due while the second is answered.
-  configuration.schedule = {.version = 1,
-                            .macrocycle = kMacrocycleOfLas,
-                            .items = {{330, kItemsOfLas[0], Priority::normal},
-                                      {3'200, kItemsOfLas[1], Priority::urgent},
-                                      {3'300, kItemsOfLas[2], Priority::time_available}}};
-}
-
-SequenceNumber las_item() {
-  return {"item", 0, kItemsOfLas.size() - 1, 0};
-}
-SequenceNumber las_node() {
-  return {"node", 0, kNodesOfLas.size() - 1, 0, kLasNodes};
-}
-SequenceNumber las_delay() {
-  return {"later", 0, 20, 0, kLasDelays};
-}
-
-// The schedule of the tester is for this rate, and has room for so much between two items; nobody waits for
-// what comes once an hour, and what is told oftener than an item takes cannot be told in time.
-constexpr std::array kBoundsOfLas{
-    SettingBound{"bit_rate", {31'250, 31'250}}, SettingBound{"slot_time_octets", {1, 16}},
-    SettingBound{"least_token_octets", {32, 200}}, SettingBound{"scheduling_overhead_octets", {0, 24}},
-    SettingBound{"time_distribution_period", field::between(kernel::kSecond, 3'600 * kernel::kSecond)}};
-
-void expect_judgeable_las(const FfConfiguration& las) {
-  expect_time_for_answers(las.rules.link);
-  const fieldbus_dll::LinkRules& link = las.rules.link;
-  const auto latest = static_cast<unsigned>(kLasDelays.back());
-  const unsigned taken = link.inter_pdu_delay_octets + std::max(latest, las.rules.scheduling_overhead_octets);
-  if (link.response_delay_slots * link.slot_time_octets >= taken + octets_around(link) + 1 &&
-      las.rules.least_token_octets <= las.rules.token_holding_octets)
-    return;
-  throw kernel::Error(
-      kernel::ErrorKind::configuration,
-      fmt::format("within V(MRD) x V(ST) lie V(MID), V(MSO) and the {} octets after which nodes of "
-                  "sequences answer; V(DMDT) is at most V(DTHT)",
-                  latest));
-}
-
-SequenceVocabulary ff_las_vocabulary() {
-  fieldbus_dll::FfConfiguration as_given;
-  network_of_las(as_given);
-  // In the order of LasWord.
-  return {.words = {{.word = "obey",
-                     .meaning = "so many DLPDUs of the scheduler are answered as nodes do",
-                     .numbers = {{"count", 1, 60, 1, kLasCounts}},
-                     .weight = 6},
-                    {.word = "silent",
-                     .meaning = "a node does not answer its next tokens",
-                     .numbers = {las_node(), {"tokens", 1, 2, 1}},
-                     .weight = 8},
-                    {.word = "join",
-                     .meaning = "a node answers its next probe",
-                     .numbers = {las_node()},
-                     .weight = 4},
-                    {.word = "ignore",
-                     .meaning = "the next CD of an item is not answered",
-                     .numbers = {las_item()},
-                     .weight = 3},
-                    {.word = "refuse",
-                     .meaning = "the next CD of an item is answered by SR",
-                     .numbers = {las_item(), las_delay()},
-                     .units = 6,
-                     .weight = 1},
-                    {.word = "publish",
-                     .meaning = "the next CD of an item is answered with so many octets",
-                     .numbers = {las_item(), {"size", 0, 64, 8, kLasSizes}, las_delay()},
-                     .units = 8,
-                     .weight = 2},
-                    {.word = "use",
-                     .meaning = "under the next token one DT1 is sent, which returns it or not",
-                     .numbers = {{"size", 2, 32, 2}, {"final", 0, 1, 1}, las_delay()},
-                     .units = 11,
-                     .weight = 3},
-                    {.word = "spend", .meaning = "the next token is held to its end, with data", .weight = 4},
-                    {.word = "ask_time",
-                     .meaning = "under the next token the time is asked for",
-                     .numbers = {las_delay()},
-                     .units = 6,
-                     .weight = 3},
-                    {.word = "submit",
-                     .meaning = "the user submits data for another node",
-                     .numbers = {{"priority", 1, 3, 3}, {"size", 2, 66, 8, kLasSizes}},
-                     .weight = 4}},
-          .unit = "octet",
-          .levels_per_unit = kFlipsOfAnOctet,
-          .settings = sequence_settings(fieldbus_dll::kFfTable, &as_given, kFixedOfLink, kBoundsOfLas),
-          .objection = objection_of(fieldbus_dll::kFfTable, as_given, expect_judgeable_las)};
-}
 
 class FfLasSequenceRun {
  public:
@@ -199,6 +76,22 @@ class FfLasSequenceRun {
         return with_token([&](const DrivenDlpdu& pt) { ask_time(pt, command); });
       case LasWord::submit:
         return submit(static_cast<Priority>(number(0)), at(1));
+      case LasWord::write:
+        return write(at(0));
+      case LasWord::overstay:
+        return with_token([&](const DrivenDlpdu& pt) { overstay(pt, number(0)); });
+      case LasWord::usurp:
+        return usurp(number(0) != 0, number(1));
+      case LasWord::order:
+        return order(kNodesOfLas.at(at(0)), number(1) != 0);
+      case LasWord::second:
+        return second(command);
+      case LasWord::told:
+        return told(number(0), number(1));
+      case LasWord::noise:
+        return make_noise(number(0), number(1));
+      case LasWord::hand:
+        return hand(command);
     }
   }
 
@@ -206,6 +99,8 @@ class FfLasSequenceRun {
 
   DrivenDlpdu next_said() {
     const auto one = bench_.next(model_.silent_until());
+    if (!one && !model_.is_scheduler())
+      judge_.fail("no_claim", {{"a CL after V(ST) x V(TN) of silence"}, "silence", bench_.now()});
     if (!one)
       judge_.fail("line_left_silent", {{"silence for less than V(ST) x 16"}, "silence", bench_.now()});
     object(model_.say(*one), one->text(), one->begin);
@@ -337,6 +232,187 @@ class FfLasSequenceRun {
     });
   }
 
+  void write(std::size_t size) {
+    const Octets data = bench_.numbered_data(size);
+    const bool is_taken = bench_.write(kOwnBufferOfLas, data);
+    const bool is_right = model_.write(data, bench_.now());
+    judge_.expect(is_taken == is_right, is_right ? "data_refused" : "data_too_long_taken", [&] {
+      return Mismatch{{fmt::format("a buffer of {} octets is {}", size, is_right ? "taken" : "refused")},
+                      is_taken ? "taken" : "refused"};
+    });
+  }
+
+  // ---- what is not theirs ----
+
+  // It is taken back in the silence behind the last DT1, by whatever has time before what is due.
+  void overstay(const DrivenDlpdu& pt, std::int64_t later) {
+    const kernel::Time over = pt.end + bench_.octets(duration_in(pt));
+    const kernel::Time last = over + bench_.slot() + bench_.octets(later);
+    const std::size_t most = bench_.link().most_data.at(0);
+    const Octets none = data_of(pt, {});
+    const kernel::Duration around = bench_.least_gap() + bench_.frame(none.size());
+    if (pt.end + bench_.least_gap() + bench_.slot() >= over) return return_token();
+    bool is_over = false;
+    while (!is_over) {
+      const std::int64_t left = (last - bench_.now() - around) / bench_.octets(1);
+      const auto room = static_cast<std::size_t>(std::max<std::int64_t>(0, left)) + 1;
+      is_over = room <= most;
+      const Octets data = bench_.numbered_data(is_over ? room : std::min(room / 2, most));
+      data_.push_back(data);
+      model_.hear_data(say(data_of(pt, data)));
+    }
+    const kernel::Time free = bench_.now() + bench_.least_gap() + bench_.octets(1);
+    const DrivenDlpdu one = next_said();
+    const bool may_wait =
+        is_cd(bench_, one) || is_of(one, bench_.rules().codes.idle) || is_of(one, bench_.rules().codes.dt3);
+    judge_.expect(may_wait || one.begin <= free, "holder_not_stopped", [&] {
+      return Mismatch{{"the token is taken back as soon as the line is free"}, one.text(), one.begin};
+    });
+    answer(one);
+  }
+
+  Octets data_of(const DrivenDlpdu& pt, const Octets& data) const {
+    return bench_.dt1(Priority::time_available, kUserOfLas, fieldbus_dll::address_of(pt.octet(1), 1), data);
+  }
+
+  void usurp(bool probe, std::int64_t later) {
+    const auto& codes = bench_.rules().codes;
+    const auto asked = next_that([&](const DrivenDlpdu& one) {
+      return probe ? is_of(one, codes.pn) : is_pt(bench_, one) && tokens_missed_[one.octet(1)] == 0;
+    });
+    if (!asked) return;
+    const auto another = static_cast<std::uint8_t>(asked->octet(1) + 1);
+    const Octets said = probe
+                            ? Octets{codes.pr, another}
+                            : bench_.dt1(Priority::urgent, FfBench::kPeersAddress,
+                                         fieldbus_dll::address_of(another, 1), bench_.numbered_data(4), true);
+    model_.hear_noise(say(said, later));
+  }
+
+  // ---- other schedulers ----
+
+  // While it waits for an answer another has the link.
+  void displace(const Octets& octets) {
+    if (!next_that([&](const DrivenDlpdu& one) {
+          return is_pt(bench_, one) || is_of(one, bench_.rules().codes.pn);
+        }))
+      return;
+    bench_.wait(bench_.least_gap());
+    say_as_scheduler(octets);
+  }
+  void displace() {
+    if (model_.is_scheduler()) displace({bench_.rules().codes.cl, kSecondOfLas});
+  }
+  void say_as_scheduler(const Octets& octets) {
+    bench_.send(octets);
+    model_.hear_scheduler(octets, bench_.now());
+    if (!model_.is_probed()) return;
+    if (!bench_.next_begins(bench_.now() + bench_.response_delay() + kLinkRounding))
+      judge_.fail("not_a_device", {{"a PR: it was probed"}, "silence", bench_.now()});
+    const DrivenDlpdu one = *bench_.next();
+    object(model_.say(one), one.text(), one.begin);
+  }
+
+  // In standby, of the silence that claims the link, V(MID) at least.
+  void wait_in_standby(std::int64_t parts) {
+    const kernel::Duration claim = model_.claim_silence() - bench_.octets(bench_.rules().claim_delay_octets);
+    const kernel::Duration wanted =
+        parts == kPartsOfClaim ? claim - bench_.octets(1) : claim * parts / kPartsOfClaim;
+    const kernel::Time until = bench_.now() + std::max(bench_.least_gap(), wanted);
+    if (!bench_.next_begins(until)) return bench_.run_until(until);
+    const DrivenDlpdu one = *bench_.next();
+    object(model_.say(one), one.text(), one.begin);
+    answer(one);
+  }
+
+  void second(const SequenceCommand& command) {
+    const auto kind = static_cast<OtherScheduler>(command.numbers[0]);
+    const bool is_of_scheduler = kind != OtherScheduler::idles && kind != OtherScheduler::tells_time;
+    if (model_.is_scheduler() && is_of_scheduler) return displace(of_scheduler(kind, command.numbers));
+    displace();
+    wait_in_standby(command.numbers[3]);
+    if (!model_.is_scheduler()) say_as_scheduler(of_scheduler(kind, command.numbers));
+  }
+
+  Octets of_scheduler(OtherScheduler kind, const std::vector<std::int64_t>& numbers) const {
+    const auto& codes = bench_.rules().codes;
+    const std::uint8_t node = kNodesOfLas.at(static_cast<std::size_t>(numbers[1]));
+    switch (kind) {
+      case OtherScheduler::claims:
+        return {codes.cl, kSecondOfLas};
+      case OtherScheduler::passes:
+        return {bench_.control(codes.pt, Priority::normal), node, 0, kGrantOfSecond};
+      case OtherScheduler::probes:
+        return {codes.pn, node};
+      case OtherScheduler::probes_this:
+        return {codes.pn, bench_.node()};
+      case OtherScheduler::compels:
+        return bench_.cd(kItemsOfLas[0]);
+      case OtherScheduler::tells_time:
+        return time_of_second(numbers[2]);
+      case OtherScheduler::idles:
+        return {codes.idle};
+    }
+    return {};
+  }
+
+  // What it is when the frame is over, and more.
+  Octets time_of_second(std::int64_t jump) const {
+    constexpr std::size_t kTimeOctets = 6;
+    Octets td{bench_.rules().codes.td};
+    const kernel::Time end = bench_.now() + bench_.frame(1 + kTimeOctets);
+    const std::uint64_t ticks = model_.ticks_at(end) + static_cast<std::uint64_t>(jump);
+    for (std::size_t n = kTimeOctets; n-- > 0;) td.push_back(static_cast<std::uint8_t>(ticks >> (8 * n)));
+    return td;
+  }
+
+  void told(std::int64_t nodes, std::int64_t parts) {
+    displace();
+    wait_in_standby(parts);
+    if (model_.is_scheduler()) return;
+    std::vector<bool> live(fieldbus_dll::kNodeNumbers);
+    for (std::size_t n = 0; n < kNodesOfLas.size(); ++n) live[kNodesOfLas.at(n)] = (nodes >> n & 1) != 0;
+    constexpr std::uint8_t kRevision = 9;
+    say_as_scheduler(bench_.dt1(Priority::normal, fieldbus_dll::kEverybody,
+                                fieldbus_dll::address_of(kSecondOfLas),
+                                fieldbus_dll::live_list_spdu(kRevision, live)));
+  }
+
+  void make_noise(std::int64_t octets, std::int64_t parts) {
+    displace();
+    wait_in_standby(parts);
+    if (model_.is_scheduler()) return;
+    send_noise(bench_, octets);
+    model_.hear_noise(bench_.now());
+  }
+
+  void hand(const SequenceCommand& command) {
+    displace();
+    wait_in_standby(command.numbers[2]);
+    if (model_.is_scheduler()) return;
+    const auto version =
+        static_cast<std::uint16_t>(bench_.configuration().schedule.version + command.numbers[1]);
+    const Octets tl{bench_.rules().codes.tl, command.numbers[0] != 0 ? kSecondOfLas : bench_.node(),
+                    static_cast<std::uint8_t>(version >> 8), static_cast<std::uint8_t>(version)};
+    const bool is_whole = send_link_command(bench_, tl, command);
+    is_whole ? model_.hear_scheduler(tl, bench_.now()) : model_.hear_noise(bench_.now());
+  }
+
+  void order(std::uint8_t heir, bool sends) {
+    if (!model_.is_scheduler()) answer(next_said());
+    judge_.expect(bench_.order_transfer(heir), "order_refused", "a link master takes the order",
+                  "it is refused");
+    model_.order_transfer(heir);
+    const auto tl = next_that([&](const DrivenDlpdu& one) { return is_of(one, bench_.rules().codes.tl); });
+    if (!tl) judge_.fail("not_transferred", {{fmt::format("a TL for {:02X}", heir)}, "none", bench_.now()});
+    if (!sends) return;
+    bench_.wait(bench_.least_gap());
+    say_as_scheduler({bench_.rules().codes.pn, kSecondOfLas});
+  }
+
+  static constexpr std::uint8_t kSecondOfLas = 0x13;
+  static constexpr std::uint8_t kGrantOfSecond = 88;
+
   FfBench& bench_;
   CaseJudge& judge_;
   FfLasModel model_;
@@ -379,7 +455,7 @@ const SequenceRole& ff_las_sequence_role() {
        .expected = "What a model of the rules says.",
        .tags = {},
        .catches = {}},
-      ff_las_vocabulary(),
+      with_beginnings(ff_las_vocabulary(), states_of_a_master()),
       {{DerivedKind::values, {"steps_to_the_extreme", "priority_wrong"}},
        {DerivedKind::faults, {"steers_the_wrong_way", "priority_wrong"}},
        {DerivedKind::words, {"token_over_due", "token_over_due"}},

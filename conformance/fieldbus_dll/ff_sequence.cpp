@@ -23,6 +23,8 @@ using fieldbus_dll::Priority;
 constexpr FfAddress kFfLink = 0x0001'0000;
 constexpr FfAddress kLongPublished = kFfLink | FfBench::kPublished;
 constexpr FfAddress kLongSubscribed = kFfLink | FfBench::kSubscribed;
+constexpr FfAddress kMoreOfDevice = FfBench::kPublished + kFirstOfMore;
+constexpr FfAddress kMoreOfOthers = FfBench::kSubscribed + kFirstOfMore;
 constexpr unsigned kFfLongBit = 0x08;
 
 constexpr std::int64_t kToUser = 0;  // of "to" of data
@@ -67,7 +69,7 @@ class FfWords {
   FfAddress buffer(std::int64_t number) const {
     const auto own = static_cast<FfAddress>(bench_.node()) << 8;
     constexpr FfAddress kTopOfNode = 0x8000;
-    const std::array<FfAddress, 10> all{FfBench::kPublished,
+    const std::array<FfAddress, 13> all{FfBench::kPublished,
                                         FfBench::kPublished + 1,
                                         kLongPublished,
                                         FfBench::kPublished + 2,
@@ -76,7 +78,10 @@ class FfWords {
                                         FfBench::kSubscribed,
                                         FfBench::kPublished ^ kTopOfNode,
                                         kLongPublished + 1,
-                                        FfBench::kPublished};
+                                        FfBench::kPublished,
+                                        kMoreOfDevice,
+                                        kMoreOfDevice + 1,
+                                        kMoreOfDevice + 2};
     return all.at(static_cast<std::size_t>(number));
   }
   FfAddress destination(std::int64_t number) const {
@@ -150,7 +155,9 @@ class FfWords {
     const std::array<FfAddress, 6> all{FfBench::kSubscribed,     kLongSubscribed,
                                        FfBench::kSubscribed + 1, kLongSubscribed + kFfLink,
                                        FfBench::kPublished,      FfBench::kSubscribed};
-    const FfAddress from = all.at(static_cast<std::size_t>(numbers[0]));
+    const auto which = static_cast<std::size_t>(numbers[0]);
+    const FfAddress from =
+        which < all.size() ? all[which] : kMoreOfOthers + static_cast<FfAddress>(which - all.size());
     const bool is_long = fieldbus_dll::is_long(from) || numbers[0] == 5;
     Octets octets{control(codes_.dt3, numbers[1], numbers[2] != 0, is_long)};
     append_address(octets, from, is_long);
@@ -198,6 +205,7 @@ class FfSequenceRun {
 
  private:
   static constexpr std::int64_t kDuration = 100;  // of a token that is asked for
+  static constexpr kernel::Duration kMinute = 60 * kernel::kSecond;
 
   void execute(const SequenceCommand& command) {
     const auto word = static_cast<FfWord>(command.word);
@@ -235,6 +243,13 @@ class FfSequenceRun {
         for (std::int64_t n = 0; n < command.numbers[0]; ++n) send(words_.octets_of(FfWord::probe, {1, 0}));
         send(words_.octets_of(FfWord::probe, {0, 0}));
         return await_response_window();
+      case FfWord::ask:
+        return ask_for_nothing(command.numbers);
+      case FfWord::beside:
+        return submit_beside(command.numbers);
+      case FfWord::idle:
+        await_response_window();
+        return bench_.wait(command.numbers[0] * kMinute);
       default:
         break;
     }
@@ -249,7 +264,8 @@ class FfSequenceRun {
 
   void send_framed_data(const std::vector<std::int64_t>& numbers) {
     const std::vector<Octets> heard =
-        send_framed(bench_, numbers[0], words_.user_data(kToAnother), words_.user_data(kToUser));
+        send_framed(bench_, numbers[0], words_.user_data(numbers[0] == kTwoOfThem ? kToUser : kToAnother),
+                    words_.user_data(kToUser));
     for (const Octets& dlpdu : heard) model_.hear(dlpdu, bench_.now());
     if (heard.empty()) model_.hear_noise(bench_.now());
     settle(numbers.back());
@@ -318,6 +334,33 @@ class FfSequenceRun {
       judge_taken(bench_.submit(request.priority, request.data, request.destination), model_.submit(request),
                   request.data);
     }
+  }
+
+  void ask_for_nothing(const std::vector<std::int64_t>& numbers) {
+    if (!model_.has_supply()) return;
+    Octets request{static_cast<std::uint8_t>(numbers[0])};
+    request.resize(1 + static_cast<std::size_t>(numbers[1]), 0x02);
+    const bool is_order = numbers[0] == kOrderOfAMaster;
+    const bool is_taken = is_order ? bench_.order_transfer(FfBench::kPeer) : bench_.ask_user_request(request);
+    judge_.expect(!is_taken, "unknown_request_taken", "a request that a device does not know is refused",
+                  "it was taken");
+  }
+
+  // What is next was decided before it began to send; what is submitted then comes after it.
+  void submit_beside(const std::vector<std::int64_t>& numbers) {
+    await_response_window();
+    send(asked(0));
+    if (bench_.next_begins(bench_.now() + bench_.observation_timeout()) && model_.has_supply()) {
+      bench_.wait(bench_.octets(2));
+      const fieldbus_dll::FfRequest request{static_cast<Priority>(numbers[0]), words_.destination(0),
+                                            bench_.numbered_data(static_cast<std::size_t>(numbers[1]))};
+      const bool is_taken = bench_.submit(request.priority, request.data, request.destination);
+      judge_one(*bench_.next());
+      judge_taken(is_taken, model_.submit(request), request.data);
+    }
+    await_response_window();
+    send(asked(0));
+    await_response_window();
   }
 
   void write(const std::vector<std::int64_t>& numbers) {
@@ -419,6 +462,11 @@ FfNeeds ff_device_sequence_needs() {
   return {.change = [](fieldbus_dll::FfConfiguration& device) {
     device.published.push_back(kLongPublished);
     device.subscribed.push_back(kLongSubscribed);
+    for (FfAddress n = 0; n < kMorePublished; ++n) device.published.push_back(kMoreOfDevice + n);
+    for (FfAddress n = 0; n < kMoreSubscribed; ++n) device.subscribed.push_back(kMoreOfOthers + n);
+    // Longer than a buffer of most links.
+    constexpr std::size_t kUrgentData = 100;
+    device.rules.link.most_data[2] = kUrgentData;
   }};
 }
 

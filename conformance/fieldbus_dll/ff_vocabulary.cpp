@@ -13,15 +13,17 @@ namespace {
 
 constexpr std::array<std::int64_t, 16> kFfNodes{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4};
 constexpr std::array<std::int64_t, 10> kFfProbedNodes{0, 0, 0, 0, 2, 2, 2, 1, 3, 4};
-constexpr std::array<std::int64_t, 24> kFfBuffers{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1,
-                                                  1, 1, 2, 2, 2, 3, 4, 5, 6, 7, 8, 9};
-constexpr std::array<std::int64_t, 11> kFfWritten{0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 3};
-constexpr std::array<std::int64_t, 10> kFfWriteSizes{0, 1, 2, 8, 9, 63, 64, 65, 127, 128};
+constexpr std::array<std::int64_t, 28> kFfBuffers{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1,  1,  1,
+                                                  1, 2, 2, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+constexpr std::array<std::int64_t, 14> kFfWritten{0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 3, 10, 11, 12};
+constexpr std::array<std::int64_t, 20> kFfPublishers{0, 0, 0, 0, 1, 1, 1,  2,  3,  4,
+                                                     5, 2, 6, 7, 8, 9, 10, 11, 12, 13};
+constexpr std::array<std::int64_t, 12> kFfWriteSizes{0, 1, 2, 8, 9, 64, 65, 99, 100, 101, 127, 128};
 constexpr std::array<std::int64_t, 16> kFfPriorities{1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3, 0};
-constexpr std::array<std::int64_t, 5> kFfRequestPriorities{1, 2, 3, 2, 3};
+constexpr std::array<std::int64_t, 12> kFfRequestPriorities{1, 2, 3, 1, 2, 3, 2, 3, 2, 3, 0, 4};
 constexpr std::array<std::int64_t, 20> kFfDurations{
     1, 12, 13, 14, 15, 20, 28, 29, 30, 31, 60, 61, 127, 200, 256, 1'000, 4'096, 32'768, 33'000, 65'535};
-constexpr std::array<std::int64_t, 12> kFfSizes{0, 1, 2, 8, 9, 10, 63, 64, 65, 128, 129, 256};
+constexpr std::array<std::int64_t, 12> kFfSizes{0, 1, 2, 8, 9, 10, 65, 100, 101, 128, 129, 256};
 constexpr std::array<std::int64_t, 8> kFfTimes{1, 1, 1, 1, 1, 1, 40, 150};
 constexpr std::array<std::int64_t, 8> kFfWrites{1, 1, 1, 1, 2, 2, 128, 255};
 constexpr std::array<std::int64_t, 8> kFfControls{0x38, 0x39, 0x3A, 0x3B, 0x3D, 0x30, 0x35, 0xB1};
@@ -29,6 +31,8 @@ constexpr std::array<std::int64_t, 4> kFfAsked{0, 0, 1, 2};
 constexpr std::array<std::int64_t, 8> kFfEnding{0, 0, 0, 1, 2, 3, 8, 9};
 constexpr std::array<std::int64_t, 8> kFfBeside{-2, -1, -1, 1, 1, 2, -32, 32};
 constexpr std::array<std::int64_t, 4> kFfMany{1, 2, 40, 260};
+constexpr std::array<std::int64_t, 4> kFfRequests{kOrderOfAMaster, 4, 7, 255};
+constexpr std::array<std::int64_t, 2> kFfMinutes{1, 72};
 // Each of them so that there is time left for the others as they are.
 constexpr std::array kBoundsOfFfDevice{SettingBound{"inter_pdu_delay_octets", {1, 24}}};
 SequenceNumber ff_priority(std::string_view name = "priority") {
@@ -60,7 +64,7 @@ std::vector<SequenceWord> ff_device_words() {
        .weight = 20},
       {.word = "compel",
        .meaning = "a CD for a buffer of the device, or for other addresses",
-       .numbers = {{"buffer", 0, 9, 0, kFfBuffers, true},
+       .numbers = {{"buffer", 0, 12, 0, kFfBuffers, true},
                    ff_priority(),
                    ff_truth("final"),
                    link_length(),
@@ -90,7 +94,7 @@ std::vector<SequenceWord> ff_device_words() {
        .weight = 9},
       {.word = "published",
        .meaning = "a DT3 to which the device has subscribed, or another",
-       .numbers = {{"from", 0, 5, 0},
+       .numbers = {{"from", 0, 13, 0, kFfPublishers, true},
                    ff_priority(),
                    ff_truth("final"),
                    {"number", 0, 255, 1},
@@ -106,14 +110,14 @@ std::vector<SequenceWord> ff_device_words() {
       link_noise(),
       {.word = "submit",
        .meaning = "the user submits data for another node, so many times",
-       .numbers = {{"priority", 1, 3, 2, kFfRequestPriorities},
+       .numbers = {{"priority", 0, 4, 2, kFfRequestPriorities},
                    {"to", 0, 4, 0},
                    {"size", 0, 260, 8, kFfSizes},
                    {"times", 1, 300, 1, kFfTimes, true}},
        .weight = 20},
       {.word = "write",
        .meaning = "the user writes a buffer, so many times",
-       .numbers = {{"buffer", 0, 3, 0, kFfWritten, true},
+       .numbers = {{"buffer", 0, 12, 0, kFfWritten, true},
                    {"size", 0, 257, 8, kFfWriteSizes},
                    {"times", 1, 300, 1, kFfWrites},
                    ff_truth("same")},
@@ -121,7 +125,7 @@ std::vector<SequenceWord> ff_device_words() {
       link_supply(),
       link_one(),
       link_wait(),
-      link_framed(),
+      link_framed(kFinely),
       link_checked(),
       {.word = "control",
        .meaning = "this first octet, with what makes a PT for the device after it",
@@ -145,12 +149,24 @@ std::vector<SequenceWord> ff_device_words() {
       {.word = "many",
        .meaning = "a PN for another, so many times, and one for the device",
        .numbers = {{"times", 1, 300, 1, kFfMany, true}},
-       .weight = 2}};
+       .weight = 2},
+      {.word = "ask",
+       .meaning = "the user asks for what there is not, 3: for what a link master does, and more octets",
+       .numbers = {{"request", kOrderOfAMaster, 255, 7, kFfRequests}, {"more", 0, 6, 1}},
+       .weight = 2},
+      {.word = "beside",
+       .meaning = "a PT for the device; beside what it sends first the user submits data; then another PT",
+       .numbers = {{"priority", 1, 3, 2}, {"size", 0, 64, 8, kFfSizes}},
+       .weight = 4},
+      {.word = "idle",
+       .meaning = "so many minutes of silence",
+       .numbers = {{"minutes", 1, 80, 72, kFfMinutes}},
+       .weight = 1}};
 }
 
-// First octets that no DLPDU has, for some of them.
+// First octets that no DLPDU has, for some of them; and nodes of which no other here is one.
 std::vector<OtherCodes> ff_other_codes() {
-  return {{"code_cd", {0xC0}}, {"code_pt", {0x40}}, {"code_td", {0x19}}};
+  return {{"code_cd", {0xC0}}, {"code_pt", {0x40}}, {"code_td", {0x19}}, {"node", {0x7F, 0x80, 0xF7}}};
 }
 
 }  // namespace
@@ -163,6 +179,7 @@ std::vector<std::vector<NamedCommand>> states_of_a_device() {
   const NamedCommand written{"write"};
   const NamedCommand token_held{"token", {{"silence", 4}}};
   const NamedCommand answer_due{"compel", {{"silence", 4}}};
+  const NamedCommand probed{"probe", {{"silence", 4}}};
   const NamedCommand lost{"supply"};
   return {{large, usual, small},  // data of each priority
           {written,
@@ -170,6 +187,7 @@ std::vector<std::vector<NamedCommand>> states_of_a_device() {
            {"write", {{"buffer", 2}}}},  // what it publishes
           {written, answer_due},
           {usual, token_held},
+          {probed},
           {large, usual, written, token_held, lost},
           {large, usual, written, answer_due, lost, {"activation"}},
           {lost, {"activation", {{"priority", 3}, {"long", 1}, {"more", 2}}}},

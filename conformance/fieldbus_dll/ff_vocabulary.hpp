@@ -29,11 +29,21 @@ enum class FfWord : std::uint8_t {
   ended,
   busy,
   room,
-  many
+  many,
+  ask,
+  beside,
+  idle
 };
 
 // Of "first" of data: those of the DT1 before.
 inline constexpr std::int64_t kSameAgain = 4;
+// Of "ask": the request for which there is a call; what is greater there is not.
+inline constexpr std::int64_t kOrderOfAMaster = 3;
+
+// What a device publishes and has subscribed to besides two buffers each.
+inline constexpr unsigned kMorePublished = 3;
+inline constexpr unsigned kMoreSubscribed = 8;
+inline constexpr unsigned kFirstOfMore = 8;  // behind the first selector
 
 SequenceVocabulary ff_device_vocabulary();
 std::vector<std::vector<NamedCommand>> states_of_a_device();

@@ -18,12 +18,27 @@ constexpr std::array<std::int64_t, 25> kLinkLengths{0, 0, 0, 0, 0, 0, 0, 0,  0, 
 constexpr std::array<std::int64_t, 6> kLinkWaits{1, 40, 260, 4'000, 8'200, 40'000};
 constexpr int kMostBitsFlipped = 2;
 
+constexpr std::string_view kFramings =
+    "data of 8 octets for its user, with 1 to 7 bits more in front of the end delimiter, 8: after a start "
+    "delimiter and two octets, 9: after a frame for another in the same transmission";
+constexpr std::string_view kAllFramings =
+    "data of 8 octets for its user, with 1 to 7 bits more in front of the end delimiter, 8: after a start "
+    "delimiter and two octets, 9: after a frame for another in the same transmission, 10: after a start "
+    "delimiter, two octets and three bits, 11: after other data for its user, 12: in finer levels";
+
 void flip(line::Levels& half_bits, std::size_t first, std::uint32_t what, int& bits_left) {
   if (what < kHalfBitsOfAnOctet) return half_bits.flip(first + what);
   if (what >= kFlipsOfAnOctet || bits_left-- <= 0) return;
   const std::size_t bit = first + 2 * std::size_t{what - kHalfBitsOfAnOctet};
   half_bits.flip(bit);
   half_bits.flip(bit + 1);
+}
+
+void send_finely(LinkBench& bench, const line::Levels& half_bits) {
+  constexpr unsigned kFineness = 8;
+  line::Waveform wave{bench.now(), 2 * bench.link().bit_rate * kFineness, {}};
+  for (std::size_t n = 0; n < half_bits.size(); ++n) wave.levels.append_fill(half_bits[n], kFineness);
+  bench.send_wave(std::move(wave));
 }
 
 }  // namespace
@@ -99,29 +114,33 @@ void send_noise(LinkBench& bench, std::int64_t octets) {
   bench.send_half_bits(std::move(half_bits));
 }
 
-SequenceWord link_framed() {
+SequenceWord link_framed(std::int64_t most) {
   return {.word = "framed",
-          .meaning =
-              "data of 8 octets for its user, with 1 to 7 bits more in front of the end delimiter, 8: after "
-              "a start delimiter and two octets, 9: after a frame for another in the same transmission",
-          .numbers = {{"how", 1, kAfterAnother, kAfterAnother}, link_silence()},
-          .weight = 2,
+          .meaning = most > kAfterAnother ? kAllFramings : kFramings,
+          .numbers = {{"how", 1, most, kAfterAnother}, link_silence()},
+          .weight = most > kAfterAnother ? 4U : 2U,
           .is_no_frame = true};
 }
 
-std::vector<Octets> send_framed(LinkBench& bench, std::int64_t framing, const Octets& for_another,
+std::vector<Octets> send_framed(LinkBench& bench, std::int64_t framing, const Octets& other,
                                 const Octets& octets) {
   constexpr std::size_t kBegun = 2 * kHalfBitsOfAnOctet;  // preamble and start delimiter
+  constexpr std::size_t kCut = 6;                         // of the third octet, half bits
   constexpr unsigned kHalfBitsOfABit = 2;
   constexpr std::uint64_t kOneBit = 0b01;
   const line::Levels frame = half_bits_of_frame(with_frame_check(octets));
+  if (framing == kFinely) {
+    send_finely(bench, frame);
+    return {octets};
+  }
   line::Levels half_bits;
   std::vector<Octets> heard{octets};
-  if (framing == kAfterAnother) {
-    half_bits = half_bits_of_frame(with_frame_check(for_another));
-    heard.insert(heard.begin(), for_another);
-  } else if (framing == kAfterAStart) {
-    half_bits.append(half_bits_of_frame(octets), 0, kBegun + 2 * kHalfBitsOfAnOctet);
+  if (framing == kAfterAnother || framing == kTwoOfThem) {
+    half_bits = half_bits_of_frame(with_frame_check(other));
+    heard.insert(heard.begin(), other);
+  } else if (framing >= kAfterAStart) {
+    const std::size_t more = framing == kWithinAnOctet ? kCut : 0;
+    half_bits.append(half_bits_of_frame(octets), 0, kBegun + 2 * kHalfBitsOfAnOctet + more);
   }
   if (framing >= kAfterAStart) {
     half_bits.append(frame, kHalfBitsOfAnOctet, frame.size() - kHalfBitsOfAnOctet);

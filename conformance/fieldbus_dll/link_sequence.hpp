@@ -95,9 +95,14 @@ bool send_link_command(LinkBench& bench, const Octets& octets, const SequenceCom
 // not end, and after a whole frame for another.
 inline constexpr std::int64_t kAfterAStart = 8;
 inline constexpr std::int64_t kAfterAnother = 9;
-SequenceWord link_framed();
-// Sends `octets` so; gives the DLPDUs that every receiver has to take.
-std::vector<Octets> send_framed(LinkBench& bench, std::int64_t framing, const Octets& for_another,
+// A start delimiter within an octet of another frame; behind another frame for the station; in levels of an
+// eighth of a half bit.
+inline constexpr std::int64_t kWithinAnOctet = 10;
+inline constexpr std::int64_t kTwoOfThem = 11;
+inline constexpr std::int64_t kFinely = 12;
+SequenceWord link_framed(std::int64_t most = kAfterAnother);
+// Sends `octets` so, `other` before it where two are sent; gives the DLPDUs that every receiver has to take.
+std::vector<Octets> send_framed(LinkBench& bench, std::int64_t framing, const Octets& other,
                                 const Octets& octets);
 
 }  // namespace fieldproof::conformance

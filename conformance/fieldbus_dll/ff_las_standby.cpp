@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "conformance/fieldbus_dll/ff_las_model.hpp"
+#include "conformance/fieldbus_dll/link_bench.hpp"
+
+// Of the model of a scheduler: who has the link, what it learns while another has it, and what its own user
+// wants of it.
+namespace fieldproof::conformance {
+namespace {
+
+using fieldbus_dll::FfDlpdu;
+using fieldbus_dll::FfType;
+using kernel::Time;
+
+constexpr std::size_t kLiveListOctets = 34;
+
+}  // namespace
+
+kernel::Duration FfLasModel::claim_silence() const {
+  return times(std::int64_t{configuration_.node} * rules().link.slot_time_octets +
+               rules().claim_delay_octets);
+}
+
+std::uint64_t FfLasModel::ticks_at(Time now) const {
+  return static_cast<std::uint64_t>((now - link_time_begin_) / fieldbus_dll::kTick);
+}
+
+// ---- who has the link ----
+
+void FfLasModel::leave() {
+  is_scheduler_ = false;
+  is_asked_for_time_ = false;
+  question_.reset();
+  heir_.reset();
+  to_activate_.clear();
+  list_changed_.reset();
+  for (unsigned n = 0; n < kNodes; ++n) {
+    const auto node = static_cast<std::uint8_t>(n);
+    if (is_open(node)) nodes_.at(node).was_left_open = true;
+  }
+}
+
+// Link time goes on; it begins a circulation, and with it what it counts.
+void FfLasModel::take(Time now) {
+  is_scheduler_ = true;
+  is_probed_ = false;
+  question_.reset();
+  time_told_ = now;
+  for (unsigned n = 0; n < kNodes; ++n) {
+    const auto node = static_cast<std::uint8_t>(n);
+    nodes_.at(node).fewest_misses = 0;
+    if (!is_open(node)) nodes_.at(node).most_misses = 0;
+  }
+  last_token_.reset();
+  circulation_begin_.reset();
+  priority_.reset();
+  probes_ = 0;
+  is_first_circulation_ = true;
+  const auto& schedule = configuration_.schedule;
+  items_done_ = ticks_at(now) / schedule.macrocycle * schedule.items.size();
+  while (due() < now) ++items_done_;
+}
+
+void FfLasModel::hear_scheduler(const Octets& octets, Time end) {
+  silent_since_ = end;
+  is_probed_ = false;
+  const auto dlpdu = ff_dlpdu_of(octets, rules());
+  if (!dlpdu) return;
+  if (dlpdu->type == FfType::tl && dlpdu->node == configuration_.node) {
+    if (dlpdu->schedule_version == configuration_.schedule.version) take(end);
+    return;
+  }
+  if (is_scheduler_) leave();
+  learn(*dlpdu, end);
+}
+
+void FfLasModel::learn(const FfDlpdu& dlpdu, Time end) {
+  if (dlpdu.type == FfType::pt) nodes_.at(dlpdu.node) = {.is_live = true};
+  if (dlpdu.type == FfType::pn) is_probed_ = dlpdu.node == configuration_.node;
+  if (dlpdu.type == FfType::td) {
+    told_ = Reported{dlpdu.link_time, end};
+    link_time_begin_ = end - static_cast<std::int64_t>(dlpdu.link_time) * fieldbus_dll::kTick;
+  }
+  const bool is_list = dlpdu.type == FfType::dt1 && dlpdu.destination == fieldbus_dll::kEverybody &&
+                       dlpdu.data.size() == kLiveListOctets;
+  for (unsigned n = 0; is_list && n < kNodes; ++n)
+    nodes_.at(n) = {.is_live = (dlpdu.data[2U + n / 8U] >> (7 - n % 8) & 1) != 0};
+}
+
+FfLasModel::Found FfLasModel::say_in_standby(const DrivenDlpdu& dlpdu) {
+  const auto& codes = rules().codes;
+  if (std::exchange(is_probed_, false)) {
+    if (dlpdu.begin + kLinkRounding < silent_since_ + times(rules().link.inter_pdu_delay_octets))
+      return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
+    if (dlpdu.octets == Octets{codes.pr, configuration_.node}) return std::nullopt;
+    return LinkObjection{"not_a_device", "a PR: it was probed by the scheduler"};
+  }
+  if (dlpdu.octets != Octets{codes.cl, configuration_.node})
+    return LinkObjection{"two_schedulers", "silence, and then a CL: another is the scheduler"};
+  const Time earliest = silent_since_ + claim_silence() - times(rules().claim_delay_octets);
+  const Time latest = silent_since_ + claim_silence() + times(1);
+  if (dlpdu.begin + kLinkRounding < earliest)
+    return LinkObjection{"claim_early", "silence for V(ST) x V(TN) before a claim"};
+  if (dlpdu.begin > latest + kLinkRounding)
+    return LinkObjection{"claim_late", "a claim within V(MICD) after V(ST) x V(TN)"};
+  take(dlpdu.begin);
+  return std::nullopt;
+}
+
+FfLasModel::Found FfLasModel::say_transfer(const DrivenDlpdu& tl) {
+  if (!heir_) return LinkObjection{"unexpected_dlpdu", "no TL: its user has not ordered one"};
+  const std::uint8_t heir = *std::exchange(heir_, std::nullopt);
+  const auto version = configuration_.schedule.version;
+  const Octets right{rules().codes.tl, heir, static_cast<std::uint8_t>(version >> 8),
+                     static_cast<std::uint8_t>(version)};
+  if (tl.octets != right) return LinkObjection{"not_transferred", fmt::format("a TL for {:02X}", heir)};
+  question_ = Question{.node = heir};
+  return std::nullopt;
+}
+
+// ---- its own buffer ----
+
+bool FfLasModel::write(const Octets& data, Time now) {
+  constexpr std::size_t kUrgentMost = 2;
+  if (data.size() > rules().link.most_data.at(kUrgentMost)) return false;
+  own_ = {data, own_.writes + 1, std::min(own_.since, now)};
+  return true;
+}
+
+const fieldbus_dll::FfScheduleItem* FfLasModel::next_item() const {
+  const auto& items = configuration_.schedule.items;
+  return items.empty() ? nullptr : &items[items_done_ % items.size()];
+}
+
+bool FfLasModel::is_own_item_next() const {
+  const fieldbus_dll::FfScheduleItem* const item = next_item();
+  return item != nullptr && fieldbus_dll::node_of(item->address) == configuration_.node;
+}
+
+// What was not written when it was due is not published.
+FfLasModel::Found FfLasModel::pass_own_items(const DrivenDlpdu& dlpdu) {
+  while (is_own_item_next() && due() <= dlpdu.begin) {
+    if (own_.since <= due()) return LinkObjection{"own_buffer_not_published", "a DT3 of its own buffer"};
+    ++items_done_;
+  }
+  return std::nullopt;
+}
+
+FfLasModel::Found FfLasModel::say_own_buffer(const DrivenDlpdu& dt3) {
+  if (!is_own_item_next() || own_.since == kernel::kNever)
+    return LinkObjection{"unexpected_dlpdu", "no DT3: none of its own buffers is due"};
+  const fieldbus_dll::FfScheduleItem& item = *next_item();
+  const FfDlpdu right{.type = FfType::dt3,
+                      .priority = item.priority,
+                      .has_long_addresses = fieldbus_dll::is_long(item.address),
+                      .source = item.address,
+                      .writes = static_cast<std::uint8_t>(own_.writes),
+                      .data = own_.data};
+  const Time latest = std::max(due(), free_latest_) + times(rules().scheduling_overhead_octets);
+  if (dt3.begin + kLinkRounding < due())
+    return LinkObjection{"compelled_early", fmt::format("not before {}", kernel::describe(due()))};
+  if (dt3.begin > latest + kLinkRounding)
+    return LinkObjection{"compelled_late", fmt::format("until {}", kernel::describe(latest))};
+  ++items_done_;
+  if (dt3.octets == octets_of(right, rules())) return std::nullopt;
+  return LinkObjection{"own_buffer_wrong", words_of(octets_of(right, rules()), rules())};
+}
+
+}  // namespace fieldproof::conformance
