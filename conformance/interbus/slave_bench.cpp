@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "conformance/interbus/slave_codings.hpp"
 #include "harness/field/pics.hpp"
 #include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/check.hpp"
@@ -51,7 +52,7 @@ interbus::NetworkDescription slave_network(const SlaveNeeds& needs, const SlaveS
   if (needs.change_rules != nullptr) needs.change_rules(network.rules);
   interbus::SlaveConfiguration iut;
   iut.rules = network.rules;
-  field::take_settings(interbus::kSlaveTable, setting.settings, iut);
+  field::take_settings(interbus::kSlaveTable, with_changed_places(setting.settings, iut), iut);
   network.rules = iut.rules;
   const int stations = std::max(setting.stations, setting.position);
   for (int position = 1; position <= stations; ++position) {

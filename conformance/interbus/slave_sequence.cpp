@@ -1,10 +1,13 @@
 #include "conformance/interbus/slave_sequence.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
 #include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_codings.hpp"
 #include "conformance/interbus/slave_words.hpp"
 #include "conformance/sequence_settings.hpp"
 #include "harness/field/walk.hpp"
@@ -15,7 +18,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-// The bits of a word each have a place of their own.
+// Drawn as codings, some values of each.
 constexpr std::array<std::string_view, 3> kFixedOfSlave{"status_*", "control_*", "message_*"};
 
 // A network within its limits, on which no tester is silent for too long.
@@ -26,6 +29,15 @@ void expect_judgeable_slave(const field::Settings& settings) {
   if (const auto violation = interbus::check(network))
     throw kernel::Error(kernel::ErrorKind::configuration, violation->sentence);
   expect_time_for_silences(network.rules);
+  const interbus::SlaveConfiguration usual;
+  const field::Settings changed = with_changed_places(settings, usual);
+  for (const auto& [name, value] : settings) {
+    const auto found = std::ranges::find(changed, name, &field::Settings::value_type::first);
+    if (found == changed.end() || found->second != value)
+      throw kernel::Error(
+          kernel::ErrorKind::configuration,
+          fmt::format("\"{}\" has the place of another one; give each a place of its own", name));
+  }
 }
 
 // Slower, a transmission of a sequence lasts longer than a bench waits for one; and who receives telegrams
@@ -50,10 +62,12 @@ std::vector<std::vector<NamedCommand>> states_of_a_slave() {
           {identified, {"inputs"}, {"good"}},
           {plugged, {"id", {{"orders", 0}, {"reserved", 0x0100}}}, {"good"}},
           {plugged, on, {"good"}, {"id", {{"orders", 4}}}, {"good"}},
-          {plugged, on, {"good"}, {"silence", {{"how_long", 0}}}, {"returns"}, {"silence"}}};
+          {plugged, on, {"good"}, {"silence", {{"how_long", 0}}}, {"returns"}, {"silence"}},
+          // Silence that resets the slave while it keeps the outgoing bus in reset.
+          {plugged, {"right_id", {{"orders", 4}}}, {"silence", {{"how_long", 5}}}, {"right_id"}}};
 }
 
-// Lengths between the ends, too.
+// Lengths between the ends, and each coding, too.
 std::vector<SequenceSetting> settings_of_a_slave(const interbus::SlaveConfiguration& as_made) {
   std::vector<SequenceSetting> all =
       sequence_settings(interbus::kSlaveTable, &as_made, kFixedOfSlave, kBoundsOfSlave);
@@ -71,6 +85,8 @@ std::vector<SequenceSetting> settings_of_a_slave(const interbus::SlaveConfigurat
                    .likely = {0xFFFF},
                    .is_likely_only = true});
   });
+  const std::vector<SequenceSetting> codings = settings_of_codings(as_made);
+  all.insert(all.end(), codings.begin(), codings.end());
   return all;
 }
 

@@ -31,6 +31,23 @@ TEST(SlaveSequence, FindsSlavesThatARejectedCycleChanges) {
   }
 }
 
+// Each of another coding than usual, of inputs that move, of a bridge, and of a situation.
+TEST(SlaveSequence, FindsWhatOnlyASettingASignalOrASituationShows) {
+  for (const char* name : {"select_level_hard_coded", "header_places_hard_coded", "status_clean_hard_coded",
+                           "control_reset_hard_coded", "message_check_error_hard_coded", "tears_inputs",
+                           "tears_between_input_words", "ignores_the_bridge", "reset_ends_outgoing_reset"}) {
+    EXPECT_TRUE(check_slave(std::string("mutant:") + name, 1'000).found) << name;
+  }
+}
+
+TEST(SlaveSequence, TwoCodingsThatNeedOnePlaceAreObjectedTo) {
+  const SequenceVocabulary& slave = slave_sequence_role().vocabulary;
+  EXPECT_FALSE(slave.objection_to({{"select_place", 1}}));
+  EXPECT_FALSE(slave.objection_to({{"select_place", 1}, {"control_place", 2}}));
+  EXPECT_TRUE(slave.objection_to({{"select_place", 1}, {"control_place", 1}}));
+  EXPECT_TRUE(slave.objection_to({{"control_remote_off", 0x8000}, {"control_reset", 0x8000}}));
+}
+
 TEST(SlaveSequence, FindsASlaveThatLatchesABrokenCycle) {
   const SequenceSearchResult result = check_slave("mutant:latches_in_spite_of_own_error", 1'000);
   ASSERT_TRUE(result.found);

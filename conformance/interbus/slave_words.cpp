@@ -1,9 +1,11 @@
 #include "conformance/interbus/slave_words.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "conformance/interbus/moved_edges.hpp"
@@ -156,6 +158,12 @@ void append_id(SlaveBench& bench, const SequenceCommand& command) {
                  numbers.subspan(2));
 }
 
+void append_right_id(SlaveBench& bench, const SequenceCommand& command) {
+  const std::array<std::uint16_t, 2> behind{bench.interfaces_off(), bench.interfaces_off()};
+  const std::uint16_t control = control_word(bench, command.numbers[0], command.numbers[1]);
+  append_cycle(bench, true, bench.id_octets(control, behind), kNothingWrong);
+}
+
 // The numbers of telegrams; without a stop level the level is 0 up to the next one.
 void append_alike(SlaveBench& bench, Numbers numbers) {
   const std::uint8_t header = header_of(numbers);
@@ -186,6 +194,35 @@ void disturb(SlaveBench& bench, const SequenceCommand& command) {
       channel.drop_telegram(fault.unit);
     }
   }
+}
+
+// ---- inputs that move ----
+
+// Microseconds, the same in both octets: an octet tells when it was looked at.
+std::uint16_t clock_of_octets(kernel::Time when) {
+  return static_cast<std::uint16_t>((when.time_since_epoch() / kernel::kMicrosecond & 0xFF) * 0x0101);
+}
+
+// The words that came back in each cycle but the first, which ends what was sent before it.
+std::vector<std::vector<std::uint16_t>> samples_of(SlaveBench& bench) {
+  std::vector<std::vector<std::uint16_t>> all;
+  for (std::size_t n = 1; n < bench.train().cycles().size(); ++n) {
+    const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), n);
+    if (!out) return {};
+    all.emplace_back();
+    for (unsigned word = 0; word < bench.words(); ++word) all.back().push_back(out->word(2 * word));
+  }
+  return all;
+}
+
+// Of one instant, but for a tick between two words; empty: they are.
+std::string_view wrong_sample(std::span<const std::uint16_t> words) {
+  for (const std::uint16_t word : words) {
+    if (word >> 8 != (word & 0xFF)) return "input_word_torn";
+    const auto ticks = static_cast<std::int8_t>(static_cast<std::uint8_t>(word - words.front()));
+    if (ticks < -1 || ticks > 1) return "input_words_not_of_one_instant";
+  }
+  return {};
 }
 
 // ---- what happens besides ----
@@ -278,7 +315,12 @@ std::vector<SequenceWord> slave_words() {
                    {"level", 1, 12, 6, kCuts},
                    slave_word("word", 0x1234),
                    {"gap", 0, 100, 2, kGaps}},
-       .weight = 2}};
+       .weight = 2},
+      {.word = "right_id",
+       .meaning = "a right ID cycle; orders: 1 OUT1 off, 2 OUT2 off, 4 reset, 8 acknowledge",
+       .numbers = {{"orders", 0, 15, 0}, {"reserved", 0, 0xFFFF, 0, kErrors}},
+       .weight = 4},
+      {.word = "clock", .meaning = "right data cycles while a clock ticks at all inputs", .numbers = {}}};
 }
 
 void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
@@ -323,6 +365,10 @@ void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
       return drive_pulses(command, judge);
     case SlaveWord::parts:
       return drive_parts(command);
+    case SlaveWord::right_id:
+      return send(command, append_right_id);
+    case SlaveWord::clock:
+      return show_clock(judge);
   }
 }
 
@@ -348,6 +394,37 @@ void SlaveActs::drive_at_rate(const SequenceCommand& command, CaseJudge& judge) 
                "a cycle at 6 % beside the bit rate is rejected", "one left with a clean status word");
   twins_.each([](SlaveBench& one) { one.clear_views(); });
   lose_supply(kernel::kMillisecond);
+}
+
+// When a slave looks at its inputs is its own affair, so nothing is compared but that it does so once in a
+// cycle, where both references do.
+void SlaveActs::show_clock(CaseJudge& judge) {
+  constexpr unsigned kCycles = 4;
+  constexpr std::array<std::int64_t, 2> kWordsOfClock{0x1234, 0xFEDC};
+  bool is_certain = twins_.bench().pics().supports("inputs");
+  twins_.each([&](SlaveBench& one) {
+    for (unsigned word = 0; word < one.words(); ++word) one.terminals().set_signal(word, clock_of_octets);
+    one.channel().on_next();
+    one.begin();
+    for (unsigned n = 0; n < kCycles; ++n)
+      append_cycle(one, false, one.data_octets(words_of(one, kWordsOfClock[0], kWordsOfClock[1]), kBehind),
+                   kNothingWrong);
+    one.send();
+    const auto samples = samples_of(one);
+    if (&one != &twins_.bench())
+      is_certain &=
+          std::ranges::all_of(samples, [](const auto& words) { return wrong_sample(words).empty(); });
+  });
+  note_what_came(false);
+  for (const auto& words : samples_of(twins_.bench())) {
+    const std::string_view reason = is_certain ? wrong_sample(words) : std::string_view{};
+    judge.expect(reason.empty(), reason, "words of one instant of the clock at the inputs",
+                 fmt::format("{:04X}", fmt::join(words, " ")));
+  }
+  twins_.each([](SlaveBench& one) {
+    for (unsigned word = 0; word < one.words(); ++word) one.terminals().set_signal(word, {});
+    one.clear_views();
+  });
 }
 
 void SlaveActs::drive_parts(const SequenceCommand& command) {
@@ -389,7 +466,8 @@ void SlaveActs::send(const SequenceCommand& command, void (*append)(SlaveBench&,
     disturb(one, command);
     one.send();
   });
-  note_what_came(static_cast<SlaveWord>(command.word) == SlaveWord::id);
+  const auto word = static_cast<SlaveWord>(command.word);
+  note_what_came(word == SlaveWord::id || word == SlaveWord::right_id);
 }
 
 void SlaveActs::note_what_came(bool is_id_cycle) {

@@ -28,6 +28,8 @@ enum class SlaveWord : std::uint8_t {
   rate,
   pulses,
   parts,
+  right_id,
+  clock,
 };
 
 std::vector<SequenceWord> slave_words();
@@ -45,6 +47,7 @@ class SlaveActs {
   void drive_at_rate(const SequenceCommand& command, CaseJudge& judge);
   void drive_parts(const SequenceCommand& command);
   void drive_pulses(const SequenceCommand& command, CaseJudge& judge);
+  void show_clock(CaseJudge& judge);
   void lose_supply(kernel::Duration duration);
   void periphery(const SequenceCommand& command);
   void be_silent(std::int64_t how_long);

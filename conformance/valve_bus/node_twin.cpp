@@ -33,11 +33,10 @@ Observations NodeTwin::take_answers() {
 }
 
 std::vector<valve_bus::NodeConfiguration> node_extremes(const valve_bus::NodeConfiguration& configuration) {
-  constexpr kernel::Duration kLossSpan = 50 * kernel::kMillisecond;
   std::vector<valve_bus::NodeConfiguration> all{configuration};
   const kernel::Duration limit = configuration.rules.loss_limit;
-  if (limit <= kLossSpan) return all;
-  for (const kernel::Duration other : {limit - kLossSpan, limit + kLossSpan}) {
+  if (limit == kernel::Duration{}) return all;
+  for (const kernel::Duration other : {limit - limit / 10, limit + limit / 10}) {
     all.push_back(configuration);
     all.back().rules.loss_limit = other;
   }

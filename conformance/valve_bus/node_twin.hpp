@@ -34,8 +34,8 @@ class NodeTwin {
   LevelHistory valves_;
 };
 
-// The extremes that the rules of this node allow: without a host it may let go of its valves a little before
-// or after its limit.
+// The extremes that the rules of this node allow: without a host it may let go of its valves a tenth of its
+// limit before or after that.
 std::vector<valve_bus::NodeConfiguration> node_extremes(const valve_bus::NodeConfiguration& configuration);
 
 }  // namespace fieldproof::conformance

@@ -1,9 +1,13 @@
 #include "conformance/valve_bus/node_vocabulary.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "conformance/sequence_settings.hpp"
+#include "harness/kernel/error.hpp"
 #include "protocols/valve_bus/node_settings.hpp"
 
 namespace fieldproof::conformance {
@@ -25,6 +29,13 @@ constexpr std::array<std::int64_t, 2> kSixteenths{2, 4};
 constexpr std::array<std::int64_t, 5> kPolls{2, 20, 2, 20, 410};
 constexpr std::array<std::int64_t, 5> kWaits{1, 10, 66, 100, 1000};
 
+constexpr std::array<std::int64_t, 2> kMovedEdges{-5, 5};
+constexpr std::array<std::int64_t, 3> kWrongs{2, 20, 130};
+constexpr std::array<std::int64_t, 5> kLossLimits{
+    kernel::Duration{8 * kernel::kMillisecond}.count(), kernel::Duration{100 * kernel::kMillisecond}.count(),
+    kernel::Duration{1 * kernel::kSecond}.count(), kernel::Duration{66 * kernel::kSecond}.count(),
+    kernel::Duration{3600 * kernel::kSecond}.count()};
+
 SequenceNumber octet(std::string_view name, std::span<const std::int64_t> likely = kData) {
   return {name, 0, 0xFF, 0, likely};
 }
@@ -32,6 +43,34 @@ SequenceNumber octet(std::string_view name, std::span<const std::int64_t> likely
 // After what the command sends, to the next.
 SequenceNumber silence() {
   return {"silence", 0, 100'000, kDelimiterBits, kSilences, true};
+}
+
+// Judged beside references, so that it is enough if a write and the loss of the host can be told apart.
+void expect_judgeable_in_a_sequence(const valve_bus::NodeConfiguration& node) {
+  constexpr int kSpans = 3;
+  const valve_bus::Rules& rules = node.rules;
+  const kernel::Duration least =
+      kSpans * (valve_bus::delimiter(rules) + valve_bus::turnaround_time_span(rules));
+  if (rules.loss_limit == kernel::Duration{} || rules.loss_limit >= least) return;
+  throw kernel::Error(
+      kernel::ErrorKind::configuration,
+      fmt::format("with a \"loss_limit\" of {} the valves of this node go off while they may still move by a "
+                  "write; at {} bit/s it can be judged from {} on",
+                  kernel::describe(rules.loss_limit), rules.bit_rate, kernel::describe(least)));
+}
+
+// Times without a host of which a sequence may see the end.
+std::vector<SequenceSetting> settings_of_a_node(const valve_bus::NodeConfiguration& node) {
+  std::vector<SequenceSetting> all = sequence_settings(valve_bus::kNodeTable, &node);
+  const auto loss = std::ranges::find(all, std::string_view("loss_limit"), &SequenceSetting::name);
+  if (loss != all.end()) {
+    loss->likely = {kLossLimits.begin(), kLossLimits.end()};
+    loss->is_likely_only = true;
+  }
+  // The first position that is no digit.
+  for (SequenceSetting& one : all)
+    if (one.name.starts_with("address_")) one.likely.push_back(10);
+  return all;
 }
 
 SequenceVocabulary vocabulary_of_commands() {
@@ -83,8 +122,8 @@ SequenceVocabulary vocabulary_of_commands() {
           .unit = "character",
           .levels_per_unit = 11,
           .gaps = kGaps,
-          .settings = sequence_settings(valve_bus::kNodeTable, &node),
-          .objection = objection_of(valve_bus::kNodeTable, node, expect_judgeable)};
+          .settings = settings_of_a_node(node),
+          .objection = objection_of(valve_bus::kNodeTable, node, expect_judgeable_in_a_sequence)};
 }
 
 std::vector<SequenceWord> words_of_spoilt_writes() {
@@ -127,17 +166,60 @@ std::vector<SequenceWord> words_of_lines_and_times() {
        .weight = 1},
       {.word = "sign",
        .meaning = "where valves go off without a command: a write, seven tenths of that time, a read (0), an "
-                  "undefined command (1), a command for another (2), one with a wrong check (3) or "
-                  "nothing (4), and seven tenths",
-       .numbers = {{"kind", 0, 4, 0}},
+                  "undefined command (1), a command for another (2), one with a wrong check (3), nothing (4) "
+                  "or the same write (5), and seven tenths",
+       .numbers = {{"kind", 0, 5, 0}},
        .weight = 3}};
+}
+
+std::vector<SequenceWord> words_of_characters() {
+  return {{.word = "stop",
+           .meaning = "a write of the node's own without the stop bit of one character",
+           .numbers = {{"character", 0, 4, 0}, octet("data0"), octet("data1"), silence()},
+           .weight = 2},
+          {.word = "edges",
+           .meaning = "a write of the node's own whose edges lie so many sixteenths of a bit beside their "
+                      "places: rising ones later, or, below 0, falling ones earlier",
+           .numbers = {{"sixteenths", -5, 5, 5, kMovedEdges}, octet("data0"), octet("data1"), silence()},
+           .weight = 1}};
+}
+
+// What comes before an answer, into it or in its place.
+std::vector<SequenceWord> words_of_answers() {
+  return {{.word = "cancel",
+           .meaning = "a read, or a write, of the node's own and, before anybody is sure that it is over, an "
+                      "octet (0), a write for another (1) or a write of its own (2)",
+           .numbers = {{"write", 0, 1, 0}, {"next", 0, 2, 0}, octet("data0"), octet("data1"), silence()},
+           .weight = 2},
+          {.word = "collision",
+           .meaning = "a read of the node's own, and a response of another node into its answer",
+           .numbers = {octet("data0"), octet("data1"), silence()},
+           .weight = 1},
+          {.word = "lost",
+           .meaning = "a read of the node's own, and the supply goes so many characters after the answer has "
+                      "begun, and comes again",
+           .numbers = {{"characters", 1, 2, 1}, silence()},
+           .weight = 1,
+           .is_loss = true},
+          {.word = "wrong",
+           .meaning = "so many writes of the node's own with a wrong check, one after the other",
+           .numbers = {{"count", 2, 130, 2, kWrongs, true}},
+           .weight = 1},
+          {.word = "others",
+           .meaning = "where valves go off without a command: a write, and commands for another beyond that "
+                      "time",
+           .weight = 1},
+          {.word = "clock",
+           .meaning = "a read of the node's own while both boards of limit switches show a clock",
+           .weight = 1}};
 }
 
 }  // namespace
 
 SequenceVocabulary node_vocabulary() {
   SequenceVocabulary vocabulary = vocabulary_of_commands();
-  for (auto* make : {words_of_spoilt_writes, words_of_lines_and_times}) {
+  for (auto* make :
+       {words_of_spoilt_writes, words_of_lines_and_times, words_of_characters, words_of_answers}) {
     for (SequenceWord& word : make()) vocabulary.words.push_back(std::move(word));
   }
   return vocabulary;
@@ -158,6 +240,8 @@ std::vector<std::uint8_t> octets_of(NodeWord word, const SequenceCommand& comman
     case NodeWord::check:
     case NodeWord::parity:
     case NodeWord::rate:
+    case NodeWord::stop:
+    case NodeWord::edges:
       octets = {bench.address(), 0, number(1), number(2)};
       break;
     case NodeWord::spaced:

@@ -27,7 +27,15 @@ enum class NodeWord : std::uint8_t {
   line_break,
   glitch,
   poll,
-  sign
+  sign,
+  stop,
+  edges,
+  cancel,
+  collision,
+  lost,
+  wrong,
+  others,
+  clock,
 };
 
 SequenceVocabulary node_vocabulary();
